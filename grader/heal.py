@@ -1,0 +1,172 @@
+"""Put a submitted notebook back into the shape of its source: only answers are the student's."""
+
+import re
+from collections import defaultdict
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import nbformat
+from nbformat import NotebookNode
+
+KEY = 'my_robot_basics'
+"""Our one key in a cell's metadata: {'role': ...}, and after grading the verdict."""
+
+
+@dataclass(frozen=True)
+class Master:
+    """What every submission of an assignment is healed from."""
+
+    notebook: NotebookNode
+    """The instructor's cells, hidden tests included, with the released stubs for answers."""
+    released: dict[str, str]
+    """The text that students were given, by grade id."""
+
+
+@dataclass(frozen=True)
+class Healed:
+    """A notebook with every cell of its source, in the source's order, and what was mended."""
+
+    notebook: NotebookNode
+    notes: tuple[str, ...]
+
+
+@dataclass
+class _Found:
+    """What a submission holds for one cell of the source."""
+
+    parts: list[NotebookNode] = field(default_factory=list)
+    after: list[NotebookNode] = field(default_factory=list)
+    """The student's own cells that follow it."""
+
+
+def grade_id(cell: NotebookNode) -> str | None:
+    """Return the cell's nbgrader id, if it has one."""
+    return cell.metadata.get('nbgrader', {}).get('grade_id')
+
+
+def role(cell: NotebookNode) -> str:
+    """Return what a cell is for: answer, grade, locked, setup, demo, free or text."""
+    if recorded := cell.metadata.get(KEY, {}).get('role'):
+        return recorded
+    marks = cell.metadata.get('nbgrader', {})
+    if marks.get('solution'):
+        return 'answer'
+    if marks.get('grade'):
+        return 'grade'
+    if cell.cell_type != 'code':
+        return 'text'
+    if marks.get('locked'):
+        return 'locked'
+    return 'demo' if 'demo' in cell.metadata.get('tags', ()) else 'setup'
+
+
+def make_master(source: NotebookNode, release: NotebookNode) -> Master:
+    """Join the instructor's notebook with the one that students were given."""
+    released = {grade_id(cell): cell.source for cell in release.cells if grade_id(cell)}
+    notebook = nbformat.from_dict(source)
+    for cell in notebook.cells:
+        if role(cell) == 'answer':
+            cell.source = released.get(grade_id(cell), '')
+        if cell.cell_type == 'code':
+            cell.outputs, cell.execution_count = [], None
+    return Master(notebook=notebook, released=released)
+
+
+def heal(submitted: NotebookNode, master: Master) -> Healed:
+    """Build the notebook that is graded: the master's cells and the student's answers.
+
+    Locked and grade cells come from the master, whatever became of them; an answer that was split
+    or repeated keeps all its parts; a cell of the student's own stays after the cell it followed.
+    Every change to a locked, grade or answer cell is noted.
+    """
+    notes: list[str] = []
+    found = _match(submitted, master.notebook)
+    cells = [_from_student(cell) for cell in found[-1].after]
+    for index, cell in enumerate(master.notebook.cells):
+        cells.extend(_mend(cell, found[index].parts, master.released, notes))
+        cells.extend(_from_student(own) for own in found[index].after)
+    _give_unique_ids(cells)
+    answers = [i for i, cell in enumerate(master.notebook.cells) if role(cell) == 'answer']
+    if not any(found[i].parts for i in answers):
+        notes = ['the notebook holds none of the answer cells of this assignment', *notes]
+    healed = nbformat.v4.new_notebook(cells=cells)
+    healed.metadata = nbformat.from_dict(master.notebook.metadata)
+    healed.metadata[KEY] = {'notes': notes}
+    return Healed(notebook=healed, notes=tuple(notes))
+
+
+def _match(submitted: NotebookNode, master: NotebookNode) -> dict[int, _Found]:
+    """Find each submitted cell's place in the master, by grade id, else by text or cell id."""
+    by_grade_id = {grade_id(c): i for i, c in enumerate(master.cells) if grade_id(c)}
+    plain = [(i, c) for i, c in enumerate(master.cells) if not grade_id(c)]
+    by_id = {c.id: i for i, c in plain if 'id' in c}
+    by_text = {(c.cell_type, c.source): i for i, c in plain}
+    found: dict[int, _Found] = defaultdict(_Found)
+    place = -1
+    for cell in submitted.cells:
+        index = by_grade_id.get(grade_id(cell))
+        if index is None:
+            index = by_text.get((cell.cell_type, cell.source), by_id.get(cell.get('id')))
+            if index is None or found[index].parts:
+                if cell.source.strip():
+                    found[place].after.append(cell)
+                continue
+        place = index
+        found[index].parts.append(cell)
+    return found
+
+
+def _mend(
+    cell: NotebookNode, parts: list[NotebookNode], released: dict[str, str], notes: list[str]
+) -> Iterator[NotebookNode]:
+    """Yield what stands for one cell of the master."""
+    kind, name = role(cell), grade_id(cell)
+    original = nbformat.from_dict(cell)
+    original.metadata[KEY] = {'role': kind}
+    if kind == 'answer':
+        _answer(original, parts, notes)
+    yield original
+    if kind in ('grade', 'locked'):
+        if not parts:
+            notes.append(f'the cell `{name}` was missing: it was put back')
+        elif len(parts) > 1:
+            notes.append(f'the cell `{name}` was there {len(parts)} times: the original counts')
+        elif parts[0].source != released.get(name) or parts[0].cell_type != cell.cell_type:
+            notes.append(f'the cell `{name}` was changed: the original counts')
+    elif kind in ('setup', 'demo') and parts and parts[0].source != cell.source:
+        yield _from_student(parts[0])  # it may define what an answer needs
+
+
+def _answer(cell: NotebookNode, parts: list[NotebookNode], notes: list[str]) -> None:
+    """Put the student's text into an answer cell."""
+    name = grade_id(cell)
+    if not parts:
+        notes.append(f'the answer cell `{name}` was missing: it was put back, without an answer')
+        return
+    if len(parts) > 1:
+        notes.append(f'the answer cell `{name}` came in {len(parts)} parts: they were joined')
+    if any(part.cell_type != cell.cell_type for part in parts):
+        notes.append(f'the answer cell `{name}` had another type: it was changed back')
+    cell.source = '\n\n'.join(dict.fromkeys(part.source for part in parts))
+    pictures = {k: v for part in parts for k, v in part.get('attachments', {}).items()}
+    if pictures and cell.cell_type == 'markdown':
+        cell.attachments = nbformat.from_dict(pictures)
+
+
+def _from_student(cell: NotebookNode) -> NotebookNode:
+    """Copy a cell of the student's own; nothing that they wrote into its metadata lives on."""
+    own = nbformat.from_dict(cell)
+    own.metadata = nbformat.from_dict({KEY: {'role': 'text'}})
+    if own.cell_type == 'code':
+        own.metadata[KEY].role = 'free'
+        own.outputs, own.execution_count = [], None
+    return own
+
+
+def _give_unique_ids(cells: list[NotebookNode]) -> None:
+    seen: set[str] = set()
+    for cell in cells:
+        cell_id = cell.get('id')
+        if cell_id in seen or not re.fullmatch(r'[a-zA-Z0-9_-]{1,64}', cell_id or ''):
+            cell.id = nbformat.v4.new_code_cell().id
+        seen.add(cell.id)

@@ -1,0 +1,157 @@
+"""Read what a student handed in; refuse what cannot be read, by name and reason."""
+
+import json
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+import nbformat
+from nbformat import NotebookNode
+
+from grader.errors import UnreadableSubmission
+
+MAX_NOTEBOOK_BYTES = 20_000_000
+"""More than any lesson with all its pictures; a larger file is refused, not read."""
+
+MAX_CELLS = 2_000
+
+
+@dataclass(frozen=True)
+class Submission:
+    """One notebook of one student, as it was handed in."""
+
+    student_id: str
+    assignment: str
+    path: Path
+    """Where the notebook is, or was expected."""
+    notebook: NotebookNode | None
+    """Cell types, sources and grade ids only; None when it could not be read."""
+    extra_files: tuple[Path, ...] = ()
+    """The student's own Python files beside the notebook."""
+    problem: str | None = None
+    """Why the notebook could not be read."""
+
+
+def read_submission(folder: Path, *, student_id: str, assignment: str) -> Submission:
+    """Read `folder`/`assignment`.ipynb; what is wrong with it ends up in `problem`."""
+    path = folder / f'{assignment}.ipynb'
+    try:
+        notebook, problem = read_notebook(path), None
+    except UnreadableSubmission as error:
+        notebook, problem = None, str(error)
+    return Submission(
+        student_id=student_id,
+        assignment=assignment,
+        path=path,
+        notebook=notebook,
+        extra_files=tuple(extra_python_files(folder)),
+        problem=problem,
+    )
+
+
+def extra_python_files(folder: Path) -> list[Path]:
+    """Return the plain .py files that lie directly in `folder`, sorted; links don't count."""
+    return sorted(p for p in folder.glob('*.py') if p.is_file() and not p.is_symlink())
+
+
+def read_notebook(path: Path) -> NotebookNode:
+    """Read a notebook that nobody vouches for, keeping only what grading needs.
+
+    Raises UnreadableSubmission with a sentence for the student.
+    """
+    raw = _read_json(path)
+    if not isinstance(raw, dict) or not isinstance(raw.get('nbformat'), int):
+        raise UnreadableSubmission(
+            f'{path.name} is JSON but not a notebook: save the lesson in JupyterLab and submit '
+            'that file.'
+        )
+    cells = raw.get('cells')
+    if raw['nbformat'] < 4:
+        cells = [c for sheet in _dicts(raw.get('worksheets')) for c in _dicts(sheet.get('cells'))]
+    cells = [_clean_cell(cell) for cell in _dicts(cells)]
+    if not cells:
+        raise UnreadableSubmission(f'{path.name} has no cells: submit the notebook you worked in.')
+    if len(cells) > MAX_CELLS:
+        raise UnreadableSubmission(
+            f'{path.name} has {len(cells)} cells, more than the {MAX_CELLS} that are graded.'
+        )
+    return nbformat.v4.new_notebook(cells=cells)
+
+
+def _read_json(path: Path) -> object:
+    if path.is_symlink() or not path.is_file():
+        found = sorted(p.name for p in path.parent.glob('*') if p.is_file())[:5]
+        listing = ', '.join(found) or 'nothing'
+        raise UnreadableSubmission(
+            f'there is no file {path.name}; found {listing}. Submit the notebook under its '
+            'own name.'
+        )
+    size = path.stat().st_size
+    if size > MAX_NOTEBOOK_BYTES:
+        raise UnreadableSubmission(
+            f'{path.name} has {size / 1e6:.0f} MB, more than {MAX_NOTEBOOK_BYTES / 1e6:.0f} MB: '
+            'choose "Clear All Outputs" in JupyterLab, save, and submit again.'
+        )
+    try:
+        return json.loads(path.read_bytes())
+    except (ValueError, RecursionError) as error:
+        raise UnreadableSubmission(
+            f'{path.name} is not JSON ({_one_line(error)}): the file is damaged or not a '
+            'notebook. Save it again in JupyterLab and submit that file.'
+        ) from None
+    except OSError as error:
+        raise UnreadableSubmission(f'{path.name} could not be read: {error.strerror}.') from None
+
+
+def _clean_cell(cell: dict) -> NotebookNode:
+    """Keep type, source, id, grade id and pasted pictures; drop outputs and all other metadata."""
+    source = _text(cell.get('source', cell.get('input', '')))
+    cell_id = cell.get('id')
+    metadata = {}
+    nbgrader = cell.get('metadata')
+    nbgrader = nbgrader.get('nbgrader') if isinstance(nbgrader, dict) else None
+    grade_id = nbgrader.get('grade_id') if isinstance(nbgrader, dict) else None
+    if isinstance(grade_id, str):
+        metadata = {'nbgrader': {'grade_id': grade_id}}
+    if cell.get('cell_type') == 'code':
+        clean = nbformat.v4.new_code_cell(source, metadata=metadata)
+    elif cell.get('cell_type') == 'raw':
+        clean = nbformat.v4.new_raw_cell(source, metadata=metadata)
+    else:
+        clean = nbformat.v4.new_markdown_cell(source, metadata=metadata)
+        if pictures := _pictures(cell.get('attachments')):
+            clean.attachments = pictures
+    if isinstance(cell_id, str):
+        clean.id = cell_id
+    return clean
+
+
+def _pictures(attachments: object) -> NotebookNode:
+    """Return the pasted PNG and JPEG pictures of a markdown cell: {name: {type: base64}}."""
+    kept = {}
+    if isinstance(attachments, dict):
+        for name, bundle in attachments.items():
+            if isinstance(bundle, dict):
+                pictures = {
+                    mime: data
+                    for mime, data in bundle.items()
+                    if mime in ('image/png', 'image/jpeg') and isinstance(data, str)
+                }
+                if pictures:
+                    kept[name] = pictures
+    return nbformat.from_dict(kept)
+
+
+def _dicts(value: object) -> Iterable[dict]:
+    return [v for v in value if isinstance(v, dict)] if isinstance(value, list) else []
+
+
+def _text(value: object) -> str:
+    if isinstance(value, list):
+        value = ''.join(part for part in value if isinstance(part, str))
+    # a lone surrogate can't be written to any file or socket
+    return value.encode(errors='replace').decode() if isinstance(value, str) else ''
+
+
+def _one_line(error: Exception) -> str:
+    return ' '.join(str(error).split())[:120] or type(error).__name__
