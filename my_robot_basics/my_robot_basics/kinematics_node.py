@@ -1,0 +1,34 @@
+"""Computes one pose and its inverse. Run it with `ros2 run my_robot_basics kinematics_node`.
+
+The result goes to the log alone, where no other node can use it: that is what topics are for.
+"""
+
+from rclpy.node import Node
+
+from my_robot_basics.spinning import spin_until_stopped
+from my_robot_basics.two_link_kinematics import forward_kinematics, inverse_kinematics
+
+
+class KinematicsNode(Node):
+    """Logs where one pose puts the end effector, and both poses that reach it; then is silent."""
+
+    def __init__(self) -> None:
+        super().__init__('kinematics_node')
+        theta1_deg, theta2_deg = 23.4, -67.8
+        x, y = forward_kinematics(theta1_deg, theta2_deg)
+        self.get_logger().info(
+            f'FK: θ1={theta1_deg:.1f}°, θ2={theta2_deg:.1f}° → ({x:.3f}, {y:.3f}) m'
+        )
+        for branch, (theta1_deg, theta2_deg) in inverse_kinematics(x, y).items():
+            self.get_logger().info(
+                f'IK: ({x:.3f}, {y:.3f}) m → {branch}: θ1={theta1_deg:.1f}°, θ2={theta2_deg:.1f}°'
+            )
+
+
+def main(args: list[str] | None = None) -> None:
+    """Run the node until Ctrl-C or SIGTERM."""
+    spin_until_stopped(KinematicsNode, args=args)
+
+
+if __name__ == '__main__':
+    main()
