@@ -1,0 +1,51 @@
+"""The one exception of a failing check, and the two functions that raise it."""
+
+import sys
+from typing import NoReturn
+
+import numpy as np
+
+MOST_CHARACTERS = 200
+
+
+class CheckFailed(AssertionError):
+    """A check's verdict in one readable sentence: what was expected, seen, and what to try."""
+
+    def _render_traceback_(self) -> list[str]:
+        # IPython asks for this: the sentence alone, never the source of a test.
+        return [str(self)]
+
+
+def expect(condition: bool, *, expected: object, seen: object, hint: str) -> None:
+    """Raise CheckFailed('expected …, saw …: hint') unless the condition holds.
+
+    The condition is a bool; anything else is a mistake in the check and raises TypeError.
+    """
+    if not isinstance(condition, bool | np.bool_):
+        raise TypeError(f'expect() takes a bool as its condition, not {condition!r}')
+    if not condition:
+        fail(expected=expected, seen=seen, hint=hint)
+
+
+def fail(*, expected: object, seen: object, hint: str, picture: bytes | None = None) -> NoReturn:
+    """Raise CheckFailed('expected …, saw …: hint'); show the picture (PNG bytes) before it."""
+    if picture is not None:
+        _show(picture)
+    raise CheckFailed(f'expected {expected}, saw {seen}: {hint}')
+
+
+def shorten(text: object, most: int = MOST_CHARACTERS) -> str:
+    """One printable line of at most `most` characters, for a text that a student's code made."""
+    line = ' '.join(str(text).split())
+    line = ''.join(character if character.isprintable() else '?' for character in line)
+    return line if len(line) <= most else line[: most - 1] + '…'
+
+
+def _show(picture: bytes) -> None:
+    if 'IPython' not in sys.modules:
+        return
+    from IPython import get_ipython
+    from IPython.display import Image, display
+
+    if get_ipython() is not None:
+        display(Image(data=picture, format='png'))

@@ -1,0 +1,53 @@
+"""The student's side of `student.call` and `student.value`: look a name up, answer in JSON.
+
+This module and wire.py are all of `checks` that a student's kernel runs at grading.
+"""
+
+import contextlib
+import sys
+
+from my_robot_basics.checks import wire
+
+
+def answer(request_text: str) -> str:
+    """Answer one request against the notebook's namespace (`__main__`); the reply's text.
+
+    Raises wire.WireError for a request that is not of this protocol.
+    """
+    request = wire.loads(request_text)
+    op, name, args = request.get('op'), request.get('name'), request.get('args', [])
+    if request.get('protocol') != wire.PROTOCOL or op not in ('call', 'value'):
+        raise wire.WireError('a request of another protocol')
+    namespace = vars(sys.modules['__main__'])
+    if name not in namespace:
+        return wire.dumps({'missing': name})
+    value = namespace[name]
+    if op == 'call':
+        arguments = [wire.decode(argument) for argument in args]
+        try:
+            # a warning or a log line of the function never costs points
+            with contextlib.redirect_stderr(sys.stdout):
+                value = value(*arguments)
+        except (Exception, SystemExit) as error:
+            return wire.dumps({'raised': {'type': type(error).__name__, 'message': _text(error)}})
+    return _reply(value)
+
+
+def _reply(value: object) -> str:
+    try:
+        text = wire.dumps({'ok': wire.encode(value)})
+    except wire.UnsupportedValue as error:
+        return wire.dumps({'unsupported': _text(error)})
+    except Exception as error:
+        # a list that changes while it is read, a dict subclass with ideas of its own, …
+        return wire.dumps({'unsupported': f'{type(value).__name__} ({_text(error)})'})
+    if len(text) > wire.MOST_BYTES:
+        return wire.dumps({'failed': f'more than {wire.MOST_BYTES // 1024} kB of text'})
+    return text
+
+
+def _text(error: BaseException) -> str:
+    try:
+        return str(error)[:1000]
+    except Exception:
+        return 'an exception whose text raises an exception too'

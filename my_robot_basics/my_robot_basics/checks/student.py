@@ -1,0 +1,104 @@
+"""Ask the notebook under test for plain values, by name; the verdict is made on this side.
+
+In the test kernel the question goes to the grader (which asks the student's kernel); in the
+student's own kernel the same question is answered in place, in the same words.
+"""
+
+import builtins
+import os
+from typing import Any
+
+from my_robot_basics.checks import responder, wire
+from my_robot_basics.checks.errors import CheckFailed, fail, shorten
+
+_ANSWER_CELL = 'in the answer cell, and run the cell'
+
+
+def call(name: str, *args: object, returns: type | tuple[type, ...] | None = None) -> Any:
+    """Call the student's function and return what it returned.
+
+    Arguments and result are plain values or ROS messages (see wire.py). With `returns`, any
+    other type fails the check; a bool is no int, an int will do for a float.
+    """
+    shown = f'{name}({", ".join(_brief(argument) for argument in args)})'
+    kind, body = _ask(wire.request(op='call', name=name, args=args), shown)
+    if kind == 'missing':
+        _fail_missing(name, what='function')
+    if kind == 'raised':
+        raised = shorten(f'{body["type"]}: {body["message"]}')
+        hint = f'call {shorten(shown)} in a cell of your own to see where'
+        fail(expected=f'`{shorten(shown)}` to return', seen=raised, hint=hint)
+    if kind == 'unsupported':
+        seen = _article(shorten(body))
+        hint = 'return plain values (numbers, text, lists, dicts) or a ROS message'
+        fail(expected=f'`{shorten(shown)}` to return {_wanted(returns)}', seen=seen, hint=hint)
+    if body is None:
+        hint = f'end `{name}` with `return …` (printing a result does not return it)'
+        fail(expected=f'`{shorten(shown)}` to return a value', seen='None', hint=hint)
+    _check_type(body, returns, what=f'`{shorten(shown)}` to return')
+    return body
+
+
+def value(name: str, *, type: builtins.type | tuple[builtins.type, ...] | None = None) -> Any:
+    """The value of a name of the notebook; with `type`, any other type fails the check."""
+    kind, body = _ask(wire.request(op='value', name=name), name)
+    if kind == 'missing':
+        _fail_missing(name, what='value')
+    if kind == 'unsupported':
+        hint = 'use plain values (numbers, text, lists, tuples, sets, dicts)'
+        seen = _article(shorten(body))
+        fail(expected=f'`{name}` to be {_wanted(type)}', seen=seen, hint=hint)
+    if body is None and type is not None:
+        hint = f'give `{name}` its value {_ANSWER_CELL}'
+        fail(expected=f'`{name}` to be {_wanted(type)}', seen='None', hint=hint)
+    _check_type(body, type, what=f'`{name}` to be')
+    return body
+
+
+def _ask(question: str, shown: str) -> tuple[str, Any]:
+    in_test_room = os.environ.get('MY_ROBOT_BASICS_ROOM') == 'test'
+    reply = input(question) if in_test_room else responder.answer(question)
+    try:
+        kind, body = wire.parse_reply(reply)
+    except wire.WireError as error:
+        raise CheckFailed(
+            f'expected an answer from `{shorten(shown)}`, saw {error}: '
+            'return plain values (numbers, text, lists, dicts) or a ROS message'
+        ) from None
+    if kind == 'failed':
+        hint = 'look for an endless loop, a result that is too large, or a kernel that died'
+        fail(expected=f'an answer from `{shorten(shown)}`', seen=shorten(body), hint=hint)
+    return kind, body
+
+
+def _fail_missing(name: str, *, what: str) -> None:
+    verb = f'define `{name}`' if what == 'function' else f'assign `{name}`'
+    fail(expected=f'a {what} `{name}`', seen='no such name', hint=f'{verb} {_ANSWER_CELL}')
+
+
+def _check_type(found: object, wanted: type | tuple[type, ...] | None, *, what: str) -> None:
+    if wanted is None:
+        return
+    types = wanted if isinstance(wanted, tuple) else (wanted,)
+    if type(found) in types or (type(found) is int and float in types):
+        return
+    seen = f'{_article(type(found).__name__)} ({_brief(found)})'
+    fail(expected=f'{what} {_wanted(wanted)}', seen=seen, hint='check the type of the value')
+
+
+def _wanted(types: type | tuple[type, ...] | None) -> str:
+    if types is None:
+        return 'a plain value or a ROS message'
+    types = types if isinstance(types, tuple) else (types,)
+    return ' or '.join(_article(each.__name__) for each in types)
+
+
+def _article(noun: str) -> str:
+    return f'{"an" if noun[:1].lower() in "aeiou" else "a"} {noun}'
+
+
+def _brief(argument: object) -> str:
+    """An argument as a student would type it; a message by its type alone."""
+    if hasattr(argument, 'get_fields_and_field_types'):
+        return f'{type(argument).__name__}(…)'
+    return shorten(repr(argument), 60)

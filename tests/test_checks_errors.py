@@ -1,0 +1,52 @@
+"""A failing check is one sentence, in Python and in IPython."""
+
+import numpy as np
+import pytest
+from IPython.core.interactiveshell import InteractiveShell
+from my_robot_basics.checks import CheckFailed, expect, fail
+from my_robot_basics.checks.errors import shorten
+
+WORDS = {'expected': '5.0 Hz', 'seen': '1.0 Hz', 'hint': 'period = 1 / rate'}
+SENTENCE = 'expected 5.0 Hz, saw 1.0 Hz: period = 1 / rate'
+
+
+@pytest.mark.parametrize('condition', [False, np.bool_(False)])
+def test_expect_says_expected_seen_and_hint(condition):
+    with pytest.raises(CheckFailed) as failed:
+        expect(condition, **WORDS)
+    assert str(failed.value) == SENTENCE
+
+
+@pytest.mark.parametrize('condition', [True, np.bool_(True)])
+def test_expect_is_silent_when_the_condition_holds(condition):
+    assert expect(condition, **WORDS) is None
+
+
+@pytest.mark.parametrize('condition', [(False, 'text'), None, 1, 'text', []])
+def test_expect_refuses_what_is_not_a_bool(condition):
+    with pytest.raises(TypeError, match='takes a bool'):
+        expect(condition, **WORDS)
+
+
+def test_ipython_shows_the_sentence_and_no_source(capsys):
+    shell = InteractiveShell()
+    shell.run_cell(
+        'from my_robot_basics.checks import fail\n'
+        "hidden = 1; fail(expected='5.0 Hz', seen='1.0 Hz', hint='period = 1 / rate')"
+    )
+    shown = capsys.readouterr()
+    assert shown.out.strip() == SENTENCE
+    assert 'hidden' not in shown.out + shown.err
+
+
+def test_fail_always_raises():
+    with pytest.raises(AssertionError, match='period = 1 / rate'):
+        fail(**WORDS)
+
+
+@pytest.mark.parametrize(
+    ('text', 'expected'),
+    [('a\n  b', 'a b'), ('\x1b[31mred', '?[31mred'), ('a' * 300, 'a' * 199 + '…'), (5, '5')],
+)
+def test_shorten_makes_one_printable_line(text, expected):
+    assert shorten(text) == expected

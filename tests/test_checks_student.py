@@ -1,0 +1,132 @@
+"""Asking for values: the same words in the student's kernel and in the test kernel."""
+
+import json
+
+import numpy as np
+import pytest
+from builtin_interfaces.msg import Time
+from my_robot_basics.checks import CheckFailed, responder, student, wire
+from sensor_msgs.msg import JointState
+
+import __main__
+
+MODES = ['one process', 'test room']
+
+
+@pytest.fixture(params=MODES)
+def notebook(request, monkeypatch):
+    """A function that gives `__main__` names; questions go by both of the ways."""
+    monkeypatch.delenv('MY_ROBOT_BASICS_ROOM', raising=False)
+    if request.param == 'test room':
+        monkeypatch.setenv('MY_ROBOT_BASICS_ROOM', 'test')
+        monkeypatch.setattr('builtins.input', responder.answer)
+    return lambda **names: [
+        monkeypatch.setattr(__main__, n, v, raising=False) for n, v in names.items()
+    ]
+
+
+def raising(x):
+    raise ValueError('out of\n  reach')
+
+
+def exiting(x):
+    raise SystemExit(3)
+
+
+CALLS = {
+    'a bool': (lambda x: x > 1, bool, True),
+    'a NumPy bool': (lambda x: np.bool_(x > 1), bool, True),
+    'a float': (lambda x: x / 4, float, 0.5),
+    'an int for a float': (lambda x: x, float, 2),
+    'a tuple': (lambda x: (x, 'a'), tuple, (2, 'a')),
+    'either of two': (lambda x: {x}, (list, set), {2}),
+    'any type': (lambda x: [None], None, [None]),
+}
+
+
+@pytest.mark.parametrize(('function', 'returns', 'expected'), CALLS.values(), ids=CALLS)
+def test_call_returns_what_the_function_returned(notebook, function, returns, expected):
+    notebook(f=function)
+    result = student.call('f', 2, returns=returns)
+    assert result == expected
+    assert type(result) is type(expected)
+
+
+FAILURES = {
+    'missing': (None, 'expected a function `f`, saw no such name: define `f` in the answer cell'),
+    'raises': (raising, 'expected `f(2)` to return, saw ValueError: out of reach: call'),
+    'exits': (exiting, 'expected `f(2)` to return, saw SystemExit: 3: call'),
+    'forgot return': (lambda x: print('!'), 'expected `f(2)` to return a value, saw None: end'),
+    'int for a bool': (lambda x: 1, 'expected `f(2)` to return a bool, saw an int (1)'),
+    'a generator': (lambda x: iter([]), 'to return a bool, saw a list_iterator: return plain'),
+    'not a function': (5, "saw TypeError: 'int' object is not callable"),
+    'too much': (lambda x: 'a' * 70_000, 'saw more than 64 kB of text'),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(('function', 'message'), FAILURES.values(), ids=FAILURES)
+def test_call_fails_in_the_words_of_the_lesson(notebook, capfd, function, message):
+    if function is not None:
+        notebook(f=function)
+    with pytest.raises(CheckFailed) as failed:
+        student.call('f', 2, returns=bool)
+    assert message in str(failed.value)
+    assert '\n' not in str(failed.value)
+    assert capfd.readouterr().err == ''
+
+
+def test_messages_travel_both_ways(notebook):
+    def to_joint_state(theta1_deg, theta2_deg, stamp):
+        message = JointState(name=['joint1', 'joint2'], position=[theta1_deg, theta2_deg])
+        message.header.stamp = stamp
+        return message
+
+    notebook(to_joint_state=to_joint_state)
+    stamp = Time(sec=3, nanosec=4)
+    message = student.call('to_joint_state', 1.0, 2.0, stamp, returns=JointState)
+    assert (message.header.stamp, list(message.position)) == (stamp, [1.0, 2.0])
+
+
+def test_value_reads_a_name(notebook):
+    notebook(endpoints={'publishers': ['/a', '/b'], 'subscriptions': ('c',)})
+    assert student.value('endpoints', type=dict)['subscriptions'] == ('c',)
+    with pytest.raises(CheckFailed, match='expected `endpoints` to be a list, saw a dict'):
+        student.value('endpoints', type=list)
+    with pytest.raises(CheckFailed, match='expected a value `nothing`, saw no such name'):
+        student.value('nothing')
+
+
+@pytest.mark.parametrize(
+    'reply',
+    ['', '{"ok":' * 9_000, '{"ok":{"pickle":"x"}}', '{"failed":"the kernel died"}', None],
+)
+def test_any_bad_reply_is_a_failed_check(monkeypatch, reply):
+    monkeypatch.setenv('MY_ROBOT_BASICS_ROOM', 'test')
+    monkeypatch.setattr('builtins.input', lambda question: reply)
+    with pytest.raises(CheckFailed, match='expected an answer from `f'):
+        student.call('f', 2)
+
+
+def test_the_question_is_the_agreed_text(monkeypatch):
+    asked = []
+    monkeypatch.setenv('MY_ROBOT_BASICS_ROOM', 'test')
+    monkeypatch.setattr('builtins.input', lambda text: asked.append(text) or '{"ok":1}')
+    student.call('f', 2.5)
+    student.value('v')
+    assert [json.loads(text) for text in asked] == [
+        {'protocol': 'my_robot_basics.student/1', 'op': 'call', 'name': 'f', 'args': [2.5]},
+        {'protocol': 'my_robot_basics.student/1', 'op': 'value', 'name': 'v', 'args': []},
+    ]
+
+
+def test_the_responder_refuses_another_protocol():
+    with pytest.raises(wire.WireError):
+        responder.answer('{"protocol": "other/1", "op": "call", "name": "f"}')
+
+
+def test_a_warning_of_the_function_stays_off_stderr(notebook, capsys):
+    import sys
+
+    notebook(f=lambda: print('careful', file=sys.stderr) or 1)
+    assert student.call('f') == 1
+    assert capsys.readouterr().err == ''

@@ -1,0 +1,194 @@
+"""The codec: everything plain survives the journey, nothing hostile does more than be refused."""
+
+import base64
+import contextlib
+import enum
+import json
+import math
+
+import numpy as np
+import pytest
+from builtin_interfaces.msg import Time
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from my_robot_basics.checks import wire
+from rclpy.serialization import serialize_message
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Header
+
+scalars = st.none() | st.booleans() | st.integers() | st.floats() | st.text()
+keys = scalars | st.tuples(st.integers(), st.text())
+plain = st.recursive(
+    scalars,
+    lambda inner: (
+        st.lists(inner) | st.lists(inner).map(tuple) | st.sets(keys) | st.dictionaries(keys, inner)
+    ),
+    max_leaves=20,
+)
+
+
+def same(a, b):
+    """Equal in value and in type; a NaN is like a NaN; 1 and True are not alike."""
+    return repr(a) == repr(b)
+
+
+@given(plain)
+def test_plain_values_come_back_with_their_types(value):
+    encoded = wire.loads(wire.dumps({'ok': wire.encode(value)}))['ok']
+    back = wire.decode(encoded)
+    if isinstance(value, set):
+        assert sorted(map(repr, back)) == sorted(map(repr, value))
+    else:
+        assert type(back) is type(value)
+    if not _holds_a_set(value):
+        assert same(back, value)
+
+
+def _holds_a_set(value):
+    if isinstance(value, dict):
+        return any(_holds_a_set(item) for item in value.values())
+    return isinstance(value, set) or (
+        isinstance(value, list | tuple) and any(map(_holds_a_set, value))
+    )
+
+
+class Gear(enum.IntEnum):
+    FIRST = 1
+
+
+@pytest.mark.parametrize(
+    ('value', 'expected'),
+    [
+        (np.bool_(True), True),
+        (np.float64(0.5), 0.5),
+        (np.float32(0.5), 0.5),
+        (np.int64(3), 3),
+        (np.str_('a'), 'a'),
+        (np.array([[1, 2], [3, 4]]), [[1, 2], [3, 4]]),
+        (np.array([True, False]), [True, False]),
+        (np.array(1.5), 1.5),
+        (frozenset({1}), {1}),
+        (Gear.FIRST, 1),
+        (np.array([math.nan, 1.0]), [math.nan, 1.0]),
+    ],
+)
+def test_numpy_travels_as_the_plain_values_it_holds(value, expected):
+    assert same(wire.decode(json.loads(wire.dumps(wire.encode(value)))), expected)
+
+
+@pytest.mark.parametrize(
+    'value',
+    [
+        object(),
+        lambda: None,
+        1j,
+        b'bytes',
+        iter([]),
+        np.array([object()]),
+        type('Point', (), {})(),
+    ],
+)
+def test_other_values_are_named_and_not_sent(value):
+    with pytest.raises(wire.UnsupportedValue):
+        wire.encode(value)
+
+
+def test_a_list_that_holds_itself_is_too_deep():
+    endless = []
+    endless.append(endless)
+    with pytest.raises(wire.UnsupportedValue, match='deep'):
+        wire.encode(endless)
+
+
+def joint_state(**fields):
+    message = JointState(name=['joint1', 'joint2'], position=[0.5, -0.25], **fields)
+    message.header = Header(stamp=Time(sec=7, nanosec=5), frame_id='base_link')
+    return message
+
+
+def test_messages_come_back_equal():
+    sent = [joint_state(), Time(sec=1), {'pose': joint_state(effort=[1.0])}]
+    assert wire.decode(json.loads(wire.dumps(wire.encode(sent)))) == sent
+
+
+def test_a_message_with_a_field_of_a_wrong_type_is_unsupported():
+    broken = JointState()
+    broken.header.frame_id = None
+    with pytest.raises(wire.UnsupportedValue, match='JointState with a field of a wrong type'):
+        wire.encode(broken)
+
+
+CDR = base64.b64encode(serialize_message(joint_state())).decode()
+HOSTILE = {
+    'not text': 5,
+    'nothing': '',
+    'not json': '{',
+    'deep': '[' * 60_000,
+    'deep object': '{"ok":' * 9_000 + '1' + '}' * 9_000,
+    'nested': '{"ok":' + '[' * 40 + ']' * 40 + '}',
+    'huge': '{"ok":"' + 'a' * 70_000 + '"}',
+    'huge integer': '{"ok":' + '9' * 60_000 + '}',
+    'bare NaN': '{"ok":NaN}',
+    'bare Infinity': '{"ok":-Infinity}',
+    'float out of range': '{"ok":1e999}',
+    'not an object': '[1]',
+    'two answers': '{"ok":1,"missing":"a"}',
+    'no answer': '{}',
+    'unknown answer': '{"passed":true}',
+    'wrong body': '{"missing":1}',
+    'exception without text': '{"raised":{"type":"E"}}',
+    'exception of numbers': '{"raised":{"type":1,"message":2}}',
+    'unknown tag': '{"ok":{"pickle":"gASVAAAA"}}',
+    'two tags': '{"ok":{"tuple":[],"set":[]}}',
+    'odd float': '{"ok":{"float":"1.0"}}',
+    'list in a set': '{"ok":{"set":[[1]]}}',
+    'list as a key': '{"ok":{"dict":[[[1],2]]}}',
+    'half a pair': '{"ok":{"dict":[[1]]}}',
+    'other package': json.dumps({'ok': {'ros': 'os/msg/System', 'cdr': CDR}}),
+    'rcl_interfaces': json.dumps({'ok': {'ros': 'rcl_interfaces/msg/Log', 'cdr': CDR}}),
+    'path tricks': json.dumps({'ok': {'ros': 'std_msgs/msg/../String', 'cdr': CDR}}),
+    'no such message': json.dumps({'ok': {'ros': 'std_msgs/msg/Nothing', 'cdr': CDR}}),
+    'not base64': json.dumps({'ok': {'ros': 'sensor_msgs/msg/JointState', 'cdr': '!!'}}),
+    'no bytes': json.dumps({'ok': {'ros': 'sensor_msgs/msg/JointState', 'cdr': ''}}),
+    'cut short': json.dumps({'ok': {'ros': 'sensor_msgs/msg/JointState', 'cdr': CDR[:40]}}),
+}
+
+
+@pytest.mark.parametrize('text', HOSTILE.values(), ids=HOSTILE)
+def test_hostile_replies_are_refused_in_one_way(text):
+    with pytest.raises(wire.WireError):
+        wire.parse_reply(text)
+
+
+@settings(max_examples=300)
+@given(st.binary(max_size=200), st.sampled_from(['cut', 'flip', 'only']), st.integers(0, 2**16))
+def test_corrupt_cdr_is_a_message_or_a_refusal_and_silent(noise, how, seed):
+    whole = serialize_message(joint_state())
+    at = seed % len(whole)
+    cdr = {'cut': whole[:at], 'flip': whole[:at] + noise + whole[at + len(noise) :], 'only': noise}
+    body = {'ros': 'sensor_msgs/msg/JointState', 'cdr': base64.b64encode(cdr[how]).decode()}
+    with contextlib.suppress(wire.WireError):
+        assert isinstance(wire.decode(body), JointState)
+
+
+def test_the_c_library_says_nothing_of_corrupt_bytes(capfd):
+    whole = bytearray(serialize_message(joint_state()))
+    whole[28:32] = b'\xff\xff\xff\x7f'
+    cdr = base64.b64encode(bytes(whole)).decode()
+    with pytest.raises(wire.WireError, match='bytes that are no sensor_msgs/msg/JointState'):
+        wire.decode({'ros': 'sensor_msgs/msg/JointState', 'cdr': cdr})
+    assert capfd.readouterr() == ('', '')
+
+
+json_values = st.recursive(
+    scalars, lambda inner: st.lists(inner) | st.dictionaries(st.text(), inner), max_leaves=30
+)
+
+
+@given(json_values | st.dictionaries(st.sampled_from(['ok', 'raised', 'missing']), json_values))
+def test_any_json_is_an_answer_or_a_refusal(value):
+    try:
+        kind, _ = wire.parse_reply(json.dumps(value))
+    except wire.WireError:
+        return
+    assert kind in ('ok', 'raised', 'missing', 'unsupported', 'failed')
