@@ -1,0 +1,43 @@
+"""Nodes inside a notebook kernel: run, replace, stop; see the arm move.
+
+Importing a name from here enters the classroom (see `classroom.enter`); importing the modules
+`classroom` and `domain` does not, and does not load rclpy.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from my_robot_basics.live import classroom, domain
+
+if TYPE_CHECKING:
+    from my_robot_basics.live.arm import show_arm
+    from my_robot_basics.live.exercise import reset, run_answer
+    from my_robot_basics.live.follow import follow_arm
+    from my_robot_basics.live.runner import run, stop
+
+__all__ = [
+    'classroom',
+    'domain',
+    'follow_arm',
+    'reset',
+    'run',
+    'run_answer',
+    'show_arm',
+    'stop',
+]
+
+_MODULES = {
+    'run': 'runner',
+    'stop': 'runner',
+    'reset': 'exercise',
+    'run_answer': 'exercise',
+    'show_arm': 'arm',
+    'follow_arm': 'follow',
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _MODULES:
+        raise AttributeError(f'module {__name__!r} has no attribute {name!r}')
+    classroom.enter()
+    return getattr(import_module(f'{__name__}.{_MODULES[name]}'), name)

@@ -1,0 +1,64 @@
+"""What a process needs before `rclpy.init` to take part in a lesson.
+
+Imports neither rclpy nor anything else that is slow.
+"""
+
+import os
+import sys
+from pathlib import Path
+
+from my_robot_basics.live.domain import Claim, claim
+from my_robot_basics.live.errors import BadDomain
+
+HIGHEST_DOMAIN = 232
+
+_claim: Claim | None = None
+_domain_id: int | None = None
+
+
+def enter() -> int:
+    """Set the environment of a lesson, once, and return the ROS domain ID.
+
+    Nodes are found on this machine only, and fast; logs go to stdout, line by line and without
+    colours; ROS resources are found in this Python's prefix; and the process has a ROS domain
+    of its own, or the one that MY_ROBOT_BASICS_DOMAIN_ID names. It takes effect for contexts
+    that are initialised afterwards. Raises NoFreeDomain or BadDomain.
+    """
+    global _claim, _domain_id
+    if _domain_id is None:
+        given = os.environ.get('MY_ROBOT_BASICS_DOMAIN_ID')
+        if given:
+            _domain_id = _checked(given)
+        else:
+            _claim = claim()
+            _domain_id = _claim.domain_id
+        _set_environment(_domain_id)
+    return _domain_id
+
+
+def _checked(given: str) -> int:
+    if given.isascii() and given.isdigit() and int(given) <= HIGHEST_DOMAIN:
+        return int(given)
+    raise BadDomain(
+        f'MY_ROBOT_BASICS_DOMAIN_ID is {given!r}, expected a number from 0 to {HIGHEST_DOMAIN}: '
+        'correct it, or unset it to get a free domain'
+    )
+
+
+def _set_environment(domain_id: int) -> None:
+    in_grading_room = 'MY_ROBOT_BASICS_ROOM' in os.environ
+    network = {
+        'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST',
+        'FASTRTPS_DEFAULT_PROFILES_FILE': str(Path(__file__).with_name('fast_discovery.xml')),
+    }
+    for name, value in network.items():
+        # a room of the grader has a network of its own making: what it has set stands
+        if not (in_grading_room and os.environ.get(name)):
+            os.environ[name] = value
+    os.environ['RCUTILS_LOGGING_USE_STDOUT'] = '1'
+    os.environ['RCUTILS_LOGGING_BUFFERED_STREAM'] = '1'
+    os.environ['RCUTILS_COLORIZED_OUTPUT'] = '0'
+    os.environ['ROS_DOMAIN_ID'] = str(domain_id)
+    prefixes = [p for p in os.environ.get('AMENT_PREFIX_PATH', '').split(os.pathsep) if p]
+    if sys.prefix not in prefixes:
+        os.environ['AMENT_PREFIX_PATH'] = os.pathsep.join([sys.prefix, *prefixes])

@@ -1,0 +1,66 @@
+"""One ROS domain per kernel: the first free one of this machine, held until its holder is gone.
+
+Imports neither rclpy nor anything else that is slow.
+"""
+
+import errno
+import os
+import socket
+import weakref
+from dataclasses import dataclass
+
+from my_robot_basics.live.errors import NoFreeDomain
+
+FIRST, LAST = 1, 101
+"""Above 101 the ports of Linux's outgoing connections begin; 0 is everybody's."""
+
+
+@dataclass(frozen=True, eq=False)
+class Claim:
+    """A domain that is this process's alone, until `release()` or the process's end."""
+
+    domain_id: int
+    """ROS domain ID, 1 to 101."""
+
+    _holder: socket.socket
+
+    def release(self) -> None:
+        """Give the domain back; twice does no harm."""
+        self._holder.close()
+
+
+def claim() -> Claim:
+    """Take the first free ROS domain, raising NoFreeDomain when all are taken.
+
+    The claim is a bound abstract Unix socket: it needs no file, binding is atomic across all
+    users of the machine (of the network namespace, to be exact), and the kernel drops it with
+    the process, however that dies. Processes that the holder starts do not keep it.
+    """
+    for domain_id in range(FIRST, LAST + 1):
+        # not inherited through exec: Python's sockets are close-on-exec
+        holder = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        try:
+            holder.bind(f'\0my_robot_basics.domain.{domain_id}')
+        except OSError as error:
+            holder.close()
+            if error.errno != errno.EADDRINUSE:
+                raise
+        else:
+            _held.add(holder)
+            return Claim(domain_id, holder)
+    raise NoFreeDomain(
+        f'all {LAST - FIRST + 1} ROS domains of this machine are taken, one by each running '
+        'lesson: shut down kernels that you no longer need, then restart this one'
+    )
+
+
+_held: weakref.WeakSet[socket.socket] = weakref.WeakSet()
+
+
+def _let_go() -> None:
+    for holder in list(_held):
+        holder.close()
+
+
+# a forked child works in its parent's domain, but must not keep it taken after the parent's end
+os.register_at_fork(after_in_child=_let_go)

@@ -1,0 +1,20 @@
+"""What goes wrong in a lesson, in a line or two: no traceback of ours in a student's notebook."""
+
+
+class LiveError(Exception):
+    """Base of the errors of `live`; IPython shows the message alone."""
+
+    def _render_traceback_(self) -> list[str]:
+        return [f'{type(self).__name__}: {self}']
+
+
+class NoFreeDomain(LiveError):
+    """Every ROS domain of this machine is taken."""
+
+
+class BadDomain(LiveError):
+    """The environment names a ROS domain that cannot be used."""
+
+
+class NotRunnable(LiveError):
+    """`run` or `run_answer` was given something that it cannot start."""

@@ -1,0 +1,38 @@
+"""What the locked cells of an exercise call: a clean start before the answer, its node after."""
+
+import sys
+from typing import Any
+
+from rclpy.node import Node
+
+from my_robot_basics.live import runner
+from my_robot_basics.live.errors import NotRunnable
+
+
+def reset(*names: str) -> None:
+    """Stop every node, shut rclpy down, and delete `names` from the notebook's variables.
+
+    So no earlier cell can stand in for an answer, and an answer may initialise rclpy itself.
+    """
+    runner.shut_down()
+    for name in names:
+        _notebook().pop(name, None)
+    print(f'reset: no node of live runs; {", ".join(names) or "nothing"} is yours to write')
+
+
+def run_answer(name: str, *args: Any, **kwargs: Any) -> Node | None:
+    """Run the node class `name` that the answer cell defines; see `run` for the rest."""
+    answer = _notebook().get(name)
+    where = 'write it in the answer cell: only the notebook is submitted'
+    if answer is None:
+        raise NotRunnable(f'expected a class {name}, saw nothing of that name: {where}')
+    if not (isinstance(answer, type) and issubclass(answer, Node)):
+        kind = type(answer).__name__
+        raise NotRunnable(f'expected {name} to be a class derived from Node, saw {kind}: {where}')
+    if answer.__module__ != '__main__':
+        raise NotRunnable(f'expected your own {name}, saw that of {answer.__module__}: {where}')
+    return runner.run(answer, *args, **kwargs)
+
+
+def _notebook() -> dict[str, Any]:
+    return vars(sys.modules['__main__'])

@@ -1,0 +1,141 @@
+"""Nodes in the background of a notebook kernel: `run` starts or replaces one, `stop` ends it."""
+
+import atexit
+import os
+import threading
+from typing import Any
+
+import rclpy
+from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+
+from my_robot_basics.live import classroom
+from my_robot_basics.live.errors import NotRunnable
+from my_robot_basics.live.naming import announce_name
+from my_robot_basics.live.neighbours import Neighbours, bury_the_dead
+from my_robot_basics.live.panel import Panel
+from my_robot_basics.live.spinning import Spinning
+
+_running: dict[str, Spinning] = {}
+_neighbours = Neighbours()
+_lock = threading.RLock()
+_owner_pid = os.getpid()
+
+
+class _LivesElsewhere(Exception):
+    """A node of that name is there already, and it is not ours."""
+
+
+def run(NodeClass: type[Node], *args: Any, key: str | None = None, **kwargs: Any) -> Node | None:
+    """Make `NodeClass(*args, **kwargs)` and let it spin in the background; return the node.
+
+    It replaces the node that runs under `key` (by default the class's name), and one of its own
+    name that runs under another key. rclpy is initialised when it is not. Where a node of that
+    name already lives outside `live`, no second one is started: that is printed, and the result
+    is None. What the constructor raises is raised; the old node is then stopped all the same.
+    """
+    if not (isinstance(NodeClass, type) and issubclass(NodeClass, Node)):
+        raise NotRunnable(_not_a_class(NodeClass))
+    key = NodeClass.__name__ if key is None else key
+    classroom.enter()
+    _stop_keys([key, *(k for k, spinning in _running.items() if not spinning.alive)])
+    _ensure_rclpy()
+    panel = Panel(NodeClass.__name__)
+
+    def on_name(name: str) -> None:
+        _stop_keys([k for k, s in _running.items() if s.node.get_fully_qualified_name() == name])
+        if _neighbours.has(name):
+            raise _LivesElsewhere(name)
+        panel.listen(name)
+
+    node = NodeClass.__new__(NodeClass, *args, **kwargs)
+    try:
+        with announce_name(node, on_name):
+            node.__init__(*args, **kwargs)
+    except _LivesElsewhere as found:
+        print(
+            f'a node named {found} already lives outside live: no second one was started. '
+            'Stop that one first, or give yours another name.'
+        )
+        return None
+    except BaseException:
+        _destroy_half_made(node)
+        panel.close('its constructor failed')
+        raise
+    panel.show()
+    with _lock:
+        _running[key] = Spinning(
+            node, on_error=panel.error, on_end=panel.close, before=panel.adopt_thread
+        )
+        _panels[key] = panel
+    return node
+
+
+def stop(key_or_node: str | type[Node] | Node | None = None) -> None:
+    """Stop the node that runs under a key, that node, the node of that class; or all of them."""
+    if key_or_node is None:
+        _stop_keys(list(_running))
+        return
+    keys = [
+        key
+        for key, spinning in _running.items()
+        if key_or_node in (key, spinning.node, type(spinning.node))
+    ]
+    if not keys:
+        print(f'nothing to stop: no node runs as {key_or_node!r}')
+    _stop_keys(keys)
+
+
+_panels: dict[str, Panel] = {}
+
+
+def _stop_keys(keys: list[str]) -> None:
+    for key in keys:
+        spinning = _running.get(key)
+        if spinning is None:
+            continue
+        spinning.stop()
+        with _lock:
+            del _running[key]
+            panel = _panels.pop(key, None)
+        if panel is not None:
+            panel.close('stopped')
+
+
+def _ensure_rclpy() -> None:
+    bury_the_dead()
+    if not rclpy.ok():
+        rclpy.try_shutdown()  # a context that was shut down by hand cannot be initialised again
+        rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
+    _neighbours.look_around()
+
+
+def _destroy_half_made(node: Node) -> None:
+    """Take away what a constructor left behind when it failed: its publishers would live on."""
+    try:
+        made = node.handle is not None
+    except AttributeError:
+        made = False  # it failed before rclpy's own constructor
+    if made:
+        node.destroy_node()
+
+
+def _not_a_class(thing: object) -> str:
+    if isinstance(thing, Node):
+        name = type(thing).__name__
+        return f'run expects the class, saw a node made from it: write run({name})'
+    return f'run expects a class derived from rclpy.node.Node, saw {thing!r:.80}'
+
+
+def shut_down() -> None:
+    """Stop every node, then rclpy's default context, whoever initialised it."""
+    stop()
+    _neighbours.leave()
+    rclpy.try_shutdown()
+
+
+@atexit.register
+def _leave_nothing() -> None:
+    # a forked child has neither our threads nor our participants
+    if os.getpid() == _owner_pid:
+        shut_down()
