@@ -4,27 +4,29 @@ import signal
 from collections.abc import Callable
 
 import rclpy
-from rclpy.executors import ExternalShutdownException
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
 
 
 def spin_until_stopped(node_class: Callable[[], Node], *, args: list[str] | None = None) -> None:
     """Make a node and spin it until Ctrl-C or SIGTERM; then clean up and return.
 
-    `rclpy.spin` alone ends in a traceback at either signal. An error of the node's own is raised.
+    Does what `rclpy.init` and `rclpy.spin` do, without the traceback in which these end at either
+    signal. It is for the main thread of a process of its own; an error of the node's is raised.
     """
     stop_signals = []
-    # rclpy's handlers shut its context down, which ends `spin`, and call these afterwards.
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda number, frame: stop_signals.append(number))
-    rclpy.init(args=args)
+    # rclpy's own handlers would take the context away from a node that is only half made.
+    rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
     try:
-        if not stop_signals:  # one may have come before rclpy was listening
-            rclpy.spin(node_class())
-    except ExternalShutdownException:
-        pass
-    except Exception:
-        if not stop_signals:  # a context that goes away stops a half-made node with odd errors
-            raise
+        node = node_class()
+        executor = SingleThreadedExecutor()
+        executor.add_node(node)
+        while not stop_signals:
+            executor.spin_once(timeout_sec=0.1)  # a longer wait would notice a signal later
+        executor.shutdown()
+        node.destroy_node()
     finally:
         rclpy.try_shutdown()
