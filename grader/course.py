@@ -1,0 +1,123 @@
+"""Where a course keeps its things: lessons, releases, the gradebook and its secret."""
+
+import hashlib
+import hmac
+import json
+import os
+import secrets
+from dataclasses import dataclass
+from pathlib import Path
+
+import nbformat
+from nbformat import NotebookNode
+
+from grader.errors import CourseError
+from grader.heal import Master, make_master
+
+ROOT = Path(__file__).resolve().parents[1]
+"""The checkout that this grader belongs to."""
+
+
+@dataclass(frozen=True)
+class Course:
+    """The folders of one course; a temporary gradebook may stand beside the real lessons."""
+
+    root: Path = ROOT
+    """What lies in the course's own place: solutions/, notebooks/, nbgrader_config.py."""
+    gradebook: Path = ROOT / 'gradebook'
+    """Submissions, scores and feedback; made by the grader, never in git."""
+
+    @classmethod
+    def at(cls, root: Path) -> 'Course':
+        """Return the course whose folders all lie in `root`."""
+        root = Path(root).resolve()
+        return cls(root=root, gradebook=root / 'gradebook')
+
+    @classmethod
+    def of_database(cls, db_url: str, *, root: Path) -> 'Course':
+        """Return the course whose database nbgrader has been told to use."""
+        return cls(
+            root=root, gradebook=Path(db_url.removeprefix('sqlite:///').split('?')[0]).parent
+        )
+
+    @property
+    def db_url(self) -> str:
+        """The database's address; a writer waits up to 60 s for another one."""
+        return f'sqlite:///{self.gradebook / "gradebook.db"}?timeout=60'
+
+    def folder(self, step: str, student_id: str, assignment: str) -> Path:
+        """Return nbgrader's folder of a submission at a step, such as 'submitted'."""
+        return self.gradebook / step / student_id / assignment
+
+    def source_path(self, assignment: str) -> Path:
+        """Return where the instructor's notebook lies, answers and hidden tests included."""
+        return self.root / 'solutions' / assignment / f'{assignment}.ipynb'
+
+    def release_path(self, assignment: str) -> Path:
+        """Return where the students' notebook lies."""
+        return self.root / 'notebooks' / assignment / f'{assignment}.ipynb'
+
+    def assignments(self) -> list[str]:
+        """Return the names of all assignments, sorted."""
+        found = (self.root / 'solutions').glob('*/*.ipynb')
+        return sorted(path.stem for path in found if path.stem == path.parent.name)
+
+    def source(self, assignment: str) -> NotebookNode:
+        """Read the instructor's notebook. Raises CourseError when there is none."""
+        return _read(self.source_path(assignment), otherwise=self._unknown(assignment))
+
+    def release(self, assignment: str) -> NotebookNode:
+        """Read the students' notebook. Raises CourseError when it was not released yet."""
+        return _read(
+            self.release_path(assignment),
+            otherwise=f'{assignment} is not released yet: run ./course release {assignment}',
+        )
+
+    def master(self, assignment: str) -> Master:
+        """Return what submissions of an assignment are healed from."""
+        return make_master(self.source(assignment), self.release(assignment))
+
+    def seed(self, assignment: str) -> str:
+        """Return the hexadecimal seed of an assignment's inputs.
+
+        It is the same for the whole class and at each re-grading, and another one once the
+        lesson's text changes; nobody without the course's secret can tell it.
+        """
+        text = f'{assignment}:{self._version(assignment)}'
+        return hmac.new(self._secret(), text.encode(), hashlib.sha256).hexdigest()
+
+    def _version(self, assignment: str) -> str:
+        """Return a hash of what the lesson says: outputs and layout don't count."""
+        cells = [
+            (cell.cell_type, cell.source, cell.metadata.get('nbgrader', {}))
+            for cell in self.source(assignment).cells
+        ]
+        return hashlib.sha256(json.dumps(cells, sort_keys=True).encode()).hexdigest()
+
+    def _secret(self) -> bytes:
+        path = self.gradebook / 'course_secret'
+        self.gradebook.mkdir(parents=True, exist_ok=True)
+        fresh = path.with_name(f'.course_secret.{os.getpid()}')
+        if not path.exists():
+            fresh.touch(mode=0o600)
+            fresh.write_text(secrets.token_hex(32), encoding='ascii')
+            try:
+                os.link(fresh, path)  # whole or not at all, and only one of two at the same time
+            except FileExistsError:
+                pass
+            finally:
+                fresh.unlink()
+        return bytes.fromhex(path.read_text(encoding='ascii'))
+
+    def _unknown(self, assignment: str) -> str:
+        known = ', '.join(self.assignments()) or 'none'
+        return f'there is no assignment {assignment!r} in solutions/; there are: {known}'
+
+
+def _read(path: Path, *, otherwise: str) -> NotebookNode:
+    try:
+        return nbformat.read(path, as_version=4)
+    except FileNotFoundError:
+        raise CourseError(otherwise) from None
+    except (nbformat.reader.NotJSONError, nbformat.ValidationError) as error:
+        raise CourseError(f'{path} is not a notebook: {str(error).splitlines()[0]}') from None
