@@ -1,24 +1,103 @@
 """A cell's panel: the log lines and the troubles of the node that the cell has started."""
 
+import html
+import threading
+from collections import deque
+from dataclasses import dataclass
+
+from my_robot_basics.live import notebook
+from my_robot_basics.live.log_lines import LogRecord
+from my_robot_basics.live.troubles import where_and_what
+
+LINES = 12
+LONGEST = 400
+"""Characters of an entry that are shown."""
+
+
+@dataclass
+class Entry:
+    """A log record or an exception; `times` counts the exception's returns."""
+
+    text: str
+    where: str | None = None
+    times: int = 1
+
+    def __str__(self) -> str:
+        """What the panel shows."""
+        text = self.text if len(self.text) <= LONGEST else self.text[:LONGEST] + ' …'
+        again = self.times - 1
+        return text + (f'\n  … {again} more time{"s"[: again != 1]}' if again else '')
+
 
 class Panel:
-    """What one node says."""
+    """What one node says, shown with the cell that started it and updated in place."""
 
     def __init__(self, title: str) -> None:
+        """Make an empty panel that belongs to the cell that runs now."""
         self._title = title
+        self._state = 'starting'
+        self._entries: deque[Entry] = deque()
+        self._left_out = 0
+        self._lock = threading.Lock()
+        self._display = notebook.Display()
 
     def listen(self, name: str) -> None:
         """Show the log lines of the node of that fully qualified name."""
+        notebook.listen(name.strip('/').replace('/', '.'), self.log)
 
     def adopt_thread(self) -> None:
         """Let what this thread prints appear with the panel's cell."""
+        self._display.adopt_thread()
 
     def show(self) -> None:
-        """Publish the panel."""
+        """Publish the panel for the first time, with all that was said so far."""
+        notebook.sync()
+        with self._lock:
+            self._state = 'running'
+        self._display.show(self._bundle())
+
+    def log(self, record: LogRecord) -> None:
+        """Add a log record."""
+        self._add(Entry(f'[{record.severity}] [{record.logger}]: {record.text}'))
 
     def error(self, error: BaseException) -> None:
-        """Show an exception of a callback."""
-        print(f'{self._title}: {type(error).__name__}: {error}')
+        """Add an exception that a callback raised; one from the same line is only counted."""
+        where, what = where_and_what(error)
+        text = '\n'.join(filter(None, [what, where, f'  {self._title} goes on']))
+        self._add(Entry(text, where=f'{type(error).__name__} {where}'))
+        if not notebook.in_kernel():
+            print(text, flush=True)
 
     def close(self, reason: str) -> None:
-        """End the panel."""
+        """Take no more log lines, and say why the node is gone."""
+        notebook.sync()
+        notebook.listen_no_more(self.log)
+        with self._lock:
+            self._state = reason
+        self._display.update_soon(self._bundle)
+
+    def _add(self, entry: Entry) -> None:
+        with self._lock:
+            same = (e for e in self._entries if e.where is not None and e.where == entry.where)
+            known = next(same, None)
+            if known is not None:
+                known.times += 1
+            else:
+                self._entries.append(entry)
+            if len(self._entries) > LINES:
+                self._entries.popleft()
+                self._left_out += 1
+        self._display.update_soon(self._bundle)
+
+    def _bundle(self) -> dict[str, str]:
+        with self._lock:
+            lines = [str(entry) for entry in self._entries]
+            if self._left_out:
+                lines.insert(0, f'… {self._left_out} earlier lines')
+            state = self._state
+        text = '\n'.join([f'{self._title}: {state}', *lines])
+        return {
+            'text/plain': text,
+            'text/html': f'<pre style="margin:0;padding-left:8px;border-left:3px solid #0072b2">'
+            f'{html.escape(text)}</pre>',
+        }

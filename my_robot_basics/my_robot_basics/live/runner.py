@@ -9,7 +9,7 @@ import rclpy
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
-from my_robot_basics.live import classroom
+from my_robot_basics.live import classroom, notebook
 from my_robot_basics.live.errors import NotRunnable
 from my_robot_basics.live.naming import announce_name
 from my_robot_basics.live.neighbours import Neighbours, bury_the_dead
@@ -103,10 +103,12 @@ def _stop_keys(keys: list[str]) -> None:
 
 
 def _ensure_rclpy() -> None:
+    notebook.open_tap()
     bury_the_dead()
     if not rclpy.ok():
         rclpy.try_shutdown()  # a context that was shut down by hand cannot be initialised again
-        rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
+        with notebook.marking_log_records():
+            rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
     _neighbours.look_around()
 
 
@@ -139,3 +141,4 @@ def _leave_nothing() -> None:
     # a forked child has neither our threads nor our participants
     if os.getpid() == _owner_pid:
         shut_down()
+        notebook.leave()

@@ -1,0 +1,157 @@
+"""The way to a notebook's cells; outside a notebook kernel, to stdout."""
+
+import itertools
+import os
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from my_robot_basics.live.log_lines import CONSOLE_FORMAT, LogRecord
+from my_robot_basics.live.stdout_tap import StdoutTap
+
+PAUSE_SEC = 0.25
+"""Between two updates: a flood of messages must not become a flood of displays."""
+
+Bundle = dict[str, Any]
+"""MIME types and their data."""
+
+_tap: StdoutTap | None = None
+_numbers = itertools.count()
+
+
+def _shell() -> Any:
+    """IPython's shell when it runs in a kernel, else None."""
+    if 'IPython' not in sys.modules:
+        return None
+    shell = sys.modules['IPython'].get_ipython()
+    return shell if hasattr(shell, 'kernel') else None
+
+
+def in_kernel() -> bool:
+    """Whether this process is a notebook's kernel."""
+    return _shell() is not None
+
+
+def open_tap() -> None:
+    """Begin to listen to the ROS logger, in a notebook kernel."""
+    global _tap
+    if _tap is None and in_kernel():
+        _tap = StdoutTap()
+
+
+def leave() -> None:
+    """Update no display any more, and leave stdout as it was."""
+    global _tap
+    _refresher.stop()
+    if _tap is not None:
+        _tap.close()
+        _tap = None
+
+
+@contextmanager
+def marking_log_records() -> Iterator[None]:
+    """Where the ROS logger is set up in here, it marks the end of each record for the tap."""
+    name, former = 'RCUTILS_CONSOLE_OUTPUT_FORMAT', os.environ.get('RCUTILS_CONSOLE_OUTPUT_FORMAT')
+    if _tap is not None:
+        os.environ[name] = CONSOLE_FORMAT
+    yield
+    if _tap is not None:
+        # programs that the notebook starts write to people
+        del os.environ[name]
+        if former is not None:
+            os.environ[name] = former
+
+
+def listen(logger: str, sink: Callable[[LogRecord], None]) -> None:
+    """Give what the logger of that name says to `sink`."""
+    if _tap is not None:
+        _tap.give(logger, sink)
+
+
+def listen_no_more(sink: Callable[[LogRecord], None]) -> None:
+    """Give nothing more to `sink`."""
+    if _tap is not None:
+        _tap.take_back(sink)
+
+
+def sync() -> None:
+    """Return when every log line written so far has reached its sink."""
+    if _tap is not None:
+        _tap.sync()
+
+
+class Display:
+    """One output of the cell that runs now, updated in place from any thread."""
+
+    def __init__(self) -> None:
+        """Remember the cell; nothing shows before `show`."""
+        self._shell = _shell()
+        self._cell = self._shell.get_parent() if self._shell else None
+        self._id = f'live-{next(_numbers)}-{time.time_ns():x}'
+        self.shown = False
+
+    def adopt_thread(self) -> None:
+        """Let what this thread prints and shows appear with the cell."""
+        if self._shell:
+            self._shell.set_thread_parent(self._cell)
+
+    def show(self, bundle: Bundle) -> None:
+        """Publish the first time, now."""
+        if self._shell:
+            self._publish(bundle, update=False)
+            self.shown = True
+
+    def update_soon(self, render: Callable[[], Bundle]) -> None:
+        """Publish what `render()` gives, with the next update."""
+        if self.shown:
+            _refresher.add(self, render)
+
+    def update(self, bundle: Bundle) -> None:
+        """Publish anew, from a thread of ours."""
+        self._shell.display_pub.set_thread_parent(self._cell)
+        self._publish(bundle, update=True)
+
+    def _publish(self, bundle: Bundle, *, update: bool) -> None:
+        self._shell.display_pub.publish(bundle, transient={'display_id': self._id}, update=update)
+
+
+class _Refresher:
+    """The thread that updates displays, a few times a second."""
+
+    def __init__(self) -> None:
+        self._due: dict[Display, Callable[[], Bundle]] = {}
+        self._wanted = threading.Event()
+        self._stopped = False
+        self._thread: threading.Thread | None = None
+        self._lock = threading.Lock()
+
+    def add(self, display: Display, render: Callable[[], Bundle]) -> None:
+        with self._lock:
+            if self._stopped:
+                return
+            self._due[display] = render
+            if self._thread is None:
+                self._thread = threading.Thread(target=self._refresh, daemon=True)
+                self._thread.start()
+        self._wanted.set()
+
+    def stop(self) -> None:
+        with self._lock:
+            self._stopped = True
+        self._wanted.set()
+
+    def _refresh(self) -> None:
+        while not self._stopped:
+            self._wanted.wait()
+            self._wanted.clear()
+            with self._lock:
+                due, self._due = self._due, {}
+            for display, render in due.items():
+                display.update(render())
+            time.sleep(PAUSE_SEC)
+
+
+_refresher = _Refresher()
