@@ -9,7 +9,7 @@ def pytest_configure() -> None:
     classroom.enter()
 
 
-# ipykernel leaves the logs of C code alone when it finds PYTEST_CURRENT_TEST, which every kernel
-# started by a test would inherit: a notebook would then behave otherwise than for a student. A hook
+# ipykernel leaves the logs of C code alone where it finds PYTEST_CURRENT_TEST, and every kernel
+# that a test starts would inherit it: notebooks would behave otherwise than for a student. A hook
 # cannot delete it: pytest sets it in the same step that runs the test.
 _pytest.runner._update_current_test_var = lambda item, when: None
