@@ -30,7 +30,7 @@ def expect(condition: bool, *, expected: object, seen: object, hint: str) -> Non
 def fail(*, expected: object, seen: object, hint: str, picture: bytes | None = None) -> NoReturn:
     """Raise CheckFailed('expected …, saw …: hint'); show the picture (PNG bytes) before it."""
     if picture is not None:
-        _show(picture)
+        show(picture)
     raise CheckFailed(f'expected {expected}, saw {seen}: {hint}')
 
 
@@ -41,7 +41,8 @@ def shorten(text: object, most: int = MOST_CHARACTERS) -> str:
     return line if len(line) <= most else line[: most - 1] + '…'
 
 
-def _show(picture: bytes) -> None:
+def show(picture: bytes) -> None:
+    """Display a PNG in the notebook; nothing happens outside of one."""
     if 'IPython' not in sys.modules:
         return
     from IPython import get_ipython

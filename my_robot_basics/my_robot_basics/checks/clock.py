@@ -1,0 +1,181 @@
+"""The robot's clock in the hands of a check: switch nodes to it, hold it, step it, give it back.
+
+`/clock` moves one acknowledged tick at a time, so that what a timer does is exact however
+loaded the machine is. A node that doesn't follow raises Inconclusive, and wall time decides.
+"""
+
+import bisect
+import statistics
+import time
+from types import TracebackType
+from typing import Self
+
+from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from rcl_interfaces.srv import GetParameters, SetParameters
+from rclpy.client import Client
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.task import Future
+from rclpy.time import Time
+from rosgraph_msgs.msg import Clock
+
+from my_robot_basics.checks.watcher import HIDDEN, Watcher
+
+BUDGET_SEC = 5.0
+SLOWEST_BARRIER_SEC = 0.5
+SLOWEST_MEDIAN_SEC = 0.02
+FIRST_ANSWER_SEC = 1.0
+MEDIAN_OF = 20
+HELD_EVERY_SEC = 0.02
+
+
+class Inconclusive(Exception):
+    """The simulated look proves nothing; the message is a clause that says why."""
+
+
+class SimulatedClock:
+    """A context manager that holds `/clock` for the nodes on the graph that let it.
+
+    On leaving, whatever happened, each node gets its former `use_sim_time` back.
+    """
+
+    def __init__(self, watcher: Watcher, *, needed: set[str]) -> None:
+        """`needed`: full names of the nodes without which the look is inconclusive."""
+        self._watcher = watcher
+        self._needed = needed
+        self._deadline = time.monotonic() + BUDGET_SEC
+        self._former: dict[str, bool] = {}
+        self._barriers: dict[str, Client] = {}
+        self._setters: dict[str, Client] = {}
+        self._barrier_sec: list[float] = []
+        self._tick_ns: list[int] = []
+        self._tick_wall_ns: list[int] = []
+        self.now_ns = 0
+
+    def __enter__(self) -> Self:
+        """Switch the nodes to `/clock`, which starts at wall time. Raises Inconclusive."""
+        node = self._watcher.node
+        if node.get_publishers_info_by_topic('/clock'):
+            raise Inconclusive('another node publishes /clock')
+        best_effort = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+        self._publisher = node.create_publisher(Clock, '/clock', best_effort)
+        try:
+            self._switch()
+        except BaseException:
+            self._restore()
+            raise
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        """Switch them back."""
+        self._restore()
+
+    def hold(self, seconds: float) -> None:
+        """Let the clock stand still for `seconds` of wall time, saying so all the while."""
+        end = time.monotonic() + seconds
+        while (left := end - time.monotonic()) > 0.0:
+            self._publish()
+            self._watcher.spin_for(min(left, HELD_EVERY_SEC))
+
+    def tick(self, step_ns: int) -> None:
+        """Move the clock and wait until every node has dealt with it. Raises Inconclusive.
+
+        A node's executor takes the tick, and its timers fire in the pass after it: the second
+        answer tells that this pass is over too.
+        """
+        self.now_ns += step_ns
+        self._tick_ns.append(self.now_ns)
+        self._tick_wall_ns.append(time.time_ns())
+        self._publish()
+        for _ in range(2):
+            self._barrier()
+        if time.monotonic() > self._deadline:
+            raise Inconclusive(f'the clock could not be driven within {BUDGET_SEC:g} s')
+
+    def time_ns(self, wall_ns: int) -> int:
+        """What `/clock` showed at a wall time (a message's source timestamp), in ns; 0 before."""
+        tick = bisect.bisect_right(self._tick_wall_ns, wall_ns) - 1
+        return self._tick_ns[tick] if tick >= 0 else 0
+
+    def _publish(self) -> None:
+        self._publisher.publish(Clock(clock=Time(nanoseconds=self.now_ns).to_msg()))
+
+    def _barrier(self) -> None:
+        began = time.monotonic()
+        asked = [self._ask(client) for client in self._barriers.values()]
+        if not self._wait(asked, SLOWEST_BARRIER_SEC):
+            raise Inconclusive('a node did not answer in time')
+        self._barrier_sec.append(time.monotonic() - began)
+        recent = self._barrier_sec[-MEDIAN_OF:]
+        if len(recent) == MEDIAN_OF and statistics.median(recent) > SLOWEST_MEDIAN_SEC:
+            raise Inconclusive('a node answers too slowly')
+
+    def _switch(self) -> None:
+        """Turn `use_sim_time` on for every node that answers, and start `/clock` at wall time."""
+        self._watcher.spin_until(
+            lambda: self._needed <= self._with_services(), timeout_sec=FIRST_ANSWER_SEC
+        )
+        node = self._watcher.node
+        for name in self._with_services():
+            self._barriers[name] = node.create_client(GetParameters, f'{name}/get_parameters')
+            self._setters[name] = node.create_client(SetParameters, f'{name}/set_parameters')
+        clients = [*self._barriers.values(), *self._setters.values()]
+        self._watcher.spin_until(
+            lambda: all(client.service_is_ready() for client in clients),
+            timeout_sec=FIRST_ANSWER_SEC,
+        )
+        asked = {name: self._ask(client) for name, client in self._barriers.items()}
+        self._wait(list(asked.values()), FIRST_ANSWER_SEC)
+        answered = {name: future.result() for name, future in asked.items() if future.done()}
+        self._barriers = {name: self._barriers[name] for name in answered}
+        if not self._needed <= set(answered):
+            raise Inconclusive('its parameter services do not answer')
+        self._former = {name: reply.values[0].bool_value for name, reply in answered.items()}
+        self.now_ns = time.time_ns()
+        self._set_all(dict.fromkeys(self._former, True))
+        self._watcher.spin_until(self._is_heard, timeout_sec=FIRST_ANSWER_SEC)
+        self._publish()
+        self._barrier()
+
+    def _is_heard(self) -> bool:
+        self._publish()
+        return self._publisher.get_subscription_count() >= len(self._barriers)
+
+    def _restore(self) -> None:
+        former, self._former = self._former, {}
+        # a node that a moment ago was busy gets a second chance
+        if former and not self._set_all(former):
+            self._set_all(former)
+        self._watcher.node.destroy_publisher(self._publisher)
+
+    def _set_all(self, values: dict[str, bool]) -> bool:
+        asked = [
+            self._setters[name].call_async(
+                SetParameters.Request(parameters=[_use_sim_time(value)])
+            )
+            for name, value in values.items()
+        ]
+        return self._wait(asked, FIRST_ANSWER_SEC)
+
+    def _ask(self, client: Client) -> Future:
+        return client.call_async(GetParameters.Request(names=['use_sim_time']))
+
+    def _wait(self, asked: list[Future], timeout_sec: float) -> bool:
+        return self._watcher.spin_until(
+            lambda: all(future.done() for future in asked), timeout_sec=timeout_sec
+        )
+
+    def _with_services(self) -> set[str]:
+        suffix = '/set_parameters'
+        services = [name for name, _ in self._watcher.node.get_service_names_and_types()]
+        nodes = {name.removesuffix(suffix) for name in services if name.endswith(suffix)}
+        return {name for name in nodes if not name.rpartition('/')[2].startswith(HIDDEN)}
+
+
+def _use_sim_time(value: bool) -> Parameter:
+    kind = ParameterType.PARAMETER_BOOL
+    return Parameter(name='use_sim_time', value=ParameterValue(type=kind, bool_value=value))

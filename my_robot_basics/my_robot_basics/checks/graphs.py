@@ -1,0 +1,145 @@
+"""The ROS graph as a check sees it: the student's nodes, and who publishes and subscribes."""
+
+import difflib
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from rclpy.node import Node
+from rclpy.topic_endpoint_info import TopicEndpointInfo
+
+from my_robot_basics.checks.watcher import HIDDEN, Watcher
+
+SETTLE_SEC = 0.4
+"""The graph counts as settled when it has not changed for so long."""
+MOST_SETTLE_SEC = 5.0
+UNKNOWN = '_NODE_NAME_UNKNOWN_'
+"""rclpy's word while it knows an endpoint, and not yet its node (about 20 ms)."""
+_PLUMBING = ('/clock', '/parameter_events', '/rosout')
+
+
+@dataclass(frozen=True)
+class Graph:
+    """A picture of the graph, without the nodes whose names start with `_`."""
+
+    node_names: tuple[str, ...]
+    """Full names, such as `/kinematics_publisher`, sorted."""
+    publisher_names: dict[str, tuple[str, ...]]
+    """Topic name to the full names of the nodes that publish there, one for each publisher."""
+    subscription_names: dict[str, tuple[str, ...]]
+    """Topic name to the full names of the nodes that subscribe there."""
+
+    def nodes(self) -> tuple[str, ...]:
+        """Full names of the nodes, sorted."""
+        return self.node_names
+
+    def publishers(self, topic_name: str) -> tuple[str, ...]:
+        """Full names of the nodes that publish on the topic, one for each publisher."""
+        return self.publisher_names.get(topic_name, ())
+
+    def subscriptions(self, topic_name: str) -> tuple[str, ...]:
+        """Full names of the nodes that subscribe to the topic, one for each subscription."""
+        return self.subscription_names.get(topic_name, ())
+
+    def why_silent(self, topic_name: str) -> str:
+        """What to try when nothing arrives on a topic: one clause."""
+        if senders := self.publishers(topic_name):
+            who = ', '.join(senders)
+            return (
+                f'{who} has a publisher there and sends nothing, so see that it spins, that its '
+                'timer is created, and that no callback raises'
+            )
+        return self._why_none(topic_name, self.publisher_names, 'create_publisher')
+
+    def why_unheard(self, topic_name: str) -> str:
+        """What to try when nobody subscribes to a topic: one clause."""
+        return self._why_none(topic_name, self.subscription_names, 'create_subscription')
+
+    def _why_none(self, topic_name: str, names: dict[str, tuple[str, ...]], maker: str) -> str:
+        if not self.node_names:
+            return 'no node is running, so run the cell that starts it'
+        if similar := _similar(topic_name, [name for name in names if name not in _PLUMBING]):
+            return f'{", ".join(names[similar])} uses {similar}, so compare the spelling'
+        return (
+            f'{", ".join(self.node_names)} runs, so look at the topic name in {maker}(…)'
+            f' and that the node calls it'
+        )
+
+
+def graph() -> Graph:
+    """The graph as it is now, once it has settled."""
+    with Watcher() as watcher:
+        return take(watcher)
+
+
+def take(watcher: Watcher) -> Graph:
+    """The graph as a watcher sees it, once no change came for a while and all names are known."""
+    last = _look(watcher.node)
+    steady = 0.0
+    waited = 0.0
+    while waited < MOST_SETTLE_SEC and (steady < SETTLE_SEC or _has_unknown(last)):
+        watcher.spin_for(0.05)
+        waited += 0.05
+        now = _look(watcher.node)
+        steady = steady + 0.05 if now == last else 0.0
+        last = now
+    return last
+
+
+def publisher_infos(node: Node, topic_name: str) -> list[TopicEndpointInfo]:
+    """The endpoints that publish on a topic; those of nodes of the course are left out."""
+    return [info for info in node.get_publishers_info_by_topic(topic_name) if not _hidden(info)]
+
+
+def full_name(info: TopicEndpointInfo) -> str:
+    """The full name of an endpoint's node."""
+    return f'{info.node_namespace.rstrip("/")}/{info.node_name}'
+
+
+def wait_for_publisher(watcher: Watcher, topic_name: str, *, timeout_sec: float) -> bool:
+    """Wait until somebody publishes on the topic and all publishers' nodes are known."""
+
+    def is_there() -> bool:
+        infos = publisher_infos(watcher.node, topic_name)
+        return bool(infos) and all(info.node_name != UNKNOWN for info in infos)
+
+    return watcher.spin_until(is_there, timeout_sec=timeout_sec)
+
+
+def _look(node: Node) -> Graph:
+    names = {
+        f'{namespace.rstrip("/")}/{name}'
+        for name, namespace in node.get_node_names_and_namespaces()
+        if not name.startswith(HIDDEN)
+    }
+    topic_names = [name for name, _ in node.get_topic_names_and_types()]
+    return Graph(
+        node_names=tuple(sorted(names)),
+        publisher_names=_endpoints(topic_names, node.get_publishers_info_by_topic),
+        subscription_names=_endpoints(topic_names, node.get_subscriptions_info_by_topic),
+    )
+
+
+def _endpoints(
+    topic_names: list[str], look_up: Callable[[str], list[TopicEndpointInfo]]
+) -> dict[str, tuple[str, ...]]:
+    found = {
+        name: tuple(sorted(full_name(info) for info in look_up(name) if not _hidden(info)))
+        for name in topic_names
+    }
+    return {name: nodes for name, nodes in found.items() if nodes}
+
+
+def _hidden(info: TopicEndpointInfo) -> bool:
+    return info.node_name.startswith(HIDDEN) and info.node_name != UNKNOWN
+
+
+def _has_unknown(picture: Graph) -> bool:
+    ends = [*picture.publisher_names.values(), *picture.subscription_names.values()]
+    return any(name.endswith(UNKNOWN) for names in ends for name in names)
+
+
+def _similar(topic_name: str, others: list[str]) -> str | None:
+    last = topic_name.rpartition('/')[2]
+    same_end = [name for name in others if name.rpartition('/')[2].lower() == last.lower()]
+    close = difflib.get_close_matches(topic_name, others, n=1, cutoff=0.6)
+    return next(iter([*same_end, *close]), None)

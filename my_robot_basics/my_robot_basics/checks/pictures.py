@@ -1,0 +1,39 @@
+"""Pictures that say what a sentence can't, as PNG bytes."""
+
+import io
+from typing import TYPE_CHECKING
+
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+if TYPE_CHECKING:
+    from my_robot_basics.checks.recording import Recording
+
+SHOWN_PERIODS = 25
+
+
+def arrivals(recording: 'Recording', *, hz: float | None = None) -> bytes:
+    """When the messages of a recording arrived; with `hz`, above when they should have."""
+    until = min(recording.seconds, SHOWN_PERIODS / (hz or recording.rate_hz or 1.0))
+    seen = [s.time_sec for s in recording.messages if s.time_sec <= until]
+    rows = [('seen', seen, 'tab:red' if hz else 'tab:blue')]
+    if hz:
+        wanted = [i / hz for i in range(1, int(until * hz + 1e-9) + 1)]
+        rows.append((f'expected, {hz:g} Hz', wanted, 'tab:green'))
+    figure = Figure(figsize=(7.0, 1.6), layout='constrained')
+    axes = figure.add_subplot()
+    for row, (_, times, colour) in enumerate(rows):
+        axes.plot(times, [row] * len(times), '|', color=colour, markersize=18, markeredgewidth=2)
+    axes.set_yticks(range(len(rows)), [label for label, _, _ in rows])
+    axes.set_ylim(-0.6, len(rows) - 0.4)
+    axes.set_xlim(0.0, until)
+    clock = "robot's clock" if recording.clock == 'simulated' else 'wall clock'
+    axes.set_xlabel(f'seconds on the {clock}')
+    axes.set_title(f'messages on {recording.topic_name}')
+    return _png(figure)
+
+
+def _png(figure: Figure) -> bytes:
+    buffer = io.BytesIO()
+    FigureCanvasAgg(figure).print_png(buffer)
+    return buffer.getvalue()

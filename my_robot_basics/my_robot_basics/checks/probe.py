@@ -1,0 +1,67 @@
+"""See that a message can cross between the rooms, before any student code runs.
+
+The student room announces, the test room hears: a zero then is never the network's doing.
+"""
+
+import threading
+
+import rclpy
+from rclpy.context import Context
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from std_msgs.msg import Empty
+
+from my_robot_basics.live import classroom
+
+TOPIC_NAME = '/_probe'
+QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+TIMEOUT_SEC = 20.0
+
+_announced: list = []
+
+
+def announce() -> None:
+    """Publish one latched message that stays to be heard until `silence`."""
+    context, node = _node('_probe_student_room')
+    node.create_publisher(Empty, TOPIC_NAME, QOS).publish(Empty())
+    _announced.append((context, node))
+
+
+def silence() -> None:
+    """Take the announcement back, and everything that it took."""
+    while _announced:
+        _end(*_announced.pop())
+
+
+def hear(timeout_sec: float = TIMEOUT_SEC) -> None:
+    """Wait for the other room's message; raises TimeoutError."""
+    context, node = _node('_probe_test_room')
+    heard = threading.Event()
+    node.create_subscription(Empty, TOPIC_NAME, lambda _: heard.set(), QOS)
+    executor = SingleThreadedExecutor(context=context)
+    executor.add_node(node)
+    deadline = node.get_clock().now().nanoseconds + int(timeout_sec * 1e9)
+    try:
+        while not heard.is_set():
+            if node.get_clock().now().nanoseconds > deadline:
+                raise TimeoutError(f'no message crossed between the rooms in {timeout_sec:.0f} s')
+            executor.spin_once(timeout_sec=0.1)
+    finally:
+        executor.shutdown()
+        _end(context, node)
+
+
+def _node(name: str) -> tuple[Context, Node]:
+    classroom.enter()
+    context = Context()
+    rclpy.init(context=context)
+    node = rclpy.create_node(
+        name, context=context, start_parameter_services=False, enable_rosout=False
+    )
+    return context, node
+
+
+def _end(context: Context, node: Node) -> None:
+    node.destroy_node()
+    context.try_shutdown()

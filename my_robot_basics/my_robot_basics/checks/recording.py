@@ -1,0 +1,220 @@
+"""What was recorded on a topic, and what a check may say about it."""
+
+import itertools
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+from my_robot_basics.checks import pictures
+from my_robot_basics.checks.errors import expect, fail, shorten, show
+
+SIMULATED_TOLERANCE = 0.02
+WALL_TOLERANCE = 0.03
+LARGEST_GAP_PERIODS = 1.75
+"""More between two messages (on the wall clock) is a pause: bursts are not a rate."""
+GAP_SLACK_SEC = 0.05
+LONGEST_LOOK_SEC = 12.0
+STAMP_SEC = {'simulated': 0.5, 'wall': 1.0}
+"""How far a stamp may be from the time of publication, by clock."""
+ANGLE_SLACK_RAD = 1e-6
+
+
+@dataclass(frozen=True)
+class Sample:
+    """One message and when it was sent."""
+
+    message: Any
+    time_sec: float
+    """On the recording's clock, since the recording began."""
+    source_time_sec: float
+    """On the wall clock, since the epoch: DDS's source timestamp."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Recording:
+    """The messages of a topic over `seconds`, beginning at a message that is not among them."""
+
+    topic_name: str
+    messages: tuple[Sample, ...]
+    clock: Literal['simulated', 'wall']
+    publishers: tuple[str, ...]
+    """Full names of the nodes that publish on the topic, one for each publisher."""
+    seconds: float
+    start_sec: float
+    """When it began, on its clock, since the epoch."""
+    step_sec: float = 0.0
+    """How far a tick moved the simulated clock."""
+    note: str = ''
+    """A remark for the feedback that costs nothing."""
+    look_again: Callable[[float], 'Recording'] | None = field(default=None, repr=False)
+    """Records so many seconds more on the wall clock, for a second opinion."""
+
+    @property
+    def rate_hz(self) -> float:
+        """Messages per second, from the beginning to the last one; 0 without a message."""
+        return len(self.messages) / self.messages[-1].time_sec if self.messages else 0.0
+
+    @property
+    def largest_gap_sec(self) -> float:
+        """The longest time between two messages; infinite without a message."""
+        times = [0.0, *(sample.time_sec for sample in self.messages)]
+        return max((b - a for a, b in itertools.pairwise(times)), default=math.inf)
+
+    def is_even(self) -> bool:
+        """Whether a timer of one period explains every arrival, within a step of the clock."""
+        times = [0.0, *(sample.time_sec for sample in self.messages)]
+        if len(times) < 3:
+            return False
+        off = [time - i / self.rate_hz for i, time in enumerate(times)]
+        return max(off) - min(off) <= 1.05 * self.step_sec
+
+    def assert_rate(self, hz: float) -> None:
+        """The one publisher sends `hz` messages a second, evenly.
+
+        ±2 % on the robot's clock, ±3 % on the wall clock (after a second look).
+        """
+        self._expect_one_publisher()
+        if self.clock == 'wall' and not self._has_rate(hz) and self.look_again is not None:
+            longer = min(max(self.seconds, 3.0 / hz), LONGEST_LOOK_SEC)
+            self.look_again(longer).assert_rate(hz)
+        elif not self._has_rate(hz):
+            self._fail_rate(hz)
+        elif self.note:
+            print(self.note)
+
+    def assert_joint_names(self, names: Sequence[str]) -> None:
+        """Every message names these joints, and no others; each position belongs to its name."""
+        for message in self._messages_with('name'):
+            expect(
+                sorted(message.name) == sorted(names),
+                expected=f'the joint names {", ".join(names)}',
+                seen=shorten(', '.join(message.name)) or 'none',
+                hint='message.name holds the joint names of the URDF, letter for letter',
+            )
+
+    def assert_positions_rad(
+        self, *, low: Sequence[float], high: Sequence[float], names: Sequence[str] = ()
+    ) -> None:
+        """Every message has one position for each joint, in radians between low and high.
+
+        With `names`, low and high are for those joints, in whatever order a message has them.
+        """
+        messages = self._messages_with('position')
+        for message in messages:
+            seen = len(message.position)
+            expect(
+                seen == len(low),
+                expected=f'{len(low)} positions in each message',
+                seen=str(seen),
+                hint='message.position holds one angle for each joint, in the order of the names',
+            )
+        poses = [_by_name(message, names) for message in messages]
+        for pose in poses:
+            if not _within(pose, low, high):
+                self._fail_position(pose, low, high, poses=poses)
+
+    def assert_frame_id(self, frame_id: str) -> None:
+        """Every message's header names that frame."""
+        for message in self._messages_with('header'):
+            expect(
+                message.header.frame_id == frame_id,
+                expected=f"frame_id '{frame_id}'",
+                seen=f"'{shorten(message.header.frame_id)}'",
+                hint=f"set message.header.frame_id = '{frame_id}' before publishing",
+            )
+
+    def assert_stamps(self) -> None:
+        """Every header's stamp is the node's clock at publication: set, advancing, and near."""
+        messages = self._messages_with('header')
+        stamps = [
+            message.header.stamp.sec + message.header.stamp.nanosec * 1e-9 for message in messages
+        ]
+        how = 'set message.header.stamp = self.get_clock().now().to_msg() before each publish'
+        wanted = "stamps of the node's clock at publication"
+        if 0.0 in stamps:
+            fail(expected=wanted, seen='a stamp of 0', hint=how)
+        if any(later <= earlier for earlier, later in itertools.pairwise(stamps)):
+            fail(expected=wanted, seen='a stamp that does not advance', hint=how)
+        for sample, stamp in zip(self.messages, stamps, strict=True):
+            off = stamp - self._sent_sec(sample)
+            if abs(off) > STAMP_SEC[self.clock]:
+                side = 'ahead of' if off > 0.0 else 'behind'
+                fail(expected=wanted, seen=f'a stamp {abs(off):.1f} s {side} it', hint=how)
+
+    def plot(self, hz: float | None = None) -> None:
+        """Show when the messages arrived; with `hz`, beside when they should have."""
+        show(pictures.arrivals(self, hz=hz))
+
+    def _sent_sec(self, sample: Sample) -> float:
+        on_wall = self.clock == 'wall'
+        return sample.source_time_sec if on_wall else self.start_sec + sample.time_sec
+
+    def _has_rate(self, hz: float) -> bool:
+        if self.clock == 'simulated':
+            return abs(self.rate_hz / hz - 1.0) <= SIMULATED_TOLERANCE
+        largest = max(LARGEST_GAP_PERIODS / hz, 1.0 / hz + GAP_SLACK_SEC)
+        near = abs(self.rate_hz / hz - 1.0) <= WALL_TOLERANCE
+        return near and self.largest_gap_sec <= largest
+
+    def _fail_rate(self, hz: float) -> None:
+        n = len(self.messages)
+        over = f'over {self.seconds:g} s ({n} message{"" if n == 1 else "s"})'
+        if abs(self.rate_hz / hz - 1.0) <= WALL_TOLERANCE:
+            seen = f'pauses of {self.largest_gap_sec:.2f} s {over}'
+            hint = 'publish one message each time the timer fires'
+        else:
+            seen = f'{_hz(self.rate_hz)} {over}'
+            hint = 'the timer period is in seconds, and period = 1 / rate'
+        picture = pictures.arrivals(self, hz=hz)
+        fail(expected=_hz(hz), seen=seen, hint=hint, picture=picture)
+
+    def _fail_position(
+        self, pose: Sequence[float], low: Sequence[float], high: Sequence[float], *, poses: list
+    ) -> None:
+        degrees = [[math.degrees(bound) for bound in bounds] for bounds in (low, high)]
+        shown = ', '.join(f'{angle:.4g}' for angle in pose)
+        if all(_within(each, *degrees) for each in poses):
+            seen, hint = f'({shown}), which looks like degrees', 'convert with math.radians(…)'
+        else:
+            seen, hint = f'({shown})', 'keep each joint within its range'
+
+        bounds = ', '.join(f'{a:.4g} to {b:.4g}' for a, b in zip(low, high, strict=True))
+        fail(expected=f'positions in radians ({bounds})', seen=seen, hint=hint)
+
+    def _expect_one_publisher(self) -> None:
+        expect(
+            len(self.publishers) == 1,
+            expected=f'one publisher on {self.topic_name}',
+            seen=f'{len(self.publishers)} ({", ".join(self.publishers)})',
+            hint='stop the other node: two publishers on a topic add up',
+        )
+
+    def _messages_with(self, field_name: str) -> list:
+        messages = [sample.message for sample in self.messages]
+        for message in messages[:1]:
+            expect(
+                hasattr(message, field_name),
+                expected=f'messages with a {field_name} on {self.topic_name}',
+                seen=type(message).__name__,
+                hint='compare the message type in create_publisher(…)',
+            )
+        return messages
+
+
+def _within(pose: Sequence[float], low: Sequence[float], high: Sequence[float]) -> bool:
+    # a NaN is within nothing
+    slack = ANGLE_SLACK_RAD
+    return all(a - slack <= x <= b + slack for x, a, b in zip(pose, low, high, strict=True))
+
+
+def _by_name(message: Any, names: Sequence[str]) -> tuple[float, ...]:
+    position = tuple(message.position)
+    if not names or sorted(message.name) != sorted(names) or len(position) != len(names):
+        return position
+    return tuple(position[list(message.name).index(name)] for name in names)
+
+
+def _hz(rate_hz: float) -> str:
+    rounded = round(rate_hz, 2)
+    return f'{rounded:.1f} Hz' if rounded == round(rounded, 1) else f'{rounded:.2f} Hz'

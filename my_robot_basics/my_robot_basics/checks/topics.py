@@ -1,0 +1,143 @@
+"""A topic as a check sees it: record what arrives, publish, wait for one message."""
+
+import importlib
+from collections.abc import Callable
+from typing import Any
+
+from rclpy.duration import Duration
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+
+from my_robot_basics.checks import graphs, looks
+from my_robot_basics.checks.errors import fail
+from my_robot_basics.checks.recording import Recording
+from my_robot_basics.checks.watcher import Watcher
+
+PUBLISHER_SEC = 10.0
+DEPTH = 5000
+"""Queue of a recording: more messages than any look can bring (KEEP_LAST overwrites)."""
+
+
+def topic(name: str) -> 'Topic':
+    """The topic of that (absolute) name, to be recorded, published on or waited for."""
+    return Topic(name)
+
+
+class Topic:
+    """What a check may do with one topic; each call is a ROS node of its own while it lasts."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+
+    def record(self, seconds: float = 10.0, step_sec: float = 0.1) -> Recording:
+        """Record `seconds` of the robot's time, beginning at a message (which does not count).
+
+        The robot's clock is driven by the check in steps of `step_sec`, or in finer ones where
+        messages come faster than every second step. Where that proves nothing (the node does
+        not follow the clock, answers too slowly, …) 4 s of wall time are recorded instead.
+        Raises CheckFailed when there is no publisher or no message.
+        """
+        with Watcher() as watcher:
+            ears = self._listen(watcher)
+            recording = looks.simulated(watcher, ears, seconds=seconds, step_sec=step_sec)
+            if isinstance(recording, str):
+                recording = looks.wall(watcher, ears, why=recording, again=self._record_on_wall)
+            if not recording.messages:
+                self._fail_silent(watcher, seen=f'no message in {recording.seconds:g} s')
+        return recording
+
+    def publish(self, *messages: Any, timeout_sec: float = 10.0) -> None:
+        """Publish messages, once a subscription is there to hear them; wait until they arrived.
+
+        The publisher is RELIABLE and TRANSIENT_LOCAL, which every subscription is content with.
+        """
+        with Watcher() as watcher:
+            offer = QoSProfile(
+                depth=max(10, len(messages)),
+                reliability=ReliabilityPolicy.RELIABLE,
+                durability=DurabilityPolicy.TRANSIENT_LOCAL,
+            )
+            publisher = watcher.node.create_publisher(type(messages[0]), self.name, offer)
+            if not watcher.spin_until(
+                lambda: publisher.get_subscription_count() > 0, timeout_sec=timeout_sec
+            ):
+                fail(
+                    expected=f'a subscription on {self.name}',
+                    seen=f'none in {timeout_sec:g} s',
+                    hint=graphs.take(watcher).why_unheard(self.name),
+                )
+            for message in messages:
+                publisher.publish(message)
+            publisher.wait_for_all_acked(Duration(seconds=2))
+
+    def wait_for(
+        self,
+        predicate: Callable[[Any], bool] | None = None,
+        timeout_sec: float = 10.0,
+        *,
+        after: Callable[[], None] | None = None,
+    ) -> Any:
+        """The first message for which the predicate holds (the first of all without one).
+
+        `after` is called once the subscription stands: what it publishes can't be missed.
+        Raises CheckFailed when there is no publisher or no such message in time.
+        """
+        with Watcher() as watcher:
+            ears = self._listen(watcher)
+            if after is not None:
+                after()
+
+            def found() -> list:
+                return [m for m in ears.messages() if predicate is None or predicate(m)]
+
+            if not watcher.spin_until(lambda: bool(found()), timeout_sec=timeout_sec):
+                heard = len(ears.messages())
+                if not heard:
+                    self._fail_silent(watcher, seen=f'no message in {timeout_sec:g} s')
+                fail(
+                    expected=f'a message on {self.name} that answers',
+                    seen=f'{heard} others in {timeout_sec:g} s',
+                    hint='print what your node publishes and compare',
+                )
+            return found()[0]
+
+    def _listen(self, watcher: Watcher) -> looks.Ears:
+        """Subscribe with the publishers' own type and QoS; wait for them first."""
+        if not graphs.wait_for_publisher(watcher, self.name, timeout_sec=PUBLISHER_SEC):
+            fail(
+                expected=f'a publisher on {self.name}',
+                seen=f'none in {PUBLISHER_SEC:g} s',
+                hint=graphs.take(watcher).why_silent(self.name),
+            )
+        offers = graphs.publisher_infos(watcher.node, self.name)
+        types = sorted({offer.topic_type for offer in offers})
+        message_type = _message_type(types[0]) if len(types) == 1 else None
+        if message_type is None:
+            fail(
+                expected=f'one standard message type on {self.name}',
+                seen=' and '.join(types),
+                hint='create every publisher of a topic with the same type of common_interfaces',
+            )
+        reliable = all(
+            offer.qos_profile.reliability == ReliabilityPolicy.RELIABLE for offer in offers
+        )
+        wanted = QoSProfile(
+            depth=DEPTH,
+            reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
+        )
+        return looks.Ears(watcher, topic_name=self.name, type_=message_type, qos_profile=wanted)
+
+    def _record_on_wall(self, why: str, seconds: float) -> Recording:
+        with Watcher() as watcher:
+            return looks.wall(watcher, self._listen(watcher), why=why, seconds=seconds)
+
+    def _fail_silent(self, watcher: Watcher, *, seen: str) -> None:
+        hint = graphs.take(watcher).why_silent(self.name)
+        fail(expected=f'messages on {self.name}', seen=seen, hint=hint)
+
+
+def _message_type(name: str) -> type | None:
+    package, kind, message = name.split('/')
+    try:
+        return getattr(importlib.import_module(f'{package}.{kind}'), message)
+    except (ImportError, AttributeError):
+        return None
