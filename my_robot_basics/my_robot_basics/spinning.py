@@ -24,7 +24,7 @@ def spin_until_stopped(node_class: Callable[[], Node], *, args: list[str] | None
         node = node_class()
         executor = SingleThreadedExecutor()
         executor.add_node(node)
-        while not stop_signals:
+        while rclpy.ok() and not stop_signals:
             executor.spin_once(timeout_sec=0.1)  # a longer wait would notice a signal later
         executor.shutdown()
         node.destroy_node()

@@ -1,0 +1,14 @@
+import pytest
+from my_robot_basics.live import domain
+
+
+@pytest.fixture(autouse=True)
+def own_domain(monkeypatch):
+    """A ROS domain that no other test, lesson or robot is in."""
+    claim = domain.claim()
+    monkeypatch.setenv('ROS_DOMAIN_ID', str(claim.domain_id))
+    monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
+    for name in ('PYTHONPATH', 'AMENT_PREFIX_PATH', 'COLCON_PREFIX_PATH'):
+        monkeypatch.delenv(name, raising=False)
+    yield
+    claim.release()

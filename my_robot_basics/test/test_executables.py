@@ -1,0 +1,122 @@
+"""The nodes as processes: how they start, and how they end."""
+
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+EXECUTABLES = ['hello_node', 'kinematics_node', 'kinematics_publisher', 'kinematics_subscriber']
+BIN = Path(sys.executable).parent
+
+
+@pytest.fixture
+def start():
+    processes = []
+
+    def start(*command):
+        process = subprocess.Popen(
+            command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, encoding='utf-8'
+        )
+        processes.append(process)
+        return process
+
+    yield start
+    for process in processes:
+        process.kill()
+        process.wait()
+
+
+def output(process):
+    return process.communicate(timeout=30)[0]
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize('executable', EXECUTABLES)
+def test_a_signal_ends_an_executable_cleanly(start, executable, number):
+    process = start(BIN / executable)
+    first_line = process.stdout.readline()
+    assert f'[{executable}]: ' in first_line
+    process.send_signal(number)
+    rest = output(process)
+    assert process.returncode == 0
+    assert all(f'[{executable}]: ' in line for line in rest.splitlines()), rest
+
+
+START_UP = """
+import os, signal, sys
+import rclpy
+from rclpy.node import Node
+from my_robot_basics.spinning import spin_until_stopped
+
+moment, number = sys.argv[1], getattr(signal, sys.argv[2])
+
+def at(now):
+    if now == moment:
+        os.kill(os.getpid(), number)
+
+class SlowNode(Node):
+    def __init__(self):
+        at('before the node')
+        super().__init__('slow_node')
+        at('in the node')
+        self.create_timer(0.01, lambda: at('in a callback'))
+
+init = rclpy.init
+def observed_init(**arguments):
+    at('before init')
+    init(**arguments)
+    at('after init')
+rclpy.init = observed_init
+
+spin_until_stopped(SlowNode)
+print('returned; context up:', rclpy.ok())
+"""
+
+
+@pytest.mark.parametrize('number', ['SIGINT', 'SIGTERM'])
+@pytest.mark.parametrize(
+    'moment', ['before init', 'after init', 'before the node', 'in the node', 'in a callback']
+)
+def test_a_signal_at_any_moment_ends_a_node_cleanly(start, moment, number):
+    process = start(sys.executable, '-c', START_UP, moment, number)
+    assert output(process) == 'returned; context up: False\n'
+    assert process.returncode == 0
+
+
+MAIN = """
+import rclpy
+from rclpy.node import Node
+from my_robot_basics.spinning import spin_until_stopped
+
+class SomeNode(Node):
+    def __init__(self):
+        super().__init__('some_node')
+        self.create_timer(0.01, self.callback)
+
+    def callback(self):
+        {callback}
+
+spin_until_stopped(SomeNode)
+"""
+
+
+def test_an_error_of_the_nodes_own_is_not_hidden(start):
+    process = start(sys.executable, '-c', MAIN.format(callback='raise LookupError("no arm")'))
+    assert 'LookupError: no arm' in output(process)
+    assert process.returncode == 1
+
+
+def test_a_node_may_end_itself(start):
+    process = start(sys.executable, '-c', MAIN.format(callback='rclpy.shutdown()'))
+    assert output(process) == ''
+    assert process.returncode == 0
+
+
+def test_publisher_and_subscriber_talk(start):
+    start(BIN / 'kinematics_publisher')
+    subscriber = start(BIN / 'kinematics_subscriber')
+    lines = [subscriber.stdout.readline() for _ in range(3)]
+    assert 'waiting for poses' in lines[0]
+    assert all('IK finds it as elbow_' in line for line in lines[1:])
