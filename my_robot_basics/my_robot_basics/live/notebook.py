@@ -86,12 +86,13 @@ def sync() -> None:
 class Display:
     """One output of the cell that runs now, updated in place from any thread."""
 
-    def __init__(self) -> None:
-        """Remember the cell; nothing shows before `show`."""
+    def __init__(self, metadata: dict[str, Any] | None = None) -> None:
+        """Remember the cell, and what to say about each MIME type; nothing shows before `show`."""
+        self._metadata = metadata
         self._shell = _shell()
         self._cell = self._shell.get_parent() if self._shell else None
         self._id = f'live-{next(_numbers)}-{time.time_ns():x}'
-        self.shown = False
+        self._shown = False
 
     def adopt_thread(self) -> None:
         """Let what this thread prints and shows appear with the cell."""
@@ -102,20 +103,30 @@ class Display:
         """Publish the first time, now."""
         if self._shell:
             self._publish(bundle, update=False)
-            self.shown = True
+            self._shown = True
+        elif 'image/png' in bundle:
+            print(bundle['text/plain'])
 
     def update_soon(self, render: Callable[[], Bundle]) -> None:
-        """Publish what `render()` gives, with the next update."""
-        if self.shown:
+        """Publish what `render()` then gives, with the next round of updates."""
+        if self._shown:
             _refresher.add(self, render)
 
     def update(self, bundle: Bundle) -> None:
-        """Publish anew, from a thread of ours."""
-        self._shell.display_pub.set_thread_parent(self._cell)
-        self._publish(bundle, update=True)
+        """Publish anew, now, as part of the cell's outputs, whichever cell runs."""
+        if not self._shown or _refresher.stopped:
+            return
+        publisher = self._shell.display_pub
+        token = publisher.set_thread_parent(self._cell)
+        try:
+            self._publish(bundle, update=True)
+        finally:
+            publisher.reset_thread_parent(token)
 
     def _publish(self, bundle: Bundle, *, update: bool) -> None:
-        self._shell.display_pub.publish(bundle, transient={'display_id': self._id}, update=update)
+        self._shell.display_pub.publish(
+            bundle, metadata=self._metadata, transient={'display_id': self._id}, update=update
+        )
 
 
 class _Refresher:
@@ -124,13 +135,13 @@ class _Refresher:
     def __init__(self) -> None:
         self._due: dict[Display, Callable[[], Bundle]] = {}
         self._wanted = threading.Event()
-        self._stopped = False
+        self.stopped = False
         self._thread: threading.Thread | None = None
         self._lock = threading.Lock()
 
     def add(self, display: Display, render: Callable[[], Bundle]) -> None:
         with self._lock:
-            if self._stopped:
+            if self.stopped:
                 return
             self._due[display] = render
             if self._thread is None:
@@ -140,11 +151,11 @@ class _Refresher:
 
     def stop(self) -> None:
         with self._lock:
-            self._stopped = True
+            self.stopped = True
         self._wanted.set()
 
     def _refresh(self) -> None:
-        while not self._stopped:
+        while not self.stopped:
             self._wanted.wait()
             self._wanted.clear()
             with self._lock:

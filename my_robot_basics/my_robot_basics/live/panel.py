@@ -49,11 +49,11 @@ class Panel:
         """Let what this thread prints appear with the panel's cell."""
         self._display.adopt_thread()
 
-    def show(self) -> None:
+    def show(self, state: str) -> None:
         """Publish the panel for the first time, with all that was said so far."""
         notebook.sync()
         with self._lock:
-            self._state = 'running'
+            self._state = state
         self._display.show(self._bundle())
 
     def log(self, record: LogRecord) -> None:
@@ -74,7 +74,7 @@ class Panel:
         notebook.listen_no_more(self.log)
         with self._lock:
             self._state = reason
-        self._display.update_soon(self._bundle)
+        self._display.update(self._bundle())
 
     def _add(self, entry: Entry) -> None:
         with self._lock:

@@ -3,6 +3,7 @@
 import atexit
 import os
 import threading
+from collections.abc import Callable
 from typing import Any
 
 import rclpy
@@ -10,13 +11,14 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
 from my_robot_basics.live import classroom, notebook
+from my_robot_basics.live.background import Background
 from my_robot_basics.live.errors import NotRunnable
 from my_robot_basics.live.naming import announce_name
 from my_robot_basics.live.neighbours import Neighbours, bury_the_dead
 from my_robot_basics.live.panel import Panel
-from my_robot_basics.live.spinning import Spinning
 
-_running: dict[str, Spinning] = {}
+_running: dict[str, Background] = {}
+_panels: dict[str, Panel] = {}
 _neighbours = Neighbours()
 _lock = threading.RLock()
 _owner_pid = os.getpid()
@@ -34,16 +36,30 @@ def run(NodeClass: type[Node], *args: Any, key: str | None = None, **kwargs: Any
     name already lives outside `live`, no second one is started: that is printed, and the result
     is None. What the constructor raises is raised; the old node is then stopped all the same.
     """
+    __tracebackhide__ = True
     if not (isinstance(NodeClass, type) and issubclass(NodeClass, Node)):
         raise NotRunnable(_not_a_class(NodeClass))
     key = NodeClass.__name__ if key is None else key
+    return launch(NodeClass, args, kwargs, key=key, make_panel=lambda: Panel(NodeClass.__name__))
+
+
+def launch(
+    NodeClass: type[Node],
+    args: tuple[Any, ...],
+    kwargs: dict[str, Any],
+    *,
+    key: str,
+    make_panel: Callable[[], Panel],
+) -> Node | None:
+    """Do what `run` says, with another panel; it is made once stdout is tapped."""
+    __tracebackhide__ = True
     classroom.enter()
-    _stop_keys([key, *(k for k, spinning in _running.items() if not spinning.alive)])
+    _stop_keys([key, *(k for k, background in _running.items() if not background.alive)])
     _ensure_rclpy()
-    panel = Panel(NodeClass.__name__)
+    panel = make_panel()
 
     def on_name(name: str) -> None:
-        _stop_keys([k for k, s in _running.items() if s.node.get_fully_qualified_name() == name])
+        _stop_keys([k for k, b in _running.items() if b.node.get_fully_qualified_name() == name])
         if _neighbours.has(name):
             raise _LivesElsewhere(name)
         panel.listen(name)
@@ -60,14 +76,15 @@ def run(NodeClass: type[Node], *args: Any, key: str | None = None, **kwargs: Any
         return None
     except BaseException:
         _destroy_half_made(node)
+        panel.show('its constructor failed')
         panel.close('its constructor failed')
         raise
-    panel.show()
+    panel.show('running')
     with _lock:
-        _running[key] = Spinning(
+        _panels[key] = panel
+        _running[key] = Background(
             node, on_error=panel.error, on_end=panel.close, before=panel.adopt_thread
         )
-        _panels[key] = panel
     return node
 
 
@@ -78,23 +95,20 @@ def stop(key_or_node: str | type[Node] | Node | None = None) -> None:
         return
     keys = [
         key
-        for key, spinning in _running.items()
-        if key_or_node in (key, spinning.node, type(spinning.node))
+        for key, background in _running.items()
+        if key_or_node in (key, background.node, type(background.node))
     ]
     if not keys:
         print(f'nothing to stop: no node runs as {key_or_node!r}')
     _stop_keys(keys)
 
 
-_panels: dict[str, Panel] = {}
-
-
 def _stop_keys(keys: list[str]) -> None:
     for key in keys:
-        spinning = _running.get(key)
-        if spinning is None:
+        background = _running.get(key)
+        if background is None:
             continue
-        spinning.stop()
+        background.stop()
         with _lock:
             del _running[key]
             panel = _panels.pop(key, None)

@@ -1,4 +1,4 @@
-"""What a student needs to know of an exception: the error, and the lines of theirs that led to it."""
+"""What a student needs to know of an exception: the error, and which of their lines led to it."""
 
 import traceback
 from pathlib import Path

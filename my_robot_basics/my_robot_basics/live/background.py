@@ -10,7 +10,7 @@ PATIENCE_SEC = 1.0
 """How long a callback may still run before its node is destroyed under it."""
 
 
-class Spinning:
+class Background:
     """A node that spins in a daemon thread until `stop()`, or until its context is shut down."""
 
     def __init__(

@@ -1,0 +1,125 @@
+"""A picture of the arm that moves with the joint states on a topic."""
+
+import math
+import threading
+from collections.abc import Callable
+
+from rclpy.node import Node
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from sensor_msgs.msg import JointState
+
+from my_robot_basics.live import notebook, runner
+from my_robot_basics.live.arm import ArmPicture
+from my_robot_basics.live.troubles import where_and_what
+from my_robot_basics.two_link_kinematics import L1, L2
+
+JOINTS = ('joint1', 'joint2')
+FIRST_MESSAGE_SEC = 1.2
+"""How long to wait for a first pose when somebody publishes: a stored notebook then shows it."""
+
+
+def follow_arm(
+    topic_name: str = '/kinematics/joint_states', *, l1: float = L1, l2: float = L2
+) -> None:
+    """Show the arm in the pose of the JointState messages on a topic, until `stop()`.
+
+    One picture moves in place, a few times a second, while the cell has long returned. Messages
+    that give no pose are counted below the title. Link lengths are in metres.
+    """
+    view = ArmView(topic_name, l1=l1, l2=l2)
+    node_name = '_follow' + ''.join(c if c.isalnum() else '_' for c in topic_name)
+    node = runner.launch(
+        ArmFollower,
+        (node_name, topic_name, view.receive),
+        {},
+        key=node_name,
+        make_panel=lambda: view,
+    )
+    if node is not None and node.count_publishers(topic_name):
+        view.received.wait(FIRST_MESSAGE_SEC)
+    view.publish()
+
+
+class ArmFollower(Node):
+    """Hands on each joint state of a topic."""
+
+    def __init__(
+        self, node_name: str, topic_name: str, receive: Callable[[JointState], None]
+    ) -> None:
+        """Subscribe, in a way that every publisher's QoS allows; the newest message will do."""
+        super().__init__(node_name, enable_rosout=False, start_parameter_services=False)
+        qos_profile = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+        self.create_subscription(JointState, topic_name, receive, qos_profile)
+
+
+class ArmView:
+    """Takes a panel's place: what this node has to show is a picture."""
+
+    def __init__(self, topic_name: str, *, l1: float, l2: float) -> None:
+        """Draw the axes of the picture."""
+        self.received = threading.Event()
+        self._topic_name = topic_name
+        self._text = f'two-link arm that follows {topic_name}'
+        self._picture = ArmPicture(l1=l1, l2=l2)
+        self._pose: tuple[float, float] | None = None
+        self._ignored = 0
+        self._trouble = f'waiting for messages on {topic_name}'
+        self._display = notebook.Display({'image/png': {'alt': self._text}})
+
+    def receive(self, message: JointState) -> None:
+        """Take the pose from a message, or say what is wrong with it."""
+        trouble = what_is_wrong(message)
+        if trouble:
+            self._ignored += 1
+            self._trouble = f'{self._ignored} ignored: {trouble}'
+        else:
+            position = dict(zip(message.name, message.position, strict=False))
+            self._pose = tuple(math.degrees(position[joint]) for joint in JOINTS)
+            self._trouble = f'{self._ignored} ignored' if self._ignored else ''
+        self.received.set()
+        self._display.update_soon(self._bundle)
+
+    def publish(self) -> None:
+        """Show the picture for the first time."""
+        self._display.show(self._bundle())
+
+    def _bundle(self) -> dict:
+        title = '\n'.join(filter(None, [self._topic_name, self._trouble]))
+        if self._pose is None:
+            self._picture.title(title)
+        else:
+            self._picture.move(*self._pose, title=title)
+        return {'image/png': self._picture.png(), 'text/plain': self._text}
+
+    def listen(self, name: str) -> None:
+        """Log nothing: a picture has no lines."""
+
+    def adopt_thread(self) -> None:
+        """Print nothing either."""
+
+    def show(self, state: str) -> None:
+        """Wait with the picture: `follow_arm` publishes it once there is a pose."""
+
+    def error(self, error: BaseException) -> None:
+        """Write an exception of ours above the picture, rather than lose it."""
+        self._trouble = where_and_what(error)[1]
+        self._display.update_soon(self._bundle)
+
+    def close(self, reason: str) -> None:
+        """Leave the last picture."""
+        self._trouble = reason
+        self._display.update(self._bundle())
+
+
+def what_is_wrong(message: JointState) -> str:
+    """Return why a message gives no pose, or nothing if it does."""
+    missing = [joint for joint in JOINTS if joint not in message.name]
+    if missing:
+        return f'no {" and no ".join(missing)} among the names {list(message.name)}'
+    if len(message.position) < len(message.name):
+        return f'{len(message.name)} names, but {len(message.position)} positions'
+    position = dict(zip(message.name, message.position, strict=False))
+    for joint in JOINTS:
+        if not math.isfinite(position[joint]):
+            return f'the position of {joint} is {position[joint]}'
+    return ''
