@@ -1,0 +1,354 @@
+"""The only writer of nbgrader's database: lessons, scores, executed notebooks."""
+
+import os
+import shutil
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+
+import nbformat
+from nbconvert.exporters import Exporter
+from nbformat import NotebookNode
+from nbgrader.api import Grade, Gradebook, MissingEntry
+from nbgrader.preprocessors import SaveAutoGrades
+from nbgrader.utils import parse_utc
+from traitlets.config import Config
+
+from grader.course import Course
+from grader.errors import CourseError
+from grader.heal import KEY, grade_id, heal
+from grader.release import PASSES
+from grader.submission import Submission
+
+SANITIZE_PASSES = (
+    'grader.passes.HealSubmission',
+    'grader.turn.TakeTurns',
+    'nbgrader.preprocessors.OverwriteKernelspec',
+    'nbgrader.preprocessors.OverwriteCells',
+    'nbgrader.preprocessors.CheckCellMetadata',
+)
+"""What nbgrader does with a submitted notebook before it runs."""
+
+AUTOGRADE_PASSES = (
+    'grader.turn.TakeTurns',
+    'grader.passes.ExecuteRooms',
+    'nbgrader.preprocessors.LimitOutput',
+    'grader.gradebook.SaveGrades',
+    'nbgrader.preprocessors.AssignLatePenalties',
+    'nbgrader.preprocessors.CheckCellMetadata',
+)
+"""What nbgrader does with it then."""
+
+
+@dataclass(frozen=True)
+class Stored:
+    """What the gradebook holds for a submission, once it was graded."""
+
+    score: float
+    max_score: float
+    former: float | None
+    """The score before, if there was one."""
+    pending: bool
+    """Whether some of it waits for a person."""
+    reason: str
+    """Why points are missing: the first reason, or ''."""
+
+
+@dataclass(frozen=True)
+class Record:
+    """One graded cell of one student."""
+
+    student_id: str
+    assignment: str
+    grade_id: str
+    score: float | None
+    """None where nothing was handed in, or where a person has to decide."""
+    max_score: float
+    submitted: bool = True
+    by_hand: bool = False
+    """Whether a person gave the score."""
+    comment: str = ''
+    """What a person wrote."""
+
+
+class SaveGrades(SaveAutoGrades):
+    """Store the verdicts of one notebook, all of them or none.
+
+    nbgrader reads a score off a cell's outputs, and a cell without any would earn its points. So a
+    verdict is wanted too: without one the cell has no score and waits for a person.
+    """
+
+    def preprocess(self, nb: NotebookNode, resources: dict) -> tuple[NotebookNode, dict]:
+        """Store the scores of a notebook that was executed."""
+        at = resources['nbgrader']
+        self.notebook_id, self.assignment_id = at['notebook'], at['assignment']
+        self.student_id, self.db_url = at['student'], at['db_url']
+        dated = {'timestamp': at['timestamp']} if at.get('timestamp') else {}
+        with _one_transaction(self.db_url) as self.gradebook:
+            self.gradebook.update_or_create_student(self.student_id)
+            self.gradebook.update_or_create_submission(
+                self.assignment_id, self.student_id, **dated
+            )
+            for index, cell in enumerate(nb.cells):
+                self.preprocess_cell(cell, resources, index)
+        return nb, resources
+
+    def _add_score(self, cell: NotebookNode, resources: dict) -> None:
+        super()._add_score(cell, resources)
+        judged = cell.metadata.get(KEY, {}).get('outcome') in ('passed', 'failed', 'manual')
+        if cell.cell_type == 'code' and not judged:
+            grade = self.gradebook.find_grade(
+                grade_id(cell), self.notebook_id, self.assignment_id, self.student_id
+            )
+            grade.auto_score, grade.needs_manual_grade = None, True
+
+
+def make_ready(course: Course) -> None:
+    """Make the gradebook's folder, and let nbgrader find the command that makes its database."""
+    course.gradebook.mkdir(parents=True, exist_ok=True)
+    programs = os.environ.get('PATH', os.defpath).split(os.pathsep)
+    ours = str(Path(sys.executable).parent)  # where `alembic` is
+    if ours not in programs:
+        os.environ['PATH'] = os.pathsep.join([ours, *programs])
+
+
+def register(course: Course, assignment: str) -> bool:
+    """Tell the database what an assignment consists of; return whether that was news to it.
+
+    Raises CourseError when cells came or went although submissions are graded already.
+    """
+    resources = _resources(course, assignment)
+    tidied = _apply(PASSES[: PASSES.index(_SAVE_CELLS)], course.source(assignment), resources)
+    make_ready(course)
+    with _open(course.db_url) as book:
+        known = _checksums_in(book, assignment)
+        wanted = {
+            grade_id(cell): cell.metadata['nbgrader']['checksum']
+            for cell in tidied.cells
+            if 'checksum' in cell.metadata.get('nbgrader', {})
+        }
+        if known == wanted:
+            return False
+        came, went = (
+            sorted(wanted.keys() - (known or wanted)),
+            sorted((known or {}).keys() - wanted),
+        )
+        if (came or went) and book.assignment_submissions(assignment):
+            raise CourseError(
+                f"{assignment} can't be changed like this after submissions were graded "
+                f'(new cells: {", ".join(came) or "none"}; gone: {", ".join(went) or "none"}): '
+                'give the cells their former grade ids, or keep this gradebook/ elsewhere and '
+                'begin a new one.'
+            )
+        book.update_or_create_assignment(assignment)
+    _apply((_SAVE_CELLS,), tidied, resources)
+    return True
+
+
+def register_before_autograde(*, assignment: str, **_: object) -> None:
+    """Register what `nbgrader autograde`, which runs in the course's folder, is going to grade."""
+    course = Course.at(Path.cwd())
+    for name in course.assignments() if assignment == '*' else [assignment]:
+        register(course, name)
+
+
+def store(course: Course, submission: Submission, graded: NotebookNode) -> Stored:
+    """Store an executed notebook: its scores, and the notebook itself under autograded/.
+
+    The same nbgrader passes do it as in `nbgrader autograde`. Manual scores stay, the submitted
+    files are only read, and storing twice is the same as once.
+    """
+    student, assignment = submission.student_id, submission.assignment
+    at = _resources(course, assignment, student)
+    at['nbgrader']['timestamp'], notes = _handed_in(submission)
+    graded = nbformat.from_dict(graded)
+    graded.metadata.setdefault(KEY, nbformat.from_dict({'notes': []})).notes += notes
+    former = _find(course, submission)
+    after_running = AUTOGRADE_PASSES[AUTOGRADE_PASSES.index('grader.passes.ExecuteRooms') + 1 :]
+    folder = course.folder('autograded', student, assignment)
+    folder.mkdir(parents=True, exist_ok=True)
+    saved = _apply(after_running, graded, at)
+    write_whole(folder / f'{assignment}.ipynb', nbformat.writes(saved))
+    dated = submission.path.with_name('timestamp.txt')
+    for extra in (*submission.extra_files, *([dated] if dated.is_file() else [])):
+        copy = folder / extra.name
+        copy.unlink(missing_ok=True)
+        shutil.copy(extra, copy)
+    now = _find(course, submission)
+    return Stored(
+        score=now[0],
+        max_score=now[1],
+        former=former[0] if former else None,
+        pending=now[2],
+        reason=first_reason(saved),
+    )
+
+
+def prepare(course: Course, assignment: str, healed: NotebookNode) -> NotebookNode:
+    """Do with a healed notebook what nbgrader does before it runs: checksums, kernel, metadata."""
+    passes = SANITIZE_PASSES[SANITIZE_PASSES.index('grader.turn.TakeTurns') + 1 :]
+    return _apply(passes, healed, _resources(course, assignment))
+
+
+def unanswered(course: Course, submission: Submission, reason: str) -> NotebookNode:
+    """Return what stands for a submission that can't be graded: nothing answered, and why."""
+    nothing = nbformat.v4.new_notebook()
+    notebook = prepare(
+        course, submission.assignment, heal(nothing, course.master(submission.assignment)).notebook
+    )
+    notebook.metadata[KEY] = {'notes': [reason], 'problem': reason}
+    for cell in notebook.cells:
+        if cell.cell_type == 'code' and cell.metadata.get('nbgrader', {}).get('grade'):
+            cell.metadata[KEY] = {'outcome': 'failed', 'reason': reason, 'notes': []}
+            cell.outputs = [
+                nbformat.v4.new_output(
+                    'error', ename='CheckFailed', evalue=reason, traceback=[reason]
+                )
+            ]
+    return notebook
+
+
+def first_reason(graded: NotebookNode) -> str:
+    """Return the first reason why points are missing in an executed notebook, or ''."""
+    reasons = (
+        cell.metadata.get(KEY, {}).get('reason')
+        for cell in graded.cells
+        if cell.metadata.get(KEY, {}).get('outcome') in ('failed', 'ungraded')
+    )
+    problem = graded.metadata.get(KEY, {}).get('problem')
+    return problem or next((reason for reason in reasons if reason), '')
+
+
+def records(course: Course) -> list[Record]:
+    """Return all graded cells of all students, in a stable order; registers what is new."""
+    for assignment in course.assignments():
+        register(course, assignment)
+    with _open(course.db_url) as book:
+        return [
+            record
+            for student in sorted(student.id for student in book.students)
+            for assignment in sorted(assignment.name for assignment in book.assignments)
+            for record in _records(course, book, student, assignment)
+        ]
+
+
+def verdicts(course: Course, student_id: str, assignment: str) -> dict[str, NotebookNode]:
+    """Return what the executed notebook says of each graded cell, by grade id."""
+    path = course.folder('autograded', student_id, assignment) / f'{assignment}.ipynb'
+    cells = nbformat.read(path, as_version=4).cells if path.exists() else []
+    return {grade_id(cell): cell.metadata.get(KEY, {}) for cell in cells if grade_id(cell)}
+
+
+def write_whole(path: Path, text: str) -> None:
+    """Write a file so that nobody ever finds half of it."""
+    aside = path.with_name(f'.{path.name}.new')
+    aside.write_text(text, encoding='utf-8', newline='')
+    os.replace(aside, path)
+
+
+_SAVE_CELLS = 'nbgrader.preprocessors.SaveCells'
+
+
+def _apply(passes: Sequence[str], notebook: NotebookNode, resources: dict) -> NotebookNode:
+    exporter = Exporter(config=Config({'Exporter': {'default_preprocessors': []}}))
+    for name in passes:
+        exporter.register_preprocessor(name)
+    return exporter.from_notebook_node(notebook, resources)[0]
+
+
+def _resources(course: Course, assignment: str, student_id: str = '.') -> dict:
+    return {
+        'nbgrader': {
+            'notebook': assignment,
+            'assignment': assignment,
+            'student': student_id,
+            'db_url': course.db_url,
+        }
+    }
+
+
+def _open(db_url: str) -> Gradebook:
+    return Gradebook(db_url)
+
+
+@contextmanager
+def _one_transaction(db_url: str) -> Iterator[Gradebook]:
+    """Open the database; what nbgrader would commit cell by cell is committed at the end."""
+    with _open(db_url) as book:
+        commit, book.db.commit = book.db.commit, book.db.flush
+        yield book
+        commit()
+
+
+def _checksums_in(book: Gradebook, assignment: str) -> dict[str, str] | None:
+    try:
+        cells = book.find_notebook(assignment, assignment).source_cells
+    except MissingEntry:
+        return None
+    return {cell.name: cell.checksum for cell in cells}
+
+
+def _find(course: Course, submission: Submission) -> tuple[float, float, bool] | None:
+    """Return score, most that can be had, and whether a person has to look; None if not graded."""
+    with _open(course.db_url) as book:
+        try:
+            found = book.find_submission_notebook(
+                submission.assignment, submission.assignment, submission.student_id
+            )
+        except MissingEntry:
+            return None
+        waits = any(_waits(grade) for grade in found.grades)
+        return found.score - (found.late_submission_penalty or 0), found.max_score, waits
+
+
+def _handed_in(submission: Submission) -> tuple[datetime | None, list[str]]:
+    """Read when it was handed in (UTC) from timestamp.txt, and what is wrong with that file."""
+    path = submission.path.with_name('timestamp.txt')
+    if not path.is_file() or path.is_symlink():
+        return None, []
+    try:
+        return parse_utc(path.read_text(encoding='utf-8').strip() or None), []
+    except (ValueError, OverflowError):
+        return None, ['timestamp.txt holds no date: counted as handed in on time']
+
+
+def _records(course: Course, book: Gradebook, student: str, assignment: str) -> Iterator[Record]:
+    known = [cell for nb in book.find_assignment(assignment).notebooks for cell in nb.grade_cells]
+    try:
+        found = book.find_submission_notebook(assignment, assignment, student)
+    except MissingEntry:
+        found = None
+    grades = {grade.name: grade for grade in found.grades} if found else {}
+    comments = (
+        {comment.name: comment.manual_comment for comment in found.comments} if found else {}
+    )
+    for cell in sorted(known, key=_place_in(course, assignment)):
+        grade = grades.get(cell.name)
+        yield Record(
+            student_id=student,
+            assignment=assignment,
+            grade_id=cell.name,
+            score=grade.score if grade and not _waits(grade) else None,
+            max_score=cell.max_score,
+            submitted=found is not None,
+            by_hand=bool(grade and grade.manual_score is not None),
+            comment=comments.get(cell.name) or '',
+        )
+    if found and found.late_submission_penalty:
+        yield Record(student, assignment, 'late_penalty', -found.late_submission_penalty, 0.0)
+
+
+def _place_in(course: Course, assignment: str) -> Callable[[object], tuple[int, str]]:
+    """Return a sort key that puts graded cells in the lesson's order; strangers come last."""
+    order = []
+    if course.source_path(assignment).exists():
+        order = [grade_id(cell) for cell in course.source(assignment).cells]
+    return lambda cell: (order.index(cell.name) if cell.name in order else len(order), cell.name)
+
+
+def _waits(grade: Grade) -> bool:
+    """Whether nobody has given a score yet."""
+    return grade.auto_score is None and grade.manual_score is None

@@ -1,0 +1,80 @@
+"""Find answers and hidden tests in what students are given."""
+
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+import nbformat
+from nbformat import NotebookNode
+
+from grader.course import Course
+
+MARKS = ('BEGIN SOLUTION', 'END SOLUTION', 'BEGIN HIDDEN TESTS', 'END HIDDEN TESTS')
+
+
+def leaks_of(course: Course, assignment: str, released: Path) -> Iterator[str]:
+    """Yield each answer and hidden test that can be read in an assignment's released files."""
+    source = course.source(assignment)
+    secret = {line for cell in source.cells for line in _secret_lines(cell)}
+    taught = {line for cell in source.cells for line in _open_lines(cell)}
+    secret = {line for line in secret if not any(line in open_line for open_line in taught)}
+    for path in files_in(released / assignment):
+        file = released / assignment / path
+        text = _all_text(file)
+        for mark in MARKS:
+            if mark in text:
+                yield f'{assignment}/{path} has a line with {mark!r}'
+        for line in sorted(secret):
+            if line in text:
+                yield f'{assignment}/{path} shows a line of an answer or a hidden test: {line!r}'
+
+
+def files_in(folder: Path) -> list[Path]:
+    """Return the files in `folder`, relative to it, sorted; what editors hide there left out."""
+    found = (path.relative_to(folder) for path in folder.rglob('*') if path.is_file())
+    return sorted(p for p in found if not any(part.startswith('.') for part in p.parts))
+
+
+def _secret_lines(cell: NotebookNode) -> Iterator[str]:
+    """Yield the lines that must not be released, stripped."""
+    lines = list(_marked_lines(cell))
+    marks = cell.metadata.get('nbgrader', {})
+    all_of_it = marks.get('solution') and not any(hidden for _, hidden in lines)
+    yield from _telling(line for line, hidden in lines if hidden or all_of_it)
+
+
+def _open_lines(cell: NotebookNode) -> Iterator[str]:
+    """Yield the lines that everybody may read, stripped."""
+    if not set(_secret_lines(cell)) or any(hidden for _, hidden in _marked_lines(cell)):
+        yield from _telling(line for line, hidden in _marked_lines(cell) if not hidden)
+
+
+def _marked_lines(cell: NotebookNode) -> Iterator[tuple[str, bool]]:
+    """Yield each line of a cell with whether it stands in a marked region."""
+    hidden = False
+    for line in cell.source.splitlines():
+        if any(mark in line for mark in MARKS):
+            hidden = 'BEGIN' in line
+        else:
+            yield line, hidden
+
+
+def _telling(lines: Iterable[str]) -> Iterator[str]:
+    """Yield what a line says; a bracket or a bare word says nothing."""
+    yield from (s for line in lines if len(s := line.strip()) > 5 and ' ' in s)
+
+
+def _all_text(file: Path) -> str:
+    """Return all that can be read in a file; of a notebook, outputs and metadata included."""
+    if file.suffix != '.ipynb':
+        return file.read_bytes().decode(errors='replace')
+    return '\n'.join(_strings(nbformat.read(file, as_version=4)))
+
+
+def _strings(value: object) -> Iterator[str]:
+    if isinstance(value, dict):
+        value = value.values()
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, Iterable):
+        for item in value:
+            yield from _strings(item)

@@ -1,0 +1,149 @@
+"""Make notebooks/ from solutions/: no answers, no hidden tests, but pictures of what is shown."""
+
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import nbformat
+from nbconvert.preprocessors import Preprocessor
+from nbformat import NotebookNode
+
+from grader.course import Course
+from grader.errors import CourseError
+from grader.leaks import files_in, leaks_of
+
+PASSES = (
+    'grader.release.TidyMetadata',
+    'nbgrader.preprocessors.LockCells',
+    'nbgrader.preprocessors.ClearSolutions',
+    'grader.release.KeepDemoOutputs',
+    'nbgrader.preprocessors.CheckCellMetadata',
+    'nbgrader.preprocessors.ComputeChecksums',
+    'nbgrader.preprocessors.SaveCells',
+    'nbgrader.preprocessors.ClearHiddenTests',
+    'nbgrader.preprocessors.ClearMarkScheme',
+    'nbgrader.preprocessors.ComputeChecksums',
+    'nbgrader.preprocessors.CheckCellMetadata',
+)
+"""What happens to a source notebook, in order; up to SaveCells it is what the gradebook keeps."""
+
+KERNELSPEC = {'display_name': 'Python 3 (ipykernel)', 'language': 'python', 'name': 'python3'}
+CELL_METADATA = ('nbgrader', 'tags', 'deletable', 'editable')
+WIDGET_VIEW = 'application/vnd.jupyter.widget-view+json'
+
+
+class TidyMetadata(Preprocessor):
+    """Keep the metadata that a lesson needs; drop what an editor or a kernel left behind."""
+
+    enabled = True
+
+    def preprocess(self, nb: NotebookNode, resources: dict) -> tuple[NotebookNode, dict]:
+        """Tidy the notebook's own metadata and that of its cells."""
+        nb.metadata = nbformat.from_dict(
+            {'kernelspec': KERNELSPEC, 'language_info': {'name': 'python'}}
+        )
+        return super().preprocess(nb, resources)
+
+    def preprocess_cell(
+        self, cell: NotebookNode, resources: dict, index: int
+    ) -> tuple[NotebookNode, dict]:
+        """Tidy one cell."""
+        kept = {key: cell.metadata[key] for key in CELL_METADATA if key in cell.metadata}
+        cell.metadata = nbformat.from_dict(kept)
+        return cell, resources
+
+
+class KeepDemoOutputs(Preprocessor):
+    """Clear all outputs but those of demonstrations: they show on GitHub before anything runs."""
+
+    enabled = True
+
+    def preprocess_cell(
+        self, cell: NotebookNode, resources: dict, index: int
+    ) -> tuple[NotebookNode, dict]:
+        """Clear one cell; its number goes in any case, since it changes with each run."""
+        if cell.cell_type == 'code':
+            cell.execution_count = None
+            if 'demo' not in cell.metadata.get('tags', ()):
+                cell.outputs = []
+            for output in cell.outputs:
+                if output.output_type == 'execute_result':
+                    output.execution_count = None
+                output.get('data', {}).pop(WIDGET_VIEW, None)  # blank without its running kernel
+        return cell, resources
+
+
+def release(course: Course, assignment: str = '*') -> list[str]:
+    """Release an assignment, or all of them; return the names of the files that changed.
+
+    Everything is built aside first and then put in place file by file: whatever fails, notebooks/
+    holds whole files, and nothing is taken away. Raises CourseError when a source can't be
+    released.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        built = _build(course, assignment, Path(folder))
+        if leaks := [leak for name in _names(built) for leak in leaks_of(course, name, built)]:
+            raise CourseError('nothing was released: ' + '; '.join(leaks))
+        changed = [path for path in files_in(built) if _differs(built, course, path)]
+        for path in changed:
+            _put(built / path, course.root / 'notebooks' / path)
+    return [str(path) for path in changed]
+
+
+def stale_or_leaking(course: Course) -> list[str]:
+    """Say what is wrong with notebooks/: not what solutions/ gives today, or telling too much."""
+    with tempfile.TemporaryDirectory() as folder:
+        built = _build(course, '*', Path(folder))
+        names = _names(built)
+        stale = [
+            f'notebooks/{path} is not what solutions/ gives: run ./course release'
+            for path in files_in(built)
+            if _differs(built, course, path)
+        ]
+        expected = set(files_in(built))
+    released = course.root / 'notebooks'
+    strange = [
+        f'notebooks/{path} comes from no assignment: remove it'
+        for path in files_in(released)
+        if path not in expected and len(path.parts) > 1
+    ]
+    return stale + strange + [leak for name in names for leak in leaks_of(course, name, released)]
+
+
+def _build(course: Course, assignment: str, folder: Path) -> Path:
+    """Let nbgrader release into `folder`, without touching its database."""
+    if assignment != '*':
+        course.source(assignment)  # names what is wrong better than nbgrader would
+    elif not course.assignments():
+        raise CourseError(f'there is no assignment in {course.root / "solutions"}')
+    command = [
+        *(sys.executable, '-m', 'nbgrader', 'generate_assignment', assignment, '--no-db'),
+        f'--CourseDirectory.root={course.root}',
+        f'--CourseDirectory.release_directory={folder}',
+        f'--CourseDirectory.db_url=sqlite:///{folder / "unused.db"}',
+    ]
+    run = subprocess.run(command, cwd=course.root, capture_output=True, text=True, check=False)
+    if run.returncode:
+        said = [line for line in run.stderr.splitlines() if 'Error' in line or 'ERROR' in line]
+        raise CourseError(
+            'nbgrader could not release ' + assignment + ': ' + ' '.join(said or [run.stderr])
+        )
+    return folder
+
+
+def _names(built: Path) -> list[str]:
+    return sorted(path.name for path in built.iterdir() if path.is_dir())
+
+
+def _differs(built: Path, course: Course, path: Path) -> bool:
+    released = course.root / 'notebooks' / path
+    return not released.is_file() or released.read_bytes() != (built / path).read_bytes()
+
+
+def _put(built: Path, place: Path) -> None:
+    place.parent.mkdir(parents=True, exist_ok=True)
+    aside = place.with_name(f'.{place.name}.new')
+    aside.write_bytes(built.read_bytes())
+    os.replace(aside, place)

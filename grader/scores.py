@@ -1,0 +1,53 @@
+"""Export the gradebook as a table for spreadsheets and other systems."""
+
+import csv
+import io
+from pathlib import Path
+
+from grader.course import Course
+from grader.gradebook import Record, records, verdicts, write_whole
+from grader.text import spreadsheet_safe
+
+COLUMNS = ('student_id', 'assignment', 'grade_id', 'score', 'max_score', 'comment')
+
+
+def write_scores(course: Course) -> Path:
+    """Write gradebook/scores.csv: a row for each student and graded cell; return its path.
+
+    The score is empty where nothing was handed in or a person has to decide; the comment says so.
+    """
+    text = io.StringIO(newline='')
+    table = csv.writer(text)
+    table.writerow(COLUMNS)
+    said: dict[str, dict] = {}
+    whose = None
+    for record in records(course):
+        if whose != (whose := (record.student_id, record.assignment)):
+            said = verdicts(course, *whose)
+        table.writerow(
+            (
+                spreadsheet_safe(record.student_id),
+                spreadsheet_safe(record.assignment),
+                record.grade_id,
+                '' if record.score is None else record.score,
+                record.max_score,
+                spreadsheet_safe(_comment(record, said.get(record.grade_id, {}))),
+            )
+        )
+    path = course.gradebook / 'scores.csv'
+    write_whole(path, text.getvalue())
+    return path
+
+
+def _comment(record: Record, verdict: dict) -> str:
+    """Put into words why a cell has its score."""
+    if not record.submitted:
+        return 'not submitted'
+    parts = [
+        'to be graded by hand' if record.score is None else '',
+        'scored by hand' if record.by_hand else '',
+        record.comment,
+        verdict.get('reason'),
+        *verdict.get('notes', ()),
+    ]
+    return '; '.join(part for part in parts if part)

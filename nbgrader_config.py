@@ -1,0 +1,39 @@
+"""What nbgrader's own commands and the formgrader need to know: they work in this folder too.
+
+Instructors open the formgrader with `.venv/bin/jupyter lab`, started in this folder.
+"""
+
+from pathlib import Path
+
+try:
+    from grader.course import Course
+    from grader.gradebook import AUTOGRADE_PASSES, SANITIZE_PASSES, make_ready
+    from grader.release import PASSES
+
+    course = Course.at(Path(__file__).parent)
+    make_ready(course)
+except (ImportError, OSError) as error:
+    # nbgrader would go on with its defaults, which let a submission choose its own score
+    raise SystemExit(
+        f'{error}: without its grader this course would be graded unprotected. '
+        'Run ./course test once, and use .venv/bin/nbgrader.'
+    ) from None
+
+c = get_config()  # noqa: F821
+
+c.CourseDirectory.root = str(course.root)
+c.CourseDirectory.source_directory = 'solutions'
+c.CourseDirectory.release_directory = 'notebooks'
+c.CourseDirectory.submitted_directory = 'gradebook/submitted'
+c.CourseDirectory.autograded_directory = 'gradebook/autograded'
+c.CourseDirectory.feedback_directory = 'gradebook/feedback'
+c.CourseDirectory.db_url = course.db_url
+
+c.GenerateAssignment.preprocessors = list(PASSES)
+c.Autograde.sanitize_preprocessors = list(SANITIZE_PASSES)
+c.Autograde.autograde_preprocessors = list(AUTOGRADE_PASSES)
+c.Autograde.pre_convert_hook = 'grader.gradebook.register_before_autograde'
+c.GenerateFeedback.preprocessors = ['grader.feedback.GatherVerdicts']
+c.GenerateFeedback.exporter_class = 'grader.feedback.FeedbackPage'
+
+c.HTMLExporter.sanitize_html = True

@@ -1,0 +1,137 @@
+"""Make a small course in a temporary folder: one lesson of two exercises, without a robot."""
+
+import shutil
+from pathlib import Path
+
+import nbformat
+from nbformat import NotebookNode
+from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook, new_output
+
+from grader.course import ROOT, Course
+from grader.heal import KEY
+
+TOY = '00_toy'
+PIXEL = 'iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNkYPhfDwAChwGA60e6kgAAAABJRU5ErkJggg=='
+
+
+def make_course(root: Path) -> Course:
+    """Return a course in `root` whose one lesson is not released yet."""
+    course = Course.at(root)
+    shutil.copy(ROOT / 'nbgrader_config.py', course.root)
+    write_source(course, toy_lesson())
+    return course
+
+
+def write_source(course: Course, lesson: NotebookNode) -> None:
+    path = course.source_path(TOY)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    nbformat.write(lesson, path)
+
+
+def toy_lesson() -> NotebookNode:
+    demo = new_code_cell('print("shown")', id='shown', metadata={'tags': ['demo']})
+    demo.outputs = [
+        new_output('stream', text='shown\n'),
+        new_output('execute_result', {'text/plain': 'an arm', 'image/png': PIXEL}),
+    ]
+    demo.outputs[1].execution_count = demo.execution_count = 7
+    demo.metadata['editor_noise'] = {'collapsed': True}
+    setup = new_code_cell('import math', id='setup')
+    setup.outputs = [new_output('stream', text='noise\n')]
+    return new_notebook(
+        cells=[
+            new_markdown_cell('# A toy', id='title'),
+            setup,
+            demo,
+            _cell('double-reset', 'reset("double")', locked=True),
+            _cell(
+                'double',
+                'def double(x):\n'
+                '    """Return twice x."""\n'
+                '    ### BEGIN SOLUTION\n'
+                '    return x + x  # the secret answer\n'
+                '    ### END SOLUTION',
+                solution=True,
+            ),
+            new_code_cell('double(3)', id='try-it'),
+            _cell(
+                'double-check', '"""Small numbers are doubled"""\nassert double(1) == 2', points=1
+            ),
+            _cell(
+                'double-hidden',
+                '"""Other numbers are doubled too"""\n'
+                'assert double(0) == 0\n'
+                '### BEGIN HIDDEN TESTS\n'
+                'assert double(21) == 42, "hidden canary"\n'
+                '### END HIDDEN TESTS',
+                points=2,
+            ),
+            _cell(
+                'explain',
+                'Because it is added to itself.',
+                new=new_markdown_cell,
+                points=2,
+                solution=True,
+            ),
+        ],
+        metadata={'widgets': {'noise': 1}, 'kernelspec': {'name': 'py99', 'display_name': 'Mine'}},
+    )
+
+
+def answered(course: Course, answer: str, *, explained: str = '') -> NotebookNode:
+    """Return the released lesson with an answer typed in, as a student submits it."""
+    notebook = course.release(TOY)
+    by_id = {cell.id: cell for cell in notebook.cells}
+    by_id['double'].source = answer
+    if explained:
+        by_id['explain'].source = explained
+    return notebook
+
+
+def submit(course: Course, student: str, notebook: NotebookNode | str | bytes) -> Path:
+    path = course.folder('submitted', student, TOY) / f'{TOY}.ipynb'
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if isinstance(notebook, NotebookNode):
+        notebook = nbformat.writes(notebook)
+    if isinstance(notebook, str):
+        notebook = notebook.encode()
+    path.write_bytes(notebook)
+    return path
+
+
+def executed(notebook: NotebookNode, reasons: dict[str, str | None]) -> NotebookNode:
+    """Stand in for the rooms: give each grade cell a verdict; None is a pass, '?' is ungraded."""
+    for cell in notebook.cells:
+        marks = cell.metadata.get('nbgrader', {})
+        if marks.get('grade') and cell.cell_type == 'code':
+            reason = reasons.get(marks['grade_id'])
+            outcome = 'ungraded' if reason == '?' else 'failed' if reason else 'passed'
+            cell.metadata[KEY] = {'outcome': outcome, 'reason': reason or '', 'notes': []}
+            cell.outputs = [new_output('stream', text='looked at it\n')]
+            if outcome == 'failed':
+                cell.outputs.append(
+                    new_output('error', ename='CheckFailed', evalue=reason, traceback=[reason])
+                )
+    return notebook
+
+
+def _cell(
+    grade_id: str,
+    source: str,
+    *,
+    new: object = new_code_cell,
+    points: float | None = None,
+    solution: bool = False,
+    locked: bool = False,
+) -> NotebookNode:
+    marks = {
+        'grade': points is not None,
+        'grade_id': grade_id,
+        'locked': locked or (points is not None and not solution),
+        'schema_version': 3,
+        'solution': solution,
+        'task': False,
+    }
+    if points is not None:
+        marks['points'] = points
+    return new(source, id=grade_id, metadata={'nbgrader': marks})

@@ -1,0 +1,122 @@
+import json
+import subprocess
+import sys
+
+import pytest
+from course_maker import PIXEL, TOY, make_course, toy_lesson, write_source
+
+from grader.errors import CourseError
+from grader.leaks import leaks_of
+from grader.release import release, stale_or_leaking
+
+
+@pytest.fixture(scope='module')
+def course(tmp_path_factory):
+    course = make_course(tmp_path_factory.mktemp('course'))
+    assert release(course) == [f'{TOY}/{TOY}.ipynb']
+    return course
+
+
+def cells(course):
+    return {cell.id: cell for cell in course.release(TOY).cells}
+
+
+def test_a_release_holds_no_answer_and_no_hidden_test(course):
+    text = course.release_path(TOY).read_text()
+    assert 'secret answer' not in text
+    assert 'canary' not in text
+    assert 'HIDDEN' not in text
+    assert 'double(0) == 0' in text
+
+
+def test_a_release_keeps_what_a_demonstration_shows_and_clears_the_rest(course):
+    shown = cells(course)['shown']
+    assert shown.outputs[0].text == 'shown\n'
+    assert shown.outputs[1].data['image/png'].strip() == PIXEL
+    assert shown.execution_count is shown.outputs[1].execution_count is None
+    assert not cells(course)['setup'].outputs
+
+
+def test_a_release_carries_only_the_metadata_it_needs(course):
+    notebook = json.loads(course.release_path(TOY).read_text())
+    assert notebook['metadata'].keys() == {'kernelspec', 'language_info'}
+    assert notebook['metadata']['kernelspec']['name'] == 'python3'
+    keys = {key for cell in notebook['cells'] for key in cell['metadata']}
+    assert keys == {'nbgrader', 'tags', 'deletable', 'editable'}
+
+
+def test_releasing_again_changes_nothing_and_nbgrader_gives_the_same(course):
+    before = course.release_path(TOY).read_bytes()
+    assert release(course, TOY) == []
+    assert stale_or_leaking(course) == []
+    subprocess.run(
+        [sys.executable, '-m', 'nbgrader', 'generate_assignment', TOY, '--force'],
+        cwd=course.root,
+        check=True,
+        capture_output=True,
+    )
+    assert course.release_path(TOY).read_bytes() == before
+
+
+def test_a_failure_leaves_the_former_release_as_it_was(course):
+    before = course.release_path(TOY).read_bytes()
+    broken = toy_lesson()
+    broken.cells[4].source = broken.cells[4].source.replace('### END SOLUTION', '')
+    write_source(course, broken)
+    with pytest.raises(CourseError, match='no end solution'):
+        release(course)
+    assert course.release_path(TOY).read_bytes() == before
+    write_source(course, toy_lesson())
+
+
+def test_an_unknown_assignment_is_named_with_those_there_are(course):
+    with pytest.raises(CourseError, match=f"no assignment '99'.*{TOY}"):
+        release(course, '99')
+
+
+def test_a_stale_release_and_strange_files_are_found(course):
+    path = course.release_path(TOY)
+    before = path.read_text()
+    path.write_text(before.replace('# A toy', '# A tool'))
+    (path.parent / 'notes.txt').write_text('old')
+    found = stale_or_leaking(course)
+    assert [line.split(':')[0] for line in found] == [
+        f'notebooks/{TOY}/{TOY}.ipynb is not what solutions/ gives',
+        f'notebooks/{TOY}/notes.txt comes from no assignment',
+    ]
+    path.write_text(before)
+    (path.parent / 'notes.txt').unlink()
+
+
+@pytest.mark.parametrize(
+    ('cell', 'leak'),
+    [
+        ('try-it', '### BEGIN SOLUTION'),
+        ('try-it', 'assert double(21) == 42, "hidden canary"'),
+        ('title', '    return x + x  # the secret answer'),
+        ('explain', 'Because it is added to itself.'),
+        ('shown-output', 'return x + x  # the secret answer\n'),
+    ],
+)
+def test_each_leak_is_found(course, cell, leak):
+    path = course.release_path(TOY)
+    before = path.read_text()
+    notebook = json.loads(before)
+    by_id = {c['id']: c for c in notebook['cells']}
+    if cell == 'shown-output':
+        by_id['shown']['outputs'][0]['text'] = leak
+    else:
+        by_id[cell]['source'] = leak
+    path.write_text(json.dumps(notebook))
+    assert list(leaks_of(course, TOY, course.root / 'notebooks'))
+    path.write_text(before)
+    assert not list(leaks_of(course, TOY, course.root / 'notebooks'))
+
+
+def test_an_answer_that_a_demonstration_prints_is_not_released(course):
+    lesson = toy_lesson()
+    lesson.cells[2].outputs[0].text = 'return x + x  # the secret answer'
+    write_source(course, lesson)
+    with pytest.raises(CourseError, match='nothing was released.*secret answer'):
+        release(course)
+    write_source(course, toy_lesson())
