@@ -20,9 +20,9 @@ def enter() -> int:
     """Set the environment of a lesson, once, and return the ROS domain ID.
 
     Nodes are found on this machine only, and fast; logs go to stdout, line by line and without
-    colours; ROS resources are found in this Python's prefix; and the process has a ROS domain
-    of its own, or the one that MY_ROBOT_BASICS_DOMAIN_ID names. It takes effect for contexts
-    that are initialised afterwards. Raises NoFreeDomain or BadDomain.
+    colours; ROS resources and commands are found in this Python's prefix; and the process has
+    a ROS domain of its own, or the one that MY_ROBOT_BASICS_DOMAIN_ID names. It takes effect
+    for contexts that are initialised afterwards. Raises NoFreeDomain or BadDomain.
     """
     global _claim, _domain_id
     if _domain_id is None:
@@ -59,6 +59,11 @@ def _set_environment(domain_id: int) -> None:
     os.environ['RCUTILS_LOGGING_BUFFERED_STREAM'] = '1'
     os.environ['RCUTILS_COLORIZED_OUTPUT'] = '0'
     os.environ['ROS_DOMAIN_ID'] = str(domain_id)
-    prefixes = [p for p in os.environ.get('AMENT_PREFIX_PATH', '').split(os.pathsep) if p]
-    if sys.prefix not in prefixes:
-        os.environ['AMENT_PREFIX_PATH'] = os.pathsep.join([sys.prefix, *prefixes])
+    _put_first('AMENT_PREFIX_PATH', sys.prefix)
+    _put_first('PATH', str(Path(sys.prefix, 'bin')))  # `!colcon` and the like in a cell
+
+
+def _put_first(name: str, folder: str) -> None:
+    folders = [f for f in os.environ.get(name, '').split(os.pathsep) if f]
+    if folder not in folders:
+        os.environ[name] = os.pathsep.join([folder, *folders])
