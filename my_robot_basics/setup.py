@@ -22,7 +22,6 @@ setup(
     maintainer_email='maintainers@example.com',
     description='ROS 2 topics on a two-link arm: the nodes of a course in notebooks',
     license='Apache-2.0',
-    tests_require=['pytest'],
     entry_points={
         'console_scripts': [
             'hello_node = my_robot_basics.hello_node:main',
