@@ -60,15 +60,26 @@ def role(cell: NotebookNode) -> str:
     return 'demo' if 'demo' in cell.metadata.get('tags', ()) else 'setup'
 
 
+def is_reset(cell: NotebookNode) -> bool:
+    """Whether the cell begins an exercise: it forgets what earlier cells made."""
+    return (grade_id(cell) or '').endswith('-reset')
+
+
 def make_master(source: NotebookNode, release: NotebookNode) -> Master:
     """Join the instructor's notebook with the one that students were given."""
     released = {grade_id(cell): cell.source for cell in release.cells if grade_id(cell)}
     notebook = nbformat.from_dict(source)
+    in_exercise = False
     for cell in notebook.cells:
-        if role(cell) == 'answer':
+        kind = role(cell)
+        in_exercise = is_reset(cell) or (in_exercise and kind != 'grade')
+        if kind == 'setup' and in_exercise:
+            kind = 'free'  # the "try it" cell
+        if kind == 'answer':
             cell.source = released.get(grade_id(cell), '')
         if cell.cell_type == 'code':
             cell.outputs, cell.execution_count = [], None
+        cell.metadata[KEY] = {'role': kind}
     return Master(notebook=notebook, released=released)
 
 
@@ -122,7 +133,10 @@ def _mend(
     """Yield what stands for one cell of the master."""
     kind, name = role(cell), grade_id(cell)
     original = nbformat.from_dict(cell)
-    original.metadata[KEY] = {'role': kind}
+    changed = bool(parts) and parts[0].source not in (cell.source, released.get(name))
+    if changed and kind in ('demo', 'free'):
+        yield _from_student(parts[0])
+        return
     if kind == 'answer':
         _answer(original, parts, notes)
     yield original
@@ -131,9 +145,9 @@ def _mend(
             notes.append(f'the cell `{name}` was missing: it was put back')
         elif len(parts) > 1:
             notes.append(f'the cell `{name}` was there {len(parts)} times: the original counts')
-        elif parts[0].source != released.get(name) or parts[0].cell_type != cell.cell_type:
+        elif changed or parts[0].cell_type != cell.cell_type:
             notes.append(f'the cell `{name}` was changed: the original counts')
-    elif kind in ('setup', 'demo') and parts and parts[0].source != cell.source:
+    elif kind == 'setup' and changed:
         yield _from_student(parts[0])  # it may define what an answer needs
 
 

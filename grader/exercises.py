@@ -1,0 +1,104 @@
+"""Find the exercises of a healed notebook, and plan which of its cells to run for each."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from nbformat import NotebookNode
+
+from grader.heal import grade_id, is_reset, role
+from grader.names import names_of, string_arguments
+
+
+@dataclass(frozen=True)
+class Exercise:
+    """One exercise: positions of its cells in the notebook."""
+
+    name: str
+    """The grade id of its answer cell."""
+    defines: tuple[str, ...]
+    """What the answer has to define: the names that its reset cell forgets."""
+    reset: int
+    answer: int
+    run: tuple[int, ...]
+    """Locked cells that start what was answered."""
+    grades: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Which student cells to run, in order, before an exercise is judged."""
+
+    cells: tuple[int, ...]
+    why: str
+
+
+def find_exercises(notebook: NotebookNode) -> tuple[Exercise, ...]:
+    """Return the exercises in the notebook's order; each begins with its `<id>-reset` cell."""
+    starts = [i for i, cell in enumerate(notebook.cells) if is_reset(cell)]
+    ends = [*starts[1:], len(notebook.cells)]
+    return tuple(
+        _exercise(notebook, range(start, end)) for start, end in zip(starts, ends, strict=True)
+    )
+
+
+def plans(notebook: NotebookNode, exercise: Exercise) -> Iterator[Plan]:
+    """Yield what to run, least first: the answer alone, with what it lacks, the whole lesson.
+
+    The first plan is left out where the text shows already that the answer needs a name that
+    only another of the student's cells binds.
+    """
+    cells = notebook.cells
+    own = (exercise.reset, exercise.answer, *exercise.run)
+    setup = [i for i, cell in enumerate(cells) if role(cell) == 'setup' and i < exercise.reset]
+    lacks = _lacks(cells, exercise, setup)
+    lent = [
+        i
+        for i, cell in enumerate(cells)
+        if i != exercise.answer
+        and _is_students(cell)
+        and (i < _end(exercise) or names_of(cell.source).bound & lacks)
+    ]
+    if not lent or not lacks & _bound(cells, lent):
+        yield Plan(cells=(*setup, *own), why='the answer alone')
+    if lent:
+        yield Plan(cells=tuple(sorted({*setup, *own, *lent})), why='with your other cells')
+    whole = [i for i, cell in enumerate(cells) if cell.cell_type == 'code']
+    yield Plan(
+        cells=tuple(i for i in whole if role(cells[i]) not in ('grade', 'locked') or i in own),
+        why='the whole lesson',
+    )
+
+
+def _exercise(notebook: NotebookNode, span: range) -> Exercise:
+    cells = notebook.cells
+    name = grade_id(cells[span.start]).removesuffix('-reset')
+    return Exercise(
+        name=name,
+        defines=string_arguments(cells[span.start].source, 'reset'),
+        reset=span.start,
+        answer=next(i for i in span if grade_id(cells[i]) == name),
+        run=tuple(i for i in span[1:] if role(cells[i]) == 'locked'),
+        grades=tuple(i for i in span if role(cells[i]) == 'grade' and _is_code(cells[i])),
+    )
+
+
+def _end(exercise: Exercise) -> int:
+    return max((exercise.answer, *exercise.run, *exercise.grades))
+
+
+def _lacks(cells: list[NotebookNode], exercise: Exercise, setup: list[int]) -> set[str]:
+    """Names that the answer needs, or owes, and that neither it nor the setup binds."""
+    answer = names_of(cells[exercise.answer].source)
+    return (answer.needed | set(exercise.defines)) - answer.bound - _bound(cells, setup)
+
+
+def _bound(cells: list[NotebookNode], indexes: list[int]) -> set[str]:
+    return set().union(*(names_of(cells[i].source).bound for i in indexes))
+
+
+def _is_students(cell: NotebookNode) -> bool:
+    return _is_code(cell) and role(cell) in ('free', 'answer')
+
+
+def _is_code(cell: NotebookNode) -> bool:
+    return cell.cell_type == 'code'

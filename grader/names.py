@@ -1,0 +1,67 @@
+"""Which names a cell binds, and which it needs from elsewhere: read from its text, never run."""
+
+import ast
+import builtins
+import symtable
+from dataclasses import dataclass
+
+from IPython.core.inputtransformer2 import TransformerManager
+
+MAX_SOURCE_CHARACTERS = 200_000
+
+
+@dataclass(frozen=True)
+class Names:
+    """The global names of one cell."""
+
+    bound: frozenset[str] = frozenset()
+    needed: frozenset[str] = frozenset()
+    """Read somewhere in the cell, bound nowhere in it, and no builtin."""
+
+
+def names_of(source: str) -> Names:
+    """Read a cell's global names; a cell that does not parse has none."""
+    if len(source) > MAX_SOURCE_CHARACTERS:
+        return Names()
+    try:
+        code = TransformerManager().transform_cell(source)
+        table = symtable.symtable(code, 'cell', 'exec')
+        calls_star_import = any(
+            isinstance(node, ast.ImportFrom) and any(a.name == '*' for a in node.names)
+            for node in ast.walk(ast.parse(code))
+        )
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return Names()
+    bound, read = set(), set()
+    _collect(table, bound, read)
+    if calls_star_import:
+        read = set()  # what it needs can't be told
+    return Names(
+        bound=frozenset(bound), needed=frozenset(read - bound - vars(builtins).keys() - _IPYTHON)
+    )
+
+
+def string_arguments(source: str, function: str) -> tuple[str, ...]:
+    """Return the literal string arguments of a cell's calls of `function`."""
+    return tuple(
+        argument.value
+        for node in ast.walk(ast.parse(source))
+        if isinstance(node, ast.Call) and getattr(node.func, 'id', None) == function
+        for argument in node.args
+        if isinstance(argument, ast.Constant) and isinstance(argument.value, str)
+    )
+
+
+_IPYTHON = {'display', 'get_ipython', 'In', 'Out', '_', '__', '___', '__name__', '__file__'}
+
+
+def _collect(table: symtable.SymbolTable, bound: set[str], read: set[str]) -> None:
+    is_module = table.get_type() == 'module'
+    for symbol in table.get_symbols():
+        is_global = is_module or symbol.is_global()
+        if is_global and (symbol.is_assigned() or symbol.is_imported()):
+            bound.add(symbol.get_name())
+        if is_global and symbol.is_referenced():
+            read.add(symbol.get_name())
+    for child in table.get_children():
+        _collect(child, bound, read)

@@ -1,0 +1,45 @@
+"""Our two passes among nbgrader's: heal a submission, and run it in two rooms."""
+
+from pathlib import Path
+
+from nbconvert.preprocessors import Preprocessor
+from nbformat import NotebookNode
+
+from grader.course import Course
+from grader.execute import execute
+from grader.heal import heal
+from grader.submission import extra_python_files
+
+
+class HealSubmission(Preprocessor):
+    """Put a submitted notebook back into the shape of its source."""
+
+    enabled = True
+
+    def preprocess(self, nb: NotebookNode, resources: dict) -> tuple[NotebookNode, dict]:
+        """Return the healed notebook; the submitted file is not touched."""
+        master = _course(resources).master(resources['nbgrader']['assignment'])
+        return heal(nb, master).notebook, resources
+
+
+class ExecuteRooms(Preprocessor):
+    """Run student cells in one kernel and grade cells in another, in nbgrader's Execute's place.
+
+    nbgrader's resource path is not used as a working directory: that folder holds the tests.
+    """
+
+    enabled = True
+
+    def preprocess(self, nb: NotebookNode, resources: dict) -> tuple[NotebookNode, dict]:
+        """Return the executed notebook with a verdict in each grade cell."""
+        folder = Path(resources['metadata']['path'])
+        execution = execute(
+            nb,
+            extra_files=extra_python_files(folder),
+            seed=_course(resources).seed(resources['nbgrader']['assignment']),
+        )
+        return execution.notebook, resources
+
+
+def _course(resources: dict) -> Course:
+    return Course.of_database(resources['nbgrader']['db_url'], root=Path.cwd())

@@ -1,0 +1,127 @@
+"""Turn what came of a grade cell into a verdict with its reason, and write it into the cell."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Literal
+
+import nbformat
+from nbformat import NotebookNode
+
+from grader.errors import RoomFailure
+from grader.heal import KEY, grade_id
+from grader.outputs import CellRun
+
+Outcome = Literal['passed', 'failed', 'ungraded', 'manual']
+
+NOTE = 'note: '
+"""A check's line that starts so costs nothing, and is told to the student."""
+_FAILURES = ('CheckFailed', 'AssertionError')
+_SHOWN = ('display_data', 'stream')
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What one grade cell came to."""
+
+    grade_id: str
+    outcome: Outcome
+    points: float
+    """The most that the cell can earn."""
+    reason: str
+    """Why it earned nothing; empty when it passed."""
+    notes: tuple[str, ...] = ()
+
+    @property
+    def score(self) -> float | None:
+        """Points earned; None when a person has to decide."""
+        return {'passed': self.points, 'failed': 0.0}.get(self.outcome)
+
+
+def judge(cell: NotebookNode, run: CellRun | None, own: Iterable[tuple[str, CellRun]]) -> Verdict:
+    """Judge a grade cell by how it ran; `run` is None where the student's kernel had ended.
+
+    `own` are the student's cells of the exercise. Raises RoomFailure where the check did not
+    come to a verdict.
+    """
+    own = list(own)
+    name, points = grade_id(cell), float(cell.metadata.nbgrader.points)
+    if run is None:
+        reason = 'the kernel of your notebook ended before the check: ' + _who_ended_it(own)
+        return Verdict(name, outcome='failed', points=points, reason=reason)
+    notes = tuple(_notes(run))
+    if run.ran_to_end:
+        return Verdict(name, outcome='passed', points=points, reason='', notes=notes)
+    if run.error is None or run.error.ename not in _FAILURES:
+        raise RoomFailure(f'the check `{name}` came to no verdict: {_what_happened(run)}')
+    reason = run.error.evalue.strip() or 'the check failed and gave no reason'
+    notes += tuple(sentence for each in own if (sentence := _trouble(*each)))
+    return Verdict(name, outcome='failed', points=points, reason=reason, notes=notes)
+
+
+def ungraded(cell: NotebookNode, why: str) -> Verdict:
+    """Leave a grade cell to a person, because the grader itself failed."""
+    reason = f'not graded, a person has to look at it: {why}'
+    return Verdict(
+        grade_id(cell),
+        outcome='ungraded',
+        points=float(cell.metadata.nbgrader.points),
+        reason=reason,
+    )
+
+
+def write_verdict(cell: NotebookNode, verdict: Verdict, outputs: Iterable[NotebookNode]) -> None:
+    """Write a verdict into its grade cell, in the form that nbgrader scores.
+
+    Text goes to stdout, pictures stay; a failure is one `error` output that holds the reason and
+    no line of the test.
+    """
+    cell.outputs = [out for out in outputs if out.output_type in _SHOWN and not _is_stderr(out)]
+    cell.metadata[KEY] = {
+        'role': 'grade',
+        'outcome': verdict.outcome,
+        'reason': verdict.reason,
+        'notes': list(verdict.notes),
+    }
+    if verdict.outcome == 'failed':
+        error = nbformat.v4.new_output(
+            'error', ename='CheckFailed', evalue=verdict.reason, traceback=[verdict.reason]
+        )
+        cell.outputs.append(error)
+    elif verdict.outcome == 'ungraded':
+        text = verdict.reason + '\n'
+        cell.outputs.append(nbformat.v4.new_output('stream', name='stdout', text=text))
+
+
+def _notes(run: CellRun) -> Iterable[str]:
+    for output in run.outputs:
+        for line in output.get('text', '').splitlines():
+            if line.startswith(NOTE):
+                yield line.removeprefix(NOTE)
+
+
+def _trouble(name: str, run: CellRun) -> str | None:
+    """Say what went wrong in one of the student's cells."""
+    if run.died:
+        return f'your cell `{name}` ended the kernel'
+    if run.timed_out:
+        return f'your cell `{name}` did not end and was interrupted'
+    if run.error is not None:
+        return f'your cell `{name}` stopped with {run.error.ename}: {run.error.evalue}'
+    return None
+
+
+def _who_ended_it(own: list[tuple[str, CellRun]]) -> str:
+    culprits = [sentence for each in own if (sentence := _trouble(*each))]
+    return culprits[0] if culprits else 'something that your code left running ended it'
+
+
+def _what_happened(run: CellRun) -> str:
+    if run.died:
+        return 'the test kernel ended'
+    if run.timed_out:
+        return 'it did not end in time'
+    return f'it stopped with {run.error.ename}'
+
+
+def _is_stderr(output: NotebookNode) -> bool:
+    return output.output_type == 'stream' and output.name == 'stderr'
