@@ -1,5 +1,6 @@
 """Where a course keeps its things: lessons, releases, the gradebook and its secret."""
 
+import contextlib
 import hashlib
 import hmac
 import json
@@ -96,17 +97,15 @@ class Course:
 
     def _secret(self) -> bytes:
         path = self.gradebook / 'course_secret'
-        self.gradebook.mkdir(parents=True, exist_ok=True)
-        fresh = path.with_name(f'.course_secret.{os.getpid()}')
         if not path.exists():
+            self.gradebook.mkdir(parents=True, exist_ok=True)
+            fresh = path.with_name(f'.course_secret.{secrets.token_hex(8)}')
             fresh.touch(mode=0o600)
             fresh.write_text(secrets.token_hex(32), encoding='ascii')
-            try:
-                os.link(fresh, path)  # whole or not at all, and only one of two at the same time
-            except FileExistsError:
-                pass
-            finally:
-                fresh.unlink()
+            # whole or not at all, and one only where two begin at once
+            with contextlib.suppress(FileExistsError):
+                os.link(fresh, path)
+            fresh.unlink()
         return bytes.fromhex(path.read_text(encoding='ascii'))
 
     def _unknown(self, assignment: str) -> str:

@@ -117,6 +117,6 @@ def test_an_answer_that_a_demonstration_prints_is_not_released(course):
     lesson = toy_lesson()
     lesson.cells[2].outputs[0].text = 'return x + x  # the secret answer'
     write_source(course, lesson)
-    with pytest.raises(CourseError, match='nothing was released.*secret answer'):
+    with pytest.raises(CourseError, match=r'nothing was released.*secret answer'):
         release(course)
     write_source(course, toy_lesson())

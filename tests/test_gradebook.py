@@ -1,0 +1,258 @@
+import csv
+import json
+import os
+import shutil
+import sqlite3
+import threading
+
+import nbformat
+import pytest
+from course_maker import TOY, answered, executed, make_course, submit, toy_lesson, write_source
+from nbgrader.api import Gradebook
+
+from grader.course import Course
+from grader.errors import CourseError
+from grader.gradebook import prepare, records, register, store, unanswered
+from grader.heal import KEY, heal
+from grader.release import release
+from grader.scores import COLUMNS, write_scores
+from grader.submission import read_submission
+
+RIGHT = 'def double(x):\n    return 2 * x'
+
+
+@pytest.fixture(scope='module')
+def released(tmp_path_factory):
+    course = make_course(tmp_path_factory.mktemp('released'))
+    release(course)
+    register(course, TOY)
+    return course
+
+
+@pytest.fixture
+def course(released, tmp_path):
+    """The released lesson with a gradebook of its own, in which nothing is graded."""
+    shutil.copytree(released.gradebook, tmp_path / 'gradebook')  # making a database takes long
+    return Course(root=released.root, gradebook=tmp_path / 'gradebook')
+
+
+def grade(course, student, reasons, *, notebook=None, **answer):
+    submit(course, student, notebook or answered(course, RIGHT, **answer))
+    folder = course.folder('submitted', student, TOY)
+    submission = read_submission(folder, student_id=student, assignment=TOY)
+    register(course, TOY)
+    healed = heal(submission.notebook, course.master(TOY)).notebook
+    return store(course, submission, executed(prepare(course, TOY, healed), reasons))
+
+
+def by_cell(course, student):
+    return {r.grade_id: r for r in records(course) if r.student_id == student}
+
+
+def test_an_empty_gradebook_learns_an_assignment_once(released, tmp_path):
+    course = Course(root=released.root, gradebook=tmp_path / 'empty')
+    assert register(course, TOY)
+    assert not register(course, TOY)
+    with Gradebook(course.db_url) as book:
+        assert {c.name: c.max_score for c in book.find_notebook(TOY, TOY).grade_cells} == {
+            'double-check': 1.0,
+            'double-hidden': 2.0,
+            'explain': 2.0,
+        }
+        assert 'canary' in book.find_source_cell('double-hidden', TOY, TOY).source
+
+
+def test_a_changed_check_is_registered_again_and_scores_stay(course, released):
+    grade(course, 'ada', {})
+    changed = toy_lesson()
+    changed.cells[6].source += '  # clearer'
+    write_source(course, changed)
+    try:
+        assert register(course, TOY)
+        assert by_cell(course, 'ada')['double-check'].score == 1.0
+        changed.cells[6].metadata['nbgrader']['grade_id'] = 'renamed'
+        write_source(course, changed)
+        with pytest.raises(CourseError, match='new cells: renamed; gone: double-check'):
+            register(course, TOY)
+    finally:
+        write_source(course, toy_lesson())
+
+
+def test_scores_follow_the_verdicts(course):
+    stored = grade(
+        course, 'ada', {'double-hidden': 'expected 42, saw 41: count again'}, explained='so'
+    )
+    assert (stored.score, stored.max_score, stored.former, stored.pending) == (
+        1.0,
+        5.0,
+        None,
+        True,
+    )
+    assert stored.reason == 'expected 42, saw 41: count again'
+    cells = by_cell(course, 'ada')
+    assert [(name, r.score) for name, r in cells.items()] == [
+        ('double-check', 1.0),
+        ('double-hidden', 0.0),
+        ('explain', None),
+    ]
+
+
+def test_an_untouched_manual_answer_is_zero_without_a_person(course):
+    grade(course, 'ada', {})
+    assert by_cell(course, 'ada')['explain'].score == 0.0
+
+
+def test_the_graders_own_failure_waits_for_a_person(course):
+    stored = grade(course, 'ada', {'double-check': '?'})
+    assert stored.pending
+    assert by_cell(course, 'ada')['double-check'].score is None
+
+
+def test_a_grade_cell_without_a_verdict_never_earns_points(course):
+    submit(course, 'ada', answered(course, RIGHT))
+    submission = read_submission(
+        course.folder('submitted', 'ada', TOY), student_id='ada', assignment=TOY
+    )
+    register(course, TOY)
+    silent = prepare(course, TOY, heal(submission.notebook, course.master(TOY)).notebook)
+    assert store(course, submission, silent).pending
+    assert by_cell(course, 'ada')['double-check'].score is None
+
+
+def test_grading_twice_is_the_same_and_a_persons_score_stays(course):
+    first = grade(course, 'ada', {'double-check': 'no'}, explained='so')
+    with Gradebook(course.db_url) as book:
+        book.find_grade('explain', TOY, TOY, 'ada').manual_score = 1.5
+        book.find_comment('explain', TOY, TOY, 'ada').manual_comment = 'well put'
+        book.db.commit()
+    again = grade(course, 'ada', {'double-check': 'no'}, explained='so')
+    assert (first.score, again.former, again.score) == (2.0, 3.5, 3.5)
+    explained = by_cell(course, 'ada')['explain']
+    assert (explained.score, explained.by_hand, explained.comment) == (1.5, True, 'well put')
+    assert len(records(course)) == 3
+
+
+def test_submitted_files_are_only_read(course):
+    path = submit(course, 'ada', answered(course, RIGHT))
+    path.with_name('helper.py').write_text('x = 1')
+    path.with_name('timestamp.txt').write_text('2026-01-02 03:04:05 UTC')
+    before = {p: (p.read_bytes(), p.stat().st_mtime_ns) for p in path.parent.iterdir()}
+    grade_again = read_submission(path.parent, student_id='ada', assignment=TOY)
+    register(course, TOY)
+    healed = prepare(course, TOY, heal(grade_again.notebook, course.master(TOY)).notebook)
+    store(course, grade_again, executed(healed, {}))
+    assert before == {p: (p.read_bytes(), p.stat().st_mtime_ns) for p in path.parent.iterdir()}
+    kept = course.folder('autograded', 'ada', TOY)
+    assert sorted(p.name for p in kept.iterdir()) == [f'{TOY}.ipynb', 'helper.py', 'timestamp.txt']
+    with Gradebook(course.db_url) as book:
+        assert str(book.find_submission(TOY, 'ada').timestamp) == '2026-01-02 03:04:05'
+
+
+def test_a_timestamp_that_is_none_is_noted(course):
+    path = submit(course, 'ada', answered(course, RIGHT))
+    path.with_name('timestamp.txt').write_text('yesterday evening')
+    grade(course, 'ada', {})
+    kept = nbformat.read(course.folder('autograded', 'ada', TOY) / f'{TOY}.ipynb', as_version=4)
+    assert 'timestamp.txt holds no date' in kept.metadata[KEY].notes[0]
+
+
+def test_a_storing_that_fails_half_way_changes_nothing(course, monkeypatch):
+    grade(course, 'ada', {})
+    bad = answered(course, RIGHT)
+    found = Gradebook.find_grade
+
+    def fails_late(self, cell, *where):
+        if cell == 'explain':
+            raise sqlite3.OperationalError('disk full')
+        return found(self, cell, *where)
+
+    monkeypatch.setattr(Gradebook, 'find_grade', fails_late)
+    with pytest.raises(sqlite3.OperationalError):
+        grade(course, 'ada', {'double-check': 'no', 'double-hidden': 'no'}, notebook=bad)
+    with pytest.raises(sqlite3.OperationalError):
+        grade(course, 'bob', {}, notebook=bad)
+    monkeypatch.undo()
+    assert by_cell(course, 'ada')['double-check'].score == 1.0
+    assert not by_cell(course, 'bob')
+
+
+@pytest.mark.parametrize('student', ['小明', 'Зоя', 'a b', "o'hara", 'x[1]*', '=cmd()', 'é' * 100])
+def test_names_from_any_alphabet_are_stored_under_themselves(course, student):
+    submit(course, student, b'no notebook')
+    folder = course.folder('submitted', student, TOY)
+    submission = read_submission(folder, student_id=student, assignment=TOY)
+    register(course, TOY)
+    stored = store(course, submission, unanswered(course, submission, submission.problem))
+    assert (stored.score, stored.pending) == (0.0, False)
+    assert 'is not JSON' in stored.reason
+    assert folder.with_name(TOY).joinpath(f'{TOY}.ipynb').read_bytes() == b'no notebook'
+    assert by_cell(course, student).keys() == {'double-check', 'double-hidden', 'explain'}
+
+
+def test_scores_are_a_table_that_no_spreadsheet_runs(course):
+    grade(course, '=cmd()', {'double-check': '=HYPERLINK("x")', 'double-hidden': '?'})
+    grade(course, 'ada', {'double-check': 'expected "a", saw\n\x1b[31mb'})
+    with Gradebook(course.db_url) as book:
+        book.add_student('zoe')
+    path = write_scores(course)
+    first = path.read_bytes()
+    assert write_scores(course).read_bytes() == first
+    rows = list(csv.DictReader(path.read_text().splitlines()))
+    assert tuple(rows[0]) == COLUMNS
+    assert [(r['student_id'], r['grade_id'], r['score'], r['max_score']) for r in rows] == [
+        ("'=cmd()", 'double-check', '0.0', '1.0'),
+        ("'=cmd()", 'double-hidden', '', '2.0'),
+        ("'=cmd()", 'explain', '0.0', '2.0'),
+        ('ada', 'double-check', '0.0', '1.0'),
+        ('ada', 'double-hidden', '2.0', '2.0'),
+        ('ada', 'explain', '0.0', '2.0'),
+        ('zoe', 'double-check', '', '1.0'),
+        ('zoe', 'double-hidden', '', '2.0'),
+        ('zoe', 'explain', '', '2.0'),
+    ]
+    assert rows[0]['comment'] == '\'=HYPERLINK("x")'
+    assert rows[1]['comment'] == 'to be graded by hand; ?'
+    assert rows[3]['comment'] == 'expected "a", saw \\x1b[31mb'
+    assert rows[6]['comment'] == 'not submitted'
+    assert {r['assignment'] for r in rows} == {TOY}
+
+
+def test_the_seed_is_the_courses_own_and_follows_the_lessons_text(course, released, tmp_path):
+    seed = course.seed(TOY)
+    assert int(seed, 16)
+    assert seed == course.seed(TOY)
+    assert os.stat(course.gradebook / 'course_secret').st_mode & 0o777 == 0o600
+    other = Course(root=course.root, gradebook=tmp_path / 'other')
+    assert other.seed(TOY) != seed
+    lesson = toy_lesson()
+    lesson.cells[2].outputs = []
+    write_source(course, lesson)
+    assert course.seed(TOY) == seed
+    lesson.cells[7].source += '\n'
+    write_source(course, lesson)
+    assert course.seed(TOY) != seed
+    write_source(course, toy_lesson())
+
+
+def test_two_that_begin_at_once_agree_on_one_secret(course):
+    seeds = []
+    threads = [threading.Thread(target=lambda: seeds.append(course.seed(TOY))) for _ in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(seeds) == 8
+    assert len(set(seeds)) == 1
+    assert not list(course.gradebook.glob('.*'))
+
+
+def test_what_stands_for_an_unreadable_submission_is_a_notebook_with_its_reason(course):
+    submit(course, 'ada', json.dumps({'cells': []}))
+    folder = course.folder('submitted', 'ada', TOY)
+    submission = read_submission(folder, student_id='ada', assignment=TOY)
+    register(course, TOY)
+    store(course, submission, unanswered(course, submission, submission.problem))
+    kept = nbformat.read(course.folder('autograded', 'ada', TOY) / f'{TOY}.ipynb', as_version=4)
+    nbformat.validate(kept)
+    assert kept.metadata[KEY].problem == submission.problem
+    assert all(r.score == 0.0 for r in by_cell(course, 'ada').values())
