@@ -1,0 +1,257 @@
+"""The lessons keep to their form: how long, what metadata, what a cell may lean on."""
+
+import ast
+import builtins
+import re
+from pathlib import Path
+from statistics import median
+
+import nbformat
+import pytest
+
+ROOT = Path(__file__).parents[1]
+SOURCES = sorted(ROOT.glob('solutions/*/*.ipynb'))
+
+CONTRACT = {
+    '02_joint_state': {
+        'to_joint_state': (
+            'to_joint_state',
+            {'radians': 2, 'joint_names': 1, 'header_stamp': 1},
+        ),
+    },
+    '03_publisher': {
+        'five_hz': ('KinematicsPublisher', {'five_hz_rate': 3, 'five_hz_messages': 2}),
+    },
+}
+"""Assignment -> exercise -> (the name that its answer defines, its grade cells' points)."""
+
+HIDDEN_PARTS = {'radians', 'header_stamp', 'five_hz_rate', 'five_hz_messages'}
+NODE_EXERCISES = {'five_hz'}
+
+pytestmark = pytest.mark.parametrize('path', SOURCES, ids=lambda path: path.stem)
+
+
+@pytest.fixture
+def lesson(path):
+    return nbformat.read(path, as_version=4)
+
+
+def test_every_lesson_has_its_contract_here(path):
+    assert path.stem in CONTRACT
+    assert path.parent.name == path.stem
+
+
+# --- length and language -------------------------------------------------------------------------
+
+
+def test_lesson_has_20_to_40_cells(lesson):
+    assert 20 <= len(lesson.cells) <= 40
+
+
+def test_prose_has_20_to_60_words_a_cell(lesson):
+    wordy = {cell.id: words(cell.source) for cell in lesson.cells if cell.cell_type == 'markdown'}
+    assert {id_: n for id_, n in wordy.items() if not 20 <= n <= 60} == {}
+
+
+def test_code_is_short(lesson):
+    lines = {cell.id: len(visible_part(cell.source).splitlines()) for cell in code_cells(lesson)}
+    assert {id_: n for id_, n in lines.items() if n > 25} == {}
+    assert median(lines.values()) <= 8
+
+
+def test_lesson_opens_with_its_contract_and_closes_with_points_and_the_next_lesson(lesson, path):
+    first, last = lesson.cells[0].source, lesson.cells[-1].source
+    assert first.startswith(f'# {int(path.stem[:2])} · ')
+    assert 'You will be able to' in first
+    assert re.search(r'\]\(\.\./(\w+)/\1\.ipynb\)', last)
+    for exercise, (_, grade_cells) in CONTRACT[path.stem].items():
+        assert f'| `{exercise}` | {sum(grade_cells.values())} |' in first
+        for grade_id, points in grade_cells.items():
+            assert f'| `{grade_id}` | {points} |' in last
+
+
+def words(markdown):
+    """Count the words that are read in a line: not tables, code blocks or addresses."""
+    text = re.sub(r'```.*?```', '', markdown, flags=re.DOTALL)
+    text = re.sub(r'\]\([^)]*\)', ']', text)
+    lines = [line for line in text.splitlines() if not line.startswith('|')]
+    return len(re.findall(r'\w[\w.\'’-]*', ' '.join(lines)))
+
+
+# --- metadata ------------------------------------------------------------------------------------
+
+
+def test_notebook_metadata_is_the_agreed_minimum(lesson):
+    assert lesson.metadata == {
+        'kernelspec': {
+            'display_name': 'Python 3 (ipykernel)',
+            'language': 'python',
+            'name': 'python3',
+        },
+        'language_info': {'name': 'python'},
+    }
+    assert (lesson.nbformat, lesson.nbformat_minor) == (4, 5)
+
+
+def test_cell_metadata_is_on_the_allow_list(lesson):
+    for cell in lesson.cells:
+        assert set(cell.metadata) <= {'nbgrader', 'tags'}, cell.id
+        for tag in cell.metadata.get('tags', []):
+            assert tag == 'demo' or tag.startswith('nbval-'), cell.id
+
+
+def test_cell_ids_are_unique_and_speak(lesson):
+    ids = [cell.id for cell in lesson.cells]
+    assert len(set(ids)) == len(ids)
+    for cell in lesson.cells:
+        assert re.fullmatch(r'[a-z][a-z0-9_]*(-(reset|run|try))?', cell.id)
+        assert cell.id == marks(cell).get('grade_id', cell.id)
+
+
+def test_ignored_outputs_are_few_and_say_why(lesson):
+    ignored = [c for c in lesson.cells if 'nbval-ignore-output' in c.metadata.get('tags', [])]
+    assert len(ignored) <= 2
+    for cell in ignored:
+        assert re.search(r'^# .*differs? each time', cell.source, re.MULTILINE), cell.id
+
+
+# --- exercises -----------------------------------------------------------------------------------
+
+
+def test_exercises_keep_their_contract(lesson, path):
+    graded = {c.id: marks(c)['points'] for c in lesson.cells if marks(c).get('grade')}
+    expected = {}
+    for _, grade_cells in CONTRACT[path.stem].values():
+        expected |= grade_cells
+    assert graded == expected
+    hidden = {c.id for c in lesson.cells if marks(c).get('grade') and has_hidden_part(c)}
+    assert hidden == HIDDEN_PARTS & set(expected)
+
+
+def test_cells_of_an_exercise_stand_in_order(lesson, path):
+    ids = [cell.id for cell in lesson.cells]
+    for exercise, (_, grade_cells) in CONTRACT[path.stem].items():
+        run = [f'{exercise}-run'] if exercise in NODE_EXERCISES else []
+        order = [f'{exercise}-reset', exercise, *run, f'{exercise}-try', *grade_cells]
+        start = ids.index(order[0])
+        assert ids[start : start + len(order)] == order
+        assert lesson.cells[start - 1].cell_type == 'markdown'
+
+
+def test_only_answers_are_open_and_only_grade_cells_have_points(lesson, path):
+    answers = set(CONTRACT[path.stem])
+    for cell in lesson.cells:
+        mark = marks(cell)
+        if not mark:
+            continue
+        assert mark['solution'] == (cell.id in answers)
+        assert mark['locked'] == (cell.id not in answers)
+        assert mark['grade'] == ('points' in mark)
+        assert mark['schema_version'] == 3
+        assert not mark['task']
+
+
+def test_no_teaching_cell_binds_the_name_of_an_answer(lesson, path):
+    names = {name for name, _ in CONTRACT[path.stem].values()}
+    for cell in code_cells(lesson):
+        if not marks(cell).get('solution'):
+            assert not names & bound(cell), cell.id
+
+
+def test_a_demo_binds_nothing_that_later_cells_need(lesson):
+    shown = set()
+    for cell in code_cells(lesson):
+        if 'demo' in cell.metadata.get('tags', []):
+            assert not marks(cell), cell.id
+            shown |= bound(cell)
+        else:
+            assert not shown & needed(cell), cell.id
+
+
+def test_a_grade_cell_says_what_it_checks_and_needs_nothing_of_the_lesson(lesson):
+    for cell in code_cells(lesson):
+        if not marks(cell).get('grade'):
+            continue
+        for source in (cell.source, visible_part(cell.source)):
+            assert ast.get_docstring(ast.parse(source)), cell.id
+            assert needed_by(source) == set(), cell.id
+
+
+def test_an_untouched_answer_is_valid_python_with_hints(lesson):
+    for cell in code_cells(lesson):
+        if marks(cell).get('solution'):
+            released = re.sub(
+                r'( *)### BEGIN SOLUTION.*?### END SOLUTION',
+                r'\1# YOUR CODE HERE',
+                cell.source,
+                flags=re.DOTALL,
+            )
+            ast.parse(released)
+            assert '# 1. ' in released, cell.id
+
+
+def marks(cell):
+    return cell.metadata.get('nbgrader', {})
+
+
+def code_cells(lesson):
+    return [cell for cell in lesson.cells if cell.cell_type == 'code']
+
+
+def has_hidden_part(cell):
+    return cell.source != visible_part(cell.source)
+
+
+def visible_part(source):
+    return re.sub(r'### BEGIN HIDDEN TESTS.*?### END HIDDEN TESTS\n?', '', source, flags=re.DOTALL)
+
+
+def bound(cell):
+    """The names that a cell leaves behind."""
+    return _names(cell.source)[0] if not cell.source.startswith('%%') else set()
+
+
+def needed(cell):
+    """The names that a cell expects to find."""
+    return needed_by(cell.source) if not cell.source.startswith('%%') else set()
+
+
+def needed_by(source):
+    stored, loaded = _names(source)
+    return loaded - stored - set(dir(builtins))
+
+
+def _names(source):
+    """All names that are bound anywhere in the source, and all that are read."""
+    stored, loaded = set(), set()
+    for node in ast.walk(ast.parse(source)):
+        match node:
+            case ast.Name(id=name, ctx=ast.Load()):
+                loaded.add(name)
+            case ast.Name(id=name) | ast.arg(arg=name):
+                stored.add(name)
+            case ast.alias(name=name, asname=alias):
+                stored.add(alias or name.split('.')[0])
+            case ast.FunctionDef(name=name) | ast.ClassDef(name=name):
+                stored.add(name)
+    return stored, loaded
+
+
+# --- what is stored ------------------------------------------------------------------------------
+
+
+def test_stored_outputs_are_those_of_one_clean_run(lesson):
+    counts = [cell.execution_count for cell in code_cells(lesson)]
+    assert counts == list(range(1, len(counts) + 1))
+    for cell in code_cells(lesson):
+        for output in cell.outputs:
+            assert output.output_type != 'error', cell.id
+            assert output.get('name') != 'stderr', cell.id
+
+
+def test_stored_outputs_name_no_machine(lesson):
+    for cell in code_cells(lesson):
+        for output in cell.outputs:
+            text = str({k: v for k, v in output.get('data', {}).items() if 'image' not in k})
+            text += output.get('text', '')
+            assert not re.search(r'/(home|root|tmp|work|var|usr)/', text), cell.id
