@@ -1,0 +1,538 @@
+import os
+import shlex
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+VERBS = ['lab', 'test', 'release', 'grade', 'scores', 'feedback', 'demo']
+TOOLS = ['sh', 'cat', 'cp', 'dirname', 'env', 'find', 'flock', 'grep', 'id', 'mkdir', 'mv']
+TOOLS += ['readlink', 'rm', 'sed', 'sleep', 'tail', 'uname']
+IN_A_NAMESPACE = [
+    shutil.which('unshare'),
+    '--mount',
+    *([] if os.geteuid() == 0 else ['--map-root-user']),
+]
+
+PYTHON = """\
+echo "python $*" >>"$CALLS"
+case $* in
+    *CS_GNU_LIBC*) echo '3.12.1 ' ;;
+    -ISc*) echo 3.12.1 ;;
+    *ensurepip*) ;;
+    '-m venv'*) mkdir -p "$4/bin" && cp "$0" "$4/bin/python" ;;
+    *'-m pip'*) ;;
+    *) pwd >>"$CALLS"; [ -z "${PRINT_ENVIRONMENT:-}" ] || env ;;
+esac
+"""
+"""A Python that installs nothing: it writes down what it is asked for."""
+
+UV = """\
+echo "uv $*" >>"$CALLS"
+case $1 in venv) mkdir -p "$4/bin" && cp "$(command -v python3)" "$4/bin/python" ;; esac
+"""
+
+
+class Machine:
+    """A small course in a folder with a space in its name, and all the programs there are."""
+
+    def __init__(self, folder):
+        self.root = folder / 'my course'
+        self.programs = folder / 'programs'
+        self.calls_file = folder / 'calls'
+        self.programs.mkdir()
+        for tool in TOOLS:
+            (self.programs / tool).symlink_to(shutil.which(tool))
+        package = self.root / 'my_robot_basics/my_robot_basics'
+        package.mkdir(parents=True)
+        (package / '__init__.py').touch()
+        (self.root / 'grader').mkdir()
+        (self.root / 'grader/__init__.py').touch()
+        (self.root / 'notebooks').mkdir()
+        for name in ('package.xml', 'setup.py', 'setup.cfg'):
+            shutil.copy(ROOT / 'my_robot_basics' / name, package.parent)
+        for name in ('course', 'pyproject.toml', 'LICENSE', 'README.md'):
+            shutil.copy(ROOT / name, self.root)
+        (package.parent / 'resource').mkdir()
+        (package.parent / 'resource/my_robot_basics').touch()
+        pins = (ROOT / 'environment.txt').read_text().splitlines(keepends=True)
+        needed = [pin for pin in pins if pin.startswith(('pip==', 'setuptools=='))]
+        (self.root / 'environment.txt').write_text(''.join(needed))
+
+    def program(self, name, script):
+        """Put a program in the PATH, or another in its place."""
+        path = self.programs / name
+        path.unlink(missing_ok=True)
+        path.write_text(f'#!/bin/sh\n{script}\n')
+        path.chmod(0o755)
+
+    def course(self, *arguments, before=(), script=None, **environment):
+        self.calls_file.write_text('')
+        clean = {k: v for k, v in os.environ.items() if k != 'PYTHON'}
+        return subprocess.run(
+            [*before, script or self.root / 'course', *arguments],
+            cwd='/',
+            env=clean
+            | {'PATH': str(self.programs), 'CALLS': str(self.calls_file)}
+            | {k: str(v) for k, v in environment.items()},
+            capture_output=True,
+            text=True,
+            timeout=240,
+        )
+
+    def calls(self, beginning=''):
+        lines = self.calls_file.read_text().splitlines()
+        return [line for line in lines if line.startswith(beginning)]
+
+
+@pytest.fixture
+def bare(tmp_path):
+    """A machine with neither Python nor uv."""
+    return Machine(tmp_path)
+
+
+@pytest.fixture
+def machine(bare):
+    """A machine with a Python and a uv that only write down what they are asked for."""
+    bare.program('python3', PYTHON)
+    bare.program('uv', UV)
+    return bare
+
+
+def the_one_sentence(run):
+    """The last line, where nothing but progress and notes of the script's own came before."""
+    lines = run.stderr.splitlines()
+    assert run.returncode == 1, run
+    assert all(line.startswith(('course: setting up', '  ')) for line in lines[:-1]), run.stderr
+    assert lines[-1].startswith('course: ')
+    assert lines[-1].endswith('.')
+    return lines[-1].removeprefix('course: ')
+
+
+# --- the script itself ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize('script', ['course', '.ci/run'])
+def test_shellcheck_finds_nothing(script):
+    shellcheck = Path(sys.prefix, 'bin/shellcheck')
+    run = subprocess.run([shellcheck, ROOT / script], capture_output=True, text=True)
+    assert (run.returncode, run.stdout) == (0, '')
+
+
+@pytest.mark.parametrize('shell', ['dash', 'bash --posix', 'busybox sh'])
+def test_works_under_any_posix_shell(machine, shell):
+    program, *options = shell.split()
+    if not (path := shutil.which(program)):
+        pytest.skip(f'{program} is not installed')
+    run = machine.course('scores', before=[path, *options])
+    assert run.returncode == 0, run.stderr
+    assert machine.calls('python -P -m grader scores')
+
+
+@pytest.mark.parametrize('asked', ['--help', '-h', 'help'])
+def test_help_has_a_line_for_each_verb(bare, asked):
+    run = bare.course(asked)
+    assert (run.returncode, run.stderr) == (0, '')
+    lines = [line.split() for line in run.stdout.splitlines() if line.startswith('  ')]
+    assert [words[0] for words in lines] == VERBS
+    assert all(len(words) >= 3 for words in lines)
+    assert 'grade [ASSIGNMENT] [--student ID]' in run.stdout
+
+
+def test_without_a_verb_the_verbs_are_listed(bare):
+    run = bare.course()
+    assert run.returncode == 2
+    assert run.stderr == bare.course('--help').stdout
+
+
+def test_an_unknown_verb_is_named_and_sets_nothing_up(machine):
+    run = machine.course('grde')
+    assert (run.returncode, run.stdout) == (2, '')
+    assert "no verb 'grde'" in run.stderr
+    assert not (machine.root / '.venv').exists()
+
+
+# --- when it sets up -----------------------------------------------------------------------------
+
+
+def test_first_call_sets_up_and_the_second_does_nothing(machine):
+    first = machine.course('scores')
+    assert first.returncode == 0, first.stderr
+    assert len(machine.calls('uv venv')) == 1
+    assert len(machine.calls('uv pip install')) == 2
+    second = machine.course('scores')
+    assert (second.returncode, second.stderr) == (0, '')
+    assert not machine.calls('uv')
+    assert machine.calls('python -P')
+
+
+def test_without_uv_pip_does_the_same(machine):
+    (machine.programs / 'uv').unlink()
+    assert machine.course('scores').returncode == 0
+    assert len(machine.calls('python -m venv')) == 1
+    assert len(machine.calls('python -m pip install')) == 2
+    assert machine.course('scores').stderr == ''
+
+
+def test_a_uv_that_does_not_run_is_no_uv(machine):
+    machine.program('uv', 'echo "pyenv: uv: command not found" >&2; exit 127')
+    assert machine.course('scores').returncode == 0
+    assert len(machine.calls('python -m venv')) == 1
+
+
+def other_pins(machine):
+    with (machine.root / 'environment.txt').open('a') as file:
+        file.write('six==1.17.0\n')
+
+
+def half_made(machine):
+    (machine.root / '.venv/made_environment').unlink()
+
+
+def marker_cut_short(machine):
+    (machine.root / '.venv/made_environment').write_text(f'{machine.root}\n3.12.1\n')
+
+
+def python_gone(machine):
+    python = machine.root / '.venv/bin/python'
+    python.unlink()
+    python.symlink_to('/nowhere/python3')
+
+
+def python_upgraded(machine):
+    python = machine.root / '.venv/bin/python'
+    python.write_text(python.read_text().replace('3.12.1', '3.13.0'))
+
+
+def moved(machine):
+    machine.root = machine.root.rename(machine.root.with_name('moved course'))
+
+
+@pytest.mark.parametrize(
+    'happening', [other_pins, half_made, marker_cut_short, python_gone, python_upgraded, moved]
+)
+def test_sets_up_again_after(happening, machine):
+    machine.course('scores')
+    leftover = machine.root / '.venv/leftover'
+    leftover.touch()
+    happening(machine)
+    run = machine.course('scores')
+    assert run.returncode == 0, run.stderr
+    assert len(machine.calls('uv venv')) == 1
+    assert not (machine.root / '.venv/leftover').exists()
+    assert machine.course('scores').stderr == ''
+
+
+def test_another_python_asked_for_is_set_up(machine):
+    machine.course('scores')
+    machine.program('other', PYTHON.replace('3.12.1', '3.13.0'))
+    run = machine.course('scores', PYTHON='other')
+    assert 'with Python 3.13.0' in run.stderr
+
+
+def test_new_entry_points_are_installed_without_making_all_again(machine):
+    machine.course('scores')
+    with (machine.root / 'my_robot_basics/setup.py').open('a') as file:
+        file.write('# another console script\n')
+    assert machine.course('scores').returncode == 0
+    assert not machine.calls('uv venv')
+    assert [
+        call for call in machine.calls('uv pip install') if '-e ./my_robot_basics -e .' in call
+    ]
+    assert machine.course('scores').stderr == ''
+
+
+def test_an_environment_that_failed_is_never_used(machine):
+    machine.program('uv', UV + 'case $* in *environment.txt*) echo broken; exit 1 ;; esac')
+    for _ in range(2):
+        assert machine.course('scores').returncode == 1
+        assert machine.calls('uv venv')
+        assert not machine.calls('python -P')
+    machine.program('uv', UV)
+    assert machine.course('scores').returncode == 0
+    assert machine.calls('uv venv')
+
+
+def test_two_calls_at_once_set_up_once(machine):
+    machine.program('uv', UV + 'case $1 in venv) sleep 2 ;; esac')
+    script = shlex.quote(str(machine.root / 'course'))
+    twice = f'{script} scores & {script} scores; first=$?; wait $! && exit $first'
+    run = machine.course('-c', twice, script=shutil.which('sh'))
+    assert run.returncode == 0, run.stderr
+    assert len(machine.calls('uv venv')) == 1
+    assert len(machine.calls('python -P -m grader scores')) == 2
+    assert 'waiting for another ./course' in run.stderr
+
+
+# --- where it can't work -------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ('system', 'processor'),
+    [('Darwin', 'arm64'), ('Linux', 'aarch64'), ('MINGW64_NT-10.0', 'x86_64')],
+)
+def test_another_machine_is_named(bare, system, processor):
+    bare.program('uname', f'case $1 in -s) echo {system} ;; *) echo {processor} ;; esac')
+    sentence = the_one_sentence(bare.course('lab'))
+    assert f'{system} on {processor}' in sentence
+    assert 'use such a machine' in sentence
+
+
+def test_no_python_is_said(bare):
+    sentence = the_one_sentence(bare.course('lab'))
+    assert 'Python 3.11, 3.12 or 3.13 is needed, and none is installed: install one' in sentence
+
+
+@pytest.mark.parametrize(
+    ('change', 'fault'),
+    [
+        ('sys.version_info = (3, 10, 13)', 'python3 is 3.10.13, too old'),
+        ('sys.version_info = (3, 14, 0)', 'python3 is 3.14.0, too new'),
+        ('sys.implementation.name = "pypy"', 'not CPython'),
+        ('sys.maxsize = 2**31 - 1', 'a 32-bit one'),
+        ('import sysconfig; sysconfig.get_config_var = lambda name: 1', 'a free-threaded one'),
+        ('import os; os.confstr = lambda name: "glibc 2.27"', 'without glibc 2.28'),
+        ('import os; os.confstr = lambda name: None', 'without glibc 2.28'),
+    ],
+)
+def test_a_python_that_does_not_fit_is_named(bare, change, fault):
+    bare.program('python3', f'exec {sys.executable} -Ic \'import sys; {change}\n\'"$2"')
+    sentence = the_one_sentence(bare.course('lab'))
+    assert fault in sentence
+    assert 'install one' in sentence
+
+
+def test_a_python_that_fits_is_found_behind_those_that_do_not(machine):
+    machine.program('python3', 'echo "pyenv: python3: command not found" >&2; exit 127')
+    machine.program('python3.13', 'echo "3.13.0 a free-threaded one"')
+    machine.program('python3.12', PYTHON)
+    machine.program('uv', UV.replace('command -v python3', 'command -v python3.12'))
+    assert machine.course('scores').returncode == 0
+    assert f'--python {machine.programs}/python3.12' in machine.calls('uv venv')[0]
+
+
+@pytest.mark.parametrize('python', ['/nowhere/python3', 'false'])
+def test_a_python_asked_for_that_does_not_run_is_named(machine, python):
+    assert f'PYTHON={python} does not run' in the_one_sentence(
+        machine.course('lab', PYTHON=python)
+    )
+
+
+def test_a_missing_venv_module_is_said(machine):
+    (machine.programs / 'uv').unlink()
+    machine.program('python3', PYTHON.replace('*ensurepip*) ;;', '*ensurepip*) exit 1 ;;'))
+    sentence = the_one_sentence(machine.course('lab'))
+    assert 'no venv module' in sentence
+    assert 'apt install python3.12-venv' in sentence
+
+
+@pytest.mark.parametrize(
+    ('complaint', 'said'),
+    [
+        ('ERROR: Could not install: [Errno 28] No space left on device', 'the disk is full'),
+        ('error: failed to copy file: No space left on device (os error 28)', 'the disk is full'),
+        ('OSError: [Errno 122] Disk quota exceeded', 'the disk is full'),
+        (
+            'Caused by: error sending request for url (https://registry/simple/)',
+            'cannot be reached',
+        ),
+        ("WARNING: Retrying after 'NewConnectionError(...)': /simple/six/", 'cannot be reached'),
+    ],
+)
+def test_the_installers_complaint_becomes_one_sentence(machine, complaint, said):
+    machine.program(
+        'uv', UV + f'case $1 in pip) echo {shlex.quote(complaint)} >&2; exit 1 ;; esac'
+    )
+    assert said in the_one_sentence(machine.course('lab'))
+
+
+def test_an_unknown_complaint_is_shown(machine):
+    machine.program('uv', UV + 'case $1 in pip) echo "the moon is full" >&2; exit 1 ;; esac')
+    run = machine.course('lab')
+    assert run.returncode == 1
+    assert 'the moon is full' in run.stderr
+    assert 'setting up failed for the reason above' in run.stderr.splitlines()[-1]
+
+
+@pytest.fixture
+def real(bare):
+    """A machine with the Python and the uv that run this test."""
+    bare.program('python3', f'exec {sys._base_executable} "$@"')
+    bare.program('uv', f'exec {shlex.quote(sys.prefix)}/bin/uv "$@"')
+    return bare
+
+
+def in_a_namespace(*flags):
+    command = [*IN_A_NAMESPACE, *flags]
+    probe = subprocess.run([*command, 'true'], capture_output=True, text=True)
+    if probe.returncode:
+        pytest.skip(f'needs root or user namespaces: {probe.stderr.strip()}')
+    return command
+
+
+@pytest.mark.parametrize('installer', ['uv', 'pip'])
+def test_without_a_network_says_so(real, installer, tmp_path):
+    if installer == 'pip':
+        (real.programs / 'uv').unlink()
+    empty = {'UV_CACHE_DIR': tmp_path / 'uv', 'PIP_CACHE_DIR': tmp_path / 'pip'}
+    alone = in_a_namespace('--net')
+    sentence = the_one_sentence(
+        real.course('lab', before=alone, UV_HTTP_RETRIES=0, PIP_RETRIES=1, **empty)
+    )
+    assert 'the package registry cannot be reached' in sentence
+    assert not (real.root / '.venv/made_environment').exists()
+
+
+@pytest.mark.parametrize('installer', ['uv', 'pip'])
+def test_a_full_disk_says_so(real, installer, tmp_path):
+    if installer == 'pip':
+        (real.programs / 'uv').unlink()
+    disk = tmp_path / 'disk'
+    disk.mkdir()
+    moved = disk / 'my course'
+    on_a_small_disk = (
+        'mount -t tmpfs -o size=2m tmpfs "$1" && cp -r "$2" "$1" && "$3/course" lab; code=$?; '
+        'test -e "$3/.venv/made_environment" && echo half-made; exit $code'
+    )
+    bash = shutil.which('bash')
+    (real.programs / 'mount').symlink_to(shutil.which('mount'))
+    run = real.course(
+        *('-c', on_a_small_disk, 'bash', disk, real.root, moved),
+        before=in_a_namespace(),
+        script=bash,
+    )
+    assert 'the disk is full: free some space' in the_one_sentence(run)
+    assert run.stdout == ''
+
+
+def test_a_read_only_folder_says_so(machine):
+    read_only = 'mount --bind "$1" "$1" && mount -o remount,ro,bind "$1" && exec "$1/course" lab'
+    (machine.programs / 'mount').symlink_to(shutil.which('mount'))
+    run = machine.course(
+        *('-c', read_only, 'bash', machine.root),
+        before=in_a_namespace(),
+        script=shutil.which('bash'),
+    )
+    assert f'the folder {machine.root} is read-only: copy' in the_one_sentence(run)
+
+
+# --- what it starts ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize('installer', ['uv', 'pip'])
+def test_really_sets_up(real, installer):
+    if installer == 'pip':
+        (real.programs / 'uv').unlink()
+    (real.root / 'grader/__main__.py').write_text(
+        'import sys, grader, my_robot_basics\n'
+        'print(sys.prefix, sys.argv[1:], grader.__file__, my_robot_basics.__file__)\n'
+    )
+    link = real.programs / 'course'
+    link.symlink_to(real.root / 'course')
+    run = real.course('grade', '03_publisher', '--student', 'Ada L.', script=link, PIP_USER=1)
+    assert run.returncode == 0, run.stderr
+    assert run.stdout.split('\n')[0] == (
+        f"{real.root}/.venv ['grade', '03_publisher', '--student', 'Ada L.'] "
+        f'{real.root}/grader/__init__.py {real.root}/my_robot_basics/my_robot_basics/__init__.py'
+    )
+    assert real.course('grade').stderr == ''
+
+
+def test_other_environments_stay_outside(machine):
+    ros, workspace, venv = '/opt/ros/jazzy', '/home/ada/ros ws/install', machine.root / '.venv'
+    run = machine.course(
+        'scores',
+        PRINT_ENVIRONMENT='yes',
+        PATH=f'{venv}/bin:{ros}/bin:{workspace}/arm/bin:{machine.programs}:/opt/rosy',
+        PYTHONPATH=f'{ros}/lib/python3.12/site-packages',
+        LD_LIBRARY_PATH=f'{ros}/lib:/usr/local/cuda/lib64:{workspace}/arm/lib',
+        AMENT_PREFIX_PATH=f'{workspace}/arm:{ros}',
+        COLCON_PREFIX_PATH=workspace,
+        RMW_IMPLEMENTATION='rmw_cyclonedds_cpp',
+        ROS_DISTRO='jazzy',
+        ROS_DOMAIN_ID='7',
+        ROS_LOCALHOST_ONLY='1',
+        ROS_LOG_DIR='/var/log/ros',
+        _ROS_WHEELS_BOOTSTRAP_COMPLETE='1',
+    )
+    seen = dict(line.split('=', 1) for line in run.stdout.splitlines() if '=' in line)
+    assert seen['PATH'] == f'{venv}/bin:{machine.programs}:/opt/rosy'
+    assert seen['AMENT_PREFIX_PATH'] == seen['VIRTUAL_ENV'] == str(venv)
+    assert seen['LD_LIBRARY_PATH'] == '/usr/local/cuda/lib64'
+    assert seen['RCUTILS_LOGGING_USE_STDOUT'] == '1'
+    assert seen['RCUTILS_COLORIZED_OUTPUT'] == '0'
+    ros_names = {name for name in seen if name.startswith(('ROS_', '_ROS', 'RMW', 'COLCON'))}
+    assert ros_names == {'ROS_LOG_DIR'}
+    assert 'PYTHONPATH' not in seen
+
+
+def test_lab_serves_the_lessons_alone(machine):
+    assert machine.course('lab', '--no-browser', '--port', '1234').returncode == 0
+    command, folder = machine.calls()[-2:]
+    root = ['--allow-root'] if os.geteuid() == 0 else []
+    served = f'--ServerApp.root_dir={machine.root}/notebooks'
+    expected = ['python -P -m jupyterlab', served, *root, '--no-browser --port 1234']
+    assert command == ' '.join(expected)
+    assert folder == f'{machine.root}/notebooks'
+
+
+def test_lab_without_lessons_says_what_to_do(machine):
+    machine.course('scores')
+    (machine.root / 'notebooks').rmdir()
+    assert './course release' in the_one_sentence(machine.course('lab'))
+
+
+def checks(machine, *arguments, ruff=0, pytest=0):
+    """Run ./course test with checks that end so; return its exit code and its calls of pytest."""
+    machine.course('scores')
+    bin_folder = machine.root / '.venv/bin'
+    (bin_folder / 'ruff').write_text(f'#!/bin/sh\nexit {ruff}\n')
+    (bin_folder / 'ruff').chmod(0o755)
+    (bin_folder / 'python').write_text(
+        f'#!/bin/sh\n{PYTHON}\ncase $* in *pytest*) exit {pytest} ;; esac\n'
+    )
+    run = machine.course('test', *arguments)
+    return run.returncode, [call for call in machine.calls('python') if 'pytest' in call]
+
+
+@pytest.mark.parametrize(
+    ('ruff', 'pytest', 'code'), [(0, 0, 0), (1, 0, 1), (0, 1, 1), (0, 5, 5), (1, 3, 3)]
+)
+def test_test_ends_with_the_last_failure(machine, ruff, pytest, code):
+    seen, calls = checks(machine, ruff=ruff, pytest=pytest)
+    assert seen == code
+    assert len(calls) == 1
+
+
+def test_test_passes_arguments_on(machine):
+    _, [call] = checks(machine, '--slow', '-k', 'a name')
+    assert call.endswith(' -m  -k a name')
+    assert '--slow' not in call
+
+
+def test_test_replays_the_lessons_when_it_checks_everything(machine):
+    lesson = machine.root / 'solutions/00_lesson/00_lesson.ipynb'
+    lesson.parent.mkdir(parents=True)
+    lesson.touch()
+    assert ['--nbval' in call for call in checks(machine)[1]] == [False, True]
+    assert ['--nbval' in call for call in checks(machine, '--slow')[1]] == [False, True]
+    assert ['--nbval' in call for call in checks(machine, 'tests/test_x.py')[1]] == [False]
+
+
+@pytest.mark.parametrize('code', [0, 1, 5])
+def test_ci_gets_what_is_missing_and_ends_as_the_tests_do(bare, code):
+    (bare.root / '.ci').mkdir()
+    run_script = Path(shutil.copy(ROOT / '.ci/run', bare.root / '.ci/run'))
+    (bare.root / 'course').write_text(f'#!/bin/sh\necho "course $*" >>"$CALLS"\nexit {code}\n')
+    bare.program('apt-get', 'echo "apt-get $*" >>"$CALLS"')
+    bare.program('chromium', '')
+    (bare.programs / 'bash').symlink_to(shutil.which('bash'))
+    run = bare.course(script=run_script)
+    assert run.returncode == code
+    packages = ['apt-get update', 'apt-get install'] if os.geteuid() == 0 else []
+    assert [call.split(' -')[0] for call in bare.calls()] == [*packages, 'course test']
+    if packages:
+        assert bare.calls('apt-get install')[0].endswith(' bubblewrap')
