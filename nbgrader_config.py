@@ -30,6 +30,8 @@ c.CourseDirectory.feedback_directory = 'gradebook/feedback'
 c.CourseDirectory.db_url = course.db_url
 
 c.GenerateAssignment.preprocessors = list(PASSES)
+# an unanswered exercise runs, so that its checks say what is missing
+c.ClearSolutions.code_stub = {'python': '# YOUR CODE HERE'}
 c.Autograde.sanitize_preprocessors = list(SANITIZE_PASSES)
 c.Autograde.autograde_preprocessors = list(AUTOGRADE_PASSES)
 c.Autograde.pre_convert_hook = 'grader.gradebook.register_before_autograde'
