@@ -17,6 +17,7 @@ setup(
         ('share/' + package_name, ['package.xml']),
     ],
     install_requires=['setuptools'],
+    extras_require={'test': ['hypothesis', 'pytest']},  # colcon test looks here for pytest
     zip_safe=True,
     maintainer='my_robot_basics maintainers',
     maintainer_email='maintainers@example.com',

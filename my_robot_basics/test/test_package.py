@@ -127,7 +127,8 @@ def test_installed_editable_the_package_is_found_from_the_folder_above():
         encoding='utf-8',
         check=True,
     ).stdout
-    assert Path(printed.strip()) == PACKAGE / 'my_robot_basics' / '__init__.py'
+    # the outer folder, taken for a namespace package, would have no file: None
+    assert Path(printed.strip()).parts[-2:] == ('my_robot_basics', '__init__.py')
 
 
 def test_pip_and_ros_read_the_same_description():
