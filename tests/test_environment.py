@@ -1,0 +1,134 @@
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tomllib
+from importlib import metadata
+from pathlib import Path
+
+import pytest
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
+
+ROOT = Path(__file__).parents[1]
+UV = Path(sys.prefix, 'bin/uv')
+PYTHONS = ['3.11', '3.12', '3.13']
+
+LINES = (ROOT / 'environment.txt').read_text().splitlines()
+PROJECT = tomllib.loads((ROOT / 'pyproject.toml').read_text())['project']
+
+# what the wheels of ROS set for this Python must not reach another one's libraries
+ENVIRONMENT = {
+    name: value
+    for name, value in os.environ.items()
+    if name not in ('LD_LIBRARY_PATH', '_ROS_WHEELS_BOOTSTRAP_COMPLETE', 'VIRTUAL_ENV')
+}
+
+
+def run(*command):
+    return subprocess.run(
+        [str(part) for part in command], cwd=ROOT, env=ENVIRONMENT, capture_output=True, text=True
+    )
+
+
+def pins_of(lines):
+    requirements = [Requirement(line) for line in lines if line and not line.startswith('#')]
+    return {canonicalize_name(r.name): str(r.specifier) for r in requirements}
+
+
+PINS = pins_of(LINES)
+
+
+def test_every_line_is_one_exact_pin():
+    pins = [line for line in LINES if not line.startswith('#')]
+    assert [line for line in pins if not re.fullmatch(r'[a-z0-9-]+==[0-9][\w.+]*', line)] == []
+    assert len(PINS) == len(pins)
+
+
+def test_header_names_the_command_that_makes_the_file():
+    header = ' '.join(line for line in LINES if line.startswith('#'))
+    assert 'uv pip compile' in header
+    assert not re.search(r'https?:|file:|index|find-links', header)
+
+
+def test_every_direct_requirement_is_pinned_and_in_its_range():
+    requirements = [Requirement(text) for text in PROJECT['dependencies']]
+    requirements += [Requirement(text) for text in metadata.requires('my_robot_basics') or []]
+    requirements = [r for r in requirements if not r.marker or r.marker.evaluate({'extra': ''})]
+    missing = [r.name for r in requirements if canonicalize_name(r.name) not in PINS]
+    assert missing == []
+    wrong = [r for r in requirements if PINS[canonicalize_name(r.name)][2:] not in r.specifier]
+    assert wrong == []
+
+
+def test_this_environment_is_the_pinned_one():
+    ours = {'my-robot-basics', 'my-robot-basics-grader'}
+    installed = {
+        canonicalize_name(d.name): f'=={d.version}'
+        for d in metadata.distributions(path=[p for p in sys.path if p.startswith(sys.prefix)])
+    }
+    # Python modules that the ROS wheels bring along under the names of their ROS packages
+    extra = {name: pin for name, pin in installed.items() if f'ros-{name}' in PINS}
+    others = {n: pin for n, pin in installed.items() if n not in ours and n not in extra}
+    assert others.items() - PINS.items() == set()
+    assert PINS.items() - installed.items() == set()
+
+
+@pytest.mark.parametrize('version', PYTHONS)
+def test_a_resolver_adds_nothing_to_the_pins(version, tmp_path):
+    resolved = run(
+        *(UV, 'pip', 'compile', '--quiet', '--no-annotate', '--no-header'),
+        *('--python-version', version, '--python-platform', 'x86_64-manylinux_2_28'),
+        *('--constraints', 'environment.txt', 'pyproject.toml'),
+    )
+    assert resolved.returncode == 0, resolved.stderr
+    assert pins_of(resolved.stdout.splitlines()).items() - PINS.items() == set()
+
+
+def interpreters():
+    """The Pythons of this machine, those of pyenv too: minor version -> path."""
+    pyenv = Path(os.environ.get('PYENV_ROOT', Path.home() / '.pyenv'))
+    on_path = [shutil.which(f'python{version}') for version in PYTHONS]
+    candidates = [sys._base_executable, *on_path, *sorted(pyenv.glob('versions/*/bin/python'))]
+    found = {}
+    for python in filter(None, candidates):
+        probe = run(python, '-c', 'import sys; print("%d.%d" % sys.version_info[:2])')
+        if probe.returncode == 0:
+            found.setdefault(probe.stdout.strip(), python)
+    return found
+
+
+@pytest.fixture(scope='module')
+def found():
+    return interpreters()
+
+
+@pytest.fixture
+def venv(tmp_path):
+    yield tmp_path / 'venv'
+    shutil.rmtree(tmp_path / 'venv', ignore_errors=True)  # it is 0.9 GB
+
+
+def test_this_python_is_a_supported_one(found):
+    assert '{}.{}'.format(*sys.version_info) in found.keys() & set(PYTHONS)
+
+
+@pytest.mark.parametrize('version', PYTHONS)
+def test_installs_on_each_python_that_is_here(version, found, venv):
+    if version not in found:
+        pytest.skip(f'this machine has no Python {version} to install on')
+    python = venv / 'bin/python'
+    use_the_main_parts = (
+        'import matplotlib.pyplot, nbgrader, numpy, rclpy, sensor_msgs.msg, jupyterlab, nbval\n'
+        'rclpy.init(); rclpy.create_node("_probe"); rclpy.shutdown()'
+    )
+    for command in (
+        [UV, 'venv', '--python', found[version], venv],
+        # without dependencies: what the pins forget is then missing
+        [UV, 'pip', 'install', '--python', python, '--no-deps', '-r', 'environment.txt'],
+        [UV, 'pip', 'check', '--python', python],
+        [python, '-c', use_the_main_parts],
+    ):
+        step = run(*command)
+        assert step.returncode == 0, step.stdout + step.stderr
