@@ -7,8 +7,9 @@ from pathlib import Path
 
 try:
     from grader.course import Course
+    from grader.feedback import FEEDBACK_PASSES
     from grader.gradebook import AUTOGRADE_PASSES, SANITIZE_PASSES, make_ready
-    from grader.release import PASSES
+    from grader.release import CODE_STUB, PASSES
 
     course = Course.at(Path(__file__).parent)
     make_ready(course)
@@ -30,12 +31,11 @@ c.CourseDirectory.feedback_directory = 'gradebook/feedback'
 c.CourseDirectory.db_url = course.db_url
 
 c.GenerateAssignment.preprocessors = list(PASSES)
-# an unanswered exercise runs, so that its checks say what is missing
-c.ClearSolutions.code_stub = {'python': '# YOUR CODE HERE'}
+c.ClearSolutions.code_stub = CODE_STUB
 c.Autograde.sanitize_preprocessors = list(SANITIZE_PASSES)
 c.Autograde.autograde_preprocessors = list(AUTOGRADE_PASSES)
 c.Autograde.pre_convert_hook = 'grader.gradebook.register_before_autograde'
-c.GenerateFeedback.preprocessors = ['grader.feedback.GatherVerdicts']
+c.GenerateFeedback.preprocessors = list(FEEDBACK_PASSES)
 c.GenerateFeedback.exporter_class = 'grader.feedback.FeedbackPage'
 
 c.HTMLExporter.sanitize_html = True

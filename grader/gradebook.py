@@ -20,7 +20,7 @@ from traitlets.config import Config
 from grader.course import Course
 from grader.errors import CourseError
 from grader.heal import KEY, grade_id, heal
-from grader.release import PASSES
+from grader.release import CODE_STUB, PASSES
 from grader.submission import Submission
 
 SANITIZE_PASSES = (
@@ -89,9 +89,10 @@ class SaveGrades(SaveAutoGrades):
         dated = {'timestamp': at['timestamp']} if at.get('timestamp') else {}
         with _one_transaction(self.db_url) as self.gradebook:
             self.gradebook.update_or_create_student(self.student_id)
-            self.gradebook.update_or_create_submission(
-                self.assignment_id, self.student_id, **dated
-            )
+            with self.gradebook.db.no_autoflush:  # it warns of what is half built meanwhile
+                self.gradebook.update_or_create_submission(
+                    self.assignment_id, self.student_id, **dated
+                )
             for index, cell in enumerate(nb.cells):
                 self.preprocess_cell(cell, resources, index)
         return nb, resources
@@ -253,7 +254,14 @@ _SAVE_CELLS = 'nbgrader.preprocessors.SaveCells'
 
 
 def _apply(passes: Sequence[str], notebook: NotebookNode, resources: dict) -> NotebookNode:
-    exporter = Exporter(config=Config({'Exporter': {'default_preprocessors': []}}))
+    exporter = Exporter(
+        config=Config(
+            {
+                'Exporter': {'default_preprocessors': []},
+                'ClearSolutions': {'code_stub': CODE_STUB},
+            }
+        )
+    )
     for name in passes:
         exporter.register_preprocessor(name)
     return exporter.from_notebook_node(notebook, resources)[0]

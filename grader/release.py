@@ -29,6 +29,9 @@ PASSES = (
 )
 """What happens to a source notebook, in order; up to SaveCells it is what the gradebook keeps."""
 
+CODE_STUB = {'python': '# YOUR CODE HERE'}
+"""What stands for an answer: it runs, so that the checks can say what is missing."""
+
 KERNELSPEC = {'display_name': 'Python 3 (ipykernel)', 'language': 'python', 'name': 'python3'}
 CELL_METADATA = ('nbgrader', 'tags', 'deletable', 'editable')
 WIDGET_VIEW = 'application/vnd.jupyter.widget-view+json'

@@ -1,0 +1,205 @@
+"""Lay out a graded notebook as one HTML page that needs nothing else and runs nothing."""
+
+import ast
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import bleach
+from jinja2 import Environment, FileSystemLoader
+from markupsafe import Markup
+from nbconvert.filters import markdown2html, strip_ansi
+from nbformat import NotebookNode
+from pygments import highlight
+from pygments.formatters import HtmlFormatter
+from pygments.lexers import PythonLexer
+
+from grader.heal import KEY, grade_id, role
+
+MAX_TEXT_CHARACTERS = 5_000
+"""What is shown of one output."""
+
+_TAGS = {'p', 'em', 'strong', 'code', 'pre', 'ul', 'ol', 'li', 'blockquote', 'h4', 'br', 'table'}
+_TAGS |= {'thead', 'tbody', 'tr', 'th', 'td'}
+_CODE = HtmlFormatter(style='xcode', nowrap=True)
+_REASON = re.compile(r'expected (?P<expected>.+?), saw (?P<seen>.+?): (?P<hint>.+)', re.DOTALL)
+_BASE64 = re.compile(r'[A-Za-z0-9+/=\s]+')
+
+
+@dataclass(frozen=True)
+class Piece:
+    """Something that a cell put out."""
+
+    kind: str
+    """'text', 'error', 'image/png' or 'image/jpeg'."""
+    content: str
+    alt: str = ''
+
+
+@dataclass(frozen=True)
+class Check:
+    """One graded cell, as the page tells of it."""
+
+    name: str
+    title: str
+    score: float
+    points: float
+    status: str
+    """'passed', 'missed', 'by hand' or 'waiting'."""
+    reason: str
+    expected: str
+    seen: str
+    hint: str
+    notes: tuple[str, ...]
+    comment: str
+    pieces: tuple[Piece, ...]
+    source: str
+    """What students may read of the check."""
+
+
+@dataclass
+class Part:
+    """An answer, what it put out, and its checks."""
+
+    name: str
+    answer: str = ''
+    is_text: bool = False
+    pieces: list[Piece] = field(default_factory=list)
+    checks: list[Check] = field(default_factory=list)
+    comment: str = ''
+
+
+def page(notebook: NotebookNode, about: dict) -> str:
+    """Return the page; `about` is nbgrader's: student, assignment, score, max_score, late_penalty.
+
+    Grade cells hold what students may see, and scores: see grader.feedback.GatherVerdicts.
+    """
+    parts, others = _parts(notebook)
+    ours = notebook.metadata.get(KEY, {})
+    problem = ours.get('problem', '')
+    return _TEMPLATE.render(
+        about=about,
+        parts=[] if problem else [part for part in parts if part.checks or part.answer],
+        checks=[check for part in parts for check in part.checks],
+        others=others,
+        problem=problem,
+        notes=[note for note in ours.get('notes', ()) if note != problem],
+    )
+
+
+def _parts(notebook: NotebookNode) -> tuple[list[Part], list[tuple[str, list[Piece]]]]:
+    """Return the exercises, and the other cells that put something out."""
+    parts, others = [Part('')], []
+    for cell in notebook.cells:
+        kind, name = role(cell), grade_id(cell) or ''
+        if kind == 'answer':
+            marks = cell.metadata.nbgrader
+            parts.append(Part(name, cell.source, cell.cell_type == 'markdown'))
+            parts[-1].comment = marks.get('comment') or ''
+            parts[-1].pieces += _pieces(cell)
+            if marks.get('grade'):
+                parts[-1].checks.append(_check(cell))
+        elif kind == 'grade':
+            parts[-1].checks.append(_check(cell))
+        elif kind == 'locked' and name.startswith(f'{parts[-1].name}-'):
+            parts[-1].pieces += _pieces(cell)
+        elif cell.cell_type == 'code' and cell.get('outputs'):
+            others.append((cell.source, list(_pieces(cell))))
+    return parts, others
+
+
+def _check(cell: NotebookNode) -> Check:
+    marks, verdict = cell.metadata.nbgrader, cell.metadata.get(KEY, {})
+    score, points = marks.get('score') or 0.0, marks.get('points') or 0.0
+    name, is_answer = grade_id(cell), role(cell) == 'answer'
+    status = 'passed' if score >= points else 'missed'
+    status = 'waiting' if verdict.get('waits') else 'by hand' if verdict.get('by_hand') else status
+    reason = verdict.get('reason') or _missing_reason(status, is_answer=is_answer)
+    title = 'Your written answer' if is_answer else _docstring(cell.source) or name
+    said = _REASON.fullmatch(reason)
+    return Check(
+        name=name,
+        title=title,
+        score=score,
+        points=points,
+        status=status,
+        reason=reason,
+        notes=tuple(verdict.get('notes', ())),
+        comment='' if is_answer else marks.get('comment') or '',
+        pieces=() if is_answer else tuple(_pieces(cell, about=title, with_errors=False)),
+        source='' if is_answer else cell.source.strip(),
+        **(said.groupdict() if said else {'expected': '', 'seen': '', 'hint': ''}),
+    )
+
+
+def _missing_reason(status: str, *, is_answer: bool) -> str:
+    if status == 'waiting':
+        return 'A person will read this.'
+    if status == 'missed' and is_answer:
+        return 'There was no answer.'
+    return 'No reason is known.' if status == 'missed' else ''
+
+
+def _docstring(source: str) -> str:
+    try:
+        return (ast.get_docstring(ast.parse(source)) or '').partition('\n')[0]
+    except (SyntaxError, ValueError):
+        return ''
+
+
+def _pieces(cell: NotebookNode, *, about: str = '', with_errors: bool = True) -> Iterator[Piece]:
+    """Yield what a cell put out, in forms that can do nothing: text, PNG and JPEG."""
+    for output in cell.get('outputs', ()):
+        if output.output_type == 'error':
+            if with_errors:
+                yield _text_piece('error', '\n'.join(output.traceback) or output.evalue)
+        elif output.output_type == 'stream':
+            yield _text_piece('text', output.text)
+        else:
+            yield from _shown(output.data, about)
+    for name, picture in cell.get('attachments', {}).items():
+        yield from _shown({**picture, 'text/plain': name}, about)
+
+
+def _shown(data: dict, about: str) -> Iterator[Piece]:
+    described = str(data.get('text/plain', ''))
+    for kind in ('image/png', 'image/jpeg'):
+        if isinstance(data.get(kind), str) and _BASE64.fullmatch(data[kind]):
+            described = '' if described.startswith('<') else described  # "<Figure size 640x480 …>"
+            alt = described or (f'Picture of: {about}' if about else 'Picture that this cell drew')
+            yield Piece(kind, ''.join(data[kind].split()), alt)
+            return
+    if described:
+        yield _text_piece('text', described)
+
+
+def _text_piece(kind: str, text: str) -> Piece:
+    text = strip_ansi(text).rstrip('\n')
+    if (more := len(text) - MAX_TEXT_CHARACTERS) > 0:
+        text = f'{text[:MAX_TEXT_CHARACTERS]}\n[{more:,} more characters]'
+    return Piece(kind, ''.join(c if c.isprintable() or c in '\n\t' else '�' for c in text))
+
+
+def _colour(source: str) -> Markup:
+    return Markup(highlight(source, PythonLexer(), _CODE))
+
+
+def _rich(text: str) -> Markup:
+    """Turn markdown into the harmless part of its HTML."""
+    return Markup(bleach.clean(markdown2html(text), tags=_TAGS, attributes={}, strip=True))
+
+
+def _number(value: float) -> str:
+    return f'{value:.2f}'.rstrip('0').rstrip('.')
+
+
+_ENVIRONMENT = Environment(
+    loader=FileSystemLoader(Path(__file__).parent),
+    autoescape=True,
+    trim_blocks=True,
+    lstrip_blocks=True,
+)
+_ENVIRONMENT.filters |= {'colour': _colour, 'rich': _rich, 'number': _number}
+_ENVIRONMENT.globals['code_style'] = Markup(_CODE.get_style_defs('pre'))
+_TEMPLATE = _ENVIRONMENT.get_template('page.html.j2')

@@ -1,0 +1,143 @@
+import base64
+
+import pytest
+from course_maker import PIXEL, TOY, answered, executed, make_course, submit
+from nbformat.v4 import new_output
+
+from grader.course import Course
+from grader.feedback import write_feedback
+from grader.gradebook import prepare, register, store, unanswered
+from grader.heal import KEY, heal
+from grader.release import release
+from grader.submission import read_submission
+
+RIGHT = 'def double(x):\n    return 2 * x'
+SCRIPT = '<script>alert("from a student")</script>'
+
+
+@pytest.fixture(scope='module')
+def course(tmp_path_factory):
+    course = make_course(tmp_path_factory.mktemp('feedback'))
+    release(course)
+    register(course, TOY)
+    return course
+
+
+def feedback(course, student, notebook, *, reasons=None, outputs=None, notes=()):
+    submit(course, student, notebook)
+    folder = course.folder('submitted', student, TOY)
+    submission = read_submission(folder, student_id=student, assignment=TOY)
+    if submission.problem:
+        graded = unanswered(course, submission, submission.problem)
+    else:
+        healed = heal(submission.notebook, course.master(TOY)).notebook
+        graded = executed(prepare(course, TOY, healed), reasons or {})
+        for cell in graded.cells:
+            if cell.id in (outputs or {}):
+                cell.outputs = [*outputs[cell.id], *cell.outputs]
+            if cell.id == 'double-hidden':
+                cell.metadata[KEY]['notes'] = list(notes)
+    store(course, submission, graded)
+    pages = write_feedback(course)
+    place = course.folder('feedback', student, TOY) / f'{TOY}.html'
+    assert place in pages
+    return place.read_text()
+
+
+def test_a_failed_check_tells_what_was_expected_seen_and_what_to_try(course):
+    html = feedback(
+        course,
+        'ada',
+        answered(course, RIGHT),
+        reasons={'double-hidden': 'expected 42, saw 41: count again'},
+        notes=['judged on the wall clock'],
+    )
+    assert '<td>Expected 42, saw 41.</td><td>Count again</td>' in html
+    assert '<dt>Seen</dt><dd>41</dd>' in html
+    assert 'Other numbers are doubled too' in html
+    assert 'Note: judged on the wall clock' in html
+    assert '1 of 5 points' in html
+
+
+def test_a_reason_in_other_words_is_shown_whole(course):
+    html = feedback(
+        course, 'ada', answered(course, RIGHT), reasons={'double-check': 'no such name: double'}
+    )
+    assert '<td>no such name: double</td>' in html
+
+
+def test_no_hidden_test_is_shown_but_its_open_part_is(course):
+    html = feedback(course, 'ada', answered(course, RIGHT))
+    graded = (course.folder('autograded', 'ada', TOY) / f'{TOY}.ipynb').read_text()
+    assert 'canary' in graded
+    assert 'canary' not in html
+    assert 'HIDDEN' not in html
+    assert 'open to you' in html
+
+
+def test_a_traceback_that_quotes_a_test_is_not_shown(course):
+    quoting = new_output(
+        'error', ename='E', evalue='it failed', traceback=['assert hidden canary == 1']
+    )
+    html = feedback(course, 'ada', answered(course, RIGHT), outputs={'double-hidden': [quoting]})
+    assert 'canary' not in html
+
+
+def test_nothing_that_a_student_wrote_runs(course):
+    outputs = [
+        new_output('stream', text=SCRIPT),
+        new_output('display_data', {'text/html': SCRIPT, 'text/plain': SCRIPT}),
+        new_output('display_data', {'image/svg+xml': f'<svg>{SCRIPT}</svg>'}),
+        new_output('display_data', {'application/javascript': 'alert(2)'}),
+        new_output('display_data', {'image/png': f'"><script>{SCRIPT}'}),
+        new_output('error', ename=SCRIPT, evalue=SCRIPT, traceback=[SCRIPT]),
+    ]
+    html = feedback(
+        course,
+        SCRIPT.replace('/', '\\'),
+        answered(course, f'# {SCRIPT}', explained=f'[x](javascript:alert(1)) <b>so</b> {SCRIPT}'),
+        reasons={'double-check': f'expected {SCRIPT}, saw {SCRIPT}: {SCRIPT}'},
+        outputs={'double': outputs, 'try-it': outputs},
+    )
+    assert '<script' not in html
+    assert 'href="javascript' not in html
+    assert "default-src 'none'" in html
+
+
+def test_pictures_are_shown_and_described(course):
+    picture = new_output('display_data', {'image/png': PIXEL, 'text/plain': '<Figure size 1x1>'})
+    html = feedback(course, 'ada', answered(course, RIGHT), outputs={'double-hidden': [picture]})
+    assert f'src="data:image/png;base64,{PIXEL}" alt="Picture of: Other numbers are' in html
+    assert base64.b64decode(PIXEL).startswith(b'\x89PNG')
+
+
+def test_an_unreadable_submission_has_a_page_with_its_reason(course):
+    html = feedback(course, 'ada', b'{"cells": ')
+    assert 'Your submission could not be graded' in html
+    assert 'is not JSON' in html
+    assert '0 of 5 points' in html
+
+
+def test_what_was_mended_is_told(course):
+    notebook = answered(course, RIGHT)
+    del notebook.cells[6]
+    html = feedback(course, 'ada', notebook)
+    assert 'the cell double-check was missing: it was put back' in html
+
+
+def test_what_a_person_has_to_read_waits_and_is_no_zero(course):
+    html = feedback(course, 'ada', answered(course, RIGHT, explained='It **is** so.'))
+    assert '<strong>is</strong>' in html
+    assert '– of 2' in html
+    assert 'A person will read this.' in html
+
+
+def test_writing_again_changes_no_page(course):
+    feedback(course, 'ada', answered(course, RIGHT))
+    said = []
+    assert write_feedback(course, say=said.append)
+    assert not said
+
+
+def test_a_course_without_submissions_has_no_pages(tmp_path):
+    assert write_feedback(Course.at(tmp_path)) == []
