@@ -84,15 +84,14 @@ class SimulatedClock:
     def tick(self, step_ns: int) -> None:
         """Move the clock and wait until every node has dealt with it. Raises Inconclusive.
 
-        A node's executor takes the tick, and its timers fire in the pass after it: the second
-        answer tells that this pass is over too.
+        A node's executor takes the tick in one pass and fires its timers in the next, and it
+        answers one question a pass: the second answer tells that both are over.
         """
         self.now_ns += step_ns
         self._tick_ns.append(self.now_ns)
         self._tick_wall_ns.append(time.time_ns())
         self._publish()
-        for _ in range(2):
-            self._barrier()
+        self._barrier(questions=2)
         if time.monotonic() > self._deadline:
             raise Inconclusive(f'the clock could not be driven within {BUDGET_SEC:g} s')
 
@@ -104,9 +103,9 @@ class SimulatedClock:
     def _publish(self) -> None:
         self._publisher.publish(Clock(clock=Time(nanoseconds=self.now_ns).to_msg()))
 
-    def _barrier(self) -> None:
+    def _barrier(self, questions: int = 1) -> None:
         began = time.monotonic()
-        asked = [self._ask(client) for client in self._barriers.values()]
+        asked = [self._ask(client) for client in self._barriers.values() for _ in range(questions)]
         if not self._wait(asked, SLOWEST_BARRIER_SEC):
             raise Inconclusive('a node did not answer in time')
         self._barrier_sec.append(time.monotonic() - began)

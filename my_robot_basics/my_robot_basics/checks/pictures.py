@@ -1,6 +1,8 @@
 """Pictures that say what a sentence can't, as PNG bytes."""
 
 import io
+import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -31,6 +33,17 @@ def arrivals(recording: 'Recording', *, hz: float | None = None) -> bytes:
     axes.set_xlabel(f'seconds on the {clock}')
     axes.set_title(f'messages on {recording.topic_name}')
     return _png(figure)
+
+
+def misread(position: Sequence[float]) -> bytes | None:
+    """Where the two-link arm goes when these numbers are read as radians; None for other arms."""
+    if len(position) != 2:
+        return None
+    from my_robot_basics.live.arm import ArmPicture
+
+    picture = ArmPicture()
+    picture.move(*map(math.degrees, position), title='your numbers, read as radians')
+    return picture.png()
 
 
 def _png(figure: Figure) -> bytes:

@@ -160,8 +160,9 @@ class Recording:
     def _fail_rate(self, hz: float) -> None:
         n = len(self.messages)
         over = f'over {self.seconds:g} s ({n} message{"" if n == 1 else "s"})'
-        if abs(self.rate_hz / hz - 1.0) <= WALL_TOLERANCE:
-            seen = f'pauses of {self.largest_gap_sec:.2f} s {over}'
+        largest = LARGEST_GAP_PERIODS / hz
+        if self.rate_hz >= 0.9 * hz and self.largest_gap_sec > largest:
+            seen = f'pauses of {self.largest_gap_sec:.1f} s {over}'
             hint = 'publish one message each time the timer fires'
         else:
             seen = f'{_hz(self.rate_hz)} {over}'
@@ -174,13 +175,15 @@ class Recording:
     ) -> None:
         degrees = [[math.degrees(bound) for bound in bounds] for bounds in (low, high)]
         shown = ', '.join(f'{angle:.4g}' for angle in pose)
+        picture = None
         if all(_within(each, *degrees) for each in poses):
             seen, hint = f'({shown}), which looks like degrees', 'convert with math.radians(…)'
+            picture = pictures.misread(pose)
         else:
             seen, hint = f'({shown})', 'keep each joint within its range'
-
         bounds = ', '.join(f'{a:.4g} to {b:.4g}' for a, b in zip(low, high, strict=True))
-        fail(expected=f'positions in radians ({bounds})', seen=seen, hint=hint)
+        expected = f'positions in radians ({bounds})'
+        fail(expected=expected, seen=seen, hint=hint, picture=picture)
 
     def _expect_one_publisher(self) -> None:
         expect(

@@ -1,0 +1,161 @@
+"""What a node logs, as everybody else on the robot can read it: the topic /rosout."""
+
+import re
+import time
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from types import TracebackType
+from typing import Self
+
+from rcl_interfaces.msg import Log as LogMessage
+from rclpy.qos import DurabilityPolicy, QoSProfile
+
+from my_robot_basics.checks import graphs
+from my_robot_basics.checks.errors import fail, shorten
+from my_robot_basics.checks.watcher import Watcher
+
+LEVELS = {10: 'DEBUG', 20: 'INFO', 30: 'WARN', 40: 'ERROR', 50: 'FATAL'}
+DEPTH = 1000
+NODE_SEC = 10.0
+AFTERTHOUGHT_SEC = 0.3
+_NUMBER = re.compile(r'[-−+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?')
+
+
+@dataclass(frozen=True)
+class Record:
+    """One log record."""
+
+    level: str
+    text: str
+
+
+def rosout(node_name: str) -> 'Log':
+    """The log of a node and of its logger's children, to be opened by a `with` statement."""
+    return Log(node_name)
+
+
+class Log:
+    """A context manager that listens to one node's log.
+
+    Only records that were logged since `mark()` count (at first, since it began to listen):
+    /rosout is latched, and would otherwise bring answers to older questions.
+    """
+
+    def __init__(self, node_name: str) -> None:
+        self._logger = node_name.strip('/').replace('/', '.')
+        self._node_name = f'/{node_name.strip("/")}'
+        self._heard: list[tuple[int, Record]] = []
+        self._watcher = Watcher()
+        self._since_ns = 0
+
+    def __enter__(self) -> Self:
+        """Subscribe and wait for the node. Raises CheckFailed when it does not come."""
+        self._watcher.__enter__()
+        try:
+            self._meet()
+        except BaseException:
+            self._watcher.__exit__(None, None, None)
+            raise
+        self.mark()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        """Stop listening."""
+        self._watcher.__exit__(kind, error, traceback)
+
+    def mark(self) -> None:
+        """Let only records count that are logged from now on."""
+        self._since_ns = time.time_ns()
+
+    @property
+    def records(self) -> tuple[Record, ...]:
+        """The records that were heard since the mark, oldest first."""
+        return tuple(record for sent_ns, record in self._heard if sent_ns > self._since_ns)
+
+    def numbers(self, level: str = 'INFO') -> tuple[float, ...]:
+        """All numbers in the records of a level since the mark, in order."""
+        texts = [record.text for record in self.records if record.level == level]
+        return tuple(float(n.replace('−', '-')) for text in texts for n in _NUMBER.findall(text))
+
+    def wait_for(self, done: Callable[[Self], bool], *, timeout_sec: float = 5.0) -> bool:
+        """Listen until `done(log)`, at most `timeout_sec`; whether it came to that."""
+        return self._watcher.spin_until(lambda: done(self), timeout_sec=timeout_sec)
+
+    def expect_angles(
+        self, angles_deg: Iterable[float], *, within_deg: float = 0.01, timeout_sec: float = 5.0
+    ) -> None:
+        """INFO records hold every one of these angles, on any number of lines; no WARN is there.
+
+        Other numbers don't matter, nor do whole turns. Raises CheckFailed after `timeout_sec`.
+        """
+        wanted = list(angles_deg)
+
+        def missing() -> list[float]:
+            seen = self.numbers()
+            return [a for a in wanted if not any(_near(a, n, within_deg) for n in seen)]
+
+        listed = ', '.join(f'{angle:.2f}°' for angle in wanted)
+        if not self.wait_for(lambda log: not missing(), timeout_sec=timeout_sec):
+            fail(
+                expected=f'{listed} in the INFO log of {self._node_name}',
+                seen=self._shown('INFO'),
+                hint='log every solution with self.get_logger().info(…) and two decimals '
+                'or more (print(…) does not reach the log)',
+            )
+        # a warning may come just behind the answer
+        if self.wait_for(lambda log: log._has('WARN'), timeout_sec=AFTERTHOUGHT_SEC):
+            fail(
+                expected=f'no warning from {self._node_name} for a reachable target',
+                seen=self._shown('WARN'),
+                hint='warn only when inverse_kinematics raises ValueError',
+            )
+
+    def expect_warning(self, *, timeout_sec: float = 5.0) -> None:
+        """At least one WARN record comes. Raises CheckFailed after `timeout_sec`."""
+        if not self.wait_for(lambda log: log._has('WARN'), timeout_sec=timeout_sec):
+            fail(
+                expected=f'a warning in the log of {self._node_name}',
+                seen=self._shown('INFO'),
+                hint='catch ValueError and log it with self.get_logger().warning(…) '
+                '(print(…) does not reach the log)',
+            )
+
+    def _meet(self) -> None:
+        node = self._watcher.node
+        latched = QoSProfile(depth=DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        node.create_subscription(LogMessage, '/rosout', self._hear, latched)
+
+        def is_there() -> bool:
+            infos = node.get_publishers_info_by_topic('/rosout')
+            return self._node_name in map(graphs.full_name, infos)
+
+        if not self._watcher.spin_until(is_there, timeout_sec=NODE_SEC):
+            others = graphs.take(self._watcher).nodes()
+            fail(
+                expected=f'a node {self._node_name}',
+                seen=', '.join(others) or 'no node',
+                hint='run the cell that starts it, and compare the name in super().__init__(…)',
+            )
+
+    def _hear(self, message: LogMessage, info: dict) -> None:
+        if message.name == self._logger or message.name.startswith(f'{self._logger}.'):
+            level = LEVELS.get(message.level, str(message.level))
+            self._heard.append((info['source_timestamp'], Record(level, message.msg)))
+
+    def _has(self, level: str) -> bool:
+        return any(record.level == level for record in self.records)
+
+    def _shown(self, level: str) -> str:
+        texts = [record.text for record in self.records if record.level == level]
+        return f"'{shorten(' | '.join(texts))}'" if texts else f'no {level} record'
+
+
+def _near(angle_deg: float, number: float, within_deg: float) -> bool:
+    off = (angle_deg - number + 180.0) % 360.0 - 180.0
+    # a text of two decimals is no better than half a unit of the last one
+    return abs(off) <= within_deg + 1e-9

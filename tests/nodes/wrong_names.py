@@ -1,0 +1,18 @@
+"""Names the joints as no URDF of the course does."""
+
+from five_hz import FiveHz, spin
+
+
+class WrongNames(FiveHz):
+    def joint_state(self):
+        message = super().joint_state()
+        message.name = ['joint_1', 'joint_2']
+        return message
+
+
+def main():
+    spin(WrongNames)
+
+
+if __name__ == '__main__':
+    main()

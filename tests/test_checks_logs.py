@@ -1,0 +1,84 @@
+"""IK in the log: what counts as an answer, read from /rosout as at grading."""
+
+import contextlib
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from geometry_msgs.msg import Point
+from my_robot_basics.checks import CheckFailed, rosout, topic
+from my_robot_basics.two_link_kinematics import inverse_kinematics
+
+NODES = Path(__file__).with_name('nodes')
+TARGET = Point(x=1.2, y=0.8)
+ANGLES = [angle for pair in inverse_kinematics(1.2, 0.8).values() for angle in pair]
+TOO_FAR = Point(x=3.0, y=0.0)
+
+
+@contextlib.contextmanager
+def running(name):
+    process = subprocess.Popen([sys.executable, NODES / f'{name}.py'], stdout=subprocess.DEVNULL)
+    try:
+        yield
+    finally:
+        process.kill()
+        process.wait()
+
+
+def ask(log, target):
+    log.mark()
+    topic('/target_point').publish(target)
+
+
+@pytest.mark.parametrize('node', ['ik_solver', 'ik_one_line'])
+def test_an_answer_is_an_answer_in_any_layout(node):
+    with running(node), rosout('ik_solver_node') as log:
+        ask(log, TARGET)
+        log.expect_angles(ANGLES)
+        ask(log, TOO_FAR)
+        log.expect_warning()
+        assert log.numbers('INFO') == ()
+
+
+@pytest.mark.parametrize(
+    ('node', 'reason'),
+    [
+        ('ik_prints', r'saw no INFO record: .*print\(…\) does not reach the log'),
+        ('ik_coarse', 'two decimals or more'),
+        ('ik_one_branch', 'log every solution'),
+        ('ik_always_warns', "saw 'careful': warn only when"),
+    ],
+)
+def test_a_near_miss_is_told_what_is_missing(node, reason):
+    with running(node), rosout('ik_solver_node') as log:
+        ask(log, TARGET)
+        with pytest.raises(CheckFailed, match=reason):
+            log.expect_angles(ANGLES, timeout_sec=1.0)
+
+
+def test_an_answer_to_an_older_question_does_not_count():
+    with running('ik_solver'):
+        with rosout('ik_solver_node') as log:
+            ask(log, TARGET)
+            log.expect_angles(ANGLES)
+            log.mark()
+            with pytest.raises(CheckFailed):
+                log.expect_angles(ANGLES, timeout_sec=0.5)
+        with rosout('ik_solver_node') as later:
+            # latched: the old records do arrive, and are left out
+            assert not later.wait_for(lambda log: bool(log.records), timeout_sec=0.5)
+            assert later._heard
+
+
+def test_no_warning_is_a_failure():
+    with running('ik_solver'), rosout('ik_solver_node') as log:
+        ask(log, TARGET)
+        with pytest.raises(CheckFailed, match='expected a warning in the log of /ik_solver_node'):
+            log.expect_warning(timeout_sec=0.5)
+
+
+def test_a_node_that_does_not_run_is_named(monkeypatch):
+    monkeypatch.setattr('my_robot_basics.checks.logs.NODE_SEC', 1.0)
+    with pytest.raises(CheckFailed, match='expected a node /ik_solver_node, saw no node'):
+        rosout('ik_solver_node').__enter__()
