@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import Arc, Wedge
+from matplotlib.patheffects import withStroke
 
 from my_robot_basics.live import notebook
 from my_robot_basics.two_link_kinematics import L1, L2, forward_kinematics
@@ -43,10 +44,11 @@ class ArmPicture:
     def __init__(self, *, l1: float = L1, l2: float = L2) -> None:
         """Draw axes and ring for links of these lengths in metres."""
         self._l1, self._l2 = l1, l2
-        self._figure = Figure(figsize=(4.6, 4.9), dpi=80, layout='constrained')
+        self._figure = Figure(figsize=(4.6, 5.1), dpi=80)
         # no pyplot: a picture may be drawn in any thread
         self._canvas = FigureCanvasAgg(self._figure)
-        self._axes = axes = self._figure.add_subplot()
+        # a layout that is computed anew would cost more than the drawing, and the view would jump
+        self._axes = axes = self._figure.add_axes((0.15, 0.15, 0.81, 0.73))
         reach = l1 + l2
         axes.set(
             xlim=(-1.1 * reach, 1.1 * reach),
@@ -67,7 +69,7 @@ class ArmPicture:
         (self._link2,) = axes.plot([], [], color=LINK2, lw=4, ms=7, label='link 2', **style)
         (self._effector,) = axes.plot([], [], 'D', color=EFFECTOR, ms=9, label='end effector')
         self._angles: list = []
-        self._figure.legend(loc='outside lower center', ncols=4, fontsize=8, frameon=False)
+        self._figure.legend(loc='lower center', ncols=4, fontsize=8, frameon=False)
 
     def move(self, theta1_deg: float, theta2_deg: float, *, title: str = '') -> None:
         """Put the arm in a pose, angles in degrees."""
@@ -108,6 +110,7 @@ class ArmPicture:
             fontsize=9,
             ha='left' if middle[0] >= 0 else 'right',
             va='center',
+            path_effects=[withStroke(linewidth=3, foreground='white')],
         )
         self._angles += [self._axes.add_patch(arc), *zero, label]
 

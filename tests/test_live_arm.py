@@ -1,0 +1,82 @@
+"""Pictures of the arm."""
+
+import io
+import math
+import re
+
+import numpy as np
+import pytest
+from matplotlib.image import imread
+from my_robot_basics.live import show_arm
+from my_robot_basics.live.arm import ArmPicture, describe
+from my_robot_basics.live.follow import what_is_wrong
+from sensor_msgs.msg import JointState
+
+
+def axes_of(picture):
+    return picture._figure.axes[0]
+
+
+def test_the_axes_are_in_metres_and_equal_and_hold_the_whole_ring():
+    axes = axes_of(ArmPicture(l1=1.0, l2=0.8))
+    assert axes.get_aspect() == 1
+    assert '(m)' in axes.get_xlabel()
+    assert '(m)' in axes.get_ylabel()
+    ring = axes.patches[0]
+    assert (ring.r, ring.r - ring.width) == pytest.approx((1.8, 0.2))
+    assert axes.get_xlim()[0] < -1.8
+    assert axes.get_ylim()[1] > 1.8
+
+
+@pytest.mark.parametrize('pose', [(0, 0), (90, 0), (23.4, -67.8), (-90, 180), (1718.9, 2578.3)])
+def test_links_and_words_fit_the_pose(pose):
+    picture = ArmPicture(l1=1.0, l2=0.8)
+    picture.move(*pose)
+    lines = {line.get_label(): line.get_xydata() for line in axes_of(picture).lines}
+    # an oracle of its own: a planar arm is a sum of complex numbers
+    elbow = 1.0 * np.exp(1j * math.radians(pose[0]))
+    tip = elbow + 0.8 * np.exp(1j * math.radians(sum(pose)))
+    assert lines['link 1'][-1] == pytest.approx([elbow.real, elbow.imag])
+    assert lines['end effector'][0] == pytest.approx([tip.real, tip.imag])
+    words = [text.get_text() for text in axes_of(picture).texts]
+    assert words == [f'θ1 = {pose[0]:.1f}°', f'θ2 = {pose[1]:.1f}°']
+    told = [float(number) for number in re.findall(r'[xy] = (\S+) m', describe(*pose))]
+    assert told == pytest.approx([tip.real, tip.imag], abs=6e-4)
+
+
+def test_moving_leaves_nothing_of_the_former_pose():
+    picture = ArmPicture()
+    picture.move(10, 20)
+    first = picture.png()
+    for theta_deg in range(0, 360, 45):
+        picture.move(theta_deg, -theta_deg)
+    assert picture.png() != first
+    picture.move(10, 20)
+    assert np.array_equal(imread(io.BytesIO(picture.png())), imread(io.BytesIO(first)))
+
+
+@pytest.mark.parametrize('pose', [(math.nan, 0.0), (0.0, math.inf)])
+def test_a_pose_that_is_none_is_refused(pose):
+    with pytest.raises(ValueError, match=r'finite|NaN|nan|inf'):
+        show_arm(*pose)
+
+
+def test_outside_a_notebook_the_arm_is_told_in_words(capsys):
+    show_arm(23.4, -67.8)
+    assert 'θ1 = 23.4°' in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ('message', 'wrong'),
+    [
+        (JointState(name=['joint1', 'joint2'], position=[0.1, 0.2]), ''),
+        (JointState(name=['joint2', 'gripper', 'joint1'], position=[0.1, 0.2, 0.3]), ''),
+        (JointState(name=['joint1', 'joint2'], position=[0.1]), '2 names, but 1 positions'),
+        (JointState(name=['joint1'], position=[0.1, 0.2]), 'no joint2 among the names'),
+        (JointState(position=[0.1, 0.2]), 'no joint1 and no joint2'),
+        (JointState(name=['joint1', 'joint2'], position=[0.1, math.nan]), 'joint2 is nan'),
+    ],
+)
+def test_messages_without_a_pose(message, wrong):
+    assert wrong in what_is_wrong(message)
+    assert bool(what_is_wrong(message)) is bool(wrong)

@@ -1,0 +1,76 @@
+"""The environment of a lesson."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ENTER = """
+import json, os
+from my_robot_basics.live import classroom
+before = set(os.environ)
+domain_id = classroom.enter()
+assert classroom.enter() == domain_id
+print(json.dumps({'domain_id': domain_id, **os.environ}))
+"""
+
+
+def enter(**environment):
+    env = {
+        k: v for k, v in os.environ.items() if not k.startswith(('ROS_', 'MY_ROBOT', 'RCUTILS'))
+    }
+    env.pop('FASTRTPS_DEFAULT_PROFILES_FILE', None)
+    return subprocess.run(
+        [sys.executable, '-c', ENTER], env=env | environment, capture_output=True, text=True
+    )
+
+
+def seen(**environment):
+    return json.loads(enter(**environment).stdout)
+
+
+def test_sets_what_a_lesson_needs():
+    env = seen(AMENT_PREFIX_PATH='/opt/ros')
+    assert 1 <= env['domain_id'] <= 101
+    assert env['ROS_DOMAIN_ID'] == str(env['domain_id'])
+    assert env['ROS_AUTOMATIC_DISCOVERY_RANGE'] == 'LOCALHOST'
+    assert env['RCUTILS_LOGGING_USE_STDOUT'] == '1'
+    assert env['RCUTILS_COLORIZED_OUTPUT'] == '0'
+    assert env['AMENT_PREFIX_PATH'] == f'{sys.prefix}:/opt/ros'
+    assert Path(env['FASTRTPS_DEFAULT_PROFILES_FILE']).is_file()
+
+
+def test_a_prefix_that_is_there_stays_where_it_is():
+    path = f'/opt/ros:{sys.prefix}'
+    assert seen(AMENT_PREFIX_PATH=path)['AMENT_PREFIX_PATH'] == path
+
+
+@pytest.mark.parametrize(
+    ('given', 'becomes'),
+    [
+        ({'ROS_DOMAIN_ID': '0'}, None),  # a shell's domain is not the lesson's
+        ({'MY_ROBOT_BASICS_DOMAIN_ID': '230'}, 230),
+        ({'MY_ROBOT_BASICS_DOMAIN_ID': '0'}, 0),
+    ],
+)
+def test_the_domain_is_claimed_unless_it_is_given(given, becomes):
+    domain_id = seen(**given)['domain_id']
+    assert domain_id == becomes if becomes is not None else domain_id >= 1
+
+
+@pytest.mark.parametrize('given', ['233', '-1', 'seven', '٣'])
+def test_a_bad_domain_is_refused(given):
+    result = enter(MY_ROBOT_BASICS_DOMAIN_ID=given)
+    assert result.returncode == 1
+    assert 'expected a number from 0 to 232' in result.stderr
+
+
+@pytest.mark.parametrize(('room', 'expected'), [('test', 'SUBNET'), ('', 'LOCALHOST')])
+def test_only_a_grading_room_keeps_a_network_of_its_own(room, expected):
+    given = {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'SUBNET'}
+    if room:
+        given['MY_ROBOT_BASICS_ROOM'] = room
+    assert seen(**given)['ROS_AUTOMATIC_DISCOVERY_RANGE'] == expected
