@@ -1,0 +1,60 @@
+"""The lessons run: twice in one kernel, and, unanswered, up to a check that helps."""
+
+import re
+from contextlib import contextmanager
+from pathlib import Path
+
+import nbformat
+import pytest
+from nbclient import NotebookClient
+
+ROOT = Path(__file__).parents[1]
+SOURCES = sorted(ROOT.glob('solutions/*/*.ipynb'))
+NAMES = [path.stem for path in SOURCES]
+
+
+@pytest.mark.parametrize('name', NAMES)
+def test_a_lesson_runs_twice_in_the_same_kernel(name):
+    lesson = read('solutions', name)
+    with kernel_for(lesson) as run:
+        for _ in range(2):
+            for cell in code_cells(lesson):
+                run(cell)
+                assert errors(cell) == [], cell.id
+                assert 'stderr' not in [output.get('name') for output in cell.outputs], cell.id
+
+
+@pytest.mark.parametrize('name', NAMES)
+def test_an_unanswered_lesson_fails_in_its_checks_alone_and_says_what_is_missing(name):
+    lesson = read('notebooks', name)
+    with kernel_for(lesson) as run:
+        for cell in code_cells(lesson):
+            if 'demo' in cell.metadata.get('tags', []) or cell.id.endswith('-try'):
+                continue
+            run(cell)
+            if cell.metadata.get('nbgrader', {}).get('grade'):
+                [error] = errors(cell)
+                assert error.ename == 'CheckFailed', cell.id
+                assert re.fullmatch(r'expected .+, saw .+: .+', error.evalue), cell.id
+            else:
+                assert errors(cell) == [], cell.id
+
+
+@contextmanager
+def kernel_for(lesson):
+    """Yield a function that runs one cell of the lesson in a fresh kernel."""
+    client = NotebookClient(lesson, timeout=60, allow_errors=True, kernel_name='python3')
+    with client.setup_kernel():
+        yield lambda cell: client.execute_cell(cell, lesson.cells.index(cell))
+
+
+def read(folder, name):
+    return nbformat.read(ROOT / folder / name / f'{name}.ipynb', as_version=4)
+
+
+def code_cells(lesson):
+    return [cell for cell in lesson.cells if cell.cell_type == 'code']
+
+
+def errors(cell):
+    return [output for output in cell.outputs if output.output_type == 'error']
