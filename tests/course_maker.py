@@ -39,7 +39,7 @@ def toy_lesson() -> NotebookNode:
     ]
     demo.outputs[1].execution_count = demo.execution_count = 7
     demo.metadata['editor_noise'] = {'collapsed': True}
-    setup = new_code_cell('import math', id='setup')
+    setup = new_code_cell('from my_robot_basics.live import reset', id='setup')
     setup.outputs = [new_output('stream', text='noise\n')]
     return new_notebook(
         cells=[
@@ -57,15 +57,12 @@ def toy_lesson() -> NotebookNode:
                 solution=True,
             ),
             new_code_cell('double(3)', id='try-it'),
-            _cell(
-                'double-check', '"""Small numbers are doubled"""\nassert double(1) == 2', points=1
-            ),
+            _cell('double-check', _check('Small numbers are doubled', 1), points=1),
             _cell(
                 'double-hidden',
-                '"""Other numbers are doubled too"""\n'
-                'assert double(0) == 0\n'
+                f'{_check("Other numbers are doubled too", 0)}\n'
                 '### BEGIN HIDDEN TESTS\n'
-                'assert double(21) == 42, "hidden canary"\n'
+                'assert student.call("double", 21) == 42, "count again"  # hidden canary\n'
                 '### END HIDDEN TESTS',
                 points=2,
             ),
@@ -78,6 +75,15 @@ def toy_lesson() -> NotebookNode:
             ),
         ],
         metadata={'widgets': {'noise': 1}, 'kernelspec': {'name': 'py99', 'display_name': 'Mine'}},
+    )
+
+
+def _check(title: str, number: int) -> str:
+    return (
+        f'"""{title}"""\n'
+        'from my_robot_basics.checks import expect, student\n'
+        f'seen = student.call("double", {number})\n'
+        f'expect(seen == {2 * number}, expected={2 * number}, seen=seen, hint="add it to itself")'
     )
 
 

@@ -26,7 +26,7 @@ def test_a_release_holds_no_answer_and_no_hidden_test(course):
     assert 'secret answer' not in text
     assert 'canary' not in text
     assert 'HIDDEN' not in text
-    assert 'double(0) == 0' in text
+    assert 'Other numbers are doubled too' in text
 
 
 def test_a_release_keeps_what_a_demonstration_shows_and_clears_the_rest(course):
@@ -92,7 +92,7 @@ def test_a_stale_release_and_strange_files_are_found(course):
     ('cell', 'leak'),
     [
         ('try-it', '### BEGIN SOLUTION'),
-        ('try-it', 'assert double(21) == 42, "hidden canary"'),
+        ('try-it', 'assert student.call("double", 21) == 42, "count again"  # hidden canary'),
         ('title', '    return x + x  # the secret answer'),
         ('explain', 'Because it is added to itself.'),
         ('shown-output', 'return x + x  # the secret answer\n'),

@@ -1,0 +1,105 @@
+"""The command line: python -m grader {release,grade,scores,feedback,demo}."""
+
+import argparse
+import sys
+
+from grader.course import Course
+from grader.demo import demo
+from grader.errors import CourseError
+from grader.feedback import write_feedback
+from grader.grade import find_submissions, grade_all
+from grader.gradebook import register
+from grader.release import release
+from grader.scores import write_scores
+from grader.table import print_rows
+from grader.text import printable
+
+INTERRUPTED = 130
+
+
+def main(arguments: list[str] | None = None, *, course: Course | None = None) -> int:
+    """Run one command; return its exit status: 0, 1 when something needs a look, 130 on Ctrl-C."""
+    asked = _parser().parse_args(arguments)
+    try:
+        return asked.run(course or Course(), asked)
+    except CourseError as error:
+        print(f'course: {printable(error)}', file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        print(
+            '\ncourse: stopped. What was finished is kept; run it again to go on.', file=sys.stderr
+        )
+        return INTERRUPTED
+
+
+def _release(course: Course, asked: argparse.Namespace) -> int:
+    wanted = [asked.assignment] if asked.assignment else course.assignments()
+    if (course.gradebook / 'gradebook.db').exists():
+        for assignment in wanted:
+            register(course, assignment)  # refuses what graded submissions can't follow
+    changed = release(course, asked.assignment or '*')
+    for path in changed:
+        print(f'notebooks/{path}')
+    print(f'{len(changed)} files changed.' if changed else 'Nothing has changed.')
+    return 0
+
+
+def _grade(course: Course, asked: argparse.Namespace) -> int:
+    submissions = find_submissions(course, assignment=asked.assignment, student_id=asked.student)
+    rows = list(print_rows(grade_all(course, submissions, seed=asked.seed), submissions))
+    failed = sum(row.stored is None for row in rows)
+    waiting = sum(row.stored is not None and row.stored.pending for row in rows)
+    print(
+        f'{len(rows) - failed} graded, {waiting} of them wait for a person (…), '
+        f'{failed} could not be graded (–).\nNext: ./course feedback, ./course scores'
+    )
+    return 1 if failed else 0
+
+
+def _scores(course: Course, asked: argparse.Namespace) -> int:
+    print(write_scores(course))
+    return 0
+
+
+def _feedback(course: Course, asked: argparse.Namespace) -> int:
+    pages = write_feedback(course, say=lambda line: print(printable(line)))
+    print(f'{len(pages)} pages in {course.folder("feedback", "", "")}')
+    return 0
+
+
+def _demo(course: Course, asked: argparse.Namespace) -> int:
+    return 0 if demo(root=course.root) else 1
+
+
+def _seed(text: str) -> str:
+    int(text, 16)
+    return text
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog='./course', description='Release, grade, tell.')
+    verbs = parser.add_subparsers(required=True, metavar='VERB')
+
+    verb = verbs.add_parser('release', help="make the students' notebooks/ from solutions/")
+    verb.add_argument('assignment', nargs='?', metavar='ASSIGNMENT', help='only this one')
+    verb.set_defaults(run=_release)
+
+    verb = verbs.add_parser('grade', help='grade what lies in gradebook/submitted/')
+    verb.add_argument('assignment', nargs='?', metavar='ASSIGNMENT', help='only this one')
+    verb.add_argument('--student', metavar='ID', help='only this student')
+    verb.add_argument(
+        '--seed', type=_seed, default='', metavar='HEX', help='replay these inputs of hidden tests'
+    )
+    verb.set_defaults(run=_grade)
+
+    for name, run, text in (
+        ('scores', _scores, 'write gradebook/scores.csv'),
+        ('feedback', _feedback, 'write a page of feedback for each submission'),
+        ('demo', _demo, 'grade a sample class, to see all of it in half a minute'),
+    ):
+        verbs.add_parser(name, help=text).set_defaults(run=run)
+    return parser
+
+
+if __name__ == '__main__':
+    sys.exit(main())

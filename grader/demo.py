@@ -1,0 +1,69 @@
+"""Grade a sample class whose file names say what should come of each notebook."""
+
+import shutil
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+from grader.course import ROOT, Course
+from grader.errors import CourseError
+from grader.feedback import write_feedback
+from grader.grade import Row, find_submissions, grade_all
+from grader.gradebook import verdicts
+from grader.table import print_rows
+
+SAMPLES = ROOT / 'tests' / 'submissions'
+
+OUTCOMES: dict[str, Callable[[list[str]], bool]] = {
+    'pass': lambda outcomes: set(outcomes) == {'passed'},
+    'fail': lambda outcomes: 'failed' in outcomes and 'ungraded' not in outcomes,
+    'mixed': lambda outcomes: set(outcomes) == {'passed', 'failed'},
+    'zero': lambda outcomes: set(outcomes) == {'failed'},
+}
+"""What the second part of a sample's name asks of its checks."""
+
+
+def demo(samples: Path = SAMPLES, *, root: Path = ROOT) -> bool:
+    """Grade `<assignment>-<outcome>-<why>.ipynb`, print the table; return whether all is as named.
+
+    The gradebook is a temporary one, and stays to be looked at.
+    """
+    course = Course(root=root, gradebook=Path(tempfile.mkdtemp(prefix='my_robot_basics-demo-')))
+    expected = {}
+    for sample in sorted(samples.glob('*.ipynb')):
+        assignment, outcome, _ = _parts(sample, course)
+        expected[sample.stem] = outcome
+        folder = course.folder('submitted', sample.stem, assignment)
+        folder.mkdir(parents=True)
+        shutil.copyfile(sample, folder / f'{assignment}.ipynb')
+    submissions = find_submissions(course)
+    rows = print_rows(grade_all(course, submissions), submissions, expected=expected)
+    surprises = [row for row in rows if not _as_named(course, row, expected[row.student_id])]
+    pages = write_feedback(course)
+    for row in surprises:
+        print(f'NOT AS NAMED: {row.student_id}: {row.reason or "no points are missing"}')
+    print(f'{len(submissions) - len(surprises)} of {len(submissions)} came out as named.')
+    if pages:
+        print(f'A page of feedback: {_most_telling(pages, expected)}')
+    return not surprises
+
+
+def _parts(sample: Path, course: Course) -> tuple[str, str, str]:
+    parts = sample.stem.split('-', 2)
+    if len(parts) == 3 and parts[0] in course.assignments() and parts[1] in OUTCOMES:
+        return parts[0], parts[1], parts[2]
+    raise CourseError(
+        f'{sample.name} is not named <assignment>-<{"|".join(OUTCOMES)}>-<why>.ipynb after one of '
+        f'{", ".join(course.assignments())}'
+    )
+
+
+def _as_named(course: Course, row: Row, outcome: str) -> bool:
+    said = verdicts(course, row.student_id, row.assignment).values()
+    outcomes = [verdict.outcome for verdict in said if 'outcome' in verdict]
+    return row.stored is not None and OUTCOMES[outcome](outcomes)
+
+
+def _most_telling(pages: list[Path], expected: dict[str, str]) -> Path:
+    """Return a page of somebody who has something to mend."""
+    return next((p for p in pages if expected[p.parts[-3]] != 'pass'), pages[0])

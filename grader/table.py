@@ -1,0 +1,70 @@
+"""Print a row for each submission as it is graded, and a progress bar on a terminal."""
+
+import shutil
+import sys
+from collections.abc import Iterable, Iterator, Sequence
+
+from tqdm import tqdm
+
+from grader.grade import HandedIn, Row
+from grader.text import columns, pad, printable, shorten
+
+MAX_NAME_COLUMNS = 40
+
+
+def print_rows(
+    rows: Iterable[Row], submissions: Sequence[HandedIn], *, expected: dict[str, str] | None = None
+) -> Iterator[Row]:
+    """Print each row as it comes, and pass it on.
+
+    `expected` adds a column: what should come of each student.
+    """
+    student = _widest('student', (found.student_id for found in submissions))
+    assignment = _widest('assignment', (found.assignment for found in submissions))
+    extra = _widest('expected', expected.values()) if expected else 0
+
+    def line(*fields: str) -> str:
+        widths = (student, assignment, *([extra] if expected else []), 9)
+        padded = [pad(shorten(field, w), w) for field, w in zip(fields[:-1], widths, strict=True)]
+        return _fit('  '.join([*padded, fields[-1]]).rstrip())
+
+    more = ['expected'] if expected else []
+    print(line('student', 'assignment', *more, 'score', 'reason'), flush=True)
+    with tqdm(rows, total=len(submissions), disable=None, leave=False, unit='notebook') as bar:
+        for row in bar:
+            more = [expected.get(row.student_id, '')] if expected else []
+            text = line(
+                printable(row.student_id),
+                printable(row.assignment),
+                *more,
+                score_of(row),
+                why(row),
+            )
+            tqdm.write(text)
+            sys.stdout.flush()
+            yield row
+
+
+def score_of(row: Row) -> str:
+    """Return a row's score as text: '2/5', '2/5 …' where some of it waits for a person."""
+    if row.stored is None:
+        return '–'
+    waits = ' …' if row.stored.pending else ''
+    return f'{row.stored.score:g}/{row.stored.max_score:g}{waits}'
+
+
+def why(row: Row) -> str:
+    """Return the reason of a row as one line, and what its score was before, if that changed."""
+    stored, text = row.stored, printable(row.reason)
+    if stored and stored.former is not None and stored.former != stored.score:
+        text = f'(was {stored.former:g}) {text}'
+    return text
+
+
+def _widest(title: str, names: Iterable[str]) -> int:
+    return min(MAX_NAME_COLUMNS, max(columns(printable(name)) for name in (title, *names)))
+
+
+def _fit(line: str) -> str:
+    """Cut a line to the terminal's width; where nobody sees columns, keep all of it."""
+    return shorten(line, shutil.get_terminal_size().columns) if sys.stdout.isatty() else line

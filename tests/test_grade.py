@@ -1,0 +1,180 @@
+import os
+import tempfile
+
+import pytest
+from course_maker import TOY, answered, executed, make_course, submit
+
+from grader import grade
+from grader.course import Course
+from grader.demo import demo
+from grader.errors import CourseError
+from grader.execute import Execution
+from grader.grade import find_submissions, grade_all
+from grader.gradebook import records, register
+from grader.release import release
+from grader.table import print_rows
+
+RIGHT = 'def double(x):\n    return 2 * x'
+WRONG = 'def double(x):\n    return x + 1'
+
+
+@pytest.fixture(scope='module')
+def released(tmp_path_factory):
+    course = make_course(tmp_path_factory.mktemp('grade'))
+    release(course)
+    register(course, TOY)
+    return course
+
+
+@pytest.fixture
+def course(released, tmp_path, monkeypatch):
+    """A gradebook of its own; in the rooms' place, a look at the answer's text."""
+
+    def execute(notebook, *, extra_files=(), seed=''):
+        answer = next(cell.source for cell in notebook.cells if cell.id == 'double')
+        assert len(seed) == 64 or seed == 'abc'
+        if 'crash' in answer:
+            raise OSError('no room')
+        reason = '' if '2 * x' in answer else 'expected 2, saw 3: add it to itself'
+        notebook = executed(notebook, {'double-check': reason, 'double-hidden': reason})
+        return Execution(notebook=notebook, verdicts=(), notes=())
+
+    monkeypatch.setattr(grade, 'execute', execute)
+    gradebook = tmp_path / 'gradebook'
+    gradebook.mkdir()
+    (gradebook / 'gradebook.db').write_bytes(
+        (released.gradebook / 'gradebook.db').read_bytes()  # making a database takes long
+    )
+    return Course(root=released.root, gradebook=gradebook)
+
+
+def rows_of(course, **wanted):
+    return {row.student_id: row for row in grade_all(course, find_submissions(course, **wanted))}
+
+
+def test_each_submission_gets_its_row_and_its_scores(course):
+    submit(course, 'ada', answered(course, RIGHT))
+    submit(course, 'bob', answered(course, WRONG))
+    submit(course, '小明', b'')
+    rows = rows_of(course)
+    assert [(name, row.stored.score) for name, row in rows.items()] == [
+        ('ada', 3.0),
+        ('bob', 0.0),
+        ('小明', 0.0),
+    ]
+    assert rows['bob'].reason == 'expected 2, saw 3: add it to itself'
+    assert 'is not JSON' in rows['小明'].reason
+    assert len(records(course)) == 9
+
+
+@pytest.mark.parametrize(
+    ('content', 'reason'),
+    [
+        (b'\x00\xff', 'not JSON'),
+        (b'[1, 2]', 'not a notebook'),
+        (b'{"nbformat": 4, "cells": []}', 'has no cells'),
+        (b' ' * 50_000_000, '50 MB'),
+        (None, 'there is no file'),
+    ],
+)
+def test_what_cannot_be_read_is_zero_with_its_reason_and_stays_as_it_was(course, content, reason):
+    path = submit(course, 'ada', content or b'')
+    if content is None:
+        path.rename(path.with_name('99_other.ipynb'))
+    before = {p: p.read_bytes() for p in path.parent.iterdir()}
+    row = rows_of(course)['ada']
+    assert reason in row.reason
+    assert (row.stored.score, row.stored.pending) == (0.0, False)
+    assert before == {p: p.read_bytes() for p in path.parent.iterdir()}
+
+
+def test_a_notebook_without_an_answer_cell_is_graded_as_one_without_answers(course):
+    notebook = answered(course, RIGHT)
+    notebook.cells = notebook.cells[:3]
+    submit(course, 'ada', notebook)
+    assert rows_of(course)['ada'].stored.score == 0.0
+
+
+def test_what_is_out_of_place_is_told_and_stops_nothing(course):
+    submit(course, 'ada', answered(course, RIGHT))
+    submitted = course.folder('submitted', '', '')
+    (submitted / 'loose.ipynb').touch()
+    (submitted / 'bob').mkdir()
+    (submitted / 'bob' / f'{TOY}.ipynb').touch()
+    (submitted / 'eve' / '99_other').mkdir(parents=True)
+    (submitted / '.DS_Store').touch()
+    (submitted / os.fsdecode(b'\xff\xfe') / TOY).mkdir(parents=True)
+    rows = rows_of(course)
+    assert {name: row.reason[:30] for name, row in rows.items()} == {
+        'ada': '',
+        'bob': "a file where an assignment's f",
+        'eve': 'there is no such assignment: e',
+        'loose.ipynb': "a file where a student's folde",
+        '\udcff\udcfe': "the folder's name is not UTF-8",
+    }
+    assert [name for name, row in rows.items() if row.stored] == ['ada']
+
+
+def test_the_graders_own_failure_stores_nothing_and_the_next_is_graded(course):
+    submit(course, 'ada', answered(course, '# crash'))
+    submit(course, 'bob', answered(course, RIGHT))
+    rows = rows_of(course)
+    assert rows['ada'].reason == 'not graded, the grader failed: OSError: no room'
+    assert rows['ada'].stored is None
+    assert {record.student_id for record in records(course)} == {'bob'}
+
+
+def test_one_assignment_and_one_student_can_be_asked_for(course):
+    submit(course, 'ada', answered(course, RIGHT))
+    submit(course, 'bob', answered(course, WRONG))
+    assert rows_of(course, student_id='bob', assignment=TOY).keys() == {'bob'}
+    with pytest.raises(CourseError, match=f'no submission of {TOY} by zoe'):
+        find_submissions(course, student_id='zoe', assignment=TOY)
+    with pytest.raises(CourseError, match="no assignment '99'"):
+        find_submissions(course, assignment='99')
+
+
+def test_an_empty_gradebook_is_told_where_submissions_go(tmp_path, released):
+    empty = Course(root=released.root, gradebook=tmp_path / 'none')
+    with pytest.raises(CourseError, match='STUDENT/ASSIGNMENT'):
+        find_submissions(empty)
+
+
+def test_a_seed_can_be_given(course):
+    submit(course, 'ada', answered(course, RIGHT))
+    rows = list(grade_all(course, find_submissions(course), seed='abc'))
+    assert rows[0].stored.score == 3.0
+
+
+def test_the_table_shows_scores_reasons_and_no_escape(course, capsys):
+    submit(course, 'a\x1b[31m', answered(course, WRONG))
+    submit(course, '小明', answered(course, RIGHT, explained='so'))
+    submissions = find_submissions(course)
+    list(print_rows(grade_all(course, submissions), submissions))
+    submit(course, 'a\x1b[31m', answered(course, RIGHT))
+    list(print_rows(grade_all(course, submissions), submissions))
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[:3] == [
+        'student    assignment  score      reason',
+        'a\\x1b[31m  00_toy      0/5        expected 2, saw 3: add it to itself',
+        '小明       00_toy      3/5 …',
+    ]
+    assert lines[4] == 'a\\x1b[31m  00_toy      3/5        (was 0)'
+
+
+def test_a_demo_compares_what_came_with_what_the_names_say(course, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(tempfile, 'tempdir', str(tmp_path))
+    samples = tmp_path / 'samples'
+    samples.mkdir()
+    for name, answer in (('pass-right', RIGHT), ('fail-wrong', WRONG), ('zero-wrong', WRONG)):
+        source = submit(course, 'x', answered(course, answer))
+        source.rename(samples / f'{TOY}-{name}.ipynb')
+    (samples / f'{TOY}-fail-no_json.ipynb').write_text('')
+    assert demo(samples, root=course.root)
+    assert '4 of 4 came out as named.\nA page of feedback: /' in capsys.readouterr().out
+    (samples / f'{TOY}-fail-wrong.ipynb').rename(samples / f'{TOY}-pass-wrong.ipynb')
+    assert not demo(samples, root=course.root)
+    assert f'NOT AS NAMED: {TOY}-pass-wrong: expected 2, saw 3' in capsys.readouterr().out
+    (samples / f'{TOY}-perhaps-wrong.ipynb').write_text('')
+    with pytest.raises(CourseError, match='is not named'):
+        demo(samples, root=course.root)
