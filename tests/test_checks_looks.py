@@ -45,20 +45,23 @@ def test_a_timer_is_judged_exactly_on_the_robots_clock(capfd, node, seconds, hz,
 @pytest.mark.parametrize(
     ('node', 'seen'),
     [
-        ('one_hz', '1.0 Hz over 10 s (10 messages)'),
-        ('too_slow', '4.75 Hz over 10 s (47 messages)'),
-        ('too_fast', '5.25 Hz over 10 s (52 messages)'),
+        ('one_hz', r'1\.0 Hz over 10 s \(10 messages\)'),
+        # only a timer explains the first; a thread that can't keep up would look like these
+        ('too_slow', r'4\.[67]\d* Hz over 4 s'),
+        ('too_fast', r'5\.[23]\d* Hz over 4 s'),
     ],
 )
-def test_a_wrong_rate_fails_on_the_robots_clock(node, seen):
+def test_a_wrong_rate_fails(node, seen):
     with running(node):
         recording = topic(TOPIC).record(seconds=10.0)
-    assert recording.clock == 'simulated'
-    with pytest.raises(CheckFailed) as failed:
+        assert recording.clock == 'simulated'
+        with pytest.raises(
+            CheckFailed, match=rf'expected 5\.0 Hz, saw {seen}.*: the timer period'
+        ):
+            recording.assert_rate(hz=5.0)
+    # the node is gone, and so is the second opinion
+    with pytest.raises(CheckFailed, match=r'saw .* Hz over 10 s'):
         recording.assert_rate(hz=5.0)
-    assert str(failed.value) == (
-        f'expected 5.0 Hz, saw {seen}: the timer period is in seconds, and period = 1 / rate'
-    )
 
 
 IGNORES = "note: /kinematics_publisher ignores the robot's clock (use_sim_time); judged on the wall clock\n"  # noqa: E501

@@ -18,6 +18,9 @@ IGNORES = 'the node ignores the clock'
 FINER = (1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01)
 """Steps of the clock, as parts of the one asked for, tried until messages skip a tick."""
 
+Again = Callable[[str, float], Recording]
+"""Makes one more recording on the wall clock, of so many seconds, for the reason given."""
+
 
 class Ears:
     """A subscription that keeps every message with the wall time at which it was sent."""
@@ -53,12 +56,14 @@ class Ears:
         self.heard.append((message, info['source_timestamp']))
 
 
-def simulated(watcher: Watcher, ears: Ears, *, seconds: float, step_sec: float) -> Recording | str:
+def simulated(
+    watcher: Watcher, ears: Ears, *, seconds: float, step_sec: float, again: Again
+) -> Recording | str:
     """A recording on the robot's clock, or a clause that says why there is none."""
     try:
         with SimulatedClock(watcher, needed=set(ears.publishers())) as clock:
             _hold(watcher, ears, clock)
-            recording = _drive(ears, clock, seconds=seconds, step_sec=step_sec)
+            recording = _drive(ears, clock, seconds=seconds, step_sec=step_sec, again=again)
     except Inconclusive as why:
         return str(why)
     return recording if recording.is_even() else 'its messages are not evenly spaced'
@@ -70,7 +75,7 @@ def wall(
     *,
     why: str,
     seconds: float = WALL_SEC,
-    again: Callable[[str, float], Recording] | None = None,
+    again: Again | None = None,
 ) -> Recording:
     """A recording of `seconds` on the wall clock, beginning at a message."""
     began_ns = time.time_ns()
@@ -112,7 +117,9 @@ def _hold(watcher: Watcher, ears: Ears, clock: SimulatedClock) -> None:
             raise Inconclusive(IGNORES)
 
 
-def _drive(ears: Ears, clock: SimulatedClock, *, seconds: float, step_sec: float) -> Recording:
+def _drive(
+    ears: Ears, clock: SimulatedClock, *, seconds: float, step_sec: float, again: Again
+) -> Recording:
     step_ns, start_ns = _find_step(ears, clock, step_sec=step_sec)
     for _ in range(round(seconds * 1e9 / step_ns)):
         clock.tick(step_ns)
@@ -129,6 +136,7 @@ def _drive(ears: Ears, clock: SimulatedClock, *, seconds: float, step_sec: float
         seconds=seconds,
         start_sec=start_ns / 1e9,
         step_sec=step_ns / 1e9,
+        look_again=lambda longer: again('', longer),
     )
 
 

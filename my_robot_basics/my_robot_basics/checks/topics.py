@@ -38,9 +38,12 @@ class Topic:
         """
         with Watcher() as watcher:
             ears = self._listen(watcher)
-            recording = looks.simulated(watcher, ears, seconds=seconds, step_sec=step_sec)
+            again = self._record_on_wall
+            recording = looks.simulated(
+                watcher, ears, seconds=seconds, step_sec=step_sec, again=again
+            )
             if isinstance(recording, str):
-                recording = looks.wall(watcher, ears, why=recording, again=self._record_on_wall)
+                recording = looks.wall(watcher, ears, why=recording, again=again)
             if not recording.messages:
                 self._fail_silent(watcher, seen=f'no message in {recording.seconds:g} s')
         return recording

@@ -1,0 +1,46 @@
+"""The pictures of failing checks are PNGs, shown once, before the sentence."""
+
+import pytest
+from IPython.core.interactiveshell import InteractiveShell
+from my_robot_basics.checks import CheckFailed, errors, pictures
+from test_checks_recording import every, joint_state, recording
+
+PNG = b'\x89PNG\r\n\x1a\n'
+
+
+@pytest.mark.parametrize('clock', ['simulated', 'wall'])
+@pytest.mark.parametrize('hz', [None, 5.0])
+@pytest.mark.parametrize('times', [every(0.2), every(1.0, 3), []])
+def test_arrivals(clock, hz, times):
+    picture = pictures.arrivals(recording(times, clock=clock), hz=hz)
+    assert picture.startswith(PNG)
+    assert picture == pictures.arrivals(recording(times, clock=clock), hz=hz)
+
+
+@pytest.mark.parametrize(
+    ('assertion', 'arguments'),
+    [
+        ('assert_rate', {'hz': 1.0}),
+        ('assert_positions_rad', {'low': (-1.0, -1.0), 'high': (1.0, 1.0)}),
+    ],
+)
+def test_one_picture_is_shown_with_the_sentence(monkeypatch, assertion, arguments):
+    shown = []
+    monkeypatch.setattr(errors, 'show', shown.append)
+    made = recording(message=lambda time: joint_state(time, position=[23.4, -40.0]))
+    with pytest.raises(CheckFailed):
+        getattr(made, assertion)(**arguments)
+    assert [picture.startswith(PNG) for picture in shown] == [True]
+
+
+def test_an_arm_with_more_joints_has_no_picture():
+    assert pictures.misread([1.0, 2.0, 3.0]) is None
+
+
+def test_show_displays_in_a_notebook(monkeypatch, capsys):
+    InteractiveShell.instance()
+    errors.show(pictures.arrivals(recording(), hz=5.0))
+    InteractiveShell.clear_instance()
+    assert 'Image' in capsys.readouterr().out
+    errors.show(b'no notebook, no picture')
+    assert capsys.readouterr().out == ''

@@ -1,0 +1,207 @@
+"""What a recording may say: assertions on made-up arrivals, each with a near miss."""
+
+import math
+
+import pytest
+from builtin_interfaces.msg import Time
+from geometry_msgs.msg import Point
+from my_robot_basics.checks import CheckFailed
+from my_robot_basics.checks.recording import Recording, Sample
+from sensor_msgs.msg import JointState
+
+START_SEC = 1000.0
+LOW, HIGH = (-math.pi / 2, -2.1), (math.pi / 2, 2.1)
+
+
+def joint_state(time_sec, **changes):
+    message = JointState(name=['joint1', 'joint2'], position=[0.5, -1.0])
+    message.header.frame_id = 'base_link'
+    stamp = changes.pop('stamp', START_SEC + time_sec)
+    message.header.stamp = Time(sec=int(stamp), nanosec=round(stamp % 1 * 1e9))
+    for name, value in changes.items():
+        setattr(message, name, value)
+    return message
+
+
+def recording(times=None, *, clock='simulated', message=joint_state, **changes):
+    times = [0.2 * i for i in range(1, 51)] if times is None else times
+    samples = (Sample(message(time), time, START_SEC + time) for time in times)
+    fields = {'publishers': ('/a',), 'seconds': 10.0, 'start_sec': START_SEC, 'step_sec': 0.1}
+    fields |= changes
+    return Recording(topic_name='/t', messages=tuple(samples), clock=clock, **fields)
+
+
+def every(period_sec, count=50):
+    return [period_sec * i for i in range(1, count + 1)]
+
+
+@pytest.mark.parametrize(
+    ('clock', 'period_sec', 'passes'),
+    [
+        ('simulated', 0.2, True),
+        ('simulated', 1 / 4.91, True),
+        ('simulated', 1 / 4.89, False),
+        ('simulated', 1 / 5.09, True),
+        ('simulated', 1 / 5.11, False),
+        ('wall', 1 / 4.86, True),
+        ('wall', 1 / 4.84, False),
+        ('wall', 1 / 5.14, True),
+        ('wall', 1 / 5.16, False),
+        ('wall', 1.0, False),
+        ('wall', 0.04, False),
+    ],
+)
+def test_a_rate_has_a_tolerance(clock, period_sec, passes):
+    made = recording(every(period_sec), clock=clock)
+    if passes:
+        made.assert_rate(hz=5.0)
+    else:
+        with pytest.raises(CheckFailed, match=r'expected 5\.0 Hz, saw'):
+            made.assert_rate(hz=5.0)
+
+
+@pytest.mark.parametrize(
+    ('times', 'even'),
+    [
+        (every(0.2), True),
+        (every(0.2, 2), True),
+        ([0.1 * math.ceil(i / 5.25 * 10) for i in range(1, 50)], True),
+        ([5.0, 10.0], True),
+        ([0.2], False),
+        ([], False),
+        # five at once, pairs, and a thread that misses a tick now and then
+        ([i // 5 + 1.0 for i in range(50)], False),
+        ([0.4 * (i // 2 + 1) for i in range(50)], False),
+        ([0.2 * i + 0.1 * (i % 7 > 4) for i in range(1, 50)], True),
+        ([0.2 * i + 0.1 * (i // 7 + i // 10) for i in range(1, 50)], False),
+        ([0.2 * i + (0.2 if i > 25 else 0.0) for i in range(1, 50)], False),
+    ],
+)
+def test_even_is_what_one_timer_explains(times, even):
+    assert recording(times).is_even() is even
+
+
+def test_on_the_wall_clock_the_largest_gap_counts():
+    bursts = [i // 5 + 1.0 + 0.001 * (i % 5) for i in range(-5, 46)][6:]
+    with pytest.raises(CheckFailed, match=r'saw pauses of 1\.0 s over 10 s \(45 messages\)'):
+        recording(bursts, clock='wall').assert_rate(hz=5.0)
+    hiccup = [*every(0.2, 10), 2.3, *(t + 2.0 for t in every(0.2)[1:])]
+    recording(hiccup, clock='wall').assert_rate(hz=5.0)
+
+
+@pytest.mark.parametrize(
+    ('clock', 'times', 'looks'),
+    [
+        ('wall', every(0.2), []),
+        ('wall', every(1.0), [4.0]),
+        ('simulated', every(0.2), []),
+        # one of every seven is late: a slow timer, or a thread that could not keep up
+        ('simulated', [0.2 * i + 0.1 * (i // 7) for i in range(1, 50)], [4.0]),
+    ],
+)
+def test_a_second_look_decides_where_the_first_leaves_a_doubt(clock, times, looks):
+    asked = []
+
+    def look_again(seconds):
+        asked.append(seconds)
+        return recording(every(0.2), clock='wall')
+
+    recording(times, clock=clock, look_again=look_again).assert_rate(hz=5.0)
+    assert asked == looks
+
+
+def test_a_plain_timer_of_another_period_leaves_no_doubt():
+    with pytest.raises(CheckFailed, match=r'saw 1\.0 Hz'):
+        recording(every(1.0), look_again=lambda _: pytest.fail('looked')).assert_rate(hz=5.0)
+
+
+def test_a_second_publisher_is_named_before_the_rate():
+    with pytest.raises(CheckFailed, match=r'expected one publisher on /t, saw 2 \(/a, /b\)'):
+        recording(every(1.0), publishers=('/a', '/b')).assert_rate(hz=5.0)
+
+
+def test_a_note_is_printed_when_the_rate_is_right(capsys):
+    recording(every(0.2), clock='wall', note='note: careful').assert_rate(hz=5.0)
+    assert capsys.readouterr().out == 'note: careful\n'
+
+
+def swapped(time_sec):
+    return joint_state(time_sec, name=['joint2', 'joint1'], position=[2.0, 1.5])
+
+
+def test_names_may_come_in_any_order_with_their_positions():
+    made = recording(message=swapped)
+    made.assert_joint_names(('joint1', 'joint2'))
+    made.assert_positions_rad(low=LOW, high=HIGH, names=('joint1', 'joint2'))
+    with pytest.raises(CheckFailed):
+        made.assert_positions_rad(low=LOW, high=HIGH)
+
+
+MESSAGES = {
+    'wrong names': ({'name': ['joint_1', 'joint_2']}, 'saw joint_1, joint_2'),
+    'no names': ({'name': []}, 'expected the joint names joint1, joint2, saw none'),
+    'one name': ({'name': ['joint1']}, 'saw joint1'),
+    'degrees': ({'position': [23.4, -67.8]}, r'saw \(23.4, -67.8\), which looks like degrees'),
+    'out of range': ({'position': [0.1, 200.0]}, 'keep each joint within its range'),
+    'not a number': ({'position': [math.nan, 0.0]}, r'saw \(nan, 0\)'),
+    'no position': ({'position': []}, 'expected 2 positions in each message, saw 0'),
+    'three positions': ({'position': [0.0] * 3}, 'saw 3'),
+    'other frame': ({'frame_id': 'world'}, "expected frame_id 'base_link', saw 'world'"),
+    'no stamp': ({'stamp': 0.0}, 'saw a stamp of 0'),
+    'one stamp': ({'stamp': START_SEC}, 'saw a stamp that does not advance'),
+}
+
+
+@pytest.mark.parametrize(('changes', 'reason'), MESSAGES.values(), ids=MESSAGES)
+@pytest.mark.parametrize('clock', ['simulated', 'wall'])
+def test_a_wrong_message_is_explained(clock, changes, reason):
+    def message(time_sec):
+        rest = {k: v for k, v in changes.items() if k != 'frame_id'}
+        made = joint_state(time_sec, **rest)
+        made.header.frame_id = changes.get('frame_id', 'base_link')
+        return made
+
+    def check(made):
+        made.assert_joint_names(('joint1', 'joint2'))
+        made.assert_positions_rad(low=LOW, high=HIGH)
+        made.assert_frame_id('base_link')
+        made.assert_stamps()
+
+    check(recording(clock=clock))
+    with pytest.raises(CheckFailed, match=reason):
+        check(recording(clock=clock, message=message))
+
+
+@pytest.mark.parametrize(
+    ('clock', 'off_sec', 'passes'),
+    [
+        ('simulated', 0.3, True),
+        ('simulated', -0.3, True),
+        ('simulated', 0.7, False),
+        ('simulated', -8.0, False),
+        ('wall', 0.7, True),
+        ('wall', -1.2, False),
+    ],
+)
+def test_a_stamp_is_near_the_clock(clock, off_sec, passes):
+    made = recording(
+        clock=clock, message=lambda time: joint_state(time, stamp=START_SEC + time + off_sec)
+    )
+    if passes:
+        made.assert_stamps()
+    else:
+        with pytest.raises(CheckFailed, match=r'(ahead of|behind) it: set'):
+            made.assert_stamps()
+
+
+def test_another_type_is_named():
+    made = recording(message=lambda time: Point())
+    with pytest.raises(CheckFailed, match='expected messages with a name on /t, saw Point'):
+        made.assert_joint_names(('joint1', 'joint2'))
+
+
+@pytest.mark.parametrize('assertion', ['assert_joint_names', 'assert_frame_id', 'assert_stamps'])
+def test_no_message_proves_nothing(assertion):
+    arguments = {'assert_joint_names': [('joint1',)], 'assert_frame_id': ['base_link']}
+    with pytest.raises(CheckFailed, match='expected messages on /t, saw none'):
+        getattr(recording([]), assertion)(*arguments.get(assertion, []))
