@@ -154,6 +154,9 @@ def _mend(
 def _answer(cell: NotebookNode, parts: list[NotebookNode], notes: list[str]) -> None:
     """Put the student's text into an answer cell."""
     name = grade_id(cell)
+    # the released text beside an answer is a copy that was left over: it would undo the answer
+    written = [part for part in parts if part.source.strip() not in ('', cell.source.strip())]
+    parts = written or parts[:1]
     if not parts:
         notes.append(f'the answer cell `{name}` was missing: it was put back, without an answer')
         return
