@@ -3,6 +3,7 @@
 import asyncio
 import contextlib
 import os
+import queue
 import shutil
 import sys
 import tempfile
@@ -11,6 +12,8 @@ from collections.abc import Awaitable, Callable
 from pathlib import Path
 from subprocess import DEVNULL
 
+import psutil
+import zmq.asyncio
 from jupyter_client import AsyncKernelManager
 from jupyter_client.kernelspec import KernelSpec, KernelSpecManager
 
@@ -20,6 +23,10 @@ from grader.outputs import CellRun, Displays
 START_TIMEOUT_SEC = 60.0
 INTERRUPT_GRACE_SEC = 2.0
 STOP_GRACE_SEC = 2.0
+OUTPUT_GRACE_SEC = 2.0
+"""How long a cell's last outputs may come after its reply."""
+MAX_MESSAGE_BYTES = 32_000_000
+"""A kernel that sends more at once is cut off; the message is lost."""
 
 OnInput = Callable[[str], Awaitable[str]]
 """Answers a kernel's input() request."""
@@ -52,7 +59,10 @@ class Kernel:
         self.room = room
         self.folder = Path(tempfile.mkdtemp(prefix='mrb-', dir=_temporary_folder()))
         self._environment = _environment(room, domain_id, seed, self.folder)
+        self._context = zmq.asyncio.Context()
+        self._context.setsockopt(zmq.MAXMSGSIZE, MAX_MESSAGE_BYTES)
         self._manager = AsyncKernelManager(
+            context=self._context,
             kernel_spec_manager=_OurKernelSpec(),
             transport='ipc',
             ip=str(self.folder / 'zmq'),
@@ -63,19 +73,18 @@ class Kernel:
         self.alive = False
 
     async def start(self) -> 'Kernel':
-        """Start the kernel and wait until it answers; raises RoomFailure."""
+        """Start the kernel and wait until its outputs are heard; raises RoomFailure."""
         work = self.folder / 'work'
-        work.mkdir()
         try:
+            work.mkdir()
             await self._manager.start_kernel(
                 cwd=str(work), env=self._environment, stdout=DEVNULL, stderr=DEVNULL
             )
-            self._client = self._manager.client()
-            self._client.start_channels(hb=False)
-            await self._client.wait_for_ready(timeout=START_TIMEOUT_SEC)
+            await asyncio.wait_for(self._connect(), START_TIMEOUT_SEC)
         except Exception as error:
             await self.stop()
-            raise RoomFailure(f'the {self.room} kernel did not start: {error}') from error
+            why = str(error) or type(error).__name__
+            raise RoomFailure(f'the {self.room} kernel did not start: {why}') from error
         self.alive = True
         return self
 
@@ -107,8 +116,7 @@ class Kernel:
                 if not await self._finished(done, INTERRUPT_GRACE_SEC):
                     await self._kill()
         finally:
-            if not done.done():
-                done.cancel()
+            done.cancel()
             with contextlib.suppress(asyncio.CancelledError):
                 await done
         result.died = not self.alive
@@ -117,21 +125,49 @@ class Kernel:
 
     async def stop(self) -> None:
         """End the kernel, politely first so that its DDS resources go too, and its folder."""
-        if self._manager.has_kernel:
-            with contextlib.suppress(Exception):
-                if self.alive:
-                    self._client.shutdown()
-                    await asyncio.wait_for(self._exited(), STOP_GRACE_SEC)
-            await self._kill()
+        if self.alive and self._manager.has_kernel:
+            self._client.shutdown()
+            with contextlib.suppress(TimeoutError):
+                await asyncio.wait_for(self._exited(), STOP_GRACE_SEC)
+        await self._kill()
         if self._client is not None:
             self._client.stop_channels()
+        self._context.destroy(linger=0)
         shutil.rmtree(self.folder, ignore_errors=True)
-        self.alive = False
+
+    async def _connect(self) -> None:
+        """Wait until the kernel's sockets are there, and until it knows that we listen.
+
+        jupyter_client's wait_for_ready asks and flushes by fractions of a second; a kernel says
+        itself when it has taken a subscription, and what it is sent earlier waits in its queue.
+        """
+        while not Path(f'{self._manager.ip}-{self._manager.iopub_port}').exists():
+            await self._expect_alive()
+            await asyncio.sleep(0.01)
+        self._client = self._manager.client()
+        self._client.start_channels(hb=False)
+        kind = None
+        while kind != 'iopub_welcome':
+            await self._expect_alive()
+            with contextlib.suppress(queue.Empty):
+                kind = (await self._client.get_iopub_msg(timeout=0.5))['msg_type']
+
+    async def _expect_alive(self) -> None:
+        if not await self._manager.is_alive():
+            raise RoomFailure('its process ended')
 
     async def _kill(self) -> None:
+        """Kill the kernel's process group, and what left the group but kept its environment."""
         self.alive = False
         if self._manager.has_kernel:
+            await self._manager.provisioner.kill()
+            with contextlib.suppress(TimeoutError):
+                await asyncio.wait_for(self._exited(), STOP_GRACE_SEC)
             await self._manager.shutdown_kernel(now=True)
+        for process in psutil.process_iter():
+            with contextlib.suppress(psutil.Error):
+                if process.environ().get('IPYTHONDIR') == self._environment['IPYTHONDIR']:
+                    process.kill()
 
     async def _exited(self) -> None:
         while await self._manager.is_alive():
@@ -153,37 +189,69 @@ class Kernel:
         return True
 
     async def _collect(self, request: str, result: CellRun, on_input: OnInput | None) -> None:
-        """Gather a cell's outputs until the kernel is idle again, and its reply."""
-        answering = asyncio.ensure_future(self._answer_inputs(request, on_input))
+        """Gather a cell's outputs until the kernel has replied and is idle again."""
+        outputs = asyncio.ensure_future(self._gather_outputs(request, result))
+        inputs = asyncio.ensure_future(self._answer_inputs(request, on_input))
+        reply = asyncio.ensure_future(self._next(self._client.get_shell_msg, request))
         try:
-            while True:
-                message = await self._client.get_iopub_msg(timeout=None)
-                kind, content = message['msg_type'], message['content']
-                if kind == 'update_display_data':
-                    self._displays.update(message)
-                if message['parent_header'].get('msg_id') != request:
-                    continue
-                if kind == 'status' and content['execution_state'] == 'idle':
-                    break
-                self._displays.remember(message, result.keep(message))
-            while True:
-                reply = await self._client.get_shell_msg(timeout=None)
-                if reply['parent_header'].get('msg_id') == request:
-                    result.expressions = reply['content'].get('user_expressions', {})
-                    return
+            await asyncio.wait([inputs, reply], return_when=asyncio.FIRST_COMPLETED)
+            if inputs.done():
+                inputs.result()  # it only ends by an exception
+            content = (await reply)[1]
+            # an idle message may be lost: a kernel that floods its socket is not waited for
+            await asyncio.wait([outputs], timeout=OUTPUT_GRACE_SEC)
+            result.conclude(content)
         finally:
-            answering.cancel()
+            for task in (outputs, inputs, reply):
+                task.cancel()
+
+    async def _gather_outputs(self, request: str, result: CellRun) -> None:
+        while True:
+            kind, content = await self._next(
+                self._client.get_iopub_msg, request, also='update_display_data'
+            )
+            if kind == 'status' and content.get('execution_state') == 'idle':
+                return
+            if kind == 'update_display_data':
+                self._displays.update(content)
+            elif kind == 'clear_output':
+                result.clear()
+            else:
+                self._displays.remember(content, result, result.keep(kind, content))
 
     async def _answer_inputs(self, request: str, on_input: OnInput | None) -> None:
-        while on_input is not None:
-            message = await self._client.get_stdin_msg(timeout=None)
-            if message['parent_header'].get('msg_id') == request:
-                self._client.input(await on_input(message['content']['prompt']))
+        while True:
+            _, content = await self._next(self._client.get_stdin_msg, request)
+            if on_input is not None:
+                self._client.input(await on_input(str(content.get('prompt'))))
+
+    async def _next(
+        self, get: Callable[..., Awaitable[dict]], request: str, *, also: str = ''
+    ) -> tuple[str, dict]:
+        """Return type and content of the next message that belongs to a request.
+
+        The student's code holds its kernel's sockets and may send anything at all: what is not a
+        message is passed over.
+        """
+        while True:
+            await asyncio.sleep(0)  # a flood of messages must not keep time limits waiting
+            try:
+                message = await get(timeout=None)
+            except zmq.ZMQError:
+                raise
+            except Exception:
+                continue
+            parent, content = message['parent_header'], message['content']
+            ours = isinstance(parent, dict) and parent.get('msg_id') == request
+            if isinstance(content, dict) and (ours or message['msg_type'] == also):
+                return message['msg_type'], content
 
 
 def _environment(room: str, domain_id: int, seed: str, folder: Path) -> dict[str, str]:
     """What a kernel's process is told: nothing of the caller's own, but where things are."""
     passed_on = ('PATH', 'HOME', 'LANG', 'LC_ALL', 'TMPDIR', 'AMENT_PREFIX_PATH', 'TZ')
+    # the ROS wheels start an interpreter anew to set the one, unless they find the other
+    passed_on += ('LD_LIBRARY_PATH', '_ROS_WHEELS_BOOTSTRAP_COMPLETE')
     environment = {name: os.environ[name] for name in passed_on if name in os.environ}
     environment |= {
         'MY_ROBOT_BASICS_ROOM': room,

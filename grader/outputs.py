@@ -1,4 +1,7 @@
-"""What one cell put out: gathered from a kernel's messages, bounded in size."""
+"""What one cell put out: gathered from a kernel's messages, bounded in size.
+
+The messages may be a student's forgeries: what does not have the shape of an output is none.
+"""
 
 from dataclasses import dataclass, field
 
@@ -7,8 +10,10 @@ from nbformat import NotebookNode
 
 MAX_OUTPUT_CHARACTERS = 200_000
 """What is kept of one cell's output; the rest is drained and counted."""
+MAX_ERROR_CHARACTERS = 10_000
 
-_OUTPUTS = ('stream', 'display_data', 'execute_result', 'error')
+_OVERHEAD = 100
+"""What an output costs besides its text: many small ones are as bad as a large one."""
 
 
 @dataclass
@@ -18,8 +23,10 @@ class CellRun:
     outputs: list[NotebookNode] = field(default_factory=list)
     error: NotebookNode | None = None
     """The `error` output, if the cell raised one."""
-    expressions: dict = field(default_factory=dict)
-    """The reply's user_expressions."""
+    status: str | None = None
+    """The kernel's own word on how it ended: 'ok', 'error', or None without a reply."""
+    expressions: object = None
+    """The reply's user_expressions, as the kernel sent them."""
     timed_out: bool = False
     died: bool = False
     _kept: int = 0
@@ -28,27 +35,44 @@ class CellRun:
     @property
     def ran_to_end(self) -> bool:
         """Whether the kernel itself reported that the cell was done, without an error."""
-        return not (self.timed_out or self.died or self.error)
+        return self.status == 'ok' and not (self.timed_out or self.died or self.error)
 
-    def keep(self, message: dict) -> NotebookNode | None:
-        """Keep an IOPub message's output while there is room; return it if it can be updated."""
-        if message['msg_type'] == 'clear_output':
-            self.outputs.clear()
-        if message['msg_type'] not in _OUTPUTS:
+    def keep(self, kind: str, content: dict) -> NotebookNode | None:
+        """Keep an output while there is room; return it if it can be updated later."""
+        output = _output(kind, content)
+        if output is None:
             return None
-        output = nbformat.v4.output_from_msg(message)
-        if output.output_type == 'error':
-            self.error = output
-        if output.output_type == 'stream':
+        if kind == 'stream':
             self._keep_text(output)
             return None
         size = _size(output)
-        if size > self._room and output.output_type != 'error':
+        first_error = kind == 'error' and self.error is None
+        if kind == 'error':
+            self.error = output
+        if size > self._room and not first_error:
             self._dropped += size
             return None
         self._kept += size
         self.outputs.append(output)
         return output
+
+    def replace(self, output: NotebookNode, data: dict) -> None:
+        """Give an output that was kept other data, unless it would grow too large."""
+        growth = _size(data) - _size(output.data)
+        if growth <= self._room:
+            self._kept += growth
+            output.data = nbformat.from_dict(data)
+
+    def clear(self) -> None:
+        """Forget the outputs so far."""
+        self.outputs.clear()
+        self._kept = 0
+
+    def conclude(self, reply: dict) -> None:
+        """Take over what the kernel says at the end, and an error that came no other way."""
+        self.status, self.expressions = reply.get('status'), reply.get('user_expressions')
+        if self.status == 'error' and self.error is None:
+            self.keep('error', reply)
 
     def close(self) -> None:
         """Say at the end what was not kept."""
@@ -61,15 +85,17 @@ class CellRun:
         return max(0, MAX_OUTPUT_CHARACTERS - self._kept)
 
     def _keep_text(self, output: NotebookNode) -> None:
-        kept = output.text[: self._room]
-        self._kept += len(kept)
-        self._dropped += len(output.text) - len(kept)
         last = self.outputs[-1] if self.outputs else None
-        if last is not None and last.get('name') == output.name:
+        goes_on = last is not None and last.get('name') == output.name
+        kept = output.text[: max(0, self._room - (0 if goes_on else _OVERHEAD))]
+        self._dropped += len(output.text) - len(kept)
+        if goes_on:
             last.text += kept
+            self._kept += len(kept)
         elif kept:
             output.text = kept
             self.outputs.append(output)
+            self._kept += len(kept) + _OVERHEAD
 
 
 class Displays:
@@ -77,24 +103,60 @@ class Displays:
 
     def __init__(self) -> None:
         """Know no output yet."""
-        self._outputs: dict[str, list[NotebookNode]] = {}
+        self._outputs: dict[str, list[tuple[CellRun, NotebookNode]]] = {}
 
-    def remember(self, message: dict, output: NotebookNode | None) -> None:
+    def remember(self, content: dict, run: CellRun, output: NotebookNode | None) -> None:
         """Note an output under the display id of the message that brought it, if it has one."""
-        display_id = _display_id(message)
+        display_id = _display_id(content)
         if display_id and output is not None:
-            self._outputs.setdefault(display_id, []).append(output)
+            self._outputs.setdefault(display_id, []).append((run, output))
 
-    def update(self, message: dict) -> None:
-        """Replace what an update_display_data message names, unless it has grown too large."""
-        if _size(message['content']) <= MAX_OUTPUT_CHARACTERS:
-            for output in self._outputs.get(_display_id(message), ()):
-                output.data = nbformat.from_dict(message['content']['data'])
+    def update(self, content: dict) -> None:
+        """Replace what the content of an update_display_data message names."""
+        new = _output('display_data', content)
+        for run, output in self._outputs.get(_display_id(content), ()) if new else ():
+            run.replace(output, new.data)
 
 
-def _display_id(message: dict) -> str | None:
-    return message['content'].get('transient', {}).get('display_id')
+def _output(kind: str, content: dict) -> NotebookNode | None:
+    """Build an output that is safe to store; None for what is not one."""
+    match kind, content:
+        case 'stream', {'name': 'stdout' | 'stderr' as name, 'text': str(text)}:
+            return nbformat.v4.new_output('stream', name=name, text=_clean(text))
+        case 'display_data' | 'execute_result', {'data': dict(data)}:
+            data = {mime: _clean(text) for mime, text in data.items() if isinstance(text, str)}
+            sizes = _sizes(content.get('metadata'))
+            return nbformat.v4.new_output(kind, data=data, metadata=sizes)
+        case 'error', {'ename': str(name), 'evalue': str(value), 'traceback': list(lines)}:
+            return nbformat.v4.new_output(
+                'error',
+                ename=_clean(name)[:200],
+                evalue=_clean(value)[:MAX_ERROR_CHARACTERS],
+                traceback=_clean('\n'.join(map(str, lines)))[-MAX_ERROR_CHARACTERS:].split('\n'),
+            )
+    return None
+
+
+def _sizes(metadata: object) -> dict[str, dict[str, int]]:
+    """Keep the width and height (pixels) of pictures, by MIME type."""
+    kept = {}
+    for mime, about in metadata.items() if isinstance(metadata, dict) else ():
+        if isinstance(about, dict):
+            kept[mime] = {k: about[k] for k in ('width', 'height') if type(about.get(k)) is int}
+    return kept
+
+
+def _display_id(content: dict) -> str | None:
+    match content:
+        case {'transient': {'display_id': str(display_id)}}:
+            return display_id
+    return None
+
+
+def _clean(text: str) -> str:
+    """Replace lone surrogates: they can't be written to any file."""
+    return text.encode(errors='replace').decode()
 
 
 def _size(content: object) -> int:
-    return len(str(content))
+    return _OVERHEAD + len(str(content))

@@ -3,11 +3,13 @@
 import ast
 import asyncio
 import json
+import re
 import shutil
-from collections.abc import Sequence
+from collections.abc import Awaitable, Sequence
 from pathlib import Path
 
-from my_robot_basics.live.domain import claim
+from my_robot_basics.live.domain import Claim, claim
+from my_robot_basics.live.errors import LiveError
 
 from grader.errors import RoomFailure
 from grader.kernels import Kernel
@@ -15,7 +17,8 @@ from grader.outputs import CellRun
 
 REPLY_TIMEOUT_SEC = 10.0
 """How long the student's kernel may take to answer one question of a check."""
-MAX_REPLY_CHARACTERS = 65_536
+MAX_REPLY = 2 * 65_536
+"""Characters of a reply as a Python literal: a backslash takes two."""
 CHECK_TIMEOUT_SEC = 90.0
 """A check has time limits of its own; this one ends a check that lost them."""
 SETUP_TIMEOUT_SEC = 60.0
@@ -23,6 +26,21 @@ SETUP_TIMEOUT_SEC = 60.0
 _RESPONDER = (
     "__import__('my_robot_basics.checks.responder', fromlist=['answer']).answer({request!r})"
 )
+_STRING = re.compile(r"""'([^'\\\n]|\\.)*'|"([^"\\\n]|\\.)*\"""")
+"""The literal of one string, and no other Python."""
+
+_STUDENT_COMES = """
+import sys
+sys.path.append({files!r})
+from my_robot_basics.checks import probe
+probe.announce()
+"""
+_TEST_HEARS = """
+from my_robot_basics.checks import probe
+probe.hear()
+"""
+_STUDENT_GOES = 'probe.silence(); del probe, sys'
+"""Nothing of ours stays among the names of the student's notebook."""
 
 
 class Rooms:
@@ -32,29 +50,29 @@ class Rooms:
         """Prepare two rooms; the student's gets a copy of the submission's own modules."""
         self._extra_files = tuple(extra_files)
         self._seed = seed
+        self._claim: Claim | None = None
+        self._kernels: list[Kernel] = []
 
     async def __aenter__(self) -> 'Rooms':
         """Start both kernels, and see a message cross from one to the other."""
-        self._claim = claim()
-        domain_id = self._claim.domain_id
-        self._student = Kernel(room='student', domain_id=domain_id)
-        self._test = Kernel(room='test', domain_id=domain_id, seed=self._seed)
         try:
-            await asyncio.gather(self._student.start(), self._test.start())
-            await asyncio.gather(
-                self._prepare(self._student, self._student_code()),
-                self._prepare(self._test, 'from my_robot_basics.checks import probe'),
-            )
-            await self._probe()
-        except BaseException:
+            self._open()
+            await _all(self._prepare_student(), self._prepare_test())
+            await self._prepare(self._student, _STUDENT_GOES)
+        except BaseException as error:
             await self.__aexit__()
+            if isinstance(error, OSError | LiveError):
+                raise RoomFailure(f'the rooms could not be opened: {error}') from error
             raise
         return self
 
     async def __aexit__(self, *_: object) -> None:
         """End both kernels, whatever state they are in, and give the domain back."""
-        await asyncio.gather(self._student.stop(), self._test.stop())
-        self._claim.release()
+        try:
+            await _all(*(kernel.stop() for kernel in self._kernels))
+        finally:
+            if self._claim is not None:
+                self._claim.release()
 
     @property
     def student_alive(self) -> bool:
@@ -76,35 +94,37 @@ class Rooms:
         run = await self._student.run(
             '', timeout_sec=REPLY_TIMEOUT_SEC, expressions={'reply': _responder(request)}
         )
-        if run.died:
-            return _failed('the kernel of your notebook has ended')
         if run.timed_out:
             return _failed(f'no answer within {REPLY_TIMEOUT_SEC:.0f} s')
-        text = run.expressions.get('reply', {}).get('data', {}).get('text/plain', '')
-        if len(text) > MAX_REPLY_CHARACTERS:
-            return _failed(f'an answer of {len(text):,} characters')
-        try:
-            reply = ast.literal_eval(text)
-        except (ValueError, SyntaxError, MemoryError, RecursionError):
-            reply = None
-        return reply if isinstance(reply, str) else _failed('no usable answer')
+        if run.died:
+            return _failed('the kernel of your notebook has ended')
+        match run.expressions:
+            case {'reply': {'data': {'text/plain': str(text)}}} if len(text) > MAX_REPLY:
+                return _failed(f'an answer of {len(text):,} characters')
+            case {'reply': {'data': {'text/plain': str(text)}}} if _STRING.fullmatch(text):
+                return ast.literal_eval(text)
+        return _failed('no usable answer')
 
-    def _student_code(self) -> str:
-        lines = ['from my_robot_basics.live import classroom', 'classroom.enter()']
-        if self._extra_files:
-            folder = self._student.folder / 'files'
-            folder.mkdir()
-            for file in self._extra_files:
-                shutil.copyfile(file, folder / file.name)
-            # last, so that they shadow nothing
-            lines += ['import sys', f'sys.path.append({str(folder)!r})']
-        return '\n'.join([*lines, 'from my_robot_basics.checks import probe'])
+    def _open(self) -> None:
+        self._claim = claim()
+        domain_id = self._claim.domain_id
+        self._student = Kernel(room='student', domain_id=domain_id)
+        self._kernels.append(self._student)
+        self._test = Kernel(room='test', domain_id=domain_id, seed=self._seed)
+        self._kernels.append(self._test)
 
-    async def _probe(self) -> None:
-        """See that a node in the student room reaches the test room, before any student code."""
-        await self._prepare(self._student, 'probe.announce()')
-        await self._prepare(self._test, 'probe.hear()')
-        await self._prepare(self._student, 'probe.silence(); del probe')
+    async def _prepare_student(self) -> None:
+        files = self._student.folder / 'files'
+        files.mkdir()
+        for file in self._extra_files:
+            shutil.copyfile(file, files / file.name)
+        await self._student.start()
+        # last on the path, so that they shadow nothing
+        await self._prepare(self._student, _STUDENT_COMES.format(files=str(files)))
+
+    async def _prepare_test(self) -> None:
+        await self._test.start()
+        await self._prepare(self._test, _TEST_HEARS)
 
     async def _prepare(self, kernel: Kernel, code: str) -> None:
         run = await kernel.run(code, timeout_sec=SETUP_TIMEOUT_SEC)
@@ -119,3 +139,10 @@ def _responder(request: str) -> str:
 
 def _failed(sentence: str) -> str:
     return json.dumps({'failed': sentence})
+
+
+async def _all(*work: Awaitable[None]) -> None:
+    """Wait for all of it, also when some fails: nothing goes on alone."""
+    for result in await asyncio.gather(*work, return_exceptions=True):
+        if isinstance(result, BaseException):
+            raise result

@@ -10,6 +10,7 @@ from nbformat import NotebookNode
 from grader.errors import RoomFailure
 from grader.heal import KEY, grade_id
 from grader.outputs import CellRun
+from grader.text import printable, shorten
 
 Outcome = Literal['passed', 'failed', 'ungraded', 'manual']
 
@@ -101,12 +102,15 @@ def _notes(run: CellRun) -> Iterable[str]:
 
 def _trouble(name: str, run: CellRun) -> str | None:
     """Say what went wrong in one of the student's cells."""
-    if run.died:
-        return f'your cell `{name}` ended the kernel'
+    if run.timed_out and run.died:
+        return f'your cell `{name}` did not end and could not be interrupted'
     if run.timed_out:
         return f'your cell `{name}` did not end and was interrupted'
+    if run.died:
+        return f'your cell `{name}` ended the kernel'
     if run.error is not None:
-        return f'your cell `{name}` stopped with {run.error.ename}: {run.error.evalue}'
+        said = shorten(printable(f'{run.error.ename}: {run.error.evalue}'), 300)
+        return f'your cell `{name}` stopped with {said}'
     return None
 
 
@@ -120,7 +124,7 @@ def _what_happened(run: CellRun) -> str:
         return 'the test kernel ended'
     if run.timed_out:
         return 'it did not end in time'
-    return f'it stopped with {run.error.ename}'
+    return f'it stopped with {run.error.ename}' if run.error else 'it did not report its end'
 
 
 def _is_stderr(output: NotebookNode) -> bool:
