@@ -55,13 +55,28 @@ def execute(
     Nothing that a notebook does raises here; what the grader itself fails in is `ungraded`.
     """
     graded = nbformat.from_dict(notebook)
-    verdicts = _run(_execute(graded, tuple(extra_files), seed))
+    if problem := graded.metadata.get(KEY, {}).get('problem'):
+        verdicts = _refuse(graded, problem)
+    else:
+        verdicts = _run(_execute(graded, tuple(extra_files), seed))
     by_hand = [_by_hand(c) for c in graded.cells if role(c) == 'answer' and _points(c)]
     return Execution(
         notebook=graded,
         verdicts=tuple(verdicts + by_hand),
         notes=tuple(graded.metadata.get(KEY, {}).get('notes', ())),
     )
+
+
+def _refuse(notebook: NotebookNode, problem: str) -> list[Verdict]:
+    """Fail every grade cell of a notebook that could not be read, without running anything."""
+    verdicts = []
+    for cell in notebook.cells:
+        if role(cell) == 'grade' and cell.cell_type == 'code':
+            verdicts.append(
+                Verdict(grade_id(cell), outcome='failed', points=_points(cell), reason=problem)
+            )
+            write_verdict(cell, verdicts[-1], [])
+    return verdicts
 
 
 async def _execute(notebook: NotebookNode, files: tuple[Path, ...], seed: str) -> list[Verdict]:
@@ -157,5 +172,18 @@ def _run(work: Coroutine[Any, Any, list[Verdict]]) -> list[Verdict]:
         asyncio.get_running_loop()
     except RuntimeError:
         return asyncio.run(work)
+    begun: list[asyncio.Task] = []
+
+    async def stoppable() -> list[Verdict]:
+        begun.append(asyncio.current_task())
+        return await work
+
     with ThreadPoolExecutor(max_workers=1) as thread:
-        return thread.submit(asyncio.run, work).result()
+        result = thread.submit(asyncio.run, stoppable())
+        try:
+            return result.result()
+        except KeyboardInterrupt:
+            # it comes to this thread; the rooms are the other one's to close
+            for task in begun:
+                task.get_loop().call_soon_threadsafe(task.cancel)
+            raise

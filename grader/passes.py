@@ -2,13 +2,14 @@
 
 from pathlib import Path
 
+import nbformat
 from nbconvert.preprocessors import Preprocessor
 from nbformat import NotebookNode
 
 from grader.course import Course
 from grader.execute import execute
-from grader.heal import heal
-from grader.submission import extra_python_files
+from grader.heal import KEY, heal
+from grader.submission import extra_python_files, read_submission
 
 
 class HealSubmission(Preprocessor):
@@ -17,9 +18,23 @@ class HealSubmission(Preprocessor):
     enabled = True
 
     def preprocess(self, nb: NotebookNode, resources: dict) -> tuple[NotebookNode, dict]:
-        """Return the healed notebook; the submitted file is not touched."""
-        master = _course(resources).master(resources['nbgrader']['assignment'])
-        return heal(nb, master).notebook, resources
+        """Return the healed notebook; the submitted file is not touched.
+
+        It is read anew, as strangers' files are: what nbgrader has read may hold anything.
+        """
+        at = resources['nbgrader']
+        submission = read_submission(
+            Path(resources['metadata']['path']),
+            student_id=at['student'],
+            assignment=at['assignment'],
+        )
+        healed = heal(
+            submission.notebook or nbformat.v4.new_notebook(),
+            _course(resources).master(at['assignment']),
+        ).notebook
+        if submission.problem:
+            healed.metadata[KEY] = {'notes': [submission.problem], 'problem': submission.problem}
+        return healed, resources
 
 
 class ExecuteRooms(Preprocessor):
