@@ -5,9 +5,10 @@ import os
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from typing import Any
+
+import rclpy.logging
 
 from my_robot_basics.live.log_lines import CONSOLE_FORMAT, LogRecord
 from my_robot_basics.live.stdout_tap import StdoutTap
@@ -40,6 +41,18 @@ def open_tap() -> None:
     global _tap
     if _tap is None and in_kernel():
         _tap = StdoutTap()
+        _mark_log_records()
+
+
+def _mark_log_records() -> None:
+    """Set the ROS logger up, with a mark behind each record, unless it has been set up before."""
+    name, former = 'RCUTILS_CONSOLE_OUTPUT_FORMAT', os.environ.get('RCUTILS_CONSOLE_OUTPUT_FORMAT')
+    os.environ[name] = CONSOLE_FORMAT
+    rclpy.logging.initialize()
+    # programs that the notebook starts write to people
+    del os.environ[name]
+    if former is not None:
+        os.environ[name] = former
 
 
 def leave() -> None:
@@ -49,20 +62,6 @@ def leave() -> None:
     if _tap is not None:
         _tap.close()
         _tap = None
-
-
-@contextmanager
-def marking_log_records() -> Iterator[None]:
-    """Where the ROS logger is set up in here, it marks the end of each record for the tap."""
-    name, former = 'RCUTILS_CONSOLE_OUTPUT_FORMAT', os.environ.get('RCUTILS_CONSOLE_OUTPUT_FORMAT')
-    if _tap is not None:
-        os.environ[name] = CONSOLE_FORMAT
-    yield
-    if _tap is not None:
-        # programs that the notebook starts write to people
-        del os.environ[name]
-        if former is not None:
-            os.environ[name] = former
 
 
 def listen(logger: str, sink: Callable[[LogRecord], None]) -> None:

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 import rclpy
+from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
@@ -60,7 +61,7 @@ def launch(
 
     def on_name(name: str) -> None:
         _stop_keys([k for k, b in _running.items() if b.node.get_fully_qualified_name() == name])
-        if _neighbours.has(name):
+        if _neighbours.have(name):
             raise _LivesElsewhere(name)
         panel.listen(name)
 
@@ -121,9 +122,8 @@ def _ensure_rclpy() -> None:
     bury_the_dead()
     if not rclpy.ok():
         rclpy.try_shutdown()  # a context that was shut down by hand cannot be initialised again
-        with notebook.marking_log_records():
-            rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
-    _neighbours.look_around()
+        rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
+    _neighbours.meet()
 
 
 def _destroy_half_made(node: Node) -> None:
@@ -146,8 +146,24 @@ def _not_a_class(thing: object) -> str:
 def shut_down() -> None:
     """Stop every node, then rclpy's default context, whoever initialised it."""
     stop()
-    _neighbours.leave()
     rclpy.try_shutdown()
+
+
+def _say_nothing_of_an_end(
+    former: Callable[[threading.ExceptHookArgs], None],
+) -> Callable[[threading.ExceptHookArgs], None]:
+    """Make a hook for threads that a student lets spin: that rclpy is shut down is no error."""
+
+    def hook(args: threading.ExceptHookArgs) -> None:
+        if not (args.exc_type and issubclass(args.exc_type, ExternalShutdownException)):
+            former(args)
+
+    return hook
+
+
+# before anything logs, also where a student initialises rclpy
+notebook.open_tap()
+threading.excepthook = _say_nothing_of_an_end(threading.excepthook)
 
 
 @atexit.register
@@ -155,4 +171,5 @@ def _leave_nothing() -> None:
     # a forked child has neither our threads nor our participants
     if os.getpid() == _owner_pid:
         shut_down()
+        _neighbours.leave()
         notebook.leave()
