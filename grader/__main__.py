@@ -46,7 +46,7 @@ def _release(course: Course, asked: argparse.Namespace) -> int:
 
 def _grade(course: Course, asked: argparse.Namespace) -> int:
     submissions = find_submissions(course, assignment=asked.assignment, student_id=asked.student)
-    rows = list(print_rows(grade_all(course, submissions, seed=asked.seed), submissions))
+    rows = list(print_rows(grade_all(course, submissions, seed=asked.seed or ''), submissions))
     failed = sum(row.stored is None for row in rows)
     waiting = sum(row.stored is not None and row.stored.pending for row in rows)
     print(
@@ -71,7 +71,8 @@ def _demo(course: Course, asked: argparse.Namespace) -> int:
     return 0 if demo(root=course.root) else 1
 
 
-def _seed(text: str) -> str:
+def hexadecimal(text: str) -> str:
+    """Check an argument; argparse names this function when it is wrong."""
     int(text, 16)
     return text
 
@@ -88,7 +89,7 @@ def _parser() -> argparse.ArgumentParser:
     verb.add_argument('assignment', nargs='?', metavar='ASSIGNMENT', help='only this one')
     verb.add_argument('--student', metavar='ID', help='only this student')
     verb.add_argument(
-        '--seed', type=_seed, default='', metavar='HEX', help='replay these inputs of hidden tests'
+        '--seed', type=hexadecimal, metavar='HEX', help='replay these inputs of hidden tests'
     )
     verb.set_defaults(run=_grade)
 

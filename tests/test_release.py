@@ -5,6 +5,7 @@ import sys
 import pytest
 from course_maker import PIXEL, TOY, make_course, toy_lesson, write_source
 
+from grader.course import Course
 from grader.errors import CourseError
 from grader.leaks import leaks_of
 from grader.release import release, stale_or_leaking
@@ -120,3 +121,7 @@ def test_an_answer_that_a_demonstration_prints_is_not_released(course):
     with pytest.raises(CourseError, match=r'nothing was released.*secret answer'):
         release(course)
     write_source(course, toy_lesson())
+
+
+def test_the_lessons_of_this_course_are_released_fresh_and_leak_nothing():
+    assert stale_or_leaking(Course()) == []

@@ -1,0 +1,110 @@
+import os
+import signal
+import subprocess
+import sys
+
+import pytest
+from course_maker import TOY, make_course, submit
+
+from grader.__main__ import main
+from grader.course import Course
+from grader.errors import CourseError
+
+
+def test_help_lists_every_verb(capsys):
+    with pytest.raises(SystemExit) as end:
+        main(['--help'])
+    assert end.value.code == 0
+    text = capsys.readouterr().out
+    assert all(verb in text for verb in ('release', 'grade', 'scores', 'feedback', 'demo'))
+
+
+@pytest.mark.parametrize(
+    'arguments', [[], ['nothing'], ['grade', '--seed', 'no hex'], ['release', 'a', 'b']]
+)
+def test_wrong_arguments_end_with_status_2(arguments):
+    with pytest.raises(SystemExit) as end:
+        main(arguments)
+    assert end.value.code == 2
+
+
+def test_an_error_of_ours_is_one_sentence_without_escapes_and_status_1(tmp_path, capsys):
+    (tmp_path / 'solutions').mkdir()
+    assert main(['grade', '\x1b[31mred'], course=Course.at(tmp_path)) == 1
+    err = capsys.readouterr().err
+    assert err.startswith('course: there is no assignment ')
+    assert '\x1b' not in err
+    assert err.count('\n') == 1
+
+
+def test_a_stopped_run_says_how_to_go_on(tmp_path, capsys, monkeypatch):
+    def interrupted(*_, **__):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr('grader.__main__.find_submissions', interrupted)
+    assert main(['grade'], course=Course.at(tmp_path)) == 130
+    assert 'run it again to go on' in capsys.readouterr().err
+
+
+def test_all_verbs_in_a_row(tmp_path, capsys):
+    course = make_course(tmp_path)
+    assert main(['release', TOY], course=course) == 0
+    assert capsys.readouterr().out == f'notebooks/{TOY}/{TOY}.ipynb\n1 files changed.\n'
+    submit(course, 'ada', b'')
+    (course.folder('submitted', 'eve', '99_other')).mkdir(parents=True)
+    assert main(['grade'], course=course) == 1  # eve's could not be placed
+    assert '1 graded, 0 of them wait for a person' in capsys.readouterr().out
+    assert main(['grade', '--student', 'ada'], course=course) == 0
+    assert main(['feedback'], course=course) == 0
+    assert 'feedback/ada/' in capsys.readouterr().out
+    assert main(['scores'], course=course) == 0
+    assert 'ada,00_toy,double-check,0.0,1.0' in (course.gradebook / 'scores.csv').read_text()
+    assert main(['release'], course=course) == 0
+    assert 'Nothing has changed' in capsys.readouterr().out
+
+
+def test_a_second_writer_waits_for_the_first_and_says_so(tmp_path):
+    hold = (
+        'import sys, time\n'
+        'from pathlib import Path\n'
+        'from grader.turn import Turn\n'
+        'with Turn.take(Path(sys.argv[1])):\n'
+        '    print("mine", flush=True)\n'
+        '    sys.stdin.read()\n'
+    )
+    command = [sys.executable, '-c', hold, str(tmp_path)]
+    pipes = {'stdin': subprocess.PIPE, 'stdout': subprocess.PIPE, 'text': True}
+    with subprocess.Popen(command, **pipes) as first:
+        assert first.stdout.readline() == 'mine\n'
+        with subprocess.Popen(command, **pipes) as second:
+            assert second.stdout.readline() == (
+                f'waiting: process {first.pid} is grading into {tmp_path}\n'
+            )
+            first.send_signal(signal.SIGKILL)  # a turn ends with its holder
+            assert second.stdout.readline() == 'mine\n'
+            second.communicate('')
+
+
+def test_a_turn_is_the_same_for_all_of_a_process_and_ends_with_its_last_holder(tmp_path):
+    from grader.turn import Turn
+
+    turn = Turn.take(tmp_path)
+    assert Turn.take(tmp_path) is turn
+    del turn
+    free = subprocess.run(
+        ['flock', '--nonblock', str(tmp_path / '.lock'), 'true'], check=False, env=os.environ
+    )
+    assert free.returncode == 0
+
+
+def test_the_sample_class_is_what_demo_grades():
+    from grader.demo import SAMPLES
+
+    names = [path.stem.split('-', 2) for path in SAMPLES.glob('*.ipynb')]
+    assert len(names) >= 12
+    assert {outcome for _, outcome, _ in names} <= {'pass', 'fail', 'mixed', 'zero'}
+
+
+def test_the_seed_of_an_unknown_assignment_is_refused(tmp_path):
+    with pytest.raises(CourseError, match='there are: none'):
+        Course.at(tmp_path).seed('99')
