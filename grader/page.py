@@ -8,7 +8,7 @@ from pathlib import Path
 
 import bleach
 from jinja2 import Environment, FileSystemLoader
-from markupsafe import Markup
+from markupsafe import Markup, escape
 from nbconvert.filters import markdown2html, strip_ansi
 from nbformat import NotebookNode
 from pygments import highlight
@@ -23,7 +23,7 @@ MAX_TEXT_CHARACTERS = 5_000
 _TAGS = {'p', 'em', 'strong', 'code', 'pre', 'ul', 'ol', 'li', 'blockquote', 'h4', 'br', 'table'}
 _TAGS |= {'thead', 'tbody', 'tr', 'th', 'td'}
 _CODE = HtmlFormatter(style='xcode', nowrap=True)
-_REASON = re.compile(r'expected (?P<expected>.+?), saw (?P<seen>.+?): (?P<hint>.+)', re.DOTALL)
+_REASON = re.compile(r'expected (?P<expected>.+?), saw (?P<seen>.+): (?P<hint>.+)', re.DOTALL)
 _BASE64 = re.compile(r'[A-Za-z0-9+/=\s]+')
 
 
@@ -190,6 +190,11 @@ def _rich(text: str) -> Markup:
     return Markup(bleach.clean(markdown2html(text), tags=_TAGS, attributes={}, strip=True))
 
 
+def _words(text: str) -> Markup:
+    """Show as code what stands between backticks."""
+    return Markup(re.sub('`([^`]+)`', r'<code>\1</code>', str(escape(text))))
+
+
 def _number(value: float) -> str:
     return f'{value:.2f}'.rstrip('0').rstrip('.')
 
@@ -200,6 +205,6 @@ _ENVIRONMENT = Environment(
     trim_blocks=True,
     lstrip_blocks=True,
 )
-_ENVIRONMENT.filters |= {'colour': _colour, 'rich': _rich, 'number': _number}
+_ENVIRONMENT.filters |= {'colour': _colour, 'rich': _rich, 'words': _words, 'number': _number}
 _ENVIRONMENT.globals['code_style'] = Markup(_CODE.get_style_defs('pre'))
 _TEMPLATE = _ENVIRONMENT.get_template('page.html.j2')

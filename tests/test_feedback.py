@@ -49,11 +49,11 @@ def test_a_failed_check_tells_what_was_expected_seen_and_what_to_try(course):
         course,
         'ada',
         answered(course, RIGHT),
-        reasons={'double-hidden': 'expected 42, saw 41: count again'},
+        reasons={'double-hidden': 'expected 42, saw E: 41: count again'},
         notes=['judged on the wall clock'],
     )
-    assert '<td>Expected 42, saw 41.</td><td>Count again</td>' in html
-    assert '<dt>Seen</dt><dd>41</dd>' in html
+    assert '<td>Expected 42, saw E: 41.</td><td>count again</td>' in html
+    assert '<dt>Seen</dt><dd>E: 41</dd>' in html
     assert 'Other numbers are doubled too' in html
     assert 'Note: judged on the wall clock' in html
     assert '1 of 5 points' in html
@@ -122,7 +122,7 @@ def test_what_was_mended_is_told(course):
     notebook = answered(course, RIGHT)
     del notebook.cells[6]
     html = feedback(course, 'ada', notebook)
-    assert 'the cell double-check was missing: it was put back' in html
+    assert 'the cell <code>double-check</code> was missing: it was put back' in html
 
 
 def test_what_a_person_has_to_read_waits_and_is_no_zero(course):
