@@ -76,11 +76,15 @@ def bury_the_dead() -> None:
 def _nodes_here(*, alive: bool = True) -> Iterator[Node]:
     """Nodes of this process that are not destroyed, in a live context or in a dead one."""
     for thing in gc.get_objects():
-        if issubclass(type(thing), Node):
-            try:
-                with thing.handle:
-                    right = thing.context.ok() is alive
-            except (InvalidHandle, AttributeError):
-                continue  # destroyed, or still in its constructor
-            if right:
-                yield thing
+        if not issubclass(type(thing), Node):
+            continue
+        handle = getattr(thing, 'handle', None)
+        if handle is None:
+            continue  # still in its constructor
+        try:
+            with handle:
+                right = thing.context.ok() is alive
+        except InvalidHandle:
+            continue  # destroyed
+        if right:
+            yield thing

@@ -54,7 +54,6 @@ def launch(
 ) -> Node | None:
     """Do what `run` says, with another panel; it is made once stdout is tapped."""
     __tracebackhide__ = True
-    classroom.enter()
     _stop_keys([key, *(k for k, background in _running.items() if not background.alive)])
     _ensure_rclpy()
     panel = make_panel()
@@ -106,33 +105,32 @@ def stop(key_or_node: str | type[Node] | Node | None = None) -> None:
 
 def _stop_keys(keys: list[str]) -> None:
     for key in keys:
-        background = _running.get(key)
-        if background is None:
-            continue
-        background.stop()
         with _lock:
-            del _running[key]
-            panel = _panels.pop(key, None)
-        if panel is not None:
+            background, panel = _running.pop(key, None), _panels.pop(key, None)
+        if background is not None:
+            background.stop()
             panel.close('stopped')
 
 
 def _ensure_rclpy() -> None:
+    domain_of_lesson = classroom.enter()
     notebook.open_tap()
     bury_the_dead()
     if not rclpy.ok():
         rclpy.try_shutdown()  # a context that was shut down by hand cannot be initialised again
         rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
+    domain_id = rclpy.get_default_context().get_domain_id()
+    if domain_id != domain_of_lesson:
+        print(
+            f'note: rclpy was initialised in ROS domain {domain_id}, and this lesson is in '
+            f'{domain_of_lesson}: call rclpy.shutdown(), then run this cell again'
+        )
     _neighbours.meet()
 
 
 def _destroy_half_made(node: Node) -> None:
     """Take away what a constructor left behind when it failed: its publishers would live on."""
-    try:
-        made = node.handle is not None
-    except AttributeError:
-        made = False  # it failed before rclpy's own constructor
-    if made:
+    if getattr(node, 'handle', None) is not None:  # else it failed before rclpy's constructor
         node.destroy_node()
 
 
@@ -162,6 +160,7 @@ def _say_nothing_of_an_end(
 
 
 # before anything logs, also where a student initialises rclpy
+classroom.enter()
 notebook.open_tap()
 threading.excepthook = _say_nothing_of_an_end(threading.excepthook)
 
