@@ -1,6 +1,8 @@
 """Asking for values: the same words in the student's kernel and in the test kernel."""
 
 import json
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -125,8 +127,19 @@ def test_the_responder_refuses_another_protocol():
 
 
 def test_a_warning_of_the_function_stays_off_stderr(notebook, capsys):
-    import sys
-
     notebook(f=lambda: print('careful', file=sys.stderr) or 1)
     assert student.call('f') == 1
     assert capsys.readouterr().err == ''
+
+
+def test_answering_loads_no_check():
+    code = (
+        'import sys; import my_robot_basics.checks.responder; '
+        "print(sorted(m for m in sys.modules if m.startswith('my_robot_basics.checks')))"
+    )
+    done = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True, check=True)
+    names = [
+        'my_robot_basics.checks',
+        *(f'my_robot_basics.checks.{m}' for m in ['responder', 'wire']),
+    ]
+    assert done.stdout.strip() == str(names)

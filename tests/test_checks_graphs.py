@@ -1,0 +1,49 @@
+"""The graph without the course's own nodes, and the reasons for silence it gives."""
+
+import pytest
+from my_robot_basics.checks import graph
+from my_robot_basics.checks.graphs import Graph
+from rclpy.node import Node
+from std_msgs.msg import String
+
+from my_robot_basics import live
+
+
+def test_the_graph_lists_every_endpoint_and_no_hidden_node():
+    talker, listener, hidden = (live.run(Node, n, key=n) for n in ('talker', 'listener', '_own'))
+    for node in (talker, talker, hidden):
+        node.create_publisher(String, '/talk', 10)
+    for node in (listener, hidden):
+        node.create_subscription(String, '/talk', print, 10)
+    seen = graph()
+    live.stop()
+    assert seen.nodes() == ('/listener', '/talker')
+    assert seen.publishers('/talk') == ('/talker', '/talker')
+    assert seen.subscriptions('/talk') == ('/listener',)
+    assert seen.publishers('/nowhere') == ()
+    assert graph().nodes() == ()
+
+
+def picture(nodes=('/a',), publishers=None, subscriptions=None):
+    return Graph(nodes, publishers or {}, subscriptions or {})
+
+
+@pytest.mark.parametrize(
+    ('seen', 'why'),
+    [
+        (picture(nodes=()), 'no node is running, so run the cell that starts it'),
+        (picture(), '/a runs, so look at the topic name in create_publisher'),
+        (picture(publishers={'/t/joint_states': ('/a',)}), '/a has a publisher there and sends'),
+        (picture(publishers={'/t/joint_state': ('/a',)}), '/a uses /t/joint_state, so compare'),
+        (picture(publishers={'/joint_states': ('/a',)}), '/a uses /joint_states, so compare'),
+        (picture(publishers={'/rosout': ('/a',)}), '/a runs, so look at the topic name'),
+        (picture(publishers={'/Joint_States': ('/a',)}), '/a uses /Joint_States, so compare'),
+    ],
+)
+def test_silence_has_a_reason(seen, why):
+    assert seen.why_silent('/t/joint_states').startswith(why)
+
+
+def test_a_subscription_that_is_missing_has_a_reason():
+    seen = picture(subscriptions={'/target_points': ('/a',)})
+    assert seen.why_unheard('/target_point') == '/a uses /target_points, so compare the spelling'

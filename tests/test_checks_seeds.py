@@ -1,0 +1,24 @@
+"""Inputs: the same for a whole class, and again when re-graded; never the same for a student."""
+
+import pytest
+from my_robot_basics.checks import inputs
+
+
+def draw(label):
+    return inputs(label).random()
+
+
+def test_with_a_seed_a_label_gives_its_inputs_again(monkeypatch):
+    monkeypatch.setenv('MY_ROBOT_BASICS_SEED', 'c0ffee')
+    assert draw('reach') == draw('reach') != draw('other')
+    before = draw('reach')
+    monkeypatch.setenv('MY_ROBOT_BASICS_SEED', 'decade')
+    assert draw('reach') != before
+
+
+@pytest.mark.parametrize('seed', ['', None])
+def test_without_a_seed_they_differ(monkeypatch, seed):
+    monkeypatch.delenv('MY_ROBOT_BASICS_SEED', raising=False)
+    if seed is not None:
+        monkeypatch.setenv('MY_ROBOT_BASICS_SEED', seed)
+    assert draw('reach') != draw('reach')

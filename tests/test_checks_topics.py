@@ -1,0 +1,207 @@
+"""Topics from inside the student's kernel (nodes of live) and from outside; what silence means."""
+
+import os
+import threading
+
+import pytest
+from builtin_interfaces.msg import Time
+from geometry_msgs.msg import Point
+from my_robot_basics.checks import CheckFailed, graph, topic, topics
+from nodes.running import imported, running
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import JointState
+
+from my_robot_basics import live
+
+TOPIC = '/kinematics/joint_states'
+LIMITS = {'low': (-1.571, -2.095), 'high': (1.571, 2.095)}
+
+
+@pytest.fixture
+def run():
+    yield live.run
+    live.stop()
+
+
+def check_messages(recording):
+    recording.assert_joint_names(('joint1', 'joint2'))
+    recording.assert_frame_id('base_link')
+    recording.assert_stamps()
+    recording.assert_positions_rad(**LIMITS, names=('joint1', 'joint2'))
+
+
+@pytest.mark.parametrize(
+    'node_class',
+    [imported('five_hz').FiveHz, imported('swapped').SwappedNames],
+)
+def test_a_node_of_the_same_kernel_is_judged_exactly(run, capfd, node_class):
+    node = run(node_class)
+    capfd.readouterr()
+    threads = threading.active_count()
+    recording = topic(TOPIC).record(seconds=60.0)
+    assert (recording.clock, len(recording.messages)) == ('simulated', 300)
+    recording.assert_rate(hz=5.0)
+    check_messages(recording)
+    # no trace: nothing said, no thread left, the node on its own clock and alive
+    assert capfd.readouterr().err == ''
+    assert threading.active_count() == threads
+    assert node.get_parameter('use_sim_time').value is False
+    topic(TOPIC).wait_for(timeout_sec=5.0)
+
+
+def test_a_node_with_its_own_thread_and_context_is_judged_exactly():
+    _, executor, thread = imported('own_thread').start()
+    try:
+        recording = topic(TOPIC).record(seconds=10.0)
+    finally:
+        executor.context.shutdown()
+        thread.join()
+    assert (recording.clock, len(recording.messages)) == ('simulated', 50)
+    recording.assert_rate(hz=5.0)
+
+
+def test_another_node_of_the_student_is_no_hindrance(run):
+    run(imported('five_hz').FiveHz)
+    silent = Node('bystander_that_never_spins', context=live.run(Node, 'spins').context)
+    recording = topic(TOPIC).record(seconds=10.0)
+    silent.destroy_node()
+    assert (recording.clock, len(recording.messages)) == ('simulated', 50)
+
+
+def test_a_clock_of_the_student_is_left_alone(run):
+    run(imported('five_hz').FiveHz)
+    run(Node, 'my_simulator').create_publisher(Clock, '/clock', 10)
+    recording = topic(TOPIC).record()
+    assert recording.clock == 'wall'
+    recording.assert_rate(hz=5.0)
+
+
+@pytest.mark.parametrize(
+    ('node_class', 'reason'),
+    [
+        (imported('degrees').Degrees, 'which looks like degrees: convert with math.radians'),
+        (imported('no_stamp').NoStamp, 'saw a stamp of 0: set message.header.stamp'),
+        (imported('one_stamp').OneStamp, 'saw a stamp that does not advance'),
+        (imported('wall_stamp').WallStamp, '(ahead of|behind) it: set message.header.stamp'),
+        (imported('wrong_names').WrongNames, 'saw joint_1, joint_2'),
+    ],
+)
+def test_a_wrong_message_fails(run, node_class, reason):
+    run(node_class)
+    with pytest.raises(CheckFailed, match=reason):
+        check_messages(topic(TOPIC).record(seconds=10.0))
+
+
+def test_stamps_of_a_node_that_ignores_the_clock_are_on_the_wall_clock(run):
+    run(imported('steady_clock').SteadyClock)
+    recording = topic(TOPIC).record()
+    assert recording.clock == 'wall'
+    check_messages(recording)
+
+
+@pytest.mark.parametrize(
+    ('node', 'reason'),
+    [
+        (
+            'never_spins',
+            '/kinematics_publisher has a publisher there and sends nothing, so see',
+        ),
+        ('callback_raises', 'no message in 4 s: /kinematics_pub|none in 3 s: no node is'),
+        ('wrong_topic', '/kinematics_publisher uses /kinematics/joint_state, so compare'),
+    ],
+)
+def test_silence_is_explained(monkeypatch, capfd, node, reason):
+    monkeypatch.setattr(topics, 'PUBLISHER_SEC', 3.0)
+    with running(node), pytest.raises(CheckFailed, match=reason):
+        topic(TOPIC).record()
+    assert capfd.readouterr().err == ''
+
+
+def test_no_node_at_all_is_said(monkeypatch):
+    monkeypatch.setattr(topics, 'PUBLISHER_SEC', 0.5)
+    with pytest.raises(CheckFailed, match=r'none in 0\.5 s: no node is running'):
+        topic(TOPIC).record()
+
+
+def test_two_publishers_are_named(run):
+    run(imported('five_hz').FiveHz)
+    run(imported('five_hz').FiveHz, 'other', key='other')
+    with pytest.raises(CheckFailed, match=r'saw 2 \(/kinematics_publisher, /other\): stop'):
+        topic(TOPIC).record(seconds=1.0).assert_rate(hz=10.0)
+
+
+def test_two_types_on_a_topic_are_named(run):
+    # within one participant Fast DDS itself refuses
+    run(Node, 'other').create_publisher(Point, TOPIC, 10)
+    with running('five_hz'):
+        while len(graph().publishers(TOPIC)) < 2:
+            pass
+        with pytest.raises(CheckFailed, match='geometry_msgs/msg/Point and sensor_msgs/msg/Joint'):
+            topic(TOPIC).record()
+
+
+class Echo(Node):
+    """Answers each Point with a JointState."""
+
+    def __init__(self, qos_profile):
+        super().__init__('echo')
+        self.publisher = self.create_publisher(JointState, '/answer', 10)
+        self.create_subscription(Point, '/question', self.answer, qos_profile)
+
+    def answer(self, point):
+        stamp = self.get_clock().now().to_msg()
+        message = JointState(position=[point.x, point.y])
+        message.header.stamp = stamp
+        self.publisher.publish(message)
+
+
+@pytest.mark.parametrize(
+    'reliability', [ReliabilityPolicy.RELIABLE, ReliabilityPolicy.BEST_EFFORT]
+)
+@pytest.mark.parametrize(
+    'durability', [DurabilityPolicy.VOLATILE, DurabilityPolicy.TRANSIENT_LOCAL]
+)
+def test_a_question_gets_its_answer(run, reliability, durability):
+    run(Echo, QoSProfile(depth=10, reliability=reliability, durability=durability))
+    message = topic('/answer').wait_for(
+        lambda message: message.position[0] == 1.5,
+        after=lambda: topic('/question').publish(Point(x=0.5), Point(x=1.5)),
+    )
+    assert message.header.stamp != Time()
+
+
+def test_a_question_that_nobody_hears_fails(run):
+    run(Echo, 10)
+    with pytest.raises(CheckFailed, match='/echo uses /question, so compare the spelling'):
+        topic('/questions').publish(Point(), timeout_sec=0.5)
+
+
+def test_the_wrong_answer_is_no_answer(run):
+    run(Echo, 10)
+    with pytest.raises(CheckFailed, match='expected a message on /answer that answers, saw 1 oth'):
+        topic('/answer').wait_for(
+            lambda message: message.position[0] == 9.0,
+            timeout_sec=1.0,
+            after=lambda: topic('/question').publish(Point()),
+        )
+
+
+def test_the_watcher_can_not_be_reached(run):
+    run(imported('five_hz').FiveHz)
+    seen = set()
+
+    class Spy(Node):
+        def __init__(self):
+            super().__init__('spy')
+            self.create_timer(0.02, self.look)
+
+        def look(self):
+            seen.update(name for name, _ in self.get_service_names_and_types())
+
+    run(Spy)
+    topic(TOPIC).record(seconds=1.0)
+    assert seen
+    assert not [name for name in seen if '_check' in name]
+    assert os.environ['ROS_DOMAIN_ID'] == str(live.classroom.enter())
