@@ -299,7 +299,9 @@ def test_no_python_is_said(bare):
     ],
 )
 def test_a_python_that_does_not_fit_is_named(bare, change, fault):
-    bare.program('python3', f'exec {sys.executable} -Ic \'import sys; {change}\n\'"$2"')
+    bare.program(
+        'python3', f'exec {shlex.quote(sys.executable)} -Ic \'import sys; {change}\n\'"$2"'
+    )
     sentence = the_one_sentence(bare.course('lab'))
     assert fault in sentence
     assert 'install one' in sentence
@@ -360,7 +362,7 @@ def test_an_unknown_complaint_is_shown(machine):
 @pytest.fixture
 def real(bare):
     """A machine with the Python and the uv that run this test."""
-    bare.program('python3', f'exec {sys._base_executable} "$@"')
+    bare.program('python3', f'exec {shlex.quote(sys._base_executable)} "$@"')
     bare.program('uv', f'exec {shlex.quote(sys.prefix)}/bin/uv "$@"')
     return bare
 
@@ -465,7 +467,7 @@ def test_other_environments_stay_outside(machine):
     assert seen['RCUTILS_LOGGING_USE_STDOUT'] == '1'
     assert seen['RCUTILS_COLORIZED_OUTPUT'] == '0'
     ros_names = {name for name in seen if name.startswith(('ROS_', '_ROS', 'RMW', 'COLCON'))}
-    assert ros_names == {'ROS_LOG_DIR'}
+    assert ros_names == {'ROS_LOG_DIR', 'COLCON_PYTHON_EXECUTABLE'}
     assert 'PYTHONPATH' not in seen
 
 

@@ -3,6 +3,7 @@ import re
 import shutil
 import subprocess
 import sys
+import sysconfig
 import tomllib
 from importlib import metadata
 from pathlib import Path
@@ -66,7 +67,7 @@ def test_this_environment_is_the_pinned_one():
     ours = {'my-robot-basics', 'my-robot-basics-grader'}
     installed = {
         canonicalize_name(d.name): f'=={d.version}'
-        for d in metadata.distributions(path=[p for p in sys.path if p.startswith(sys.prefix)])
+        for d in metadata.distributions(path=[sysconfig.get_path('purelib')])
     }
     # Python modules that the ROS wheels bring along under the names of their ROS packages
     extra = {name: pin for name, pin in installed.items() if f'ros-{name}' in PINS}
