@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
 from nbformat import NotebookNode
 
@@ -35,10 +36,8 @@ class Plan:
 def find_exercises(notebook: NotebookNode) -> tuple[Exercise, ...]:
     """Return the exercises in the notebook's order; each begins with its `<id>-reset` cell."""
     starts = [i for i, cell in enumerate(notebook.cells) if is_reset(cell)]
-    ends = [*starts[1:], len(notebook.cells)]
-    return tuple(
-        _exercise(notebook, range(start, end)) for start, end in zip(starts, ends, strict=True)
-    )
+    spans = pairwise([*starts, len(notebook.cells)])
+    return tuple(_exercise(notebook, range(start, end)) for start, end in spans)
 
 
 def plans(notebook: NotebookNode, exercise: Exercise) -> Iterator[Plan]:
@@ -62,7 +61,7 @@ def plans(notebook: NotebookNode, exercise: Exercise) -> Iterator[Plan]:
         yield Plan(cells=(*setup, *own), why='the answer alone')
     if lent:
         yield Plan(cells=tuple(sorted({*setup, *own, *lent})), why='with your other cells')
-    whole = [i for i, cell in enumerate(cells) if cell.cell_type == 'code']
+    whole = [i for i, cell in enumerate(cells) if _is_code(cell)]
     yield Plan(
         cells=tuple(i for i in whole if role(cells[i]) not in ('grade', 'locked') or i in own),
         why='the whole lesson',
