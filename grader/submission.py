@@ -1,6 +1,7 @@
 """Read what a student handed in; refuse what cannot be read, by name and reason."""
 
 import json
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -121,7 +122,7 @@ def _clean_cell(cell: dict) -> NotebookNode:
         clean = nbformat.v4.new_markdown_cell(source, metadata=metadata)
         if pictures := _pictures(cell.get('attachments')):
             clean.attachments = pictures
-    if isinstance(cell_id, str):
+    if isinstance(cell_id, str) and re.fullmatch('[a-zA-Z0-9_-]{1,64}', cell_id):
         clean.id = cell_id
     return clean
 

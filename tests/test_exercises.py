@@ -1,0 +1,169 @@
+"""Finding exercises, and what to run of a lesson before one of them is judged."""
+
+import nbformat
+import pytest
+from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
+
+from grader.exercises import find_exercises, plans
+from grader.heal import heal, make_master
+
+
+def marked(name, source='', *, new=new_code_cell, **marks):
+    defaults = {'grade': False, 'solution': False, 'locked': True, 'schema_version': 3}
+    return new(source, metadata={'nbgrader': defaults | marks | {'grade_id': name}})
+
+
+def grade(name):
+    return marked(name, 'check()', grade=True, points=1)
+
+
+def answer(name, source=''):
+    return marked(name, source, solution=True, locked=False)
+
+
+SOURCE = new_notebook(
+    cells=[
+        new_markdown_cell('# A lesson'),
+        new_code_cell('import math'),
+        new_code_cell('shown = 1', metadata={'tags': ['demo']}),
+        marked('area-reset', "reset('area')"),
+        answer('area'),
+        new_code_cell('# try it'),
+        grade('area-visible'),
+        grade('area-hidden'),
+        new_code_cell('import cmath'),
+        marked('node-reset', "reset('Talker', 'rate_hz')"),
+        answer('node'),
+        marked('node-run', "run_answer('Talker')"),
+        new_code_cell('# try that'),
+        grade('node-check'),
+        marked('why', new=new_markdown_cell, solution=True, grade=True, points=2, locked=False),
+    ]
+)
+
+
+def lesson(area='def area(r): return r', node='class Talker: pass\nrate_hz = 5', **own):
+    """Return the healed lesson; `own` are cells of the student's, by the text they follow."""
+    master = make_master(nbformat.from_dict(SOURCE), nbformat.from_dict(SOURCE))
+    submitted = nbformat.from_dict(SOURCE)
+    places = {'at_start': 0, 'before_area': 3, 'after_area': 8, 'at_end': 15}
+    for cell in submitted.cells:
+        if (cell.metadata.get('nbgrader') or {}).get('grade_id') in ('area', 'node'):
+            cell.source = area if cell.metadata.nbgrader.grade_id == 'area' else node
+        if cell.source == '# try it':
+            cell.source = own.pop('try_it', cell.source)
+    for place, source in sorted(own.items(), key=lambda item: -places[item[0]]):
+        submitted.cells.insert(places[place], new_code_cell(source))
+    return heal(submitted, master).notebook
+
+
+def test_exercises_are_found_with_their_cells():
+    notebook = lesson(at_start='x = 1')
+    area, node = find_exercises(notebook)
+    assert (area.name, area.defines) == ('area', ('area',))
+    assert (node.name, node.defines) == ('node', ('Talker', 'rate_hz'))
+    assert (area.run, len(node.run)) == ((), 1)
+    places = [(e.reset, e.answer, *e.run, *e.grades) for e in (area, node)]
+    names = [[notebook.cells[i].metadata.nbgrader.grade_id for i in each] for each in places]
+    assert names == [
+        ['area-reset', 'area', 'area-visible', 'area-hidden'],
+        ['node-reset', 'node', 'node-run', 'node-check'],
+    ]
+
+
+def test_a_lesson_without_exercises_has_none():
+    assert find_exercises(new_notebook(cells=[new_code_cell('x = 1')])) == ()
+
+
+ALONE = 'the answer alone'
+LENT = 'with your other cells'
+WHOLE = 'the whole lesson'
+PLANS = {
+    'nothing else is needed': ({}, [ALONE, LENT, WHOLE]),
+    'a helper in a cell before': (
+        {'area': 'def area(r): return h(r)', 'before_area': 'def h(r): return r'},
+        [LENT, WHOLE],
+    ),
+    'a helper in the "try it" cell': (
+        {'area': 'def area(r): return h(r)', 'try_it': 'def h(r): return r'},
+        [LENT, WHOLE],
+    ),
+    'a helper after the checks': (
+        {'area': 'def area(r): return h(r)', 'at_end': 'def h(r): return r'},
+        [LENT, WHOLE],
+    ),
+    'the answer itself in another cell': (
+        {'area': '', 'at_start': 'def area(r): return r'},
+        [LENT, WHOLE],
+    ),
+    'a name that nobody binds': ({'area': 'def area(r): return tau'}, [ALONE, LENT, WHOLE]),
+    'a name of a demo': ({'area': 'area = shown'}, [ALONE, LENT, WHOLE]),
+    'a name of the setup': ({'area': 'area = math.sqrt'}, [ALONE, LENT, WHOLE]),
+    'a helper in both': (
+        {'area': 'h = 1\narea = h', 'at_start': 'h = 2'},
+        [ALONE, LENT, WHOLE],
+    ),
+    'a star import may bring anything': (
+        {'area': 'from math import *\narea = h', 'at_start': 'h = 2'},
+        [ALONE, LENT, WHOLE],
+    ),
+    'a syntax error in the answer': ({'area': 'def area(:'}, [ALONE, LENT, WHOLE]),
+    'a syntax error in the helper': (
+        {'area': 'area = h', 'at_start': 'h = ('},
+        [ALONE, LENT, WHOLE],
+    ),
+    'a helper beside a magic': (
+        {'area': 'area = h', 'at_start': '%matplotlib inline\nh = 1'},
+        [LENT, WHOLE],
+    ),
+    'a cell magic lends nothing': (
+        {'area': 'area = h', 'at_start': '%%bash\nh=1'},
+        [ALONE, LENT, WHOLE],
+    ),
+}
+
+
+@pytest.mark.parametrize(('own', 'expected'), PLANS.values(), ids=PLANS)
+def test_plans_begin_with_the_least_that_can_do(own, expected):
+    notebook = lesson(**own)
+    found = list(plans(notebook, find_exercises(notebook)[0]))
+    assert [plan.why for plan in found] == expected
+
+
+@pytest.mark.parametrize('own', [own for own, _ in PLANS.values()], ids=PLANS)
+def test_every_plan_is_in_order_and_holds_what_its_exercise_needs(own):
+    notebook = lesson(**own)
+    for exercise in find_exercises(notebook):
+        for plan in plans(notebook, exercise):
+            assert list(plan.cells) == sorted(set(plan.cells))
+            assert {exercise.reset, exercise.answer, *exercise.run} <= set(plan.cells)
+            assert not {notebook.cells[i].source for i in plan.cells} & {'check()', '# A lesson'}
+
+
+def sources(notebook, plan):
+    return [notebook.cells[i].source for i in plan.cells]
+
+
+def test_what_each_plan_runs():
+    notebook = lesson(at_start='early = 1', at_end='late = 2')
+    alone, lent, whole = (
+        sources(notebook, p) for p in plans(notebook, find_exercises(notebook)[1])
+    )
+    node = 'class Talker: pass\nrate_hz = 5'
+    own = ["reset('Talker', 'rate_hz')", node, "run_answer('Talker')"]
+    assert alone == ['import math', 'import cmath', *own]
+    assert lent == [
+        'early = 1', 'import math', 'def area(r): return r', '# try it', 'import cmath', *own,
+        '# try that',
+    ]  # fmt: skip
+    assert whole == [
+        'early = 1', 'import math', 'shown = 1', 'def area(r): return r', '# try it',
+        'import cmath', *own, '# try that', 'late = 2',
+    ]  # fmt: skip
+
+
+def test_a_lent_cell_from_below_does_not_bring_the_other_exercises_along():
+    notebook = lesson(area='area = h', node='rate_hz = 1', at_end='h = 2')
+    lent = next(plans(notebook, find_exercises(notebook)[0]))
+    assert 'h = 2' in sources(notebook, lent)
+    assert 'rate_hz = 1' not in sources(notebook, lent)

@@ -1,0 +1,195 @@
+"""Reading what strangers hand in: every oddity gets a sentence, nothing gets a traceback."""
+
+import json
+
+import nbformat
+import pytest
+from nbformat.v4 import new_code_cell, new_notebook
+
+from grader.errors import UnreadableSubmission
+from grader.submission import MAX_CELLS, extra_python_files, read_notebook, read_submission
+
+NAME = '03_publisher.ipynb'
+CODE = {'cell_type': 'code', 'source': 'x = 1', 'metadata': {}, 'outputs': []}
+
+
+def notebook_text(*cells, **more):
+    return json.dumps({'nbformat': 4, 'nbformat_minor': 5, 'metadata': {}, 'cells': cells} | more)
+
+
+@pytest.fixture
+def read(tmp_path):
+    def read(content):
+        path = tmp_path / NAME
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+        return read_notebook(path)
+
+    return read
+
+
+UNREADABLE = {
+    'empty': ('', 'is not JSON'),
+    'binary': (bytes(range(256)), 'is not JSON'),
+    'cut short': (notebook_text(CODE)[:-20], 'is not JSON'),
+    'a web page': ('<!DOCTYPE html><html>', 'is not JSON'),
+    'nested deeply': ('[' * 100_000, 'is not JSON'),
+    'nested deeply, closed': ('[' * 100_000 + ']' * 100_000, 'is not JSON'),
+    'UTF-16 without a mark': (notebook_text(CODE).encode('utf-16-be')[:-1], 'is not JSON'),
+    'a huge number': ('{"nbformat": ' + '9' * 5000 + '}', 'is not JSON'),
+    'a list': ('[]', 'is JSON but not a notebook'),
+    'null': ('null', 'is JSON but not a notebook'),
+    'a string': ('"notebook"', 'is JSON but not a notebook'),
+    'another kind of object': ('{"cells": []}', 'is JSON but not a notebook'),
+    'nbformat is text': (notebook_text(CODE, nbformat='4'), 'is JSON but not a notebook'),
+    'no cells': (notebook_text(), 'has no cells'),
+    'cells are missing': ('{"nbformat": 4}', 'has no cells'),
+    'cells are a number': ('{"nbformat": 4, "cells": 7}', 'has no cells'),
+    'cells are an object': ('{"nbformat": 4, "cells": {"a": 1}}', 'has no cells'),
+    'cells hold no objects': ('{"nbformat": 4, "cells": [1, null, "x", []]}', 'has no cells'),
+    'old, worksheets are a number': ('{"nbformat": 3, "worksheets": 7}', 'has no cells'),
+    'too many cells': (notebook_text(*[CODE] * (MAX_CELLS + 1)), 'cells, more than the 2000'),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(('content', 'reason'), UNREADABLE.values(), ids=UNREADABLE)
+def test_the_unreadable_is_refused_in_one_line_with_a_reason(read, content, reason):
+    with pytest.raises(UnreadableSubmission) as refused:
+        read(content)
+    sentence = str(refused.value)
+    assert reason in sentence
+    assert NAME in sentence
+    assert '\n' not in sentence
+    assert len(sentence) < 400
+
+
+CELLS = {
+    'source as text': (CODE, 'x = 1'),
+    'source as lines': (CODE | {'source': ['a\n', 'b']}, 'a\nb'),
+    'lines of several types': (CODE | {'source': ['a', 1, None, ['b'], 'c']}, 'ac'),
+    'source is missing': ({'cell_type': 'code'}, ''),
+    'source is a number': (CODE | {'source': 5}, ''),
+    'source is an object': (CODE | {'source': {'a': 1}}, ''),
+    'a lone surrogate': (CODE | {'source': 'a\ud800b'}, 'a?b'),
+    'another alphabet': (CODE | {'source': 'θ = "角度"'}, 'θ = "角度"'),
+    'a NUL': (CODE | {'source': 'a\0b'}, 'a\0b'),
+    'outputs of any type': (CODE | {'outputs': 'forged'}, 'x = 1'),
+    'metadata is a list': (CODE | {'metadata': [1]}, 'x = 1'),
+    'nbgrader is text': (CODE | {'metadata': {'nbgrader': 'solution'}}, 'x = 1'),
+    'grade id is a list': (CODE | {'metadata': {'nbgrader': {'grade_id': ['a']}}}, 'x = 1'),
+    'id is a number': (CODE | {'id': 9}, 'x = 1'),
+    'id is a surrogate': (CODE | {'id': '\ud800'}, 'x = 1'),
+    'unknown type': ({'cell_type': 7, 'source': 'text'}, 'text'),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(('cell', 'source'), CELLS.values(), ids=CELLS)
+def test_every_cell_becomes_a_plain_one(read, cell, source):
+    clean = read(notebook_text(cell))
+    assert [c.source for c in clean.cells] == [source]
+    assert clean.cells[0].metadata == {}
+    assert clean.cells[0].get('outputs', []) == []
+    nbformat.writes(clean).encode()  # no surrogate, nothing that is not JSON
+
+
+@pytest.mark.parametrize('kind', ['code', 'markdown', 'raw'])
+def test_only_the_grade_id_of_a_cells_metadata_is_kept(read, kind):
+    marks = {'grade_id': 'five_hz', 'points': 99, 'schema_version': 1, 'solution': False}
+    metadata = {
+        'nbgrader': marks,
+        'tags': ['skip-execution', 'demo'],
+        'my_robot_basics': {'role': 'setup', 'outcome': 'passed'},
+    }
+    clean = read(notebook_text({'cell_type': kind, 'source': 'x', 'metadata': metadata}))
+    assert clean.cells[0].metadata == {'nbgrader': {'grade_id': 'five_hz'}}
+    assert clean.cells[0].cell_type == kind
+    assert clean.metadata == {}
+
+
+def test_notebooks_of_older_formats_are_read(read):
+    four = {'cell_type': 'code', 'source': 'x = 1', 'metadata': {'nbgrader': {'grade_id': 'a'}}}
+    three = {'cell_type': 'code', 'input': 'x = 1', 'metadata': {'nbgrader': {'grade_id': 'a'}}}
+    worksheets = [{'cells': [three]}, 5, {'cells': None}]
+    for text in (
+        notebook_text(four, nbformat_minor=0),
+        notebook_text(four, nbformat_minor='x'),
+        json.dumps({'nbformat': 3, 'worksheets': worksheets}),
+    ):
+        (cell,) = read(text).cells
+        assert (cell.source, cell.metadata.nbgrader.grade_id) == ('x = 1', 'a')
+
+
+ATTACHMENTS = {
+    'a picture': ({'a.png': {'image/png': 'AAAA'}}, {'a.png': {'image/png': 'AAAA'}}),
+    'a script in a picture': ({'a.svg': {'image/svg+xml': '<script/>'}}, None),
+    'a web page': ({'a': {'text/html': '<b>', 'image/jpeg': 'A'}}, {'a': {'image/jpeg': 'A'}}),
+    'data of another type': ({'a.png': {'image/png': ['AAAA']}}, None),
+    'a list': ([1], None),
+    'a bundle of another type': ({'a.png': 'AAAA'}, None),
+}
+
+
+@pytest.mark.parametrize(('attachments', 'kept'), ATTACHMENTS.values(), ids=ATTACHMENTS)
+def test_of_attachments_only_pictures_are_kept(read, attachments, kept):
+    cell = {'cell_type': 'markdown', 'source': 'x', 'attachments': attachments}
+    assert read(notebook_text(cell)).cells[0].get('attachments') == kept
+
+
+def test_a_huge_file_is_refused_by_its_size_without_reading_it(tmp_path):
+    path = tmp_path / NAME
+    with path.open('wb') as file:
+        file.truncate(50_000_000)
+    with pytest.raises(UnreadableSubmission, match='has 50 MB, more than 20 MB: choose "Clear'):
+        read_notebook(path)
+
+
+def test_a_missing_notebook_names_what_was_found(tmp_path):
+    (tmp_path / '作业.ipynb').write_text('{}')
+    with pytest.raises(UnreadableSubmission, match=r'no file 03_publisher\.ipynb; found 作业'):
+        read_notebook(tmp_path / NAME)
+    with pytest.raises(UnreadableSubmission, match='found nothing'):
+        read_notebook(tmp_path / 'nowhere' / NAME)
+
+
+def test_a_link_or_a_folder_is_no_submission(tmp_path):
+    (tmp_path / 'secret.ipynb').write_text(notebook_text(CODE))
+    (tmp_path / NAME).symlink_to(tmp_path / 'secret.ipynb')
+    (tmp_path / 'folder.ipynb').mkdir()
+    for name in (NAME, 'folder.ipynb'):
+        with pytest.raises(UnreadableSubmission, match='there is no file'):
+            read_notebook(tmp_path / name)
+
+
+@pytest.mark.parametrize('student', ['ada', '李雷', 'Ольга', 'o’brien', '🐢', 'a b'])
+def test_students_of_any_alphabet_hand_in(tmp_path, student):
+    folder = tmp_path / student / '03_publisher'
+    folder.mkdir(parents=True)
+    nbformat.write(new_notebook(cells=[new_code_cell('x = 1')]), folder / NAME)
+    submission = read_submission(folder, student_id=student, assignment='03_publisher')
+    assert submission.problem is None
+    assert submission.student_id == student
+    assert submission.path == folder / NAME
+    assert [cell.source for cell in submission.notebook.cells] == ['x = 1']
+
+
+def test_what_is_wrong_with_a_submission_is_its_problem(tmp_path):
+    submission = read_submission(tmp_path, student_id='ada', assignment='03_publisher')
+    assert submission.notebook is None
+    assert 'there is no file 03_publisher.ipynb' in submission.problem
+
+
+def test_only_plain_python_files_beside_the_notebook_are_extra(tmp_path):
+    for name in ('b.py', 'a.py', 'data.csv', 'notes.ipynb'):
+        (tmp_path / name).write_text('')
+    (tmp_path / 'folder.py').mkdir()
+    (tmp_path / 'deeper').mkdir()
+    (tmp_path / 'deeper' / 'c.py').write_text('')
+    (tmp_path / 'link.py').symlink_to(tmp_path / 'a.py')
+    assert extra_python_files(tmp_path) == [tmp_path / 'a.py', tmp_path / 'b.py']
+
+
+def test_reading_changes_nothing(tmp_path):
+    path = tmp_path / NAME
+    path.write_text(notebook_text(CODE))
+    before = (path.read_bytes(), path.stat().st_mtime_ns, sorted(tmp_path.iterdir()))
+    read_submission(tmp_path, student_id='ada', assignment='03_publisher')
+    assert (path.read_bytes(), path.stat().st_mtime_ns, sorted(tmp_path.iterdir())) == before
