@@ -246,7 +246,7 @@ def test_rclpy_initialised_and_left_by_the_student(lesson):
 
 
 def test_a_node_of_that_name_in_a_thread_and_context_of_its_own(lesson):
-    lesson.run("""import threading
+    cell = lesson.run("""import threading
 context = rclpy.Context(); context.init()
 class Elsewhere(Node):
     def __init__(self):
@@ -254,8 +254,8 @@ class Elsewhere(Node):
 elsewhere = Elsewhere()
 executor = rclpy.executors.SingleThreadedExecutor(context=context)
 executor.add_node(elsewhere)
-thread = threading.Thread(target=executor.spin, daemon=True); thread.start()""")
-    cell = lesson.run('talker = run(Talker)')
+thread = threading.Thread(target=executor.spin, daemon=True); thread.start()
+talker = run(Talker)""")
     assert 'a node named /talker already lives outside live' in cell.stdout
     assert cell.displays == []
     assert lesson.value('talker, publishers()') == '(None, [])'
