@@ -193,11 +193,14 @@ class Recording:
         degrees = [[math.degrees(bound) for bound in bounds] for bounds in (low, high)]
         shown = ', '.join(f'{angle:.4g}' for angle in pose)
         picture = None
-        if all(_within(each, *degrees) for each in poses):
+        # half a turn is the most that an angle in radians is likely to be
+        largest = max(abs(angle) for each in poses for angle in each)
+        if largest > math.pi and all(_within(each, *degrees) for each in poses):
             seen, hint = f'({shown}), which looks like degrees', 'convert with math.radians(…)'
             picture = pictures.misread(pose)
         else:
-            seen, hint = f'({shown})', 'keep each joint within its range'
+            seen = f'({shown})'
+            hint = 'keep each joint within its range, and each position beside its own name'
         bounds = ', '.join(f'{a:.4g} to {b:.4g}' for a, b in zip(low, high, strict=True))
         expected = f'positions in radians ({bounds})'
         fail(expected=expected, seen=seen, hint=hint, picture=picture)
