@@ -8,8 +8,9 @@ from pathlib import Path
 from grader.course import Course
 from grader.errors import CourseError
 from grader.execute import execute
-from grader.gradebook import Stored, prepare, register, store, unanswered
+from grader.gradebook import Stored, register, store
 from grader.heal import heal
+from grader.pipeline import prepare, unanswered
 from grader.submission import read_submission
 from grader.turn import Turn
 

@@ -3,44 +3,26 @@
 import os
 import shutil
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
 import nbformat
-from nbconvert.exporters import Exporter
 from nbformat import NotebookNode
 from nbgrader.api import Grade, Gradebook, MissingEntry
 from nbgrader.preprocessors import SaveAutoGrades
 from nbgrader.utils import parse_utc
-from traitlets.config import Config
 
 from grader.course import Course
 from grader.errors import CourseError
-from grader.heal import KEY, grade_id, heal
-from grader.release import CODE_STUB, PASSES
+from grader.heal import KEY, grade_id
+from grader.pipeline import apply, finish, first_reason, resources_of
+from grader.release import PASSES
 from grader.submission import Submission
 
-SANITIZE_PASSES = (
-    'grader.passes.HealSubmission',
-    'grader.turn.TakeTurns',
-    'nbgrader.preprocessors.OverwriteKernelspec',
-    'nbgrader.preprocessors.OverwriteCells',
-    'nbgrader.preprocessors.CheckCellMetadata',
-)
-"""What nbgrader does with a submitted notebook before it runs."""
-
-AUTOGRADE_PASSES = (
-    'grader.turn.TakeTurns',
-    'grader.passes.ExecuteRooms',
-    'nbgrader.preprocessors.LimitOutput',
-    'grader.gradebook.SaveGrades',
-    'nbgrader.preprocessors.AssignLatePenalties',
-    'nbgrader.preprocessors.CheckCellMetadata',
-)
-"""What nbgrader does with it then."""
+SAVE_CELLS = 'nbgrader.preprocessors.SaveCells'
 
 
 @dataclass(frozen=True)
@@ -121,8 +103,8 @@ def register(course: Course, assignment: str) -> bool:
 
     Raises CourseError when cells came or went although submissions are graded already.
     """
-    resources = _resources(course, assignment)
-    tidied = _apply(PASSES[: PASSES.index(_SAVE_CELLS)], course.source(assignment), resources)
+    resources = resources_of(course, assignment)
+    tidied = apply(PASSES[: PASSES.index(SAVE_CELLS)], course.source(assignment), resources)
     make_ready(course)
     with _open(course.db_url) as book:
         known = _checksums_in(book, assignment)
@@ -145,7 +127,7 @@ def register(course: Course, assignment: str) -> bool:
                 'begin a new one.'
             )
         book.update_or_create_assignment(assignment)
-    _apply((_SAVE_CELLS,), tidied, resources)
+    apply((SAVE_CELLS,), tidied, resources)
     return True
 
 
@@ -163,18 +145,16 @@ def store(course: Course, submission: Submission, graded: NotebookNode) -> Store
     files are only read, and storing twice is the same as once.
     """
     student, assignment = submission.student_id, submission.assignment
-    at = _resources(course, assignment, student)
+    at = resources_of(course, assignment, student)
     at['nbgrader']['timestamp'], notes = _handed_in(submission)
     graded = nbformat.from_dict(graded)
     graded.metadata.setdefault(KEY, nbformat.from_dict({'notes': []})).notes += notes
     former = _find(course, submission)
-    after_running = AUTOGRADE_PASSES[AUTOGRADE_PASSES.index('grader.passes.ExecuteRooms') + 1 :]
     folder = course.folder('autograded', student, assignment)
     folder.mkdir(parents=True, exist_ok=True)
-    saved = _apply(after_running, graded, at)
+    saved = finish(graded, at)
     write_whole(folder / f'{assignment}.ipynb', nbformat.writes(saved))
-    dated = submission.path.with_name('timestamp.txt')
-    for extra in (*submission.extra_files, *([dated] if dated.is_file() else [])):
+    for extra in (*submission.extra_files, *_timestamps(submission)):
         copy = folder / extra.name
         copy.unlink(missing_ok=True)
         shutil.copy(extra, copy)
@@ -186,41 +166,6 @@ def store(course: Course, submission: Submission, graded: NotebookNode) -> Store
         pending=now[2],
         reason=first_reason(saved),
     )
-
-
-def prepare(course: Course, assignment: str, healed: NotebookNode) -> NotebookNode:
-    """Do with a healed notebook what nbgrader does before it runs: checksums, kernel, metadata."""
-    passes = SANITIZE_PASSES[SANITIZE_PASSES.index('grader.turn.TakeTurns') + 1 :]
-    return _apply(passes, healed, _resources(course, assignment))
-
-
-def unanswered(course: Course, submission: Submission, reason: str) -> NotebookNode:
-    """Return what stands for a submission that can't be graded: nothing answered, and why."""
-    nothing = nbformat.v4.new_notebook()
-    notebook = prepare(
-        course, submission.assignment, heal(nothing, course.master(submission.assignment)).notebook
-    )
-    notebook.metadata[KEY] = {'notes': [reason], 'problem': reason}
-    for cell in notebook.cells:
-        if cell.cell_type == 'code' and cell.metadata.get('nbgrader', {}).get('grade'):
-            cell.metadata[KEY] = {'outcome': 'failed', 'reason': reason, 'notes': []}
-            cell.outputs = [
-                nbformat.v4.new_output(
-                    'error', ename='CheckFailed', evalue=reason, traceback=[reason]
-                )
-            ]
-    return notebook
-
-
-def first_reason(graded: NotebookNode) -> str:
-    """Return the first reason why points are missing in an executed notebook, or ''."""
-    reasons = (
-        cell.metadata.get(KEY, {}).get('reason')
-        for cell in graded.cells
-        if cell.metadata.get(KEY, {}).get('outcome') in ('failed', 'ungraded')
-    )
-    problem = graded.metadata.get(KEY, {}).get('problem')
-    return problem or next((reason for reason in reasons if reason), '')
 
 
 def records(course: Course) -> list[Record]:
@@ -248,34 +193,6 @@ def write_whole(path: Path, text: str) -> None:
     aside = path.with_name(f'.{path.name}.new')
     aside.write_text(text, encoding='utf-8', newline='')
     os.replace(aside, path)
-
-
-_SAVE_CELLS = 'nbgrader.preprocessors.SaveCells'
-
-
-def _apply(passes: Sequence[str], notebook: NotebookNode, resources: dict) -> NotebookNode:
-    exporter = Exporter(
-        config=Config(
-            {
-                'Exporter': {'default_preprocessors': []},
-                'ClearSolutions': {'code_stub': CODE_STUB},
-            }
-        )
-    )
-    for name in passes:
-        exporter.register_preprocessor(name)
-    return exporter.from_notebook_node(notebook, resources)[0]
-
-
-def _resources(course: Course, assignment: str, student_id: str = '.') -> dict:
-    return {
-        'nbgrader': {
-            'notebook': assignment,
-            'assignment': assignment,
-            'student': student_id,
-            'db_url': course.db_url,
-        }
-    }
 
 
 def _open(db_url: str) -> Gradebook:
@@ -312,13 +229,18 @@ def _find(course: Course, submission: Submission) -> tuple[float, float, bool] |
         return found.score - (found.late_submission_penalty or 0), found.max_score, waits
 
 
-def _handed_in(submission: Submission) -> tuple[datetime | None, list[str]]:
-    """Read when it was handed in (UTC) from timestamp.txt, and what is wrong with that file."""
+def _timestamps(submission: Submission) -> list[Path]:
+    """Return nbgrader's timestamp.txt, if it lies beside the notebook."""
     path = submission.path.with_name('timestamp.txt')
-    if not path.is_file() or path.is_symlink():
+    return [path] if path.is_file() and not path.is_symlink() else []
+
+
+def _handed_in(submission: Submission) -> tuple[datetime | None, list[str]]:
+    """Read when it was handed in (UTC) and what is wrong with that file."""
+    if not (found := _timestamps(submission)):
         return None, []
     try:
-        return parse_utc(path.read_text(encoding='utf-8').strip() or None), []
+        return parse_utc(found[0].read_text(encoding='utf-8').strip() or None), []
     except (ValueError, OverflowError):
         return None, ['timestamp.txt holds no date: counted as handed in on time']
 

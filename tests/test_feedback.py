@@ -6,8 +6,9 @@ from nbformat.v4 import new_output
 
 from grader.course import Course
 from grader.feedback import write_feedback
-from grader.gradebook import prepare, register, store, unanswered
+from grader.gradebook import register, store
 from grader.heal import KEY, heal
+from grader.pipeline import prepare, unanswered
 from grader.release import release
 from grader.submission import read_submission
 

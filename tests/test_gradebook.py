@@ -12,8 +12,9 @@ from nbgrader.api import Gradebook
 
 from grader.course import Course
 from grader.errors import CourseError
-from grader.gradebook import prepare, records, register, store, unanswered
+from grader.gradebook import records, register, store
 from grader.heal import KEY, heal
+from grader.pipeline import prepare, unanswered
 from grader.release import release
 from grader.scores import COLUMNS, write_scores
 from grader.submission import read_submission

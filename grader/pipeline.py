@@ -1,0 +1,106 @@
+"""The passes that a submission goes through, the same for `nbgrader autograde` and for us."""
+
+from collections.abc import Sequence
+
+import nbformat
+from nbconvert.exporters import Exporter
+from nbformat import NotebookNode
+from traitlets.config import Config
+
+from grader.course import Course
+from grader.heal import KEY, heal
+from grader.release import CODE_STUB
+from grader.submission import Submission
+
+SANITIZE_PASSES = (
+    'grader.passes.HealSubmission',
+    'grader.turn.TakeTurns',
+    'nbgrader.preprocessors.OverwriteKernelspec',
+    'nbgrader.preprocessors.OverwriteCells',
+    'nbgrader.preprocessors.CheckCellMetadata',
+)
+"""What nbgrader does with a submitted notebook before it runs."""
+
+AUTOGRADE_PASSES = (
+    'grader.passes.ExecuteRooms',
+    'grader.turn.TakeTurns',
+    'nbgrader.preprocessors.LimitOutput',
+    'grader.gradebook.SaveGrades',
+    'nbgrader.preprocessors.AssignLatePenalties',
+    'nbgrader.preprocessors.CheckCellMetadata',
+)
+"""What nbgrader does with it then."""
+
+
+def apply(passes: Sequence[str], notebook: NotebookNode, resources: dict) -> NotebookNode:
+    """Put a notebook through passes, given by name, as nbgrader would; return the result."""
+    exporter = Exporter(
+        config=Config(
+            {
+                'Exporter': {'default_preprocessors': []},
+                'ClearSolutions': {'code_stub': CODE_STUB},
+            }
+        )
+    )
+    for name in passes:
+        exporter.register_preprocessor(name)
+    return exporter.from_notebook_node(notebook, resources)[0]
+
+
+def resources_of(course: Course, assignment: str, student_id: str = '.') -> dict:
+    """Return what nbgrader's passes want to know of the notebook that they get."""
+    return {
+        'nbgrader': {
+            'notebook': assignment,
+            'assignment': assignment,
+            'student': student_id,
+            'db_url': course.db_url,
+        }
+    }
+
+
+def prepare(course: Course, assignment: str, healed: NotebookNode) -> NotebookNode:
+    """Do with a healed notebook what nbgrader does before it runs: checksums, kernel, metadata."""
+    return apply(
+        _after('grader.passes.HealSubmission', SANITIZE_PASSES),
+        healed,
+        resources_of(course, assignment),
+    )
+
+
+def finish(executed: NotebookNode, resources: dict) -> NotebookNode:
+    """Do with an executed notebook what nbgrader does then: it stores the scores."""
+    return apply(_after('grader.passes.ExecuteRooms', AUTOGRADE_PASSES), executed, resources)
+
+
+def unanswered(course: Course, submission: Submission, reason: str) -> NotebookNode:
+    """Return what stands for a submission that can't be graded: nothing answered, and why."""
+    nothing = nbformat.v4.new_notebook()
+    notebook = prepare(
+        course, submission.assignment, heal(nothing, course.master(submission.assignment)).notebook
+    )
+    notebook.metadata[KEY] = {'notes': [reason], 'problem': reason}
+    for cell in notebook.cells:
+        if cell.cell_type == 'code' and cell.metadata.get('nbgrader', {}).get('grade'):
+            cell.metadata[KEY] = {'outcome': 'failed', 'reason': reason, 'notes': []}
+            cell.outputs = [
+                nbformat.v4.new_output(
+                    'error', ename='CheckFailed', evalue=reason, traceback=[reason]
+                )
+            ]
+    return notebook
+
+
+def first_reason(graded: NotebookNode) -> str:
+    """Return the first reason why points are missing in an executed notebook, or ''."""
+    reasons = (
+        cell.metadata.get(KEY, {}).get('reason')
+        for cell in graded.cells
+        if cell.metadata.get(KEY, {}).get('outcome') in ('failed', 'ungraded')
+    )
+    problem = graded.metadata.get(KEY, {}).get('problem')
+    return problem or next((reason for reason in reasons if reason), '')
+
+
+def _after(name: str, passes: tuple[str, ...]) -> tuple[str, ...]:
+    return passes[passes.index(name) + 1 :]
