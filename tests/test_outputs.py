@@ -1,0 +1,229 @@
+"""Gathering a cell's outputs: bounded, and only what has the shape of an output."""
+
+import nbformat
+import pytest
+
+from grader.outputs import MAX_ERROR_CHARACTERS, MAX_OUTPUT_CHARACTERS, CellRun, Displays
+
+
+def stream(text, name='stdout'):
+    return 'stream', {'name': name, 'text': text}
+
+
+def display(data, **more):
+    return 'display_data', {'data': data, 'metadata': {}} | more
+
+
+def error(name='ValueError', value='bad', lines=('one', 'two')):
+    return 'error', {'ename': name, 'evalue': value, 'traceback': list(lines)}
+
+
+def run_of(*messages):
+    run = CellRun()
+    for message in messages:
+        run.keep(*message)
+    return run
+
+
+KEPT = {
+    'text in pieces is joined': ([stream('a'), stream('b')], [('stdout', 'ab')]),
+    'streams stay apart': (
+        [stream('a'), stream('e', 'stderr'), stream('b')],
+        [('stdout', 'a'), ('stderr', 'e'), ('stdout', 'b')],
+    ),
+    'a display': ([display({'text/plain': 'x'})], [('display_data', {'text/plain': 'x'})]),
+    'a result': (
+        [('execute_result', {'data': {'text/plain': '3'}, 'execution_count': 9})],
+        [('execute_result', {'text/plain': '3'})],
+    ),
+    'an error': ([error()], [('error', 'ValueError: bad')]),
+    'a lone surrogate': ([stream('a\ud800')], [('stdout', 'a?')]),
+    'a surrogate in a display': (
+        [display({'text/html': '\udfff'})],
+        [('display_data', {'text/html': '?'})],
+    ),
+    'a display that is no text': (
+        [display({'text/plain': 'x', 'image/png': {'a': 1}, 'a/json': [1]})],
+        [('display_data', {'text/plain': 'x'})],
+    ),
+}
+
+
+def brief(output):
+    kind = output.output_type
+    if kind == 'stream':
+        return output.name, output.text
+    if kind == 'error':
+        return kind, f'{output.ename}: {output.evalue}'
+    return kind, output.data
+
+
+@pytest.mark.parametrize(('messages', 'expected'), KEPT.values(), ids=KEPT)
+def test_outputs_are_kept(messages, expected):
+    run = run_of(*messages)
+    assert [brief(output) for output in run.outputs] == expected
+    nbformat.validate(notebook_with(run.outputs))
+
+
+def notebook_with(outputs):
+    cell = nbformat.v4.new_code_cell('', outputs=nbformat.from_dict(outputs))
+    return nbformat.v4.new_notebook(cells=[cell])
+
+
+MALFORMED = [
+    ('stream', {}),
+    ('stream', {'name': 'stdout', 'text': 5}),
+    ('stream', {'name': ['stdout'], 'text': 'x'}),
+    ('stream', {'name': '<script>', 'text': 'x'}),
+    ('display_data', {}),
+    ('display_data', {'data': 'x'}),
+    ('display_data', {'data': [1]}),
+    ('error', {}),
+    ('error', {'ename': 1, 'evalue': 'x', 'traceback': []}),
+    ('error', {'ename': 'x', 'evalue': None, 'traceback': []}),
+    ('error', {'ename': 'x', 'evalue': 'x', 'traceback': 'x'}),
+    ('status', {'execution_state': 'busy'}),
+    ('comm_open', {'data': {}}),
+    (None, {}),
+    (['stream'], {'name': 'stdout', 'text': 'x'}),
+]
+
+
+@pytest.mark.parametrize('message', MALFORMED)
+def test_what_is_no_output_is_passed_over(message):
+    run = run_of(message)
+    assert (run.outputs, run.error) == ([], None)
+
+
+def test_of_a_pictures_metadata_only_its_size_is_kept():
+    sizes = {'image/png': {'width': 80, 'height': True, 'onload': 'x'}, 'a': 5}
+    run = run_of(display({'image/png': 'AA'}, metadata=sizes))
+    assert run.outputs[0].metadata == {'image/png': {'width': 80}}
+    assert run_of(display({'image/png': 'AA'}, metadata=7)).outputs[0].metadata == {}
+
+
+FLOODS = {
+    'one long text': [stream('x' * 10_000_000)],
+    'many long texts': [stream('x' * 10_000)] * 1_000,
+    'many short texts': [stream('x'), stream('e', 'stderr')] * 2_000,
+    'large displays': [display({'text/plain': 'x' * 50_000})] * 50,
+    'many small displays': [display({})] * 3_000,
+    'errors': [error(value='x' * 100_000)] * 100,
+    'long tracebacks': [error(lines=['x' * 100_000])] * 100,
+    'long names': [error(name='x' * 1_000)] * 1_000,
+}
+
+
+@pytest.mark.parametrize('messages', FLOODS.values(), ids=FLOODS)
+def test_a_flood_is_bounded_and_counted(messages):
+    run = run_of(*messages)
+    run.close()
+    assert len(str(run.outputs)) < MAX_OUTPUT_CHARACTERS + 3 * MAX_ERROR_CHARACTERS
+    assert 'more characters of output were not kept]' in run.outputs[-1].text
+
+
+def test_what_was_dropped_is_counted_exactly():
+    run = run_of(stream('x' * MAX_OUTPUT_CHARACTERS), stream('y' * 1234))
+    run.close()
+    assert len(run.outputs[0].text) == MAX_OUTPUT_CHARACTERS - 100
+    assert run.outputs[-1].text == '\n[1,334 more characters of output were not kept]\n'
+
+
+def test_an_error_after_a_flood_is_not_lost():
+    run = run_of(*[stream('x' * 1_000_000)] * 3, error())
+    assert run.error.ename == 'ValueError'
+    assert run.outputs[-1] is run.error
+
+
+def test_clearing_makes_room_again():
+    run = run_of(stream('x' * MAX_OUTPUT_CHARACTERS))
+    run.clear()
+    run.keep(*stream('new'))
+    assert [brief(o) for o in run.outputs] == [('stdout', 'new')]
+
+
+OK, ERROR = {'status': 'ok'}, {'status': 'error'}
+ENDS = {
+    'ok': (OK, [], True),
+    'no reply': ({}, [], False),
+    'an error': (ERROR, [error()], False),
+    'an error that was not shown': (ERROR, [], False),
+    'ok, though an error was shown': (OK, [error()], False),
+    'aborted': ({'status': 'aborted'}, [], False),
+    'a made-up status': ({'status': ['ok']}, [], False),
+    'interrupted': (OK | {'timed_out': True}, [], False),
+    'died': (OK | {'died': True}, [], False),
+}
+
+
+@pytest.mark.parametrize(('state', 'messages', 'expected'), ENDS.values(), ids=ENDS)
+def test_a_cell_ran_to_its_end_only_when_the_kernel_says_so(state, messages, expected):
+    run = CellRun(**state)
+    for message in messages:
+        run.keep(*message)
+    assert run.ran_to_end is expected
+
+
+def test_an_error_that_only_the_reply_tells_is_an_error():
+    run = run_of(stream('x'))
+    run.conclude({'status': 'error', 'ename': 'CheckFailed', 'evalue': 'no', 'traceback': []})
+    assert not run.ran_to_end
+    assert (run.error.ename, run.outputs[-1].evalue) == ('CheckFailed', 'no')
+    run = run_of(error())
+    run.conclude({'status': 'error', 'ename': 'ValueError', 'evalue': 'bad', 'traceback': []})
+    assert len(run.outputs) == 1
+
+
+def shown(run, displays, data, display_id):
+    content = {'data': data, 'transient': {'display_id': display_id}}
+    displays.remember(content, run, run.keep('display_data', content))
+
+
+def test_a_display_is_updated_in_place_also_later():
+    displays, first, second = Displays(), CellRun(), CellRun()
+    shown(first, displays, {'text/plain': 'old'}, 'a')
+    shown(second, displays, {'text/plain': 'old'}, 'a')
+    shown(second, displays, {'text/plain': 'other'}, 'b')
+    displays.update({'data': {'text/plain': 'new'}, 'transient': {'display_id': 'a'}})
+    texts = [o.data['text/plain'] for run in (first, second) for o in run.outputs]
+    assert texts == ['new', 'new', 'other']
+
+
+BAD_UPDATES = [
+    {},
+    {'data': {'text/plain': 'new'}},
+    {'data': {'text/plain': 'new'}, 'transient': 5},
+    {'data': {'text/plain': 'new'}, 'transient': {'display_id': ['a']}},
+    {'data': {'text/plain': 'new'}, 'transient': {'display_id': 'unknown'}},
+    {'data': 'new', 'transient': {'display_id': 'a'}},
+    {'transient': {'display_id': 'a'}},
+    {'data': {'text/plain': 'x' * MAX_OUTPUT_CHARACTERS}, 'transient': {'display_id': 'a'}},
+]
+
+
+@pytest.mark.parametrize('content', BAD_UPDATES, ids=range(len(BAD_UPDATES)))
+def test_an_update_that_is_none_changes_nothing(content):
+    displays, run = Displays(), CellRun()
+    shown(run, displays, {'text/plain': 'old'}, 'a')
+    displays.update(content)
+    displays.remember(content, run, None)
+    assert run.outputs[0].data == {'text/plain': 'old'}
+
+
+def test_many_displays_cannot_grow_beyond_the_bound_together():
+    displays, run = Displays(), CellRun()
+    for number in range(1_000):
+        shown(run, displays, {'text/plain': 'x'}, str(number))
+    for number in range(1_000):
+        big = {'text/plain': 'x' * 50_000}
+        displays.update({'data': big, 'transient': {'display_id': str(number)}})
+    assert len(str(run.outputs)) < 1.2 * MAX_OUTPUT_CHARACTERS
+
+
+def test_updates_in_place_for_ever_leave_room():
+    displays, run = Displays(), CellRun()
+    shown(run, displays, {'text/plain': 'x'}, 'a')
+    for number in range(100):
+        text = str(number) + 'x' * 50_000
+        displays.update({'data': {'text/plain': text}, 'transient': {'display_id': 'a'}})
+    assert run.outputs[0].data['text/plain'].startswith('99')

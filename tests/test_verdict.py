@@ -1,0 +1,163 @@
+"""Judging a grade cell by how it ran, and writing the verdict as nbgrader reads it."""
+
+import nbformat
+import pytest
+from nbformat.v4 import new_code_cell, new_output
+from nbgrader.utils import determine_grade
+
+from grader.errors import RoomFailure
+from grader.heal import KEY
+from grader.outputs import CellRun
+from grader.verdict import Verdict, judge, ungraded, write_verdict
+
+SECRET = 'assert hidden == 42'
+
+
+@pytest.fixture
+def cell():
+    marks = {'grade': True, 'solution': False, 'grade_id': 'five_hz_rate', 'points': 3}
+    return new_code_cell(SECRET, metadata={'nbgrader': marks, KEY: {'role': 'grade'}})
+
+
+def ended(*outputs, **state):
+    run = CellRun(**{'status': 'ok'} | state)
+    run.outputs = [nbformat.from_dict(o) for o in outputs]
+    return run
+
+
+def failing(name='CheckFailed', value='expected 5.0 Hz, saw 1.0 Hz: …', **state):
+    error = new_output('error', ename=name, evalue=value, traceback=['in test:', SECRET])
+    return ended(error, status='error', error=error, **state)
+
+
+def text(text, name='stdout'):
+    return new_output('stream', name=name, text=text)
+
+
+PICTURE = new_output('display_data', {'image/png': 'AA'})
+RESULT = new_output('execute_result', {'text/plain': '[1]'})
+
+SILENT = 'the check failed and gave no reason'
+JUDGED = {
+    'ran to its end': (ended(), 'passed', ''),
+    'printed': (ended(text('fine'), PICTURE), 'passed', ''),
+    'wrote on stderr': (ended(text('careful', 'stderr')), 'passed', ''),
+    'ends with a value': (ended(RESULT), 'passed', ''),
+    'a failed check': (failing(), 'failed', 'expected 5.0 Hz, saw 1.0 Hz: …'),
+    'a failed assert': (failing('AssertionError', 'no'), 'failed', 'no'),
+    'a silent assert': (failing('AssertionError', ' '), 'failed', SILENT),
+}
+
+
+@pytest.mark.parametrize(('run', 'outcome', 'reason'), JUDGED.values(), ids=JUDGED)
+def test_a_check_that_came_to_an_end_is_judged(cell, run, outcome, reason):
+    verdict = judge(cell, run, [])
+    assert (verdict.outcome, verdict.reason) == (outcome, reason)
+    assert (verdict.grade_id, verdict.points) == ('five_hz_rate', 3.0)
+    assert verdict.score == {'passed': 3.0, 'failed': 0.0}[outcome]
+
+
+NO_VERDICT = {
+    'another exception': (failing('KeyError', 'hidden_target'), 'it stopped with KeyError'),
+    'a timeout': (failing('KeyboardInterrupt', '', timed_out=True), 'it did not end in time'),
+    'a dead test kernel': (ended(status=None, died=True), 'the test kernel ended'),
+    'killed after a timeout': (ended(status=None, timed_out=True, died=True), 'the test kernel'),
+    'no reply': (ended(status=None), 'it did not report its end'),
+    'aborted': (ended(status='aborted'), 'it did not report its end'),
+}
+
+
+@pytest.mark.parametrize(('run', 'happened'), NO_VERDICT.values(), ids=NO_VERDICT)
+def test_a_check_that_did_not_come_to_an_end_is_the_graders_failure(cell, run, happened):
+    with pytest.raises(RoomFailure) as failure:
+        judge(cell, run, [])
+    assert f'`five_hz_rate` came to no verdict: {happened}' in str(failure.value)
+    assert 'hidden' not in str(failure.value)
+
+
+DEAD = ended(status=None, died=True)
+ENDED_BY = {
+    'the answer': ([('five_hz', DEAD)], 'your cell `five_hz` ended the kernel'),
+    'a loop that ignores': (
+        [('five_hz', ended(status=None, died=True, timed_out=True))],
+        'your cell `five_hz` did not end and could not be interrupted',
+    ),
+    'nobody knows': ([('five_hz', ended())], 'something that your code left running ended it'),
+}
+
+
+@pytest.mark.parametrize(('own', 'reason'), ENDED_BY.values(), ids=ENDED_BY)
+def test_a_kernel_that_the_student_ended_is_a_zero_with_its_reason(cell, own, reason):
+    verdict = judge(cell, None, own)
+    assert (verdict.outcome, verdict.score) == ('failed', 0.0)
+    assert verdict.reason == f'the kernel of your notebook ended before the check: {reason}'
+
+
+def test_a_failure_tells_what_happened_in_the_students_own_cells(cell):
+    own = [
+        ('five_hz', failing('SyntaxError', "'(' was\n never closed \x1b[31m\u202e" + 'x' * 5_000)),
+        ('five_hz-run', ended(timed_out=True)),
+        ('fine', ended()),
+    ]
+    first, second = judge(cell, failing(), own).notes
+    assert first.startswith("your cell `five_hz` stopped with SyntaxError: '(' was never closed")
+    assert first.isprintable()
+    assert len(first) < 400
+    assert second == 'your cell `five_hz-run` did not end and was interrupted'
+    assert judge(cell, ended(), own).notes == ()
+
+
+def test_remarks_of_a_check_become_notes(cell):
+    run = ended(text('checked 50 messages\nnote: judged on the wall clock\n'), PICTURE)
+    assert judge(cell, run, []).notes == ('judged on the wall clock',)
+
+
+WRITTEN = [
+    *[(Verdict('a', outcome='passed', points=3.0, reason=''), outs, 3.0) for outs in (
+        [], [text('x')], [text('log', 'stderr')], [RESULT], [PICTURE],
+    )],
+    *[(Verdict('a', outcome='failed', points=3.0, reason='too slow'), outs, 0.0) for outs in (
+        [], [text('x')], [RESULT], failing().outputs,
+    )],
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(('verdict', 'outputs', 'score'), WRITTEN)
+def test_nbgrader_reads_the_same_score_off_a_written_verdict(cell, verdict, outputs, score):
+    write_verdict(cell, verdict, outputs)
+    assert determine_grade(cell) == (score, 3.0)
+    assert cell.metadata[KEY].outcome == verdict.outcome
+    assert SECRET not in str((cell.outputs, cell.metadata))
+    assert not [o for o in cell.outputs if o.get('name') == 'stderr']
+    nbformat.validate(nbformat.v4.new_notebook(cells=[cell]))
+
+
+def test_a_failure_is_written_as_one_error_without_the_test(cell):
+    verdict = Verdict('a', outcome='failed', points=3.0, reason='too slow', notes=('n',))
+    write_verdict(cell, verdict, [text('saw 10\n'), PICTURE, *failing().outputs])
+    assert [o.output_type for o in cell.outputs] == ['stream', 'display_data', 'error']
+    error = cell.outputs[-1]
+    assert (error.ename, error.evalue, error.traceback) == (
+        'CheckFailed',
+        'too slow',
+        ['too slow'],
+    )
+    assert cell.metadata[KEY] == {
+        'role': 'grade',
+        'outcome': 'failed',
+        'reason': 'too slow',
+        'notes': ['n'],
+    }
+
+
+def test_an_ungraded_cell_says_that_a_person_looks(cell):
+    verdict = ungraded(cell, 'the test kernel did not start')
+    assert (verdict.outcome, verdict.score, verdict.points) == ('ungraded', None, 3.0)
+    write_verdict(cell, verdict, [])
+    assert cell.outputs[0].text == (
+        'not graded, a person has to look at it: the test kernel did not start\n'
+    )
+
+
+def test_a_manual_cell_has_no_score_yet():
+    assert Verdict('why', outcome='manual', points=2.0, reason='').score is None
