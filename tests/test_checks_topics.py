@@ -1,6 +1,8 @@
 """Topics from inside the student's kernel (nodes of live) and from outside; what silence means."""
 
 import os
+import subprocess
+import sys
 import threading
 
 import pytest
@@ -108,7 +110,7 @@ def test_stamps_of_a_node_that_ignores_the_clock_are_on_the_wall_clock(run):
             'never_spins',
             '/kinematics_publisher has a publisher there and sends nothing, so see',
         ),
-        ('callback_raises', 'no message in 4 s: /kinematics_pub|none in 3 s: no node is'),
+        ('callback_raises', 'no message in 4 s|none in 3 s'),
         ('wrong_topic', '/kinematics_publisher uses /kinematics/joint_state, so compare'),
     ],
 )
@@ -117,6 +119,14 @@ def test_silence_is_explained(monkeypatch, capfd, node, reason):
     with running(node), pytest.raises(CheckFailed, match=reason):
         topic(TOPIC).record()
     assert capfd.readouterr().err == ''
+
+
+def test_bytes_that_are_no_message_are_silence():
+    # in a process of its own: rcl keeps the C library's complaint, and prints it later
+    code = f"from my_robot_basics.checks import topic; topic('{TOPIC}').record()"
+    with running('garbage'):
+        done = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True)
+    assert 'CheckFailed: expected messages on /kinematics/joint_states, saw no mess' in done.stderr
 
 
 def test_no_node_at_all_is_said(monkeypatch):

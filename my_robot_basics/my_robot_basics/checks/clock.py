@@ -133,7 +133,10 @@ class SimulatedClock:
         self._barriers = {name: self._barriers[name] for name in answered}
         if not self._needed <= set(answered):
             raise Inconclusive('its parameter services do not answer')
-        self._former = {name: reply.values[0].bool_value for name, reply in answered.items()}
+        self._former = {
+            name: any(value.bool_value for value in reply.values)
+            for name, reply in answered.items()
+        }
         self.now_ns = time.time_ns()
         self._set_all(dict.fromkeys(self._former, True))
         self._watcher.spin_until(self._is_heard, timeout_sec=FIRST_ANSWER_SEC)

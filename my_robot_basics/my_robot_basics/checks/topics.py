@@ -1,13 +1,12 @@
 """A topic as a check sees it: record what arrives, publish, wait for one message."""
 
-import importlib
 from collections.abc import Callable
 from typing import Any
 
 from rclpy.duration import Duration
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
-from my_robot_basics.checks import graphs, looks
+from my_robot_basics.checks import graphs, looks, wire
 from my_robot_basics.checks.errors import fail
 from my_robot_basics.checks.recording import Recording
 from my_robot_basics.checks.watcher import Watcher
@@ -139,8 +138,7 @@ class Topic:
 
 
 def _message_type(name: str) -> type | None:
-    package, kind, message = name.split('/')
     try:
-        return getattr(importlib.import_module(f'{package}.{kind}'), message)
-    except (ImportError, AttributeError):
+        return wire.message_type(name)
+    except wire.WireError:
         return None
