@@ -124,8 +124,11 @@ def test_silence_is_explained(monkeypatch, capfd, node, reason):
 def test_bytes_that_are_no_message_are_silence():
     # in a process of its own: rcl keeps the C library's complaint, and prints it later
     code = f"from my_robot_basics.checks import topic; topic('{TOPIC}').record()"
+    here = {**os.environ, 'MY_ROBOT_BASICS_DOMAIN_ID': os.environ['ROS_DOMAIN_ID']}
     with running('garbage'):
-        done = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True)
+        done = subprocess.run(
+            [sys.executable, '-c', code], env=here, capture_output=True, text=True
+        )
     assert 'CheckFailed: expected messages on /kinematics/joint_states, saw no mess' in done.stderr
 
 
