@@ -2,11 +2,14 @@
 
     .venv/bin/python tests/submissions/rebase.py
 
-Each sample keeps its answers and its own cells; all else comes from notebooks/. A sample whose
-point is a damaged notebook is damaged again.
+Each sample keeps its answers and its own cells (those whose id begins with `own-`); all else comes
+from notebooks/. A sample whose point is a damaged notebook is damaged again; one that is not
+readable (`-zero-`) stays as it is. A new sample is a copy of another one with another answer, and
+a line in expected.json.
 """
 
 import sys
+from collections import defaultdict
 from collections.abc import Callable
 from pathlib import Path
 
@@ -16,14 +19,14 @@ from nbformat import NotebookNode
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 from grader.course import Course
-from grader.heal import KEY, grade_id, heal, make_master
+from grader.heal import grade_id, role
 
 FOLDER = Path(__file__).parent
 
 
 def samples() -> list[Path]:
-    """Return every notebook of the sample class."""
-    return sorted(FOLDER.glob('*.ipynb'))
+    """Return every notebook of the sample class, the demo's first, then those in more/."""
+    return [*sorted(FOLDER.glob('*.ipynb')), *sorted(FOLDER.glob('more/*.ipynb'))]
 
 
 def assignment_of(sample: Path) -> str:
@@ -31,27 +34,46 @@ def assignment_of(sample: Path) -> str:
     return sample.stem.split('-', maxsplit=1)[0]
 
 
-def rebased(name: str, sample: NotebookNode) -> str:
+def rebased(sample: Path) -> str:
     """Return the text of a sample's file on today's release."""
-    release = Course().release(name.split('-', maxsplit=1)[0])
-    notebook = heal(sample, make_master(release, release)).notebook
-    notebook.metadata.pop(KEY)
-    for index, cell in enumerate(notebook.cells):
-        own = cell.metadata.pop(KEY).role in ('free', 'text')
-        if own and cell.id not in {known.get('id') for known in release.cells}:
-            cell.id = f'own-{index}'
-    DAMAGE.get(name, lambda notebook: None)(notebook)
+    text = sample.read_text(encoding='utf-8')
+    if '-zero-' in sample.stem:
+        return text
+    answers, own = _of_student(nbformat.reads(text, as_version=4))
+    notebook = Course().release(assignment_of(sample))
+    cells = [*own[None]]
+    for cell in notebook.cells:
+        if cell.cell_type == 'code':
+            cell.outputs, cell.execution_count = [], None
+        if role(cell) == 'answer':
+            cell.source = '\n\n'.join(answers[grade_id(cell)])
+        cells += [cell, *own[cell.id]]
+    notebook.cells = cells
+    DAMAGE.get(sample.stem, lambda notebook: None)(notebook)
     return nbformat.writes(notebook) + '\n'
 
 
+def _of_student(
+    notebook: NotebookNode,
+) -> tuple[dict[str, list[str]], dict[str | None, list[NotebookNode]]]:
+    """Return the parts of each answer, and the student's own cells by the cell they follow."""
+    answers, own, place = defaultdict(list), defaultdict(list), None
+    for cell in notebook.cells:
+        if cell.id.startswith('own-'):
+            own[place].append(cell)
+            continue
+        place = cell.id
+        if role(cell) == 'answer':
+            answers[grade_id(cell)].append(cell.source)
+    return answers, own
+
+
 def _grade_cells(notebook: NotebookNode) -> list[NotebookNode]:
-    return [c for c in notebook.cells if c.metadata.get('nbgrader', {}).get('grade')]
+    return [cell for cell in notebook.cells if role(cell) == 'grade']
 
 
 def _delete_locked_and_grade_cells(notebook: NotebookNode) -> None:
-    notebook.cells = [
-        cell for cell in notebook.cells if not cell.metadata.get('nbgrader', {}).get('locked')
-    ]
+    notebook.cells = [cell for cell in notebook.cells if role(cell) not in ('locked', 'grade')]
 
 
 def _repeat_and_shuffle(notebook: NotebookNode) -> None:
@@ -74,11 +96,11 @@ def _tag_to_skip(notebook: NotebookNode) -> None:
 
 def _split_answer(notebook: NotebookNode) -> None:
     """Split the answer before its class, as JupyterLab does: both parts keep the metadata."""
-    index = next(i for i, c in enumerate(notebook.cells) if grade_id(c) == 'five_hz')
+    index = next(i for i, c in enumerate(notebook.cells) if role(c) == 'answer')
     first = notebook.cells[index]
     second = nbformat.from_dict(first)
     first.source, rest = first.source.split('\n\nclass ')
-    second.source, second.id = 'class ' + rest, 'five_hz-second'
+    second.source, second.id = 'class ' + rest, f'{first.id}-second'
     notebook.cells.insert(index + 1, second)
 
 
@@ -93,4 +115,4 @@ DAMAGE: dict[str, Callable[[NotebookNode], None]] = {
 
 if __name__ == '__main__':
     for path in samples():
-        path.write_text(rebased(path.stem, nbformat.read(path, as_version=4)), encoding='utf-8')
+        path.write_text(rebased(path), encoding='utf-8')
