@@ -1,8 +1,7 @@
 """Student cells run in the one kernel, grade cells in the other; each exercise is judged alone."""
 
 import asyncio
-from collections.abc import Coroutine, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -14,6 +13,7 @@ from grader.errors import RoomFailure
 from grader.exercises import Exercise, Plan, find_exercises, plans
 from grader.heal import KEY, grade_id, role
 from grader.outputs import CellRun
+from grader.pool import Pool
 from grader.rooms import Rooms
 from grader.verdict import Verdict, judge, ungraded, write_verdict
 
@@ -54,11 +54,19 @@ def execute(
     `seed` decides the inputs that hidden tests choose. May be called inside a running event loop.
     Nothing that a notebook does raises here; what the grader itself fails in is `ungraded`.
     """
+    with Pool(in_flight=1) as pool:
+        return pool.submit(executed, notebook, extra_files=extra_files, seed=seed).result()
+
+
+async def executed(
+    notebook: NotebookNode, *, extra_files: Sequence[Path] = (), seed: str = ''
+) -> Execution:
+    """Do what `execute` does, on the running event loop."""
     graded = nbformat.from_dict(notebook)
     if problem := graded.metadata.get(KEY, {}).get('problem'):
         verdicts = _refuse(graded, problem)
     else:
-        verdicts = _run(_execute(graded, tuple(extra_files), seed))
+        verdicts = await _execute(graded, tuple(extra_files), seed)
     by_hand = [_by_hand(c) for c in graded.cells if role(c) == 'answer' and _points(c)]
     return Execution(
         notebook=graded,
@@ -164,26 +172,3 @@ def _by_hand(cell: NotebookNode) -> Verdict:
 
 def _points(cell: NotebookNode) -> float:
     return float(cell.metadata.nbgrader.get('points', 0)) if cell.metadata.nbgrader.grade else 0.0
-
-
-def _run(work: Coroutine[Any, Any, list[Verdict]]) -> list[Verdict]:
-    """Run a coroutine to its end, in a thread of its own where an event loop already runs."""
-    try:
-        asyncio.get_running_loop()
-    except RuntimeError:
-        return asyncio.run(work)
-    begun: list[asyncio.Task] = []
-
-    async def stoppable() -> list[Verdict]:
-        begun.append(asyncio.current_task())
-        return await work
-
-    with ThreadPoolExecutor(max_workers=1) as thread:
-        result = thread.submit(asyncio.run, stoppable())
-        try:
-            return result.result()
-        except KeyboardInterrupt:
-            # it comes to this thread; the rooms are the other one's to close
-            for task in begun:
-                task.get_loop().call_soon_threadsafe(task.cancel)
-            raise

@@ -1,18 +1,26 @@
 """The whole flow: read a submission, heal it, run it in its rooms, store what came of it."""
 
 import logging
-from collections.abc import Iterator
+from collections import deque
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Future
 from dataclasses import dataclass
 from pathlib import Path
 
+from nbformat import NotebookNode
+
 from grader.course import Course
 from grader.errors import CourseError
-from grader.execute import execute
+from grader.execute import executed
 from grader.gradebook import Stored, register, store
 from grader.heal import heal
 from grader.pipeline import prepare, unanswered
-from grader.submission import read_submission
+from grader.pool import IN_FLIGHT, Pool
+from grader.submission import Submission, read_submission
 from grader.turn import Turn
+
+AHEAD = 4
+"""How many times more submissions may be done and wait for a slower one before them."""
 
 
 @dataclass(frozen=True)
@@ -27,6 +35,15 @@ class HandedIn:
 
 
 @dataclass(frozen=True)
+class Graded:
+    """A submission that was judged, and is not stored yet."""
+
+    submission: Submission
+    notebook: NotebookNode
+    """With a verdict in each grade cell."""
+
+
+@dataclass(frozen=True)
 class Row:
     """What the run says of one submission."""
 
@@ -37,42 +54,62 @@ class Row:
     reason: str
 
 
-def grade_submission(course: Course, found: HandedIn, *, seed: str = '') -> Stored:
-    """Grade one submission and store its scores; the same again when done again.
+def grade_all(
+    course: Course,
+    submissions: Sequence[HandedIn],
+    *,
+    seed: str = '',
+    in_flight: int = IN_FLIGHT,
+) -> Iterator[Row]:
+    """Grade submissions, several at a time, and store them in their order, one after the other.
 
-    `seed` replays inputs that hidden tests choose; by default they are the assignment's own.
+    Each gets its row, whatever becomes of it. `seed` replays inputs that hidden tests choose; by
+    default they are the assignment's own. Doing it again gives the same.
     """
-    student_id, assignment = found.student_id, found.assignment
-    submission = read_submission(found.folder, student_id=student_id, assignment=assignment)
-    if submission.problem:
-        graded = unanswered(course, submission, submission.problem)
-    else:
-        healed = heal(submission.notebook, course.master(assignment))
-        graded = execute(
-            prepare(course, assignment, healed.notebook),
-            extra_files=submission.extra_files,
-            seed=seed or course.seed(assignment),
-        ).notebook
-    with Turn.take(course.gradebook):
-        return store(course, submission, graded)
-
-
-def grade_all(course: Course, submissions: list[HandedIn], *, seed: str = '') -> Iterator[Row]:
-    """Grade submissions one after the other; each gets its row, whatever becomes of it."""
     with Turn.take(course.gradebook):
         for assignment in sorted({found.assignment for found in submissions if not found.problem}):
             register(course, assignment)
             course.master(assignment)  # says now what would be wrong with each submission
-    for found in submissions:
-        stored, reason = None, found.problem
+    under_way: deque[tuple[HandedIn, Future[Graded]]] = deque()
+    with Pool(in_flight) as pool:
+        for found in submissions:
+            under_way.append((found, pool.submit(_graded, course, found, seed)))
+            if len(under_way) >= AHEAD * in_flight:
+                yield _row(course, *under_way.popleft())
+        while under_way:
+            yield _row(course, *under_way.popleft())
+
+
+async def _graded(course: Course, found: HandedIn, seed: str) -> Graded:
+    """Read, heal and run one submission; nothing is stored yet."""
+    if found.problem:
+        raise CourseError(found.problem)
+    assignment = found.assignment
+    submission = read_submission(found.folder, student_id=found.student_id, assignment=assignment)
+    if submission.problem:
+        return Graded(submission, unanswered(course, submission, submission.problem))
+    healed = heal(submission.notebook, course.master(assignment))
+    execution = await executed(
+        prepare(course, assignment, healed.notebook),
+        extra_files=submission.extra_files,
+        seed=seed or course.seed(assignment),
+    )
+    return Graded(submission, execution.notebook)
+
+
+def _row(course: Course, found: HandedIn, work: Future[Graded]) -> Row:
+    """Wait for a submission's turn to be stored, and store it."""
+    stored, reason = None, found.problem
+    try:
+        graded = work.result()
+        with Turn.take(course.gradebook):
+            stored = store(course, graded.submission, graded.notebook)
+        reason = stored.reason
+    except Exception as error:  # the next submission can do nothing for it
         if not found.problem:
-            try:
-                stored = grade_submission(course, found, seed=seed)
-                reason = stored.reason
-            except Exception as error:  # the next submission can do nothing for it
-                logging.exception('%s of %s', found.assignment, found.student_id)
-                reason = f'not graded, the grader failed: {type(error).__name__}: {error}'
-        yield Row(found.student_id, found.assignment, stored, reason)
+            logging.exception('%s of %s', found.assignment, found.student_id)
+            reason = f'not graded, the grader failed: {type(error).__name__}: {error}'
+    return Row(found.student_id, found.assignment, stored, reason)
 
 
 def find_submissions(

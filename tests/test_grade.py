@@ -30,7 +30,7 @@ def released(tmp_path_factory):
 def course(released, tmp_path, monkeypatch):
     """A gradebook of its own; in the rooms' place, a look at the answer's text."""
 
-    def execute(notebook, *, extra_files=(), seed=''):
+    async def look(notebook, *, extra_files=(), seed=''):
         answer = next(cell.source for cell in notebook.cells if cell.id == 'double')
         assert len(seed) == 64 or seed == 'abc'
         if 'crash' in answer:
@@ -39,7 +39,7 @@ def course(released, tmp_path, monkeypatch):
         notebook = executed(notebook, {'double-check': reason, 'double-hidden': reason})
         return Execution(notebook=notebook, verdicts=(), notes=())
 
-    monkeypatch.setattr(grade, 'execute', execute)
+    monkeypatch.setattr(grade, 'executed', look)
     gradebook = tmp_path / 'gradebook'
     gradebook.mkdir()
     (gradebook / 'gradebook.db').write_bytes(

@@ -1,0 +1,57 @@
+"""Many submissions at a time: coroutines on one event loop, in a thread of its own."""
+
+import asyncio
+import os
+import threading
+from collections.abc import Awaitable, Callable
+from concurrent.futures import Future
+from typing import Any, Self, TypeVar
+
+Result = TypeVar('Result')
+
+IN_FLIGHT = 2 * (os.cpu_count() or 1)
+"""Most of a submission is waiting; its two kernels need some 250 MB."""
+
+
+class Pool:
+    """Runs what is submitted, at most `in_flight` at a time; leaving the `with` cancels the rest.
+
+    May be used inside a running event loop: the loop here is another one, in another thread.
+    """
+
+    def __init__(self, in_flight: int = IN_FLIGHT) -> None:
+        """Let so many run at a time."""
+        self._gate = asyncio.Semaphore(in_flight)
+        self._ready = threading.Event()
+        self._thread = threading.Thread(target=self._serve, name='pool', daemon=True)
+
+    def __enter__(self) -> Self:
+        """Start the loop."""
+        self._thread.start()
+        self._ready.wait()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Cancel what still runs, let it clean up, and end the loop."""
+        self._loop.call_soon_threadsafe(self._left.set)
+        self._thread.join()
+
+    def submit(
+        self, work: Callable[..., Awaitable[Result]], *args: Any, **kwargs: Any
+    ) -> 'Future[Result]':
+        """Await `work(...)` as soon as there is room; the future brings what came of it."""
+        return asyncio.run_coroutine_threadsafe(self._in_turn(work, args, kwargs), self._loop)
+
+    async def _in_turn(
+        self, work: Callable[..., Awaitable[Result]], args: tuple, kwargs: dict
+    ) -> Result:
+        async with self._gate:
+            return await work(*args, **kwargs)
+
+    def _serve(self) -> None:
+        asyncio.run(self._until_left())  # cancels at its end whatever is not done
+
+    async def _until_left(self) -> None:
+        self._loop, self._left = asyncio.get_running_loop(), asyncio.Event()
+        self._ready.set()
+        await self._left.wait()

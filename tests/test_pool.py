@@ -1,0 +1,67 @@
+import asyncio
+import threading
+
+import pytest
+
+from grader.pool import Pool
+
+
+async def returned(value):
+    return value
+
+
+async def raised():
+    raise OSError('no room')
+
+
+def test_results_and_exceptions_come_back():
+    with Pool() as pool:
+        fine, broken = pool.submit(returned, 7), pool.submit(raised)
+        assert fine.result() == 7
+        with pytest.raises(OSError, match='no room'):
+            broken.result()
+
+
+@pytest.mark.parametrize('in_flight', [1, 3])
+def test_no_more_run_at_a_time_than_asked_for(in_flight):
+    running, most = 0, 0
+
+    async def work():
+        nonlocal running, most
+        running += 1
+        most = max(most, running)
+        await asyncio.sleep(0.01)
+        running -= 1
+
+    with Pool(in_flight) as pool:
+        for future in [pool.submit(work) for _ in range(8)]:
+            future.result()
+    assert most == in_flight
+
+
+def test_leaving_cancels_what_runs_and_what_waits_and_lets_it_clean_up():
+    begun, cleaned = threading.Event(), []
+
+    async def work(name):
+        begun.set()
+        try:
+            await asyncio.Event().wait()
+        finally:
+            await asyncio.sleep(0)
+            cleaned.append(name)
+
+    with Pool(1) as pool:
+        runs, waits = pool.submit(work, 'runs'), pool.submit(work, 'waits')
+        assert begun.wait(10)
+    assert cleaned == ['runs']
+    assert runs.cancelled()
+    assert waits.cancelled()
+    assert 'pool' not in {thread.name for thread in threading.enumerate()}
+
+
+def test_it_works_inside_a_running_event_loop():
+    async def outer():
+        with Pool() as pool:
+            return pool.submit(returned, 'inner').result()
+
+    assert asyncio.run(outer()) == 'inner'
