@@ -3,8 +3,9 @@
     .venv/bin/python tests/submissions/rebase.py
 
 Each sample keeps its answers and its own cells (those whose id begins with `own-`); all else comes
-from notebooks/. A sample whose point is a damaged notebook is damaged again; one that is not
-readable (`-zero-`) stays as it is. A new sample is a copy of another one with another answer, and
+from notebooks/, those in more/ without the demonstrations: shorter to read, and to run whole. A
+sample whose point is a damaged notebook is damaged again; one of which nothing can be read
+(`-zero-`) stays as it is. A new sample is a copy of another one with another answer, and
 a line in expected.json.
 """
 
@@ -48,7 +49,8 @@ def rebased(sample: Path) -> str:
         if role(cell) == 'answer':
             cell.source = '\n\n'.join(answers[grade_id(cell)])
         cells += [cell, *own[cell.id]]
-    notebook.cells = cells
+    shorter = sample.parent != FOLDER
+    notebook.cells = [cell for cell in cells if not (shorter and role(cell) == 'demo')]
     DAMAGE.get(sample.stem, lambda notebook: None)(notebook)
     return nbformat.writes(notebook) + '\n'
 
