@@ -1,0 +1,367 @@
+"""One kernel: what a cell may do to it, and what is left when it has gone."""
+
+import asyncio
+import os
+import time
+from pathlib import Path
+
+import psutil
+import pytest
+
+from grader import kernels
+from grader.errors import RoomFailure
+from grader.kernels import Kernel
+from grader.outputs import MAX_OUTPUT_CHARACTERS
+
+DOMAIN = 0
+"""No kernel of this module makes a node."""
+
+
+@pytest.fixture(scope='module')
+def loop():
+    with asyncio.Runner() as runner:
+        yield runner
+
+
+@pytest.fixture(scope='module')
+def shared(loop):
+    """A kernel for cells that do it no harm."""
+    kernel = Kernel(room='student', domain_id=DOMAIN)
+    loop.run(kernel.start())
+    yield kernel
+    loop.run(kernel.stop())
+
+
+@pytest.fixture
+def own(loop):
+    """A kernel of one test's own."""
+    kernel = Kernel(room='student', domain_id=DOMAIN)
+    loop.run(kernel.start())
+    yield kernel
+    loop.run(kernel.stop())
+
+
+@pytest.fixture
+def run(loop):
+    def run(kernel, code, timeout_sec=60.0, **more):
+        return loop.run(kernel.run(code, timeout_sec=timeout_sec, **more))
+
+    return run
+
+
+def text_of(cell_run):
+    return ''.join(o.get('text', '') for o in cell_run.outputs)
+
+
+def size_of(cell_run):
+    return len(str(cell_run.outputs).replace('\\n', ' ').replace('\\x1b', ' '))
+
+
+def processes_of(kernel):
+    """Whatever runs with the kernel's own environment, the kernel itself included."""
+    marker = str(kernel.folder)
+    found = []
+    for process in psutil.process_iter():
+        try:
+            if marker in process.environ().get('IPYTHONDIR', ''):
+                found.append(process.pid)
+        except psutil.Error:
+            continue
+    return found
+
+
+ENDS = {
+    'prints': ('print(1); print(2)', True, '1\n2\n'),
+    'ends with a value': ('1 + 1', True, ''),
+    'raises': ('print(1); 1 / 0', False, '1\n'),
+    'a syntax error': ('def f(:', False, ''),
+    'stderr alone': ('import sys; print(1, file=sys.stderr)', True, '1\n'),
+    'a line of C code': ("import os; os.write(1, b'from C\\n')", True, 'from C\n'),
+    'nothing': ('', True, ''),
+    'asks for input': ("input('name? ')", False, ''),
+    'asks for a password': ("import getpass; getpass.getpass()", False, ''),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(('code', 'ran_to_end', 'text'), ENDS.values(), ids=ENDS)
+def test_a_cell_comes_to_its_end(shared, run, code, ran_to_end, text):
+    result = run(shared, code)
+    assert result.ran_to_end is ran_to_end
+    assert text_of(result) == text
+    assert (result.timed_out, result.died) == (False, False)
+    assert shared.alive
+
+
+def test_a_question_is_answered_only_where_somebody_answers(shared, run):
+    async def answer(prompt):
+        return prompt.upper()
+
+    result = run(shared, "print(input('name? '), input('age? '))", on_input=answer)
+    assert text_of(result) == 'NAME?  AGE? \n'
+    assert run(shared, "input('name? ')").error.ename == 'StdinNotImplementedError'
+
+
+def test_an_answer_that_fails_is_an_error_at_once(own, loop):
+    async def answer(prompt):
+        raise RuntimeError('no answer to ' + prompt)
+
+    with pytest.raises(RuntimeError, match='no answer to name'):
+        loop.run(own.run("input('name? ')", timeout_sec=600.0, on_input=answer))
+
+
+def test_expressions_come_back_with_the_reply(shared, run):
+    result = run(shared, '', expressions={'reply': "'a' * 3"})
+    assert result.expressions['reply']['data']['text/plain'] == "'aaa'"
+
+
+def test_a_display_is_updated_from_a_later_cell(shared, run):
+    first = run(shared, "h = display('old', display_id=True)")
+    second = run(shared, "h.update('new'); print('done')")
+    assert [o.data['text/plain'] for o in first.outputs] == ["'new'"]
+    assert text_of(second) == 'done\n'
+
+
+def test_an_endless_cell_is_interrupted_and_costs_only_itself(own, run):
+    run(own, 'x = 5')
+    result = run(own, 'while True: pass', timeout_sec=0.5)
+    assert (result.timed_out, result.died, result.error.ename) == (
+        True,
+        False,
+        'KeyboardInterrupt',
+    )
+    assert text_of(run(own, 'print(x)')) == '5\n'
+
+
+IGNORES = """
+import signal, time
+signal.signal(signal.SIGINT, signal.SIG_IGN)
+while True: time.sleep(1)
+"""
+
+
+def test_a_cell_that_ignores_the_interrupt_is_killed(own, run):
+    result = run(own, IGNORES, timeout_sec=0.5)
+    assert (result.timed_out, result.died, own.alive) == (True, True, False)
+    assert processes_of(own) == []
+
+
+FATAL = {
+    '_exit': 'import os; print(1, flush=True); os._exit(0)',
+    'SIGKILL': 'import os; os.kill(os.getpid(), 9)',
+    'a crash': 'import ctypes; ctypes.string_at(0)',
+    'SIGKILL to its group': 'import os; os.killpg(0, 9)',
+}
+
+
+@pytest.mark.parametrize('code', FATAL.values(), ids=FATAL)
+def test_a_kernel_that_dies_is_noticed(own, run, code):
+    result = run(own, code, timeout_sec=600.0)
+    assert (result.died, result.timed_out, own.alive) == (True, False, False)
+    again = run(own, 'print(1)', timeout_sec=600.0)
+    assert (again.died, again.ran_to_end, again.outputs) == (True, False, [])
+
+
+FLOODS = {
+    'one huge text': "print('x' * 5_000_000)",
+    'many lines': "for i in range(100_000): print(i)",
+    'many displays': "for i in range(2_000): display(i)",
+    'a message beyond all bounds': "print('x' * 40_000_000)",
+    'from C': "import os\nfor i in range(500): os.write(1, b'x' * 10_000)",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize('code', FLOODS.values(), ids=FLOODS)
+def test_a_flood_is_drained_and_bounded_and_the_kernel_goes_on(own, run, code):
+    result = run(own, code)
+    assert not result.died
+    assert size_of(result) < 1.1 * MAX_OUTPUT_CHARACTERS
+    after = run(own, 'print("after")')
+    assert after.ran_to_end
+    assert 'after\n' in text_of(after)
+
+
+ENDLESS = {
+    'displays': 'while True: display(1)',
+    'prints': 'while True: print(1)',
+    'forgeries': (
+        'kernel = get_ipython().kernel\n'
+        'while True: kernel.session.send(kernel.iopub_socket, "stream", {"text": 5})'
+    ),
+}
+
+
+@pytest.mark.parametrize('code', ENDLESS.values(), ids=ENDLESS)
+def test_an_endless_flood_does_not_keep_the_time_limit_waiting(own, run, code):
+    result = run(own, code, timeout_sec=1.0)
+    assert result.timed_out
+    assert size_of(result) < 1.1 * MAX_OUTPUT_CHARACTERS
+
+
+FORGE = """
+kernel = get_ipython().kernel
+parent, send, iopub = kernel.get_parent(), kernel.session.send, kernel.iopub_socket
+for kind, content in [
+    ('status', {}), ('status', b'[]'), ('stream', {'text': 5}), ('stream', b'"x"'),
+    ('display_data', {'data': 7, 'transient': {'display_id': []}}), ('clear_output', b'3'),
+    ('update_display_data', {}), ('update_display_data', b'5'), ('display_data', b'null'),
+    ('error', {}), ('stream', b'not JSON'), ('stream', b'[' * 50_000), ('comm_msg', {}),
+]:
+    send(iopub, kind, content, parent=parent)
+send(iopub, 'stream', {'name': 'stdout', 'text': 'x'}, parent={'msg_id': [1]})
+iopub.send_multipart([b'stream', b'<IDS|MSG>', b'bad', b'{', b'}', b'[', b']'])
+iopub.send_multipart([b'stream'])
+iopub.send_multipart([b'', b'<IDS|MSG>'] + [b'[' * 50_000] * 5)
+iopub.send_multipart([b'', b'<IDS|MSG>', b''] + [b'{}'] * 4)
+print('done')
+"""
+
+
+def test_what_is_not_a_message_is_passed_over(own, run):
+    result = run(own, FORGE)
+    assert result.ran_to_end
+    assert 'done\n' in text_of(result)
+
+
+FORGED_END = """
+kernel = get_ipython().kernel
+kernel.session.send(
+    kernel.iopub_socket, 'status', {'execution_state': 'idle'}, parent=kernel.get_parent()
+)
+while True: pass
+"""
+
+
+def test_a_forged_end_is_not_the_end(own, run):
+    result = run(own, FORGED_END, timeout_sec=1.0)
+    assert result.timed_out
+
+
+def test_an_error_counts_though_its_output_was_lost(own, run):
+    run(own, 'get_ipython()._showtraceback = lambda *a: None')
+    result = run(own, '1 / 0')
+    assert not result.ran_to_end
+    assert [o.ename for o in result.outputs] == ['ZeroDivisionError']
+
+
+CHILDREN = """
+import os, subprocess
+subprocess.Popen(['sleep', '1000'])
+subprocess.Popen(['sleep', '1000'], start_new_session=True)
+if os.fork() == 0:
+    os.setsid()
+    if os.fork() == 0: os.execvp('sleep', ['sleep', '1000'])
+    os._exit(0)
+"""
+
+
+@pytest.mark.parametrize('code', ['pass', IGNORES], ids=['ended', 'killed'])
+def test_nothing_that_a_cell_started_outlives_the_kernel(own, loop, run, code):
+    run(own, CHILDREN)
+    deadline = time.monotonic() + 30
+    while len(processes_of(own)) < 4 and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert len(processes_of(own)) == 4
+    run(own, code, timeout_sec=0.5)
+    loop.run(own.stop())
+    assert processes_of(own) == []
+    assert not own.folder.exists()
+
+
+def test_a_thread_that_will_not_end_does_not_keep_a_kernel(own, loop, run):
+    run(own, 'import threading, time\nthreading.Thread(target=time.sleep, args=(1000,)).start()')
+    loop.run(own.stop())
+    assert processes_of(own) == []
+
+
+def test_a_kernel_leaves_no_file_and_no_descriptor(loop, run):
+    before = None
+    for _ in range(2):
+        kernel = Kernel(room='test', domain_id=DOMAIN, seed='ab')
+        loop.run(kernel.start())
+        assert run(kernel, "open('left.txt', 'w').write('x')").ran_to_end
+        loop.run(kernel.stop())
+        loop.run(kernel.stop())  # twice does no harm
+        assert not kernel.folder.exists()
+        descriptors = len(os.listdir('/proc/self/fd'))
+        before = before or descriptors
+    assert descriptors <= before
+
+
+def environment(run, kernel):
+    result = run(kernel, "import os; print('\\n'.join(f'{k}={v}' for k, v in os.environ.items()))")
+    return dict(line.split('=', 1) for line in text_of(result).splitlines() if '=' in line)
+
+
+@pytest.mark.parametrize('room', ['student', 'test'])
+def test_a_kernel_is_told_only_what_its_room_may_know(loop, run, monkeypatch, room):
+    forbidden = {
+        'PYTHONPATH': '/tmp/nowhere',
+        'PYTEST_CURRENT_TEST': 'x',
+        'MY_ROBOT_BASICS_SEED': 'secret1',
+        'SECRET_TOKEN': 'secret2',
+        'ROS_DOMAIN_ID': '77',
+    }
+    for name, value in forbidden.items():
+        monkeypatch.setenv(name, value)
+    kernel = Kernel(room=room, domain_id=5, seed='abcd')
+    loop.run(kernel.start())
+    try:
+        seen = environment(run, kernel)
+    finally:
+        loop.run(kernel.stop())
+    assert seen['MY_ROBOT_BASICS_ROOM'] == room
+    assert seen['MY_ROBOT_BASICS_DOMAIN_ID'] == '5'
+    assert seen.get('MY_ROBOT_BASICS_SEED') == {'test': 'abcd'}.get(room)
+    assert not {'PYTHONPATH', 'PYTEST_CURRENT_TEST', 'SECRET_TOKEN', 'ROS_DOMAIN_ID'} & set(seen)
+    assert not [v for v in seen.values() if 'secret' in v]
+
+
+def test_a_kernel_works_in_an_empty_folder_and_imports_nothing_from_it(shared, run):
+    code = "import os, sys; print(os.listdir(), {'', '.', os.getcwd()} & set(sys.path))"
+    assert text_of(run(shared, code)) == '[] set()\n'
+
+
+@pytest.mark.parametrize(
+    ('argv', 'why'),
+    [(['/bin/false'], 'its process ended'), (['/nowhere/python'], 'No such file')],
+)
+def test_a_kernel_that_does_not_start_is_the_graders_failure(loop, monkeypatch, argv, why):
+    kernel = Kernel(room='test', domain_id=DOMAIN)
+    spec = kernels.KernelSpec(argv=argv, language='python')
+    monkeypatch.setattr(kernels._OurKernelSpec, 'get_kernel_spec', lambda self, name: spec)
+    with pytest.raises(RoomFailure, match=f'the test kernel did not start: .*{why}'):
+        loop.run(kernel.start())
+    assert not kernel.folder.exists()
+
+
+def test_a_kernel_that_never_answers_is_given_up(loop, monkeypatch):
+    monkeypatch.setattr(kernels, 'START_TIMEOUT_SEC', 0.3)
+    kernel = Kernel(room='test', domain_id=DOMAIN)
+    spec = kernels.KernelSpec(argv=['sleep', '1000'], language='python')
+    monkeypatch.setattr(kernels._OurKernelSpec, 'get_kernel_spec', lambda self, name: spec)
+    with pytest.raises(RoomFailure, match='the test kernel did not start: TimeoutError'):
+        loop.run(kernel.start())
+    assert processes_of(kernel) == []
+
+
+def test_cancelling_a_cell_leaves_a_kernel_that_can_be_stopped(own, loop):
+    async def cancelled():
+        task = asyncio.ensure_future(own.run('while True: pass', timeout_sec=600.0))
+        await asyncio.sleep(0.3)
+        task.cancel()
+        await task
+
+    with pytest.raises(asyncio.CancelledError):
+        loop.run(cancelled())
+    loop.run(own.stop())
+    assert processes_of(own) == []
+
+
+def test_a_long_path_for_temporary_files_is_not_used_for_sockets(monkeypatch, tmp_path):
+    monkeypatch.setattr(kernels.tempfile, 'tempdir', str(tmp_path / ('x' * 100)))
+    kernel = Kernel(room='student', domain_id=DOMAIN)
+    try:
+        assert len(f'{kernel.folder}/zmq-10') < 107
+    finally:
+        asyncio.run(kernel.stop())
+    assert not Path(kernel.folder).exists()
