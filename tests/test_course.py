@@ -476,8 +476,12 @@ def test_lab_serves_the_lessons_alone(machine):
     command, folder = machine.calls()[-2:]
     root = ['--allow-root'] if os.geteuid() == 0 else []
     served = f'--ServerApp.root_dir={machine.root}/notebooks'
-    expected = ['python -P -m jupyterlab', served, *root, '--no-browser --port 1234']
-    assert command == ' '.join(expected)
+    for_students = (
+        f'--LabApp.app_settings_dir={machine.root}/.jupyterlab '
+        "--ServerApp.jpserver_extensions={'nbgrader.server_extensions.formgrader': False}"
+    )
+    arguments = [served, for_students, *root, '--no-browser --port 1234']
+    assert command == ' '.join(['python -P -m jupyterlab', *arguments])
     assert folder == f'{machine.root}/notebooks'
 
 
