@@ -92,14 +92,17 @@ def unanswered(course: Course, submission: Submission, reason: str) -> NotebookN
 
 
 def first_reason(graded: NotebookNode) -> str:
-    """Return the first reason why points are missing in an executed notebook, or ''."""
-    reasons = (
-        cell.metadata.get(KEY, {}).get('reason')
-        for cell in graded.cells
-        if cell.metadata.get(KEY, {}).get('outcome') in ('failed', 'ungraded')
-    )
-    problem = graded.metadata.get(KEY, {}).get('problem')
-    return problem or next((reason for reason in reasons if reason), '')
+    """Return the first reason why points are missing in an executed notebook, or ''.
+
+    What went wrong in the student's own cells comes before what the check then saw.
+    """
+    if problem := graded.metadata.get(KEY, {}).get('problem'):
+        return problem
+    for cell in graded.cells:
+        verdict = cell.metadata.get(KEY, {})
+        if verdict.get('outcome') in ('failed', 'ungraded') and verdict.get('reason'):
+            return '; '.join([*verdict.get('notes', ())[:1], verdict.reason])
+    return ''
 
 
 def _after(name: str, passes: tuple[str, ...]) -> tuple[str, ...]:

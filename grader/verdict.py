@@ -1,5 +1,6 @@
 """Turn what came of a grade cell into a verdict with its reason, and write it into the cell."""
 
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
@@ -18,6 +19,8 @@ NOTE = 'note: '
 """A check's line that starts so costs nothing, and is told to the student."""
 _FAILURES = ('CheckFailed', 'AssertionError')
 _SHOWN = ('display_data', 'stream')
+_TEMPORARY_FILE = re.compile(r'\((<ipython-input-[^>]*>|\d+\.py), (?=line \d+\))')
+"""How a SyntaxError names a cell of a notebook, which nobody would recognise."""
 
 
 @dataclass(frozen=True)
@@ -109,8 +112,8 @@ def _trouble(name: str, run: CellRun) -> str | None:
     if run.died:
         return f'your cell `{name}` ended the kernel'
     if run.error is not None:
-        said = shorten(printable(f'{run.error.ename}: {run.error.evalue}'), 300)
-        return f'your cell `{name}` stopped with {said}'
+        said = _TEMPORARY_FILE.sub('(', f'{run.error.ename}: {run.error.evalue}').rstrip(': ')
+        return f'your cell `{name}` stopped with {shorten(printable(said), 300)}'
     return None
 
 

@@ -107,6 +107,19 @@ def test_a_failure_tells_what_happened_in_the_students_own_cells(cell):
     assert judge(cell, ended(), own).notes == ()
 
 
+@pytest.mark.parametrize(
+    ('error', 'told'),
+    [
+        (('SyntaxError', "expected ':' (63915088.py, line 15)"), "expected ':' (line 15)"),
+        (('NotImplementedError', ''), 'stopped with NotImplementedError'),
+        (('OSError', 'no data.py: (x.py)'), 'stopped with OSError: no data.py: (x.py)'),
+    ],
+)
+def test_an_error_is_told_without_what_says_nothing(cell, error, told):
+    [note] = judge(cell, failing(), [('five_hz', failing(*error))]).notes
+    assert note.endswith(told)
+
+
 def test_remarks_of_a_check_become_notes(cell):
     run = ended(text('checked 50 messages\nnote: judged on the wall clock\n'), PICTURE)
     assert judge(cell, run, []).notes == ('judged on the wall clock',)
