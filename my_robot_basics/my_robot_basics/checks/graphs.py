@@ -56,7 +56,7 @@ class Graph:
 
     def _why_none(self, topic_name: str, names: dict[str, tuple[str, ...]], maker: str) -> str:
         if not self.node_names:
-            return 'no node is running, so run the cell that starts it'
+            return 'no node is running, so run the cell that starts it and read what it says'
         if similar := _similar(topic_name, [name for name in names if name not in _PLUMBING]):
             return f'{", ".join(names[similar])} uses {similar}, so compare the spelling'
         return (

@@ -206,11 +206,14 @@ class Recording:
         fail(expected=expected, seen=seen, hint=hint, picture=picture)
 
     def _expect_one_publisher(self) -> None:
+        names = set(self.publishers)
         expect(
             len(self.publishers) == 1,
             expected=f'one publisher on {self.topic_name}',
             seen=f'{len(self.publishers)} ({", ".join(self.publishers)})',
-            hint='stop the other node: two publishers on a topic add up',
+            hint='stop the other node: two publishers on a topic add up'
+            if len(names) > 1
+            else 'call create_publisher for this topic once, and start the node once',
         )
 
     def _messages_with(self, field_name: str) -> list:
