@@ -8,7 +8,7 @@ import threading
 import pytest
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import Point
-from my_robot_basics.checks import CheckFailed, clock, graph, topic, topics
+from my_robot_basics.checks import CheckFailed, clock, graph, student, topic, topics
 from nodes.running import imported, running
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
@@ -228,3 +228,17 @@ def test_the_watcher_can_not_be_reached(run):
     assert seen
     assert not [name for name in seen if '_check' in name]
     assert os.environ['ROS_DOMAIN_ID'] == str(live.classroom.enter())
+
+
+def test_nobody_waits_long_for_what_the_notebook_says_it_has_not_got(run, monkeypatch):
+    monkeypatch.setattr(topics, 'ABSENT_SEC', 0.5)
+    run(Node, 'idle').create_publisher(JointState, '/elsewhere', 10)
+    assert student.has_endpoint('/elsewhere')
+    assert not student.has_endpoint(TOPIC)
+    with pytest.raises(CheckFailed, match=r'saw none in 0\.5 s: /idle'):
+        topic(TOPIC).record()
+
+
+def test_a_notebook_that_does_not_say_is_waited_for(monkeypatch):
+    monkeypatch.setattr(student, '_ask', lambda question, shown: ('failed', 'no usable answer'))
+    assert student.has_endpoint(TOPIC)

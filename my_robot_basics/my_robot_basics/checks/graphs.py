@@ -1,6 +1,7 @@
 """The ROS graph as a check sees it: the student's nodes, and who publishes and subscribes."""
 
 import difflib
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -12,6 +13,8 @@ from my_robot_basics.checks.watcher import HIDDEN, Watcher
 SETTLE_SEC = 0.4
 """The graph counts as settled when it has not changed for so long."""
 MOST_SETTLE_SEC = 5.0
+NEWCOMER_SEC = 0.2
+"""How long to look out for a second publisher after the first."""
 UNKNOWN = '_NODE_NAME_UNKNOWN_'
 """rclpy's word while it knows an endpoint, and not yet its node (about 20 ms)."""
 _PLUMBING = ('/clock', '/parameter_events', '/rosout')
@@ -96,13 +99,22 @@ def full_name(info: TopicEndpointInfo) -> str:
 
 
 def wait_for_publisher(watcher: Watcher, topic_name: str, *, timeout_sec: float) -> bool:
-    """Wait until somebody publishes on the topic and all publishers' nodes are known."""
+    """Wait until somebody publishes on the topic, and no other publisher turns up for a moment."""
+    last: set = set()
+    since = time.monotonic()
 
-    def is_there() -> bool:
-        infos = publisher_infos(watcher.node, topic_name)
-        return bool(infos) and all(info.node_name != UNKNOWN for info in infos)
+    def is_settled() -> bool:
+        nonlocal last, since
+        now = {
+            (info.node_name, info.topic_type, *info.endpoint_gid)
+            for info in publisher_infos(watcher.node, topic_name)
+        }
+        if now != last:
+            last, since = now, time.monotonic()
+        known = bool(now) and all(node_name != UNKNOWN for node_name, *_ in now)
+        return known and time.monotonic() - since >= NEWCOMER_SEC
 
-    return watcher.spin_until(is_there, timeout_sec=timeout_sec)
+    return watcher.spin_until(is_settled, timeout_sec=timeout_sec)
 
 
 def _look(node: Node) -> Graph:

@@ -1,4 +1,4 @@
-"""The student's side of `student.call` and `student.value`: look a name up, answer in JSON.
+"""The student's side of `student`: look a name or an endpoint up, answer in JSON.
 
 This module and wire.py are all of `checks` that a student's kernel runs at grading.
 """
@@ -16,8 +16,10 @@ def answer(request_text: str) -> str:
     """
     request = wire.loads(request_text)
     op, name, args = request.get('op'), request.get('name'), request.get('args', [])
-    if request.get('protocol') != wire.PROTOCOL or op not in ('call', 'value'):
+    if request.get('protocol') != wire.PROTOCOL or op not in ('call', 'value', 'endpoint'):
         raise wire.WireError('a request of another protocol')
+    if op == 'endpoint':
+        return _reply(_has_endpoint(name))
     namespace = vars(sys.modules['__main__'])
     if name not in namespace:
         return wire.dumps({'missing': name})
@@ -31,6 +33,20 @@ def answer(request_text: str) -> str:
         except (Exception, SystemExit) as error:
             return wire.dumps({'raised': {'type': type(error).__name__, 'message': _text(error)}})
     return _reply(value)
+
+
+def _has_endpoint(topic_name: str) -> bool:
+    """Whether a node of this process publishes on a topic or subscribes to it."""
+    if 'rclpy' not in sys.modules:
+        return False
+    from my_robot_basics.live.neighbours import nodes_here
+
+    return any(
+        endpoint.topic_name == topic_name
+        for node in nodes_here()
+        if not node.get_name().startswith('_')
+        for endpoint in (*node.publishers, *node.subscriptions)
+    )
 
 
 def _reply(value: object) -> str:

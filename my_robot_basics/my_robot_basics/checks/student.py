@@ -55,6 +55,15 @@ def value(name: str, *, type: builtins.type | tuple[builtins.type, ...] | None =
     return body
 
 
+def has_endpoint(topic_name: str) -> bool:
+    """Whether the notebook's process has a publisher or subscription there, or does not say.
+
+    It saves waiting for what can't come; the verdict stays with the graph.
+    """
+    kind, body = _ask(wire.request(op='endpoint', name=topic_name), topic_name)
+    return kind != 'ok' or body is not False
+
+
 def _ask(question: str, shown: str) -> tuple[str, Any]:
     in_test_room = os.environ.get('MY_ROBOT_BASICS_ROOM') == 'test'
     reply = input(question) if in_test_room else responder.answer(question)

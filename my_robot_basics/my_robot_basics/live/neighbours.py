@@ -49,7 +49,7 @@ class Neighbours:
     def have(self, name: str) -> bool:
         """Whether a node of that fully qualified name lives."""
         # a node that another thread of this process has just made is not on the graph yet
-        if any(node.get_fully_qualified_name() == name for node in _nodes_here()):
+        if any(node.get_fully_qualified_name() == name for node in nodes_here()):
             return True
         if not classroom.in_grading_room():  # where nobody else can have come
             time.sleep(max(0.0, self._since + MEETING_SEC - time.monotonic()))
@@ -69,12 +69,12 @@ class Neighbours:
 
 def bury_the_dead() -> None:
     """Destroy nodes whose context was shut down: they are of no use, but still on the graph."""
-    for node in _nodes_here(alive=False):
+    for node in nodes_here(alive=False):
         node.destroy_node()
 
 
-def _nodes_here(*, alive: bool = True) -> Iterator[Node]:
-    """Nodes of this process that are not destroyed, in a live context or in a dead one."""
+def nodes_here(*, alive: bool = True) -> Iterator[Node]:
+    """Yield this process's nodes that are not destroyed, in a live context or in a dead one."""
     for thing in gc.get_objects():
         if not issubclass(type(thing), Node):
             continue
