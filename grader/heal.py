@@ -9,6 +9,7 @@ from nbformat import NotebookNode
 
 KEY = 'my_robot_basics'
 """Our one key in a cell's metadata: {'role': ...}, and after grading the verdict."""
+NO_ANSWERS = 'the notebook holds none of the answer cells of this assignment'
 
 
 @dataclass(frozen=True)
@@ -98,7 +99,7 @@ def heal(submitted: NotebookNode, master: Master) -> Healed:
     _give_unique_ids(cells)
     answers = [i for i, cell in enumerate(master.notebook.cells) if role(cell) == 'answer']
     if not any(found[i].parts for i in answers):
-        notes = ['the notebook holds none of the answer cells of this assignment', *notes]
+        notes = [NO_ANSWERS, *notes]
     healed = nbformat.v4.new_notebook(cells=cells)
     healed.metadata = nbformat.from_dict(master.notebook.metadata)
     healed.metadata[KEY] = {'notes': notes}

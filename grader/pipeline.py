@@ -8,7 +8,7 @@ from nbformat import NotebookNode
 from traitlets.config import Config
 
 from grader.course import Course
-from grader.heal import KEY, heal
+from grader.heal import KEY, NO_ANSWERS, heal
 from grader.release import CODE_STUB
 from grader.submission import Submission
 
@@ -96,12 +96,14 @@ def first_reason(graded: NotebookNode) -> str:
 
     What went wrong in the student's own cells comes before what the check then saw.
     """
-    if problem := graded.metadata.get(KEY, {}).get('problem'):
+    healed = graded.metadata.get(KEY, {})
+    if problem := healed.get('problem'):
         return problem
     for cell in graded.cells:
         verdict = cell.metadata.get(KEY, {})
         if verdict.get('outcome') in ('failed', 'ungraded') and verdict.get('reason'):
-            return '; '.join([*verdict.get('notes', ())[:1], verdict.reason])
+            causes = [note for note in healed.get('notes', ()) if note == NO_ANSWERS]
+            return '; '.join([*causes, *verdict.get('notes', ())[:1], verdict.reason])
     return ''
 
 
