@@ -239,6 +239,7 @@ def test_nobody_waits_long_for_what_the_notebook_says_it_has_not_got(run, monkey
         topic(TOPIC).record()
 
 
-def test_a_notebook_that_does_not_say_is_waited_for(monkeypatch):
-    monkeypatch.setattr(student, '_ask', lambda question, shown: ('failed', 'no usable answer'))
+@pytest.mark.parametrize('reply', ['', '{"failed":"no usable answer"}', '{"ok":1}', None])
+def test_a_notebook_that_does_not_say_is_waited_for(monkeypatch, reply):
+    monkeypatch.setattr(student, '_send', lambda question: reply)
     assert student.has_endpoint(TOPIC)
