@@ -10,8 +10,6 @@ from builtin_interfaces.msg import Time
 from my_robot_basics.checks import CheckFailed, responder, student, wire
 from sensor_msgs.msg import JointState
 
-import __main__
-
 MODES = ['one process', 'test room']
 
 
@@ -23,7 +21,7 @@ def notebook(request, monkeypatch):
         monkeypatch.setenv('MY_ROBOT_BASICS_ROOM', 'test')
         monkeypatch.setattr('builtins.input', responder.answer)
     return lambda **names: [
-        monkeypatch.setattr(__main__, n, v, raising=False) for n, v in names.items()
+        monkeypatch.setattr(sys.modules['__main__'], n, v, raising=False) for n, v in names.items()
     ]
 
 

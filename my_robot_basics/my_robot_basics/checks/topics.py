@@ -114,15 +114,8 @@ class Topic:
                 seen=f'none in {patience_sec:g} s',
                 hint=graphs.take(watcher).why_silent(self.name),
             )
+        message_type = self._message_type(watcher)
         offers = graphs.publisher_infos(watcher.node, self.name)
-        types = sorted({offer.topic_type for offer in offers})
-        message_type = _message_type(types[0]) if len(types) == 1 else None
-        if message_type is None:
-            fail(
-                expected=f'one standard message type on {self.name}',
-                seen=' and '.join(types),
-                hint='create every publisher of a topic with the same type of common_interfaces',
-            )
         reliable = all(
             offer.qos_profile.reliability == ReliabilityPolicy.RELIABLE for offer in offers
         )
@@ -135,17 +128,27 @@ class Topic:
     def _patience_sec(self, most_sec: float) -> float:
         return most_sec if student.has_endpoint(self.name) else min(most_sec, ABSENT_SEC)
 
+    def _message_type(self, watcher: Watcher) -> type:
+        """The one type that the publishers of the topic agree on."""
+        infos = graphs.publisher_infos(watcher.node, self.name)
+        types = sorted({info.topic_type for info in infos})
+        try:
+            (name,) = types
+            return wire.message_type(name)
+        except ValueError:
+            fail(
+                expected=f'one standard message type on {self.name}',
+                seen=' and '.join(types),
+                hint='create every publisher of a topic with the same type of common_interfaces',
+            )
+
     def _record_on_wall(self, why: str, seconds: float) -> Recording:
         with Watcher() as watcher:
             return looks.wall(watcher, self._listen(watcher), why=why, seconds=seconds)
 
     def _fail_silent(self, watcher: Watcher, *, seen: str) -> None:
+        if graphs.publisher_infos(watcher.node, self.name):
+            # a publisher of another type may have come to light only now
+            self._message_type(watcher)
         hint = graphs.take(watcher).why_silent(self.name)
         fail(expected=f'messages on {self.name}', seen=seen, hint=hint)
-
-
-def _message_type(name: str) -> type | None:
-    try:
-        return wire.message_type(name)
-    except wire.WireError:
-        return None
