@@ -5,10 +5,9 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
-
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from my_robot_basics.checks.recording import Recording
 
 SHOWN_PERIODS = 25
@@ -16,6 +15,8 @@ SHOWN_PERIODS = 25
 
 def arrivals(recording: 'Recording', *, hz: float | None = None) -> bytes:
     """When the messages of a recording arrived; with `hz`, above when they should have."""
+    from matplotlib.figure import Figure  # takes a second, and most checks need no picture
+
     until = min(recording.seconds, SHOWN_PERIODS / (hz or recording.rate_hz or 1.0))
     seen = [s.time_sec for s in recording.messages if s.time_sec <= until]
     rows = [('seen', seen, 'tab:red' if hz else 'tab:blue')]
@@ -46,7 +47,9 @@ def misread(position: Sequence[float]) -> bytes | None:
     return picture.png()
 
 
-def _png(figure: Figure) -> bytes:
+def _png(figure: 'Figure') -> bytes:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
     buffer = io.BytesIO()
     FigureCanvasAgg(figure).print_png(buffer)
     return buffer.getvalue()

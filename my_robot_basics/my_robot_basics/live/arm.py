@@ -3,10 +3,6 @@
 import io
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
-from matplotlib.patches import Arc, Wedge
-from matplotlib.patheffects import withStroke
 
 from my_robot_basics.live import notebook
 from my_robot_basics.two_link_kinematics import L1, L2, forward_kinematics
@@ -43,6 +39,11 @@ class ArmPicture:
 
     def __init__(self, *, l1: float = L1, l2: float = L2) -> None:
         """Draw axes and ring for links of these lengths in metres."""
+        # importing it takes a second, which only those spend who look at a picture
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
+        from matplotlib.patches import Wedge
+
         self._l1, self._l2 = l1, l2
         self._figure = Figure(figsize=(4.6, 5.1), dpi=80)
         # no pyplot: a picture may be drawn in any thread
@@ -97,6 +98,9 @@ class ArmPicture:
 
     def _angle(self, name: str, angle_deg: float, *, at: np.ndarray, start_deg: float) -> None:
         """Draw an arc from the direction `start_deg` on, its zero line, and the angle in words."""
+        from matplotlib.patches import Arc
+        from matplotlib.patheffects import withStroke
+
         shown_deg = (angle_deg + 180) % 360 - 180  # more than a turn looks the same
         size = 0.3 * (self._l1 + self._l2)
         first, last = sorted((start_deg, start_deg + shown_deg))
