@@ -57,7 +57,7 @@ class Rooms:
         """Start both kernels, and see a message cross from one to the other."""
         try:
             self._open()
-            await _all(self._prepare_student(), self._prepare_test())
+            await _together(self._prepare_student(), self._prepare_test())
             await self._prepare(self._student, _STUDENT_GOES)
         except BaseException as error:
             await self.__aexit__()
@@ -69,7 +69,10 @@ class Rooms:
     async def __aexit__(self, *_: object) -> None:
         """End both kernels, whatever state they are in, and give the domain back."""
         try:
-            await _all(*(kernel.stop() for kernel in self._kernels))
+            stops = [kernel.stop() for kernel in self._kernels]
+            failed = [e for e in await asyncio.gather(*stops, return_exceptions=True) if e]
+            if failed:
+                raise failed[0]
         finally:
             if self._claim is not None:
                 self._claim.release()
@@ -141,8 +144,12 @@ def _failed(sentence: str) -> str:
     return json.dumps({'failed': sentence})
 
 
-async def _all(*work: Awaitable[None]) -> None:
-    """Wait for all of it, also when some fails: nothing goes on alone."""
-    for result in await asyncio.gather(*work, return_exceptions=True):
-        if isinstance(result, BaseException):
-            raise result
+async def _together(*work: Awaitable[None]) -> None:
+    """Wait for all of it; when some fails the rest is called off: nothing goes on alone."""
+    tasks = [asyncio.ensure_future(each) for each in work]
+    try:
+        await asyncio.gather(*tasks)
+    finally:
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
