@@ -1,0 +1,319 @@
+"""Executing a notebook: each exercise alone, a verdict in each grade cell, and no test told."""
+
+import asyncio
+import os
+import signal
+import threading
+import time
+
+import nbformat
+import pytest
+from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
+from nbgrader.utils import determine_grade
+
+from grader import execute as module
+from grader import rooms as rooms_module
+from grader.errors import RoomFailure
+from grader.execute import execute
+from grader.heal import KEY, grade_id, heal, make_master
+from grader.outputs import CellRun
+
+CANARY = 'hidden canary'
+CHECK = f"""
+from my_robot_basics.checks import expect, student
+expect(student.call('double', 2) == 4, expected=4, seen='less', hint='twice')
+print('note: all is well')
+secret = '{CANARY}'
+"""
+
+
+def marked(name, source, *, new=new_code_cell, **marks):
+    defaults = {'grade': False, 'solution': False, 'locked': True, 'schema_version': 3}
+    return new(source, id=name, metadata={'nbgrader': defaults | marks | {'grade_id': name}})
+
+
+def lesson(*exercises, check=CHECK, setup='from my_robot_basics.live import reset'):
+    """Return the instructor's notebook; the exercise `a` asks for `double_a`, and so on."""
+    cells = [new_code_cell(setup, id='setup')]
+    for name in exercises:
+        cells += [
+            marked(f'{name}-reset', f"reset('double_{name}')"),
+            marked(name, '# here', solution=True, locked=False),
+            new_code_cell('# try it', id=f'{name}-try'),
+            marked(
+                f'{name}-check', check.replace('double', f'double_{name}'), grade=True, points=2
+            ),
+        ]
+    cells.append(marked('why', '', new=new_markdown_cell, solution=True, grade=True, points=3))
+    return new_notebook(cells=cells)
+
+
+def handed_in(source, *, after=(), before=(), **answers):
+    """Return the healed notebook of a student who answered so, with own cells around."""
+    master = make_master(source, source)
+    submitted = nbformat.from_dict(source)
+    for cell in submitted.cells:
+        if name := grade_id(cell):
+            cell.source = answers.get(name, cell.source).replace('double', f'double_{name}')
+    cells = [*map(new_code_cell, before), *submitted.cells, *map(new_code_cell, after)]
+    return heal(new_notebook(cells=cells), master).notebook
+
+
+def outcomes(execution):
+    return {v.grade_id: v.outcome for v in execution.verdicts}
+
+
+def cells_of(execution):
+    return {grade_id(c): c for c in execution.notebook.cells if grade_id(c)}
+
+
+GOOD = 'def double(x): return 2 * x'
+
+
+def test_each_exercise_costs_only_itself():
+    answers = {
+        'good': GOOD,
+        'raises': '1 / 0',
+        'wrong': 'def double(x): return x',
+        'loops': 'while True: pass',
+        'quits': 'import os; os._exit(0)',
+        'last': GOOD,
+    }
+    notebook = handed_in(lesson(*answers), **answers)
+    before = nbformat.writes(notebook)
+    execution = execute(notebook)
+    assert nbformat.writes(notebook) == before
+    assert outcomes(execution) == {
+        'good-check': 'passed',
+        'raises-check': 'failed',
+        'wrong-check': 'failed',
+        'loops-check': 'failed',
+        'quits-check': 'failed',
+        'last-check': 'passed',
+        'why': 'manual',
+    }
+    reasons = {v.grade_id: (v.reason, v.notes) for v in execution.verdicts}
+    assert reasons['good-check'] == ('', ('all is well',))
+    assert reasons['wrong-check'] == ('expected 4, saw less: twice', ())
+    assert reasons['loops-check'][1] == ('your cell `loops` did not end and was interrupted',)
+    assert reasons['raises-check'][1] == (
+        'your cell `raises` stopped with ZeroDivisionError: division by zero',
+    )
+    assert 'your cell `quits` ended the kernel' in reasons['quits-check'][0]
+    cells = cells_of(execution)
+    for verdict in execution.verdicts:
+        if verdict.outcome != 'manual':
+            assert determine_grade(cells[verdict.grade_id]) == (verdict.score, 2.0)
+    for cell in cells.values():
+        assert CANARY not in str((cell.get('outputs'), cell.metadata))
+    nbformat.validate(execution.notebook)
+
+
+GOOD_A = GOOD.replace('double', 'double_a')
+STRANGE = {
+    'a helper in a cell of its own': (
+        {'a': 'def double(x): return helper(x)', 'before': ['def helper(x): return 2 * x']},
+        'passed',
+    ),
+    'the answer in a cell after the checks': ({'a': '', 'after': [GOOD_A]}, 'passed'),
+    'a helper that the text does not show': (
+        {'a': 'double = eval("hel" + "per")', 'before': ['def helper(x): return 2 * x']},
+        'passed',
+    ),
+    'a cell of no use that loops': ({'a': GOOD, 'before': ['while True: pass']}, 'passed'),
+    'cells of no use that fail': (
+        {'a': GOOD, 'before': ['1 / 0'], 'after': ['import os; os._exit(0)']},
+        'passed',
+    ),
+    'stderr and warnings': (
+        {'a': f'import sys, warnings\nprint("e", file=sys.stderr)\nwarnings.warn("w")\n{GOOD}'},
+        'passed',
+    ),
+    'nothing': ({'a': ''}, 'failed'),
+    'a name misspelled': ({'a': 'double = doubel'}, 'failed'),
+    'an input': ({'a': 'n = input("n? ")\n' + GOOD}, 'failed'),
+    'an answer of an earlier cell': (
+        {'a': '', 'before': [GOOD_A + '\nimport builtins; builtins.double_a = double_a']},
+        'failed',
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(('own', 'outcome'), STRANGE.values(), ids=STRANGE)
+def test_strange_ways_to_answer(monkeypatch, own, outcome):
+    monkeypatch.setattr(module, 'STUDENT_CELL_TIMEOUT_SEC', 4.0)
+    execution = execute(handed_in(lesson('a'), **own))
+    assert outcomes(execution)['a-check'] == outcome
+
+
+def test_the_seed_reaches_the_checks_and_not_the_student():
+    check = "import os; print('note: ' + os.environ['MY_ROBOT_BASICS_SEED'])"
+    source = lesson('a', check=check)
+    answer = 'import os; print(os.environ.get("MY_ROBOT_BASICS_SEED"))'
+    execution = execute(handed_in(source, a=answer), seed='beef')
+    assert execution.verdicts[0].notes == ('beef',)
+    assert cells_of(execution)['a'].outputs[0].text == 'None\n'
+
+
+class FakeRooms:
+    """Rooms without kernels: what happens in them is a list of what each check comes to."""
+
+    checks: list
+    opened = 0
+
+    def __init__(self, **options):
+        pass
+
+    async def __aenter__(self):
+        type(self).opened += 1
+        if self.checks and isinstance(self.checks[0], Exception):
+            raise self.checks.pop(0)
+        return self
+
+    async def __aexit__(self, *_):
+        pass
+
+    student_alive = True
+
+    async def run_student_cell(self, source, *, timeout_sec):
+        return CellRun(status='ok')
+
+    async def run_check(self, source):
+        return self.checks.pop(0)
+
+
+def ended(**state):
+    error = state.pop('error', None)
+    run = CellRun(**{'status': 'error' if error else 'ok'} | state)
+    if error:
+        run.keep('error', {'ename': error, 'evalue': CANARY, 'traceback': [CANARY, 'assert x']})
+    return run
+
+
+DEAD, LATE = ended(status=None, died=True), ended(timed_out=True)
+FAILURES = {
+    'the test kernel died twice': ([DEAD, DEAD], 'ungraded', 2),
+    'the test kernel died once': ([DEAD, ended()], 'passed', 2),
+    'the check did not end': ([LATE, LATE], 'ungraded', 2),
+    'a defect of the check': ([ended(error='KeyError')] * 2, 'ungraded', 2),
+    'rooms that did not open': ([RoomFailure('no room')] * 2, 'ungraded', 2),
+    'rooms that opened at last': ([RoomFailure('no room'), ended()], 'passed', 2),
+    'a failed check is no failure of ours': ([ended(error='CheckFailed')], 'failed', 1),
+    'a failed assert is none either': ([ended(error='AssertionError')], 'failed', 1),
+}
+
+
+@pytest.mark.parametrize(('checks', 'outcome', 'opened'), FAILURES.values(), ids=FAILURES)
+def test_the_graders_own_failure_is_tried_again_and_then_left_to_a_person(
+    monkeypatch, checks, outcome, opened
+):
+    rooms = type('Rooms', (FakeRooms,), {'checks': list(checks)})
+    monkeypatch.setattr(module, 'Rooms', rooms)
+    execution = execute(handed_in(lesson('a'), a=GOOD))
+    verdict = execution.verdicts[0]
+    assert (verdict.outcome, rooms.opened) == (outcome, opened)
+    cell = cells_of(execution)['a-check']
+    assert cell.metadata[KEY].outcome == outcome
+    if outcome == 'ungraded':
+        assert verdict.score is None
+        assert 'a person has to look at it' in cell.outputs[0].text
+        assert CANARY not in str((cell.outputs, cell.metadata, verdict))
+        assert 'assert x' not in str((cell.outputs, cell.metadata, verdict))
+
+
+def test_a_failure_in_one_exercise_leaves_the_others_their_verdicts(monkeypatch):
+    rooms = type('Rooms', (FakeRooms,), {'checks': [DEAD, DEAD, ended()]})
+    monkeypatch.setattr(module, 'Rooms', rooms)
+    execution = execute(handed_in(lesson('a', 'b')))
+    assert outcomes(execution) == {'a-check': 'ungraded', 'b-check': 'passed', 'why': 'manual'}
+
+
+def test_a_check_with_a_defect_is_ungraded_and_quotes_nothing():
+    source = lesson('a', check=f'secret = "{CANARY}"\n{{}}[secret]')
+    execution = execute(handed_in(source, a=GOOD))
+    assert execution.verdicts[0].outcome == 'ungraded'
+    assert 'it stopped with KeyError' in execution.verdicts[0].reason
+    cell = cells_of(execution)['a-check']
+    assert CANARY not in str((cell.outputs, cell.metadata, execution.verdicts))
+
+
+def test_a_notebook_that_could_not_be_read_fails_without_running(monkeypatch):
+    monkeypatch.setattr(module, 'Rooms', None)
+    notebook = handed_in(lesson('a', 'b'))
+    notebook.metadata[KEY] = {'notes': ['damaged'], 'problem': 'damaged'}
+    execution = execute(notebook)
+    assert {v.grade_id: v.reason for v in execution.verdicts} == {
+        'a-check': 'damaged',
+        'b-check': 'damaged',
+        'why': '',
+    }
+    assert execution.notes == ('damaged',)
+    assert determine_grade(cells_of(execution)['a-check']) == (0, 2.0)
+
+
+def test_student_cells_share_one_budget(monkeypatch):
+    given = []
+
+    class Slow(FakeRooms):
+        checks = [ended() for _ in range(3)]
+
+        async def run_student_cell(self, source, *, timeout_sec):
+            given.append(timeout_sec)
+            await asyncio.sleep(min(timeout_sec, 0.2) if 'loop' in source else 0)
+            return CellRun(status='ok')
+
+    monkeypatch.setattr(module, 'Rooms', Slow)
+    monkeypatch.setattr(module, 'STUDENT_CELLS_BUDGET_SEC', 0.5)
+    monkeypatch.setattr(module, '_Budget', lambda: module_budget(0.5))
+    execute(handed_in(lesson('a', 'b', 'c'), a='loop', b='loop', c='loop'))
+    assert given == sorted(given, reverse=True)
+    assert max(given) <= 0.5
+    assert min(given) >= 0.1  # a cell is never given no time at all
+
+
+module_budget = module._Budget
+
+
+def test_it_works_inside_a_running_event_loop(monkeypatch):
+    monkeypatch.setattr(module, 'Rooms', type('R', (FakeRooms,), {'checks': [ended()]}))
+
+    async def formgrader():
+        return execute(handed_in(lesson('a')))
+
+    assert outcomes(asyncio.run(formgrader()))['a-check'] == 'passed'
+
+
+@pytest.mark.parametrize('inside_a_loop', [False, True])
+def test_ctrl_c_closes_the_rooms_and_ends(monkeypatch, inside_a_loop):
+    events = []
+
+    class Endless(FakeRooms):
+        checks = []
+
+        async def run_student_cell(self, source, *, timeout_sec):
+            events.append('running')
+            await asyncio.sleep(600)
+
+        async def __aexit__(self, *_):
+            events.append('closed')
+
+    def interrupt():
+        while not events:
+            time.sleep(0.01)
+        os.kill(os.getpid(), signal.SIGINT)
+
+    monkeypatch.setattr(module, 'Rooms', Endless)
+    threading.Thread(target=interrupt).start()
+
+    async def formgrader():
+        # an event loop of its own would take Ctrl-C for itself
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        return execute(handed_in(lesson('a')))
+
+    with pytest.raises(KeyboardInterrupt):
+        asyncio.run(formgrader()) if inside_a_loop else execute(handed_in(lesson('a')))
+    assert events == ['running', 'closed']
+
+
+def test_the_real_rooms_are_used_unless_a_test_says_otherwise():
+    assert module.Rooms is rooms_module.Rooms
