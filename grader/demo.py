@@ -9,7 +9,7 @@ from grader.course import ROOT, Course
 from grader.errors import CourseError
 from grader.feedback import write_feedback
 from grader.grade import Row, find_submissions, grade_all
-from grader.gradebook import verdicts
+from grader.records import verdicts
 from grader.table import print_rows
 
 SAMPLES = ROOT / 'tests' / 'submissions'

@@ -3,7 +3,7 @@
 import os
 import shutil
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import datetime
@@ -11,7 +11,7 @@ from pathlib import Path
 
 import nbformat
 from nbformat import NotebookNode
-from nbgrader.api import Grade, Gradebook, MissingEntry
+from nbgrader.api import Grade, Gradebook, MissingEntry, SubmittedNotebook
 from nbgrader.preprocessors import SaveAutoGrades
 from nbgrader.utils import parse_utc
 
@@ -37,23 +37,6 @@ class Stored:
     """Whether some of it waits for a person."""
     reason: str
     """Why points are missing: the first reason, or ''."""
-
-
-@dataclass(frozen=True)
-class Record:
-    """One graded cell of one student."""
-
-    student_id: str
-    assignment: str
-    grade_id: str
-    score: float | None
-    """None where nothing was handed in, or where a person has to decide."""
-    max_score: float
-    submitted: bool = True
-    by_hand: bool = False
-    """Whether a person gave the score."""
-    comment: str = ''
-    """What a person wrote."""
 
 
 class SaveGrades(SaveAutoGrades):
@@ -106,7 +89,7 @@ def register(course: Course, assignment: str) -> bool:
     resources = resources_of(course, assignment)
     tidied = apply(PASSES[: PASSES.index(SAVE_CELLS)], course.source(assignment), resources)
     make_ready(course)
-    with _open(course.db_url) as book:
+    with Gradebook(course.db_url) as book:
         known = _checksums_in(book, assignment)
         wanted = {
             grade_id(cell): cell.metadata['nbgrader']['checksum']
@@ -168,24 +151,28 @@ def store(course: Course, submission: Submission, graded: NotebookNode) -> Store
     )
 
 
-def records(course: Course) -> list[Record]:
-    """Return all graded cells of all students, in a stable order; registers what is new."""
+@contextmanager
+def opened(course: Course) -> Iterator[Gradebook]:
+    """Open the database to read in it; every assignment of the course is known to it then."""
     for assignment in course.assignments():
         register(course, assignment)
-    with _open(course.db_url) as book:
-        return [
-            record
-            for student in sorted(student.id for student in book.students)
-            for assignment in sorted(assignment.name for assignment in book.assignments)
-            for record in _records(course, book, student, assignment)
-        ]
+    with Gradebook(course.db_url) as book:
+        yield book
 
 
-def verdicts(course: Course, student_id: str, assignment: str) -> dict[str, NotebookNode]:
-    """Return what the executed notebook says of each graded cell, by grade id."""
-    path = course.folder('autograded', student_id, assignment) / f'{assignment}.ipynb'
-    cells = nbformat.read(path, as_version=4).cells if path.exists() else []
-    return {grade_id(cell): cell.metadata.get(KEY, {}) for cell in cells if grade_id(cell)}
+def submitted_notebook(
+    book: Gradebook, student_id: str, assignment: str
+) -> SubmittedNotebook | None:
+    """Return what the database holds of a submission, if there is one."""
+    try:
+        return book.find_submission_notebook(assignment, assignment, student_id)
+    except MissingEntry:
+        return None
+
+
+def waits_for_a_person(grade: Grade) -> bool:
+    """Whether nobody has given a score yet."""
+    return grade.auto_score is None and grade.manual_score is None
 
 
 def write_whole(path: Path, text: str) -> None:
@@ -195,14 +182,10 @@ def write_whole(path: Path, text: str) -> None:
     os.replace(aside, path)
 
 
-def _open(db_url: str) -> Gradebook:
-    return Gradebook(db_url)
-
-
 @contextmanager
 def _one_transaction(db_url: str) -> Iterator[Gradebook]:
     """Open the database; what nbgrader would commit cell by cell is committed at the end."""
-    with _open(db_url) as book:
+    with Gradebook(db_url) as book:
         commit, book.db.commit = book.db.commit, book.db.flush
         yield book
         commit()
@@ -218,14 +201,11 @@ def _checksums_in(book: Gradebook, assignment: str) -> dict[str, str] | None:
 
 def _find(course: Course, submission: Submission) -> tuple[float, float, bool] | None:
     """Return score, most that can be had, and whether a person has to look; None if not graded."""
-    with _open(course.db_url) as book:
-        try:
-            found = book.find_submission_notebook(
-                submission.assignment, submission.assignment, submission.student_id
-            )
-        except MissingEntry:
+    with Gradebook(course.db_url) as book:
+        found = submitted_notebook(book, submission.student_id, submission.assignment)
+        if found is None:
             return None
-        waits = any(_waits(grade) for grade in found.grades)
+        waits = any(waits_for_a_person(grade) for grade in found.grades)
         return found.score - (found.late_submission_penalty or 0), found.max_score, waits
 
 
@@ -243,42 +223,3 @@ def _handed_in(submission: Submission) -> tuple[datetime | None, list[str]]:
         return parse_utc(found[0].read_text(encoding='utf-8').strip() or None), []
     except (ValueError, OverflowError):
         return None, ['timestamp.txt holds no date: counted as handed in on time']
-
-
-def _records(course: Course, book: Gradebook, student: str, assignment: str) -> Iterator[Record]:
-    known = [cell for nb in book.find_assignment(assignment).notebooks for cell in nb.grade_cells]
-    try:
-        found = book.find_submission_notebook(assignment, assignment, student)
-    except MissingEntry:
-        found = None
-    grades = {grade.name: grade for grade in found.grades} if found else {}
-    comments = (
-        {comment.name: comment.manual_comment for comment in found.comments} if found else {}
-    )
-    for cell in sorted(known, key=_place_in(course, assignment)):
-        grade = grades.get(cell.name)
-        yield Record(
-            student_id=student,
-            assignment=assignment,
-            grade_id=cell.name,
-            score=grade.score if grade and not _waits(grade) else None,
-            max_score=cell.max_score,
-            submitted=found is not None,
-            by_hand=bool(grade and grade.manual_score is not None),
-            comment=comments.get(cell.name) or '',
-        )
-    if found and found.late_submission_penalty:
-        yield Record(student, assignment, 'late_penalty', -found.late_submission_penalty, 0.0)
-
-
-def _place_in(course: Course, assignment: str) -> Callable[[object], tuple[int, str]]:
-    """Return a sort key that puts graded cells in the lesson's order; strangers come last."""
-    order = []
-    if course.source_path(assignment).exists():
-        order = [grade_id(cell) for cell in course.source(assignment).cells]
-    return lambda cell: (order.index(cell.name) if cell.name in order else len(order), cell.name)
-
-
-def _waits(grade: Grade) -> bool:
-    """Whether nobody has given a score yet."""
-    return grade.auto_score is None and grade.manual_score is None

@@ -5,7 +5,8 @@ import io
 from pathlib import Path
 
 from grader.course import Course
-from grader.gradebook import Record, records, verdicts, write_whole
+from grader.gradebook import write_whole
+from grader.records import Record, records, verdicts
 from grader.text import spreadsheet_safe
 
 COLUMNS = ('student_id', 'assignment', 'grade_id', 'score', 'max_score', 'comment')

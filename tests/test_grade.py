@@ -10,7 +10,8 @@ from grader.demo import demo
 from grader.errors import CourseError
 from grader.execute import Execution
 from grader.grade import find_submissions, grade_all
-from grader.gradebook import records, register
+from grader.gradebook import register
+from grader.records import records
 from grader.release import release
 from grader.table import print_rows
 

@@ -12,9 +12,10 @@ from nbgrader.api import Gradebook
 
 from grader.course import Course
 from grader.errors import CourseError
-from grader.gradebook import records, register, store
+from grader.gradebook import register, store
 from grader.heal import KEY, heal
 from grader.pipeline import prepare, unanswered
+from grader.records import records
 from grader.release import release
 from grader.scores import COLUMNS, write_scores
 from grader.submission import read_submission

@@ -12,7 +12,8 @@ from nbformat import NotebookNode
 
 from grader.__main__ import main
 from grader.course import Course
-from grader.gradebook import records, register
+from grader.gradebook import register
+from grader.records import records
 
 ANSWERS = {
     'right': 'def double(x):\n    return 2 * x',

@@ -1,0 +1,78 @@
+"""What the gradebook and the executed notebooks say, cell by cell."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import nbformat
+from nbformat import NotebookNode
+
+from grader.course import Course
+from grader.gradebook import opened, submitted_notebook, waits_for_a_person
+from grader.heal import KEY, grade_id
+
+
+@dataclass(frozen=True)
+class Record:
+    """One graded cell of one student."""
+
+    student_id: str
+    assignment: str
+    grade_id: str
+    score: float | None
+    """None where nothing was handed in, or where a person has to decide."""
+    max_score: float
+    submitted: bool = True
+    by_hand: bool = False
+    """Whether a person gave the score."""
+    comment: str = ''
+    """What a person wrote."""
+
+
+def records(course: Course) -> list[Record]:
+    """Return all graded cells of all students, in a stable order; registers what is new."""
+    with opened(course) as book:
+        return [
+            record
+            for student in sorted(student.id for student in book.students)
+            for assignment in sorted(assignment.name for assignment in book.assignments)
+            for record in _records(course, book, student, assignment)
+        ]
+
+
+def verdicts(course: Course, student_id: str, assignment: str) -> dict[str, NotebookNode]:
+    """Return what the executed notebook says of each graded cell, by grade id."""
+    path = course.folder('autograded', student_id, assignment) / f'{assignment}.ipynb'
+    cells = nbformat.read(path, as_version=4).cells if path.exists() else []
+    return {grade_id(cell): cell.metadata.get(KEY, {}) for cell in cells if grade_id(cell)}
+
+
+def _records(course: Course, book: Any, student: str, assignment: str) -> Iterator[Record]:
+    known = [cell for nb in book.find_assignment(assignment).notebooks for cell in nb.grade_cells]
+    found = submitted_notebook(book, student, assignment)
+    grades = {grade.name: grade for grade in found.grades} if found else {}
+    comments = (
+        {comment.name: comment.manual_comment for comment in found.comments} if found else {}
+    )
+    for cell in sorted(known, key=_place_in(course, assignment)):
+        grade = grades.get(cell.name)
+        yield Record(
+            student_id=student,
+            assignment=assignment,
+            grade_id=cell.name,
+            score=grade.score if grade and not waits_for_a_person(grade) else None,
+            max_score=cell.max_score,
+            submitted=found is not None,
+            by_hand=bool(grade and grade.manual_score is not None),
+            comment=comments.get(cell.name) or '',
+        )
+    if found and found.late_submission_penalty:
+        yield Record(student, assignment, 'late_penalty', -found.late_submission_penalty, 0.0)
+
+
+def _place_in(course: Course, assignment: str) -> Callable[[object], tuple[int, str]]:
+    """Return a sort key that puts graded cells in the lesson's order; strangers come last."""
+    order = []
+    if course.source_path(assignment).exists():
+        order = [grade_id(cell) for cell in course.source(assignment).cells]
+    return lambda cell: (order.index(cell.name) if cell.name in order else len(order), cell.name)
