@@ -31,7 +31,8 @@ def picture(nodes=('/a',), publishers=None, subscriptions=None):
 @pytest.mark.parametrize(
     ('seen', 'why'),
     [
-        (picture(nodes=()), 'no node is running, so run the cell that starts it'),
+        (picture(nodes=()), 'the node is not running, so run the cell that starts it'),
+        (picture(subscriptions={'/t/joint_states': ('/a',)}), 'the node is not running'),
         (picture(), '/a runs, so look at the topic name in create_publisher'),
         (picture(publishers={'/t/joint_states': ('/a',)}), '/a has a publisher there and sends'),
         (picture(publishers={'/t/joint_state': ('/a',)}), '/a uses /t/joint_state, so compare'),

@@ -51,19 +51,29 @@ class Graph:
                 f'{who} has a publisher there and sends nothing, so see that it spins, that its '
                 'timer is created, and that no callback raises'
             )
-        return self._why_none(topic_name, self.publisher_names, 'create_publisher')
+        others = self.subscriptions(topic_name)
+        return self._why_none(topic_name, self.publisher_names, 'create_publisher', others)
 
     def why_unheard(self, topic_name: str) -> str:
         """What to try when nobody subscribes to a topic: one clause."""
-        return self._why_none(topic_name, self.subscription_names, 'create_subscription')
+        others = self.publishers(topic_name)
+        return self._why_none(topic_name, self.subscription_names, 'create_subscription', others)
 
-    def _why_none(self, topic_name: str, names: dict[str, tuple[str, ...]], maker: str) -> str:
-        if not self.node_names:
-            return 'no node is running, so run the cell that starts it and read what it says'
+    def _why_none(
+        self,
+        topic_name: str,
+        names: dict[str, tuple[str, ...]],
+        maker: str,
+        others: tuple[str, ...],
+    ) -> str:
+        # who is at the other end of the topic is not the one that is missing at this end
+        runs = [name for name in self.node_names if name not in others]
+        if not runs:
+            return 'the node is not running, so run the cell that starts it and read what it says'
         if similar := _similar(topic_name, [name for name in names if name not in _PLUMBING]):
             return f'{", ".join(names[similar])} uses {similar}, so compare the spelling'
         return (
-            f'{", ".join(self.node_names)} runs, so look at the topic name in {maker}(…)'
+            f'{", ".join(runs)} runs, so look at the topic name in {maker}(…)'
             f' and that the node calls it'
         )
 
