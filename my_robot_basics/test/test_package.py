@@ -78,7 +78,17 @@ def workspace(own_domain, tmp_path):
     return Workspace(tmp_path)
 
 
-@pytest.mark.parametrize('options', [[], ['--symlink-install']])
+symlink_install = pytest.param(
+    ['--symlink-install'],
+    marks=pytest.mark.xfail(
+        ' ' in sys.executable,
+        reason='setuptools quotes a Python whose path has a space, in a first line of a script',
+        strict=True,
+    ),
+)
+
+
+@pytest.mark.parametrize('options', [[], symlink_install])
 def test_colcon_builds_what_the_ament_index_finds(workspace, options):
     workspace.build(*options)
     assert workspace.executables() == EXECUTABLES
