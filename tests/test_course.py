@@ -9,7 +9,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 VERBS = ['lab', 'test', 'release', 'grade', 'scores', 'feedback', 'demo']
-TOOLS = ['sh', 'cat', 'cp', 'dirname', 'env', 'find', 'flock', 'grep', 'id', 'mkdir', 'mv']
+TOOLS = ['sh', 'cat', 'cp', 'dirname', 'env', 'find', 'flock', 'grep', 'id', 'ln', 'mkdir', 'mv']
 TOOLS += ['readlink', 'rm', 'sed', 'sleep', 'tail', 'uname']
 IN_A_NAMESPACE = [
     shutil.which('unshare'),
@@ -243,6 +243,26 @@ def test_new_entry_points_are_installed_without_making_all_again(machine):
         call for call in machine.calls('uv pip install') if '-e ./my_robot_basics -e .' in call
     ]
     assert machine.course('scores').stderr == ''
+
+
+def test_ros_finds_the_package_and_its_executables(machine):
+    setup = machine.root / 'my_robot_basics/setup.py'
+    first = "'hello_node = my_robot_basics.hello_node:main',"
+    for name in ['extra_node', 'other_node']:
+        text = (ROOT / 'my_robot_basics/setup.py').read_text()
+        setup.write_text(
+            text.replace(first, f"{first}\n            '{name} = my_robot_basics.{name}:main',")
+        )
+        assert machine.course('scores').returncode == 0
+        venv = machine.root / '.venv'
+        assert (venv / 'share/ament_index/resource_index/packages/my_robot_basics').is_file()
+        description = (venv / 'share/my_robot_basics/package.xml').read_text()
+        assert description == (setup.parent / 'package.xml').read_text()
+        links = {path.name: os.readlink(path) for path in (venv / 'lib/my_robot_basics').iterdir()}
+        # an executable that is gone from setup.py is gone here, too
+        assert {name, 'hello_node', 'kinematics_publisher'} <= links.keys()
+        assert {'extra_node', 'other_node'} & links.keys() == {name}
+        assert links == {name: f'../../bin/{name}' for name in links}
 
 
 def test_an_environment_that_failed_is_never_used(machine):

@@ -9,10 +9,12 @@ from importlib import metadata
 from pathlib import Path
 
 import pytest
+from ament_index_python import get_package_prefix, get_package_share_directory
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
 ROOT = Path(__file__).parents[1]
+PACKAGE = ROOT / 'my_robot_basics'
 UV = Path(sys.prefix, 'bin/uv')
 PYTHONS = ['3.11', '3.12', '3.13']
 
@@ -74,6 +76,18 @@ def test_this_environment_is_the_pinned_one():
     others = {n: pin for n, pin in installed.items() if n not in ours and n not in extra}
     assert others.items() - PINS.items() == set()
     assert PINS.items() - installed.items() == set()
+
+
+def test_the_ament_index_knows_our_package_here(monkeypatch):
+    monkeypatch.setenv('AMENT_PREFIX_PATH', sys.prefix)
+    assert get_package_prefix('my_robot_basics') == sys.prefix
+    share = Path(get_package_share_directory('my_robot_basics'))
+    assert (share / 'package.xml').read_bytes() == (PACKAGE / 'package.xml').read_bytes()
+    points = metadata.distribution('my_robot_basics').entry_points
+    # where `ros2 run` looks
+    executables = {path.name: path for path in Path(sys.prefix, 'lib/my_robot_basics').iterdir()}
+    assert set(executables) == {point.name for point in points.select(group='console_scripts')}
+    assert all(os.access(path, os.X_OK) for path in executables.values())
 
 
 @pytest.mark.parametrize('version', PYTHONS)
