@@ -5,7 +5,7 @@ import math
 import pytest
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import Point
-from my_robot_basics.checks import CheckFailed
+from my_robot_basics.checks import CheckFailed, rates
 from my_robot_basics.checks.recording import Recording, Sample
 from sensor_msgs.msg import JointState
 
@@ -78,7 +78,7 @@ def test_a_rate_has_a_tolerance(clock, period_sec, passes):
     ],
 )
 def test_even_is_what_one_timer_explains(times, even):
-    assert recording(times).is_even() is even
+    assert rates.is_even(recording(times)) is even
 
 
 def test_on_the_wall_clock_the_largest_gap_counts():

@@ -6,7 +6,7 @@ from typing import Any
 
 from rclpy.qos import QoSProfile
 
-from my_robot_basics.checks import graphs
+from my_robot_basics.checks import graphs, rates
 from my_robot_basics.checks.clock import Inconclusive, SimulatedClock
 from my_robot_basics.checks.recording import Recording, Sample
 from my_robot_basics.checks.watcher import Watcher
@@ -66,7 +66,7 @@ def simulated(
             recording = _drive(ears, clock, seconds=seconds, step_sec=step_sec, again=again)
     except Inconclusive as why:
         return str(why)
-    return recording if recording.is_even() else 'its messages are not evenly spaced'
+    return recording if rates.is_even(recording) else 'its messages are not evenly spaced'
 
 
 def wall(

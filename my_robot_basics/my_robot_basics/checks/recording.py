@@ -6,16 +6,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-import numpy as np
-
-from my_robot_basics.checks import pictures
+from my_robot_basics.checks import pictures, rates
 from my_robot_basics.checks.errors import CheckFailed, expect, fail, shorten, show
 
-SIMULATED_TOLERANCE = 0.02
-WALL_TOLERANCE = 0.03
-LARGEST_GAP_PERIODS = 1.75
-"""More between two messages (on the wall clock) is a pause: bursts are not a rate."""
-GAP_SLACK_SEC = 0.05
 SECOND_LOOK_SEC = 4.0
 LONGEST_LOOK_SEC = 12.0
 STAMP_SEC = {'simulated': 0.5, 'wall': 1.0}
@@ -64,22 +57,6 @@ class Recording:
         times = [0.0, *(sample.time_sec for sample in self.messages)]
         return max((b - a for a, b in itertools.pairwise(times)), default=math.inf)
 
-    def is_even(self) -> bool:
-        """Whether a timer of one period explains every arrival, within a step of the clock."""
-        times = np.array([0.0, *(sample.time_sec for sample in self.messages)])
-        if len(times) < 3:
-            return False
-        earlier, later = np.triu_indices(len(times), k=1)
-        periods, apart = times[later] - times[earlier], later - earlier
-        # each pair of arrivals leaves the period a range; they must all agree on one
-        slack = 1.001 * self.step_sec
-        return bool(np.max((periods - slack) / apart) <= np.min((periods + slack) / apart))
-
-    def is_regular(self) -> bool:
-        """Whether the robot's clock shows all messages equally far apart."""
-        gaps = np.diff([0.0, *(sample.time_sec for sample in self.messages)])
-        return self.clock == 'simulated' and bool(np.ptp(gaps) < 0.5 * self.step_sec)
-
     def assert_rate(self, hz: float) -> None:
         """The one publisher sends `hz` messages a second, evenly.
 
@@ -87,17 +64,17 @@ class Recording:
         on the wall clock, unless the robot's clock has shown a plain timer of another period.
         """
         self._expect_one_publisher()
-        if self._has_rate(hz):
+        if rates.has_rate(self, hz):
             if self.note:
                 print(self.note)
             return
-        if self.look_again is None or self.is_regular():
-            self._fail_rate(hz)
+        if self.look_again is None or rates.is_regular(self):
+            rates.fail_rate(self, hz)
         try:
             second = self.look_again(min(max(SECOND_LOOK_SEC, 3.0 / hz), LONGEST_LOOK_SEC))
         except CheckFailed:
             # the node is gone by now: what was seen of it stands
-            self._fail_rate(hz)
+            rates.fail_rate(self, hz)
         second.assert_rate(hz)
 
     def assert_joint_names(self, names: Sequence[str]) -> None:
@@ -167,26 +144,6 @@ class Recording:
         on_wall = self.clock == 'wall'
         return sample.source_time_sec if on_wall else self.start_sec + sample.time_sec
 
-    def _has_rate(self, hz: float) -> bool:
-        if self.clock == 'simulated':
-            return abs(self.rate_hz / hz - 1.0) <= SIMULATED_TOLERANCE
-        largest = max(LARGEST_GAP_PERIODS / hz, 1.0 / hz + GAP_SLACK_SEC)
-        near = abs(self.rate_hz / hz - 1.0) <= WALL_TOLERANCE
-        return near and self.largest_gap_sec <= largest
-
-    def _fail_rate(self, hz: float) -> None:
-        n = len(self.messages)
-        over = f'over {self.seconds:g} s ({n} message{"" if n == 1 else "s"})'
-        largest = LARGEST_GAP_PERIODS / hz
-        if self.rate_hz >= 0.9 * hz and self.largest_gap_sec > largest:
-            seen = f'pauses of {self.largest_gap_sec:.1f} s {over}'
-            hint = 'publish one message each time the timer fires'
-        else:
-            seen = f'{_hz(self.rate_hz)} {over}'
-            hint = 'the timer period is in seconds, and period = 1 / rate'
-        picture = pictures.arrivals(self, hz=hz)
-        fail(expected=_hz(hz), seen=seen, hint=hint, picture=picture)
-
     def _fail_position(
         self, pose: Sequence[float], low: Sequence[float], high: Sequence[float], *, poses: list
     ) -> None:
@@ -245,8 +202,3 @@ def _by_name(message: Any, names: Sequence[str]) -> tuple[float, ...]:
     if not names or sorted(message.name) != sorted(names) or len(position) != len(names):
         return position
     return tuple(position[list(message.name).index(name)] for name in names)
-
-
-def _hz(rate_hz: float) -> str:
-    rounded = round(rate_hz, 2)
-    return f'{rounded:.1f} Hz' if rounded == round(rounded, 1) else f'{rounded:.2f} Hz'
