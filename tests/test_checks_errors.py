@@ -28,6 +28,16 @@ def test_expect_refuses_what_is_not_a_bool(condition):
         expect(condition, **WORDS)
 
 
+def test_a_long_sentence_is_shown_in_lines_and_kept_whole():
+    with pytest.raises(CheckFailed) as failed:
+        fail(expected='words ' * 15, seen='more words ' * 15, hint='`self.create_timer(0.2, …)`')
+    lines = failed.value._render_traceback_()
+    assert len(lines) > 2
+    assert max(map(len, lines)) <= 90
+    assert ' '.join(lines).split() == str(failed.value).split()
+    assert '\n' not in str(failed.value)
+
+
 def test_ipython_shows_the_sentence_and_no_source(capsys):
     shell = InteractiveShell()
     shell.run_cell(

@@ -383,11 +383,11 @@ def test_a_constructor_that_raises_leaves_nothing_and_says_why(lesson):
 
 
 @pytest.mark.parametrize('thing', ['Talker.tick', 'String', '"Talker"', 'rclpy.create_node("t")'])
-def test_what_cannot_run_is_refused_in_one_line(lesson, thing):
+def test_what_cannot_run_is_refused_in_two_lines(lesson, thing):
     lesson.run('if not rclpy.ok(): rclpy.init()')
     error = lesson.run(f'run({thing})').error
     assert error.startswith('NotRunnable: run expects ')
-    assert '\n' not in error
+    assert len(error.splitlines()) <= 2
     lesson.run('rclpy.try_shutdown()')
 
 
@@ -477,8 +477,8 @@ def test_reset_and_run_answer(lesson):
         lesson.run(definition)
         error = lesson.run("run_answer('Answer')").error
         assert error.startswith('NotRunnable: expected ')
-        assert error.endswith(where)
-        assert '\n' not in error
+        assert ' '.join(error.split()).endswith(where)
+        assert len(error.splitlines()) <= 2
     lesson.run("class Answer(Talker): pass\nanswer = run_answer('Answer', 'yes')")
     assert lesson.value('answer.text, alive(answer)') == "('yes', True)"
     lesson.run('reset()')

@@ -5,6 +5,8 @@ from typing import NoReturn
 
 import numpy as np
 
+from my_robot_basics.live.errors import in_lines
+
 MOST_CHARACTERS = 200
 
 
@@ -13,7 +15,7 @@ class CheckFailed(AssertionError):
 
     def _render_traceback_(self) -> list[str]:
         # IPython asks for this: the sentence alone, never the source of a test.
-        return [str(self)]
+        return in_lines(str(self))
 
 
 def expect(condition: bool, *, expected: object, seen: object, hint: str) -> None:

@@ -1,11 +1,21 @@
 """What goes wrong in a lesson, in a line or two: no traceback of ours in a student's notebook."""
 
+import textwrap
+
+COLUMNS = 90
+"""What fits beside a file browser. JupyterLab breaks words, and its Validate cuts long lines off."""
+
+
+def in_lines(text: str) -> list[str]:
+    """`text` in lines that end between words."""
+    return textwrap.wrap(text, COLUMNS, break_long_words=False, break_on_hyphens=False)
+
 
 class LiveError(Exception):
     """Base of the errors of `live`; IPython shows the message alone."""
 
     def _render_traceback_(self) -> list[str]:
-        return [f'{type(self).__name__}: {self}']
+        return in_lines(f'{type(self).__name__}: {self}')
 
 
 class NoFreeDomain(LiveError):

@@ -12,6 +12,8 @@ from my_robot_basics.live.troubles import where_and_what
 LINES = 12
 LONGEST = 400
 """Characters of an entry that are shown."""
+STYLE = 'margin:0;padding-left:8px;border-left:3px solid #0072b2;font-size:13px;word-break:normal'
+"""As large as other outputs, and broken between words: JupyterLab does neither to a <pre>."""
 
 
 @dataclass
@@ -98,6 +100,5 @@ class Panel:
         text = '\n'.join([f'{self._title}: {state}', *lines])
         return {
             'text/plain': text,
-            'text/html': f'<pre style="margin:0;padding-left:8px;border-left:3px solid #0072b2">'
-            f'{html.escape(text)}</pre>',
+            'text/html': f'<pre style="{STYLE}">{html.escape(text)}</pre>',
         }
