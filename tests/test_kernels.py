@@ -365,3 +365,15 @@ def test_a_long_path_for_temporary_files_is_not_used_for_sockets(monkeypatch, tm
     finally:
         asyncio.run(kernel.stop())
     assert not Path(kernel.folder).exists()
+
+
+@pytest.mark.timeout(60)
+def test_messages_that_are_always_there_do_not_keep_the_loop(shared, loop):
+    async def get(timeout):
+        return {'parent_header': [], 'content': {}, 'msg_type': 'stream'}
+
+    async def bounded():
+        await asyncio.wait_for(shared._next(get, 'request'), 0.2)
+
+    with pytest.raises(TimeoutError):
+        loop.run(bounded())
