@@ -3,7 +3,7 @@
 import textwrap
 
 COLUMNS = 90
-"""What fits beside a file browser. JupyterLab breaks words, and its Validate cuts long lines off."""
+"""What fits beside a file browser; JupyterLab breaks words, and Validate cuts long lines off."""
 
 
 def in_lines(text: str) -> list[str]:
