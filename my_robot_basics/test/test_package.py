@@ -13,7 +13,8 @@ import pytest
 
 PACKAGE = Path(__file__).parents[1]
 BIN = Path(sys.executable).parent
-EXECUTABLES = {'hello_node', 'kinematics_node', 'kinematics_publisher', 'kinematics_subscriber'}
+NODES = {'hello_node', 'kinematics_node', 'kinematics_publisher', 'kinematics_subscriber'}
+EXECUTABLES = NODES | {'ros2'}
 
 FOUND = """
 import os

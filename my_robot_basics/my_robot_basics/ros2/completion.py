@@ -1,0 +1,80 @@
+"""What the shell offers after Tab: names that are on the graph or installed now."""
+
+import argparse
+from collections.abc import Iterable
+
+from my_robot_basics.ros2 import interfaces
+from my_robot_basics.ros2.graph import Graph
+
+
+def topic_names(parsed_args: argparse.Namespace, **_: object) -> list[str]:
+    """Topics."""
+    with Graph(parsed_args) as graph:
+        graph.settle()
+        include_hidden = parsed_args.include_hidden_topics
+        return [name for name, _ in graph.topics(include_hidden=include_hidden)]
+
+
+def topic_types(parsed_args: argparse.Namespace, **_: object) -> list[str]:
+    """The type that the topic has; all message types if it has none yet."""
+    with Graph(parsed_args) as graph:
+        graph.settle()
+        topics = dict(graph.topics(include_hidden=True))
+    return topics.get(parsed_args.topic_name) or message_types()
+
+
+def message_types(**_: object) -> list[str]:
+    """Message types that are installed."""
+    return interfaces.names('msg')
+
+
+def interface_types(**_: object) -> list[str]:
+    """Types of any kind that are installed."""
+    return sorted(name for kind in interfaces.KINDS for name in interfaces.names(kind))
+
+
+def prototype(parsed_args: argparse.Namespace, **_: object) -> list[str]:
+    """A message with its default values, as YAML."""
+    from my_robot_basics.ros2.as_text import Shortening, as_yaml
+
+    message = interfaces.message_class_for(parsed_args.message_type)()
+    return [as_yaml(message, Shortening())]
+
+
+def node_names(parsed_args: argparse.Namespace, **_: object) -> list[str]:
+    """Nodes."""
+    include_hidden = getattr(parsed_args, 'include_hidden_nodes', False)
+    with Graph(parsed_args) as graph:
+        graph.settle()
+        return [node.full_name for node in graph.nodes(include_hidden=include_hidden)]
+
+
+def parameter_names(parsed_args: argparse.Namespace, **_: object) -> list[str]:
+    """Parameters of the node that was typed before."""
+    from my_robot_basics.ros2.parameters import ParameterServices, absolute
+
+    with Graph(parsed_args) as graph:
+        graph.settle()
+        return ParameterServices(graph, absolute(parsed_args.node_name)).names()
+
+
+def service_names(parsed_args: argparse.Namespace, **_: object) -> list[str]:
+    """Services."""
+    with Graph(parsed_args) as graph:
+        graph.settle()
+        include_hidden = parsed_args.include_hidden_services
+        return [name for name, _ in graph.services(include_hidden=include_hidden)]
+
+
+def package_names(**_: object) -> Iterable[str]:
+    """Packages in the ament index."""
+    from my_robot_basics.ros2 import packages
+
+    return packages.names()
+
+
+def executable_names(parsed_args: argparse.Namespace, **_: object) -> list[str]:
+    """Executables of the package that was typed before."""
+    from my_robot_basics.ros2 import packages
+
+    return [path.name for path in packages.executables(parsed_args.package_name)]

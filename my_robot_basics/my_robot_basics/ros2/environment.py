@@ -1,0 +1,51 @@
+"""What the command sets in its own process, and in what it runs, where nobody else has."""
+
+import os
+import sys
+
+from my_robot_basics.live.classroom import FAST_DISCOVERY, HIGHEST_DOMAIN
+from my_robot_basics.ros2.errors import CommandError
+
+
+def enter() -> None:
+    """Complete the environment; what is set already stands.
+
+    In a notebook cell all of it is inherited from the kernel.
+    """
+    defaults = {
+        'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST',
+        'FASTRTPS_DEFAULT_PROFILES_FILE': str(FAST_DISCOVERY),
+        'ROS_DOMAIN_ID': domain_to_join(),
+    }
+    for name, value in defaults.items():
+        if not os.environ.get(name):
+            os.environ[name] = value
+    _put_last('AMENT_PREFIX_PATH', sys.prefix)  # a workspace that was sourced comes first
+
+
+def domain_to_join() -> str:
+    """The ROS domain for a shell that names none."""
+    return '0'
+
+
+def domain_id() -> int:
+    """The ROS domain that the environment names; raises CommandError if that can't be one."""
+    text = os.environ['ROS_DOMAIN_ID']
+    if text.isascii() and text.isdigit() and int(text) <= HIGHEST_DOMAIN:
+        return int(text)
+    raise CommandError(
+        f'ROS_DOMAIN_ID is {text!r}, expected a number from 0 to {HIGHEST_DOMAIN}: '
+        'correct it, or unset it'
+    )
+
+
+def hears_this_machine_only() -> bool:
+    """Whether nodes on other machines are out of reach."""
+    discovery_range = os.environ.get('ROS_AUTOMATIC_DISCOVERY_RANGE')
+    return discovery_range == 'LOCALHOST' and not os.environ.get('ROS_STATIC_PEERS')
+
+
+def _put_last(name: str, folder: str) -> None:
+    folders = [f for f in os.environ.get(name, '').split(os.pathsep) if f]
+    if folder not in folders:
+        os.environ[name] = os.pathsep.join([*folders, folder])

@@ -1,0 +1,240 @@
+"""The ROS graph as the command sees it: one layer over rclpy's graph API.
+
+rclpy is imported when a graph is entered, and no sooner.
+"""
+
+import argparse
+import contextlib
+import math
+import os
+import select
+import sys
+import time
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from my_robot_basics.ros2 import discovery, environment, stopping
+from my_robot_basics.ros2.errors import CommandError
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
+HIDDEN_PREFIX = '_'
+WAIT_SEC = 0.05
+"""The longest wait between two looks at signals and the pipe."""
+
+
+class NodeName(NamedTuple):
+    """A node's name on the graph."""
+
+    name: str
+    namespace: str
+
+    @property
+    def full_name(self) -> str:
+        """The name with its namespace, such as `/arm/driver`."""
+        return f'{self.namespace.rstrip("/")}/{self.name}'
+
+
+class Graph:
+    """A node of the command's own on the graph, for the duration of a with statement.
+
+    Its name, `_ros2cli_<pid>`, hides it from lists as ros2cli's own does.
+    """
+
+    node: 'Node'
+
+    def __init__(self, args: argparse.Namespace, *, node_name: str | None = None) -> None:
+        self._node_name = node_name or f'_ros2cli_{os.getpid()}'
+        self._spin_time_sec = getattr(args, 'spin_time', None)
+        self._use_sim_time = getattr(args, 'use_sim_time', False)
+        self._pipe = select.poll()
+        with contextlib.suppress(ValueError, OSError):  # a test's stdout may be no file
+            self._pipe.register(sys.stdout.fileno(), 0)
+
+    def __enter__(self) -> 'Graph':
+        """Join the graph."""
+        import rclpy
+        from rclpy.exceptions import InvalidNodeNameException
+        from rclpy.executors import SingleThreadedExecutor
+        from rclpy.node import Node
+        from rclpy.parameter import Parameter
+        from rclpy.signals import SignalHandlerOptions
+        from rclpy.validate_node_name import validate_node_name
+
+        try:
+            validate_node_name(self._node_name)
+        except InvalidNodeNameException as error:
+            raise CommandError(str(error)) from None
+        stopping.leave_in_good_order()
+        rclpy.init(
+            args=[],
+            domain_id=environment.domain_id(),
+            signal_handler_options=SignalHandlerOptions.NO,
+        )
+        self.node = Node(
+            self._node_name,
+            start_parameter_services=False,
+            parameter_overrides=[
+                Parameter('use_sim_time', value=self._use_sim_time),
+                # nobody asks for it, and it costs 60 ms of imports
+                Parameter('start_type_description_service', value=False),
+            ],
+        )
+        self._executor = SingleThreadedExecutor()
+        self._executor.add_node(self.node)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Leave the graph."""
+        import rclpy
+
+        self._executor.shutdown()
+        self.node.destroy_node()
+        rclpy.try_shutdown()
+
+    def check(self) -> None:
+        """Raise Stopped after a signal, and BrokenPipeError once nobody reads stdout any more."""
+        stopping.check()
+        if any(event & (select.POLLERR | select.POLLHUP) for _, event in self._pipe.poll(0)):
+            raise BrokenPipeError
+
+    def sleep(self, seconds: float) -> None:
+        """Do nothing for a while."""
+        self.wait_until(lambda: False, timeout_sec=seconds)
+
+    def wait_until(self, done: Callable[[], bool], *, timeout_sec: float = math.inf) -> bool:
+        """Wait without spinning until something is so, and return whether it is."""
+        deadline = time.monotonic() + timeout_sec
+        while not (is_done := done()) and time.monotonic() < deadline:
+            self.check()
+            time.sleep(min(discovery.POLL_SEC, max(0.0, deadline - time.monotonic())))
+        return is_done
+
+    def spin_until(self, done: Callable[[], bool], *, timeout_sec: float = math.inf) -> bool:
+        """Run callbacks until something is so, and return whether it is."""
+        deadline = time.monotonic() + timeout_sec
+        while not (is_done := done()) and time.monotonic() < deadline:
+            self.check()
+            left_sec = max(0.0, deadline - time.monotonic())
+            self._executor.spin_once(timeout_sec=min(WAIT_SEC, left_sec))
+        return is_done
+
+    def spin(self) -> None:
+        """Run callbacks until a signal or the end of the pipe."""
+        self.spin_until(lambda: False)
+
+    def settle(self) -> None:
+        """Wait until everybody is on the graph, or for the time that `--spin-time` says."""
+        if self._spin_time_sec is None:
+            discovery.settle(self.node, self.sleep)
+        else:
+            self.sleep(self._spin_time_sec)
+
+    def publishers_of(self, topic_name: str) -> list[Any]:
+        """The TopicEndpointInfo of each publisher; raises CommandError for an impossible name."""
+        return self.node.get_publishers_info_by_topic(self._expanded(topic_name))
+
+    def subscribe(
+        self,
+        message_class: Any,
+        topic_name: str,
+        callback: Callable[..., None],
+        qos_profile: Any,
+        **options: Any,
+    ) -> None:
+        """Make a subscription; raises CommandError for an impossible name."""
+        self.node.create_subscription(
+            message_class, self._expanded(topic_name), callback, qos_profile, **options
+        )
+
+    def advertise(self, message_class: Any, topic_name: str, qos_profile: Any) -> Any:
+        """Make a publisher; raises CommandError for an impossible name."""
+        return self.node.create_publisher(message_class, self._expanded(topic_name), qos_profile)
+
+    def topics(self, *, include_hidden: bool = False) -> list[tuple[str, list[str]]]:
+        """Topic names and their types, sorted by name."""
+        return _visible(self.node.get_topic_names_and_types(), include_hidden)
+
+    def services(self, *, include_hidden: bool = False) -> list[tuple[str, list[str]]]:
+        """Service names and their types, sorted by name."""
+        return _visible(self.node.get_service_names_and_types(), include_hidden)
+
+    def nodes(self, *, include_hidden: bool = False) -> list[NodeName]:
+        """The nodes; two nodes of one name are in it twice."""
+        names = (NodeName(*pair) for pair in self.node.get_node_names_and_namespaces())
+        return [
+            node for node in names if include_hidden or not node.name.startswith(HIDDEN_PREFIX)
+        ]
+
+    def wait_for_node(
+        self, full_name: str, *, include_hidden: bool = False, timeout_sec: float = 1.0
+    ) -> bool:
+        """Wait until a node is on the graph, and return whether it is."""
+
+        def is_there() -> bool:
+            nodes = self.nodes(include_hidden=include_hidden)
+            return any(node.full_name == full_name for node in nodes)
+
+        return self.wait_until(is_there, timeout_sec=timeout_sec)
+
+    def message_class(self, topic_name: str, *, wait: bool = False) -> Any:
+        """The message class of a topic, or None after a warning while nobody has it.
+
+        With `wait` it warns and waits until somebody has. Raises CommandError for a topic name
+        that can't be one, and for a topic of two types.
+        """
+        full_name = self._expanded(topic_name)
+        if (found := self._message_class(topic_name, full_name)) is None:
+            print(f'WARNING: topic [{topic_name}] does not appear to be published yet')
+            if wait:
+                self.wait_until(lambda: self._types(full_name) != [])
+                found = self._message_class(topic_name, full_name)
+        return found
+
+    def _expanded(self, topic_name: str) -> str:
+        from rclpy.exceptions import InvalidTopicNameException
+        from rclpy.expand_topic_name import expand_topic_name
+        from rclpy.validate_full_topic_name import validate_full_topic_name
+        from rclpy.validate_topic_name import validate_topic_name
+
+        try:
+            validate_topic_name(topic_name)  # it says what is wrong, expansion does not
+            full_name = expand_topic_name(
+                topic_name, self.node.get_name(), self.node.get_namespace()
+            )
+            validate_full_topic_name(full_name)
+        except (ValueError, InvalidTopicNameException) as error:
+            raise CommandError(str(error)) from None
+        return full_name
+
+    def _types(self, full_name: str) -> list[str]:
+        return dict(self.node.get_topic_names_and_types()).get(full_name, [])
+
+    def _message_class(self, topic_name: str, full_name: str) -> Any:
+        from my_robot_basics.ros2.interfaces import message_class
+
+        types = self._types(full_name)
+        if len(types) > 1:
+            raise CommandError(
+                f"Cannot echo topic '{topic_name}', as it contains more than one type: "
+                f'[{", ".join(types)}]'
+            )
+        if not types:
+            return None
+        found = message_class(types[0])
+        if found is None:
+            raise CommandError(f"The message type '{types[0]}' is invalid")
+        return found
+
+
+def _visible(
+    names_and_types: list[tuple[str, list[str]]], include_hidden: bool
+) -> list[tuple[str, list[str]]]:
+    from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
+
+    return [
+        (name, types)
+        for name, types in names_and_types
+        if include_hidden or not topic_or_service_is_hidden(name)
+    ]

@@ -1,0 +1,75 @@
+"""Interface types that are installed: their names, files and classes, by the ament index."""
+
+import importlib
+from pathlib import Path
+from typing import Any
+
+from my_robot_basics.ros2.errors import CommandError
+
+KINDS = ('msg', 'srv', 'action')
+
+
+def names(kind: str) -> list[str]:
+    """Sorted names of all message ('msg'), service ('srv') or action ('action') types."""
+    from ament_index_python import get_resource, get_resources
+
+    found = set()
+    for package in get_resources('rosidl_interfaces'):
+        for file_name in get_resource('rosidl_interfaces', package)[0].splitlines():
+            stem, _, suffix = file_name.rpartition('.')
+            # an underscore marks the parts of which services and actions are made
+            if stem.startswith(f'{kind}/') and suffix in ('idl', kind) and '_' not in stem:
+                found.add(f'{package}/{stem}')
+    return sorted(found)
+
+
+def path(name: str) -> Path:
+    """The file that defines an interface such as `sensor_msgs/msg/JointState`.
+
+    Raises CommandError for a name of another form, and where there is no such interface.
+    """
+    from ament_index_python import has_resource
+
+    parts = name.split('/')
+    if len(parts) != 3:
+        raise CommandError(f"Invalid name '{name}'. Expected three parts separated by '/'")
+    if not all(parts):
+        raise CommandError(f"Invalid name '{name}'. Must not contain empty parts")
+    if '..' in parts:
+        raise CommandError(f"Invalid name '{name}'. Must not contain '..'")
+    package, kind, last = parts
+    prefix = has_resource('packages', package) if package.isidentifier() else None
+    if not prefix:
+        raise CommandError(f"Unknown package '{package}'")
+    file = Path(prefix, 'share', package, kind, last)
+    if '.' not in last:
+        with_kind = file.with_name(f'{last}.{kind}')
+        file = with_kind if with_kind.is_file() else file.with_name(f'{last}.idl')
+    if not file.is_file():
+        raise CommandError(f"Could not find the interface '{file}'")
+    return file
+
+
+def message_class(name: str) -> Any:
+    """The class of a message type such as `std_msgs/msg/String` or `std_msgs/String`, or None."""
+    parts = name.split('/')
+    if len(parts) == 2:
+        parts.insert(1, 'msg')
+    if len(parts) != 3 or not all(part.isidentifier() for part in parts) or parts[1] not in KINDS:
+        return None
+    try:
+        found = getattr(importlib.import_module('.'.join(parts[:2])), parts[2], None)
+    except ModuleNotFoundError:
+        return None
+    return found if hasattr(found, 'SLOT_TYPES') else None
+
+
+def message_class_for(name: str) -> Any:
+    """The class of the message type that a user has named; raises CommandError."""
+    if (found := message_class(name)) is not None:
+        return found
+    import difflib
+
+    near = difflib.get_close_matches(name, names('msg'), n=1, cutoff=0.8)
+    hint = f': did you mean {near[0]}?' if near else ''
+    raise CommandError(f'The passed message type is invalid{hint}')

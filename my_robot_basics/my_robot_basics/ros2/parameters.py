@@ -1,0 +1,119 @@
+"""The parameter services of one node."""
+
+import argparse
+import math
+from typing import Any
+
+from my_robot_basics.ros2 import arguments, completion
+from my_robot_basics.ros2.errors import CommandError
+from my_robot_basics.ros2.graph import Graph
+
+PATIENCE_SEC = 5.0
+"""For the services to appear, and again for an answer."""
+
+
+def absolute(node_name: str) -> str:
+    """A node's name with its leading slash."""
+    return node_name if node_name.startswith('/') else f'/{node_name}'
+
+
+class ParameterServices:
+    """Calls a node's parameter services, and raises CommandError where it does not answer."""
+
+    def __init__(self, graph: Graph, node_name: str) -> None:
+        from rclpy.parameter_client import AsyncParameterClient
+
+        self._graph = graph
+        self._node_name = node_name
+        services = dict(graph.services(include_hidden=True))
+        ready = f'{node_name}/list_parameters' in services
+        if ready:
+            self._client = AsyncParameterClient(graph.node, node_name)
+            ready = graph.wait_until(self._client.services_are_ready, timeout_sec=PATIENCE_SEC)
+        if not ready:
+            raise CommandError(
+                f'Wait for service timed out waiting for parameter services for node {node_name}'
+            )
+
+    def names(self, prefixes: list[str] | None = None) -> list[str]:
+        """Names of the node's parameters, sorted."""
+        response = self._answer(self._client.list_parameters(prefixes=prefixes))
+        return sorted(response.result.names)
+
+    def values(self, names: list[str]) -> list[Any]:
+        """The rcl_interfaces ParameterValue of each parameter; none if one is not declared."""
+        return self._answer(self._client.get_parameters(names)).values
+
+    def types(self, names: list[str]) -> dict[str, int]:
+        """The rcl_interfaces ParameterType of each parameter."""
+        descriptors = self._answer(self._client.describe_parameters(names)).descriptors
+        return {descriptor.name: descriptor.type for descriptor in descriptors}
+
+    def set(self, parameter: Any) -> Any:
+        """Set an rcl_interfaces Parameter, and return the SetParametersResult."""
+        return self._answer(self._client.set_parameters([parameter])).results[0]
+
+    def _answer(self, future: Any) -> Any:
+        self._graph.spin_until(future.done, timeout_sec=PATIENCE_SEC)
+        if not future.done():
+            raise CommandError(
+                f'Node {self._node_name} does not answer its parameter services: '
+                'see that it spins, and that no callback of its blocks'
+            )
+        if (response := future.result()) is None:
+            raise CommandError(
+                'Exception while calling service of node '
+                f"'{self._node_name}': {future.exception()}"
+            )
+        return response
+
+
+def type_names() -> dict[int, str]:
+    """What each rcl_interfaces ParameterType is called."""
+    from rcl_interfaces.msg import ParameterType
+
+    return {
+        ParameterType.PARAMETER_NOT_SET: 'not set',
+        ParameterType.PARAMETER_BOOL: 'boolean',
+        ParameterType.PARAMETER_INTEGER: 'integer',
+        ParameterType.PARAMETER_DOUBLE: 'double',
+        ParameterType.PARAMETER_STRING: 'string',
+        ParameterType.PARAMETER_BYTE_ARRAY: 'byte array',
+        ParameterType.PARAMETER_BOOL_ARRAY: 'boolean array',
+        ParameterType.PARAMETER_INTEGER_ARRAY: 'integer array',
+        ParameterType.PARAMETER_DOUBLE_ARRAY: 'double array',
+        ParameterType.PARAMETER_STRING_ARRAY: 'string array',
+    }
+
+
+def add_one_parameter(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of a verb that is about one parameter of one node."""
+    arguments.add_discovery(parser)
+    parser.add_argument('node_name', help='Name of the ROS node').completer = completion.node_names
+    parser.add_argument(
+        '--include-hidden-nodes', action='store_true', help='Consider hidden nodes as well'
+    )
+    parser.add_argument(
+        'parameter_name', help='Name of the parameter'
+    ).completer = completion.parameter_names
+    parser.add_argument(
+        '--timeout',
+        metavar='N',
+        type=arguments.any_int,
+        default=1,
+        help='Wait for N seconds until node becomes available (default %(default)s sec)',
+    )
+
+
+def services_of(graph: Graph, args: argparse.Namespace) -> ParameterServices:
+    """The services of the node in the arguments, once it is there; raises CommandError."""
+    node_name = absolute(args.node_name)
+    is_there = graph.wait_for_node(
+        node_name,
+        include_hidden=args.include_hidden_nodes,
+        timeout_sec=math.inf if args.timeout < 0 else args.timeout,
+    )
+    if not is_there:
+        raise CommandError('Node not found')
+    graph.settle()
+    return ParameterServices(graph, node_name)

@@ -1,0 +1,47 @@
+"""QoS profiles from the arguments that `arguments.add_qos` adds."""
+
+import argparse
+
+from rclpy.duration import Duration
+from rclpy.qos import (
+    QoSDurabilityPolicy,
+    QoSHistoryPolicy,
+    QoSLivelinessPolicy,
+    QoSPresetProfiles,
+    QoSProfile,
+    QoSReliabilityPolicy,
+)
+
+_POLICIES = {
+    'history': QoSHistoryPolicy,
+    'durability': QoSDurabilityPolicy,
+    'reliability': QoSReliabilityPolicy,
+    'liveliness': QoSLivelinessPolicy,
+}
+
+
+def preset(args: argparse.Namespace) -> QoSProfile:
+    """The profile that `--qos-profile` names."""
+    return QoSPresetProfiles.get_from_short_key(args.qos_profile)
+
+
+def has_overrides(args: argparse.Namespace) -> bool:
+    """Whether the arguments name any single policy."""
+    names = [*_POLICIES, 'depth', 'liveliness_lease_duration_seconds']
+    return any(getattr(args, f'qos_{name}') is not None for name in names)
+
+
+def profile(args: argparse.Namespace) -> QoSProfile:
+    """The preset with the single policies that override it."""
+    made = preset(args)
+    for name, policy in _POLICIES.items():
+        if (short_key := getattr(args, f'qos_{name}')) is not None:
+            setattr(made, name, policy.get_from_short_key(short_key))
+    lease_sec = args.qos_liveliness_lease_duration_seconds
+    if lease_sec is not None and lease_sec > 0:
+        made.liveliness_lease_duration = Duration(seconds=lease_sec)
+    if args.qos_depth is not None and args.qos_depth > 0:
+        made.depth = args.qos_depth
+    elif made.durability == QoSDurabilityPolicy.TRANSIENT_LOCAL and made.depth == 0:
+        made.depth = 1  # what is kept for late joiners has to be kept somewhere
+    return made

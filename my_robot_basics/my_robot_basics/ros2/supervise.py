@@ -1,0 +1,115 @@
+"""An executable as a child: it gets every signal once, and its end is ours.
+
+The child has a process group of its own, so that a signal for the whole group (Ctrl-C, or
+`timeout`) does not reach it twice, from there and from here. At a terminal its group becomes the
+foreground one: Ctrl-C, Ctrl-Z and the keyboard are then the child's.
+"""
+
+import contextlib
+import ctypes
+import os
+import shlex
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+
+from my_robot_basics.ros2.errors import CommandError
+
+PR_SET_PDEATHSIG = 1
+"""From Linux's prctl.h: the signal to get when the parent dies."""
+FORWARDED = {signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT}
+BURST_SEC = 0.2
+"""`timeout` sends its signal to the process and to its group: one of each kind in this time."""
+
+
+def run(command: list[str]) -> int:
+    """Run a command to its end, say what ros2cli says of a failure, and return its status.
+
+    A negative status is the signal that ended the command. Raises CommandError if it can't start.
+    """
+    # blocked, not handled: each is taken up below, and none is lost before the child is there
+    signal.pthread_sigmask(signal.SIG_BLOCK, {*FORWARDED, signal.SIGCHLD})
+    try:
+        child = subprocess.Popen(command, process_group=0, preexec_fn=_prepare)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, 'strerror', None) or error
+        raise CommandError(f'`{shlex.join(command)}` does not start: {reason}') from None
+    with _terminal_for(child.pid):
+        status = _follow(child)
+    if status < 0:
+        print('[ros2run]:', signal.strsignal(-status))
+    elif status > 0:
+        print('[ros2run]: Process exited with failure', status)
+    return status
+
+
+def _prepare() -> None:
+    """In the child, before the executable: do not outlive us, and hear signals again."""
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, {*FORWARDED, signal.SIGCHLD})
+
+
+def _follow(child: subprocess.Popen) -> int:
+    forwarded: set[int] = set()
+    while True:
+        pid, wait_status = os.waitpid(child.pid, os.WNOHANG | os.WUNTRACED)
+        if pid and os.WIFSTOPPED(wait_status):
+            _stop_too(child.pid)
+        elif pid:
+            # Popen must not wait for it once more
+            child.returncode = os.waitstatus_to_exitcode(wait_status)
+            return child.returncode
+        elif info := _next_signal(BURST_SEC if forwarded else None):
+            if info.si_signo in FORWARDED - forwarded:
+                forwarded.add(info.si_signo)
+                with contextlib.suppress(ProcessLookupError):
+                    os.killpg(child.pid, info.si_signo)
+        else:
+            forwarded.clear()
+
+
+def _next_signal(timeout_sec: float | None) -> signal.struct_siginfo | None:
+    awaited = {*FORWARDED, signal.SIGCHLD}
+    if timeout_sec is None:
+        return signal.sigwaitinfo(awaited)
+    return signal.sigtimedwait(awaited, timeout_sec)
+
+
+def _stop_too(pid: int) -> None:
+    """Stop as the child has stopped (Ctrl-Z), and go on with it."""
+    terminal = _own_terminal()
+    if terminal is not None and os.tcgetpgrp(terminal) == pid:
+        os.tcsetpgrp(terminal, os.getpgrp())
+    os.kill(os.getpid(), signal.SIGSTOP)
+    if terminal is not None and os.tcgetpgrp(terminal) == os.getpgrp():
+        os.tcsetpgrp(terminal, pid)
+    os.killpg(pid, signal.SIGCONT)
+
+
+@contextlib.contextmanager
+def _terminal_for(pid: int) -> Iterator[None]:
+    """Give the terminal, if we have it, to another process group for a while."""
+    terminal = _own_terminal()
+    if terminal is None or os.tcgetpgrp(terminal) != os.getpgrp():
+        yield
+        return
+    before = signal.signal(signal.SIGTTOU, signal.SIG_IGN)  # to take it back from behind
+    os.tcsetpgrp(terminal, pid)
+    with contextlib.suppress(ProcessLookupError):
+        os.killpg(pid, signal.SIGCONT)  # it may have asked for the keyboard already
+    try:
+        yield
+    finally:
+        os.tcsetpgrp(terminal, os.getpgrp())
+        signal.signal(signal.SIGTTOU, before)
+
+
+def _own_terminal() -> int | None:
+    """The descriptor of stdin if that is the terminal of this session."""
+    try:
+        descriptor = sys.stdin.fileno()
+        os.tcgetpgrp(descriptor)
+    except (OSError, ValueError, AttributeError):
+        return None
+    return descriptor

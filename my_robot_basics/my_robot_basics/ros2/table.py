@@ -1,0 +1,55 @@
+"""The commands and verbs that there are: a new verb is a file in `verbs/` and a word here."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Command:
+    """One word after `ros2`."""
+
+    description: str
+    verbs: tuple[str, ...] = ()
+    """Each is `verbs/<command>_<verb>.py`; a command without any is `verbs/<command>.py`."""
+    elsewhere: tuple[str, ...] = ()
+    """Verbs that ros2cli has and ours has not."""
+    hidden_flag: str = ''
+    """A flag of the command itself, good for all its verbs."""
+
+
+COMMANDS = {
+    'interface': Command(
+        'Show information about ROS interfaces',
+        verbs=('list', 'show'),
+        elsewhere=('package', 'packages', 'proto'),
+    ),
+    'node': Command('Various node related sub-commands', verbs=('info', 'list')),
+    'param': Command(
+        'Various param related sub-commands',
+        verbs=('get', 'list', 'set'),
+        elsewhere=('delete', 'describe', 'dump', 'load'),
+    ),
+    'pkg': Command(
+        'Various package related sub-commands',
+        verbs=('executables', 'list', 'prefix'),
+        elsewhere=('create', 'xml'),
+    ),
+    'run': Command('Run a package specific executable'),
+    'service': Command(
+        'Various service related sub-commands',
+        verbs=('list', 'type'),
+        elsewhere=('call', 'echo', 'find', 'info'),
+        hidden_flag='--include-hidden-services',
+    ),
+    'topic': Command(
+        'Various topic related sub-commands',
+        verbs=('bw', 'echo', 'find', 'hz', 'info', 'list', 'pub', 'type'),
+        elsewhere=('delay',),
+        hidden_flag='--include-hidden-topics',
+    ),
+}
+
+ELSEWHERE = (
+    *('action', 'bag', 'component', 'daemon', 'doctor', 'extension_points', 'extensions'),
+    *('launch', 'lifecycle', 'multicast', 'security', 'test', 'trace', 'wtf'),
+)
+"""Commands of a ROS 2 installation that ours has not."""

@@ -1,0 +1,34 @@
+"""Set parameter."""
+
+import argparse
+import sys
+
+from my_robot_basics.ros2 import parameters
+from my_robot_basics.ros2.errors import CommandError
+from my_robot_basics.ros2.graph import Graph
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    parameters.add_one_parameter(parser)
+    parser.add_argument('value', help='Value of the parameter')
+
+
+def main(args: argparse.Namespace) -> None:
+    """Run the verb."""
+    import yaml
+    from rcl_interfaces.msg import Parameter
+    from rclpy.parameter import get_parameter_value
+
+    try:
+        value = get_parameter_value(args.value)
+    except (yaml.YAMLError, ValueError, OverflowError, RecursionError) as error:
+        raise CommandError(f'The passed value is no YAML: {error}') from None
+    with Graph(args) as graph:
+        parameter = Parameter(name=args.parameter_name, value=value)
+        result = parameters.services_of(graph, args).set(parameter)
+    reason = f': {result.reason}' if result.reason else ''
+    if result.successful:
+        print(f'Set parameter successful{reason}')
+    else:
+        print(f'Setting parameter failed{reason}', file=sys.stderr)

@@ -1,0 +1,25 @@
+"""Output a service's type."""
+
+import argparse
+
+from my_robot_basics.ros2 import completion
+from my_robot_basics.ros2.graph import Graph
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    parser.add_argument(
+        'service_name',
+        help="Name of the ROS service to get type (e.g. '/talker/list_parameters')",
+    ).completer = completion.service_names
+
+
+def main(args: argparse.Namespace) -> int:
+    """Run the verb."""
+    with Graph(args) as graph:
+        graph.settle()
+        services = dict(graph.services(include_hidden=args.include_hidden_services))
+    if args.service_name not in services:
+        return 1
+    print(*services[args.service_name], sep='\n')
+    return 0

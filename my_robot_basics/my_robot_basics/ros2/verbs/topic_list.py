@@ -1,0 +1,48 @@
+"""Output a list of available topics."""
+
+import argparse
+
+from my_robot_basics.ros2 import arguments
+from my_robot_basics.ros2.graph import Graph
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    arguments.add_discovery(parser)
+    parser.add_argument(
+        '-t', '--show-types', action='store_true', help='Additionally show the topic type'
+    )
+    parser.add_argument(
+        '-c',
+        '--count-topics',
+        action='store_true',
+        help='Only display the number of topics discovered',
+    )
+    arguments.add_hidden_topics(parser)
+    parser.add_argument(
+        '-v', '--verbose', action='store_true', help='List full details about each topic'
+    )
+
+
+def main(args: argparse.Namespace) -> None:
+    """Run the verb."""
+    with Graph(args) as graph:
+        graph.settle()
+        topics = graph.topics(include_hidden=args.include_hidden_topics)
+        if args.count_topics:
+            print(len(topics))
+        elif args.verbose and topics:
+            _print_ends('Published', 'publisher', topics, graph.node.count_publishers)
+            _print_ends('Subscribed', 'subscriber', topics, graph.node.count_subscribers)
+        else:
+            for name, types in topics:
+                print(f'{name} [{", ".join(types)}]' if args.show_types else name)
+
+
+def _print_ends(title: str, end: str, topics: list, count: callable) -> None:
+    print(f'{title} topics:')
+    for name, types in topics:
+        if number := count(name):
+            plural = 's' if number > 1 else ''
+            print(f' * {name} [{", ".join(types)}] {number} {end}{plural}')
+    print()

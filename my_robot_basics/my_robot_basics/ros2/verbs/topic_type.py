@@ -1,0 +1,25 @@
+"""Print a topic's type."""
+
+import argparse
+
+from my_robot_basics.ros2 import arguments, completion
+from my_robot_basics.ros2.graph import Graph
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    arguments.add_discovery(parser)
+    parser.add_argument(
+        'topic_name', help="Name of the ROS topic to get type (e.g. '/chatter')"
+    ).completer = completion.topic_names
+
+
+def main(args: argparse.Namespace) -> int:
+    """Run the verb."""
+    with Graph(args) as graph:
+        graph.settle()
+        topics = dict(graph.topics(include_hidden=args.include_hidden_topics))
+    if args.topic_name not in topics:
+        return 1
+    print(*topics[args.topic_name], sep='\n')
+    return 0

@@ -1,0 +1,78 @@
+"""For tests: the console script `ros2` as a process, and nodes for it to look at."""
+
+import contextlib
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from my_robot_basics.live import domain
+
+SCRIPT = Path(sys.executable).with_name('ros2')
+NODES = Path(__file__).parent / 'nodes'
+PATIENCE_SEC = 30
+
+
+@dataclass(frozen=True)
+class Result:
+    status: int
+    out: str
+    err: str
+
+
+def ros2(*words: str, stdin: str = '', **environment: str) -> Result:
+    """Run the command to its end."""
+    done = subprocess.run(
+        [SCRIPT, *words],
+        input=stdin,
+        capture_output=True,
+        encoding='utf-8',
+        timeout=PATIENCE_SEC,
+        env={**os.environ, **environment},
+    )
+    return Result(done.returncode, done.stdout, done.stderr)
+
+
+@contextlib.contextmanager
+def started(*words: str | Path, **options: object) -> Iterator[subprocess.Popen]:
+    """Run a command for the duration of a with statement, its output in pipes."""
+    pipes = {'stdout': subprocess.PIPE, 'stderr': subprocess.PIPE, 'encoding': 'utf-8'}
+    process = subprocess.Popen([str(word) for word in words], **{**pipes, **options})
+    try:
+        yield process
+    finally:
+        process.terminate()  # in good order: whoever is killed stays on the graph for a while
+        try:
+            process.wait(5)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+
+
+@contextlib.contextmanager
+def on_the_graph(*names: str, topics: tuple[str, ...] = ()) -> Iterator[None]:
+    """Nodes of `tests/nodes/`, once their topics are on the graph."""
+    quiet = {'stdout': subprocess.DEVNULL, 'stderr': subprocess.DEVNULL}
+    with contextlib.ExitStack() as stack:
+        paths = [NODES / f'{name}.py' for name in names]
+        nodes = [stack.enter_context(started(sys.executable, path, **quiet)) for path in paths]
+        shown: list[str] = []
+        while not set(topics) <= set(shown):
+            assert all(node.poll() is None for node in nodes), 'a node has died'
+            shown = ros2('topic', 'list', '--include-hidden-topics').out.splitlines()
+        yield
+
+
+@contextlib.contextmanager
+def own_domain() -> Iterator[None]:
+    """A ROS domain in which no other test has left a node."""
+    before = os.environ['ROS_DOMAIN_ID']
+    claim = domain.claim()
+    os.environ['ROS_DOMAIN_ID'] = str(claim.domain_id)
+    try:
+        yield
+    finally:
+        os.environ['ROS_DOMAIN_ID'] = before
+        claim.release()
