@@ -1,0 +1,145 @@
+"""Time per graded submission, beside stock nbgrader on the same notebook in the same run.
+
+    .venv/bin/python tests/benchmarks/grading_time.py [RUNS]
+
+Stock means nbgrader's own Execute: all cells in one kernel, hidden tests included, one submission
+after the other. It runs the demonstrations of a lesson, too; the last columns leave them out.
+Nothing is asserted: look at the ratios, milliseconds are this machine's.
+"""
+
+import statistics
+import sys
+import tempfile
+import time
+from collections import defaultdict
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+
+import nbformat
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT), str(ROOT / 'tests')]
+
+from nbgrader.preprocessors import Execute  # noqa: E402
+from sample_class import PATHS, assignment_of, grade  # noqa: E402
+
+from grader.course import Course  # noqa: E402
+from grader.execute import execute  # noqa: E402
+from grader.gradebook import register  # noqa: E402
+from grader.heal import heal, role  # noqa: E402
+from grader.kernels import Kernel  # noqa: E402
+from grader.pipeline import prepare  # noqa: E402
+from grader.rooms import Rooms  # noqa: E402
+
+NAMES = (
+    '02_joint_state-pass-numpy',
+    '02_joint_state-fail-degrees',
+    '03_publisher-pass-one_fifth',
+    '03_publisher-fail-1hz',
+    '03_publisher-fail-degrees',
+    '03_publisher-pass-sleep_loop',
+)
+PARTS = ('start', 'probe', 'student cells', 'checks', 'stop')
+
+spent: dict[str, list[float]] = defaultdict(list)
+"""How long each call of a part took, in seconds."""
+
+
+def timed(part: str, method: Callable[..., Awaitable]) -> Callable[..., Awaitable]:
+    """Return an asynchronous method that also writes down how long it takes."""
+
+    async def and_timed(*args: object, **kwargs: object) -> object:
+        began = time.perf_counter()
+        try:
+            return await method(*args, **kwargs)
+        finally:
+            spent[part].append(time.perf_counter() - began)
+
+    return and_timed
+
+
+def watch_the_rooms() -> None:
+    """Let every part of a grading be timed."""
+    Kernel.start = timed('start', Kernel.start)
+    Rooms.__aenter__ = timed('open', Rooms.__aenter__)
+    Rooms.run_student_cell = timed('student cells', Rooms.run_student_cell)
+    Rooms.run_check = timed('checks', Rooms.run_check)
+    Rooms.__aexit__ = timed('stop', Rooms.__aexit__)
+
+
+def seconds(work: Callable[..., object], *args: object) -> float:
+    """Return how long something takes."""
+    began = time.perf_counter()
+    work(*args)
+    return time.perf_counter() - began
+
+
+def parts_of_one() -> dict[str, float]:
+    """Return where the time of the gradings since the last call went, and forget it."""
+    parts = {part: sum(spent[part]) for part in PARTS}
+    # two kernels start side by side; what is left of opening the rooms is the probe
+    parts['start'] = sum(max(pair) for pair in zip(*[iter(spent['start'])] * 2, strict=True))
+    parts['probe'] = sum(spent['open']) - parts['start']
+    spent.clear()
+    return parts
+
+
+def without_demonstrations(notebook: nbformat.NotebookNode) -> nbformat.NotebookNode:
+    """Return a copy of a notebook without what is only shown."""
+    shorter = nbformat.from_dict(notebook)
+    shorter.cells = [cell for cell in shorter.cells if role(cell) != 'demo']
+    return shorter
+
+
+def main(runs: int = 3) -> None:
+    """Print the tables."""
+    course = Course(gradebook=Path(tempfile.mkdtemp(prefix='grading_time-')))
+    for assignment in course.assignments():
+        register(course, assignment)
+    watch_the_rooms()
+    rows, parts = [], defaultdict(list)
+    for name in NAMES:
+        assignment = assignment_of(PATHS[name])
+        submitted = nbformat.read(PATHS[name], as_version=4)
+        healed = prepare(course, assignment, heal(submitted, course.master(assignment)).notebook)
+        shorter = without_demonstrations(healed)
+        times: dict[str, list[float]] = defaultdict(list)
+        for _ in range(runs):
+            spent.clear()
+            times['ours'].append(seconds(execute, healed))
+            for part, sec in parts_of_one().items():
+                parts[part].append(sec)
+            times['stock'].append(seconds(stock, healed))
+            times['shorter'].append(seconds(stock, shorter))
+        rows.append((name, *(statistics.median(times[k]) for k in ('ours', 'stock', 'shorter'))))
+        print_row(*rows[-1], first=len(rows) == 1)
+
+    print('\nWhere our time goes, in s (median of all):')
+    for part in PARTS:
+        print(f'  {part:14} {statistics.median(parts[part]):6.2f}')
+
+    began = time.perf_counter()
+    grade(course, NAMES)
+    each = (time.perf_counter() - began) / len(NAMES)
+    print(f'\nAs `./course grade` does it, several at a time and stored: {each:.2f} s each;')
+    print(f'stock, one by one, not stored: {statistics.mean(row[2] for row in rows):.2f} s each.')
+
+
+def stock(notebook: nbformat.NotebookNode) -> None:
+    """Run a copy of a notebook as stock nbgrader does."""
+    Execute().preprocess(nbformat.from_dict(notebook), {})
+
+
+def print_row(name: str, ours: float, stock: float, shorter: float, *, first: bool) -> None:
+    """Print one line of the table, after its heading."""
+    if first:
+        print(f'{"median s per notebook":32}  ours  stock  ratio  stock, shorter  ratio')
+    print(
+        f'{name:32} {ours:5.2f}  {stock:5.2f}  {ours / stock:5.2f}  {shorter:14.2f}  '
+        f'{ours / shorter:5.2f}',
+        flush=True,
+    )
+
+
+if __name__ == '__main__':
+    main(*map(int, sys.argv[1:]))

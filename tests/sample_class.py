@@ -1,0 +1,37 @@
+"""The sample class as test modules use it: what is expected of each, and a course to grade it."""
+
+import json
+import shutil
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+
+from grader.course import Course
+from grader.grade import Row, find_submissions, grade_all
+
+FOLDER = Path(__file__).parent / 'submissions'
+sys.path.insert(0, str(FOLDER))
+
+from rebase import assignment_of, rebased, samples  # noqa: E402
+
+__all__ = ['EXPECTED', 'FOLDER', 'PATHS', 'assignment_of', 'grade', 'hand_in', 'rebased']
+
+PATHS = {path.stem: path for path in samples()}
+"""Every sample, by its name."""
+EXPECTED = json.loads((FOLDER / 'expected.json').read_text(encoding='utf-8'))
+"""For each sample, for each grade cell: its score and what its reason must say."""
+
+
+def hand_in(course: Course, names: Iterable[str]) -> None:
+    """Put samples where a course's submissions lie; each is its own student."""
+    for name in names:
+        assignment = assignment_of(PATHS[name])
+        folder = course.folder('submitted', name, assignment)
+        folder.mkdir(parents=True)
+        shutil.copyfile(PATHS[name], folder / f'{assignment}.ipynb')
+
+
+def grade(course: Course, names: Iterable[str]) -> dict[str, Row]:
+    """Grade samples as `./course grade` does; return the rows by the samples' names."""
+    hand_in(course, names)
+    return {row.student_id: row for row in grade_all(course, find_submissions(course))}

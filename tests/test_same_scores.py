@@ -1,0 +1,128 @@
+"""Every way of grading gives the sample class the scores that `./course grade` gives it."""
+
+import os
+import shutil
+import subprocess
+import sys
+from collections import defaultdict
+from pathlib import Path
+
+import pytest
+from sample_class import EXPECTED, PATHS, assignment_of, hand_in
+
+from grader.course import ROOT, Course
+from grader.records import records
+
+UNREADABLE = '03_publisher-zero-not_json'
+"""What nbgrader stops at: it stores nothing, where `./course grade` gives zero and a reason."""
+BY_FORMGRADER = (
+    '02_joint_state-fail-returns_none',
+    '03_publisher-fail-raises_so_nothing_defined',
+    '03_publisher-pass-multithreaded_executor',
+)
+BY_COMMAND = (
+    '02_joint_state-fail-degrees',
+    '02_joint_state-pass-numpy',
+    '03_publisher-fail-edited_grade_cells',
+    '03_publisher-fail-imported_class',
+    '03_publisher-fail-os_exit',
+    '03_publisher-fail-patches_everything',
+    '03_publisher-fail-searches_for_the_tests',
+    '03_publisher-fail-skip_execution_tags',
+    '03_publisher-pass-deleted_grade_cells',
+    '03_publisher-pass-own_thread_and_init',
+    '03_publisher-pass-repeated_grade_cells',
+    '03_publisher-pass-split_answer',
+    '03_publisher-zero-another_assignment',
+    UNREADABLE,
+)
+FORMGRADER = """
+import asyncio, sys
+from nbgrader.apps import NbGrader
+from nbgrader.apps.api import NbGraderAPI
+
+async def grade(assignment, *students):
+    app = NbGrader()
+    app.initialize([])
+    api = NbGraderAPI(app.coursedir, parent=app)
+    for student in students:
+        result = api.autograde(assignment, student)
+        assert result['success'], result
+
+asyncio.run(grade(*sys.argv[1:]))
+"""
+"""What the formgrader does at a click, inside its event loop."""
+
+
+@pytest.fixture
+def course(tmp_path):
+    """The real lessons, in a folder where nothing was graded yet."""
+    for part in ('solutions', 'notebooks'):
+        shutil.copytree(ROOT / part, tmp_path / part)
+    shutil.copy(ROOT / 'nbgrader_config.py', tmp_path)
+    return Course.at(tmp_path)
+
+
+@pytest.mark.parametrize(
+    'names', [BY_COMMAND, pytest.param(tuple(PATHS), marks=pytest.mark.slow)], ids=['some', 'all']
+)
+def test_nbgrader_autograde_gives_the_same_scores(course, names):
+    hand_in(course, names)
+    for assignment in by_assignment(names):
+        run = python(course, '-m', 'nbgrader', 'autograde', assignment)
+        assert (run.returncode != 0) == (assignment == assignment_of(PATHS[UNREADABLE])), (
+            run.stderr
+        )
+    assert scores(course, names) == expected(names)
+
+
+@pytest.mark.parametrize(
+    'names',
+    [BY_FORMGRADER, pytest.param(tuple(PATHS), marks=pytest.mark.slow)],
+    ids=['some', 'all'],
+)
+def test_the_formgraders_call_gives_the_same_scores(course, names):
+    names = [name for name in names if name != UNREADABLE]
+    hand_in(course, names)
+    for assignment, students in by_assignment(names).items():
+        run = python(course, '-c', FORMGRADER, assignment, *students)
+        assert run.returncode == 0, run.stderr
+    assert scores(course, names) == expected(names)
+
+
+def by_assignment(names):
+    students = defaultdict(list)
+    for name in names:
+        students[assignment_of(PATHS[name])].append(name)
+    return students
+
+
+def python(course, *arguments):
+    """Run a command in the course's folder, as from its environment's command line."""
+    path = os.pathsep.join([str(Path(sys.executable).parent), os.environ['PATH']])
+    return subprocess.run(
+        [sys.executable, *arguments],
+        cwd=course.root,
+        env=os.environ | {'PATH': path},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def scores(course, names):
+    found = {name: {} for name in names}
+    for record in records(course):
+        if record.assignment == assignment_of(PATHS[record.student_id]):
+            found[record.student_id][record.grade_id] = record.score
+    return found
+
+
+def expected(names):
+    return {
+        name: {
+            grade_id: None if name == UNREADABLE else float(score)
+            for grade_id, (score, *_) in EXPECTED[name].items()
+        }
+        for name in names
+    }

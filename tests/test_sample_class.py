@@ -1,0 +1,144 @@
+"""The sample class: of each notebook comes what should, in the grader and in Validate."""
+
+import re
+
+import nbformat
+import pytest
+from sample_class import EXPECTED, PATHS, assignment_of, grade, rebased
+from stock_validator import validate_all
+
+from grader.course import Course
+from grader.execute import execute
+from grader.heal import heal, make_master
+from grader.records import verdicts
+
+NO_VERDICT = {
+    '03_publisher-fail-os_exit': 'Kernel died',
+    '03_publisher-pass-repeated_grade_cells': 'metadata may be corrupted',
+    '03_publisher-pass-split_answer': 'metadata may be corrupted',
+    '03_publisher-zero-not_json': 'NotJSONError',
+}
+"""Notebooks on which stock Validate breaks, and what it says."""
+CHANGED = (
+    '03_publisher-fail-edited_grade_cells',
+    '03_publisher-fail-skip_execution_tags',
+)
+"""Notebooks whose grade cells it finds changed: that is all that it says then."""
+ABSENT = {
+    '03_publisher-pass-deleted_grade_cells',
+    '03_publisher-zero-another_assignment',
+}
+"""Notebooks without the assignment's grade cells: it can say nothing of them."""
+TRUSTS = {'03_publisher-fail-patches_everything'}
+"""Notebooks that fool a check which runs in their own kernel, as Validate's do."""
+OUT_OF_ORDER = {'02_joint_state-pass-helper_in_the_last_cell': "name 'to_rad' is not defined"}
+"""Notebooks that do not run from top to bottom, as Validate runs them; the grader lets them."""
+
+
+@pytest.fixture(scope='module')
+def graded(tmp_path_factory):
+    """The gradebook of the class, and the row that each sample got."""
+    course = Course(gradebook=tmp_path_factory.mktemp('gradebook'))
+    return course, grade(course, PATHS)
+
+
+@pytest.fixture(scope='module')
+def validated():
+    """What nbgrader's Validate says of each sample."""
+    return validate_all(PATHS.values())
+
+
+def test_something_is_expected_of_every_sample():
+    assert list(EXPECTED) == list(PATHS)
+
+
+@pytest.mark.parametrize('name', PATHS)
+def test_a_sample_stands_on_the_present_release(name):
+    assert PATHS[name].read_text(encoding='utf-8') == rebased(PATHS[name])
+
+
+@pytest.mark.parametrize(('name', 'cells'), EXPECTED.items(), ids=EXPECTED)
+def test_a_sample_earns_what_it_should_for_the_reason_that_it_should(graded, name, cells):
+    course, rows = graded
+    found = verdicts(course, name, assignment_of(PATHS[name]))
+    points = 0.0
+    for grade_id, (score, *words) in cells.items():
+        said = ' | '.join([found[grade_id].reason, *found[grade_id].notes])
+        assert found[grade_id].outcome == ('failed' if words else 'passed'), said
+        assert [word for word in words if word not in said] == [], said
+        points += score
+    assert rows[name].stored.score == points
+    assert not rows[name].stored.pending
+    assert bool(rows[name].reason) == ('-pass-' not in name)
+
+
+def test_the_row_of_a_broken_cell_names_the_cause_first(graded):
+    _, rows = graded
+    for name, cause in {
+        '03_publisher-fail-raises_so_nothing_defined': 'your cell `five_hz` stopped with Zero',
+        '03_publisher-fail-imported_class': 'your cell `five_hz-run` stopped with NotRunnable',
+        '03_publisher-zero-another_assignment': 'the notebook holds none of the answer cells',
+    }.items():
+        assert rows[name].reason.startswith(cause)
+
+
+@pytest.mark.parametrize('name', [n for n in PATHS if n not in (*NO_VERDICT, *CHANGED)])
+def test_validate_says_the_same_of_each_visible_cell(graded, validated, name):
+    course, _ = graded
+    notebook = nbformat.read(PATHS[name], as_version=4)
+    ours = {
+        grade_id: verdict.reason
+        for grade_id, verdict in verdicts(course, name, assignment_of(PATHS[name])).items()
+        if 'outcome' in verdict
+    }
+    theirs = by_cell(notebook, validated[name], name)
+    if name in ABSENT:
+        assert not theirs.keys() & ours.keys()
+    elif name in TRUSTS:
+        assert all(ours.values())
+        assert not any(theirs.values())
+    elif name in OUT_OF_ORDER:
+        assert not any(ours.values())
+        assert all(OUT_OF_ORDER[name] in ' '.join(said.split()) for said in theirs.values())
+    else:
+        # a visible part comes first in its cell: what fails there fails here, and in those words
+        if numberless(ours) != numberless(theirs):
+            ours = visible_parts_alone(notebook, assignment_of(PATHS[name]))
+        assert numberless(ours) == numberless(theirs)
+
+
+@pytest.mark.parametrize(('name', 'why'), NO_VERDICT.items(), ids=NO_VERDICT)
+def test_validate_really_breaks_on_it(validated, name, why):
+    assert why in validated[name]['broken']
+
+
+@pytest.mark.parametrize('name', CHANGED)
+def test_validate_really_finds_it_changed(validated, name):
+    changed = [cell['source'] for cell in validated[name]['changed']]
+    notebook = nbformat.read(PATHS[name], as_version=4)
+    assert {c.id for c in notebook.cells if c.source.strip() in changed} == set(EXPECTED[name])
+
+
+def by_cell(notebook, found, name):
+    """What Validate says of each grade cell: its error, or '' where it passed."""
+    assert found.keys() <= {'failed'}, (name, found)
+    # shown in lines of their own, the same words
+    errors = {c['source']: c['raw_error'].replace('\n', ' ') for c in found.get('failed', [])}
+    return {
+        cell.metadata.nbgrader.grade_id: errors.get(cell.source.strip(), '')
+        for cell in notebook.cells
+        if cell.metadata.get('nbgrader', {}).get('grade')
+    }
+
+
+def visible_parts_alone(notebook, assignment):
+    """What the grader says of each grade cell as students see it."""
+    release = Course().release(assignment)
+    execution = execute(heal(notebook, make_master(release, release)).notebook)
+    return {verdict.grade_id: verdict.reason for verdict in execution.verdicts}
+
+
+def numberless(reasons):
+    """Reasons by cell, in one line and without numbers: poses are random, rates are measured."""
+    number = re.compile(r'-?\d+(\.\d+)?(e-?\d+)?')
+    return {name: number.sub('#', ' '.join(reason.split())) for name, reason in reasons.items()}
