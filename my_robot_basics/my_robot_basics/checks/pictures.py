@@ -11,6 +11,8 @@ if TYPE_CHECKING:
     from my_robot_basics.checks.recording import Recording
 
 SHOWN_PERIODS = 25
+# Okabe and Ito's colours are told apart by everyone
+SEEN, EXPECTED = '#d55e00', '#0072b2'
 
 
 def arrivals(recording: 'Recording', *, hz: float | None = None) -> bytes:
@@ -19,10 +21,10 @@ def arrivals(recording: 'Recording', *, hz: float | None = None) -> bytes:
 
     until = min(recording.seconds, SHOWN_PERIODS / (hz or recording.rate_hz or 1.0))
     seen = [s.time_sec for s in recording.messages if s.time_sec <= until]
-    rows = [('seen', seen, 'tab:red' if hz else 'tab:blue')]
+    rows = [('seen', seen, SEEN)]
     if hz:
         wanted = [i / hz for i in range(1, int(until * hz + 1e-9) + 1)]
-        rows.append((f'expected, {hz:g} Hz', wanted, 'tab:green'))
+        rows.append((f'expected, {hz:g} Hz', wanted, EXPECTED))
     figure = Figure(figsize=(7.0, 1.6), layout='constrained')
     axes = figure.add_subplot()
     for row, (_, times, colour) in enumerate(rows):
