@@ -123,9 +123,9 @@ class Kernel:
         result.close()
         return result
 
-    async def stop(self) -> None:
-        """End the kernel, politely first so that its DDS resources go too, and its folder."""
-        if self.alive and self._manager.has_kernel:
+    async def stop(self, *, politely: bool = True) -> None:
+        """End the kernel and its folder; politely first where nodes of its hold shared memory."""
+        if politely and self.alive and self._manager.has_kernel:
             self._client.shutdown()
             with contextlib.suppress(TimeoutError):
                 await asyncio.wait_for(self._exited(), STOP_GRACE_SEC)
