@@ -11,7 +11,7 @@ OURS = ('MY_ROBOT_BASICS_', 'ROS_', 'RCUTILS_', 'FASTRTPS_', 'PYTEST_', 'JPY_')
 """What a test session has in its environment and a student's JupyterLab has not."""
 
 
-def validate_all(paths: Iterable[Path], *, at_a_time: int = 4) -> dict[str, dict]:
+def validate_all(paths: Iterable[Path], *, at_a_time: int = 6) -> dict[str, dict]:
     """Put notebooks through nbgrader's stock Validator; return what it found, by the file's stem.
 
     That is the Validator's own answer ('failed', 'changed' and 'type_changed' are lists of cells,
