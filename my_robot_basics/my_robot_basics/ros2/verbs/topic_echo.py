@@ -203,7 +203,7 @@ def _choose_qos(graph: Graph, args: argparse.Namespace) -> 'QoSProfile':
 
 
 def _full(policy: Any) -> str:
-    return f'{type(policy).__name__}.{policy.name}'
+    return f'QoS{type(policy).__name__}.{policy.name}'
 
 
 def _report_loss(status: Any) -> None:

@@ -1,0 +1,136 @@
+"""The command as a whole: what it hands over, offers and refuses."""
+
+import os
+import sys
+from pathlib import Path
+
+import pexpect
+import pytest
+from my_robot_basics.ros2 import arguments, environment, main, stopping
+from my_robot_basics.ros2.table import COMMANDS, ELSEWHERE
+from ros2_command import SCRIPT, ros2
+
+REAL = """
+import os, sys
+
+def main(*, script_name='ros2', argv=None, description=None, extension=None):
+    print(sys.argv[1:], argv, os.environ.get('ROS_DOMAIN_ID'))
+    return 7
+"""
+VERBS = [(c, verb) for c, command in COMMANDS.items() for verb in command.verbs or ('',)]
+
+
+def test_a_real_ros2cli_gets_everything_untouched(tmp_path):
+    package = tmp_path / 'ros2cli'
+    package.mkdir()
+    (package / '__init__.py').touch()
+    (package / 'cli.py').write_text(REAL)
+    result = ros2('topic', 'delay', '-h', PYTHONPATH=str(tmp_path), ROS_DOMAIN_ID='')
+    assert (result.out, result.err, result.status) == ("['topic', 'delay', '-h'] None \n", '', 7)
+
+
+@pytest.mark.parametrize(
+    ('words', 'name'),
+    [
+        *(((command, 'list'), f'`ros2 {command}`') for command in ELSEWHERE),
+        *(
+            ((name, verb, '-x'), f'`ros2 {name} {verb}` ')
+            for name, command in COMMANDS.items()
+            for verb in command.elsewhere
+        ),
+        (('topic', '--include-hidden-topics', 'delay', '/x'), '`ros2 topic delay` '),
+    ],
+)
+def test_what_only_ros2cli_has_is_named(words, name, capsys, monkeypatch):
+    monkeypatch.setattr(stopping, 'watch', lambda: None)
+    assert main.main(list(words)) == 2
+    printed = capsys.readouterr()
+    assert printed.out == ''
+    assert printed.err.startswith(f'{name.strip()} is not part of this course: ')
+    assert f'the package ros2{words[0]} of ros2cli' in printed.err
+
+
+@pytest.mark.parametrize('words', [['nothing'], ['topic', 'nothing'], ['topic', 'list', '-y']])
+def test_what_nobody_has_is_a_usage_error(words):
+    result = ros2(*words)
+    assert (result.out, result.status) == ('', 2)
+    assert 'Traceback' not in result.err
+    assert result.err.splitlines()[-1].startswith('ros2')
+
+
+def test_without_a_verb_the_verbs_are_listed():
+    result = ros2('topic')
+    assert '  hz    Print the average publishing rate to screen\n' in result.out
+    assert result.status == 0
+    result = ros2()
+    assert '  topic      Various topic related sub-commands\n' in result.out
+    assert result.status == 0
+
+
+@pytest.mark.parametrize('words', VERBS)
+def test_every_verb_has_help(words, capsys):
+    words = [word for word in words if word]
+    with pytest.raises(SystemExit) as ended:
+        main.make_parser(words).parse_args([*words, '--help'])
+    assert ended.value.code == 0
+    assert capsys.readouterr().out.startswith(f'usage: ros2 {" ".join(words)} [-h]')
+
+
+def test_the_table_and_the_files_are_the_same():
+    folder = Path(main.__file__).parent / 'verbs'
+    files = {path.stem for path in folder.glob('*.py')} - {'__init__'}
+    assert files == {f'{command}_{verb}'.rstrip('_') for command, verb in VERBS}
+
+
+def test_the_choices_of_policies_are_those_of_rclpy():
+    import rclpy.qos
+
+    assert list(arguments.PROFILES) == rclpy.qos.QoSPresetProfiles.short_keys()
+    for name, choices in arguments.POLICIES.items():
+        policy = getattr(rclpy.qos, f'QoS{name.capitalize()}Policy')
+        assert set(choices) == set(policy.short_keys())
+
+
+@pytest.mark.parametrize('text', ['x', '233', '-1', '²', '1.5'])
+def test_an_impossible_domain_is_named(text):
+    result = ros2('topic', 'list', ROS_DOMAIN_ID=text)
+    assert result.err == (
+        f'ROS_DOMAIN_ID is {text!r}, expected a number from 0 to 232: correct it, or unset it\n'
+    )
+    assert result.status == 1
+
+
+def test_what_the_environment_says_stands(monkeypatch):
+    monkeypatch.setenv('ROS_DOMAIN_ID', '5')
+    monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'SUBNET')
+    monkeypatch.setenv('FASTRTPS_DEFAULT_PROFILES_FILE', '/mine.xml')
+    monkeypatch.setenv('AMENT_PREFIX_PATH', '/workspace/install')
+    environment.enter()
+    environment.enter()
+    assert environment.domain_id() == 5
+    assert not environment.hears_this_machine_only()
+    assert os.environ['FASTRTPS_DEFAULT_PROFILES_FILE'] == '/mine.xml'
+    assert os.environ['AMENT_PREFIX_PATH'] == f'/workspace/install:{sys.prefix}'
+
+
+def test_a_bare_shell_gets_what_a_lesson_has(monkeypatch):
+    for name in ('ROS_DOMAIN_ID', 'ROS_AUTOMATIC_DISCOVERY_RANGE', 'AMENT_PREFIX_PATH'):
+        monkeypatch.setenv(name, '')
+    monkeypatch.delenv('FASTRTPS_DEFAULT_PROFILES_FILE')
+    environment.enter()
+    assert environment.domain_id() == 0
+    assert environment.hears_this_machine_only()
+    assert Path(os.environ['FASTRTPS_DEFAULT_PROFILES_FILE']).is_file()
+    assert os.environ['AMENT_PREFIX_PATH'] == sys.prefix
+
+
+def test_a_closed_stdout_is_no_mishap():
+    shell = pexpect.run(f'bash -c \'"{SCRIPT}" interface list >&-; echo $?\'', encoding='utf-8')
+    assert shell == '0\r\n'
+
+
+def test_rclpy_is_loaded_only_for_what_needs_it():
+    light = ['interface', 'show', 'std_msgs/msg/String']
+    code = f'import sys; sys.argv[1:] = {light}; from my_robot_basics.ros2 import main;'
+    code += "main.main(); sys.exit('rclpy' in sys.modules)"
+    assert pexpect.run(f'{sys.executable} -c "{code}"', withexitstatus=True)[1] == 0

@@ -1,0 +1,274 @@
+"""The verbs that go on: echo, hz, bw and pub, and how they end."""
+
+import re
+import select
+import signal
+import subprocess
+import time
+
+import pytest
+from ros2_command import PATIENCE_SEC, SCRIPT, on_the_graph, own_domain, ros2, started
+
+TOPIC = '/kinematics/joint_states'
+NUMBER = r'-?\d+\.\d+(e-\d+)?'
+
+
+@pytest.fixture(scope='module', autouse=True)
+def system():
+    with own_domain(), on_the_graph('everything', 'five_hz', topics=('/everything_is_up', TOPIC)):
+        yield
+
+
+ECHO = rf"""header:
+  stamp:
+    sec: \d+
+    nanosec: \d+
+  frame_id: base_link
+name:
+- joint1
+- joint2
+position:
+- {NUMBER}
+- {NUMBER}
+velocity: \[\]
+effort: \[\]
+---
+"""
+INFO = r"""publication_sequence_number: \d+
+received_timestamp: \d+
+reception_sequence_number: null
+source_timestamp: \d+
+
+---
+"""
+PRINTED = [
+    ((TOPIC,), ECHO),
+    ((TOPIC, 'sensor_msgs/msg/JointState', '--no-daemon', '-s'), ECHO),
+    ((TOPIC, '--include-message-info'), INFO.replace('\n\n', '\n') + ECHO),
+    ((TOPIC, '--qos-reliability', 'best_effort', '--qos-depth', '1'), ECHO),
+    ((TOPIC, '--csv'), rf'\d+,\d+,base_link,joint1,joint2,{NUMBER},{NUMBER},,\n'),
+    ((TOPIC, '--csv', '-i'), rf'(\d+,){{3}}None,\d+,\d+,base_link,joint1,joint2,{NUMBER},.*\n'),
+    ((TOPIC, '--field', 'header.stamp'), r'sec: \d+\nnanosec: \d+\n---\n'),
+    ((TOPIC, '--field', 'position'), rf"array\('d', \[{NUMBER}, {NUMBER}\]\)\n---\n"),
+    ((TOPIC, '--field', 'name', '-i'), r'---Got new message, message info:---\n{.*}\n'
+     r"---Message data:---\n\['joint1', 'joint2'\]\n---\n"),
+    ((TOPIC, '--raw'), r"b'.*base_link.*'\n---\n"),
+    ((TOPIC, '--field', 'header', '--flow-style', '--no-str'),
+     r"{stamp: {sec: \d+, nanosec: \d+}, frame_id: '<string length: <9>>'}\n---\n"),
+    ((TOPIC, '--field', 'name', '--filter', 'len(m) == 2'), r"\['joint1', 'joint2'\]\n---\n"),
+    (('/arm_description',), r'data: two links\n---\n'),  # latched: it is asked for as such
+    (('/arm_description', '-l', '3'), r'data: two...\n---\n'),
+    (('/arm_description', '--qos-reliability', 'reliable', '--qos-durability',
+      'transient_local', '--qos-depth', '1'), r'data: two links\n---\n'),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(('words', 'expected'), PRINTED, ids=[' '.join(p[0]) for p in PRINTED])
+def test_echo_prints_what_ros2cli_prints(words, expected):
+    result = ros2('topic', 'echo', '--once', *words)
+    assert re.fullmatch(expected, result.out), result.out
+    assert (result.err, result.status) == ('', 0)
+
+
+UNPUBLISHED = 'WARNING: topic [/nothing] does not appear to be published yet\n'
+REFUSED = [
+    ('echo /nothing', UNPUBLISHED, 'Could not determine the type for the passed topic\n'),
+    (f'echo {TOPIC} std_msgs/msg/Nothing', '', 'The passed message type is invalid\n'),
+    (f'echo {TOPIC} --field .', '', "Invalid field value '.'\n"),
+    (f'echo {TOPIC} --field header.sec', '',
+     "Invalid field 'header.sec': 'Header' object has no attribute 'sec'\n"),
+    (f'echo {TOPIC} --filter m.', '',
+     "--filter: no Python expression: 'm.' (invalid syntax (--filter, line 1))\n"),
+    (f'hz {TOPIC} --filter m.x', '', "--filter: 'm.x' failed on a message: AttributeError: "
+     "'JointState' object has no attribute 'x'\n"),
+    ('bw //x', '', 'Invalid topic name: topic name must not contain repeated \'/\':\n'
+     "  '//x'\n    ^\n"),
+    ('pub /x std_msgs/msg/Strin', '',
+     'The passed message type is invalid: did you mean std_msgs/msg/String?\n'),
+    ('pub /x std_msgs/msg/String [1]', '',
+     'The passed value needs to be a dictionary in YAML format\n'),
+    ('pub /x std_msgs/msg/String {data}:', '',
+     'The passed value is no YAML: while constructing a mapping\n'),
+    ('pub /x std_msgs/msg/String {date:1}', '', 'Failed to populate field: date:1: std_msgs/msg/'
+     "String has no field 'date:1': did you mean data?\n"),
+    ('pub /x std_msgs/msg/String --max-wait-time-secs 1', '', '--max-wait-time-secs option is '
+     'only effective with --wait-matching-subscriptions, --once or --times\n'),
+    ('pub /x std_msgs/msg/String -1 --max-wait-time-secs 0.2',
+     'Waiting for at least 1 matching subscription(s)...\n',
+     'Timed out waiting for subscribers: Expected 1 subcribers but only got 0 subscribers\n'),
+    ('pub /x std_msgs/msg/String -n a-b', '', 'Invalid node name: '),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(('words', 'out', 'err'), REFUSED, ids=[words for words, *_ in REFUSED])
+def test_what_cannot_be_done_is_said_in_a_sentence(words, out, err):
+    result = ros2('topic', *words.split())
+    assert (result.out, result.status) == (out, 1)
+    assert result.err.startswith(err)
+    assert 'Traceback' not in result.err
+
+
+def test_echo_hears_reliable_and_best_effort_publishers_at_once():
+    with on_the_graph('best_effort', topics=()):
+        said = ''
+        while 'Some' not in said:  # until it is up
+            said = ros2('topic', 'echo', '--once', TOPIC).out
+    assert said.startswith(
+        'Some, but not all, publishers are offering QoSReliabilityPolicy.RELIABLE. Falling back '
+        'to QoSReliabilityPolicy.BEST_EFFORT as it will connect to all publishers\nheader:\n'
+    )
+
+
+def test_echo_gives_up_after_its_timeout():
+    result = ros2('topic', 'echo', '/heard', '--timeout', '0.1')
+    assert (result.out, result.err, result.status) == ('', '', 0)
+
+
+RATE = (
+    r'average rate: (\d+\.\d{3})\n'
+    r'\tmin: \d\.\d{3}s max: \d\.\d{3}s std dev: \d\.\d{5}s window: (\d+)\n'
+)
+BANDWIDTH = r'(\d+) B/s from (\d+) messages\n\tMessage size mean: 95 B min: 95 B max: 95 B\n'
+
+
+def test_hz_prints_the_rate():
+    with started(SCRIPT, 'topic', 'hz', TOPIC, '--window', '3') as hz:
+        text = hz.stdout.readline() + hz.stdout.readline()
+    rate, window = re.fullmatch(RATE, text).groups()
+    assert 4.0 < float(rate) < 6.0  # of 5 Hz, on a machine that may have other things to do
+    assert window == '3'
+
+
+def test_bw_prints_the_bandwidth():
+    with started(SCRIPT, 'topic', 'bw', TOPIC) as bw:
+        assert bw.stdout.readline() == f'Subscribed to [{TOPIC}]\n'
+        text = bw.stdout.readline() + bw.stdout.readline()
+    assert re.fullmatch(BANDWIDTH.replace('95', r'\d+'), text), text
+
+
+@pytest.mark.parametrize('verb', ['hz', 'bw'])
+def test_hz_and_bw_wait_for_a_publisher(verb):
+    warning = 'WARNING: topic [/later] does not appear to be published yet\n'
+    with started(SCRIPT, 'topic', verb, '/later') as measuring:
+        assert measuring.stdout.readline() == warning
+        with started(SCRIPT, 'topic', 'pub', '-r', '20', '/later', 'std_msgs/msg/String'):
+            line = measuring.stdout.readline()
+    assert line.startswith('average rate: ' if verb == 'hz' else 'Subscribed to [/later]')
+
+
+def test_pub_reaches_echo():
+    with started(SCRIPT, 'topic', 'echo', '/chat', 'std_msgs/msg/String') as echo:
+        once = ros2('topic', 'pub', '--once', '/chat', 'std_msgs/msg/String', '{data: hé}')
+        more = ros2(
+            *('topic', 'pub', '-t', '3', '-r', '20', '-p', '2', '-w', '1', '/chat'),
+            *('std_msgs/String', '--stdin'),
+            stdin='data: "1"',
+        )
+        heard = [echo.stdout.readline() for _ in range(8)]
+    assert heard == ['data: hé\n', '---\n', *["data: '1'\n", '---\n'] * 3]
+    waiting = r'(Waiting for at least 1 matching subscription\(s\)\.\.\.\n)+'
+    started_once, started_more = (re.sub(f'^{waiting}', '', r.out) for r in (once, more))
+    assert started_once == (
+        "publisher: beginning loop\npublishing #1: std_msgs.msg.String(data='hé')\n\n"
+    )
+    assert started_more == (
+        "publisher: beginning loop\npublishing #2: std_msgs.msg.String(data='1')\n\n"
+    )
+    assert (once.err, once.status, more.err, more.status) == ('', 0, '', 0)
+
+
+def test_pub_stamps_messages_when_it_publishes_them():
+    pub = 'topic', 'pub', '-r', '20', '/stamped', 'geometry_msgs/msg/PointStamped', 'header: auto'
+    with started(SCRIPT, *pub) as publisher:
+        lines = [publisher.stdout.readline() for _ in range(5)]
+    first, second = (re.search(r'sec=(\d+), nanosec=(\d+)', lines[n]).groups() for n in (1, 3))
+    assert int(first[0]) > 0
+    assert first != second
+
+
+ENDLESS = {
+    'echo': ('echo', TOPIC),
+    'echo of a silent topic': ('echo', '/heard'),
+    'hz': ('hz', TOPIC),
+    'hz of no topic': ('hz', '/nothing'),
+    'bw': ('bw', TOPIC),
+    'pub': ('pub', '/x', 'std_msgs/msg/String'),
+    'pub that waits': ('pub', '--once', '/x', 'std_msgs/msg/String'),
+    'pub that lingers': (
+        'pub',
+        '--once',
+        '-w',
+        '0',
+        '--keep-alive',
+        '99',
+        '/x',
+        'std_msgs/String',
+    ),
+}
+endless = pytest.mark.parametrize('words', ENDLESS.values(), ids=ENDLESS)
+
+
+def wait_for_handlers(process):
+    """Until then it is Python that starts, and not the command."""
+    term = 1 << (signal.SIGTERM - 1)
+    while True:
+        with open(f'/proc/{process.pid}/status', encoding='ascii') as status:
+            caught = next(line for line in status if line.startswith('SigCgt'))
+        if int(caught.split()[1], 16) & term:
+            return
+
+
+@endless
+def test_a_signal_ends_it_quietly_with_the_status_of_ros2cli(words):
+    number = (signal.SIGINT, signal.SIGTERM)[len(words) % 2]
+    with started(SCRIPT, 'topic', *words) as process:
+        wait_for_handlers(process)
+        # somewhere in the imports, in discovery, or in the work
+        select.select([process.stdout], [], [], len(words[-1]) % 10 / 10)
+        process.send_signal(number)
+        _, err = process.communicate(timeout=PATIENCE_SEC)
+    assert (process.returncode, err) == (number, '')
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_at_any_moment_leaves_no_ghost(number):
+    for moment_sec in (0.0, 0.1, 0.2, 0.3, 0.4, 0.6):
+        with started(SCRIPT, 'topic', 'echo', '/heard') as process:
+            wait_for_handlers(process)
+            time.sleep(moment_sec)
+            process.send_signal(number)
+            out, err = process.communicate(timeout=PATIENCE_SEC)
+        assert (process.returncode, out, err) == (number, '', '')
+    (own, *_) = ros2('node', 'list', '--all').out.splitlines()
+    assert own.startswith('/_ros2cli_')
+    assert 'Subscription count: 1\n' in ros2('topic', 'info', '/heard').out
+
+
+@endless
+def test_it_ends_when_nobody_reads_any_more(words):
+    with started(SCRIPT, 'topic', *words) as process:
+        process.stdout.close()
+        assert process.stderr.read() == ''
+        assert process.wait(PATIENCE_SEC) == 141
+
+
+def test_head_gets_its_lines():
+    done = subprocess.run(
+        f'"{SCRIPT}" topic echo {TOPIC} | head -3',
+        shell=True,
+        capture_output=True,
+        encoding='utf-8',
+        timeout=PATIENCE_SEC,
+    )
+    assert re.fullmatch(r'header:\n  stamp:\n    sec: \d+\n', done.stdout)
+    assert done.stderr == ''
+
+
+def test_a_reader_that_stalls_does_not_hold_up_a_signal():
+    with started(SCRIPT, 'topic', 'pub', '-r', '1000', '/x', 'std_msgs/msg/String') as process:
+        poll = select.poll()
+        poll.register(process.stdout, select.POLLIN)
+        poll.poll()
+        time.sleep(1.0)  # nobody reads, and the pipe holds 64 kB
+        process.send_signal(signal.SIGINT)
+        assert process.wait(PATIENCE_SEC) == signal.SIGINT
