@@ -8,7 +8,6 @@ import shutil
 import sys
 import tempfile
 import time
-from collections.abc import Awaitable, Callable
 from pathlib import Path
 from subprocess import DEVNULL
 
@@ -18,18 +17,14 @@ from jupyter_client import AsyncKernelManager
 from jupyter_client.kernelspec import KernelSpec, KernelSpecManager
 
 from grader.errors import RoomFailure
-from grader.outputs import CellRun, Displays
+from grader.messages import Messages, OnInput
+from grader.outputs import CellRun
 
 START_TIMEOUT_SEC = 60.0
 INTERRUPT_GRACE_SEC = 2.0
 STOP_GRACE_SEC = 2.0
-OUTPUT_GRACE_SEC = 2.0
-"""How long a cell's last outputs may come after its reply."""
 MAX_MESSAGE_BYTES = 32_000_000
 """A kernel that sends more at once is cut off; the message is lost."""
-
-OnInput = Callable[[str], Awaitable[str]]
-"""Answers a kernel's input() request."""
 
 
 class _OurKernelSpec(KernelSpecManager):
@@ -69,7 +64,6 @@ class Kernel:
             connection_file=str(self.folder / 'connection.json'),
         )
         self._client = None
-        self._displays = Displays()
         self.alive = False
 
     async def start(self) -> 'Kernel':
@@ -108,7 +102,7 @@ class Kernel:
             allow_stdin=on_input is not None,
             stop_on_error=False,
         )
-        done = asyncio.ensure_future(self._collect(request, result, on_input))
+        done = asyncio.ensure_future(self._messages.follow(request, result, on_input))
         try:
             result.timed_out = not await self._finished(done, timeout_sec)
             if result.timed_out and self.alive:
@@ -146,6 +140,7 @@ class Kernel:
             await asyncio.sleep(0.01)
         self._client = self._manager.client()
         self._client.start_channels(hb=False)
+        self._messages = Messages(self._client)
         kind = None
         while kind != 'iopub_welcome':
             await self._expect_alive()
@@ -187,64 +182,6 @@ class Kernel:
                 return True
         await done
         return True
-
-    async def _collect(self, request: str, result: CellRun, on_input: OnInput | None) -> None:
-        """Gather a cell's outputs until the kernel has replied and is idle again."""
-        outputs = asyncio.ensure_future(self._gather_outputs(request, result))
-        inputs = asyncio.ensure_future(self._answer_inputs(request, on_input))
-        reply = asyncio.ensure_future(self._next(self._client.get_shell_msg, request))
-        try:
-            await asyncio.wait([inputs, reply], return_when=asyncio.FIRST_COMPLETED)
-            if inputs.done():
-                inputs.result()  # it only ends by an exception
-            content = (await reply)[1]
-            # an idle message may be lost: a kernel that floods its socket is not waited for
-            await asyncio.wait([outputs], timeout=OUTPUT_GRACE_SEC)
-            result.conclude(content)
-        finally:
-            for task in (outputs, inputs, reply):
-                task.cancel()
-
-    async def _gather_outputs(self, request: str, result: CellRun) -> None:
-        while True:
-            kind, content = await self._next(
-                self._client.get_iopub_msg, request, also='update_display_data'
-            )
-            if kind == 'status' and content.get('execution_state') == 'idle':
-                return
-            if kind == 'update_display_data':
-                self._displays.update(content)
-            elif kind == 'clear_output':
-                result.clear()
-            else:
-                self._displays.remember(content, result, result.keep(kind, content))
-
-    async def _answer_inputs(self, request: str, on_input: OnInput | None) -> None:
-        while True:
-            _, content = await self._next(self._client.get_stdin_msg, request)
-            if on_input is not None:
-                self._client.input(await on_input(str(content.get('prompt'))))
-
-    async def _next(
-        self, get: Callable[..., Awaitable[dict]], request: str, *, also: str = ''
-    ) -> tuple[str, dict]:
-        """Return type and content of the next message that belongs to a request.
-
-        The student's code holds its kernel's sockets and may send anything at all: what is not a
-        message is passed over.
-        """
-        while True:
-            await asyncio.sleep(0)  # a flood of messages must not keep time limits waiting
-            try:
-                message = await get(timeout=None)
-            except zmq.ZMQError:
-                raise
-            except Exception:
-                continue
-            parent, content = message['parent_header'], message['content']
-            ours = isinstance(parent, dict) and parent.get('msg_id') == request
-            if isinstance(content, dict) and (ours or message['msg_type'] == also):
-                return message['msg_type'], content
 
 
 def _environment(room: str, domain_id: int, seed: str, folder: Path) -> dict[str, str]:

@@ -11,6 +11,7 @@ import pytest
 from grader import kernels
 from grader.errors import RoomFailure
 from grader.kernels import Kernel
+from grader.messages import next_message
 from grader.outputs import MAX_OUTPUT_CHARACTERS
 
 DOMAIN = 0
@@ -373,7 +374,7 @@ def test_messages_that_are_always_there_do_not_keep_the_loop(shared, loop):
         return {'parent_header': [], 'content': {}, 'msg_type': 'stream'}
 
     async def bounded():
-        await asyncio.wait_for(shared._next(get, 'request'), 0.2)
+        await asyncio.wait_for(next_message(get, 'request'), 0.2)
 
     with pytest.raises(TimeoutError):
         loop.run(bounded())

@@ -1,0 +1,83 @@
+"""What a kernel says while it runs a cell, on three channels at once."""
+
+import asyncio
+from collections.abc import Awaitable, Callable
+
+import zmq
+from jupyter_client import AsyncKernelClient
+
+from grader.outputs import CellRun, Displays
+
+OUTPUT_GRACE_SEC = 2.0
+"""How long a cell's last outputs may come after its reply."""
+
+OnInput = Callable[[str], Awaitable[str]]
+"""Answers a kernel's input() request."""
+
+
+class Messages:
+    """The messages of one kernel."""
+
+    def __init__(self, client: AsyncKernelClient) -> None:
+        """Read from a client whose channels are open."""
+        self._client = client
+        self._displays = Displays()
+
+    async def follow(self, request: str, result: CellRun, on_input: OnInput | None) -> None:
+        """Gather a cell's outputs until the kernel has replied and is idle again."""
+        outputs = asyncio.ensure_future(self._gather_outputs(request, result))
+        inputs = asyncio.ensure_future(self._answer_inputs(request, on_input))
+        reply = asyncio.ensure_future(next_message(self._client.get_shell_msg, request))
+        try:
+            await asyncio.wait([inputs, reply], return_when=asyncio.FIRST_COMPLETED)
+            if inputs.done():
+                inputs.result()  # it only ends by an exception
+            content = (await reply)[1]
+            # an idle message may be lost: a kernel that floods its socket is not waited for
+            await asyncio.wait([outputs], timeout=OUTPUT_GRACE_SEC)
+            result.conclude(content)
+        finally:
+            for task in (outputs, inputs, reply):
+                task.cancel()
+
+    async def _gather_outputs(self, request: str, result: CellRun) -> None:
+        while True:
+            kind, content = await next_message(
+                self._client.get_iopub_msg, request, also='update_display_data'
+            )
+            if kind == 'status' and content.get('execution_state') == 'idle':
+                return
+            if kind == 'update_display_data':
+                self._displays.update(content)
+            elif kind == 'clear_output':
+                result.clear()
+            else:
+                self._displays.remember(content, result, result.keep(kind, content))
+
+    async def _answer_inputs(self, request: str, on_input: OnInput | None) -> None:
+        while True:
+            _, content = await next_message(self._client.get_stdin_msg, request)
+            if on_input is not None:
+                self._client.input(await on_input(str(content.get('prompt'))))
+
+
+async def next_message(
+    get: Callable[..., Awaitable[dict]], request: str, *, also: str = ''
+) -> tuple[str, dict]:
+    """Return type and content of the next message that belongs to a request.
+
+    The student's code holds its kernel's sockets and may send anything at all: what is not a
+    message is passed over.
+    """
+    while True:
+        await asyncio.sleep(0)  # a flood of messages must not keep time limits waiting
+        try:
+            message = await get(timeout=None)
+        except zmq.ZMQError:
+            raise
+        except Exception:
+            continue
+        parent, content = message['parent_header'], message['content']
+        ours = isinstance(parent, dict) and parent.get('msg_id') == request
+        if isinstance(content, dict) and (ours or message['msg_type'] == also):
+            return message['msg_type'], content
