@@ -159,10 +159,20 @@ class Kernel:
             with contextlib.suppress(TimeoutError):
                 await asyncio.wait_for(self._exited(), STOP_GRACE_SEC)
             await self._manager.shutdown_kernel(now=True)
+        deadline = time.monotonic() + STOP_GRACE_SEC
+        while (left := self._leftovers()) and time.monotonic() < deadline:
+            for process in left:
+                with contextlib.suppress(psutil.Error):
+                    process.kill()
+            await asyncio.sleep(0.02)
+
+    def _leftovers(self) -> list[psutil.Process]:
+        left = []
         for process in psutil.process_iter():
             with contextlib.suppress(psutil.Error):
                 if process.environ().get('IPYTHONDIR') == self._environment['IPYTHONDIR']:
-                    process.kill()
+                    left.append(process)
+        return left
 
     async def _exited(self) -> None:
         while await self._manager.is_alive():
