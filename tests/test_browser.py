@@ -1,0 +1,268 @@
+"""What a student sees: the released lessons in JupyterLab, opened as `./course lab` does."""
+
+import json
+import os
+import re
+import shutil
+import socket
+import subprocess
+import tempfile
+import time
+import urllib.error
+import urllib.request
+from pathlib import Path
+
+import nbformat
+import pytest
+from playwright.sync_api import expect, sync_playwright
+
+ROOT = Path(__file__).parents[1]
+LESSONS = ['02_joint_state', '03_publisher']
+TOKEN = 'a-token-of-this-test'
+CHROMIUM = next(filter(None, map(shutil.which, ['chromium', 'chromium-browser'])), None)
+LONG = 120_000
+"""Milliseconds: what a slow machine may need for anything here; nothing is judged by it."""
+
+pytestmark = [
+    pytest.mark.browser,
+    pytest.mark.skipif(CHROMIUM is None, reason='no chromium here: .ci/run installs it'),
+]
+
+WRONG = """\
+def to_joint_state(theta1_deg, theta2_deg, stamp):
+    message = JointState(name=['joint1', 'joint2'], position=[theta1_deg, theta2_deg])
+    message.header.stamp = stamp
+    message.header.frame_id = 'base_link'
+    return message
+"""
+RIGHT = WRONG.replace('[theta1_deg, theta2_deg]', '[radians(theta1_deg), radians(theta2_deg)]')
+
+
+class Lab:
+    """A JupyterLab of `./course lab`, for copies of the released lessons."""
+
+    def __init__(self, folder):
+        self.folder = folder / 'notebooks'
+        self.folder.mkdir()
+        with socket.socket() as free:
+            free.bind(('127.0.0.1', 0))
+            self.address = f'http://127.0.0.1:{free.getsockname()[1]}'
+        # neither what this user's own JupyterLab remembers, nor what a test session sets
+        names = ['CONFIG', 'DATA', 'RUNTIME']
+        mine = {f'JUPYTER_{name}_DIR': str(folder / name) for name in names}
+        not_a_students = ('PYTEST_', 'COV_', 'MY_ROBOT_BASICS_', 'ROS_')
+        clean = {k: v for k, v in os.environ.items() if not k.startswith(not_a_students)}
+        options = ['--no-browser', '--expose-app-in-browser', '--ServerApp.port_retries=0']
+        options += [
+            f'--port={self.address.rpartition(":")[2]}',
+            f'--IdentityProvider.token={TOKEN}',
+        ]
+        self.log = folder / 'log'
+        with self.log.open('w') as log:
+            self.server = subprocess.Popen(
+                [ROOT / 'course', 'lab', self.folder, *options],
+                env=clean | mine,
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=subprocess.STDOUT,
+            )
+
+    def wait_until_up(self):
+        deadline = time.monotonic() + LONG / 1000
+        while True:
+            try:
+                return urllib.request.urlopen(f'{self.address}/api/status?token={TOKEN}').close()
+            except urllib.error.URLError:
+                assert self.server.poll() is None, self.log.read_text()
+                assert time.monotonic() < deadline, self.log.read_text()
+                time.sleep(0.2)
+
+    def fresh_copy(self, name):
+        """A released lesson that nobody has opened yet, and so without a kernel: its path here."""
+        folder = Path(tempfile.mkdtemp(dir=self.folder))
+        shutil.copy(ROOT / 'notebooks' / name / f'{name}.ipynb', folder)
+        return f'{folder.name}/{name}.ipynb'
+
+    def stop(self):
+        self.server.terminate()
+        try:
+            self.server.wait(30)
+        except subprocess.TimeoutExpired:
+            self.server.kill()
+            self.server.wait()
+
+
+class Lesson:
+    """One lesson, open in a browser."""
+
+    def __init__(self, page, lab, name):
+        self.page = page
+        page.set_default_timeout(LONG)
+        path = lab.fresh_copy(name)
+        page.goto(f'{lab.address}/lab/tree/{path}?token={TOKEN}&reset')
+        page.wait_for_function(f"""
+            window.jupyterapp?.shell.currentWidget?.context?.path === '{path}'
+            && jupyterapp.shell.currentWidget.context.isReady
+            && jupyterapp.shell.currentWidget.sessionContext.session?.kernel?.status === 'idle'
+        """)
+
+    def close(self):
+        self.page.evaluate('jupyterapp.shell.currentWidget.sessionContext.shutdown()')
+        self.page.close()
+
+    def command(self, name, index=None):
+        """Run a command of JupyterLab's menus, with a cell selected, and wait for its end."""
+        self.page.evaluate(
+            """async ([name, index]) => {
+                if (index !== null)
+                    jupyterapp.shell.currentWidget.content.activeCellIndex = index;
+                await jupyterapp.commands.execute(name);
+            }""",
+            [name, index],
+        )
+
+    @property
+    def cells(self):
+        notebook = 'JSON.stringify(jupyterapp.shell.currentWidget.content.model.toJSON())'
+        return nbformat.from_dict(json.loads(self.page.evaluate(notebook))).cells
+
+    def index(self, cell_id):
+        return [cell.id for cell in self.cells].index(cell_id)
+
+    def shown(self, cell_id):
+        """The cell, scrolled to."""
+        index = self.index(cell_id)
+        self.page.evaluate('i => jupyterapp.shell.currentWidget.content.scrollToItem(i)', index)
+        cell = self.page.locator(f'.jp-Notebook .jp-Cell[data-windowed-list-index="{index}"]')
+        cell.scroll_into_view_if_needed()
+        return cell
+
+    def type(self, cell_id, text):
+        """Replace a cell's text, as with the keyboard."""
+        self.shown(cell_id).locator('.cm-content').click()
+        self.page.keyboard.press('Control+A')
+        self.page.keyboard.insert_text(text)
+
+    def validate(self):
+        """Press nbgrader's button; return what its dialog says."""
+        self.page.get_by_role('button', name='Validate').click()
+        dialog = self.page.locator('.jp-Dialog', has_text='Validation Results')
+        said = dialog.inner_text()
+        dialog.get_by_role('button', name='Ok').click()
+        expect(dialog).to_have_count(0)
+        return ' '.join(said.split())
+
+
+def errors(cells):
+    return {
+        cell.id: re.sub(r'\x1b\[[\d;]*m', '', '\n'.join(output.traceback))
+        for cell in cells
+        for output in cell.get('outputs', [])
+        if output.output_type == 'error'
+    }
+
+
+def warnings(cells):
+    return [o for c in cells for o in c.get('outputs', []) if o.get('name') == 'stderr']
+
+
+@pytest.fixture(scope='module')
+def lab(tmp_path_factory):
+    lab = Lab(tmp_path_factory.mktemp('lab'))
+    try:
+        lab.wait_until_up()
+        yield lab
+    finally:
+        lab.stop()
+
+
+@pytest.fixture(scope='module')
+def chromium():
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=['--no-sandbox'])
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def opened(lab, chromium):
+    lessons = []
+
+    def open_lesson(name):
+        page = chromium.new_page(viewport={'width': 1200, 'height': 900})
+        lessons.append(Lesson(page, lab, name))
+        return lessons[-1]
+
+    yield open_lesson
+    for lesson in lessons:
+        lesson.close()
+
+
+@pytest.mark.parametrize(
+    ('name', 'pictures', 'exercise', 'first_error'),
+    [
+        ('02_joint_state', {'right_and_wrong': 2}, 'to_joint_state', 'radians'),
+        ('03_publisher', {'live': 1}, 'five_hz', 'five_hz-try'),
+    ],
+)
+def test_a_lesson_runs_to_its_exercise(opened, name, pictures, exercise, first_error):
+    lesson = opened(name)
+    lesson.command('notebook:run-all-cells')
+    cells = lesson.cells
+    assert list(errors(cells)) == [first_error]
+    assert warnings(cells) == []
+    before = cells[: lesson.index(exercise)]
+    assert [c.id for c in before if c.cell_type == 'code' and c.execution_count is None] == []
+    for cell_id, count in pictures.items():
+        images = lesson.shown(cell_id).locator('.jp-OutputArea img')
+        expect(images).to_have_count(count)
+        for image in images.all():
+            assert (
+                image.evaluate('async image => (await image.decode(), image.naturalWidth)') > 200
+            )
+
+
+def test_the_live_arm_moves(opened):
+    lesson = opened('03_publisher')
+    lesson.command('notebook:run-cell', lesson.index('imports'))
+    lesson.command('notebook:run-cell', lesson.index('live'))
+    assert errors(lesson.cells) == {}
+    image = lesson.shown('live').locator('.jp-OutputArea img')
+    for _ in range(2):  # the first change may be that of the stored picture
+        before = image.get_attribute('src')
+        expect(image).not_to_have_attribute('src', before)
+
+
+def test_validate_says_what_is_wrong_and_then_that_all_is_right(opened):
+    lesson = opened('02_joint_state')
+    lesson.type('to_joint_state', WRONG)
+    said = lesson.validate()
+    assert 'expected [0.5236, -1.5708] rad for (30.0, -90.0) degrees, saw [30.0, -90.0]' in said
+    assert said.count('The following cell failed') == 1
+    lesson.type('to_joint_state', RIGHT)
+    assert 'Success! Your notebook passes all the tests.' in lesson.validate()
+
+
+def test_an_answer_passes_where_it_is_written(opened):
+    lesson = opened('03_publisher')
+    answer = next(c for c in solution('03_publisher').cells if c.id == 'five_hz')
+    for cell_id in ['imports', 'listener', 'measure_hz']:
+        lesson.command('notebook:run-cell', lesson.index(cell_id))
+    lesson.type('five_hz', answer.source)
+    lesson.command('notebook:run-all-below', lesson.index('five_hz-reset'))
+    cells = lesson.cells
+    assert errors(cells) == {}
+    assert warnings(cells) == []
+    graded = [c for c in cells if c.metadata.get('nbgrader', {}).get('grade')]
+    assert all(cell.execution_count for cell in graded)
+
+
+def test_students_see_the_lessons_and_no_panel_of_instructors(opened):
+    page = opened('02_joint_state').page
+    assert page.get_by_role('button', name='Validate').is_visible()
+    for words in ['Nbgrader', 'Create Assignment', 'Jupyter news']:
+        expect(page.get_by_text(words)).to_have_count(0)
+
+
+def solution(name):
+    return nbformat.read(ROOT / 'solutions' / name / f'{name}.ipynb', as_version=4)
