@@ -6,7 +6,7 @@ sleep in case there are more.
 
 import time
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from my_robot_basics.ros2 import environment, participants
 
@@ -34,7 +34,7 @@ def settle(node: 'Node', wait: Callable[[float], None]) -> None:
     last = _look(node)
     while (now := time.monotonic()) < started + MOST_SEC:
         waited_enough = environment.hears_this_machine_only() or now >= started + NETWORK_SEC
-        quiet_sec = COMPLETE_SEC if _is_complete(node, last) else INCOMPLETE_SEC
+        quiet_sec = COMPLETE_SEC if last.is_complete() else INCOMPLETE_SEC
         if waited_enough and now >= changed + quiet_sec:
             return
         wait(POLL_SEC)
@@ -42,16 +42,29 @@ def settle(node: 'Node', wait: Callable[[float], None]) -> None:
             last, changed = look, time.monotonic()
 
 
-def _look(node: 'Node') -> tuple:
-    """The graph in a form to compare; its first item holds the names of all endpoints' nodes."""
+class _Look(NamedTuple):
+    """The graph in a form to compare."""
+
+    participants: int
+    """Those that have announced themselves to us."""
+    ends: list[tuple[str, bytes]]
+    """The name of its node, and the identifier, of each publisher and subscription."""
+    topics: list[tuple[str, list[str]]]
+    nodes: list[tuple[str, str]]
+
+    def is_complete(self) -> bool:
+        present = participants.count(environment.domain_id())
+        named = all(node_name != UNKNOWN for node_name, _ in self.ends)
+        return named and self.participants >= present
+
+
+def _look(node: 'Node') -> _Look:
     topics = node.get_topic_names_and_types()
     look_ups = node.get_publishers_info_by_topic, node.get_subscriptions_info_by_topic
     infos = [info for name, _ in topics for look_up in look_ups for info in look_up(name)]
-    ends = [(info.node_name, bytes(info.endpoint_gid)) for info in infos]
-    return ends, topics, node.get_node_names_and_namespaces()
-
-
-def _is_complete(node: 'Node', look: tuple) -> bool:
-    announced = node.get_publishers_info_by_topic(ANNOUNCEMENTS, no_mangle=True)
-    present = participants.count(environment.domain_id())
-    return len(announced) >= present and all(name != UNKNOWN for name, _ in look[0])
+    return _Look(
+        participants=len(node.get_publishers_info_by_topic(ANNOUNCEMENTS, no_mangle=True)),
+        ends=[(info.node_name, bytes(info.endpoint_gid)) for info in infos],
+        topics=topics,
+        nodes=node.get_node_names_and_namespaces(),
+    )
