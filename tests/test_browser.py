@@ -22,6 +22,7 @@ TOKEN = 'a-token-of-this-test'
 CHROMIUM = next(filter(None, map(shutil.which, ['chromium', 'chromium-browser'])), None)
 LONG = 120_000
 """Milliseconds: what a slow machine may need for anything here; nothing is judged by it."""
+expect.set_options(timeout=LONG)
 
 pytestmark = [
     pytest.mark.browser,

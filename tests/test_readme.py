@@ -1,0 +1,97 @@
+"""What the README says is so: its commands, lessons, links, examples and quoted words."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import nbformat
+import pytest
+from nbclient import NotebookClient
+from nbformat.v4 import new_code_cell, new_notebook
+
+ROOT = Path(__file__).parents[1]
+README = (ROOT / 'README.md').read_text()
+EXAMPLES = re.findall(r'^```python\n(.*?)^```', README, re.MULTILINE | re.DOTALL)
+LESSONS = re.findall(r'^\| \[(\d\d) (.+?)\]\((.+?)\) \| .+? \| (\d+) \|$', README, re.MULTILINE)
+LINKS = re.findall(r'\]\((?!https:)([^)#]+)\)|src="([^"]+)"', README)
+
+ONE_HZ = """
+import rclpy
+from rclpy.node import Node
+from sensor_msgs.msg import JointState
+from my_robot_basics.live import run
+
+node = run(Node, 'kinematics_publisher')
+publisher = node.create_publisher(JointState, '/kinematics/joint_states', 10)
+timer = node.create_timer(1.0, lambda: publisher.publish(JointState()))
+"""
+
+
+def test_every_command_is_a_verb():
+    usage = subprocess.run([ROOT / 'course', '--help'], capture_output=True, text=True).stdout
+    verbs = set(re.findall(r'^  (\w+)', usage, re.MULTILINE))
+    named = set(re.findall(r'\./course (\w+)', README))
+    assert named - verbs == set()
+    assert verbs - named == set()  # nothing that is there is kept from the reader
+
+
+def test_every_nbgrader_command_exists():
+    named = re.findall(r'`\.venv/bin/(\w+) (\w+)`(?:, `(\w+)`, `(\w+)`)?', README)
+    assert {program for program, *_ in named} == {'jupyter', 'nbgrader'}
+    assert all(Path(sys.prefix, 'bin', program).is_file() for program, *_ in named)
+    from nbgrader.apps.nbgraderapp import NbGraderApp
+
+    (commands,) = (words for program, *words in named if program == 'nbgrader')
+    assert set(commands) - set(NbGraderApp.subcommands) == set()
+
+
+def test_the_table_lists_the_lessons_that_there_are():
+    rows = {}
+    for path in sorted((ROOT / 'solutions').glob('*/*.ipynb')):
+        cells = nbformat.read(path, as_version=4).cells
+        points = sum(c.metadata.get('nbgrader', {}).get('points', 0) for c in cells)
+        title = cells[0].source.splitlines()[0].removeprefix('# ')
+        rows[f'notebooks/{path.parent.name}/{path.name}'] = (title, points)
+    assert rows
+    assert [link for _, _, link, _ in LESSONS] == list(rows)
+    for number, title, link, points in LESSONS:
+        assert Path(link).name.startswith(number)
+        written, worth = rows[link]
+        # the table may shorten what the lesson's title adds after a colon
+        assert re.fullmatch(rf'{int(number)} · {re.escape(title)}(: .+)?', written)
+        assert int(points) == worth
+
+
+@pytest.mark.parametrize('link', sorted({first or second for first, second in LINKS}))
+def test_links_and_pictures_lead_somewhere(link):
+    assert (ROOT / link).is_file()
+
+
+def test_what_lies_where_is_there():
+    rows = README.partition('## What lies where')[2].partition('\n## ')[0]
+    named = re.findall(r'`([^`]+)`', ' '.join(re.findall(r'^\| (`.+?) \|', rows, re.MULTILINE)))
+    assert len(named) > 5
+    assert [name for name in named if not (ROOT / name).exists()] == []
+
+
+def run_cells(*sources, allow_errors=False):
+    notebook = new_notebook(cells=[new_code_cell(source) for source in sources])
+    client = NotebookClient(notebook, timeout=60, kernel_name='python3', allow_errors=allow_errors)
+    client.execute()
+    return [[dict(output) for output in cell.outputs] for cell in notebook.cells]
+
+
+def test_the_first_example_shows_the_arm():
+    (outputs,) = run_cells(EXAMPLES[0])
+    assert any('image/png' in output.get('data', {}) for output in outputs)
+    assert [output for output in outputs if output.get('name') == 'stderr'] == []
+
+
+def test_the_check_of_the_example_says_the_words_that_are_quoted():
+    (quoted,) = re.findall(r'explains itself: \*(.+?)\*', README, re.DOTALL)
+    check = EXAMPLES[1].replace('60.0', '10.0')
+    assert check != EXAMPLES[1]
+    *_, failed = run_cells(ONE_HZ, check, allow_errors=True)
+    (error,) = (output for output in failed if output['output_type'] == 'error')
+    assert error['evalue'] == ' '.join(quoted.split())
