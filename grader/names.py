@@ -26,18 +26,17 @@ def names_of(source: str) -> Names:
     try:
         code = TransformerManager().transform_cell(source)
         table = symtable.symtable(code, 'cell', 'exec')
-        calls_star_import = any(
-            isinstance(node, ast.ImportFrom) and any(a.name == '*' for a in node.names)
-            for node in ast.walk(ast.parse(code))
-        )
+        nodes = list(ast.walk(ast.parse(code)))
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return Names()
     bound, read = set(), set()
     _collect(table, bound, read)
-    if calls_star_import:
+    if any(isinstance(n, ast.ImportFrom) and any(a.name == '*' for a in n.names) for n in nodes):
         read = set()  # what it needs can't be told
+    loop_names = _names_of_comprehensions_alone(nodes)
     return Names(
-        bound=frozenset(bound), needed=frozenset(read - bound - vars(builtins).keys() - _IPYTHON)
+        bound=frozenset(bound - loop_names),
+        needed=frozenset(read - bound - vars(builtins).keys() - _IPYTHON),
     )
 
 
@@ -65,3 +64,12 @@ def _collect(table: symtable.SymbolTable, bound: set[str], read: set[str]) -> No
             read.add(symbol.get_name())
     for child in table.get_children():
         _collect(child, bound, read)
+
+
+def _names_of_comprehensions_alone(nodes: list[ast.AST]) -> set[str]:
+    """Names that only comprehensions bind: from Python 3.12 on, symtable tells them as ours."""
+    targets = [n.target for n in nodes if isinstance(n, ast.comprehension)]
+    inside = {id(n) for target in targets for n in ast.walk(target)}
+    stored = [n for n in nodes if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)]
+    elsewhere = {n.id for n in stored if id(n) not in inside}
+    return {n.id for n in stored if id(n) in inside} - elsewhere

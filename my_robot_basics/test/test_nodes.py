@@ -47,6 +47,7 @@ class Peer:
 
 @pytest.fixture
 def stage(own_domain):
+    rclpy.try_shutdown()  # another module's nodes may have left it initialised
     rclpy.init()
     peer, executor = Peer(), SingleThreadedExecutor()
 
