@@ -14,7 +14,7 @@ import pytest
 PACKAGE = Path(__file__).parents[1]
 BIN = Path(sys.executable).parent
 NODES = {'hello_node', 'kinematics_node', 'kinematics_publisher', 'kinematics_subscriber'}
-EXECUTABLES = NODES | {'ros2'}
+EXECUTABLES = NODES | {'ros2', 'topic_doctor'}
 
 FOUND = """
 import os

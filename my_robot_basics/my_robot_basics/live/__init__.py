@@ -11,6 +11,7 @@ from my_robot_basics.live import classroom, domain
 
 if TYPE_CHECKING:
     from my_robot_basics.live.arm import show_arm
+    from my_robot_basics.live.doctor import why
     from my_robot_basics.live.exercise import reset, run_answer
     from my_robot_basics.live.follow import follow_arm
     from my_robot_basics.live.runner import run, stop
@@ -24,6 +25,7 @@ __all__ = [
     'run_answer',
     'show_arm',
     'stop',
+    'why',
 ]
 
 _MODULES = {
@@ -33,6 +35,7 @@ _MODULES = {
     'run_answer': 'exercise',
     'show_arm': 'arm',
     'follow_arm': 'follow',
+    'why': 'doctor',
 }
 
 

@@ -1,0 +1,5 @@
+"""Why is nothing arriving? Looks at the running graph and names faults, each with its mend.
+
+`looking` gathers the evidence, `rules` (one a file, one table) judge it, `report` and `picture`
+tell. `live.why` and the console script `topic_doctor` are the two ways in.
+"""

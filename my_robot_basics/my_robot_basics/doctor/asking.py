@@ -1,0 +1,52 @@
+"""Asks nodes a question that whoever is spun answers."""
+
+from rcl_interfaces.srv import GetParameters
+from rclpy.client import Client
+from rclpy.task import Future
+
+from my_robot_basics.checks.watcher import Watcher
+from my_robot_basics.doctor.evidence import NodeState
+
+READY_SEC = 1.0
+ANSWER_SEC = 3.0
+"""How long a node may take to answer, from the moment in which the answer is wanted."""
+
+
+class Questions:
+    """One question a node, for its use_sim_time: asked now, and answered in the background."""
+
+    UNASKED = NodeState(answers=None)
+
+    def __init__(self, watcher: Watcher, node_names: list[str]) -> None:
+        """Ask the nodes of these full names that have parameter services."""
+        self._watcher = watcher
+        services = dict(watcher.node.get_service_names_and_types())
+        clients: dict[str, Client] = {
+            name: watcher.node.create_client(GetParameters, f'{name}/get_parameters')
+            for name in node_names
+            if f'{name}/get_parameters' in services
+        }
+        watcher.spin_until(
+            lambda: all(client.service_is_ready() for client in clients.values()),
+            timeout_sec=READY_SEC,
+        )
+        self._asked: dict[str, Future] = {
+            name: client.call_async(GetParameters.Request(names=['use_sim_time']))
+            for name, client in clients.items()
+            if client.service_is_ready()
+        }
+
+    def answers(self) -> dict[str, NodeState]:
+        """What is known of each node that was asked, after a moment of patience."""
+        futures = self._asked.values()
+        self._watcher.spin_until(
+            lambda: all(future.done() for future in futures), timeout_sec=ANSWER_SEC
+        )
+        return {name: _state(future) for name, future in self._asked.items()}
+
+
+def _state(future: Future) -> NodeState:
+    if not future.done():
+        return NodeState(answers=False)
+    values = future.result().values
+    return NodeState(answers=True, use_sim_time=any(value.bool_value for value in values))

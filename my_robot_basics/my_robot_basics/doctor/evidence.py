@@ -1,0 +1,150 @@
+"""What the doctor has seen, and what a rule makes of it."""
+
+import itertools
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, Literal
+
+from rclpy.qos import QoSProfile
+
+LARGEST_PAUSE_SEC = 0.005
+"""Messages of one burst follow each other at least as fast as this …"""
+PART_OF_PERIOD = 0.25
+"""… and within this part of the mean time between two: a fast, steady flow is no burst."""
+
+Kind = Literal['publisher', 'subscription']
+
+
+@dataclass(frozen=True, kw_only=True)
+class Endpoint:
+    """One end of a topic, on one node."""
+
+    kind: Kind
+    node_name: str
+    """Full name, such as `/kinematics_publisher`."""
+    topic_name: str
+    type_name: str
+    """Such as `sensor_msgs/msg/JointState`."""
+    qos_profile: QoSProfile = field(compare=False)
+    """As the graph tells it: without queue depth and history, which DDS does not transmit."""
+    depth: int | None = None
+    """Length of its queue, known for nodes of this process alone."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Heard:
+    """One message that the doctor has heard."""
+
+    message: Any
+    sent_sec: float
+    """On the wall clock, since the epoch: DDS's source timestamp."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class NodeState:
+    """What a node answers through its parameter services."""
+
+    answers: bool | None
+    """Whether it answered; None where it has no such services, and nothing is known."""
+    use_sim_time: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class Remap:
+    """A rule with which a process of this machine was started, to call one name by another."""
+
+    command: str
+    """What starts the process without the rule, for a shell."""
+    name: str
+    instead: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Evidence:
+    """The graph around one topic, and what was heard on it."""
+
+    topic_name: str
+    endpoints: tuple[Endpoint, ...]
+    """Of all topics but ROS's own; those of hidden nodes are left out."""
+    nodes: dict[str, NodeState]
+    """Full names of all nodes that are not hidden."""
+    has_clock: bool = False
+    """Whether somebody publishes `/clock`."""
+    heard: tuple[Heard, ...] = ()
+    listened_sec: float = 0.0
+    began_sec: float = 0.0
+    """When the doctor began to listen, on the wall clock."""
+    remaps: tuple[Remap, ...] = ()
+    domain_id: int = 0
+    unheard: int = 0
+    """Participants of this domain on this machine that are not on the graph."""
+    elsewhere: dict[int, tuple[Endpoint, ...]] = field(default_factory=dict)
+    """Endpoints of the topic in other domains of this machine, where these were looked at."""
+
+    @cached_property
+    def publishers(self) -> tuple[Endpoint, ...]:
+        """Those of the topic."""
+        return self.ends('publisher')
+
+    @cached_property
+    def subscriptions(self) -> tuple[Endpoint, ...]:
+        """Those of the topic."""
+        return self.ends('subscription')
+
+    def ends(self, kind: Kind) -> tuple[Endpoint, ...]:
+        """The topic's publishers or its subscriptions."""
+        return tuple(
+            end for end in self.endpoints if (end.kind, end.topic_name) == (kind, self.topic_name)
+        )
+
+    def state(self, node_name: str) -> NodeState:
+        """What a node answered."""
+        return self.nodes.get(node_name, NodeState(answers=None))
+
+    @cached_property
+    def fresh(self) -> tuple[Heard, ...]:
+        """The messages that were sent while the doctor listened: not those kept for latecomers."""
+        return tuple(each for each in self.heard if each.sent_sec >= self.began_sec)
+
+    @property
+    def rate_hz(self) -> float:
+        """Messages per second by their source timestamps; 0 with fewer than two."""
+        times = [each.sent_sec for each in self.fresh]
+        return (len(times) - 1) / (times[-1] - times[0]) if len(set(times)) > 1 else 0.0
+
+    @property
+    def largest_burst(self) -> int:
+        """How many messages came in one go, at most."""
+        times = [each.sent_sec for each in self.fresh]
+        largest = length = min(1, len(times))
+        period_sec = self.listened_sec / max(1, len(times))
+        most_sec = min(LARGEST_PAUSE_SEC, PART_OF_PERIOD * period_sec)
+        for earlier, later in itertools.pairwise(times):
+            length = length + 1 if later - earlier <= most_sec else 1
+            largest = max(largest, length)
+        return largest
+
+
+@dataclass(frozen=True, kw_only=True)
+class Finding:
+    """One fault, in the words of a check: what was expected, what was seen, what to do."""
+
+    title: str
+    expected: str
+    seen: str
+    mend: str
+    """A sentence that says what to do."""
+    code: str = ''
+    """The line that mends it: Python in the node, or a command where it starts with `$ `."""
+    broken: tuple[Endpoint, ...] = ()
+    """Ends whose way to the topic, or from it, is broken."""
+    missing: Kind | None = None
+    """The end that nobody has."""
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """The evidence and what follows from it, the likeliest first; no finding: all is well."""
+
+    evidence: Evidence
+    findings: tuple[Finding, ...]

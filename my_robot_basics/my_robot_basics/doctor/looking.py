@@ -1,0 +1,164 @@
+"""Gathers the evidence: the graph, what nodes answer, what arrives, and what is next door."""
+
+import dataclasses
+import time
+from collections.abc import Iterator
+
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+
+from my_robot_basics.checks import graphs
+from my_robot_basics.checks.watcher import HIDDEN, Watcher
+from my_robot_basics.doctor import remaps, rules
+from my_robot_basics.doctor.asking import Questions
+from my_robot_basics.doctor.evidence import Diagnosis, Endpoint, Evidence, Heard, Kind
+from my_robot_basics.live import domain
+from my_robot_basics.live.neighbours import nodes_here
+from my_robot_basics.ros2 import participants
+from my_robot_basics.ros2.interfaces import message_class
+
+LISTEN_SEC = 6.0
+"""How long to wait for messages at most."""
+ENOUGH_MESSAGES, ENOUGH_SEC = 4, 2.0
+"""So many messages, in so long since the first of them, are a good look."""
+MISSING_SEC = 4.0
+"""How long to wait for participants that the operating system knows and the graph does not."""
+DEPTH = 5000
+"""Of the doctor's own queue: more messages than it can hear in one look."""
+ANNOUNCEMENTS = 'ros_discovery_info'
+"""DDS topic on which each ROS participant publishes the names of its nodes."""
+_PLUMBING = ('/clock', '/parameter_events', '/rosout')
+
+
+def diagnose(
+    topic_name: str,
+    *,
+    domain_id: int,
+    other_domains: bool = False,
+    listen_sec: float = LISTEN_SEC,
+) -> Diagnosis:
+    """Look at a topic (its full name) in a ROS domain, and judge what is seen there.
+
+    Listens until enough has arrived, at most `listen_sec` seconds. With `other_domains` the other
+    domains in use on this machine are looked at too, where an end is missing.
+    """
+    with Watcher(domain_id=domain_id) as watcher:
+        evidence = _look(watcher, topic_name, domain_id=domain_id, listen_sec=listen_sec)
+    if other_domains and not (evidence.publishers and evidence.subscriptions):
+        elsewhere = {
+            other: _look_into(other, topic_name)
+            for other in range(domain.LAST + 1)
+            if other != domain_id and participants.count(other)
+        }
+        evidence = dataclasses.replace(evidence, elsewhere=elsewhere)
+    return rules.judge(evidence)
+
+
+def _look(watcher: Watcher, topic_name: str, *, domain_id: int, listen_sec: float) -> Evidence:
+    graph = graphs.take(watcher)
+    if not (graph.publishers(topic_name) and graph.subscriptions(topic_name)):
+        # before anybody is called missing
+        watcher.spin_until(lambda: _unheard(watcher.node, domain_id) <= 0, timeout_sec=MISSING_SEC)
+        graph = graphs.take(watcher)
+    endpoints = tuple(_endpoints(watcher.node))
+    ends = {end.node_name for end in endpoints if end.topic_name == topic_name}
+    evidence = Evidence(
+        topic_name=topic_name,
+        endpoints=endpoints,
+        nodes={},
+        has_clock=bool(watcher.node.get_publishers_info_by_topic('/clock')),
+        remaps=remaps.of_this_machine(),
+        domain_id=domain_id,
+        unheard=_unheard(watcher.node, domain_id),
+    )
+    questions = Questions(watcher, sorted(ends))
+    if evidence.publishers:
+        evidence = _listen(watcher, evidence, listen_sec=listen_sec)
+    return dataclasses.replace(
+        evidence, nodes=dict.fromkeys(graph.nodes(), questions.UNASKED) | questions.answers()
+    )
+
+
+def _listen(watcher: Watcher, evidence: Evidence, *, listen_sec: float) -> Evidence:
+    """Subscribe in a way that every publisher's offer allows, and keep what arrives."""
+    type_ = message_class(evidence.publishers[0].type_name)
+    if type_ is None:
+        return evidence  # a package that is not installed here: nobody can listen in
+    heard: list[Heard] = []
+    offers = [end.qos_profile for end in evidence.publishers]
+    reliable = all(offer.reliability == ReliabilityPolicy.RELIABLE for offer in offers)
+    keeping = all(offer.durability == DurabilityPolicy.TRANSIENT_LOCAL for offer in offers)
+    qos_profile = QoSProfile(
+        depth=DEPTH,
+        reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL if keeping else DurabilityPolicy.VOLATILE,
+    )
+    began_sec, started = time.time(), time.monotonic()
+
+    def hear(message: object, info: dict) -> None:
+        heard.append(Heard(message=message, sent_sec=info['source_timestamp'] / 1e9))
+
+    def is_enough() -> bool:
+        fresh = [each for each in heard if each.sent_sec >= began_sec]
+        if len(fresh) < ENOUGH_MESSAGES:
+            return False
+        return time.time() - fresh[0].sent_sec >= ENOUGH_SEC
+
+    watcher.node.create_subscription(type_, evidence.topic_name, hear, qos_profile)
+    watcher.spin_until(is_enough, timeout_sec=listen_sec)
+    return dataclasses.replace(
+        evidence,
+        heard=tuple(sorted(heard, key=lambda each: each.sent_sec)),
+        listened_sec=time.monotonic() - started,
+        began_sec=began_sec,
+    )
+
+
+def _look_into(domain_id: int, topic_name: str) -> tuple[Endpoint, ...]:
+    """The endpoints of a topic in another domain."""
+    with Watcher(domain_id=domain_id) as watcher:
+        graphs.take(watcher)
+        return tuple(end for end in _endpoints(watcher.node) if end.topic_name == topic_name)
+
+
+def _endpoints(node: Node) -> Iterator[Endpoint]:
+    """All endpoints on the graph that are neither ROS's own nor those of hidden nodes."""
+    depths = _depths()
+    look_ups = {
+        'publisher': node.get_publishers_info_by_topic,
+        'subscription': node.get_subscriptions_info_by_topic,
+    }
+    for topic_name, _ in node.get_topic_names_and_types():
+        if topic_name in _PLUMBING:
+            continue
+        for kind, look_up in look_ups.items():
+            for info in look_up(topic_name):
+                if info.node_name.startswith(HIDDEN):
+                    continue
+                node_name = graphs.full_name(info)
+                yield Endpoint(
+                    kind=kind,
+                    node_name=node_name,
+                    topic_name=topic_name,
+                    type_name=info.topic_type,
+                    qos_profile=info.qos_profile,
+                    depth=depths.get((kind, node_name, topic_name)),
+                )
+
+
+def _depths() -> dict[tuple[Kind, str, str], int]:
+    """Depths of the queues in this process, the shortest where a node has several on a topic."""
+    found: dict = {}
+    for node in nodes_here():
+        name = node.get_fully_qualified_name()
+        for kind, ends in ('publisher', node.publishers), ('subscription', node.subscriptions):
+            for end in ends:
+                key = kind, name, end.topic_name
+                found[key] = min(end.qos_profile.depth, found.get(key, end.qos_profile.depth))
+    return found
+
+
+def _unheard(node: Node, domain_id: int) -> int:
+    """How many participants this machine has in the domain that are not on the graph."""
+    heard = node.get_publishers_info_by_topic(ANNOUNCEMENTS, no_mangle=True)
+    return participants.count(domain_id) - len(heard)

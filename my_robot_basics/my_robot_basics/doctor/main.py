@@ -1,0 +1,66 @@
+"""The console script `topic_doctor`."""
+
+import argparse
+import sys
+
+from my_robot_basics.doctor.names import full_topic_name
+from my_robot_basics.ros2 import environment
+from my_robot_basics.ros2.errors import CommandError
+
+WELL, FAULT, USAGE, INTERRUPTED = 0, 1, 2, 130
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Say why nothing arrives on a topic; 0: all is well, 1: a fault was named, 2: usage."""
+    parser = argparse.ArgumentParser(
+        'topic_doctor',
+        description='Says why no messages arrive on a topic, and what to do about it.',
+        epilog='Exit status: 0 when all is well, 1 when a fault was named, 2 on wrong usage.',
+    )
+    parser.add_argument('topic_name', help='for example /kinematics/joint_states')
+    parser.add_argument(
+        '--domains',
+        action='store_true',
+        help='look at the other ROS domains of this machine, too',
+    )
+    parser.add_argument(
+        '--seconds',
+        type=_seconds,
+        default=6.0,
+        help='how long to wait for messages at most (default: %(default)s)',
+    )
+    args = parser.parse_args(argv)
+    environment.enter()
+    try:
+        topic_name, domain_id = full_topic_name(args.topic_name), environment.domain_id()
+    except (ValueError, CommandError) as error:
+        parser.error(str(error))
+    try:
+        # rclpy takes its time, and `--help` needs none of it
+        from my_robot_basics.doctor.looking import diagnose
+        from my_robot_basics.doctor.report import tell
+
+        diagnosis = diagnose(
+            topic_name,
+            domain_id=domain_id,
+            other_domains=args.domains,
+            listen_sec=args.seconds,
+        )
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    print(tell(diagnosis))
+    return FAULT if diagnosis.findings else WELL
+
+
+def _seconds(text: str) -> float:
+    seconds = float(text)
+    if not 0.0 < seconds <= 3600.0:
+        raise ValueError
+    return seconds
+
+
+_seconds.__name__ = 'time in seconds'  # argparse: "invalid time in seconds value"
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,17 @@
+"""Topic names as people type them."""
+
+
+def full_topic_name(text: str) -> str:
+    """The full name, with its slash in front; raises ValueError for what can't be a name."""
+    from rclpy.exceptions import InvalidTopicNameException
+    from rclpy.validate_full_topic_name import validate_full_topic_name
+
+    name = text if text.startswith('/') else f'/{text}'
+    try:
+        validate_full_topic_name(name)
+    except InvalidTopicNameException as error:
+        reason = str(error).splitlines()[0].rstrip(':. ')
+        raise ValueError(
+            f'{text!r} is no topic name ({reason}): expected one such as /kinematics/joint_states'
+        ) from None
+    return name

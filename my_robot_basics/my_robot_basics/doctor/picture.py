@@ -1,0 +1,94 @@
+"""The graph around a topic as a picture, the broken edge marked."""
+
+import io
+
+from my_robot_basics.doctor.evidence import Diagnosis, Endpoint, Kind
+from my_robot_basics.doctor.report import summary
+
+# Okabe and Ito's colours are told apart by everyone; a broken edge is dashed and crossed, too
+WELL, BROKEN, TOPIC = '#0072b2', '#d55e00', '#f0f0f0'
+ROW = 0.9
+COLUMNS: dict[str, float] = {'publisher': 0.0, 'topic': 1.0, 'subscription': 2.0}
+
+
+def describe(diagnosis: Diagnosis) -> str:
+    """The picture in words, for those who can't see it."""
+    if not diagnosis.findings:
+        return f'graph of {diagnosis.evidence.topic_name}: {summary(diagnosis.evidence)}'
+    first = diagnosis.findings[0]
+    where = ', '.join(sorted({end.node_name for end in first.broken})) or f'no {first.missing}'
+    return (
+        f'graph of {diagnosis.evidence.topic_name}: {summary(diagnosis.evidence)};'
+        f' broken: {where} ({first.title})'
+    )
+
+
+def draw(diagnosis: Diagnosis) -> bytes:
+    """Publishers, the topic and subscriptions from left to right, as a PNG."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure  # takes a second
+
+    evidence = diagnosis.evidence
+    first = diagnosis.findings[0] if diagnosis.findings else None
+    columns: dict[Kind, list[Endpoint | None]] = {}
+    for kind in 'publisher', 'subscription':
+        there = evidence.ends(kind)
+        away = [
+            end for end in (first.broken if first else ()) if end.kind == kind and end not in there
+        ]
+        columns[kind] = [*there, *away]
+        if first and first.missing == kind and not away:
+            columns[kind].append(None)
+    rows = max(1, *map(len, columns.values()))
+    figure = Figure(figsize=(7.0, 1.2 + 0.8 * rows), dpi=80, layout='constrained')
+    axes = figure.add_subplot()
+    axes.set(xlim=(-0.5, 2.5), ylim=(-0.5 * ROW * rows - 0.2, 0.5 * ROW * rows + 0.2))
+    axes.set_axis_off()
+    axes.set_title(first.title if first else f'all is well: {evidence.rate_hz:.3g} Hz')
+    _box(axes, COLUMNS['topic'], 0.0, evidence.topic_name, style='round4', face=TOPIC)
+    for kind, ends in columns.items():
+        for row, end in enumerate(ends):
+            y = ROW * ((len(ends) - 1) / 2 - row)
+            is_broken = end is None or (first is not None and end in first.broken)
+            _edge(axes, kind, y, is_broken=is_broken)
+            _box(axes, COLUMNS[kind], y, _label(end, kind, evidence.topic_name), face='white')
+    buffer = io.BytesIO()
+    FigureCanvasAgg(figure).print_png(buffer)
+    return buffer.getvalue()
+
+
+def _label(end: Endpoint | None, kind: Kind, topic_name: str) -> str:
+    if end is None:
+        return f'no {kind}'
+    elsewhere = f'\n({end.topic_name})' if end.topic_name != topic_name else ''
+    return end.node_name + elsewhere
+
+
+def _box(axes: object, x: float, y: float, text: str, *, face: str, style: str = 'square') -> None:
+    axes.text(
+        *(x, y, text),
+        ha='center',
+        va='center',
+        fontsize=9,
+        zorder=3,
+        bbox={'boxstyle': f'{style},pad=0.5', 'facecolor': face, 'edgecolor': 'black'},
+    )
+
+
+def _edge(axes: object, kind: Kind, y: float, *, is_broken: bool) -> None:
+    """An arrow along the way of the messages, to the topic or from it."""
+    ends = [(COLUMNS[kind], y), (COLUMNS['topic'], 0.0)]
+    start, stop = ends if kind == 'publisher' else reversed(ends)
+    colour = BROKEN if is_broken else WELL
+    middle = [(a + b) / 2 for a, b in zip(*ends, strict=True)]
+    axes.plot(*zip(*ends, strict=True), color=colour, lw=2, ls='--' if is_broken else '-')
+    if is_broken:
+        axes.plot(*middle, 'X', color=colour, ms=14, zorder=4)
+        return
+    towards = [0.9 * m + 0.1 * b for m, b in zip(middle, stop, strict=True)]
+    axes.annotate(
+        '',
+        xy=towards,
+        xytext=[0.9 * m + 0.1 * a for m, a in zip(middle, start, strict=True)],
+        arrowprops={'arrowstyle': '-|>', 'color': colour, 'lw': 2, 'mutation_scale': 18},
+    )

@@ -1,0 +1,42 @@
+"""With which remapping rules the processes of this machine were started (`-r old:=new`)."""
+
+import shlex
+from collections.abc import Iterator
+from pathlib import Path
+
+from my_robot_basics.doctor.evidence import Remap
+
+PROCESSES = Path('/proc')
+
+
+def of_this_machine() -> tuple[Remap, ...]:
+    """The rules in the command lines that this user may read."""
+    return tuple(
+        remap
+        for folder in PROCESSES.iterdir()
+        if folder.name.isdigit()
+        for remap in of_command(_command_line(folder))
+    )
+
+
+def of_command(words: list[str]) -> Iterator[Remap]:
+    """The rules in one command line."""
+    if '--ros-args' not in words:
+        return
+    for i, word in enumerate(words[:-1]):
+        name, is_rule, instead = words[i + 1].partition(':=')
+        if word in ('-r', '--remap') and is_rule:
+            rest = [*words[:i], *words[i + 2 :]]
+            yield Remap(command=shlex.join(rest), name=_slash(name), instead=_slash(instead))
+
+
+def _slash(name: str) -> str:
+    return name if name.startswith('/') else f'/{name}'
+
+
+def _command_line(folder: Path) -> list[str]:
+    try:
+        text = (folder / 'cmdline').read_text(encoding='utf-8', errors='replace')
+    except OSError:
+        return []  # it has ended just now
+    return [word for word in text.split('\0') if word]

@@ -1,0 +1,56 @@
+"""A diagnosis in words for a beginner."""
+
+from my_robot_basics.doctor.evidence import Diagnosis, Evidence, Finding
+
+
+def tell(diagnosis: Diagnosis) -> str:
+    """The whole answer: one paragraph a fault, the likeliest first, or that all is well."""
+    evidence = diagnosis.evidence
+    if not diagnosis.findings:
+        return f'All is well on {evidence.topic_name}: {summary(evidence)}.'
+    many = len(diagnosis.findings) > 1
+    lines = [
+        f'Something is wrong on {evidence.topic_name}'
+        f'{", the likeliest first" if many else ""}: {summary(evidence)}.'
+    ]
+    lines += [_paragraph(i, finding) for i, finding in enumerate(diagnosis.findings, start=1)]
+    return '\n\n'.join(lines)
+
+
+def summary(evidence: Evidence) -> str:
+    """Who is there, and what was heard: one clause."""
+    senders = _names(evidence, 'publisher', 'publishes', 'publish')
+    listeners = _names(evidence, 'subscription', 'subscribes', 'subscribe')
+    return f'{senders}, {listeners}{_heard(evidence)}'
+
+
+def _heard(evidence: Evidence) -> str:
+    if not evidence.listened_sec:
+        return ''
+    number = len(evidence.fresh)
+    if evidence.rate_hz:
+        return f', {evidence.rate_hz:.3g} Hz ({number} messages in {evidence.listened_sec:.1f} s)'
+    if number:
+        return f', 1 message in {evidence.listened_sec:.1f} s'
+    kept = len(evidence.heard)
+    latched = f' ({kept} kept from before)' if kept else ''
+    return f', no new message in {evidence.listened_sec:.1f} s{latched}'
+
+
+def _names(evidence: Evidence, kind: str, verb: str, plural: str) -> str:
+    names = sorted({end.node_name for end in evidence.ends(kind)})
+    if not names:
+        return f'nobody {verb}'
+    return f'{" and ".join(names)} {verb if len(names) == 1 else plural}'
+
+
+def _paragraph(number: int, finding: Finding) -> str:
+    lines = [
+        f'{number}. {finding.title}',
+        f'   expected  {finding.expected}',
+        f'   saw       {finding.seen}',
+        f'   to do     {finding.mend}{":" if finding.code else ""}',
+    ]
+    if finding.code:
+        lines.append(f'                 {finding.code}')
+    return '\n'.join(lines)

@@ -1,0 +1,22 @@
+"""A process of this domain runs on this machine, and is not on the graph."""
+
+from collections.abc import Iterator
+
+from my_robot_basics.doctor.evidence import Evidence, Finding
+
+
+def examine(evidence: Evidence) -> Iterator[Finding]:
+    """Suspect the discovery range where an end is missing and somebody can't be heard."""
+    missing = next((k for k in ('publisher', 'subscription') if not evidence.ends(k)), None)
+    if missing is None or evidence.unheard <= 0:
+        return
+    many = evidence.unheard > 1
+    yield Finding(
+        title='a process that is out of reach',
+        expected=f'every process of ROS domain {evidence.domain_id} on this machine to be heard',
+        seen=f'{evidence.unheard} {"are" if many else "is"} running in it and not on the graph:'
+        f' {"their" if many else "its"} discovery range may be OFF',
+        mend='start that node again in a terminal in which this was said',
+        code='$ export ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST',
+        missing=missing,
+    )

@@ -1,0 +1,38 @@
+"""What was published before a subscription joined was not kept for it."""
+
+from collections.abc import Iterator
+
+from rclpy.qos import DurabilityPolicy
+
+from my_robot_basics.doctor import code
+from my_robot_basics.doctor.evidence import Evidence, Finding
+
+
+def examine(evidence: Evidence) -> Iterator[Finding]:
+    """Name VOLATILE subscriptions to a topic on which all was said before the doctor came."""
+    if evidence.fresh or not evidence.heard:
+        return
+    ago_sec = evidence.began_sec - evidence.heard[-1].sent_sec
+    for subscription in evidence.subscriptions:
+        if subscription.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL:
+            continue
+        wanted = (
+            'QoSProfile(depth=10, reliability=ReliabilityPolicy.'
+            f'{subscription.qos_profile.reliability.name},'
+            ' durability=DurabilityPolicy.TRANSIENT_LOCAL)'
+        )
+        yield Finding(
+            title='joined too late',
+            expected=f'{subscription.node_name} to ask for what was said before it came'
+            ' (durability TRANSIENT_LOCAL)',
+            seen='it asks for VOLATILE, and the last message was sent'
+            f' {ago_sec:.1f} s before the doctor came',
+            mend=f'ask for the kept messages in {subscription.node_name}',
+            code=code.create(
+                'subscription',
+                type_name=subscription.type_name,
+                topic_name=evidence.topic_name,
+                qos_profile=wanted,
+            ),
+            broken=(subscription,),
+        )

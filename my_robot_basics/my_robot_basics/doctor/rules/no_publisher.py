@@ -1,0 +1,24 @@
+"""Nobody publishes on the topic."""
+
+from collections.abc import Iterator
+
+from my_robot_basics.doctor import code
+from my_robot_basics.doctor.evidence import Evidence, Finding
+
+
+def examine(evidence: Evidence) -> Iterator[Finding]:
+    """Say who runs instead."""
+    if evidence.publishers:
+        return
+    running = ', '.join(evidence.nodes)
+    types = [end.type_name for end in evidence.subscriptions]
+    yield Finding(
+        title='no publisher',
+        expected=f'a publisher on {evidence.topic_name}',
+        seen=f'none; running: {running}' if running else 'none, and no node is running',
+        mend='start the node that publishes there, and see that its constructor has this line',
+        code=code.create(
+            'publisher', type_name=(types or [''])[0], topic_name=evidence.topic_name
+        ),
+        missing='publisher',
+    )

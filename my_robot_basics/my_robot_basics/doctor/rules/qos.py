@@ -1,0 +1,90 @@
+"""One end asks for more than the other end offers."""
+
+from collections.abc import Iterator
+
+from rclpy.qos import (
+    DurabilityPolicy,
+    LivelinessPolicy,
+    QoSProfile,
+    ReliabilityPolicy,
+)
+
+from my_robot_basics.doctor import code
+from my_robot_basics.doctor.evidence import Evidence, Finding
+
+
+def examine(evidence: Evidence) -> Iterator[Finding]:
+    """Name each pair of ends that does not match, the policies, and the subscription's mend."""
+    for subscription in evidence.subscriptions:
+        for publisher in evidence.publishers:
+            if publisher.type_name != subscription.type_name:
+                continue
+            offered, asked = publisher.qos_profile, subscription.qos_profile
+            gaps = incompatible(offered, asked)
+            if not gaps:
+                continue
+            names = ' and '.join(gaps)
+            yield Finding(
+                title=f'QoS incompatible: {names}',
+                expected=f'{publisher.node_name} to offer what {subscription.node_name} asks for',
+                seen='; '.join(
+                    f'{policy}: {publisher.node_name} offers {has}, {subscription.node_name}'
+                    f' asks for {wants}'
+                    for policy, (has, wants) in gaps.items()
+                ),
+                mend=f'ask for no more than is offered, in {subscription.node_name}',
+                code=code.create(
+                    'subscription',
+                    type_name=subscription.type_name,
+                    topic_name=evidence.topic_name,
+                    qos_profile=_modest(offered, asked),
+                ),
+                broken=(subscription,),
+            )
+
+
+def incompatible(offered: QoSProfile, asked: QoSProfile) -> dict[str, tuple[str, str]]:
+    """Each policy of which less is offered than asked for, with both values in words."""
+    gaps = {}
+    if (
+        offered.reliability == ReliabilityPolicy.BEST_EFFORT
+        and asked.reliability == ReliabilityPolicy.RELIABLE
+    ):
+        gaps['RELIABILITY'] = ('BEST_EFFORT', 'RELIABLE')
+    if (
+        offered.durability == DurabilityPolicy.VOLATILE
+        and asked.durability == DurabilityPolicy.TRANSIENT_LOCAL
+    ):
+        gaps['DURABILITY'] = ('VOLATILE', 'TRANSIENT_LOCAL')
+    if offered.deadline > asked.deadline:
+        gaps['DEADLINE'] = (_sec(offered.deadline), _sec(asked.deadline))
+    if (
+        offered.liveliness == LivelinessPolicy.AUTOMATIC
+        and asked.liveliness == LivelinessPolicy.MANUAL_BY_TOPIC
+    ):
+        gaps['LIVELINESS'] = ('AUTOMATIC', 'MANUAL_BY_TOPIC')
+    if offered.liveliness_lease_duration > asked.liveliness_lease_duration:
+        gaps['LIVELINESS LEASE'] = (
+            _sec(offered.liveliness_lease_duration),
+            _sec(asked.liveliness_lease_duration),
+        )
+    return gaps
+
+
+def _modest(offered: QoSProfile, asked: QoSProfile) -> str:
+    """A profile in Python that the offer satisfies, and no more modest than need be."""
+    gaps = incompatible(offered, asked)
+    reliable = asked.reliability == ReliabilityPolicy.RELIABLE and 'RELIABILITY' not in gaps
+    parts = ['depth=10', f'reliability=ReliabilityPolicy.{_RELIABILITY[reliable]}']
+    if asked.durability == DurabilityPolicy.TRANSIENT_LOCAL and 'DURABILITY' not in gaps:
+        parts.append('durability=DurabilityPolicy.TRANSIENT_LOCAL')
+    # what is left out of these is the least that can be asked for
+    return f'QoSProfile({", ".join(parts)})'
+
+
+_RELIABILITY = {True: 'RELIABLE', False: 'BEST_EFFORT'}
+
+
+def _sec(duration: object) -> str:
+    seconds = duration.nanoseconds / 1e9
+    return 'none' if seconds > 1e8 else f'{seconds:g} s'

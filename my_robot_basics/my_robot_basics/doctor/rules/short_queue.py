@@ -1,0 +1,45 @@
+"""Messages come in bursts that are longer than a queue."""
+
+import itertools
+from collections.abc import Iterator
+
+from my_robot_basics.doctor import code
+from my_robot_basics.doctor.evidence import Evidence, Finding
+
+FEWEST = 5
+"""Fewer at once are no burst; so are two of each publisher, whose timers fire together."""
+
+
+def examine(evidence: Evidence) -> Iterator[Finding]:
+    """Name queues that are shorter than a burst, of nodes whose queues are known."""
+    burst = evidence.largest_burst
+    if burst < FEWEST or burst <= 2 * len(evidence.publishers):
+        return
+    depth = _round(burst)
+    for end in evidence.publishers + evidence.subscriptions:
+        if not end.depth or end.depth >= burst:
+            continue
+        yield Finding(
+            title='messages lost to a short queue',
+            expected=f'a queue of {burst} messages in {end.node_name}, for {burst} come at once',
+            seen=f'its {end.kind} has depth {end.depth}: while it is busy, a new message pushes'
+            ' the oldest out, also when RELIABLE',
+            mend=f'make the queue of the {end.kind} in {end.node_name} as long as a burst',
+            code=code.create(
+                end.kind,
+                type_name=end.type_name,
+                topic_name=evidence.topic_name,
+                qos_profile=str(depth),
+            ),
+            broken=(end,),
+        )
+
+
+def _round(burst: int) -> int:
+    """The next number of 10, 20, 50, 100, …: the next burst may be a little longer."""
+    return next(
+        step * 10**power
+        for power in itertools.count(1)
+        for step in (1, 2, 5)
+        if step * 10**power >= burst
+    )

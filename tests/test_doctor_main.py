@@ -1,0 +1,108 @@
+"""The two ways to ask: the console script with its exit status, and `live.why` in a notebook."""
+
+import subprocess
+import sys
+
+import pytest
+from jupyter_client.manager import start_new_kernel
+from my_robot_basics.doctor.main import main
+from my_robot_basics.live import run, stop, why
+from my_robot_basics.live.doctor import NoTopicName
+from nodes.patient import LISTENER, TALKER, TOPIC, node_class
+
+
+@pytest.fixture
+def _talker():
+    run(node_class(TALKER))
+    yield
+    stop()
+
+
+@pytest.mark.usefixtures('_talker')
+def test_a_fault_and_then_all_is_well(capfd):
+    assert main([TOPIC]) == 1
+    out, err = capfd.readouterr()
+    assert out.startswith(f'Something is wrong on {TOPIC}: /talker publishes, nobody subscribes')
+    assert '1. no subscription' in out
+    run(node_class(LISTENER))
+    assert main([TOPIC.removeprefix('/')]) == 0
+    well, more = capfd.readouterr()
+    assert well.startswith(f'All is well on {TOPIC}: /talker publishes, /listener subscribes, ')
+    assert err == more == ''
+
+
+@pytest.mark.parametrize(
+    ('words', 'complaint'),
+    [
+        ([], 'the following arguments are required: topic_name'),
+        (['/a b'], "'/a b' is no topic name"),
+        ([''], "'' is no topic name"),
+        (['/a//b'], "'/a//b' is no topic name"),
+        ([TOPIC, '--seconds', 'x'], "invalid time in seconds value: 'x'"),
+        ([TOPIC, '--seconds', '-1'], "invalid time in seconds value: '-1'"),
+        ([TOPIC, '--seconds', 'nan'], "invalid time in seconds value: 'nan'"),
+    ],
+)
+def test_wrong_usage(capsys, words, complaint):
+    with pytest.raises(SystemExit) as stopped:
+        main(words)
+    assert stopped.value.code == 2
+    assert complaint in capsys.readouterr().err
+
+
+def test_a_domain_that_cannot_be(monkeypatch, capsys):
+    monkeypatch.setenv('ROS_DOMAIN_ID', 'mine')
+    with pytest.raises(SystemExit) as stopped:
+        main([TOPIC])
+    assert stopped.value.code == 2
+    assert "ROS_DOMAIN_ID is 'mine'" in capsys.readouterr().err
+
+
+def test_help_needs_no_ros():
+    program = (
+        'import sys; from my_robot_basics.doctor.main import main\n'
+        'try: main(["--help"])\n'
+        'finally: print("rclpy" in sys.modules)'
+    )
+    done = subprocess.run(
+        [sys.executable, '-c', program], capture_output=True, text=True, check=True
+    )
+    assert done.stdout.splitlines()[-1] == 'False'
+
+
+def test_a_notebook_asks_for_a_topic_with_an_impossible_name():
+    with pytest.raises(NoTopicName, match='is no topic name'):
+        why('/joint states')
+
+
+@pytest.fixture
+def cell():
+    """Run a cell in a notebook's kernel, and return its outputs."""
+    manager, client = start_new_kernel()
+
+    def run_cell(code):
+        outputs = []
+        client.execute_interactive(
+            code, timeout=60, output_hook=lambda message: outputs.append(message)
+        )
+        return [m['content'] for m in outputs if m['msg_type'] in WANTED]
+
+    yield run_cell
+    client.stop_channels()
+    manager.shutdown_kernel()
+
+
+WANTED = ('stream', 'display_data', 'error')
+
+
+def test_a_notebook_shows_the_answer_and_a_picture_as_often_as_it_is_asked(cell):
+    ask = f"from my_robot_basics import live\nlive.why('{TOPIC}')"
+    for _ in range(2):
+        said, shown = cell(ask)
+        assert said['name'] == 'stdout'
+        assert '1. no publisher' in said['text']
+        assert shown['data']['image/png']
+        assert shown['metadata']['image/png']['alt'] == shown['data']['text/plain']
+        assert 'broken: no publisher' in shown['data']['text/plain']
+    (error,) = cell("live.why('a b')")
+    assert ' '.join(error['traceback']).startswith("NoTopicName: 'a b' is no topic name (")

@@ -1,0 +1,266 @@
+"""What a rule says of evidence, without a graph; and the QoS rule against what really arrives."""
+
+import dataclasses
+import time
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from my_robot_basics.checks.watcher import Watcher
+from my_robot_basics.doctor import picture, report
+from my_robot_basics.doctor.evidence import Endpoint, Evidence, Heard, NodeState
+from my_robot_basics.doctor.remaps import of_command
+from my_robot_basics.doctor.rules import RULES, judge, qos
+from my_robot_basics.live import classroom
+from rclpy.duration import Duration
+from rclpy.qos import DurabilityPolicy, LivelinessPolicy, QoSProfile, ReliabilityPolicy
+from sensor_msgs.msg import JointState
+from std_msgs.msg import String
+
+TOPIC = '/kinematics/joint_states'
+PROFILES = st.fixed_dictionaries(
+    {
+        'depth': st.integers(1, 20),
+        'reliability': st.sampled_from(
+            [ReliabilityPolicy.RELIABLE, ReliabilityPolicy.BEST_EFFORT]
+        ),
+        'durability': st.sampled_from(
+            [DurabilityPolicy.VOLATILE, DurabilityPolicy.TRANSIENT_LOCAL]
+        ),
+        'liveliness': st.sampled_from(
+            [LivelinessPolicy.AUTOMATIC, LivelinessPolicy.MANUAL_BY_TOPIC]
+        ),
+    },
+    optional={
+        'deadline': st.sampled_from([Duration(seconds=1), Duration(seconds=60)]),
+        'liveliness_lease_duration': st.sampled_from([Duration(seconds=1), Duration(seconds=60)]),
+    },
+)
+
+
+@pytest.fixture(scope='module')
+def both_ends():
+    classroom.enter()
+    with Watcher() as sender, Watcher() as receiver:
+        yield sender, receiver
+
+
+@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(offered=PROFILES, asked=PROFILES)
+def test_the_diagnosis_agrees_with_what_arrives(both_ends, offered, asked):
+    sender, receiver = both_ends
+    heard = []
+    publisher = sender.node.create_publisher(String, '/qos', QoSProfile(**offered))
+    subscription = receiver.node.create_subscription(
+        String, '/qos', heard.append, QoSProfile(**asked)
+    )
+    look_ups = (
+        receiver.node.get_publishers_info_by_topic,
+        receiver.node.get_subscriptions_info_by_topic,
+    )
+    try:
+        assert receiver.spin_until(
+            lambda: all(len(look_up('/qos')) == 1 for look_up in look_ups), timeout_sec=10.0
+        )
+        (offer,), (wish,) = (look_up('/qos') for look_up in look_ups)
+        gaps = qos.incompatible(offer.qos_profile, wish.qos_profile)
+
+        def arrives():
+            publisher.publish(String())
+            return bool(heard)
+
+        # a pair that matches does so within milliseconds
+        assert receiver.spin_until(arrives, timeout_sec=0.3 if gaps else 10.0) is not bool(gaps)
+        assert (publisher.get_subscription_count() == 0) == bool(gaps)
+    finally:
+        sender.node.destroy_publisher(publisher)
+        receiver.node.destroy_subscription(subscription)
+        receiver.spin_until(
+            lambda: not any(look_up('/qos') for look_up in look_ups), timeout_sec=10.0
+        )
+
+
+@given(offered=PROFILES, asked=PROFILES)
+def test_the_mend_of_any_profile_is_content_with_the_offer(offered, asked):
+    given_, wanted = infinite(QoSProfile(**offered)), infinite(QoSProfile(**asked))
+    gaps = qos.incompatible(given_, wanted)
+    if gaps:
+        mended = eval(qos._modest(given_, wanted), {**globals()})
+        assert qos.incompatible(given_, infinite(mended)) == {}
+
+
+def infinite(profile):
+    """As the graph tells it: a duration that was left out has no end."""
+    for name in 'deadline', 'liveliness_lease_duration':
+        if getattr(profile, name).nanoseconds == 0:
+            setattr(profile, name, Duration(nanoseconds=2**63 - 1))
+    return profile
+
+
+def end(kind, node_name, *, topic_name=TOPIC, type_name='sensor_msgs/msg/JointState', depth=None):
+    return Endpoint(
+        kind=kind,
+        node_name=node_name,
+        topic_name=topic_name,
+        type_name=type_name,
+        qos_profile=infinite(QoSProfile(depth=depth or 10)),
+        depth=depth,
+    )
+
+
+def healthy(*, rate_hz=5.0, number=10, position=(0.4, -1.1), names=('joint1', 'joint2')):
+    began_sec = time.time()
+    heard = []
+    for i in range(number):
+        message = JointState(name=list(names), position=list(position))
+        sent_sec = began_sec + i / rate_hz
+        message.header.stamp.sec = int(sent_sec)
+        message.header.stamp.nanosec = int(sent_sec % 1 * 1e9)
+        heard.append(Heard(message=message, sent_sec=sent_sec))
+    return Evidence(
+        topic_name=TOPIC,
+        endpoints=(end('publisher', '/talker'), end('subscription', '/listener')),
+        nodes={'/talker': NodeState(answers=True), '/listener': NodeState(answers=True)},
+        heard=tuple(heard),
+        listened_sec=number / rate_hz,
+        began_sec=began_sec,
+    )
+
+
+@pytest.mark.parametrize(
+    'evidence',
+    [
+        healthy(),
+        healthy(rate_hz=900.0, number=2000),
+        healthy(number=1),
+        healthy(rate_hz=0.3, number=2),
+        healthy(position=(50.0, 3.0), names=('left_wheel', 'arm')),
+        healthy(position=(5e5, 3.0)),
+        healthy(position=(float('nan'), float('inf'))),
+    ],
+)
+def test_a_healthy_topic_is_not_accused(evidence):
+    assert judge(evidence).findings == ()
+
+
+def replaced(evidence=None, **changes):
+    return dataclasses.replace(evidence or healthy(), **changes)
+
+
+TALKER, LISTENER = healthy().endpoints
+SILENT = {'heard': (), 'listened_sec': 6.0}
+
+
+@pytest.mark.parametrize(
+    ('evidence', 'titles'),
+    [
+        (replaced(endpoints=(), heard=(), nodes={}), ['no publisher', 'no subscription']),
+        (replaced(endpoints=(TALKER,)), ['no subscription']),
+        (replaced(**SILENT), ['the timer never fires']),
+        (
+            replaced(endpoints=(LISTENER,), unheard=1, **SILENT),
+            ['a process that is out of reach', 'no publisher'],
+        ),
+        (replaced(unheard=1), []),
+        (
+            replaced(endpoints=(LISTENER,), elsewhere={7: (TALKER,)}, **SILENT),
+            ['another domain ID', 'no publisher'],
+        ),
+        (
+            replaced(endpoints=(end('publisher', '/talker', topic_name='/joint_states'),)),
+            ['a similar name: the namespace differs', 'no publisher', 'no subscription'],
+        ),
+        (
+            replaced(nodes={'/listener': NodeState(answers=False)}),
+            ['nobody spins the node'],
+        ),
+        (replaced(nodes={'/talker': NodeState(answers=False)}), []),
+        (
+            replaced(nodes={'/talker': NodeState(answers=False)}, **SILENT),
+            ['nobody spins the node'],
+        ),
+        (
+            replaced(nodes={'/talker': NodeState(answers=True, use_sim_time=True)}, **SILENT),
+            ['use_sim_time without a /clock'],
+        ),
+        (
+            replaced(
+                nodes={'/talker': NodeState(answers=True, use_sim_time=True)},
+                has_clock=True,
+                **SILENT,
+            ),
+            ['the timer never fires'],
+        ),
+    ],
+)
+def test_what_follows_from_what_was_seen(evidence, titles):
+    assert [finding.title for finding in judge(evidence).findings] == titles
+
+
+def test_the_waiting_one_of_two_similar_names_is_meant():
+    met = '/kinematics/joint_statez'
+    ends = (
+        LISTENER,
+        end('publisher', '/busy', topic_name=met),
+        end('subscription', '/its_listener', topic_name=met),
+        end('publisher', '/lonely', topic_name='/kinematics/joint_stats'),
+    )
+    first = judge(replaced(endpoints=ends, **SILENT)).findings[0]
+    assert first.broken[0].node_name == '/lonely'
+
+
+def test_a_misspelt_question_is_answered_with_the_right_one():
+    asked = replaced(topic_name='/kinematic/joint_state', **SILENT)
+    first = judge(asked).findings[0]
+    assert first.code == f'$ topic_doctor {TOPIC}'
+
+
+def test_every_rule_can_be_silent_and_is_in_the_table():
+    from importlib import resources
+
+    folder = resources.files('my_robot_basics.doctor.rules')
+    files = {f.name.removesuffix('.py') for f in folder.iterdir() if f.name.endswith('.py')}
+    tabled = {rule.__module__.rpartition('.')[2] for rule in RULES}
+    assert tabled == files - {'__init__'}
+
+
+@pytest.mark.parametrize(
+    ('words', 'rules'),
+    [
+        (['node', '--ros-args', '-r', 'a:=/b'], [('node --ros-args', '/a', '/b')]),
+        (['node', '-r', '/a:=/b'], []),
+        (['node', '--ros-args', '-p', 'x:=1'], []),
+        (['node', '--ros-args', '-r'], []),
+    ],
+)
+def test_remapping_rules_are_read_from_command_lines(words, rules):
+    found = of_command(words)
+    assert [(remap.command, remap.name, remap.instead) for remap in found] == rules
+
+
+def test_the_report_names_rate_and_faults_in_order():
+    assert report.tell(judge(healthy())) == (
+        f'All is well on {TOPIC}: /talker publishes, /listener subscribes,'
+        ' 5 Hz (10 messages in 2.0 s).'
+    )
+    lines = report.tell(judge(replaced(endpoints=(LISTENER,), **SILENT))).splitlines()
+    assert [line[:12].strip() for line in lines[2:6]] == [
+        '1. no publis',
+        'expected',
+        'saw',
+        'to do',
+    ]
+
+
+@pytest.mark.parametrize(
+    ('evidence', 'text'),
+    [
+        (healthy(), '/talker publishes, /listener subscribes, 5 Hz'),
+        (replaced(endpoints=(), heard=(), nodes={}), 'broken: no publisher (no publisher)'),
+        (replaced(**SILENT), 'broken: /talker (the timer never fires)'),
+    ],
+)
+def test_the_picture_says_in_words_what_it_shows(evidence, text):
+    diagnosis = judge(evidence)
+    assert text in picture.describe(diagnosis)
+    assert picture.draw(diagnosis).startswith(b'\x89PNG')
