@@ -10,6 +10,7 @@ from nbformat import NotebookNode
 
 MAX_OUTPUT_CHARACTERS = 200_000
 """What is kept of one cell's output; the rest is drained and counted."""
+MAX_ALT_CHARACTERS = 500
 MAX_ERROR_CHARACTERS = 10_000
 
 _OVERHEAD = 100
@@ -125,8 +126,8 @@ def _output(kind: str, content: dict) -> NotebookNode | None:
             return nbformat.v4.new_output('stream', name=name, text=_clean(text))
         case 'display_data' | 'execute_result', {'data': dict(data)}:
             data = {mime: _clean(text) for mime, text in data.items() if isinstance(text, str)}
-            sizes = _sizes(content.get('metadata'))
-            return nbformat.v4.new_output(kind, data=data, metadata=sizes)
+            about = _about_pictures(content.get('metadata'))
+            return nbformat.v4.new_output(kind, data=data, metadata=about)
         case 'error', {'ename': str(name), 'evalue': str(value), 'traceback': list(lines)}:
             return nbformat.v4.new_output(
                 'error',
@@ -137,12 +138,14 @@ def _output(kind: str, content: dict) -> NotebookNode | None:
     return None
 
 
-def _sizes(metadata: object) -> dict[str, dict[str, int]]:
-    """Keep the width and height (pixels) of pictures, by MIME type."""
+def _about_pictures(metadata: object) -> dict[str, dict[str, int | str]]:
+    """Keep the width and height (pixels) of pictures and their text alternative, by MIME type."""
     kept = {}
     for mime, about in metadata.items() if isinstance(metadata, dict) else ():
         if isinstance(about, dict):
             kept[mime] = {k: about[k] for k in ('width', 'height') if type(about.get(k)) is int}
+            if isinstance(about.get('alt'), str):
+                kept[mime]['alt'] = _clean(about['alt'])[:MAX_ALT_CHARACTERS]
     return kept
 
 

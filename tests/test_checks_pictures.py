@@ -26,11 +26,13 @@ def test_arrivals(clock, hz, times):
 )
 def test_one_picture_is_shown_with_the_sentence(monkeypatch, assertion, arguments):
     shown = []
-    monkeypatch.setattr(errors, 'show', shown.append)
+    monkeypatch.setattr(errors, 'show', lambda picture, *, alt: shown.append((picture, alt)))
     made = recording(message=lambda time: joint_state(time, position=[23.4, -40.0]))
     with pytest.raises(CheckFailed):
         getattr(made, assertion)(**arguments)
-    assert [picture.startswith(PNG) for picture in shown] == [True]
+    [(picture, alt)] = shown
+    assert picture.startswith(PNG)
+    assert alt.startswith('Picture of what was seen: ')
 
 
 def test_an_arm_with_more_joints_has_no_picture():
@@ -39,8 +41,8 @@ def test_an_arm_with_more_joints_has_no_picture():
 
 def test_show_displays_in_a_notebook(monkeypatch, capsys):
     InteractiveShell.instance()
-    errors.show(pictures.arrivals(recording(), hz=5.0))
+    errors.show(pictures.arrivals(recording(), hz=5.0), alt='five')
     InteractiveShell.clear_instance()
     assert 'Image' in capsys.readouterr().out
-    errors.show(b'no notebook, no picture')
+    errors.show(b'no notebook, no picture', alt='')
     assert capsys.readouterr().out == ''

@@ -96,9 +96,9 @@ def test_what_is_no_output_is_passed_over(message):
 
 
 def test_of_a_pictures_metadata_only_its_size_is_kept():
-    sizes = {'image/png': {'width': 80, 'height': True, 'onload': 'x'}, 'a': 5}
-    run = run_of(display({'image/png': 'AA'}, metadata=sizes))
-    assert run.outputs[0].metadata == {'image/png': {'width': 80}}
+    about = {'image/png': {'width': 80, 'height': True, 'onload': 'x', 'alt': 'an arm'}, 'a': 5}
+    run = run_of(display({'image/png': 'AA'}, metadata=about))
+    assert run.outputs[0].metadata == {'image/png': {'width': 80, 'alt': 'an arm'}}
     assert run_of(display({'image/png': 'AA'}, metadata=7)).outputs[0].metadata == {}
 
 

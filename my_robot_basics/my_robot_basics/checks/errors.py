@@ -32,7 +32,7 @@ def expect(condition: bool, *, expected: object, seen: object, hint: str) -> Non
 def fail(*, expected: object, seen: object, hint: str, picture: bytes | None = None) -> NoReturn:
     """Raise CheckFailed('expected …, saw …: hint'); show the picture (PNG bytes) before it."""
     if picture is not None:
-        show(picture)
+        show(picture, alt=f'Picture of what was seen: {seen}')
     raise CheckFailed(f'expected {expected}, saw {seen}: {hint}')
 
 
@@ -43,12 +43,12 @@ def shorten(text: object, most: int = MOST_CHARACTERS) -> str:
     return line if len(line) <= most else line[: most - 1] + '…'
 
 
-def show(picture: bytes) -> None:
-    """Display a PNG in the notebook; nothing happens outside of one."""
+def show(picture: bytes, *, alt: str) -> None:
+    """Display a PNG in the notebook, with its text alternative; nothing happens outside of one."""
     if 'IPython' not in sys.modules:
         return
     from IPython import get_ipython
     from IPython.display import Image, display
 
     if get_ipython() is not None:
-        display(Image(data=picture, format='png'))
+        display(Image(data=picture, format='png', alt=alt))

@@ -138,7 +138,8 @@ class Recording:
 
     def plot(self, hz: float | None = None) -> None:
         """Show when the messages arrived; with `hz`, beside when they should have."""
-        show(pictures.arrivals(self, hz=hz))
+        alt = f'Arrivals of {len(self.messages)} messages on {self.topic_name}'
+        show(pictures.arrivals(self, hz=hz), alt=alt)
 
     def _sent_sec(self, sample: Sample) -> float:
         on_wall = self.clock == 'wall'
