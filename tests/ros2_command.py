@@ -61,7 +61,9 @@ def on_the_graph(*names: str, topics: tuple[str, ...] = ()) -> Iterator[None]:
         shown: list[str] = []
         while not set(topics) <= set(shown):
             assert all(node.poll() is None for node in nodes), 'a node has died'
-            shown = ros2('topic', 'list', '--include-hidden-topics').out.splitlines()
+            shown = ros2(
+                'topic', 'list', '--no-daemon', '--include-hidden-topics'
+            ).out.splitlines()
         yield
 
 

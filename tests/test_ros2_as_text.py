@@ -28,10 +28,17 @@ position:
 velocity: []
 effort: []
 """
-FLOW = (
-    '{header: {stamp: {sec: 3, nanosec: 5}, frame_id: base_link}, name: [joint1, joint2], '
-    'position: [0.5, .nan], velocity: [], effort: []}\n'
-)
+FLOW = """\
+header:
+  stamp:
+    sec: 3
+    nanosec: 5
+  frame_id: base_link
+name: [joint1, joint2]
+position: [0.5, .nan]
+velocity: []
+effort: []
+"""
 WITHOUT_ARRAYS = """\
 header:
   stamp:
@@ -80,8 +87,11 @@ def test_yaml(message, shortening, expected):
     assert as_yaml(message, Shortening(**shortening)) == expected
 
 
-def test_yaml_in_flow_style():
+def test_yaml_in_flow_style_has_arrays_on_one_line():
     assert as_yaml(STAMPED, Shortening(), flow_style=True) == FLOW
+    values = as_yaml(STATUS, Shortening(), flow_style=True).partition('values: ')[2]
+    assert values == '[{key: k, value: v}]\n'
+    assert as_yaml(Empty(), Shortening(), flow_style=True) == '{}\n'
 
 
 @pytest.mark.parametrize(

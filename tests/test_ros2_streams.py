@@ -54,7 +54,7 @@ PRINTED = [
      r"---Message data:---\n\['joint1', 'joint2'\]\n---\n"),
     ((TOPIC, '--raw'), r"b'.*base_link.*'\n---\n"),
     ((TOPIC, '--field', 'header', '--flow-style', '--no-str'),
-     r"{stamp: {sec: \d+, nanosec: \d+}, frame_id: '<string length: <9>>'}\n---\n"),
+     r"stamp:\n  sec: \d+\n  nanosec: \d+\nframe_id: '<string length: <9>>'\n---\n"),
     ((TOPIC, '--field', 'name', '--filter', 'len(m) == 2'), r"\['joint1', 'joint2'\]\n---\n"),
     (('/arm_description',), r'data: two links\n---\n'),  # latched: it is asked for as such
     (('/arm_description', '-l', '3'), r'data: two...\n---\n'),

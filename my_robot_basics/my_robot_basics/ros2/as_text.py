@@ -25,14 +25,26 @@ class Shortening:
     """Name the length of a string instead of the string."""
 
 
+class _Dumper(yaml.SafeDumper):
+    """In flow style only arrays are on one line, as in ros2cli."""
+
+
+def _represent_fields(dumper: yaml.SafeDumper, fields: dict[str, Any]) -> yaml.MappingNode:
+    pairs = [(dumper.represent_data(n), dumper.represent_data(v)) for n, v in fields.items()]
+    return yaml.MappingNode('tag:yaml.org,2002:map', pairs, flow_style=False)
+
+
+_Dumper.add_representer(dict, _represent_fields)
+
+
 def as_yaml(message: Any, shortening: Shortening, *, flow_style: bool = False) -> str:
     """A message as a YAML document."""
     return yaml.dump(
         _plain_message(message, shortening),
+        Dumper=_Dumper,
         allow_unicode=True,
         width=sys.maxsize,
         default_flow_style=flow_style,
-        sort_keys=False,
     )
 
 

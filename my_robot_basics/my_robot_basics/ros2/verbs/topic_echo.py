@@ -56,7 +56,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     flags = {
         '--no-arr': "Don't print array fields of messages",
         '--no-str': "Don't print string fields of messages",
-        '--flow-style': 'Print collections in the flow style (not available with csv format)',
+        '--flow-style': 'Print arrays on one line (not available with csv format)',
         '--no-lost-messages': "Don't report when a message is lost",
         '--raw': 'Echo the raw binary representation',
         '--once': 'Print the first message received and then exit.',
@@ -86,8 +86,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(args: argparse.Namespace) -> None:
     """Run the verb."""
-    echo = Echo(args)
     with Graph(args) as graph:
+        echo = Echo(args)  # what it imports takes the time that discovery takes anyway
         graph.settle()
         profile = _choose_qos(graph, args)
         echo.subscribe(graph, _message_class(graph, args), profile)

@@ -1,0 +1,86 @@
+"""The same words to our `ros2` and to a real ros2cli, where there is one: the same output."""
+
+import os
+import re
+import subprocess
+import sys
+
+import pytest
+from ros2_command import PATIENCE_SEC, on_the_graph, own_domain
+
+pytest.importorskip(
+    'ros2cli', reason='no ros2cli to compare with: source a ROS 2 Jazzy installation to run this'
+)
+
+OURS = 'import sys; from my_robot_basics.ros2 import main; main.find_spec = lambda name: None'
+OURS += '; sys.exit(main.main())'
+REAL = 'import sys; from ros2cli.cli import main; sys.exit(main())'
+DIRECT = '--no-daemon', '--spin-time', '2'
+TOPIC = '/kinematics/joint_states'
+
+COMMANDS = [
+    ('topic', 'list', '-t', *DIRECT),
+    ('topic', 'list', '-v', *DIRECT),
+    ('topic', 'list', '-c', '--include-hidden-topics', *DIRECT),
+    ('topic', 'info', TOPIC, *DIRECT),
+    ('topic', 'info', '/two_types', '--verbose', *DIRECT),
+    ('topic', 'info', '/nothing', *DIRECT),
+    ('topic', 'type', TOPIC, *DIRECT),
+    ('topic', 'type', '/nothing', *DIRECT),
+    ('topic', 'find', 'std_msgs/msg/String', *DIRECT),
+    ('topic', 'echo', '/arm_description', '--once', *DIRECT),
+    ('topic', 'echo', TOPIC, '--once', '--field', 'name', *DIRECT),
+    ('topic', 'echo', TOPIC, '--once', '--no-arr', '--csv', *DIRECT),
+    ('topic', 'echo', TOPIC, '--once', '--flow-style', '-l', '1', *DIRECT),
+    ('topic', 'echo', TOPIC, '--field', '.', *DIRECT),
+    ('topic', 'echo', '/nothing', *DIRECT),
+    ('topic', 'pub', '--once', '-w', '0', '/x', 'std_msgs/msg/String', 'data: hello'),
+    ('topic', 'pub', '/x', 'std_msgs/msg/String', '[1]'),
+    ('node', 'list', *DIRECT),
+    ('node', 'info', '/arm/everything', *DIRECT),
+    ('node', 'info', '/nobody', *DIRECT),
+    ('service', 'list', '-t', *DIRECT),
+    ('param', 'list', '/arm/everything', '--param-type', *DIRECT),
+    ('param', 'get', '/arm/everything', 'some_doubles', *DIRECT),
+    ('param', 'get', '/arm/everything', 'some_bytes', '--hide-type', *DIRECT),
+    ('param', 'set', '/arm/everything', 'a_string', 'other', *DIRECT),
+    ('param', 'get', '/nobody', 'x', *DIRECT),
+    ('interface', 'list'),
+    ('interface', 'show', 'sensor_msgs/msg/JointState'),
+    ('interface', 'show', 'sensor_msgs/msg/PointCloud2', '--all-comments'),
+    ('interface', 'show', 'sensor_msgs/msg/PointCloud2', '--no-comments'),
+    ('interface', 'show', 'std_srvs/srv/SetBool'),
+    ('interface', 'show', 'no_msgs/msg/Thing'),
+    ('pkg', 'list'),
+    ('pkg', 'executables', 'my_robot_basics'),
+    ('pkg', 'prefix', 'rclpy'),
+    ('pkg', 'prefix', 'nothing'),
+    ('run', 'nothing', 'x'),
+]
+
+
+@pytest.fixture(scope='module', autouse=True)
+def system():
+    topics = '/everything_is_up', TOPIC, '/_other_type_is_up'
+    nodes = 'everything', 'five_hz', 'other_type'
+    with own_domain(), on_the_graph(*nodes, topics=topics):
+        yield
+
+
+@pytest.mark.parametrize('words', COMMANDS, ids=' '.join)
+def test_prints_the_same(words):
+    assert answer(OURS, words) == answer(REAL, words)
+
+
+def answer(program, words):
+    done = subprocess.run(
+        [sys.executable, '-c', program, *words],
+        capture_output=True,
+        encoding='utf-8',
+        timeout=PATIENCE_SEC,
+        env=os.environ,
+    )
+    # what differs from message to message, and where two endpoints may come in either order
+    text = re.sub(r'-?\d+\.\d+(e-\d+)?|\d{9,}', 'NUMBER', done.stdout)
+    sections = sorted(re.sub(r'nanosec: \d+', '', text).split('\n\n'))
+    return sections, done.stderr, done.returncode
