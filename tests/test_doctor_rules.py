@@ -215,7 +215,14 @@ def test_a_misspelt_question_is_answered_with_the_right_one():
     assert first.code == f'$ topic_doctor {TOPIC}'
 
 
-def test_every_rule_can_be_silent_and_is_in_the_table():
+def test_an_empty_domain_sends_to_the_others():
+    empty = replaced(endpoints=(), nodes={}, **SILENT)
+    assert '--domains' in judge(empty).findings[0].mend
+    looked = replaced(empty, elsewhere={7: (LISTENER,)})
+    assert not any('--domains' in finding.mend for finding in judge(looked).findings)
+
+
+def test_every_rule_is_in_the_table():
     from importlib import resources
 
     folder = resources.files('my_robot_basics.doctor.rules')

@@ -10,12 +10,12 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
     """Name the publisher that nobody hears."""
     if evidence.subscriptions:
         return
-    senders = ', '.join(end.node_name for end in evidence.publishers)
+    senders = ' and '.join(end.node_name for end in evidence.publishers)
     types = [end.type_name for end in evidence.publishers]
     yield Finding(
         title='no subscription',
         expected=f'a subscription on {evidence.topic_name}',
-        seen=f'none; {senders} publishes there' if senders else 'none',
+        seen=f'none; the publisher is that of {senders}' if senders else 'none',
         mend='start the node that listens, and see that its constructor has this line',
         code=code.create(
             'subscription', type_name=(types or [''])[0], topic_name=evidence.topic_name
