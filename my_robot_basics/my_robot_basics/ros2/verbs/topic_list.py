@@ -1,6 +1,7 @@
 """Output a list of available topics."""
 
 import argparse
+from collections.abc import Callable
 
 from my_robot_basics.ros2 import arguments
 from my_robot_basics.ros2.graph import Graph
@@ -39,7 +40,9 @@ def main(args: argparse.Namespace) -> None:
                 print(f'{name} [{", ".join(types)}]' if args.show_types else name)
 
 
-def _print_ends(title: str, end: str, topics: list, count: callable) -> None:
+def _print_ends(
+    title: str, end: str, topics: list[tuple[str, list[str]]], count: Callable[[str], int]
+) -> None:
     print(f'{title} topics:')
     for name, types in topics:
         if number := count(name):
