@@ -1,7 +1,12 @@
 """What every test session needs: a ROS domain of its own, and kernels that know of no pytest."""
 
 import _pytest.runner
+from hypothesis import HealthCheck, settings
 from my_robot_basics.live import classroom
+
+# a busy machine fails no test
+settings.register_profile('busy', deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile('busy')
 
 
 def pytest_configure() -> None:

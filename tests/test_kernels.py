@@ -259,7 +259,7 @@ if os.fork() == 0:
 def test_nothing_that_a_cell_started_outlives_the_kernel(own, loop, run, code):
     run(own, CHILDREN)
     deadline = time.monotonic() + 30
-    while len(processes_of(own)) < 4 and time.monotonic() < deadline:
+    while len(processes_of(own)) != 4 and time.monotonic() < deadline:
         time.sleep(0.05)
     assert len(processes_of(own)) == 4
     run(own, code, timeout_sec=0.5)
