@@ -203,7 +203,7 @@ def opened(lab, chromium):
     ('name', 'pictures', 'exercise', 'first_error'),
     [
         ('02_joint_state', {'right_and_wrong': 2}, 'to_joint_state', 'radians'),
-        ('03_publisher', {'live': 1}, 'five_hz', 'five_hz-try'),
+        ('03_publisher', {'live': 1}, 'five_hz', 'five_hz_rate'),
     ],
 )
 def test_a_lesson_runs_to_its_exercise(opened, name, pictures, exercise, first_error):

@@ -524,7 +524,7 @@ def test_two_kernels_have_two_domains_and_give_them_back(lesson):
         assert returncode == 0
         assert 'terminate called' not in stderr
         # nobody had to wait for the lease of a dead participant to run out
-        assert witness.sees('talker', present=False, timeout_sec=2)
+        assert witness.sees('talker', present=False, timeout_sec=4)
         assert '/talk' not in dict(witness.node.get_topic_names_and_types())
 
 
