@@ -24,6 +24,7 @@ BUDGET_SEC = 5.0
 SLOWEST_BARRIER_SEC = 0.5
 SLOWEST_MEDIAN_SEC = 0.02
 FIRST_ANSWER_SEC = 1.0
+RESTORE_SEC = 10.0
 MEDIAN_EVERY = 40
 HELD_EVERY_SEC = 0.02
 
@@ -150,19 +151,18 @@ class SimulatedClock:
 
     def _restore(self) -> None:
         former, self._former = self._former, {}
-        # a node that a moment ago was busy gets a second chance
-        if former and not self._set_all(former):
-            self._set_all(former)
+        # a busy node gets its time: left on a clock that nobody drives, it would be frozen
+        self._set_all(former, timeout_sec=RESTORE_SEC)
         self._watcher.node.destroy_publisher(self._publisher)
 
-    def _set_all(self, values: dict[str, bool]) -> bool:
+    def _set_all(self, values: dict[str, bool], timeout_sec: float = FIRST_ANSWER_SEC) -> bool:
         asked = [
             self._setters[name].call_async(
                 SetParameters.Request(parameters=[_use_sim_time(value)])
             )
             for name, value in values.items()
         ]
-        return self._wait(asked, FIRST_ANSWER_SEC)
+        return self._wait(asked, timeout_sec)
 
     def _ask(self, client: Client) -> Future:
         return client.call_async(GetParameters.Request(names=['use_sim_time']))
