@@ -96,7 +96,7 @@ def _parser() -> argparse.ArgumentParser:
     for name, run, text in (
         ('scores', _scores, 'write gradebook/scores.csv'),
         ('feedback', _feedback, 'write a page of feedback for each submission'),
-        ('demo', _demo, 'grade a sample class, to see all of it in half a minute'),
+        ('demo', _demo, 'grade a sample class, to see all of it in about a minute'),
     ):
         verbs.add_parser(name, help=text).set_defaults(run=run)
     return parser
