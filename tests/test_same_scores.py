@@ -60,7 +60,9 @@ def course(tmp_path):
 
 
 @pytest.mark.parametrize(
-    'names', [BY_COMMAND, pytest.param(tuple(PATHS), marks=pytest.mark.slow)], ids=['some', 'all']
+    'names',
+    [BY_COMMAND, pytest.param(tuple(PATHS), marks=[pytest.mark.slow, pytest.mark.timeout(1800)])],
+    ids=['some', 'all'],
 )
 def test_nbgrader_autograde_gives_the_same_scores(course, names):
     hand_in(course, names)
@@ -74,7 +76,10 @@ def test_nbgrader_autograde_gives_the_same_scores(course, names):
 
 @pytest.mark.parametrize(
     'names',
-    [BY_FORMGRADER, pytest.param(tuple(PATHS), marks=pytest.mark.slow)],
+    [
+        BY_FORMGRADER,
+        pytest.param(tuple(PATHS), marks=[pytest.mark.slow, pytest.mark.timeout(1800)]),
+    ],
     ids=['some', 'all'],
 )
 def test_the_formgraders_call_gives_the_same_scores(course, names):
