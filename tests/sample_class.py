@@ -18,7 +18,11 @@ __all__ = ['EXPECTED', 'FOLDER', 'PATHS', 'assignment_of', 'grade', 'hand_in', '
 
 PATHS = {path.stem: path for path in samples()}
 """Every sample, by its name."""
-EXPECTED = json.loads((FOLDER / 'expected.json').read_text(encoding='utf-8'))
+EXPECTED = {
+    sample: cells
+    for path in sorted(FOLDER.glob('expected/*.json'))
+    for sample, cells in json.loads(path.read_text(encoding='utf-8')).items()
+}
 """For each sample, for each grade cell: its score and what its reason must say."""
 
 

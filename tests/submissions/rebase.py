@@ -6,7 +6,7 @@ Each sample keeps its answers and its own cells (those whose id begins with `own
 from notebooks/, those in more/ without the demonstrations: shorter to read, and to run whole. A
 sample whose point is a damaged notebook is damaged again; one of which nothing can be read
 (`-zero-`) stays as it is. A new sample is a copy of another one with another answer, and
-a line in expected.json.
+a line in expected/<assignment>.json.
 """
 
 import sys
@@ -46,13 +46,18 @@ def rebased(sample: Path) -> str:
     for cell in notebook.cells:
         if cell.cell_type == 'code':
             cell.outputs, cell.execution_count = [], None
-        if role(cell) == 'answer' and sample.stem not in UNANSWERED:
+        if role(cell) == 'answer' and not _is_unanswered(sample):
             cell.source = '\n\n'.join(answers[grade_id(cell)])
         cells += [cell, *own[cell.id]]
     shorter = sample.parent != FOLDER
     notebook.cells = [cell for cell in cells if not (shorter and role(cell) == 'demo')]
     DAMAGE.get(sample.stem, lambda notebook: None)(notebook)
     return nbformat.writes(notebook) + '\n'
+
+
+def _is_unanswered(sample: Path) -> bool:
+    """Whether a sample leaves its answers as they are released."""
+    return sample.stem.endswith(('-untouched', '-skip_execution_tags'))
 
 
 def _of_student(
@@ -105,13 +110,6 @@ def _split_answer(notebook: NotebookNode) -> None:
     second.source, second.id = 'class ' + rest, f'{first.id}-second'
     notebook.cells.insert(index + 1, second)
 
-
-UNANSWERED = (
-    '02_joint_state-fail-untouched',
-    '03_publisher-fail-skip_execution_tags',
-    '03_publisher-fail-untouched',
-)
-"""Samples that leave the answer as it is released."""
 
 DAMAGE: dict[str, Callable[[NotebookNode], None]] = {
     '03_publisher-pass-deleted_grade_cells': _delete_locked_and_grade_cells,
