@@ -1,10 +1,13 @@
 """Plain timers: exact on the clock that a check drives, and back on wall time after it."""
 
+import threading
 import time
 
 import pytest
 from my_robot_basics.checks import CheckFailed, clock, looks, topic
-from nodes.running import running
+from nodes.running import imported, running
+from rclpy.context import Context
+from rclpy.executors import SingleThreadedExecutor
 
 TOPIC = '/kinematics/joint_states'
 
@@ -58,3 +61,19 @@ def test_a_node_is_alive_after_a_check_that_was_cut_short(monkeypatch, error):
         with pytest.raises(error):
             topic(TOPIC).record()
         topic(TOPIC).wait_for(timeout_sec=5.0)
+
+
+def test_a_check_waits_for_a_node_that_is_slow_to_return():
+    # what looks at it next would find it frozen, on a clock that nobody drives any more
+    with Context() as context:
+        node = imported('slow_to_return').SlowToReturn(context=context)
+        executor = SingleThreadedExecutor(context=context)
+        executor.add_node(node)
+        thread = threading.Thread(target=executor.spin)
+        thread.start()
+        try:
+            topic(TOPIC).record(seconds=1.0)
+            assert node.returned
+        finally:
+            executor.shutdown()
+            thread.join()

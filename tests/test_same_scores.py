@@ -11,7 +11,7 @@ import pytest
 from sample_class import EXPECTED, PATHS, assignment_of, hand_in
 
 from grader.course import ROOT, Course
-from grader.records import records
+from grader.records import records, verdicts
 
 UNREADABLE = '03_publisher-zero-not_json'
 """What nbgrader stops at: it stores nothing, where `./course grade` gives zero and a reason."""
@@ -71,7 +71,7 @@ def test_nbgrader_autograde_gives_the_same_scores(course, names):
         assert (run.returncode != 0) == (assignment == assignment_of(PATHS[UNREADABLE])), (
             run.stderr
         )
-    assert scores(course, names) == expected(names)
+    assert wrong(course, names) == []
 
 
 @pytest.mark.parametrize(
@@ -88,7 +88,7 @@ def test_the_formgraders_call_gives_the_same_scores(course, names):
     for assignment, students in by_assignment(names).items():
         run = python(course, '-c', FORMGRADER, assignment, *students)
         assert run.returncode == 0, run.stderr
-    assert scores(course, names) == expected(names)
+    assert wrong(course, names) == []
 
 
 def by_assignment(names):
@@ -111,19 +111,15 @@ def python(course, *arguments):
     )
 
 
-def scores(course, names):
-    found = {name: {} for name in names}
-    for record in records(course):
-        if record.assignment == assignment_of(PATHS[record.student_id]):
-            found[record.student_id][record.grade_id] = record.score
-    return found
-
-
-def expected(names):
-    return {
-        name: {
-            grade_id: None if name == UNREADABLE else float(score)
-            for grade_id, (score, *_) in EXPECTED[name].items()
-        }
-        for name in names
-    }
+def wrong(course, names):
+    """The scores that are not as expected, each with its reason: it would be lost with the course."""
+    found = {(r.student_id, r.assignment, r.grade_id): r.score for r in records(course)}
+    differ = []
+    for name in names:
+        assignment = assignment_of(PATHS[name])
+        for grade_id, (points, *_) in EXPECTED[name].items():
+            score = found.get((name, assignment, grade_id))
+            if score != (None if name == UNREADABLE else points):
+                why = verdicts(course, name, assignment).get(grade_id)
+                differ.append((name, grade_id, score, points, why))
+    return differ
