@@ -112,7 +112,7 @@ def python(course, *arguments):
 
 
 def wrong(course, names):
-    """The scores that are not as expected, each with its reason: it would be lost with the course."""
+    """The scores that are not as expected, with their reasons: the course is gone afterwards."""
     found = {(r.student_id, r.assignment, r.grade_id): r.score for r in records(course)}
     differ = []
     for name in names:
