@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from my_robot_basics.live.exercise import reset, run_answer
     from my_robot_basics.live.follow import follow_arm
     from my_robot_basics.live.runner import run, stop
+    from my_robot_basics.live.waiting import wait_until
 
 __all__ = [
     'classroom',
@@ -25,6 +26,7 @@ __all__ = [
     'run_answer',
     'show_arm',
     'stop',
+    'wait_until',
     'why',
 ]
 
@@ -36,6 +38,7 @@ _MODULES = {
     'show_arm': 'arm',
     'follow_arm': 'follow',
     'why': 'doctor',
+    'wait_until': 'waiting',
 }
 
 

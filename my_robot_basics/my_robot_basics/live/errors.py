@@ -28,3 +28,7 @@ class BadDomain(LiveError):
 
 class NotRunnable(LiveError):
     """`run` or `run_answer` was given something that it cannot start."""
+
+
+class WaitedInVain(LiveError, TimeoutError):
+    """What a cell waited for did not happen in time."""

@@ -1,0 +1,59 @@
+"""Wait for what other threads and processes do, never for longer than was said."""
+
+import time
+from collections.abc import Callable
+
+from my_robot_basics.live import notebook
+from my_robot_basics.live.errors import WaitedInVain
+
+PAUSE_SEC = 0.01
+"""Between two looks at the condition."""
+
+SILENT_SEC = 1.0
+"""Who waits for longer is told so, once every such time."""
+
+
+def wait_until(condition: Callable[[], object], timeout_sec: float = 5.0) -> None:
+    """Return as soon as condition() is true.
+
+    A wait of more than a second shows how long it has taken so far; nothing of that stays in the
+    cell. Raises WaitedInVain, a TimeoutError, when it is still false after `timeout_sec`.
+    """
+    __tracebackhide__ = True
+    start = time.monotonic()
+    progress = _Progress(timeout_sec)
+    try:
+        while not condition():
+            waited_sec = time.monotonic() - start
+            if waited_sec >= timeout_sec:
+                raise WaitedInVain(
+                    f'waited {timeout_sec:g} s, and it did not happen: does the node still run, '
+                    'and did you run the cells above?'
+                )
+            progress.show(waited_sec)
+            time.sleep(PAUSE_SEC)
+    finally:
+        progress.clear()
+
+
+class _Progress:
+    """A line in the cell that waits, rewritten as time goes by."""
+
+    def __init__(self, timeout_sec: float) -> None:
+        self._timeout_sec = timeout_sec
+        self._display: notebook.Display | None = None
+        self._next_sec = SILENT_SEC
+
+    def show(self, waited_sec: float) -> None:
+        if waited_sec < self._next_sec:
+            return
+        self._next_sec += SILENT_SEC
+        line = f'waiting … {waited_sec:.0f} s of at most {self._timeout_sec:g} s'
+        if self._display is None:
+            self._display = notebook.Display()
+            self._display.show({})  # what compares two runs sees the first state, not the updates
+        self._display.update({'text/plain': line})
+
+    def clear(self) -> None:
+        if self._display is not None:
+            self._display.update({})
