@@ -55,6 +55,18 @@ def test_moving_leaves_nothing_of_the_former_pose():
     assert np.array_equal(imread(io.BytesIO(picture.png())), imread(io.BytesIO(first)))
 
 
+def test_a_second_pose_is_dashed_and_dots_stand_where_they_are_said_to(capsys):
+    picture = ArmPicture(l1=1.0, l2=0.8)
+    picture.dashed(0, 90)
+    picture.dots([0.5, -0.5], [1.0, 1.0])
+    second, dots = axes_of(picture).lines[-2:]
+    assert second.get_linestyle() == '--'
+    assert second.get_xydata() == pytest.approx(np.array([[0, 0], [1, 0], [1, 0.8]]))
+    assert dots.get_xydata() == pytest.approx(np.array([[0.5, 1.0], [-0.5, 1.0]]))
+    show_arm(0, 0, other=(0, 90), dots=([0.5], [1.0]))
+    assert '1 dots; dashed: θ1 = 0.0°, θ2 = 90.0°' in capsys.readouterr().out
+
+
 @pytest.mark.parametrize('pose', [(math.nan, 0.0), (0.0, math.inf)])
 def test_a_pose_that_is_none_is_refused(pose):
     with pytest.raises(ValueError, match=r'finite|NaN|nan|inf'):

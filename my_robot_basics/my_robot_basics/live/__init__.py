@@ -15,12 +15,14 @@ if TYPE_CHECKING:
     from my_robot_basics.live.exercise import reset, run_answer
     from my_robot_basics.live.follow import follow_arm
     from my_robot_basics.live.runner import run, stop
+    from my_robot_basics.live.sliders import move_arm
     from my_robot_basics.live.waiting import wait_until
 
 __all__ = [
     'classroom',
     'domain',
     'follow_arm',
+    'move_arm',
     'reset',
     'run',
     'run_answer',
@@ -36,6 +38,7 @@ _MODULES = {
     'reset': 'exercise',
     'run_answer': 'exercise',
     'show_arm': 'arm',
+    'move_arm': 'sliders',
     'follow_arm': 'follow',
     'why': 'doctor',
     'wait_until': 'waiting',

@@ -3,23 +3,39 @@
 import io
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from my_robot_basics.live import notebook
 from my_robot_basics.two_link_kinematics import L1, L2, forward_kinematics
 
 # Okabe and Ito's colours are told apart by everyone
 LINK1, LINK2, EFFECTOR, ANGLE, RING = '#0072b2', '#d55e00', '#009e73', '#000000', '#56b4e9'
+DASHED = '#666666'
 
 
 def show_arm(
-    theta1_deg: float, theta2_deg: float, *, l1: float = L1, l2: float = L2, title: str = ''
+    theta1_deg: float,
+    theta2_deg: float,
+    *,
+    l1: float = L1,
+    l2: float = L2,
+    title: str = '',
+    other: tuple[float, float] | None = None,
+    dots: tuple[ArrayLike, ArrayLike] | None = None,
 ) -> None:
     """Show a picture of the arm in one pose: angles in degrees, link lengths in metres.
 
+    A second pose, `other`, is drawn dashed; `dots` are points, (all x, all y) in metres.
     Raises ValueError for angles or lengths that are no finite numbers.
     """
     text = describe(theta1_deg, theta2_deg, l1=l1, l2=l2)
     picture = ArmPicture(l1=l1, l2=l2)
+    if dots is not None:
+        picture.dots(*dots)
+        text += f'; {np.size(dots[0])} dots'
+    if other is not None:
+        picture.dashed(*other)
+        text += f'; dashed: θ1 = {other[0]:.1f}°, θ2 = {other[1]:.1f}°'
     picture.move(theta1_deg, theta2_deg, title=title)
     display = notebook.Display({'image/png': {'alt': text}})
     display.show({'image/png': picture.png(), 'text/plain': text})
@@ -85,6 +101,17 @@ class ArmPicture:
         self._angle('θ2', theta2_deg, at=elbow, start_deg=theta1_deg)
         pose = f'θ1 = {theta1_deg:.1f}°, θ2 = {theta2_deg:.1f}°  →  ({x:.3f}, {y:.3f}) m'
         self.title('\n'.join(filter(None, [title, pose])))
+
+    def dashed(self, theta1_deg: float, theta2_deg: float) -> None:
+        """Add a second arm, which stays as it is: angles in degrees."""
+        elbow = self._l1 * _direction(theta1_deg)
+        tip = forward_kinematics(theta1_deg, theta2_deg, self._l1, self._l2)
+        xs, ys = zip((0, 0), elbow, tip, strict=True)
+        self._axes.plot(xs, ys, '--o', color=DASHED, lw=2, ms=6, markerfacecolor='white')
+
+    def dots(self, x: ArrayLike, y: ArrayLike) -> None:
+        """Add points, in metres."""
+        self._axes.plot(x, y, ',', color=EFFECTOR)
 
     def title(self, text: str) -> None:
         """Write above the picture."""

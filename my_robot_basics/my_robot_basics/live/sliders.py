@@ -1,0 +1,67 @@
+"""Two sliders that move a picture of the arm."""
+
+import ipywidgets
+from IPython.display import display
+
+from my_robot_basics.live import notebook
+from my_robot_basics.live.arm import ArmPicture, describe
+from my_robot_basics.two_link_kinematics import L1, L2
+
+WITHOUT_WIDGETS = 'Run this cell: two sliders, for θ1 and θ2, appear here and move the arm.'
+"""What stands for the sliders where no kernel runs, as on GitHub."""
+
+
+def move_arm(
+    theta1_deg: float = 30.0, theta2_deg: float = 45.0, *, l1: float = L1, l2: float = L2
+) -> None:
+    """Show the arm and two sliders that set its angles; link lengths are in metres.
+
+    The arm starts at these angles, in degrees between -180 and 180. Outside a notebook kernel
+    there are no sliders: the pose is told in words.
+    """
+    ArmSliders(theta1_deg, theta2_deg, l1=l1, l2=l2).show()
+
+
+class ArmSliders:
+    """Two sliders, `theta1` and `theta2`, and one picture that is drawn anew with each change."""
+
+    def __init__(self, theta1_deg: float, theta2_deg: float, *, l1: float, l2: float) -> None:
+        """Make the sliders and the axes of the picture; nothing shows before `show`."""
+        self.theta1 = _slider('θ1 in °', theta1_deg)
+        self.theta2 = _slider('θ2 in °', theta2_deg)
+        self._l1, self._l2 = l1, l2
+        self._picture = ArmPicture(l1=l1, l2=l2)
+        self._metadata = {'image/png': {'alt': ''}}
+        self._display = notebook.Display(self._metadata)
+
+    def show(self) -> None:
+        """Show sliders and picture with the cell that runs now."""
+        if notebook.in_kernel():
+            box = ipywidgets.VBox([self.theta1, self.theta2])
+            display(box._repr_mimebundle_() | {'text/plain': WITHOUT_WIDGETS}, raw=True)
+        self._display.show(self._bundle())
+        for slider in (self.theta1, self.theta2):
+            slider.observe(self._moved, names='value')
+
+    def _moved(self, change: object) -> None:
+        # at once: the browser sends the next position only when this one has been dealt with
+        self._display.update(self._bundle())
+
+    def _bundle(self) -> notebook.Bundle:
+        pose_deg = self.theta1.value, self.theta2.value
+        self._picture.move(*pose_deg)
+        text = describe(*pose_deg, l1=self._l1, l2=self._l2)
+        self._metadata['image/png']['alt'] = text
+        return {'image/png': self._picture.png(), 'text/plain': text}
+
+
+def _slider(description: str, value_deg: float) -> ipywidgets.FloatSlider:
+    return ipywidgets.FloatSlider(
+        value=value_deg,
+        min=-180.0,
+        max=180.0,
+        step=1.0,
+        description=description,
+        readout_format='.0f',
+        layout={'width': '30em'},
+    )
