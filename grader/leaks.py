@@ -8,7 +8,12 @@ from nbformat import NotebookNode
 
 from grader.course import Course
 
-MARKS = ('BEGIN SOLUTION', 'END SOLUTION', 'BEGIN HIDDEN TESTS', 'END HIDDEN TESTS')
+BROKEN = '### BROKEN: '
+"""Begins a line of code that is released broken, for students to mend (see release.py)."""
+MARKS = (
+    *('BEGIN SOLUTION', 'END SOLUTION', 'BEGIN HIDDEN TESTS', 'END HIDDEN TESTS'),
+    BROKEN.strip(),
+)
 
 
 def leaks_of(course: Course, assignment: str, released: Path) -> Iterator[str]:
@@ -52,7 +57,9 @@ def _marked_lines(cell: NotebookNode) -> Iterator[tuple[str, bool]]:
     """Yield each line of a cell with whether it stands in a marked region."""
     hidden = False
     for line in cell.source.splitlines():
-        if any(mark in line for mark in MARKS):
+        if BROKEN in line:
+            yield line.replace(BROKEN, ''), False
+        elif any(mark in line for mark in MARKS):
             hidden = 'BEGIN' in line
         else:
             yield line, hidden

@@ -1,6 +1,16 @@
-"""Make notebooks/ from solutions/: no answers, no hidden tests, but pictures of what is shown."""
+"""Make notebooks/ from solutions/: no answers, no hidden tests, but pictures of what is shown.
+
+An answer is released as a stub; or as broken code, where students are to mend something. The lines
+of that stand as comments right behind the answer, and take the stub's place:
+
+    ### BEGIN SOLUTION
+    self.timer = self.create_timer(0.2, self.tick)
+    ### END SOLUTION
+    ### BROKEN: self.timer = self.create_timer(5.0, self.tick)
+"""
 
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -12,12 +22,13 @@ from nbformat import NotebookNode
 
 from grader.course import Course
 from grader.errors import CourseError
-from grader.leaks import files_in, leaks_of
+from grader.leaks import BROKEN, files_in, leaks_of
 
 PASSES = (
     'grader.release.TidyMetadata',
     'nbgrader.preprocessors.LockCells',
     'nbgrader.preprocessors.ClearSolutions',
+    'grader.release.ReleaseBroken',
     'grader.release.KeepDemoOutputs',
     'nbgrader.preprocessors.CheckCellMetadata',
     'nbgrader.preprocessors.ComputeChecksums',
@@ -56,6 +67,35 @@ class TidyMetadata(Preprocessor):
         kept = {key: cell.metadata[key] for key in CELL_METADATA if key in cell.metadata}
         cell.metadata = nbformat.from_dict(kept)
         return cell, resources
+
+
+class ReleaseBroken(Preprocessor):
+    """Put broken code, where an answer has some, in the place of the stub."""
+
+    enabled = True
+
+    def preprocess_cell(
+        self, cell: NotebookNode, resources: dict, index: int
+    ) -> tuple[NotebookNode, dict]:
+        """Uncomment the broken lines of one cell. Raises CourseError where they stand alone."""
+        cell.source = broken(cell.source)
+        return cell, resources
+
+
+def broken(cleared: str) -> str:
+    """Return the source of an answer cell, cleared of its answer, with its broken lines as code.
+
+    Raises CourseError when such lines stand anywhere but right behind an answer.
+    """
+    stub = re.escape(CODE_STUB['python'])
+    after_stub = re.compile(rf'^ *{stub}\n((?: *{BROKEN}.*(?:\n|\Z))+)', re.MULTILINE)
+    source = after_stub.sub(lambda found: found[1].replace(BROKEN, ''), cleared)
+    if BROKEN.strip() in source:
+        raise CourseError(
+            f'a line with {BROKEN.strip()!r} stands by itself: write such lines right behind'
+            f' ### END SOLUTION, each beginning with {BROKEN!r}'
+        )
+    return source
 
 
 class KeepDemoOutputs(Preprocessor):

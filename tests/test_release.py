@@ -4,11 +4,12 @@ import sys
 
 import pytest
 from course_maker import PIXEL, TOY, make_course, toy_lesson, write_source
+from nbgrader.utils import compute_checksum
 
 from grader.course import Course
 from grader.errors import CourseError
 from grader.leaks import leaks_of
-from grader.release import release, stale_or_leaking
+from grader.release import broken, release, stale_or_leaking
 
 
 @pytest.fixture(scope='module')
@@ -57,6 +58,56 @@ def test_releasing_again_changes_nothing_and_nbgrader_gives_the_same(course):
         capture_output=True,
     )
     assert course.release_path(TOY).read_bytes() == before
+
+
+MENDED = """def double(x):
+    # 1. why is it wrong?
+    ### BEGIN SOLUTION
+    y = x  # the same in both
+    return x + y  # the secret answer
+    ### END SOLUTION
+    ### BROKEN: y = x  # the same in both
+    ### BROKEN: if y:
+    ### BROKEN:     return x - y"""
+
+
+def test_an_answer_to_be_mended_is_released_broken_and_graded_mended(course):
+    before = course.release_path(TOY).read_bytes()
+    lesson = toy_lesson()
+    lesson.cells[4].source = MENDED
+    write_source(course, lesson)
+    release(course)
+    released = cells(course)['double']
+    assert released.source == (
+        'def double(x):\n'
+        '    # 1. why is it wrong?\n'
+        '    y = x  # the same in both\n'
+        '    if y:\n'
+        '        return x - y'
+    )
+    assert released.metadata.nbgrader.checksum == compute_checksum(released)
+    assert stale_or_leaking(course) == []
+
+    path = course.release_path(TOY)
+    path.write_text(path.read_text().replace('return x - y', 'return x + y  # the secret answer'))
+    assert any('secret answer' in found for found in leaks_of(course, TOY, path.parents[1]))
+
+    write_source(course, toy_lesson())
+    release(course)
+    assert course.release_path(TOY).read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    'source',
+    [
+        '### BROKEN: x = 1',
+        '# YOUR CODE HERE\n\n### BROKEN: x = 1',
+        '# YOUR CODE HERE\n### BROKEN:\n',
+    ],
+)
+def test_broken_lines_that_no_stub_waits_for_are_refused(source):
+    with pytest.raises(CourseError, match='right behind ### END SOLUTION'):
+        broken(source)
 
 
 def test_a_failure_leaves_the_former_release_as_it_was(course):
