@@ -60,7 +60,7 @@ def _look(watcher: Watcher, topic_name: str, *, domain_id: int, listen_sec: floa
         # before anybody is called missing
         watcher.spin_until(lambda: _unheard(watcher.node, domain_id) <= 0, timeout_sec=MISSING_SEC)
         graph = graphs.take(watcher)
-    endpoints = tuple(_endpoints(watcher.node))
+    endpoints = tuple(endpoints_of(watcher.node))
     ends = {end.node_name for end in endpoints if end.topic_name == topic_name}
     evidence = Evidence(
         topic_name=topic_name,
@@ -118,10 +118,10 @@ def _look_into(domain_id: int, topic_name: str) -> tuple[Endpoint, ...]:
     """The endpoints of a topic in another domain."""
     with Watcher(domain_id=domain_id) as watcher:
         graphs.take(watcher)
-        return tuple(end for end in _endpoints(watcher.node) if end.topic_name == topic_name)
+        return tuple(end for end in endpoints_of(watcher.node) if end.topic_name == topic_name)
 
 
-def _endpoints(node: Node) -> Iterator[Endpoint]:
+def endpoints_of(node: Node) -> Iterator[Endpoint]:
     """All endpoints on the graph that are neither ROS's own nor those of hidden nodes."""
     depths = _depths()
     look_ups = {

@@ -25,7 +25,6 @@ def describe(diagnosis: Diagnosis) -> str:
 
 def draw(diagnosis: Diagnosis) -> bytes:
     """Publishers, the topic and subscriptions from left to right, as a PNG."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure  # takes a second
 
     evidence = diagnosis.evidence
@@ -45,16 +44,16 @@ def draw(diagnosis: Diagnosis) -> bytes:
     axes.set(xlim=(-0.5, 2.5), ylim=(-0.5 * ROW * rows - 0.2, 0.5 * ROW * rows + 0.2))
     axes.set_axis_off()
     axes.set_title(first.title if first else f'all is well: {evidence.rate_hz:.3g} Hz')
-    _box(axes, COLUMNS['topic'], 0.0, evidence.topic_name, style='round4', face=TOPIC)
+    box(axes, COLUMNS['topic'], 0.0, evidence.topic_name, style='round4', face=TOPIC)
     for kind, ends in columns.items():
         for row, end in enumerate(ends):
             y = ROW * ((len(ends) - 1) / 2 - row)
             is_broken = end is None or (first is not None and end in first.broken)
-            _edge(axes, kind, y, is_broken=is_broken)
-            _box(axes, COLUMNS[kind], y, _label(end, kind, evidence.topic_name), face='white')
-    buffer = io.BytesIO()
-    FigureCanvasAgg(figure).print_png(buffer)
-    return buffer.getvalue()
+            way = [(COLUMNS[kind], y), (COLUMNS['topic'], 0.0)]
+            start, stop = way if kind == 'publisher' else reversed(way)
+            arrow(axes, start, stop, is_broken=is_broken)
+            box(axes, COLUMNS[kind], y, _label(end, kind, evidence.topic_name), face='white')
+    return png(figure)
 
 
 def _label(end: Endpoint | None, kind: Kind, topic_name: str) -> str:
@@ -64,7 +63,8 @@ def _label(end: Endpoint | None, kind: Kind, topic_name: str) -> str:
     return end.node_name + elsewhere
 
 
-def _box(axes: object, x: float, y: float, text: str, *, face: str, style: str = 'square') -> None:
+def box(axes: object, x: float, y: float, text: str, *, face: str, style: str = 'square') -> None:
+    """Write a name in a frame; topics have round corners and another face than nodes."""
     axes.text(
         *(x, y, text),
         ha='center',
@@ -75,13 +75,13 @@ def _box(axes: object, x: float, y: float, text: str, *, face: str, style: str =
     )
 
 
-def _edge(axes: object, kind: Kind, y: float, *, is_broken: bool) -> None:
-    """An arrow along the way of the messages, to the topic or from it."""
-    ends = [(COLUMNS[kind], y), (COLUMNS['topic'], 0.0)]
-    start, stop = ends if kind == 'publisher' else reversed(ends)
+def arrow(
+    axes: object, start: tuple[float, float], stop: tuple[float, float], *, is_broken: bool = False
+) -> None:
+    """Draw a line along the way of the messages; a broken one is dashed and crossed."""
     colour = BROKEN if is_broken else WELL
-    middle = [(a + b) / 2 for a, b in zip(*ends, strict=True)]
-    axes.plot(*zip(*ends, strict=True), color=colour, lw=2, ls='--' if is_broken else '-')
+    middle = [(a + b) / 2 for a, b in zip(start, stop, strict=True)]
+    axes.plot(*zip(start, stop, strict=True), color=colour, lw=2, ls='--' if is_broken else '-')
     if is_broken:
         axes.plot(*middle, 'X', color=colour, ms=14, zorder=4)
         return
@@ -92,3 +92,12 @@ def _edge(axes: object, kind: Kind, y: float, *, is_broken: bool) -> None:
         xytext=[0.9 * m + 0.1 * a for m, a in zip(middle, start, strict=True)],
         arrowprops={'arrowstyle': '-|>', 'color': colour, 'lw': 2, 'mutation_scale': 18},
     )
+
+
+def png(figure: object) -> bytes:
+    """Return the figure as a PNG."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    buffer = io.BytesIO()
+    FigureCanvasAgg(figure).print_png(buffer)
+    return buffer.getvalue()

@@ -11,9 +11,11 @@ from my_robot_basics.live import classroom, domain
 
 if TYPE_CHECKING:
     from my_robot_basics.live.arm import show_arm
+    from my_robot_basics.live.classroom import show_domain
     from my_robot_basics.live.doctor import why
     from my_robot_basics.live.exercise import reset, run_answer
     from my_robot_basics.live.follow import follow_arm
+    from my_robot_basics.live.graph_picture import show_graph
     from my_robot_basics.live.runner import run, stop
     from my_robot_basics.live.sliders import move_arm
     from my_robot_basics.live.waiting import wait_until
@@ -27,6 +29,8 @@ __all__ = [
     'run',
     'run_answer',
     'show_arm',
+    'show_domain',
+    'show_graph',
     'stop',
     'wait_until',
     'why',
@@ -40,6 +44,8 @@ _MODULES = {
     'show_arm': 'arm',
     'move_arm': 'sliders',
     'follow_arm': 'follow',
+    'show_domain': 'classroom',
+    'show_graph': 'graph_picture',
     'why': 'doctor',
     'wait_until': 'waiting',
 }
