@@ -211,6 +211,20 @@ def test_the_wrong_answer_is_no_answer(run):
         )
 
 
+def test_the_wrong_answer_is_named_in_the_words_of_the_check(run):
+    run(Echo, 10)
+    with pytest.raises(CheckFailed) as failed:
+        topic('/answer').wait_for(
+            lambda message: message.position[0] == 9.0,
+            timeout_sec=1.0,
+            after=lambda: topic('/question').publish(Point(x=1.5)),
+            expected='9.0',
+            seen=lambda message: message.position[0],
+            hint='count again',
+        )
+    assert str(failed.value) == 'expected 9.0, saw 1.5: count again'
+
+
 def test_the_watcher_can_not_be_reached(run):
     run(imported('five_hz').FiveHz)
     seen = set()

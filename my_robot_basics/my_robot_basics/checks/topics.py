@@ -7,7 +7,7 @@ from rclpy.duration import Duration
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 from my_robot_basics.checks import graphs, looks, student, wire
-from my_robot_basics.checks.errors import fail
+from my_robot_basics.checks.errors import fail, shorten
 from my_robot_basics.checks.recording import Recording
 from my_robot_basics.checks.watcher import Watcher
 
@@ -38,7 +38,7 @@ class Topic:
         Raises CheckFailed when there is no publisher or no message.
         """
         with Watcher() as watcher:
-            ears = self._listen(watcher)
+            ears = self.listen(watcher)
             again = self._record_on_wall
             recording = looks.simulated(
                 watcher, ears, seconds=seconds, step_sec=step_sec, again=again
@@ -61,7 +61,7 @@ class Topic:
                 durability=DurabilityPolicy.TRANSIENT_LOCAL,
             )
             publisher = watcher.node.create_publisher(type(messages[0]), self.name, offer)
-            timeout_sec = self._patience_sec(timeout_sec)
+            timeout_sec = self.patience_sec(timeout_sec)
             if not watcher.spin_until(
                 lambda: publisher.get_subscription_count() > 0, timeout_sec=timeout_sec
             ):
@@ -80,14 +80,19 @@ class Topic:
         timeout_sec: float = 10.0,
         *,
         after: Callable[[], None] | None = None,
+        expected: str = '',
+        seen: Callable[[Any], object] | None = None,
+        hint: str = 'print what your node publishes and compare',
     ) -> Any:
         """The first message for which the predicate holds (the first of all without one).
 
         `after` is called once the subscription stands: what it publishes can't be missed.
-        Raises CheckFailed when there is no publisher or no such message in time.
+        Raises CheckFailed when there is no publisher or no such message in time. Where there were
+        others, it speaks of what was `expected`, of the last one, as `seen` puts it in words, and
+        gives the `hint`.
         """
         with Watcher() as watcher:
-            ears = self._listen(watcher)
+            ears = self.listen(watcher)
             if after is not None:
                 after()
 
@@ -95,19 +100,24 @@ class Topic:
                 return [m for m in ears.messages() if predicate is None or predicate(m)]
 
             if not watcher.spin_until(lambda: bool(found()), timeout_sec=timeout_sec):
-                heard = len(ears.messages())
+                heard = ears.messages()
                 if not heard:
                     self._fail_silent(watcher, seen=f'no message in {timeout_sec:g} s')
                 fail(
-                    expected=f'a message on {self.name} that answers',
-                    seen=f'{heard} others in {timeout_sec:g} s',
-                    hint='print what your node publishes and compare',
+                    expected=expected or f'a message on {self.name} that answers',
+                    seen=shorten(seen(heard[-1]))
+                    if seen
+                    else f'{len(heard)} others in {timeout_sec:g} s',
+                    hint=hint,
                 )
             return found()[0]
 
-    def _listen(self, watcher: Watcher) -> looks.Ears:
-        """Subscribe with the publishers' own type and QoS; wait for them first."""
-        patience_sec = self._patience_sec(PUBLISHER_SEC)
+    def listen(self, watcher: Watcher) -> looks.Ears:
+        """Subscribe with the publishers' own type and QoS; wait for them first.
+
+        Raises CheckFailed when there is no publisher, or no one type.
+        """
+        patience_sec = self.patience_sec(PUBLISHER_SEC)
         if not graphs.wait_for_publisher(watcher, self.name, timeout_sec=patience_sec):
             fail(
                 expected=f'a publisher on {self.name}',
@@ -125,7 +135,8 @@ class Topic:
         )
         return looks.Ears(watcher, topic_name=self.name, type_=message_type, qos_profile=wanted)
 
-    def _patience_sec(self, most_sec: float) -> float:
+    def patience_sec(self, most_sec: float) -> float:
+        """How long to wait for an endpoint of the notebook: less where it says it has none."""
         return most_sec if student.has_endpoint(self.name) else min(most_sec, ABSENT_SEC)
 
     def _message_type(self, watcher: Watcher) -> type:
@@ -144,7 +155,7 @@ class Topic:
 
     def _record_on_wall(self, why: str, seconds: float) -> Recording:
         with Watcher() as watcher:
-            return looks.wall(watcher, self._listen(watcher), why=why, seconds=seconds)
+            return looks.wall(watcher, self.listen(watcher), why=why, seconds=seconds)
 
     def _fail_silent(self, watcher: Watcher, *, seen: str) -> None:
         if graphs.publisher_infos(watcher.node, self.name):
