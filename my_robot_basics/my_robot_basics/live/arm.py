@@ -11,6 +11,8 @@ from my_robot_basics.two_link_kinematics import L1, L2, forward_kinematics
 # Okabe and Ito's colours are told apart by everyone
 LINK1, LINK2, EFFECTOR, ANGLE, RING = '#0072b2', '#d55e00', '#009e73', '#000000', '#56b4e9'
 DASHED = '#666666'
+BEHIND = 1.5
+"""Where the arm is drawn over it: above the ring, below other lines."""
 
 
 def show_arm(
@@ -107,11 +109,12 @@ class ArmPicture:
         elbow = self._l1 * _direction(theta1_deg)
         tip = forward_kinematics(theta1_deg, theta2_deg, self._l1, self._l2)
         xs, ys = zip((0, 0), elbow, tip, strict=True)
-        self._axes.plot(xs, ys, '--o', color=DASHED, lw=2, ms=6, markerfacecolor='white')
+        style = {'color': DASHED, 'lw': 2, 'ms': 6, 'markerfacecolor': 'white'}
+        self._axes.plot(xs, ys, '--o', zorder=BEHIND, **style)
 
     def dots(self, x: ArrayLike, y: ArrayLike) -> None:
         """Add points, in metres."""
-        self._axes.plot(x, y, ',', color=EFFECTOR)
+        self._axes.plot(x, y, ',', color=EFFECTOR, zorder=BEHIND)
 
     def title(self, text: str) -> None:
         """Write above the picture."""
