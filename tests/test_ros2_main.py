@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pexpect
 import pytest
+from my_robot_basics.live import lessons
 from my_robot_basics.ros2 import arguments, environment, main, stopping
 from my_robot_basics.ros2.table import COMMANDS, ELSEWHERE
 from ros2_command import SCRIPT, ros2
@@ -114,6 +115,7 @@ def test_what_the_environment_says_stands(monkeypatch):
 
 
 def test_a_bare_shell_gets_what_a_lesson_has(monkeypatch):
+    monkeypatch.setattr(lessons, 'running', list)
     for name in ('ROS_DOMAIN_ID', 'ROS_AUTOMATIC_DISCOVERY_RANGE', 'AMENT_PREFIX_PATH'):
         monkeypatch.setenv(name, '')
     monkeypatch.delenv('FASTRTPS_DEFAULT_PROFILES_FILE')

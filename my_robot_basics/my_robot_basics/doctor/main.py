@@ -35,6 +35,7 @@ def main(argv: list[str] | None = None) -> int:
         topic_name, domain_id = full_topic_name(args.topic_name), environment.domain_id()
     except (ValueError, CommandError) as error:
         parser.error(str(error))
+    environment.say_where()
     try:
         # rclpy takes its time, and `--help` needs none of it
         from my_robot_basics.doctor.looking import diagnose

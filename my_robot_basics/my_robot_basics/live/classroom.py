@@ -7,6 +7,7 @@ import os
 import sys
 from pathlib import Path
 
+from my_robot_basics.live import kernel, lessons
 from my_robot_basics.live.domain import Claim, claim
 from my_robot_basics.live.errors import BadDomain
 
@@ -24,7 +25,8 @@ def enter() -> int:
     Nodes are found on this machine only, and fast; logs go to stdout, line by line and without
     colours; ROS resources and commands are found in this Python's prefix; and the process has
     a ROS domain of its own, or the one that MY_ROBOT_BASICS_DOMAIN_ID names. It takes effect
-    for contexts that are initialised afterwards. Raises NoFreeDomain or BadDomain.
+    for contexts that are initialised afterwards. A notebook's kernel also tells terminals of
+    itself. Raises NoFreeDomain or BadDomain.
     """
     global _claim, _domain_id
     if _domain_id is None:
@@ -35,7 +37,14 @@ def enter() -> int:
             _claim = claim()
             _domain_id = _claim.domain_id
         _set_environment(_domain_id)
+        if kernel.shell() and not in_grading_room():
+            lessons.announce(_domain_id)
     return _domain_id
+
+
+def show_domain() -> None:
+    """Print the line that lets a terminal join this lesson."""
+    print(f'In a terminal, join this lesson: export ROS_DOMAIN_ID={enter()}')
 
 
 def in_grading_room() -> bool:

@@ -37,21 +37,30 @@ def claim() -> Claim:
     the process, however that dies. Processes that the holder starts do not keep it.
     """
     for domain_id in range(FIRST, LAST + 1):
-        # not inherited through exec: Python's sockets are close-on-exec
-        holder = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
-        try:
-            holder.bind(f'\0my_robot_basics.domain.{domain_id}')
-        except OSError as error:
-            holder.close()
-            if error.errno != errno.EADDRINUSE:
-                raise
-        else:
-            _held.add(holder)
+        if holder := hold(f'my_robot_basics.domain.{domain_id}'):
             return Claim(domain_id, holder)
     raise NoFreeDomain(
         f'all {LAST - FIRST + 1} ROS domains of this machine are taken, one by each running '
         'lesson: shut down kernels that you no longer need, then restart this one'
     )
+
+
+def hold(name: str) -> socket.socket | None:
+    """Bind an abstract Unix socket to a name, or return None where the name is taken.
+
+    It is held until it is closed or this process ends.
+    """
+    # not inherited through exec: Python's sockets are close-on-exec
+    holder = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+    try:
+        holder.bind(f'\0{name}')
+    except OSError as error:
+        holder.close()
+        if error.errno != errno.EADDRINUSE:
+            raise
+        return None
+    _held.add(holder)
+    return holder
 
 
 _held: weakref.WeakSet[socket.socket] = weakref.WeakSet()

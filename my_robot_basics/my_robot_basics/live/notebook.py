@@ -1,8 +1,9 @@
 """The way to a notebook's cells; outside a notebook kernel, to stdout."""
 
+import base64
+import html
 import itertools
 import os
-import sys
 import threading
 import time
 from collections.abc import Callable
@@ -10,6 +11,7 @@ from typing import Any
 
 import rclpy.logging
 
+from my_robot_basics.live import kernel
 from my_robot_basics.live.log_lines import CONSOLE_FORMAT, LogRecord
 from my_robot_basics.live.stdout_tap import StdoutTap
 
@@ -23,17 +25,9 @@ _tap: StdoutTap | None = None
 _numbers = itertools.count()
 
 
-def _shell() -> Any:
-    """IPython's shell when it runs in a kernel, else None."""
-    if 'IPython' not in sys.modules:
-        return None
-    shell = sys.modules['IPython'].get_ipython()
-    return shell if hasattr(shell, 'kernel') else None
-
-
 def in_kernel() -> bool:
     """Whether this process is a notebook's kernel."""
-    return _shell() is not None
+    return kernel.shell() is not None
 
 
 def open_tap() -> None:
@@ -88,7 +82,7 @@ class Display:
     def __init__(self, metadata: dict[str, Any] | None = None) -> None:
         """Remember the cell, and what to say about each MIME type; nothing shows before `show`."""
         self._metadata = metadata
-        self._shell = _shell()
+        self._shell = kernel.shell()
         self._cell = self._shell.get_parent() if self._shell else None
         self._id = f'live-{next(_numbers)}-{time.time_ns():x}'
         self._shown = False
@@ -123,9 +117,17 @@ class Display:
             publisher.reset_thread_parent(token)
 
     def _publish(self, bundle: Bundle, *, update: bool) -> None:
+        if 'image/png' in bundle:
+            bundle = bundle | {'text/html': _with_words(bundle['image/png'], bundle['text/plain'])}
         self._shell.display_pub.publish(
             bundle, metadata=self._metadata, transient={'display_id': self._id}, update=update
         )
+
+
+def _with_words(png: bytes, text: str) -> str:
+    """A picture and its alternative text, which JupyterLab leaves out of a plain PNG."""
+    source = base64.b64encode(png).decode('ascii')
+    return f'<img alt="{html.escape(text)}" src="data:image/png;base64,{source}">'
 
 
 class _Refresher:

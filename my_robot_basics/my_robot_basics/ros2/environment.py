@@ -3,8 +3,11 @@
 import os
 import sys
 
+from my_robot_basics.live import lessons
 from my_robot_basics.live.classroom import FAST_DISCOVERY, HIGHEST_DOMAIN
 from my_robot_basics.ros2.errors import CommandError
+
+_joined: lessons.Lesson | None = None
 
 
 def enter() -> None:
@@ -15,17 +18,31 @@ def enter() -> None:
     defaults = {
         'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST',
         'FASTRTPS_DEFAULT_PROFILES_FILE': str(FAST_DISCOVERY),
-        'ROS_DOMAIN_ID': domain_to_join(),
     }
     for name, value in defaults.items():
         if not os.environ.get(name):
             os.environ[name] = value
+    if not os.environ.get('ROS_DOMAIN_ID'):
+        os.environ['ROS_DOMAIN_ID'] = _domain_to_join()
     _put_last('AMENT_PREFIX_PATH', sys.prefix)  # a workspace that was sourced comes first
 
 
-def domain_to_join() -> str:
-    """The ROS domain for a shell that names none."""
-    return '0'
+def _domain_to_join() -> str:
+    """The ROS domain for a shell that names none: of the lesson that started last, or ROS's 0."""
+    global _joined
+    if running := lessons.running():
+        _joined = running[-1]
+    return str(_joined.domain_id if _joined else 0)
+
+
+def say_where() -> None:
+    """Tell whoever sits at the shell which lesson was joined, unless the shell named a domain."""
+    if _joined and '_ARGCOMPLETE' not in os.environ:
+        print(
+            f'joined the lesson {_joined.name}, which started last: '
+            f'ROS_DOMAIN_ID={_joined.domain_id}',
+            file=sys.stderr,
+        )
 
 
 def domain_id() -> int:

@@ -66,6 +66,7 @@ class Graph:
             validate_node_name(self._node_name)
         except InvalidNodeNameException as error:
             raise CommandError(str(error)) from None
+        environment.say_where()
         stopping.leave_in_good_order()
         rclpy.init(
             args=[],

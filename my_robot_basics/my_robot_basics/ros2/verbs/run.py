@@ -3,7 +3,7 @@
 import argparse
 import shlex
 
-from my_robot_basics.ros2 import completion, packages
+from my_robot_basics.ros2 import completion, environment, packages
 from my_robot_basics.ros2.errors import CommandError
 
 
@@ -41,4 +41,5 @@ def main(args: argparse.Namespace) -> int:
         raise CommandError('No executable found')
     if len(paths) > 1:
         raise CommandError('\n- '.join(['Multiple executables found:', *map(str, paths)]))
+    environment.say_where()
     return run([*prefix, str(paths[0]), *args.argv])
