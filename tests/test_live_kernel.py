@@ -505,11 +505,19 @@ class Mover(Talker):
         'two-link arm that follows /joints'
     }
     assert cell.displays[0]['metadata']['image/png']['alt']
+
     assert len({d['transient']['display_id'] for d in cell.displays}) == 1
     lesson.run('stop()')
     last = lesson.run('show_arm(30, 45)')
     assert 'θ1 = 30.0°' in last.panel
     assert lesson.value('[n for n in publishers("/joints")]') == '[]'
+
+
+def test_a_picture_comes_with_its_words_where_a_plain_png_would_lose_them(lesson):
+    [shown] = lesson.run('from my_robot_basics.live import show_arm; show_arm(30, 45)').displays
+    png, text = shown['data']['image/png'].replace('\n', ''), shown['data']['text/plain']
+    assert 'θ1 = 30.0°' in text
+    assert shown['data']['text/html'] == f'<img alt="{text}" src="data:image/png;base64,{png}">'
 
 
 def test_two_kernels_have_two_domains_and_give_them_back(lesson):

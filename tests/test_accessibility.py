@@ -1,0 +1,79 @@
+"""What axe-core finds in the pages that students read: nothing serious."""
+
+import shutil
+
+import nbformat
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+from nbconvert import HTMLExporter
+from playwright.sync_api import sync_playwright
+from sample_class import PATHS, assignment_of, grade
+
+from grader.course import ROOT, Course
+from grader.feedback import write_feedback
+
+CHROMIUM = next(filter(None, map(shutil.which, ['chromium', 'chromium-browser'])), None)
+LESSONS = sorted(ROOT.glob('notebooks/**/*.ipynb'))
+OF_THE_THEME = ['.jp-InputPrompt', '.jp-OutputPrompt', '.highlight']
+"""Coloured by Jupyter and not by us: the numbers of cells, and the code."""
+LINKS_OF_THE_THEME = {'link-in-text-block': {'enabled': False}}
+"""Nor do we choose that links in a notebook are not underlined."""
+NO_WORDS = 'No description has been provided for this image'
+"""What nbconvert says of a picture that comes without alternative text."""
+
+pytestmark = [
+    pytest.mark.browser,
+    pytest.mark.skipif(CHROMIUM is None, reason='no chromium here: .ci/run installs it'),
+]
+
+
+@pytest.fixture(scope='module')
+def page():
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=['--no-sandbox'])
+        yield browser.new_page(bypass_csp=True)
+        browser.close()
+
+
+def serious(page, html):
+    """Rule and element of each finding that keeps somebody from reading the page."""
+    page.set_content(html)
+    found = (
+        Axe()
+        .run(
+            page,
+            context={'exclude': [[name] for name in OF_THE_THEME]},
+            options={'rules': LINKS_OF_THE_THEME},
+        )
+        .response
+    )
+    return [
+        (rule['id'], node['html'], node['failureSummary'])
+        for rule in found['violations']
+        if rule['impact'] in ('serious', 'critical')
+        for node in rule['nodes']
+    ]
+
+
+def test_axe_finds_what_is_wrong(page):
+    # or the tests below would find nothing in anything
+    html = '<html lang="en"><title>Arm</title><main><h1>Arm</h1><img src="arm.png"></main></html>'
+    assert [rule for rule, *_ in serious(page, html)] == ['image-alt']
+
+
+@pytest.mark.parametrize('path', LESSONS, ids=lambda path: path.stem)
+def test_a_released_lesson(page, path):
+    html, _ = HTMLExporter().from_notebook_node(nbformat.read(path, as_version=4))
+    assert serious(page, html) == []
+    assert NO_WORDS not in html
+
+
+@pytest.mark.parametrize('name', ['03_publisher-fail-1hz', '03_publisher-zero-not_json'])
+def test_a_page_of_feedback(page, tmp_path, name):
+    course = Course(gradebook=tmp_path)
+    grade(course, [name])
+    write_feedback(course)
+    assignment = assignment_of(PATHS[name])
+    html = (course.folder('feedback', name, assignment) / f'{assignment}.html').read_text()
+    assert ('<img' in html) == ('fail' in name)
+    assert serious(page, html) == []
