@@ -8,10 +8,12 @@ import importlib
 
 _HOMES = {
     'CheckFailed': 'errors',
+    'Predictions': 'predictions',
     'expect': 'errors',
     'fail': 'errors',
     'graph': 'graphs',
     'inputs': 'seeds',
+    'relay': 'relays',
     'rosout': 'logs',
     'topic': 'topics',
 }

@@ -103,6 +103,11 @@ def publisher_infos(node: Node, topic_name: str) -> list[TopicEndpointInfo]:
     return [info for info in node.get_publishers_info_by_topic(topic_name) if not _hidden(info)]
 
 
+def subscription_infos(node: Node, topic_name: str) -> list[TopicEndpointInfo]:
+    """The endpoints that subscribe to a topic; those of nodes of the course are left out."""
+    return [info for info in node.get_subscriptions_info_by_topic(topic_name) if not _hidden(info)]
+
+
 def full_name(info: TopicEndpointInfo) -> str:
     """The full name of an endpoint's node."""
     return f'{info.node_namespace.rstrip("/")}/{info.node_name}'

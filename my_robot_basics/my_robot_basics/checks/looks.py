@@ -29,10 +29,17 @@ class Ears:
         self, watcher: Watcher, *, topic_name: str, type_: type, qos_profile: QoSProfile
     ) -> None:
         self.topic_name = topic_name
+        self.type = type_
         self.heard: list[tuple[Any, int]] = []
         self._node = watcher.node
-        self._node.create_subscription(type_, topic_name, self._hear, qos_profile)
+        self._subscription = self._node.create_subscription(
+            type_, topic_name, self._hear, qos_profile
+        )
         self._publishers = ()
+
+    def is_connected(self) -> bool:
+        """Whether a publisher has been met."""
+        return self._subscription.get_publisher_count() > 0
 
     def publishers(self) -> tuple[str, ...]:
         """Full names of the nodes that publish on the topic, one for each publisher.

@@ -1,0 +1,204 @@
+"""A node that passes on what it hears: send on one topic, listen on the other."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any, NoReturn
+
+from rclpy.event_handler import PublisherEventCallbacks
+from rclpy.node import Node
+from rclpy.publisher import Publisher
+from rclpy.qos import (
+    DurabilityPolicy,
+    QoSProfile,
+    ReliabilityPolicy,
+    qos_policy_name_from_kind,
+)
+
+from my_robot_basics.checks import graphs
+from my_robot_basics.checks.errors import expect, fail
+from my_robot_basics.checks.looks import Ears
+from my_robot_basics.checks.topics import Topic
+from my_robot_basics.checks.watcher import Watcher
+
+TIMEOUT_SEC = 10.0
+AGAIN_SEC = 0.1
+"""How long to wait for a message to come out before it is sent once more."""
+REFUSED_SEC = 2.0
+"""How long another subscription of the node may come after one that asks for too much."""
+LATCHED = QoSProfile(
+    depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL
+)
+MOST_STRANGERS = 100
+"""How often to try to publish before discovery is done; most often the first time will do."""
+
+
+def relay(source: str, *, to: str) -> 'Relay':
+    """What a node makes of the topic `source` when it publishes again on the topic `to`."""
+    return Relay(source, to)
+
+
+@dataclass(frozen=True)
+class Relay:
+    """Two topics with a node of the student between them; any QoS will do on the second one."""
+
+    source: str
+    to: str
+
+    def assert_carries(self, *messages: Any, qos_profile: QoSProfile) -> None:
+        """Each message, offered with that profile on `source`, comes out on `to`.
+
+        It is sent again and again meanwhile: a BEST_EFFORT end may lose one.
+        """
+        with Watcher() as watcher:
+            ears = self._listen(watcher, type(messages[0]))
+            publisher = self._publish_to_node(watcher, type(messages[0]), qos_profile)
+            for message in messages:
+                self._expect_out(watcher, ears, message, again=publisher)
+
+    def assert_carries_latched(self, make_message: Callable[[], Any], *, times: int = 1) -> None:
+        """What was said before anybody listened comes out on `to`.
+
+        So many times a new participant publishes one latched message, a new one of
+        `make_message`, before it has met anybody. And the graph says that the node asks for it:
+        TRANSIENT_LOCAL.
+        """
+        with Watcher() as watcher:
+            ears = self._listen(watcher, type(make_message()))
+            self._expect_transient_local(watcher)
+            for _ in range(times):
+                with _said_to_nobody(self.source, make_message) as (message, _):
+                    self._expect_out(watcher, ears, message)
+
+    def _listen(self, watcher: Watcher, type_: type) -> Ears:
+        """Listen on `to`; a VOLATILE publisher is waited for until it knows of the listener."""
+        ears = Topic(self.to).listen(watcher)
+        expect(
+            ears.type is type_,
+            expected=f'{type_.__name__} messages on {self.to}',
+            seen=ears.type.__name__,
+            hint=f'publish there the messages that arrive on {self.source}',
+        )
+        watcher.spin_until(ears.is_connected, timeout_sec=TIMEOUT_SEC)
+        return ears
+
+    def _publish_to_node(self, watcher: Watcher, type_: type, offered: QoSProfile) -> Publisher:
+        """A publisher that has met a subscription which asks for no more than it offers."""
+        refused = set()
+        events = PublisherEventCallbacks(
+            incompatible_qos=lambda event: refused.add(event.last_policy_kind)
+        )
+        publisher = watcher.node.create_publisher(
+            type_, self.source, offered, event_callbacks=events
+        )
+
+        def is_there() -> bool:
+            return publisher.get_subscription_count() > 0
+
+        patience_sec = Topic(self.source).patience_sec(TIMEOUT_SEC)
+        watcher.spin_until(lambda: is_there() or bool(refused), timeout_sec=patience_sec)
+        if watcher.spin_until(is_there, timeout_sec=REFUSED_SEC if refused else 0.0):
+            return publisher
+        if not refused:
+            self._fail_absent(watcher, patience_sec=patience_sec)
+        asked = {_brief(asked) for asked in _requests(watcher.node, self.source)}
+        policies = ' and '.join(sorted(qos_policy_name_from_kind(kind) for kind in refused))
+        fail(
+            expected=f'a subscription on {self.source} that asks for no more than'
+            f' {_brief(offered)}, which is what the publisher offers',
+            seen=f'{" and ".join(sorted(asked))} (incompatible: {policies})',
+            hint='give create_subscription a profile with reliability and durability as offered',
+        )
+
+    def _expect_transient_local(self, watcher: Watcher) -> None:
+        def asked() -> set[str]:
+            return {asked.durability.name for asked in _requests(watcher.node, self.source)}
+
+        patience_sec = Topic(self.source).patience_sec(TIMEOUT_SEC)
+        if not watcher.spin_until(lambda: bool(asked()), timeout_sec=patience_sec):
+            self._fail_absent(watcher, patience_sec=patience_sec)
+        # a second subscription may be a moment behind the first
+        if not watcher.spin_until(lambda: 'TRANSIENT_LOCAL' in asked(), timeout_sec=AGAIN_SEC):
+            fail(
+                expected=f'a subscription on {self.source} with durability TRANSIENT_LOCAL',
+                seen=' and '.join(sorted(asked())),
+                hint='what was said before you joined comes only to those who ask for it',
+            )
+
+    def _expect_out(
+        self, watcher: Watcher, ears: Ears, message: Any, *, again: Publisher | None = None
+    ) -> None:
+        """Wait for the message on `to`; publish it `again` and again meanwhile."""
+        before = len(ears.messages())
+        for _ in range(round(TIMEOUT_SEC / AGAIN_SEC)):
+            if again is not None:
+                again.publish(message)
+            if watcher.spin_until(
+                lambda: any(_says(heard, message) for heard in ears.messages()),
+                timeout_sec=AGAIN_SEC,
+            ):
+                return
+        has_others = len(ears.messages()) > before
+        fail(
+            expected=f'a message from {self.source} to come out on {self.to}, unchanged',
+            seen=f'{"only others" if has_others else "none"} in {TIMEOUT_SEC:g} s',
+            hint=self._why_lost(watcher, is_latched=again is None, has_others=has_others),
+        )
+
+    def _why_lost(self, watcher: Watcher, *, is_latched: bool, has_others: bool) -> str:
+        reliable = {
+            asked.reliability
+            for asked in _requests(watcher.node, self.source)
+            if asked.durability == DurabilityPolicy.TRANSIENT_LOCAL
+        }
+        if is_latched and reliable == {ReliabilityPolicy.BEST_EFFORT}:
+            return 'what was said before you joined comes only to a RELIABLE subscription'
+        if has_others:
+            return 'publish the very message that your callback is given'
+        return 'see that your callback publishes each message, and that it raises nothing'
+
+    def _fail_absent(self, watcher: Watcher, *, patience_sec: float) -> NoReturn:
+        fail(
+            expected=f'a subscription on {self.source}',
+            seen=f'none in {patience_sec:g} s',
+            hint=graphs.take(watcher).why_unheard(self.source),
+        )
+
+
+@contextmanager
+def _said_to_nobody(
+    topic_name: str, make_message: Callable[[], Any]
+) -> Iterator[tuple[Any, Publisher]]:
+    """Yield a message that was published when its publisher's participant knew of nobody.
+
+    The participant stays, to be met. Where discovery was faster, all begins anew: whoever had met
+    the publisher before it spoke gets the message without having asked for it.
+    """
+    for _ in range(MOST_STRANGERS):
+        with Watcher() as stranger:
+            message = make_message()
+            publisher = stranger.node.create_publisher(type(message), topic_name, LATCHED)
+            publisher.publish(message)
+            if publisher.get_subscription_count() == 0:
+                yield message, publisher
+                return
+    raise RuntimeError(f'discovery was faster than a first message, {MOST_STRANGERS} times')
+
+
+def _requests(node: Node, topic_name: str) -> list[QoSProfile]:
+    """What the student's subscriptions on a topic ask for."""
+    return [info.qos_profile for info in graphs.subscription_infos(node, topic_name)]
+
+
+def _brief(qos_profile: QoSProfile) -> str:
+    return f'{qos_profile.reliability.name}/{qos_profile.durability.name}'
+
+
+def _says(heard: Any, sent: Any) -> bool:
+    """Whether a message has all that was filled in in the other; its stamp may be a new one."""
+    blank = type(sent)()
+    return all(
+        getattr(heard, field) == getattr(sent, field)
+        for field in sent.get_fields_and_field_types()
+        if getattr(sent, field) != getattr(blank, field)
+    )

@@ -1,0 +1,202 @@
+"""A node that passes messages on is judged by what comes out, whatever its own QoS."""
+
+import itertools
+from contextlib import nullcontext
+
+import pytest
+from my_robot_basics.checks import CheckFailed, relay, relays
+from nodes.running import imported, running
+from rclpy.duration import Duration
+from rclpy.node import Node
+from rclpy.qos import (
+    DurabilityPolicy,
+    QoSProfile,
+    ReliabilityPolicy,
+    qos_profile_sensor_data,
+)
+from sensor_msgs.msg import JointState
+from std_msgs.msg import String
+
+from my_robot_basics import live
+
+RELIABLE, BEST_EFFORT = ReliabilityPolicy.RELIABLE, ReliabilityPolicy.BEST_EFFORT
+VOLATILE, TRANSIENT_LOCAL = DurabilityPolicy.VOLATILE, DurabilityPolicy.TRANSIENT_LOCAL
+PROFILES = {
+    f'{reliability.name} {durability.name}': QoSProfile(
+        depth=1, reliability=reliability, durability=durability
+    )
+    for reliability in (RELIABLE, BEST_EFFORT)
+    for durability in (VOLATILE, TRANSIENT_LOCAL)
+}
+
+monitor = imported('joint_state_monitor')
+numbers = itertools.count()
+
+joint_states = relay('/sensor/joint_states', to='/monitor/joint_states')
+arm_description = relay('/arm_description', to='/monitor/arm_description')
+
+
+@pytest.fixture
+def run():
+    yield live.run
+    live.stop()
+
+
+@pytest.fixture
+def impatient(monkeypatch):
+    monkeypatch.setattr(relays, 'TIMEOUT_SEC', 1.0)
+
+
+def description():
+    return String(data=f'an arm with {next(numbers)} joints')
+
+
+def pose():
+    return JointState(name=['joint1'], position=[float(next(numbers))])
+
+
+def check_delivery():
+    joint_states.assert_carries(pose(), pose(), qos_profile=qos_profile_sensor_data)
+
+
+def check_late_joiner():
+    arm_description.assert_carries_latched(description, times=3)
+
+
+@pytest.mark.parametrize('offered', PROFILES.values(), ids=PROFILES)
+def test_a_monitor_passes_whatever_it_offers_and_nothing_is_said(run, capfd, offered):
+    run(monitor.JointStateMonitor, monitor=offered)
+    capfd.readouterr()
+    check_delivery()
+    check_late_joiner()
+    assert capfd.readouterr() == ('', '')
+
+
+def test_a_monitor_in_a_process_of_its_own_passes():
+    with running('joint_state_monitor'):
+        check_delivery()
+        check_late_joiner()
+
+
+def test_other_nodes_on_the_topics_are_no_hindrance(run):
+    talker = run(Node, 'talker')
+    sensor = talker.create_publisher(JointState, '/sensor/joint_states', qos_profile_sensor_data)
+    latched = talker.create_publisher(String, '/arm_description', relays.LATCHED)
+    latched.publish(String(data='the one of the lesson'))
+    talker.create_timer(0.005, lambda: sensor.publish(JointState(name=['joint2'])))
+    talker.create_subscription(JointState, '/sensor/joint_states', lambda _: None, 10)
+    run(monitor.JointStateMonitor)
+    check_delivery()
+    check_late_joiner()
+
+
+def test_a_new_stamp_does_no_harm(run):
+    class Stamps(monitor.JointStateMonitor):
+        def changed(self, publish):
+            return lambda message: publish(self.stamped(message))
+
+        def stamped(self, message):
+            if isinstance(message, JointState):
+                message.header.stamp = self.get_clock().now().to_msg()
+            return message
+
+    run(Stamps)
+    check_delivery()
+
+
+@pytest.mark.parametrize(
+    ('asked', 'reason'),
+    [
+        (10, r'saw RELIABLE/VOLATILE \(incompatible: RELIABILITY\): give create_subscription'),
+        (PROFILES['BEST_EFFORT TRANSIENT_LOCAL'], r'LOCAL \(incompatible: DURABILITY\)'),
+        (
+            QoSProfile(depth=1, reliability=BEST_EFFORT, deadline=Duration(seconds=1)),
+            r'saw BEST_EFFORT/VOLATILE \(incompatible: DEADLINE\)',
+        ),
+    ],
+)
+def test_a_subscription_that_asks_for_too_much_is_named(run, asked, reason):
+    run(monitor.JointStateMonitor, sensor=asked)
+    with pytest.raises(CheckFailed, match=reason):
+        check_delivery()
+
+
+@pytest.mark.parametrize('reliability', [RELIABLE, BEST_EFFORT])
+def test_a_volatile_subscription_is_named(run, reliability):
+    run(monitor.JointStateMonitor, description=QoSProfile(depth=10, reliability=reliability))
+    with pytest.raises(CheckFailed, match='with durability TRANSIENT_LOCAL, saw VOLATILE: what'):
+        check_late_joiner()
+
+
+def test_best_effort_hears_nothing_of_what_was_said_before(run, impatient):
+    run(monitor.JointStateMonitor, description=PROFILES['BEST_EFFORT TRANSIENT_LOCAL'])
+    with pytest.raises(CheckFailed, match='joined comes only to a RELIABLE subscr'):
+        check_late_joiner()
+
+
+def test_a_message_that_was_changed_does_not_pass(run, impatient):
+    class Constant(monitor.JointStateMonitor):
+        def changed(self, publish):
+            return lambda message: publish(type(message)())
+
+    run(Constant)
+    for check in check_delivery, check_late_joiner:
+        with pytest.raises(CheckFailed, match='only others in 1 s: publish the very message'):
+            check()
+
+
+def test_a_callback_that_publishes_nothing_does_not_pass(run, impatient):
+    class Silent(monitor.JointStateMonitor):
+        def changed(self, publish):
+            return lambda message: None
+
+    run(Silent)
+    for check in check_delivery, check_late_joiner:
+        with pytest.raises(CheckFailed, match='saw none in 1 s: see that your callback publishes'):
+            check()
+
+
+def test_the_wrong_topics_are_named(run, impatient):
+    class NoEars(Node):
+        def __init__(self):
+            super().__init__('no_ears')
+            self.create_publisher(JointState, '/monitor/joint_states', 10)
+            self.create_publisher(JointState, '/monitor/arm_description', 10)
+            self.create_subscription(JointState, '/sensors/joint_states', print, 10)
+
+    run(NoEars)
+    with pytest.raises(CheckFailed, match='saw none in 1 s: /no_ears uses /sensors/joint_states'):
+        check_delivery()
+    with pytest.raises(CheckFailed, match='String messages on /monitor/arm_description, saw Join'):
+        check_late_joiner()
+    with pytest.raises(CheckFailed, match='a publisher on /monitor/joint_state, saw none in 3 s'):
+        relay('/sensor/joint_states', to='/monitor/joint_state').assert_carries(
+            pose(), qos_profile=qos_profile_sensor_data
+        )
+
+
+@pytest.mark.parametrize('times', [5, pytest.param(200, marks=pytest.mark.slow)])
+@pytest.mark.parametrize('place', ['here', 'elsewhere'])
+def test_nobody_gets_what_was_said_before_without_asking_for_it(run, place, times):
+    heard, said_before = [], set()
+    run(Node, 'probe').create_subscription(
+        String, '/monitor/arm_description', lambda message: heard.append(message.data), 10
+    )
+    with volatile_monitor(run, place):
+        for _ in range(times):
+            with relays._said_to_nobody('/arm_description', description) as (message, publisher):
+                said_before.add(message.data)
+                # what comes later does arrive, and messages of a publisher keep their order
+                later = description()
+                live.wait_until(lambda p=publisher: p.get_subscription_count() > 0, 10.0)
+                publisher.publish(later)
+                live.wait_until(lambda text=later.data: text in heard, 10.0)
+            with pytest.raises(CheckFailed, match='saw VOLATILE'):
+                arm_description.assert_carries_latched(description)
+    assert not said_before & set(heard)
+
+
+def volatile_monitor(run, place):
+    if place == 'elsewhere':
+        return running('monitor_volatile')
+    return nullcontext(run(monitor.JointStateMonitor, description=10))
