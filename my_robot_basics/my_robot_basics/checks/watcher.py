@@ -1,7 +1,7 @@
 """A check's own ROS node: it lives for one check, and no student code can reach it."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from types import TracebackType
 from typing import Self
 
@@ -39,17 +39,9 @@ class Watcher:
             domain_id=domain_id,
             signal_handler_options=SignalHandlerOptions.NO,
         )
-        self.node = Node(
-            f'{HIDDEN}check',
-            context=self.context,
-            use_global_arguments=False,
-            enable_rosout=False,
-            # or student code could set use_sim_time here
-            start_parameter_services=False,
-            parameter_overrides=[Parameter('start_type_description_service', value=False)],
-        )
         self._executor = SingleThreadedExecutor(context=self.context)
-        self._executor.add_node(self.node)
+        self._nodes: list[Node] = []
+        self.node = self.add_node('check')
         return self
 
     def __exit__(
@@ -60,8 +52,26 @@ class Watcher:
     ) -> None:
         """Leave it, with all that was made here."""
         self._executor.shutdown()
-        self.node.destroy_node()
+        for node in self._nodes:
+            node.destroy_node()
         self.context.shutdown()
+
+    def add_node(self, name: str, *, namespace: str = '', cli_args: Sequence[str] = ()) -> Node:
+        """Make one more hidden node, which is spun and destroyed together with the first."""
+        node = Node(
+            f'{HIDDEN}{name}',
+            context=self.context,
+            namespace=namespace,
+            cli_args=list(cli_args),
+            use_global_arguments=False,
+            enable_rosout=False,
+            # or student code could set use_sim_time here
+            start_parameter_services=False,
+            parameter_overrides=[Parameter('start_type_description_service', value=False)],
+        )
+        self._executor.add_node(node)
+        self._nodes.append(node)
+        return node
 
     def spin_until(self, done: Callable[[], bool], *, timeout_sec: float) -> bool:
         """Spin until `done()`, at most `timeout_sec` of steady wall time; whether it is done."""

@@ -1,0 +1,139 @@
+"""A small world of the check's own, in which a situation is run to see what really arrives.
+
+Publishers and subscriptions are in two participants, as in two processes. That a message does not
+arrive is never concluded from silence. Next to each endpoint stands a control endpoint, made after
+it: DDS tells of endpoints in the order in which they are made, so where the control endpoints have
+met, the endpoints have met, too, or never will. And a mark that is published last arrives last.
+"""
+
+import re
+import uuid
+from collections.abc import Callable
+from typing import Any
+
+from rclpy.node import Node
+from std_msgs.msg import String
+
+from my_robot_basics.checks.watcher import Watcher
+
+DEPTH = 10
+"""The queue depth that the lessons use; all else is rclpy's default QoS."""
+TIMEOUT_SEC = 10.0
+
+
+class DidNotRun(RuntimeError):
+    """The check's own nodes could not run a situation: no verdict follows from it."""
+
+
+class Stage:
+    """Makes the endpoints of one situation, on topics whose names nobody else knows."""
+
+    def __init__(self, senders: Watcher, receivers: Watcher) -> None:
+        """Use two participants, which may have been used for other stages."""
+        self._senders, self._receivers = senders, receivers
+        self._token = uuid.uuid4().hex
+        self._messages = 0
+        self.control_topic = self._own('/control')
+        self.publishers: list[StagePublisher] = []
+        self.subscriptions: list[StageSubscription] = []
+
+    def publisher(
+        self, topic_name: str, *, namespace: str = '', remap: str = '', type_: type = String
+    ) -> 'StagePublisher':
+        """A publisher on a node of its own; `remap` is a rule like `pose:=/shown_pose`."""
+        rule = ':='.join(self._own(name) for name in remap.split(':='))
+        node = self._senders.add_node(
+            'publisher', namespace=namespace, cli_args=['--ros-args', '-r', rule] if remap else ()
+        )
+        self.publishers.append(StagePublisher(self, node, self._own(topic_name), type_))
+        return self.publishers[-1]
+
+    def subscription(
+        self, topic_name: str, *, namespace: str = '', type_: type = String
+    ) -> 'StageSubscription':
+        """A subscription on a node of its own."""
+        node = self._receivers.add_node('subscription', namespace=namespace)
+        self.subscriptions.append(StageSubscription(self, node, self._own(topic_name), type_))
+        return self.subscriptions[-1]
+
+    def message(self, type_: type) -> Any:
+        """A message that differs from all others of this stage; `type_` has one field, data."""
+        self._messages += 1
+        return type_(data=type(type_().data)(self._messages))
+
+    def settle(self) -> None:
+        """Wait until all that will ever meet have met. Raises DidNotRun."""
+        self.wait(
+            lambda: (
+                {end.control.get_subscription_count() for end in self.publishers}
+                <= {len(self.subscriptions)}
+                and {end.control.get_publisher_count() for end in self.subscriptions}
+                <= {len(self.publishers)}
+            )
+        )
+
+    def wait(self, done: Callable[[], bool]) -> None:
+        """Receive messages until `done()`. Raises DidNotRun."""
+        if not self._receivers.spin_until(done, timeout_sec=TIMEOUT_SEC):
+            raise DidNotRun(
+                f'expected the nodes of this check to meet, saw no end of it in {TIMEOUT_SEC:g} s:'
+                ' it is not your answer; run the cell again'
+            )
+
+    def _own(self, name: str) -> str:
+        """The same name in every respect that counts, but hidden, and used by nobody else."""
+        return re.sub(r'\w+$', lambda last: f'_{last[0]}_{self._token}', name)
+
+
+class StagePublisher:
+    """A publisher with default QoS."""
+
+    def __init__(self, stage: Stage, node: Node, topic_name: str, type_: type) -> None:
+        self._stage, self._type = stage, type_
+        self._publisher = node.create_publisher(type_, topic_name, DEPTH)
+        self.control = node.create_publisher(String, stage.control_topic, DEPTH)
+
+    def publish(self) -> Any:
+        """Publish a new message to whoever is there now, and return it."""
+        self._stage.settle()
+        message = self._stage.message(self._type)
+        self._publisher.publish(message)
+        return message
+
+    def mark(self) -> tuple[Any, Any]:
+        """Publish one last message on the topic, then one on the control topic; return both."""
+        last, control = self.publish(), self._stage.message(String)
+        self.control.publish(control)
+        return last, control
+
+
+class StageSubscription:
+    """A subscription with default QoS, which keeps what it hears."""
+
+    def __init__(self, stage: Stage, node: Node, topic_name: str, type_: type) -> None:
+        self._stage, self._node = stage, node
+        self._heard: list[Any] = []
+        self._controls: list[Any] = []
+        self._subscription = node.create_subscription(type_, topic_name, self._heard.append, DEPTH)
+        self.control = node.create_subscription(
+            String, stage.control_topic, self._controls.append, DEPTH
+        )
+
+    def heard(self, *messages: Any) -> bool:
+        """Whether all these messages have arrived, once nothing can be on its way any more."""
+        self._stage.settle()
+        marks = [publisher.mark() for publisher in self._stage.publishers]
+        matches = self._subscription.get_publisher_count()
+        self._stage.wait(
+            lambda: (
+                all(control in self._controls for _, control in marks)
+                and sum(last in self._heard for last, _ in marks) == matches
+            )
+        )
+        return all(message in self._heard for message in messages)
+
+    def close(self) -> None:
+        """Destroy the subscription."""
+        self._stage.subscriptions.remove(self)
+        for subscription in self._subscription, self.control:
+            self._node.destroy_subscription(subscription)

@@ -1,0 +1,92 @@
+"""What arrives on a stage, and that no message is called lost before it had its chance."""
+
+import pytest
+from my_robot_basics.checks import stage as stage_module
+from my_robot_basics.checks.stage import DidNotRun, Stage
+from my_robot_basics.checks.watcher import Watcher
+from my_robot_basics.live import classroom
+from std_msgs.msg import Int32
+
+
+@pytest.fixture(scope='module')
+def participants():
+    with Watcher() as senders, Watcher() as receivers:
+        yield senders, receivers
+
+
+@pytest.fixture
+def stage(participants):
+    return Stage(*participants)
+
+
+def test_a_subscription_hears_what_is_published_while_it_is_there(stage):
+    publisher = stage.publisher('/pose')
+    early = publisher.publish()
+    subscription = stage.subscription('/pose')
+    now = publisher.publish()
+    assert subscription.heard(now)
+    assert not subscription.heard(early)
+    assert not subscription.heard(early, now)
+
+
+@pytest.mark.parametrize(
+    ('publisher', 'subscription', 'arrives'),
+    [
+        ({'topic_name': 'pose'}, {'topic_name': '/pose'}, True),
+        ({'topic_name': '/pose'}, {'topic_name': 'pose'}, True),
+        ({'topic_name': '/pose'}, {'topic_name': '/Pose'}, False),
+        ({'topic_name': 'pose', 'namespace': '/arm'}, {'topic_name': '/pose'}, False),
+        ({'topic_name': 'pose', 'namespace': '/arm'}, {'topic_name': '/arm/pose'}, True),
+        ({'topic_name': '/pose', 'namespace': '/arm'}, {'topic_name': '/pose'}, True),
+        ({'topic_name': '/pose'}, {'topic_name': 'pose', 'namespace': '/arm'}, False),
+        ({'topic_name': 'pose', 'remap': 'pose:=/shown'}, {'topic_name': '/shown'}, True),
+        ({'topic_name': 'pose', 'remap': 'pose:=/shown'}, {'topic_name': '/pose'}, False),
+        ({'topic_name': '/pose', 'type_': Int32}, {'topic_name': '/pose', 'type_': Int32}, True),
+        ({'topic_name': '/pose', 'type_': Int32}, {'topic_name': '/pose'}, False),
+    ],
+)
+def test_name_and_type_decide(stage, publisher, subscription, arrives):
+    sender, receiver = stage.publisher(**publisher), stage.subscription(**subscription)
+    assert receiver.heard(sender.publish()) is arrives
+
+
+def test_each_subscription_hears_each_publisher(stage):
+    publishers = [stage.publisher('/pose') for _ in range(3)]
+    subscriptions = [stage.subscription('/pose') for _ in range(2)]
+    messages = [publisher.publish() for publisher in publishers]
+    assert all(subscription.heard(*messages) for subscription in subscriptions)
+
+
+def test_a_closed_subscription_stops_nobody(stage):
+    publisher, closed = stage.publisher('/pose'), stage.subscription('/pose')
+    closed.close()
+    unheard = publisher.publish()
+    again = stage.subscription('/pose')
+    assert again.heard(publisher.publish())
+    assert not again.heard(unheard)
+
+
+def test_stages_do_not_hear_each_other(participants):
+    one, other = Stage(*participants), Stage(*participants)
+    publisher, subscription = one.publisher('/pose'), other.subscription('/pose')
+    ninth = [publisher.publish() for _ in range(9)][-1]
+    own = other.publisher('/pose').publish()
+    assert subscription.heard(own)
+    assert not subscription.heard(ninth)
+
+
+def test_its_nodes_are_hidden(stage, participants):
+    stage.publisher('/pose')
+    assert all(name.startswith('_') for name in participants[0].node.get_node_names())
+
+
+def test_without_a_meeting_there_is_no_verdict(monkeypatch):
+    monkeypatch.setattr(stage_module, 'TIMEOUT_SEC', 0.3)
+    elsewhere = 1 + classroom.enter() % 101
+    with Watcher() as senders, Watcher(domain_id=elsewhere) as receivers:
+        stage = Stage(senders, receivers)
+        publisher, subscription = stage.publisher('/pose'), stage.subscription('/pose')
+        with pytest.raises(DidNotRun, match='it is not your answer'):
+            publisher.publish()
+        with pytest.raises(DidNotRun):
+            subscription.heard()
