@@ -4,6 +4,7 @@ import base64
 import html
 import itertools
 import os
+import sys
 import threading
 import time
 from collections.abc import Callable
@@ -36,6 +37,8 @@ def open_tap() -> None:
     if _tap is None and in_kernel():
         _tap = StdoutTap()
         _mark_log_records()
+        # else the last picture, sent at the kernel's end, would need a part of ZMQ that is gone
+        kernel.shell().kernel.iopub_thread.socket.copy_threshold = sys.maxsize
 
 
 def _mark_log_records() -> None:
