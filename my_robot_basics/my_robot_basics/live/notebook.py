@@ -4,7 +4,6 @@ import base64
 import html
 import itertools
 import os
-import sys
 import threading
 import time
 from collections.abc import Callable
@@ -38,7 +37,7 @@ def open_tap() -> None:
         _tap = StdoutTap()
         _mark_log_records()
         # else the last picture, sent at the kernel's end, would need a part of ZMQ that is gone
-        kernel.shell().kernel.iopub_thread.socket.copy_threshold = sys.maxsize
+        kernel.shell().kernel.iopub_thread.socket.copy_threshold = 2**31 - 1
 
 
 def _mark_log_records() -> None:
