@@ -1,0 +1,80 @@
+"""The robot of lesson 5's exercise: who is on its topic, and what its locked cells do."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from my_robot_basics.live.unknown_robot import PARTS, TOPIC
+
+ROOT = Path(__file__).parents[1]
+
+START = """
+import json
+import rclpy
+from rclpy.node import Node
+from my_robot_basics.checks import graph
+from my_robot_basics.live import reset, run, stop, wait_until
+from my_robot_basics.live.unknown_robot import TOPIC, start_unknown_robot
+from sensor_msgs.msg import JointState
+
+reset('endpoints')
+start_unknown_robot()
+"""
+
+
+def told_by(source):
+    """What a lesson prints that starts the robot and goes on like this."""
+    run = subprocess.run(
+        [sys.executable, '-c', START + source], capture_output=True, text=True, check=True
+    )
+    assert run.stderr == ''
+    return run.stdout.splitlines()[2:]
+
+
+def test_its_nodes_are_where_the_table_says():
+    [said] = told_by(
+        'print(json.dumps([graph().publishers(TOPIC), graph().subscriptions(TOPIC)]))'
+    )
+    publishers, subscriptions = json.loads(said)
+    assert publishers == sorted(f'/{part.name}' for part in PARTS if TOPIC in part.publishes)
+    assert subscriptions == sorted(f'/{part.name}' for part in PARTS if TOPIC in part.subscribes)
+    assert (len(publishers), len(subscriptions)) == (2, 4)
+
+
+def test_its_topics_carry_messages():
+    assert told_by(
+        'listener, heard = run(Node, "listener"), []\n'
+        'listener.create_subscription(JointState, TOPIC, heard.append, 10)\n'
+        'wait_until(lambda: heard)\n'
+        'print(list(heard[0].name), heard[0].header.stamp.sec > 0)'
+    ) == ["['joint1', 'joint2'] True"]
+
+
+def test_starting_it_again_keeps_its_nodes_and_after_a_stop_brings_them_back():
+    names = 'print(len(graph().nodes()))\n'
+    assert told_by(
+        f'start_unknown_robot()\n{names}stop()\n{names}start_unknown_robot()\n{names}'
+        f'rclpy.shutdown()\nstart_unknown_robot()\n{names}'
+    ) == [
+        *('the unknown robot runs: 8 nodes', '8'),
+        '0',
+        *('the unknown robot runs: 8 nodes', '8') * 2,
+    ]
+
+
+def test_who_else_is_on_its_topic_is_named():
+    said = told_by(
+        'other = run(Node, "kinematics_publisher")\n'
+        'other.create_publisher(JointState, TOPIC, 10)\n'
+        'wait_until(lambda: other.count_publishers(TOPIC) == 3)\n'
+        'start_unknown_robot()'
+    )
+    assert said[1].startswith(f'note: kinematics_publisher is on {TOPIC} and no part of it')
+
+
+@pytest.mark.parametrize('part', PARTS, ids=lambda part: part.name)
+def test_no_lesson_tells_its_names(part):
+    for path in ROOT.glob('notebooks/*/*.ipynb'):
+        assert part.name not in path.read_text(encoding='utf-8'), path.name
