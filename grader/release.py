@@ -22,6 +22,7 @@ from nbformat import NotebookNode
 
 from grader.course import Course
 from grader.errors import CourseError
+from grader.index import write_pages
 from grader.leaks import BROKEN, files_in, leaks_of
 
 PASSES = (
@@ -44,6 +45,7 @@ CODE_STUB = {'python': '# YOUR CODE HERE'}
 """What stands for an answer: it runs, so that the checks can say what is missing."""
 
 KERNELSPEC = {'display_name': 'Python 3 (ipykernel)', 'language': 'python', 'name': 'python3'}
+METADATA = {'kernelspec': KERNELSPEC, 'language_info': {'name': 'python'}}
 CELL_METADATA = ('nbgrader', 'tags', 'deletable', 'editable')
 WIDGET_VIEW = 'application/vnd.jupyter.widget-view+json'
 
@@ -55,9 +57,7 @@ class TidyMetadata(Preprocessor):
 
     def preprocess(self, nb: NotebookNode, resources: dict) -> tuple[NotebookNode, dict]:
         """Tidy the notebook's own metadata and that of its cells."""
-        nb.metadata = nbformat.from_dict(
-            {'kernelspec': KERNELSPEC, 'language_info': {'name': 'python'}}
-        )
+        nb.metadata = nbformat.from_dict(METADATA)
         return super().preprocess(nb, resources)
 
     def preprocess_cell(
@@ -121,9 +121,9 @@ class KeepDemoOutputs(Preprocessor):
 def release(course: Course, assignment: str = '*') -> list[str]:
     """Release an assignment, or all of them; return the names of the files that changed.
 
-    Everything is built aside first and then put in place file by file: whatever fails, notebooks/
-    holds whole files, and nothing is taken away. Raises CourseError when a source can't be
-    released.
+    The index of all lessons is made anew in any case, and the page of terms copied. Everything is
+    built aside first and then put in place file by file: whatever fails, notebooks/ holds whole
+    files, and nothing is taken away. Raises CourseError when a source can't be released.
     """
     with tempfile.TemporaryDirectory() as folder:
         built = _build(course, assignment, Path(folder))
@@ -156,7 +156,7 @@ def stale_or_leaking(course: Course) -> list[str]:
 
 
 def _build(course: Course, assignment: str, folder: Path) -> Path:
-    """Let nbgrader release into `folder`, without touching its database."""
+    """Let nbgrader release into `folder`, without touching its database, and add the index."""
     if assignment != '*':
         course.source(assignment)  # names what is wrong better than nbgrader would
     elif not course.assignments():
@@ -173,6 +173,7 @@ def _build(course: Course, assignment: str, folder: Path) -> Path:
         raise CourseError(
             'nbgrader could not release ' + assignment + ': ' + ' '.join(said or [run.stderr])
         )
+    write_pages(course, folder, metadata=METADATA)
     return folder
 
 

@@ -49,7 +49,8 @@ def test_a_stopped_run_says_how_to_go_on(tmp_path, capsys, monkeypatch):
 def test_all_verbs_in_a_row(tmp_path, capsys):
     course = make_course(tmp_path)
     assert main(['release', TOY], course=course) == 0
-    assert capsys.readouterr().out == f'notebooks/{TOY}/{TOY}.ipynb\n1 files changed.\n'
+    released = f'notebooks/{TOY}/{TOY}.ipynb\nnotebooks/index.ipynb\n'
+    assert capsys.readouterr().out == f'{released}2 files changed.\n'
     submit(course, 'ada', b'')
     (course.folder('submitted', 'eve', '99_other')).mkdir(parents=True)
     assert main(['grade'], course=course) == 1  # eve's could not be placed

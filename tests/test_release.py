@@ -15,7 +15,7 @@ from grader.release import broken, release, stale_or_leaking
 @pytest.fixture(scope='module')
 def course(tmp_path_factory):
     course = make_course(tmp_path_factory.mktemp('course'))
-    assert release(course) == [f'{TOY}/{TOY}.ipynb']
+    assert release(course) == [f'{TOY}/{TOY}.ipynb', 'index.ipynb']
     return course
 
 

@@ -1,0 +1,50 @@
+"""The table of contents says what the lessons say, and leads to them."""
+
+import re
+
+import nbformat
+import pytest
+from course_maker import TOY, make_course, toy_lesson, write_source
+
+from grader.course import ROOT, Course
+from grader.index import make_index
+
+INDEX = nbformat.read(ROOT / 'notebooks' / 'index.ipynb', as_version=4)
+TEXT = '\n\n'.join(cell.source for cell in INDEX.cells)
+ROWS = re.findall(r'^\| \[(.+?)\]\((.+?)\) \| (.+?) \| (.+?) \| (\d+) \|$', TEXT, re.MULTILINE)
+
+
+def test_each_lesson_has_its_row_with_title_exercises_and_points():
+    course = Course()
+    names = course.assignments()
+    assert [link for _, link, *_ in ROWS] == [f'{name}/{name}.ipynb' for name in names]
+    for (title, _, abilities, exercises, points), name in zip(ROWS, names, strict=True):
+        opening = course.release(name).cells[0].source
+        assert opening.startswith(f'# {title}\n')
+        assert abilities.split('; ')[0] in opening
+        promised = re.findall(r'^\| `(\w+)` \| (\d+) \|$', opening, re.MULTILINE)
+        assert re.findall(r'`(\w+)`', exercises) == [exercise for exercise, _ in promised]
+        assert int(points) == sum(int(worth) for _, worth in promised)
+    assert f'| **{sum(int(row[-1]) for row in ROWS)}** |' in TEXT
+
+
+@pytest.mark.parametrize('link', re.findall(r'\]\((.+?)\)', TEXT))
+def test_its_links_lead_somewhere(link):
+    assert (ROOT / 'notebooks' / link).is_file()
+
+
+def test_the_core_terms_are_a_click_away():
+    assert '](terms.md)' in TEXT
+
+
+def test_long_items_stand_in_one_line_and_break_no_table(tmp_path):
+    course = make_course(tmp_path)
+    lesson = toy_lesson()
+    lesson.cells[0].source = (
+        '# 0 · A toy\n\n**You will be able to**\n\n1. double a number,\n   whatever it is,\n'
+        '2. say what |x| is.\n\n| exercise | points |\n|---|---|\n'
+    )
+    write_source(course, lesson)
+    contents = make_index(course, has_terms=False).cells[0].source
+    row = next(line for line in contents.splitlines() if TOY in line)
+    assert r'| double a number, whatever it is; say what \|x\| is |' in row

@@ -1,0 +1,55 @@
+"""The page of core terms: one sentence each, and a lesson that really shows the term."""
+
+import re
+
+import nbformat
+import pytest
+
+from grader.course import ROOT
+
+PAGE = (ROOT / 'solutions' / 'terms.md').read_text(encoding='utf-8')
+ROWS = re.findall(r'^\| (?!term |-)(.+?) \| (.+?) \| \[(\d)\]\((.+?)\) \|$', PAGE, re.MULTILINE)
+LINKS = set(re.findall(r'\]\((.+?)\)', PAGE))
+each_row = pytest.mark.parametrize(
+    ('term', 'meaning', 'number', 'link'), ROWS, ids=[term for term, *_ in ROWS]
+)
+
+
+def test_every_line_of_a_table_is_a_row():
+    lines = [line for line in PAGE.splitlines() if line.startswith('|')]
+    titles = [line for line in lines if line.startswith(('| term |', '|---'))]
+    assert len(ROWS) == len(lines) - len(titles)
+
+
+def test_no_term_comes_twice():
+    terms = [term.lower() for term, *_ in ROWS]
+    assert sorted(set(terms)) == sorted(terms)
+
+
+def test_the_terms_of_the_course_are_there():
+    core = {'node', 'message', 'spin', 'frame', 'stamp', 'entry point', 'package', 'workspace'}
+    assert core - {term.strip('`') for term, *_ in ROWS} == set()
+
+
+@each_row
+def test_a_term_is_told_in_one_sentence(term, meaning, number, link):
+    assert re.fullmatch(r'[A-Z][^.!?]*(?:`[^`]+`[^.!?]*)*\.', meaning)
+    assert len(meaning.split()) <= 30
+
+
+@each_row
+def test_a_term_is_used_in_the_lesson_that_it_names(term, meaning, number, link):
+    assert link.startswith(f'0{number}_')
+    lesson = nbformat.read(ROOT / 'solutions' / link, as_version=4)
+    text = '\n'.join(cell.source for cell in lesson.cells)
+    assert re.search(rf'\b{re.escape(term.strip("`"))}s?\b', text, re.IGNORECASE)
+
+
+@pytest.mark.parametrize('link', sorted(LINKS))
+def test_its_links_lead_somewhere(link):
+    assert (ROOT / 'notebooks' / link).is_file()
+
+
+def test_lessons_lead_to_it():
+    first = nbformat.read(next(ROOT.glob('solutions/00_*/*.ipynb')), as_version=4)
+    assert '](../terms.md)' in first.cells[-1].source
