@@ -11,26 +11,40 @@ from my_robot_basics.live import classroom, domain
 
 if TYPE_CHECKING:
     from my_robot_basics.live.arm import show_arm
+    from my_robot_basics.live.branches import show_branches
+    from my_robot_basics.live.camera import send_pictures
     from my_robot_basics.live.classroom import show_domain
     from my_robot_basics.live.doctor import why
     from my_robot_basics.live.exercise import reset, run_answer
     from my_robot_basics.live.follow import follow_arm
     from my_robot_basics.live.graph_picture import show_graph
+    from my_robot_basics.live.qos_pictures import show_lost_messages, show_qos_matrix
     from my_robot_basics.live.runner import run, stop
     from my_robot_basics.live.sliders import move_arm
+    from my_robot_basics.live.target import drag_target
+    from my_robot_basics.live.timeline import show_arrivals, show_deliveries
     from my_robot_basics.live.waiting import wait_until
+    from my_robot_basics.live.workspace import make_workspace
 
 __all__ = [
     'classroom',
     'domain',
+    'drag_target',
     'follow_arm',
+    'make_workspace',
     'move_arm',
     'reset',
     'run',
     'run_answer',
+    'send_pictures',
     'show_arm',
+    'show_arrivals',
+    'show_branches',
+    'show_deliveries',
     'show_domain',
     'show_graph',
+    'show_lost_messages',
+    'show_qos_matrix',
     'stop',
     'wait_until',
     'why',
@@ -42,12 +56,20 @@ _MODULES = {
     'reset': 'exercise',
     'run_answer': 'exercise',
     'show_arm': 'arm',
+    'show_branches': 'branches',
+    'show_arrivals': 'timeline',
+    'show_deliveries': 'timeline',
+    'drag_target': 'target',
     'move_arm': 'sliders',
     'follow_arm': 'follow',
     'show_domain': 'classroom',
     'show_graph': 'graph_picture',
+    'show_qos_matrix': 'qos_pictures',
+    'show_lost_messages': 'qos_pictures',
+    'send_pictures': 'camera',
     'why': 'doctor',
     'wait_until': 'waiting',
+    'make_workspace': 'workspace',
 }
 
 

@@ -87,6 +87,9 @@ class ArmPicture:
         (self._link1,) = axes.plot([], [], color=LINK1, lw=6, ms=9, label='link 1', **style)
         (self._link2,) = axes.plot([], [], color=LINK2, lw=4, ms=7, label='link 2', **style)
         (self._effector,) = axes.plot([], [], 'D', color=EFFECTOR, ms=9, label='end effector')
+        style = {'color': DASHED, 'lw': 2, 'ms': 6, 'markerfacecolor': 'white'}
+        (self._dashed,) = axes.plot([], [], '--o', zorder=BEHIND, **style)
+        (self._target,) = axes.plot([], [], 'x', color=ANGLE, ms=13, mew=2)
         self._angles: list = []
         self._figure.legend(loc='lower center', ncols=4, fontsize=8, frameon=False)
 
@@ -105,12 +108,14 @@ class ArmPicture:
         self.title('\n'.join(filter(None, [title, pose])))
 
     def dashed(self, theta1_deg: float, theta2_deg: float) -> None:
-        """Add a second arm, which stays as it is: angles in degrees."""
+        """Put a second arm in a pose, where it stays until the next call: angles in degrees."""
         elbow = self._l1 * _direction(theta1_deg)
         tip = forward_kinematics(theta1_deg, theta2_deg, self._l1, self._l2)
-        xs, ys = zip((0, 0), elbow, tip, strict=True)
-        style = {'color': DASHED, 'lw': 2, 'ms': 6, 'markerfacecolor': 'white'}
-        self._axes.plot(xs, ys, '--o', zorder=BEHIND, **style)
+        self._dashed.set_data(*zip((0, 0), elbow, tip, strict=True))
+
+    def target(self, x: float, y: float) -> None:
+        """Mark the point that the arm is to reach, in metres."""
+        self._target.set_data([x], [y])
 
     def dots(self, x: ArrayLike, y: ArrayLike) -> None:
         """Add points, in metres."""

@@ -37,8 +37,7 @@ class ArmSliders:
     def show(self) -> None:
         """Show sliders and picture with the cell that runs now."""
         if notebook.in_kernel():
-            box = ipywidgets.VBox([self.theta1, self.theta2])
-            display(box._repr_mimebundle_() | {'text/plain': WITHOUT_WIDGETS}, raw=True)
+            show_widgets(self.theta1, self.theta2, without=WITHOUT_WIDGETS)
         self._display.show(self._bundle())
         for slider in (self.theta1, self.theta2):
             slider.observe(self._moved, names='value')
@@ -53,6 +52,12 @@ class ArmSliders:
         text = describe(*pose_deg, l1=self._l1, l2=self._l2)
         self._metadata['image/png']['alt'] = text
         return {'image/png': self._picture.png(), 'text/plain': text}
+
+
+def show_widgets(*widgets: ipywidgets.Widget, without: str) -> None:
+    """Show widgets below each other, and that text where no kernel runs."""
+    box = ipywidgets.VBox(widgets)
+    display(box._repr_mimebundle_() | {'text/plain': without}, raw=True)
 
 
 def _slider(description: str, value_deg: float) -> ipywidgets.FloatSlider:

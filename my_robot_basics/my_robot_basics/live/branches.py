@@ -1,0 +1,61 @@
+"""A picture of the two branches of IK: which one each of many poses belongs to."""
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from my_robot_basics.doctor.picture import png
+from my_robot_basics.kinematics_subscriber import same_pose
+from my_robot_basics.live import notebook
+from my_robot_basics.two_link_kinematics import L1, L2, forward_kinematics, inverse_kinematics
+
+STYLES = {'elbow_up': ('^', '#0072b2'), 'elbow_down': ('v', '#d55e00')}
+"""Markers and colours; Okabe and Ito's colours are told apart by everyone."""
+
+
+def branch_of(theta1_deg: float, theta2_deg: float, *, l1: float = L1, l2: float = L2) -> str:
+    """Return the branch in which IK finds a pose again; angles in degrees, lengths in metres.
+
+    A stretched or folded arm is in both: of these, elbow_up is returned.
+    """
+    target = forward_kinematics(theta1_deg, theta2_deg, l1, l2)
+    for branch, solution in inverse_kinematics(*target, l1, l2).items():
+        if same_pose((theta1_deg, theta2_deg), solution):
+            return branch
+    raise ValueError(f'IK finds θ1 = {theta1_deg}°, θ2 = {theta2_deg}° in neither branch')
+
+
+def show_branches(
+    poses_deg: Iterable[tuple[float, float]], *, l1: float = L1, l2: float = L2
+) -> None:
+    """Show poses (θ1, θ2) in degrees, marked by their branch, and where their effectors are.
+
+    Link lengths are in metres.
+    """
+    from matplotlib.figure import Figure  # takes a second
+
+    poses: dict[str, list[tuple[float, float]]] = {branch: [] for branch in STYLES}
+    for pose in poses_deg:
+        poses[branch_of(*pose, l1=l1, l2=l2)].append(pose)
+    figure = Figure(figsize=(7.4, 3.9), dpi=80, layout='constrained')
+    angles, places = figure.subplots(1, 2)
+    for branch, members in poses.items():
+        marker, colour = STYLES[branch]
+        style = {'marker': marker, 'ls': '', 'color': colour, 'ms': 5, 'alpha': 0.8}
+        theta1_deg, theta2_deg = np.transpose(members) if members else ([], [])
+        label = f'{branch} ({len(members)})'
+        angles.plot(theta1_deg, theta2_deg, label=label, **style)
+        places.plot(*forward_kinematics(theta1_deg, theta2_deg, l1, l2), **style)
+    angles.axhline(0.0, color='black', lw=0.8)
+    angles.set(title='pose', xlabel='θ1 (degrees)', ylabel='θ2 (degrees)')
+    places.set(
+        title='end effector',
+        xlabel='x in base_link (m)',
+        ylabel='y in base_link (m)',
+        aspect='equal',
+    )
+    figure.legend(loc='outside lower center', ncols=2, frameon=False)
+    counts = ' and '.join(f'{len(members)} in {branch}' for branch, members in poses.items())
+    text = f'poses by branch: {counts}; elbow_up has θ2 below 0, elbow_down above'
+    display = notebook.Display({'image/png': {'alt': text}})
+    display.show({'image/png': png(figure), 'text/plain': text})
