@@ -1,0 +1,79 @@
+"""A camera in a process of its own that sends pictures faster than anybody takes them.
+
+`python -m my_robot_basics.live.camera COUNT LISTENERS` is what `send_pictures` runs.
+"""
+
+import array
+import os
+import subprocess
+import sys
+import time
+
+from my_robot_basics.live import classroom
+from my_robot_basics.live.errors import LiveError
+
+TOPIC_NAME = '/camera'
+WIDTH, HEIGHT = 640, 480
+LISTENERS_SEC = 10.0
+ARRIVED_SEC = 10.0
+TIMEOUT_SEC = 30.0
+
+
+class NoPictures(LiveError):
+    """The camera did not send what it was asked to."""
+
+
+def send_pictures(count: int, *, listeners: int) -> None:
+    """Publish `count` pictures (0.9 MB each) on /camera, once so many subscriptions listen.
+
+    They are sent RELIABLE, without a pause, from a process of its own; it has ended when this
+    returns. The number of a picture, from 1, is its frame_id. Raises NoPictures.
+    """
+    command = [sys.executable, '-m', __name__, str(count), str(listeners)]
+    here = {**os.environ, 'MY_ROBOT_BASICS_DOMAIN_ID': str(classroom.enter())}
+    try:
+        done = subprocess.run(
+            command, env=here, capture_output=True, text=True, timeout=TIMEOUT_SEC
+        )
+    except subprocess.TimeoutExpired:
+        raise NoPictures(
+            f'expected the camera to end within {TIMEOUT_SEC:g} s, saw it still run: '
+            'close what keeps this machine busy, and run the cell again'
+        ) from None
+    if done.returncode:
+        said = (done.stderr.strip().splitlines() or ['nothing'])[-1]
+        raise NoPictures(
+            f'expected {listeners} subscriptions on {TOPIC_NAME} and {count} pictures, saw the '
+            f'camera end with: {said}'
+        )
+
+
+def main(count: int, listeners: int) -> None:
+    """Be the camera."""
+    classroom.enter()
+    # by now the environment is what rclpy is to see
+    import rclpy
+    from rclpy.duration import Duration
+    from rclpy.qos import QoSProfile
+    from sensor_msgs.msg import Image
+
+    rclpy.init()
+    node = rclpy.create_node('camera')
+    publisher = node.create_publisher(Image, TOPIC_NAME, QoSProfile(depth=count))
+    picture = Image(width=WIDTH, height=HEIGHT, step=3 * WIDTH, encoding='rgb8')
+    picture.data = array.array('B', bytes(3 * WIDTH * HEIGHT))
+    deadline = time.monotonic() + LISTENERS_SEC
+    while (seen := publisher.get_subscription_count()) < listeners:
+        if time.monotonic() > deadline:
+            sys.exit(f'{seen} subscriptions in {LISTENERS_SEC:g} s')
+        time.sleep(0.01)
+    for number in range(1, count + 1):
+        picture.header.frame_id = str(number)
+        publisher.publish(picture)
+    publisher.wait_for_all_acked(Duration(seconds=ARRIVED_SEC))
+    node.destroy_node()
+    rclpy.shutdown()
+
+
+if __name__ == '__main__':
+    main(*map(int, sys.argv[1:]))

@@ -1,0 +1,47 @@
+"""The camera in its own process: each picture is sent once, and what goes wrong is said."""
+
+import subprocess
+
+import pytest
+import rclpy
+from my_robot_basics.live import camera, run, send_pictures, stop, wait_until
+from rclpy.node import Node
+from rclpy.qos import QoSProfile
+from sensor_msgs.msg import Image
+
+
+@pytest.fixture
+def viewer():
+    yield run(Node, 'viewer')
+    stop()
+
+
+def test_who_asks_for_all_pictures_gets_them_in_their_order(viewer):
+    numbers = []
+    viewer.create_subscription(
+        Image, '/camera', lambda p: numbers.append(int(p.header.frame_id)), QoSProfile(depth=12)
+    )
+    send_pictures(12, listeners=1)
+    wait_until(lambda: len(numbers) == 12)
+    assert numbers == [*range(1, 13)]
+
+
+def test_a_camera_that_nobody_watches_says_so(monkeypatch):
+    monkeypatch.setattr(camera, 'LISTENERS_SEC', 0.2)
+    rclpy.try_shutdown()  # the camera begins in a process where nothing was initialised
+    with pytest.raises(SystemExit, match=r'0 subscriptions in 0\.2 s'):
+        camera.main(1, 1)
+    rclpy.try_shutdown()
+
+
+def test_what_the_camera_says_is_told(monkeypatch):
+    ended = subprocess.CompletedProcess([], 1, stdout='', stderr='Traceback\nno memory')
+    monkeypatch.setattr(camera.subprocess, 'run', lambda *args, **kwargs: ended)
+    with pytest.raises(camera.NoPictures, match='saw the camera end with: no memory'):
+        send_pictures(2, listeners=1)
+
+
+def test_nobody_waits_for_ever(monkeypatch, viewer):
+    monkeypatch.setattr(camera, 'TIMEOUT_SEC', 0.1)
+    with pytest.raises(camera.NoPictures, match=r'within 0\.1 s, saw it still run'):
+        send_pictures(2, listeners=1)
