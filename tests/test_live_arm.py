@@ -3,13 +3,14 @@
 import io
 import math
 import re
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
 from matplotlib.image import imread
 from my_robot_basics.live import show_arm
 from my_robot_basics.live.arm import ArmPicture, describe
-from my_robot_basics.live.follow import what_is_wrong
+from my_robot_basics.live.follow import ArmView, what_is_wrong
 from sensor_msgs.msg import JointState
 
 
@@ -92,3 +93,11 @@ def test_outside_a_notebook_the_arm_is_told_in_words(capsys):
 def test_messages_without_a_pose(message, wrong):
     assert wrong in what_is_wrong(message)
     assert bool(what_is_wrong(message)) is bool(wrong)
+
+
+def test_two_threads_may_draw_one_picture():
+    view = ArmView('/poses', l1=1.0, l2=0.8)
+    with ThreadPoolExecutor(2) as threads:
+        view.receive(JointState(name=['joint1', 'joint2'], position=[0.5, -1.2]))
+        pictures = list(threads.map(lambda _: view._bundle()['image/png'], range(30)))
+    assert len(set(pictures)) == 1

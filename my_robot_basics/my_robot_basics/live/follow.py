@@ -67,6 +67,7 @@ class ArmView:
         self._ignored = 0
         self._trouble = f'waiting for messages on {topic_name}'
         self._display = notebook.Display({'image/png': {'alt': self._text}})
+        self._drawing = threading.Lock()
 
     def receive(self, message: JointState) -> None:
         """Take the pose from a message, or say what is wrong with it."""
@@ -86,12 +87,13 @@ class ArmView:
         self._display.show(self._bundle())
 
     def _bundle(self) -> dict:
-        title = '\n'.join(filter(None, [self._topic_name, self._trouble]))
-        if self._pose is None:
-            self._picture.title(title)
-        else:
-            self._picture.move(*self._pose, title=title)
-        return {'image/png': self._picture.png(), 'text/plain': self._text}
+        with self._drawing:  # whoever stops the node draws the last picture
+            title = '\n'.join(filter(None, [self._topic_name, self._trouble]))
+            if self._pose is None:
+                self._picture.title(title)
+            else:
+                self._picture.move(*self._pose, title=title)
+            return {'image/png': self._picture.png(), 'text/plain': self._text}
 
     def listen(self, name: str) -> None:
         """Log nothing: a picture has no lines."""

@@ -75,7 +75,8 @@ def bury_the_dead() -> None:
 
 def nodes_here(*, alive: bool = True) -> Iterator[Node]:
     """Yield this process's nodes that are not destroyed, in a live context or in a dead one."""
-    for thing in gc.get_objects():
+    # not all objects: who but looks at a tuple that another thread is building breaks it
+    for thing in gc.get_referrers(*_classes(Node)):
         if not issubclass(type(thing), Node):
             continue
         handle = getattr(thing, 'handle', None)
@@ -88,3 +89,10 @@ def nodes_here(*, alive: bool = True) -> Iterator[Node]:
             continue  # destroyed
         if right:
             yield thing
+
+
+def _classes(base: type) -> Iterator[type]:
+    """Yield a class and all that derive from it."""
+    yield base
+    for derived in base.__subclasses__():
+        yield from _classes(derived)

@@ -1,0 +1,51 @@
+"""Which nodes of this process are found, and that nothing else is touched on the way."""
+
+import sys
+import threading
+
+import rclpy
+from my_robot_basics.live.neighbours import nodes_here
+from rclpy.context import Context
+from rclpy.node import Node
+
+
+class Derived(Node):
+    """A node as students write them."""
+
+
+def test_nodes_are_found_alive_and_dead():
+    context = Context()
+    rclpy.init(args=[], context=context)
+    made = {Node('plain', context=context), Derived('derived', context=context)}
+    assert made <= set(nodes_here())
+    context.shutdown()
+    assert made <= set(nodes_here(alive=False))
+    assert not made & set(nodes_here())
+    for node in made:
+        node.destroy_node()
+    assert not made & set(nodes_here(alive=False))
+
+
+def test_a_thread_that_builds_tuples_is_not_disturbed():
+    errors = []
+    looked = threading.Event()
+
+    def build():
+        while not looked.is_set():
+            try:
+                tuple(number for number in range(50))
+            except SystemError as error:
+                errors.append(error)
+
+    interval = sys.getswitchinterval()
+    sys.setswitchinterval(1e-5)
+    builder = threading.Thread(target=build)
+    builder.start()
+    try:
+        for _ in range(30):
+            list(nodes_here())
+    finally:
+        looked.set()
+        builder.join()
+        sys.setswitchinterval(interval)
+    assert errors == []
