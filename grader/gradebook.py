@@ -23,6 +23,8 @@ from grader.release import PASSES
 from grader.submission import Submission
 
 SAVE_CELLS = 'nbgrader.preprocessors.SaveCells'
+NO_ANSWER = 'there is no answer'
+"""Why a text that a person would have graded earns nothing."""
 
 
 @dataclass(frozen=True)
@@ -64,12 +66,15 @@ class SaveGrades(SaveAutoGrades):
 
     def _add_score(self, cell: NotebookNode, resources: dict) -> None:
         super()._add_score(cell, resources)
-        judged = cell.metadata.get(KEY, {}).get('outcome') in ('passed', 'failed', 'manual')
-        if cell.cell_type == 'code' and not judged:
-            grade = self.gradebook.find_grade(
-                grade_id(cell), self.notebook_id, self.assignment_id, self.student_id
-            )
+        grade = self.gradebook.find_grade(
+            grade_id(cell), self.notebook_id, self.assignment_id, self.student_id
+        )
+        verdict = cell.metadata.setdefault(KEY, nbformat.from_dict({}))
+        if cell.cell_type == 'code' and verdict.get('outcome') not in ('passed', 'failed'):
             grade.auto_score, grade.needs_manual_grade = None, True
+        elif cell.cell_type != 'code' and grade.auto_score is not None:
+            # nobody has to read what nobody wrote
+            verdict |= {'outcome': 'failed', 'reason': NO_ANSWER, 'notes': []}
 
 
 def make_ready(course: Course) -> None:

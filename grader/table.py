@@ -56,6 +56,8 @@ def score_of(row: Row) -> str:
 def why(row: Row) -> str:
     """Return the reason of a row as one line, and what its score was before, if that changed."""
     stored, text = row.stored, printable(row.reason)
+    if stored and stored.pending and not text:
+        text = 'the rest is graded by hand'
     if stored and stored.former is not None and stored.former != stored.score:
         text = f'(was {stored.former:g}) {text}'
     return text
