@@ -237,6 +237,23 @@ def test_the_live_arm_moves(opened):
         expect(image).not_to_have_attribute('src', before)
 
 
+def test_a_dragged_slider_moves_the_arm(opened):
+    lesson = opened('00_two_link_arm')
+    lesson.command('notebook:run-cell', lesson.index('imports'))
+    lesson.command('notebook:run-cell', lesson.index('sliders'))
+    cell = lesson.shown('sliders')
+    image = cell.locator('.jp-OutputArea img')
+    expect(image).to_have_attribute('alt', re.compile('θ1 = 30.0°'))
+    handle = cell.locator('.noUi-handle').first
+    handle.hover()
+    lesson.page.mouse.down()
+    lesson.page.mouse.move(handle.bounding_box()['x'] + 50, handle.bounding_box()['y'] + 5)
+    lesson.page.mouse.up()
+    readout = cell.locator('.widget-readout').first
+    expect(readout).not_to_have_text('30')
+    expect(image).to_have_attribute('alt', re.compile(f'θ1 = {readout.inner_text()}.0°'))
+
+
 def test_validate_says_what_is_wrong_and_then_that_all_is_right(opened):
     lesson = opened('02_joint_state')
     lesson.type('to_joint_state', WRONG)
