@@ -29,8 +29,6 @@ setup(
             'kinematics_node = my_robot_basics.kinematics_node:main',
             'kinematics_publisher = my_robot_basics.kinematics_publisher:main',
             'kinematics_subscriber = my_robot_basics.kinematics_subscriber:main',
-            'ros2 = my_robot_basics.ros2.main:main',
-            'topic_doctor = my_robot_basics.doctor.main:main',
         ],
     },
 )

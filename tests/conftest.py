@@ -1,5 +1,9 @@
 """What every test session needs: a ROS domain of its own, and kernels that know of no pytest."""
 
+import os
+import shutil
+import tempfile
+
 import _pytest.runner
 from hypothesis import HealthCheck, settings
 from my_robot_basics.live import classroom
@@ -26,7 +30,12 @@ def pytest_collection_modifyitems(items: list) -> None:
 
 def pytest_configure() -> None:
     # once in each xdist worker, too: two workers do not hear each other's nodes
+    os.environ['MY_ROBOT_BASICS_WORKSPACE'] = tempfile.mkdtemp(prefix='ros ws ')
     classroom.enter()
+
+
+def pytest_unconfigure() -> None:
+    shutil.rmtree(os.environ['MY_ROBOT_BASICS_WORKSPACE'])
 
 
 # ipykernel leaves the logs of C code alone where it finds PYTEST_CURRENT_TEST, and every kernel

@@ -1,4 +1,5 @@
 import os
+import re
 import shlex
 import shutil
 import subprocess
@@ -8,7 +9,8 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-VERBS = ['lab', 'test', 'release', 'grade', 'scores', 'feedback', 'demo']
+VERBS = ['lab', 'workspace', 'ros-shell', 'test', 'release', 'grade', 'scores', 'feedback']
+VERBS += ['demo']
 TOOLS = ['sh', 'cat', 'cp', 'dirname', 'env', 'find', 'flock', 'grep', 'id', 'ln', 'mkdir', 'mv']
 TOOLS += ['readlink', 'rm', 'sed', 'sleep', 'tail', 'uname']
 IN_A_NAMESPACE = [
@@ -71,7 +73,8 @@ class Machine:
 
     def course(self, *arguments, before=(), script=None, **environment):
         self.calls_file.write_text('')
-        clean = {k: v for k, v in os.environ.items() if k != 'PYTHON'}
+        others = ('PYTHON', 'MY_ROBOT_BASICS_WORKSPACE')
+        clean = {k: v for k, v in os.environ.items() if k not in others}
         return subprocess.run(
             [*before, script or self.root / 'course', *arguments],
             cwd='/',
@@ -115,7 +118,10 @@ def the_one_sentence(run):
 # --- the script itself ---------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize('script', ['course', '.ci/run'])
+TERMINAL = 'my_robot_basics/my_robot_basics/ros2/terminal.bash'
+
+
+@pytest.mark.parametrize('script', ['course', '.ci/run', TERMINAL])
 def test_shellcheck_finds_nothing(script):
     shellcheck = Path(sys.prefix, 'bin/shellcheck')
     run = subprocess.run([shellcheck, ROOT / script], capture_output=True, text=True)
@@ -478,6 +484,7 @@ def test_other_environments_stay_outside(machine):
         ROS_DOMAIN_ID='7',
         ROS_LOCALHOST_ONLY='1',
         ROS_LOG_DIR='/var/log/ros',
+        ROS_WS='/home/ada/ros ws',
         _ROS_WHEELS_BOOTSTRAP_COMPLETE='1',
     )
     seen = dict(line.split('=', 1) for line in run.stdout.splitlines() if '=' in line)
@@ -487,7 +494,8 @@ def test_other_environments_stay_outside(machine):
     assert seen['RCUTILS_LOGGING_USE_STDOUT'] == '1'
     assert seen['RCUTILS_COLORIZED_OUTPUT'] == '0'
     ros_names = {name for name in seen if name.startswith(('ROS_', '_ROS', 'RMW', 'COLCON'))}
-    assert ros_names == {'ROS_LOG_DIR', 'COLCON_PYTHON_EXECUTABLE'}
+    assert ros_names == {'ROS_LOG_DIR', 'ROS_WS', 'COLCON_PYTHON_EXECUTABLE'}
+    assert seen['ROS_WS'] == f'{machine.root}/ros_ws'
     assert 'PYTHONPATH' not in seen
 
 
@@ -496,13 +504,33 @@ def test_lab_serves_the_lessons_alone(machine):
     command, folder = machine.calls()[-2:]
     root = ['--allow-root'] if os.geteuid() == 0 else []
     served = f'--ServerApp.root_dir={machine.root}/notebooks'
+    served += ' --LabApp.default_url=/lab/tree/index.ipynb'
     for_students = (
         f'--LabApp.app_settings_dir={machine.root}/.jupyterlab '
         "--ServerApp.jpserver_extensions={'nbgrader.server_extensions.formgrader': False}"
     )
     arguments = [served, for_students, *root, '--no-browser --port 1234']
-    assert command == ' '.join(['python -P -m jupyterlab', *arguments])
+    command, terminal = re.subn(r' --ServerApp\.terminado_settings=\{.*?\}', '', command)
+    assert (command, terminal) == (' '.join(['python -P -m jupyterlab', *arguments]), 1)
     assert folder == f'{machine.root}/notebooks'
+
+
+def test_what_lab_starts_is_on_this_machine_alone(machine):
+    run = machine.course('lab', PRINT_ENVIRONMENT='yes')
+    assert 'ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST' in run.stdout.splitlines()
+
+
+@pytest.mark.parametrize(
+    ('verb', 'module', 'folder'),
+    [('workspace', 'live.workspace', '{root}'), ('ros-shell', 'ros2.shell', '/')],
+)
+def test_workspace_and_shell_are_the_packages(machine, verb, module, folder):
+    run = machine.course(verb, '-c', 'two words')
+    assert run.returncode == 0, run.stderr
+    assert machine.calls()[-2:] == [
+        f'python -P -m my_robot_basics.{module} -c two words',
+        folder.format(root=machine.root),
+    ]
 
 
 def test_lab_without_lessons_says_what_to_do(machine):

@@ -14,7 +14,6 @@ import pytest
 PACKAGE = Path(__file__).parents[1]
 BIN = Path(sys.executable).parent
 NODES = {'hello_node', 'kinematics_node', 'kinematics_publisher', 'kinematics_subscriber'}
-EXECUTABLES = NODES | {'ros2', 'topic_doctor'}
 
 FOUND = """
 import os
@@ -92,7 +91,7 @@ symlink_install = pytest.param(
 @pytest.mark.parametrize('options', [[], symlink_install])
 def test_colcon_builds_what_the_ament_index_finds(workspace, options):
     workspace.build(*options)
-    assert workspace.executables() == EXECUTABLES
+    assert workspace.executables() == NODES
     assert '[hello_node]: Hello' in workspace.first_line('hello_node')
 
 
@@ -117,7 +116,7 @@ def test_a_students_own_node_is_found_after_the_next_build(workspace):
     line = "            'five_hz = my_robot_basics.five_hz:main',\n"
     setup.write_text(setup.read_text().replace(before, line + before))
     workspace.build()
-    assert workspace.executables() == EXECUTABLES | {'five_hz'}
+    assert workspace.executables() == NODES | {'five_hz'}
     assert '[five_hz]: mine' in workspace.first_line('five_hz')
 
 
@@ -155,7 +154,7 @@ def test_pip_and_ros_read_the_same_description():
 def test_pip_installs_every_executable():
     entry_points = importlib.metadata.distribution('my_robot_basics').entry_points
     scripts = {point.name: point for point in entry_points if point.group == 'console_scripts'}
-    assert set(scripts) == EXECUTABLES
+    assert set(scripts) == NODES
     for name, point in scripts.items():
         assert (BIN / name).is_file()
         assert callable(point.load())

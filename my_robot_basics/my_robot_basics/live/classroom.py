@@ -12,6 +12,8 @@ from my_robot_basics.live.domain import Claim, claim
 from my_robot_basics.live.errors import BadDomain
 
 HIGHEST_DOMAIN = 232
+PACKAGE = Path(__file__).parents[2]
+"""The folder of package.xml, as the course installs it."""
 FAST_DISCOVERY = Path(__file__).with_name('fast_discovery.xml')
 """Fast DDS profile with which nodes of two processes meet in a fraction of a second."""
 
@@ -47,6 +49,11 @@ def show_domain() -> None:
     print(f'In a terminal, join this lesson: export ROS_DOMAIN_ID={enter()}')
 
 
+def workspace() -> Path:
+    """The colcon workspace: `ros_ws/` of the course, or what MY_ROBOT_BASICS_WORKSPACE names."""
+    return Path(os.environ.get('MY_ROBOT_BASICS_WORKSPACE') or PACKAGE.parent / 'ros_ws')
+
+
 def in_grading_room() -> bool:
     """Whether the grader has started this process."""
     return 'MY_ROBOT_BASICS_ROOM' in os.environ
@@ -74,6 +81,10 @@ def _set_environment(domain_id: int) -> None:
     os.environ['RCUTILS_LOGGING_BUFFERED_STREAM'] = '1'
     os.environ['RCUTILS_COLORIZED_OUTPUT'] = '0'
     os.environ['ROS_DOMAIN_ID'] = str(domain_id)
+    os.environ['ROS_WS'] = str(workspace())
+    if ' ' in sys.prefix:
+        # colcon's setup.bash stumbles over a space in its Python's path, and any Python serves it
+        os.environ['COLCON_PYTHON_EXECUTABLE'] = str(Path(sys.executable).resolve())
     _put_first('AMENT_PREFIX_PATH', sys.prefix)
     _put_first('PATH', str(Path(sys.prefix, 'bin')))  # `!colcon` and the like in a cell
 

@@ -1,0 +1,258 @@
+"""The student's colcon workspace: what is made, what is kept, and what a terminal builds in it."""
+
+import os
+import subprocess
+import sys
+import textwrap
+from pathlib import Path
+
+import pytest
+from jupyter_client.manager import start_new_kernel
+from my_robot_basics.live import classroom, workspace
+from my_robot_basics.live.workspace import make_workspace
+from ros2_command import own_domain
+
+ROOT = Path(__file__).parents[1]
+BUILD = 'colcon build --packages-select my_robot_basics >log.txt 2>&1 || cat log.txt\n'
+SOURCE = 'source install/setup.bash\n'
+PATIENCE_SEC = 60
+TIMEOUT = 124
+"""The status of `timeout`."""
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """An empty place for a workspace, with a space in its name."""
+    folder = tmp_path / 'ros ws'
+    monkeypatch.setenv('MY_ROBOT_BASICS_WORKSPACE', str(folder))
+    return folder
+
+
+@pytest.fixture
+def package(folder):
+    """The student's copy, in a workspace that was made."""
+    make_workspace()
+    return folder / 'src/my_robot_basics'
+
+
+def shell(script, **environment):
+    """What a script prints in bash under `./course ros-shell`, in the workspace."""
+    done = subprocess.run(
+        [
+            sys.executable,
+            '-P',
+            '-m',
+            'my_robot_basics.ros2.shell',
+            '-c',
+            f'cd "$ROS_WS"\n{script}',
+        ],
+        env={**os.environ, **environment},
+        capture_output=True,
+        encoding='utf-8',
+        timeout=PATIENCE_SEC,
+    )
+    assert done.returncode in (0, TIMEOUT), done.stdout + done.stderr
+    return done.stdout
+
+
+# --- what is made and kept -----------------------------------------------------------------------
+
+
+def test_by_default_it_lies_in_the_course_and_out_of_git(monkeypatch):
+    monkeypatch.delenv('MY_ROBOT_BASICS_WORKSPACE')
+    assert classroom.workspace() == ROOT / 'ros_ws'
+    ignored = subprocess.run(['git', 'check-ignore', '-q', 'ros_ws/'], cwd=ROOT)
+    assert ignored.returncode == 0
+
+
+def test_it_holds_a_package_of_nodes_and_the_files_to_copy_from(folder, capsys):
+    assert workspace.main([]) is None
+    package = folder / 'src/my_robot_basics'
+    modules = {path.name for path in package.glob('my_robot_basics/*.py')}
+    assert {'__init__.py', 'kinematics_publisher.py', 'kinematics_subscriber.py'} < modules
+    assert modules == {
+        path.name for path in (ROOT / 'my_robot_basics/my_robot_basics').glob('*.py')
+    }
+    assert not [path for path in (package / 'my_robot_basics').iterdir() if path.is_dir()]
+    assert (package / 'resource/my_robot_basics').is_file()
+    reference = folder / 'reference/src/my_robot_basics'
+    files = {str(path.relative_to(reference)) for path in reference.rglob('*') if path.is_file()}
+    nodes = {f'my_robot_basics/kinematics_{name}.py' for name in ('publisher', 'subscriber')}
+    assert files == {'setup.py'} | nodes
+    for name in files:
+        assert (reference / name).read_bytes() == (ROOT / 'my_robot_basics' / name).read_bytes()
+    said = capsys.readouterr().out
+    assert said.startswith(f'ROS_WS is {folder}\nmade     $ROS_WS/src/my_robot_basics: ')
+    assert workspace.BUILD in said
+
+
+def test_what_the_student_wrote_is_kept_and_named(package, capsys):
+    (package / 'setup.py').write_text('mine')
+    (package / 'my_robot_basics/my_node.py').write_text('mine, too')
+    (package / 'my_robot_basics/hello_node.py').unlink()
+    (package / 'my_robot_basics/__pycache__').mkdir()
+    (package / 'my_robot_basics/__pycache__/x.pyc').touch()
+    capsys.readouterr()
+    make_workspace()
+    said = capsys.readouterr().out
+    assert (package / 'setup.py').read_text() == 'mine'
+    assert not (package / 'my_robot_basics/hello_node.py').exists()
+    lines = [line.split() for line in said.splitlines()]
+    assert [line for line in lines if line[0] in ('new', 'changed', 'missing')] == [
+        ['missing', 'my_robot_basics/hello_node.py'],
+        ['new', 'my_robot_basics/my_node.py'],
+        ['changed', 'setup.py'],
+    ]
+    assert './course workspace --refresh' in said
+
+
+def test_a_workspace_that_nobody_has_edited_is_said_to_be_so(package, capsys):
+    make_workspace()
+    assert 'as the course has it' in capsys.readouterr().out
+    make_workspace(refresh=True)
+    assert not (package.parents[1] / 'kept').exists()
+
+
+def test_refresh_begins_anew_and_loses_nothing(folder, package, capsys):
+    for number in (1, 2):
+        (package / 'setup.py').write_text(f'mine {number}')
+        make_workspace(refresh=True)
+        kept = folder / f'kept/my_robot_basics_{number}'
+        assert (kept / 'setup.py').read_text() == f'mine {number}'
+        assert f'$ROS_WS/kept/{kept.name}: ' in capsys.readouterr().out
+        assert (package / 'setup.py').read_text().startswith('"""Builds the package')
+
+
+def test_a_copy_that_was_cut_short_is_made_again(folder, capsys):
+    (folder / 'src/.my_robot_basics.part/left').mkdir(parents=True)
+    make_workspace()
+    assert not (folder / 'src/.my_robot_basics.part').exists()
+    assert not (folder / 'src/my_robot_basics/left').exists()
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason='root may write anywhere')
+def test_a_folder_that_cannot_be_written_is_said_in_a_line(folder):
+    folder.mkdir(mode=0o500)
+    assert workspace.main([]).startswith('course: [Errno 13] Permission denied')
+
+
+def test_without_the_files_of_the_package_it_says_what_to_do(folder, tmp_path, monkeypatch):
+    monkeypatch.setattr(workspace, 'PACKAGE', tmp_path)
+    assert workspace.main([]).endswith('start the notebook with ./course lab')
+
+
+def test_the_command_refreshes_too(package, capsys):
+    (package / 'setup.py').write_text('mine')
+    assert workspace.main([]) is None
+    assert workspace.main(['--refresh']) is None
+    assert 'moved ' in capsys.readouterr().out
+
+
+# --- what a terminal does in it ------------------------------------------------------------------
+
+
+@pytest.fixture
+def built(package):
+    shell(BUILD)
+    return package
+
+
+def test_the_build_warns_of_nothing(package):
+    said = shell('colcon build --packages-select my_robot_basics 2>&1 >log.txt; cat log.txt')
+    said = '\n'.join(line for line in said.splitlines() if 'byte-compiling' not in line)
+    assert 'Finished <<< my_robot_basics' in said
+    assert 'warning' not in said.lower()
+
+
+def test_what_was_built_is_what_runs(built):
+    installed = built.parents[1] / 'install/my_robot_basics'
+    nodes = ['hello_node', 'kinematics_node', 'kinematics_publisher', 'kinematics_subscriber']
+    assert shell(f'{SOURCE} ros2 pkg executables my_robot_basics --full-path').split('\n') == [
+        *(f'{installed}/lib/my_robot_basics/{name}' for name in nodes),
+        '',
+    ]
+    with own_domain():
+        said = shell(f'{SOURCE} timeout -s INT 4 ros2 run my_robot_basics kinematics_publisher')
+    assert '[kinematics_publisher]: published' in said
+    # before it is sourced, the package of the virtual environment is found
+    assert shell('ros2 pkg prefix my_robot_basics') == f'{sys.prefix}\n'
+    assert shell(f'{SOURCE} ros2 pkg prefix my_robot_basics') == f'{installed}\n'
+    assert shell(f'{SOURCE} ros2 pkg prefix rclpy') == f'{sys.prefix}\n'
+
+
+NODE = """
+from rclpy.node import Node
+from my_robot_basics.spinning import spin_until_stopped
+
+
+class MyNode(Node):
+    def __init__(self):
+        super().__init__('my_node')
+        self.get_logger().info('I am new')
+
+
+def main(args=None):
+    spin_until_stopped(MyNode, args=args)
+"""
+
+
+def test_a_new_node_and_its_line_are_found_after_the_next_build(built):
+    run = f'{SOURCE} timeout -s INT 3 ros2 run my_robot_basics my_node 2>&1'
+    (built / 'my_robot_basics/my_node.py').write_text(textwrap.dedent(NODE))
+    setup = (built / 'setup.py').read_text()
+    line = "            'hello_node = my_robot_basics.hello_node:main',\n"
+    assert line in setup
+    (built / 'setup.py').write_text(setup.replace(line, line + line.replace('hello', 'my')))
+    assert shell(f'{run} || true') == 'No executable found\n'
+    assert '[my_node]: I am new' in shell(f'{BUILD} {run}')
+
+
+def test_the_tools_are_never_those_of_the_copy(built):
+    for name in ('__init__', 'two_link_kinematics'):
+        (built / f'my_robot_basics/{name}.py').write_text('raise SystemExit("the copy")\n')
+    said = shell(
+        f'{BUILD} {SOURCE} python -c "import my_robot_basics" 2>&1;'
+        'ros2 pkg list | grep my_; topic_doctor --help | head -1'
+    )
+    assert said.startswith('the copy\nmy_robot_basics\nusage: topic_doctor')
+
+
+def test_a_terminal_that_sources_it_needs_nothing_else(built):
+    bare = {'PATH': '/usr/bin:/bin', 'HOME': str(built), 'ROS_LOG_DIR': str(built / 'log')}
+    script = f'{SOURCE} {SOURCE} ros2 pkg prefix my_robot_basics; ros2 pkg prefix rclpy'
+    done = subprocess.run(
+        ['bash', '-c', script],
+        cwd=built.parents[1],
+        env=bare,
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE_SEC,
+    )
+    install = built.parents[1] / 'install/my_robot_basics'
+    assert (done.stdout, done.stderr) == (f'{install}\n{sys.prefix}\n', '')
+
+
+def test_in_a_cell_all_of_it_works_and_the_kernel_keeps_to_the_installed_package(folder):
+    cells = [
+        'from my_robot_basics.live import make_workspace\nmake_workspace()',
+        f'%%bash\ncd "$ROS_WS"\n{BUILD}{SOURCE}'
+        'timeout -s INT 4 ros2 run my_robot_basics kinematics_publisher | head -1',
+        'import my_robot_basics; print(my_robot_basics.__file__)',
+    ]
+    manager, client = start_new_kernel(env=dict(os.environ))
+    printed = []
+    try:
+        for cell in cells:
+            client.execute_interactive(
+                cell,
+                timeout=PATIENCE_SEC,
+                output_hook=lambda message: printed.append(
+                    message['content'].get('text', message['msg_type'])
+                ),
+            )
+    finally:
+        client.stop_channels()
+        manager.shutdown_kernel(now=True)
+    said = ''.join(text for text in printed if text not in ('status', 'execute_input'))
+    assert 'publishing a random pose' in said
+    assert said.endswith(f'{ROOT}/my_robot_basics/my_robot_basics/__init__.py\n')
