@@ -1,0 +1,101 @@
+"""JupyterLab's terminal, as `./course lab` serves it: the commands of the lessons work in it."""
+
+import asyncio
+import json
+import os
+import re
+import socket
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+from my_robot_basics.live.workspace import BUILD, make_workspace
+from ros2_command import PATIENCE_SEC
+from tornado.httpclient import AsyncHTTPClient
+from tornado.websocket import websocket_connect
+
+ROOT = Path(__file__).parents[1]
+TOKEN = 'let-me-in'
+BASHRC = """
+export PATH=/usr/bin:/bin  # where a robot's ROS was first, .venv is not
+export ROS_DOMAIN_ID=42 PYTHONPATH=/opt/ros/humble/python AMENT_PREFIX_PATH=/opt/ros/humble
+"""
+
+
+@pytest.fixture
+def lab(tmp_path, monkeypatch):
+    """The address of a JupyterLab, for somebody whose ~/.bashrc sets another ROS up."""
+    (tmp_path / '.bashrc').write_text(BASHRC)
+    monkeypatch.setenv('MY_ROBOT_BASICS_WORKSPACE', str(tmp_path / 'ros ws'))
+    make_workspace()
+    environment = {**os.environ, 'HOME': str(tmp_path), 'SHELL': '/bin/sh'}
+    with socket.socket() as free:
+        free.bind(('127.0.0.1', 0))
+        port = free.getsockname()[1]
+    log = tmp_path / 'log'
+    options = [f'--port={port}', '--ServerApp.port_retries=0', f'--IdentityProvider.token={TOKEN}']
+    with log.open('w') as file:
+        server = subprocess.Popen(
+            [ROOT / 'course', 'lab', '--no-browser', *options],
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            stdout=file,
+            stderr=file,
+        )
+    try:
+        deadline = time.monotonic() + 2 * PATIENCE_SEC
+        while 'is running at' not in log.read_text() or not answers(port):
+            assert server.poll() is None, log.read_text()
+            assert time.monotonic() < deadline, log.read_text()
+            time.sleep(0.1)
+        yield f'127.0.0.1:{port}'
+    finally:
+        server.terminate()
+        server.wait()
+
+
+def answers(port):
+    with socket.socket() as probe:
+        return probe.connect_ex(('127.0.0.1', port)) == 0
+
+
+async def _type(address, dialogue):
+    """Open a terminal; type each line when the one before has shown what it must."""
+    authorised = f'http://{address}/api/terminals?token={TOKEN}'
+    await AsyncHTTPClient().fetch(authorised, method='POST', body='{}')
+    terminal = await websocket_connect(f'ws://{address}/terminals/websocket/1?token={TOKEN}')
+    try:
+        for line, answer in dialogue:
+            await terminal.write_message(json.dumps(['stdin', f'{line}\r']))
+            seen = ''
+            while not re.search(answer, seen):
+                try:
+                    message = await asyncio.wait_for(terminal.read_message(), PATIENCE_SEC)
+                except TimeoutError:
+                    pytest.fail(f'no {answer!r} after {line!r}, but {seen!r}')
+                kind, *text = json.loads(message)
+                seen += text[0] if kind == 'stdout' else ''
+    finally:
+        terminal.close()
+
+
+def test_the_commands_of_the_lessons_work_in_jupyterlabs_terminal(lab):
+    install = r'ros ws/install/my_robot_basics/lib/my_robot_basics/kinematics_publisher'
+    dialogue = [
+        ('echo "<$ROS_DOMAIN_ID$PYTHONPATH>"', '<>'),
+        (BUILD, r'Finished <<< my_robot_basics'),
+        ('ros2 pkg executables my_robot_basics --full-path | cat', install),
+        # a domain that is named: other tests' lessons start and end meanwhile
+        (f'export ROS_DOMAIN_ID={os.environ["ROS_DOMAIN_ID"]}', ''),
+        (
+            'ros2 run my_robot_basics kinematics_publisher & sleep 1; echo',
+            'publishing a random pose',
+        ),
+        (
+            'ros2 topic echo --once /kinematics/joint_states --field name',
+            r"\['joint1', 'joint2'\]",
+        ),
+        ('kill %1; wait; echo do""ne', 'done'),
+    ]
+    asyncio.run(_type(lab, dialogue))
