@@ -285,5 +285,17 @@ def test_students_see_the_lessons_and_no_panel_of_instructors(opened):
         expect(page.get_by_text(words)).to_have_count(0)
 
 
+def test_the_lab_opens_on_the_contents_and_shows_the_terms_to_readers(lab, chromium):
+    for name in ('index.ipynb', 'terms.md'):
+        shutil.copy(ROOT / 'notebooks' / name, lab.folder)
+    page = chromium.new_page()
+    page.set_default_timeout(LONG)
+    page.goto(f'{lab.address}/?token={TOKEN}')
+    page.get_by_role('link', name='core terms').click()
+    expect(page.locator('.jp-MarkdownViewer table').first).to_be_visible()
+    page.evaluate('jupyterapp.serviceManager.sessions.shutdownAll()')
+    page.close()
+
+
 def solution(name):
     return nbformat.read(ROOT / 'solutions' / name / f'{name}.ipynb', as_version=4)
