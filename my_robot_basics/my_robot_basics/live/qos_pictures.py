@@ -100,6 +100,7 @@ def _draw_lost(heard: Mapping[str, Sequence[int]], *, sent: int, title: str) -> 
         axes.plot(lost, [row] * len(lost), 'x', color=LOST, ms=5, label='lost')
         labels.append(f'{name}\n{len(known)} of {sent}')
     axes.set_yticks(range(len(heard)), labels)
+    axes.xaxis.get_major_locator().set_params(integer=True)
     axes.set_xlabel('message number')
     axes.set_title(title)
     handles, names = axes.get_legend_handles_labels()
