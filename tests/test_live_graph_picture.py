@@ -1,6 +1,8 @@
 """The graph as a picture: who is where, and the same in words."""
 
 import io
+from collections import defaultdict
+from itertools import pairwise
 
 import pytest
 from matplotlib.image import imread
@@ -61,10 +63,21 @@ def test_messages_go_from_left_to_right(text, columns):
     assert {name: column(arrows, name) for name in columns} == columns
 
 
-@pytest.mark.parametrize('text', [PIPELINE, '/a > /t1, /b > /t1, /a > /t2, /c > /t3, /t3 > /d'])
-def test_no_two_boxes_stand_in_the_same_place(text):
-    places = graph_picture._places(graph(text, nodes=['/alone', '/alone_too']))
-    assert len(set(places.values())) == len(places)
+@pytest.mark.parametrize(
+    'text',
+    [
+        PIPELINE,
+        '/a > /t1, /b > /t1, /a > /t2, /c > /t3, /t3 > /d',
+        '/a > /t1, /b > /t1, /t1 > /c, /t1 > /d, /t2 > /e, /t3 > /f, /g > /t4, /t4 > /h',
+    ],
+)
+def test_boxes_of_one_column_are_a_row_apart(text):
+    rows = defaultdict(list)
+    for column, height in graph_picture._places(graph(text, nodes=['/alone', '/lone'])).values():
+        rows[column].append(height)
+    for heights in rows.values():
+        gaps = [high - low for low, high in pairwise(sorted(heights))]
+        assert min(gaps, default=1.0) > 0.999
 
 
 def test_a_name_with_two_types_is_two_topics():

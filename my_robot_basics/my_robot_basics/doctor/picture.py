@@ -76,12 +76,21 @@ def box(axes: object, x: float, y: float, text: str, *, face: str, style: str = 
 
 
 def arrow(
-    axes: object, start: tuple[float, float], stop: tuple[float, float], *, is_broken: bool = False
+    axes: object,
+    start: tuple[float, float],
+    stop: tuple[float, float],
+    *,
+    is_broken: bool = False,
+    bend: float = 0.0,
 ) -> None:
-    """Draw a line along the way of the messages; a broken one is dashed and crossed."""
+    """Draw a line along the way of the messages; a broken one is dashed and crossed.
+
+    `bend` lifts its middle.
+    """
     colour = BROKEN if is_broken else WELL
-    middle = [(a + b) / 2 for a, b in zip(start, stop, strict=True)]
-    axes.plot(*zip(start, stop, strict=True), color=colour, lw=2, ls='--' if is_broken else '-')
+    middle = (start[0] + stop[0]) / 2, (start[1] + stop[1]) / 2 + bend
+    way = zip(start, middle, stop, strict=True)
+    axes.plot(*way, color=colour, lw=2, ls='--' if is_broken else '-')
     if is_broken:
         axes.plot(*middle, 'X', color=colour, ms=14, zorder=4)
         return

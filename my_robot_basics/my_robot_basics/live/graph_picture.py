@@ -1,8 +1,9 @@
 """A picture of the ROS graph as it is now: nodes, topics, and the way of the messages."""
 
 from collections import defaultdict
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from graphlib import TopologicalSorter
+from statistics import fmean
 from typing import NamedTuple
 
 from my_robot_basics.checks import graphs
@@ -15,6 +16,8 @@ from my_robot_basics.live import notebook
 COLUMN_INCHES, ROW_INCHES = 2.5, 0.75
 ASIDE = 0.12
 """How far two arrows between the same two boxes stand from the line between them, in rows."""
+BEND = 0.5
+"""How far an arrow evades the boxes between its ends, in rows."""
 
 
 class Box(NamedTuple):
@@ -84,11 +87,12 @@ def draw(arrows: Arrows, *, title: str = '') -> bytes:
 
     places = _places(arrows)
     columns = 1 + max((x for x, _ in places.values()), default=0)
-    half = 0.5 + max((y for _, y in places.values()), default=0)
-    size = (COLUMN_INCHES * columns, ROW_INCHES * 2 * half + 0.3 * bool(title))
-    figure = Figure(figsize=size, dpi=80, layout='constrained')
+    heights = [y for _, y in places.values()] or [0.0]
+    bottom, top = min(heights) - 0.6, max(heights) + 0.6
+    size = (COLUMN_INCHES * columns, ROW_INCHES * (top - bottom) + 0.3 * bool(title))
+    figure = Figure(figsize=size, dpi=100, layout='constrained')
     axes = figure.add_subplot()
-    axes.set(xlim=(-0.5, columns - 0.5), ylim=(-half, half), title=title)
+    axes.set(xlim=(-0.5, columns - 0.5), ylim=(bottom, top), title=title)
     axes.set_axis_off()
     if not places:
         axes.text(0, 0, 'no node is running', ha='center', va='center')
@@ -96,30 +100,51 @@ def draw(arrows: Arrows, *, title: str = '') -> bytes:
         style, face = ('round4', picture.TOPIC) if box.type_name else ('square', 'white')
         picture.box(axes, x, y, str(box), style=style, face=face)
         for other in arrows[box]:
-            goes_back = other in arrows and box in arrows[other]
-            aside = ASIDE * (1 if places[other][0] > x else -1) if goes_back else 0.0
-            picture.arrow(axes, (x, y + aside), (places[other][0], places[other][1] + aside))
+            to_x, to_y = places[other]
+            aside = ASIDE * (1 if to_x > x else -1) if box in arrows[other] else 0.0
+            bend = BEND if abs(to_x - x) > 1 else 0.0
+            picture.arrow(axes, (x, y + aside), (to_x, to_y + aside), bend=bend)
     return picture.png(figure)
 
 
 def _places(arrows: Arrows) -> dict[Box, tuple[int, float]]:
-    """Column and height of each box: nodes in even columns, topics in odd ones."""
-    columns: dict[int, list[Box]] = defaultdict(list)
-    for box, column in _columns(arrows).items():
-        columns[column].append(box)
-    places: dict[Box, tuple[int, float]] = {}
-    for column, boxes in sorted(columns.items()):
-        heights = {
-            box: [places[other][1] for other in places if box in arrows[other]] for box in boxes
+    """Column and height of each box: nodes in even columns, topics in odd ones.
+
+    A box stands about as high as those whose messages it gets; one that gets none, as those to
+    which its messages go; and one that is alone stands below all others.
+    """
+    columns = _columns(arrows)
+    senders = {box: [other for other in arrows if box in arrows[other]] for box in arrows}
+    heights: dict[Box, float] = {}
+
+    def put(boxes: Iterable[Box], neighbours: Mapping[Box, Iterable[Box]]) -> None:
+        wanted = {
+            box: fmean([heights[other] for other in neighbours[box] if other in heights] or [0.0])
+            for box in boxes
         }
+        heights.update(_apart(wanted))
 
-        def order(box: Box, heights: dict = heights) -> tuple[bool, float, Box]:
-            is_alone = not (heights[box] or arrows[box])
-            return is_alone, -sum(heights[box]) / max(1, len(heights[box])), box
+    linked = [box for box in arrows if arrows[box] or senders[box]]
+    in_columns = [
+        [box for box in linked if columns[box] == column] for column in sorted({*columns.values()})
+    ]
+    for boxes in in_columns:
+        put(boxes, senders)
+    for boxes in in_columns:
+        put(boxes, {box: [box] if senders[box] else arrows[box] for box in boxes})
+    lowest = min(heights.values(), default=1.0)
+    alone = [box for box in arrows if box not in heights]
+    heights.update({box: lowest - row for row, box in enumerate(alone, start=1)})
+    return {box: (columns[box], heights[box]) for box in arrows}
 
-        for row, box in enumerate(sorted(boxes, key=order)):
-            places[box] = column, (len(boxes) - 1) / 2 - row
-    return places
+
+def _apart(wanted: dict[Box, float]) -> dict[Box, float]:
+    """The heights nearest to those wanted at which boxes of one column are a row apart."""
+    heights: dict[Box, float] = {}
+    for box in sorted(wanted, key=lambda box: (-wanted[box], box)):
+        heights[box] = min([wanted[box], *(height - 1 for height in heights.values())])
+    shift = fmean(wanted[box] - heights[box] for box in wanted) if wanted else 0.0
+    return {box: height + shift for box, height in heights.items()}
 
 
 def _columns(arrows: Arrows) -> dict[Box, int]:
