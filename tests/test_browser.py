@@ -292,9 +292,8 @@ def test_the_lab_opens_on_the_contents_and_shows_the_terms_to_readers(lab, chrom
     page.set_default_timeout(LONG)
     page.goto(f'{lab.address}/?token={TOKEN}')
     expect(page.get_by_role('link', name='core terms')).to_be_visible()
-    page.locator(
-        '.jp-DirListing-item', has_text='terms.md'
-    ).dblclick()  # a link would show it, too
+    # a link would show it without our settings, too
+    page.locator('.jp-DirListing-item', has_text='terms.md').dblclick()
     expect(page.locator('.jp-MarkdownViewer table').first).to_be_visible()
     page.evaluate('jupyterapp.serviceManager.sessions.shutdownAll()')
     page.close()
