@@ -10,6 +10,8 @@ import nbformat
 import pytest
 from IPython.core.inputtransformer2 import TransformerManager
 
+from grader.release import broken
+
 ROOT = Path(__file__).parents[1]
 SOURCES = sorted(ROOT.glob('solutions/*/*.ipynb'))
 
@@ -225,8 +227,11 @@ def test_an_untouched_answer_is_valid_python_with_hints(lesson):
                 cell.source,
                 flags=re.DOTALL,
             )
+            released = broken(released)
             ast.parse(released)
             assert '# 1. ' in released, cell.id
+            is_to_be_mended = '### BROKEN' in cell.source
+            assert ('YOUR CODE HERE' in released) != is_to_be_mended, cell.id
 
 
 def marks(cell):
