@@ -20,7 +20,7 @@ HOW_IT_WORKS = """\
 ## How a lesson works
 
 - Run its cells from top to bottom with **Shift+Enter**, and guess before you run.
-- Write your answer into the cell that says `YOUR CODE HERE`, or mend the code that stands there.
+- Write your answer where it says `YOUR CODE HERE` or `YOUR ANSWER HERE`, or mend what is there.
 - **Validate**, in the bar above a lesson, says what its checks see.
 - Your points are given when your notebook is graded. Some checks run only then.
 """

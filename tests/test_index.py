@@ -33,6 +33,13 @@ def test_its_links_lead_somewhere(link):
     assert (ROOT / 'notebooks' / link).is_file()
 
 
+def test_lessons_say_where_the_answer_goes_in_the_words_of_the_index():
+    released = ''.join(path.read_text() for path in ROOT.glob('notebooks/*/*.ipynb'))
+    stubs = re.findall(r'`(YOUR [A-Z ]+)`', TEXT)
+    assert len(stubs) == 2
+    assert [stub for stub in stubs if stub not in released] == []
+
+
 def test_the_core_terms_are_a_click_away():
     assert '](terms.md)' in TEXT
 
