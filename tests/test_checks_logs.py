@@ -67,3 +67,13 @@ def test_a_node_that_does_not_run_is_named(monkeypatch):
     monkeypatch.setattr('my_robot_basics.checks.logs.NODE_SEC', 1.0)
     with pytest.raises(CheckFailed, match='expected a node /ik_solver_node, saw no node'):
         rosout('ik_solver_node').__enter__()
+
+
+def test_angles_for_a_target_out_of_reach_are_a_failure():
+    with running('ik_stretches'), rosout('ik_solver_node') as log:
+        ask(log, TOO_FAR)
+        log.expect_warning(no_angles=ANGLES)
+        log.mark()
+        topic('/target_point').publish(Point(x=3.0, y=3.0))
+        with pytest.raises(CheckFailed, match=r'expected no angles from .* leave the'):
+            log.expect_warning(no_angles=[45.0])

@@ -18,6 +18,7 @@ LEVELS = {10: 'DEBUG', 20: 'INFO', 30: 'WARN', 40: 'ERROR', 50: 'FATAL'}
 DEPTH = 1000
 NODE_SEC = 10.0
 AFTERTHOUGHT_SEC = 0.3
+WITHIN_DEG = 0.01
 _NUMBER = re.compile(r'[-−+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?')
 
 
@@ -87,7 +88,11 @@ class Log:
         return self._watcher.spin_until(lambda: done(self), timeout_sec=timeout_sec)
 
     def expect_angles(
-        self, angles_deg: Iterable[float], *, within_deg: float = 0.01, timeout_sec: float = 5.0
+        self,
+        angles_deg: Iterable[float],
+        *,
+        within_deg: float = WITHIN_DEG,
+        timeout_sec: float = 5.0,
     ) -> None:
         """INFO records hold every one of these angles, on any number of lines; no WARN is there.
 
@@ -115,14 +120,30 @@ class Log:
                 hint='warn only when inverse_kinematics raises ValueError',
             )
 
-    def expect_warning(self, *, timeout_sec: float = 5.0) -> None:
-        """At least one WARN record comes. Raises CheckFailed after `timeout_sec`."""
+    def expect_warning(self, *, no_angles: Iterable[float] = (), timeout_sec: float = 5.0) -> None:
+        """At least one WARN record comes, and INFO records hold none of the angles `no_angles`.
+
+        Raises CheckFailed after `timeout_sec`.
+        """
+        unwanted = list(no_angles)
         if not self.wait_for(lambda log: log._has('WARN'), timeout_sec=timeout_sec):
             fail(
                 expected=f'a warning in the log of {self._node_name}',
                 seen=self._shown('INFO'),
                 hint='catch ValueError and log it with self.get_logger().warning(…) '
                 '(print(…) does not reach the log)',
+            )
+
+        def has_unwanted(log: Self) -> bool:
+            return any(_near(a, n, WITHIN_DEG) for a in unwanted for n in log.numbers())
+
+        # angles may come just behind the warning
+        if unwanted and self.wait_for(has_unwanted, timeout_sec=AFTERTHOUGHT_SEC):
+            fail(
+                expected=f'no angles from {self._node_name} for a target out of reach',
+                seen=self._shown('INFO'),
+                hint='log angles only when inverse_kinematics returns some: leave the callback '
+                'after the warning',
             )
 
     def _meet(self) -> None:
