@@ -1,10 +1,10 @@
 """A node that passes messages on is judged by what comes out, whatever its own QoS."""
 
 import itertools
-from contextlib import nullcontext
 
 import pytest
 from my_robot_basics.checks import CheckFailed, relay, relays
+from my_robot_basics.checks.latched import LATCHED
 from nodes.running import imported, running
 from rclpy.duration import Duration
 from rclpy.node import Node
@@ -81,7 +81,7 @@ def test_a_monitor_in_a_process_of_its_own_passes():
 def test_other_nodes_on_the_topics_are_no_hindrance(run):
     talker = run(Node, 'talker')
     sensor = talker.create_publisher(JointState, '/sensor/joint_states', qos_profile_sensor_data)
-    latched = talker.create_publisher(String, '/arm_description', relays.LATCHED)
+    latched = talker.create_publisher(String, '/arm_description', LATCHED)
     latched.publish(String(data='the one of the lesson'))
     talker.create_timer(0.005, lambda: sensor.publish(JointState(name=['joint2'])))
     talker.create_subscription(JointState, '/sensor/joint_states', lambda _: None, 10)
@@ -169,34 +169,15 @@ def test_the_wrong_topics_are_named(run, impatient):
         check_delivery()
     with pytest.raises(CheckFailed, match='String messages on /monitor/arm_description, saw Join'):
         check_late_joiner()
-    with pytest.raises(CheckFailed, match='a publisher on /monitor/joint_state, saw none in 3 s'):
+    with pytest.raises(CheckFailed, match='a publisher on /monitor/joint_state, saw none in 1 s'):
         relay('/sensor/joint_states', to='/monitor/joint_state').assert_carries(
             pose(), qos_profile=qos_profile_sensor_data
         )
 
 
-@pytest.mark.parametrize('times', [5, pytest.param(200, marks=pytest.mark.slow)])
-@pytest.mark.parametrize('place', ['here', 'elsewhere'])
-def test_nobody_gets_what_was_said_before_without_asking_for_it(run, place, times):
-    heard, said_before = [], set()
-    run(Node, 'probe').create_subscription(
-        String, '/monitor/arm_description', lambda message: heard.append(message.data), 10
-    )
-    with volatile_monitor(run, place):
-        for _ in range(times):
-            with relays._said_to_nobody('/arm_description', description) as (message, publisher):
-                said_before.add(message.data)
-                # what comes later does arrive, and messages of a publisher keep their order
-                later = description()
-                live.wait_until(lambda p=publisher: p.get_subscription_count() > 0, 10.0)
-                publisher.publish(later)
-                live.wait_until(lambda text=later.data: text in heard, 10.0)
-            with pytest.raises(CheckFailed, match='saw VOLATILE'):
-                arm_description.assert_carries_latched(description)
-    assert not said_before & set(heard)
-
-
-def volatile_monitor(run, place):
-    if place == 'elsewhere':
-        return running('monitor_volatile')
-    return nullcontext(run(monitor.JointStateMonitor, description=10))
+def test_the_node_at_the_other_end_is_not_at_fault(run):
+    arm = run(Node, 'arm', key='arm')
+    arm.create_publisher(JointState, '/sensor/joint_states', 10)
+    run(Node, 'joint_state_monitor', key='monitor')
+    with pytest.raises(CheckFailed, match='saw none in 3 s: /joint_state_monitor runs, so look'):
+        check_delivery()

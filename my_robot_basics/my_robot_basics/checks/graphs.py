@@ -2,7 +2,7 @@
 
 import difflib
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 
 from rclpy.node import Node
@@ -42,6 +42,22 @@ class Graph:
     def subscriptions(self, topic_name: str) -> tuple[str, ...]:
         """Full names of the nodes that subscribe to the topic, one for each subscription."""
         return self.subscription_names.get(topic_name, ())
+
+    def without(self, node_names: Collection[str]) -> 'Graph':
+        """The same graph, had those nodes not been there."""
+
+        def left(names: dict[str, tuple[str, ...]]) -> dict[str, tuple[str, ...]]:
+            rest = {
+                topic_name: tuple(node for node in nodes if node not in node_names)
+                for topic_name, nodes in names.items()
+            }
+            return {topic_name: nodes for topic_name, nodes in rest.items() if nodes}
+
+        return Graph(
+            node_names=tuple(name for name in self.node_names if name not in node_names),
+            publisher_names=left(self.publisher_names),
+            subscription_names=left(self.subscription_names),
+        )
 
     def why_silent(self, topic_name: str) -> str:
         """What to try when nothing arrives on a topic: one clause."""

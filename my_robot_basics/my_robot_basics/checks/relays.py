@@ -1,7 +1,6 @@
 """A node that passes on what it hears: send on one topic, listen on the other."""
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NoReturn
 
@@ -17,6 +16,7 @@ from rclpy.qos import (
 
 from my_robot_basics.checks import graphs
 from my_robot_basics.checks.errors import expect, fail
+from my_robot_basics.checks.latched import said_to_nobody
 from my_robot_basics.checks.looks import Ears
 from my_robot_basics.checks.topics import Topic
 from my_robot_basics.checks.watcher import Watcher
@@ -26,11 +26,6 @@ AGAIN_SEC = 0.1
 """How long to wait for a message to come out before it is sent once more."""
 REFUSED_SEC = 2.0
 """How long another subscription of the node may come after one that asks for too much."""
-LATCHED = QoSProfile(
-    depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL
-)
-MOST_STRANGERS = 100
-"""How often to try to publish before discovery is done; most often the first time will do."""
 
 
 def relay(source: str, *, to: str) -> 'Relay':
@@ -67,12 +62,20 @@ class Relay:
             ears = self._listen(watcher, type(make_message()))
             self._expect_transient_local(watcher)
             for _ in range(times):
-                with _said_to_nobody(self.source, make_message) as (message, _):
+                with said_to_nobody(self.source, make_message) as (message, _):
                     self._expect_out(watcher, ears, message)
 
     def _listen(self, watcher: Watcher, type_: type) -> Ears:
         """Listen on `to`; a VOLATILE publisher is waited for until it knows of the listener."""
-        ears = Topic(self.to).listen(watcher)
+        topic = Topic(self.to)
+        patience_sec = topic.patience_sec(TIMEOUT_SEC)
+        if not graphs.wait_for_publisher(watcher, self.to, timeout_sec=patience_sec):
+            fail(
+                expected=f'a publisher on {self.to}',
+                seen=f'none in {patience_sec:g} s',
+                hint=self._graph(watcher).why_silent(self.to),
+            )
+        ears = topic.listen(watcher)
         expect(
             ears.type is type_,
             expected=f'{type_.__name__} messages on {self.to}',
@@ -161,28 +164,14 @@ class Relay:
         fail(
             expected=f'a subscription on {self.source}',
             seen=f'none in {patience_sec:g} s',
-            hint=graphs.take(watcher).why_unheard(self.source),
+            hint=self._graph(watcher).why_unheard(self.source),
         )
 
-
-@contextmanager
-def _said_to_nobody(
-    topic_name: str, make_message: Callable[[], Any]
-) -> Iterator[tuple[Any, Publisher]]:
-    """Yield a message that was published when its publisher's participant knew of nobody.
-
-    The participant stays, to be met. Where discovery was faster, all begins anew: whoever had met
-    the publisher before it spoke gets the message without having asked for it.
-    """
-    for _ in range(MOST_STRANGERS):
-        with Watcher() as stranger:
-            message = make_message()
-            publisher = stranger.node.create_publisher(type(message), topic_name, LATCHED)
-            publisher.publish(message)
-            if publisher.get_subscription_count() == 0:
-                yield message, publisher
-                return
-    raise RuntimeError(f'discovery was faster than a first message, {MOST_STRANGERS} times')
+    def _graph(self, watcher: Watcher) -> graphs.Graph:
+        """The graph without other publishers on `source`: it is not they who are at fault."""
+        everybody = graphs.take(watcher)
+        others = everybody.without(everybody.publishers(self.source))
+        return others if others.nodes() else everybody
 
 
 def _requests(node: Node, topic_name: str) -> list[QoSProfile]:

@@ -1,0 +1,36 @@
+"""Messages that are said before anybody listens, and kept for whoever asks for them."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from rclpy.publisher import Publisher
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+
+from my_robot_basics.checks.watcher import Watcher
+
+LATCHED = QoSProfile(
+    depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL
+)
+MOST_STRANGERS = 100
+"""How often to try to publish before discovery is done; most often the first time will do."""
+
+
+@contextmanager
+def said_to_nobody(
+    topic_name: str, make_message: Callable[[], Any]
+) -> Iterator[tuple[Any, Publisher]]:
+    """Yield a message that was published when its publisher's participant knew of nobody.
+
+    The participant stays, to be met. Where discovery was faster, all begins anew: whoever had met
+    the publisher before it spoke gets the message without having asked for it.
+    """
+    for _ in range(MOST_STRANGERS):
+        with Watcher() as stranger:
+            message = make_message()
+            publisher = stranger.node.create_publisher(type(message), topic_name, LATCHED)
+            publisher.publish(message)
+            if publisher.get_subscription_count() == 0:
+                yield message, publisher
+                return
+    raise RuntimeError(f'discovery was faster than a first message, {MOST_STRANGERS} times')

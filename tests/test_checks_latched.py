@@ -1,0 +1,56 @@
+"""Who has not asked for what was said before does not get it, however often one tries."""
+
+import itertools
+from contextlib import nullcontext
+
+import pytest
+from my_robot_basics.checks import CheckFailed, relay
+from my_robot_basics.checks.latched import said_to_nobody
+from nodes.running import imported, running
+from rclpy.node import Node
+from std_msgs.msg import String
+
+from my_robot_basics import live
+
+numbers = itertools.count()
+
+
+@pytest.fixture
+def run():
+    yield live.run
+    live.stop()
+
+
+def description():
+    return String(data=f'an arm with {next(numbers)} joints')
+
+
+@pytest.mark.parametrize(
+    'times', [5, pytest.param(200, marks=[pytest.mark.slow, pytest.mark.timeout(1200)])]
+)
+@pytest.mark.parametrize('place', ['here', 'elsewhere'])
+def test_nobody_gets_what_was_said_before_without_asking_for_it(run, place, times):
+    heard, said_before = [], set()
+    run(Node, 'probe').create_subscription(
+        String, '/monitor/arm_description', lambda message: heard.append(message.data), 10
+    )
+    with volatile_monitor(run, place):
+        for _ in range(times):
+            with said_to_nobody('/arm_description', description) as (message, publisher):
+                said_before.add(message.data)
+                # what comes later does arrive, and messages of a publisher keep their order
+                later = description()
+                live.wait_until(lambda p=publisher: p.get_subscription_count() > 0, 10.0)
+                publisher.publish(later)
+                live.wait_until(lambda text=later.data: text in heard, 10.0)
+            with pytest.raises(CheckFailed, match='saw VOLATILE'):
+                relay('/arm_description', to='/monitor/arm_description').assert_carries_latched(
+                    description
+                )
+    assert not said_before & set(heard)
+
+
+def volatile_monitor(run, place):
+    if place == 'elsewhere':
+        return running('monitor_volatile')
+    return nullcontext(run(imported('joint_state_monitor').JointStateMonitor, description=10))
