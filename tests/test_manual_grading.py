@@ -1,0 +1,166 @@
+"""An answer that a person grades: it waits, gets its points in the formgrader, and keeps them."""
+
+import csv
+import json
+import os
+import socket
+import subprocess
+import sys
+import time
+import urllib.error
+import urllib.request
+from pathlib import Path
+
+import pytest
+from course_maker import TOY, answered, executed, make_course, submit
+
+from grader.feedback import write_feedback
+from grader.grade import Row
+from grader.gradebook import register, store
+from grader.heal import heal
+from grader.pipeline import prepare
+from grader.release import release
+from grader.scores import write_scores
+from grader.submission import read_submission
+from grader.table import score_of, why
+
+TOKEN = 'a-token'
+RIGHT = 'def double(x):\n    return 2 * x'
+BECAUSE = 'Because **two** of it are twice of it.'
+
+
+@pytest.fixture(scope='module')
+def course(tmp_path_factory):
+    course = make_course(tmp_path_factory.mktemp('course'))
+    release(course)
+    register(course, TOY)
+    grade(course, 'ada', BECAUSE)
+    grade(course, 'bob', '')
+    return course
+
+
+@pytest.fixture(scope='module')
+def formgrader(course, tmp_path_factory):
+    """Calls the formgrader of a running Jupyter server, as an instructor's browser does."""
+    with socket.socket() as free:
+        free.bind(('127.0.0.1', 0))
+        port = free.getsockname()[1]
+    folder = tmp_path_factory.mktemp('jupyter')
+    mine = {f'JUPYTER_{name}_DIR': str(folder / name) for name in ('CONFIG', 'DATA', 'RUNTIME')}
+    programs = os.pathsep.join([str(Path(sys.executable).parent), os.environ['PATH']])
+    with (folder / 'log').open('w') as log:
+        server = subprocess.Popen(
+            [
+                *(sys.executable, '-m', 'jupyter_server', '--no-browser', '--allow-root'),
+                *(f'--port={port}', '--ServerApp.port_retries=0'),
+                f'--IdentityProvider.token={TOKEN}',
+                "--ServerApp.jpserver_extensions={'nbgrader.server_extensions.formgrader': True}",
+            ],
+            cwd=course.root,
+            env=os.environ | mine | {'PATH': programs},
+            stdin=subprocess.DEVNULL,
+            stdout=log,
+            stderr=subprocess.STDOUT,
+        )
+
+    def call(path, **sent):
+        request = urllib.request.Request(
+            f'http://127.0.0.1:{port}/formgrader/{path}',
+            data=json.dumps(sent).encode() if sent else None,
+            headers={'Authorization': f'token {TOKEN}'},
+            method='PUT' if sent else 'GET',
+        )
+        with urllib.request.urlopen(request) as reply:
+            text = reply.read().decode()
+        return json.loads(text) if path.startswith('api/') else text
+
+    try:
+        deadline = time.monotonic() + 60
+        while True:
+            try:
+                call('api/status')
+                break
+            except urllib.error.URLError:
+                assert server.poll() is None, (folder / 'log').read_text()
+                assert time.monotonic() < deadline, (folder / 'log').read_text()
+                time.sleep(0.2)
+        yield call
+    finally:
+        server.terminate()
+        server.wait(30)
+
+
+def grade(course, student, explained):
+    """Submit a notebook and store it as graded, with the rooms' verdicts made up."""
+    submit(course, student, answered(course, RIGHT, explained=explained))
+    folder = course.folder('submitted', student, TOY)
+    submission = read_submission(folder, student_id=student, assignment=TOY)
+    healed = heal(submission.notebook, course.master(TOY)).notebook
+    stored = store(course, submission, executed(prepare(course, TOY, healed), {}))
+    return Row(student, TOY, stored, stored.reason)
+
+
+def exported(course, student):
+    """Score and comment of the text in the exported table."""
+    with write_scores(course).open(encoding='utf-8', newline='') as file:
+        [row] = [
+            row
+            for row in csv.DictReader(file)
+            if (row['student_id'], row['grade_id']) == (student, 'explain')
+        ]
+    return row['score'], row['comment']
+
+
+def page(course, student):
+    write_feedback(course)
+    return (course.folder('feedback', student, TOY) / f'{TOY}.html').read_text(encoding='utf-8')
+
+
+def test_a_written_answer_waits_and_everything_says_so(course):
+    row = grade(course, 'ada', BECAUSE)
+    assert (score_of(row), why(row)) == ('3/5 …', 'the rest is graded by hand')
+    assert exported(course, 'ada') == ('', 'to be graded by hand')
+    assert '… waiting' in page(course, 'ada')
+    assert 'A person will read this.' in page(course, 'ada')
+
+
+def test_nobody_has_to_read_what_nobody_wrote(course):
+    row = grade(course, 'bob', '')
+    assert (score_of(row), why(row)) == ('3/5', 'there is no answer')
+    assert exported(course, 'bob') == ('0.0', 'there is no answer')
+    assert 'there is no answer' in page(course, 'bob')
+
+
+def test_the_reason_of_a_check_comes_before_what_waits(course):
+    row = grade(course, 'ada', BECAUSE)
+    assert why(Row('ada', TOY, row.stored, 'expected 42')) == 'expected 42'
+
+
+def test_the_formgrader_gives_points_that_a_regrade_keeps(course, formgrader):
+    grade(course, 'ada', BECAUSE)
+    [ada] = [
+        found
+        for found in formgrader(f'api/submitted_notebooks/{TOY}/{TOY}')
+        if found['student'] == 'ada'
+    ]
+    assert ada['needs_manual_grade']
+    assert '<strong>two</strong>' in formgrader(f'submissions/{ada["id"]}/?index=0')
+
+    by_name = {
+        kind: {each['name']: each for each in formgrader(f'api/{kind}?submission_id={ada["id"]}')}
+        for kind in ('grades', 'comments')
+    }
+    given = formgrader(f'api/grade/{by_name["grades"]["explain"]["id"]}', manual_score=1.5)
+    assert (given['manual_score'], given['needs_manual_grade']) == (1.5, False)
+    formgrader(
+        f'api/comment/{by_name["comments"]["explain"]["id"]}', manual_comment='Twice of what?'
+    )
+    assert exported(course, 'ada') == ('1.5', 'scored by hand; Twice of what?')
+
+    again = grade(course, 'ada', BECAUSE)
+    assert (score_of(again), why(again)) == ('4.5/5', '')
+    assert exported(course, 'ada') == ('1.5', 'scored by hand; Twice of what?')
+    html = page(course, 'ada')
+    assert '✎ scored by hand' in html
+    assert '1.5 of 2' in html
+    assert 'Twice of what?' in html
