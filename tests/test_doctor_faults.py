@@ -160,6 +160,19 @@ def test_two_types():
         assert_well(listener)
 
 
+def test_a_type_that_is_not_installed_here(monkeypatch):
+    listener = run(node_class(LISTENER))
+    with process(program(TALKER)):
+        assert wait_for(lambda: listener.heard)
+        assert diagnose(TOPIC, domain_id=classroom.enter()).findings == ()
+        # as for somebody whose environment lacks the package
+        monkeypatch.setitem(sys.modules, 'sensor_msgs.msg', None)
+        found = first_finding()
+        assert found.title == 'message type not installed here'
+        assert 'sensor_msgs/msg/JointState' in found.expected
+        assert 'the package sensor_msgs ' in found.mend
+
+
 def test_a_subscription_that_nobody_spins(tmp_path):
     run(node_class(TALKER))
     note = tmp_path / 'heard'

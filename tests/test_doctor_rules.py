@@ -163,6 +163,18 @@ SILENT = {'heard': (), 'listened_sec': 6.0}
         ),
         (replaced(unheard=1), []),
         (
+            replaced(
+                endpoints=(
+                    end('publisher', '/lidar', type_name='velodyne_msgs/msg/VelodyneScan'),
+                    end('subscription', '/driver', type_name='velodyne_msgs/msg/VelodyneScan'),
+                ),
+                unknown_types=('velodyne_msgs/msg/VelodyneScan',),
+                heard=(),
+                listened_sec=0.0,
+            ),
+            ['message type not installed here'],
+        ),
+        (
             replaced(endpoints=(LISTENER,), elsewhere={7: (TALKER,)}, **SILENT),
             ['another domain ID', 'no publisher'],
         ),

@@ -74,6 +74,8 @@ class Evidence:
     listened_sec: float = 0.0
     began_sec: float = 0.0
     """When the doctor began to listen, on the wall clock."""
+    unknown_types: tuple[str, ...] = ()
+    """Types of the topic's publishers that are not installed here: nobody could listen in."""
     remaps: tuple[Remap, ...] = ()
     domain_id: int = 0
     unheard: int = 0

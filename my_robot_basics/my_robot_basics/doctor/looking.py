@@ -81,9 +81,12 @@ def _look(watcher: Watcher, topic_name: str, *, domain_id: int, listen_sec: floa
 
 def _listen(watcher: Watcher, evidence: Evidence, *, listen_sec: float) -> Evidence:
     """Subscribe in a way that every publisher's offer allows, and keep what arrives."""
-    type_ = message_class(evidence.publishers[0].type_name)
+    classes = {end.type_name: message_class(end.type_name) for end in evidence.publishers}
+    unknown = tuple(sorted(name for name, class_ in classes.items() if class_ is None))
+    evidence = dataclasses.replace(evidence, unknown_types=unknown)
+    type_ = next(filter(None, classes.values()), None)
     if type_ is None:
-        return evidence  # a package that is not installed here: nobody can listen in
+        return evidence
     heard: list[Heard] = []
     offers = [end.qos_profile for end in evidence.publishers]
     reliable = all(offer.reliability == ReliabilityPolicy.RELIABLE for offer in offers)
