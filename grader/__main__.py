@@ -1,4 +1,4 @@
-"""The command line: python -m grader {release,grade,scores,feedback,demo}."""
+"""The command line: python -m grader {release,grade,scores,feedback,demo,doctor}."""
 
 import argparse
 import sys
@@ -9,6 +9,7 @@ from grader.errors import CourseError
 from grader.feedback import write_feedback
 from grader.grade import find_submissions, grade_all
 from grader.gradebook import register
+from grader.isolation import missing, protections
 from grader.release import release
 from grader.scores import write_scores
 from grader.table import print_rows
@@ -46,7 +47,10 @@ def _release(course: Course, asked: argparse.Namespace) -> int:
 
 def _grade(course: Course, asked: argparse.Namespace) -> int:
     submissions = find_submissions(course, assignment=asked.assignment, student_id=asked.student)
-    rows = list(print_rows(grade_all(course, submissions, seed=asked.seed or ''), submissions))
+    graded = grade_all(
+        course, submissions, seed=asked.seed or '', trust_students=asked.trust_students
+    )
+    rows = list(print_rows(graded, submissions))
     failed = sum(row.stored is None for row in rows)
     waiting = sum(row.stored is not None and row.stored.pending for row in rows)
     print(
@@ -71,6 +75,17 @@ def _demo(course: Course, asked: argparse.Namespace) -> int:
     return 0 if demo(root=course.root) else 1
 
 
+def _doctor(course: Course, asked: argparse.Namespace) -> int:
+    print('What keeps student code in while it is graded:')
+    for protection in protections():
+        print(f'  {"MISSING" if protection.problem else "ok     "}  {protection.name}')
+    if problem := missing():
+        print(f'\n{problem[0].upper()}{problem[1:]}.')
+        return 1
+    print('Nothing is missing: ./course grade runs each submission in a sandbox.')
+    return 0
+
+
 def hexadecimal(text: str) -> str:
     """Check an argument; argparse names this function when it is wrong."""
     int(text, 16)
@@ -91,12 +106,18 @@ def _parser() -> argparse.ArgumentParser:
     verb.add_argument(
         '--seed', type=hexadecimal, metavar='HEX', help='replay these inputs of hidden tests'
     )
+    verb.add_argument(
+        '--trust-students',
+        action='store_true',
+        help='grade even where this machine has no sandbox for their code (./course doctor)',
+    )
     verb.set_defaults(run=_grade)
 
     for name, run, text in (
         ('scores', _scores, 'write gradebook/scores.csv'),
         ('feedback', _feedback, 'write a page of feedback for each submission'),
         ('demo', _demo, 'grade a sample class, to see all of it in about a minute'),
+        ('doctor', _doctor, 'say what keeps student code in on this machine, and what is missing'),
     ):
         verbs.add_parser(name, help=text).set_defaults(run=run)
     return parser

@@ -37,7 +37,9 @@ def demo(samples: Path = SAMPLES, *, root: Path = ROOT) -> bool:
         folder.mkdir(parents=True)
         shutil.copyfile(sample, folder / f'{assignment}.ipynb')
     submissions = find_submissions(course)
-    rows = print_rows(grade_all(course, submissions), submissions, expected=expected)
+    # the samples are ours, and do no harm where there is no sandbox
+    graded = grade_all(course, submissions, trust_students=True)
+    rows = print_rows(graded, submissions, expected=expected)
     surprises = [row for row in rows if not _as_named(course, row, expected[row.student_id])]
     pages = write_feedback(course)
     for row in surprises:

@@ -2,7 +2,7 @@
 
 import asyncio
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,14 +12,12 @@ from nbformat import NotebookNode
 from grader.errors import RoomFailure
 from grader.exercises import Exercise, Plan, find_exercises, plans
 from grader.heal import KEY, grade_id, role
+from grader.isolation import TRUSTED, isolated
+from grader.limits import STUDENT_CELL_TIMEOUT_SEC, STUDENT_CELLS_BUDGET_SEC
 from grader.outputs import CellRun
 from grader.pool import Pool
 from grader.rooms import Rooms
-from grader.verdict import Verdict, judge, ungraded, write_verdict
-
-STUDENT_CELL_TIMEOUT_SEC = 10.0
-STUDENT_CELLS_BUDGET_SEC = 120.0
-"""The most that all student cells of a notebook may take together."""
+from grader.verdict import Verdict, judge, refuse, ungraded, write_verdict
 
 
 @dataclass(frozen=True)
@@ -46,27 +44,58 @@ class _Budget:
         return run
 
 
+@dataclass(frozen=True)
+class _Task:
+    """What all exercises of a notebook are judged with."""
+
+    notebook: NotebookNode
+    files: tuple[Path, ...]
+    seed: str
+    isolated: bool
+    budget: _Budget
+
+    def rooms(self) -> Rooms:
+        return Rooms(extra_files=self.files, seed=self.seed, isolated=self.isolated)
+
+    def write(self, index: int, verdict: Verdict, outputs: Sequence[NotebookNode]) -> Verdict:
+        if not self.isolated:
+            verdict = replace(verdict, notes=(*verdict.notes, TRUSTED))
+        write_verdict(self.notebook.cells[index], verdict, outputs)
+        return verdict
+
+
 def execute(
-    notebook: NotebookNode, *, extra_files: Sequence[Path] = (), seed: str = ''
+    notebook: NotebookNode,
+    *,
+    extra_files: Sequence[Path] = (),
+    seed: str = '',
+    trust_students: bool = False,
 ) -> Execution:
     """Run a healed notebook's exercises, each in rooms of its own, and judge them.
 
     `seed` decides the inputs that hidden tests choose. May be called inside a running event loop.
     Nothing that a notebook does raises here; what the grader itself fails in is `ungraded`.
+    Raises CourseError where there is no sandbox, unless told to `trust_students`.
     """
+    options = {'extra_files': extra_files, 'seed': seed, 'trust_students': trust_students}
     with Pool(in_flight=1) as pool:
-        return pool.submit(executed, notebook, extra_files=extra_files, seed=seed).result()
+        return pool.submit(executed, notebook, **options).result()
 
 
 async def executed(
-    notebook: NotebookNode, *, extra_files: Sequence[Path] = (), seed: str = ''
+    notebook: NotebookNode,
+    *,
+    extra_files: Sequence[Path] = (),
+    seed: str = '',
+    trust_students: bool = False,
 ) -> Execution:
     """Do what `execute` does, on the running event loop."""
     graded = nbformat.from_dict(notebook)
     if problem := graded.metadata.get(KEY, {}).get('problem'):
-        verdicts = _refuse(graded, problem)
+        verdicts = refuse(graded, problem)
     else:
-        verdicts = await _execute(graded, tuple(extra_files), seed)
+        in_sandbox = isolated(trust_students=trust_students)
+        verdicts = await _execute(_Task(graded, tuple(extra_files), seed, in_sandbox, _Budget()))
     by_hand = [_by_hand(c) for c in graded.cells if role(c) == 'answer' and _points(c)]
     return Execution(
         notebook=graded,
@@ -75,87 +104,53 @@ async def executed(
     )
 
 
-def _refuse(notebook: NotebookNode, problem: str) -> list[Verdict]:
-    """Fail every grade cell of a notebook that could not be read, without running anything."""
+async def _execute(task: _Task) -> list[Verdict]:
     verdicts = []
-    for cell in notebook.cells:
-        if role(cell) == 'grade' and cell.cell_type == 'code':
-            verdicts.append(
-                Verdict(grade_id(cell), outcome='failed', points=_points(cell), reason=problem)
-            )
-            write_verdict(cell, verdicts[-1], [])
+    for exercise in find_exercises(task.notebook):
+        verdicts += await _judge_exercise(task, exercise)
     return verdicts
 
 
-async def _execute(notebook: NotebookNode, files: tuple[Path, ...], seed: str) -> list[Verdict]:
-    budget = _Budget()
-    verdicts = []
-    for exercise in find_exercises(notebook):
-        verdicts += await _judge_exercise(notebook, exercise, files, seed, budget)
-    return verdicts
-
-
-async def _judge_exercise(
-    notebook: NotebookNode,
-    exercise: Exercise,
-    files: tuple[Path, ...],
-    seed: str,
-    budget: _Budget,
-) -> list[Verdict]:
+async def _judge_exercise(task: _Task, exercise: Exercise) -> list[Verdict]:
     """Judge one exercise; where the grader itself fails, once more in fresh rooms."""
     failure: RoomFailure | None = None
     for _ in range(2):
         try:
-            return await _try_plans(notebook, exercise, files, seed, budget)
+            return await _try_plans(task, exercise)
         except RoomFailure as error:
             failure = error
-    verdicts = [ungraded(notebook.cells[i], str(failure)) for i in exercise.grades]
-    for index, verdict in zip(exercise.grades, verdicts, strict=True):
-        write_verdict(notebook.cells[index], verdict, [])
-    return verdicts
+    cells = task.notebook.cells
+    return [task.write(i, ungraded(cells[i], str(failure)), []) for i in exercise.grades]
 
 
-async def _try_plans(
-    notebook: NotebookNode,
-    exercise: Exercise,
-    files: tuple[Path, ...],
-    seed: str,
-    budget: _Budget,
-) -> list[Verdict]:
-    todo = list(plans(notebook, exercise))
+async def _try_plans(task: _Task, exercise: Exercise) -> list[Verdict]:
+    todo = list(plans(task.notebook, exercise))
     for number, plan in enumerate(todo, start=1):
-        async with Rooms(extra_files=files, seed=seed) as rooms:
-            runs = await _run_student_cells(rooms, notebook, plan, budget)
+        async with task.rooms() as rooms:
+            runs = await _run_student_cells(task, rooms, plan)
             if number < len(todo) and _lacks_a_name(runs, exercise):
                 continue
             for index, run in runs.items():
-                notebook.cells[index].outputs = run.outputs
-            return [
-                await _judge_cell(rooms, notebook, index, runs, exercise)
-                for index in exercise.grades
+                task.notebook.cells[index].outputs = run.outputs
+            own = [
+                (grade_id(task.notebook.cells[i]), runs[i])
+                for i in (exercise.answer, *exercise.run)
             ]
+            return [await _judge_cell(task, rooms, index, own) for index in exercise.grades]
     raise AssertionError('an exercise always has a last plan')
 
 
-async def _run_student_cells(
-    rooms: Rooms, notebook: NotebookNode, plan: Plan, budget: _Budget
-) -> dict[int, CellRun]:
-    return {i: await budget.run(rooms, notebook.cells[i].source) for i in plan.cells}
+async def _run_student_cells(task: _Task, rooms: Rooms, plan: Plan) -> dict[int, CellRun]:
+    cells = task.notebook.cells
+    return {i: await task.budget.run(rooms, cells[i].source) for i in plan.cells}
 
 
 async def _judge_cell(
-    rooms: Rooms,
-    notebook: NotebookNode,
-    index: int,
-    runs: dict[int, CellRun],
-    exercise: Exercise,
+    task: _Task, rooms: Rooms, index: int, own: list[tuple[str, CellRun]]
 ) -> Verdict:
-    cell = notebook.cells[index]
-    own = [(grade_id(notebook.cells[i]), runs[i]) for i in (exercise.answer, *exercise.run)]
+    cell = task.notebook.cells[index]
     run = await rooms.run_check(cell.source) if rooms.student_alive else None
-    verdict = judge(cell, run, own)
-    write_verdict(cell, verdict, run.outputs if run else [])
-    return verdict
+    return task.write(index, judge(cell, run, own), run.outputs if run else [])
 
 
 def _lacks_a_name(runs: dict[int, CellRun], exercise: Exercise) -> bool:

@@ -2,11 +2,8 @@
 
 import asyncio
 import contextlib
-import os
+import json
 import queue
-import shutil
-import sys
-import tempfile
 import time
 from pathlib import Path
 from subprocess import DEVNULL
@@ -17,64 +14,74 @@ from jupyter_client import AsyncKernelManager
 from jupyter_client.kernelspec import KernelSpec, KernelSpecManager
 
 from grader.errors import RoomFailure
+from grader.limits import INTERRUPT_GRACE_SEC, MAX_MESSAGE_BYTES
 from grader.messages import Messages, OnInput
 from grader.outputs import CellRun
+from grader.places import Place, environment_of, open_place
 
 START_TIMEOUT_SEC = 60.0
-INTERRUPT_GRACE_SEC = 2.0
 STOP_GRACE_SEC = 2.0
-MAX_MESSAGE_BYTES = 32_000_000
-"""A kernel that sends more at once is cut off; the message is lost."""
 
 
 class _OurKernelSpec(KernelSpecManager):
     """One kernel, the interpreter we run on: no kernelspec of a student is ever looked up."""
 
+    argv: tuple[str, ...] = ()
+
     def get_kernel_spec(self, kernel_name: str) -> KernelSpec:
         return KernelSpec(
-            argv=[
-                sys.executable,
-                '-m',
-                'ipykernel_launcher',
-                '-f',
-                '{connection_file}',
-                '--InteractiveShellApp.ignore_cwd=True',
-                '--HistoryManager.enabled=False',
-            ],
+            argv=list(self.argv),
             display_name='my_robot_basics',
             language='python',
+            interrupt_mode='message',  # a signal from outside would end a sandbox
         )
 
 
 class Kernel:
     """One kernel in an empty folder of its own; everything of it goes with stop()."""
 
-    def __init__(self, *, room: str, domain_id: int, seed: str = '') -> None:
-        """Prepare a kernel of the 'student' or the 'test' room in a ROS domain."""
+    def __init__(
+        self, *, room: str, domain_id: int, seed: str = '', place: Place | None = None
+    ) -> None:
+        """Prepare a kernel of the 'student' or the 'test' room in a ROS domain.
+
+        It lives in `place`, or else has the rights of whoever grades.
+        """
         self.room = room
-        self.folder = Path(tempfile.mkdtemp(prefix='mrb-', dir=_temporary_folder()))
-        self._environment = _environment(room, domain_id, seed, self.folder)
+        self.place = place or open_place(room)
+        self._environment = environment_of(self.place, room=room, domain_id=domain_id, seed=seed)
         self._context = zmq.asyncio.Context()
         self._context.setsockopt(zmq.MAXMSGSIZE, MAX_MESSAGE_BYTES)
+        specs = _OurKernelSpec()
+        specs.argv = tuple(self.place.command())
         self._manager = AsyncKernelManager(
             context=self._context,
-            kernel_spec_manager=_OurKernelSpec(),
+            kernel_spec_manager=specs,
             transport='ipc',
-            ip=str(self.folder / 'zmq'),
-            connection_file=str(self.folder / 'connection.json'),
+            ip=str(self.place.sockets / 'zmq'),
+            connection_file=str(self.place.folder / 'connection.json'),
         )
         self._client = None
         self.alive = False
 
+    @property
+    def folder(self) -> Path:
+        """The grader's folder for this kernel."""
+        return self.place.folder
+
     async def start(self) -> 'Kernel':
         """Start the kernel and wait until its outputs are heard; raises RoomFailure."""
-        work = self.folder / 'work'
         try:
-            work.mkdir()
+            self._tell_where_to_listen()
             await self._manager.start_kernel(
-                cwd=str(work), env=self._environment, stdout=DEVNULL, stderr=DEVNULL
+                cwd=self.place.start_in,
+                env=self._environment,
+                stdout=DEVNULL,
+                stderr=DEVNULL,
+                pass_fds=self.place.pass_fds,
             )
-            await asyncio.wait_for(self._connect(), START_TIMEOUT_SEC)
+            async with asyncio.timeout(START_TIMEOUT_SEC):
+                await self._connect()
         except Exception as error:
             await self.stop()
             why = str(error) or type(error).__name__
@@ -127,7 +134,14 @@ class Kernel:
         if self._client is not None:
             self._client.stop_channels()
         self._context.destroy(linger=0)
-        shutil.rmtree(self.folder, ignore_errors=True)
+        self.place.remove()
+
+    def _tell_where_to_listen(self) -> None:
+        """Write the kernel's connection file: it may know its sockets by another path than we."""
+        self._manager.write_connection_file()
+        told = json.loads((self.folder / 'connection.json').read_text(encoding='utf-8'))
+        told['ip'] = str(self.place.inside / 'kernel' / 'zmq')
+        (self.folder / 'given' / 'connection.json').write_text(json.dumps(told), encoding='utf-8')
 
     async def _connect(self) -> None:
         """Wait until the kernel's sockets are there, and until it knows that we listen.
@@ -160,7 +174,9 @@ class Kernel:
                 await asyncio.wait_for(self._exited(), STOP_GRACE_SEC)
             await self._manager.shutdown_kernel(now=True)
         deadline = time.monotonic() + STOP_GRACE_SEC
-        while (left := self._leftovers()) and time.monotonic() < deadline:
+        while (
+            not self.place.closed and (left := self._leftovers()) and time.monotonic() < deadline
+        ):
             for process in left:
                 with contextlib.suppress(psutil.Error):
                     process.kill()
@@ -192,29 +208,3 @@ class Kernel:
                 return True
         await done
         return True
-
-
-def _environment(room: str, domain_id: int, seed: str, folder: Path) -> dict[str, str]:
-    """What a kernel's process is told: nothing of the caller's own, but where things are."""
-    passed_on = ('PATH', 'HOME', 'LANG', 'LC_ALL', 'TMPDIR', 'AMENT_PREFIX_PATH', 'TZ')
-    # the ROS wheels start an interpreter anew to set the one, unless they find the other
-    passed_on += ('LD_LIBRARY_PATH', '_ROS_WHEELS_BOOTSTRAP_COMPLETE')
-    environment = {name: os.environ[name] for name in passed_on if name in os.environ}
-    environment |= {
-        'MY_ROBOT_BASICS_ROOM': room,
-        'MY_ROBOT_BASICS_DOMAIN_ID': str(domain_id),
-        'RCUTILS_LOGGING_USE_STDOUT': '1',
-        'ROS_LOG_DIR': str(folder / 'ros_log'),
-        'IPYTHONDIR': str(folder / 'ipython'),
-        'MPLBACKEND': 'module://matplotlib_inline.backend_inline',
-        'PYTHONSAFEPATH': '1',
-        'PYTHONDONTWRITEBYTECODE': '1',
-    }
-    if room == 'test':
-        environment['MY_ROBOT_BASICS_SEED'] = seed
-    return environment
-
-
-def _temporary_folder() -> str | None:
-    """Where a kernel's folder goes: a Unix socket's path holds 107 characters at most."""
-    return '/tmp' if len(tempfile.gettempdir()) > 60 else None

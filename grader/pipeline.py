@@ -11,6 +11,7 @@ from grader.course import Course
 from grader.heal import KEY, NO_ANSWERS, heal
 from grader.release import CODE_STUB
 from grader.submission import Submission
+from grader.verdict import refuse
 
 SANITIZE_PASSES = (
     'grader.passes.HealSubmission',
@@ -80,14 +81,7 @@ def unanswered(course: Course, submission: Submission, reason: str) -> NotebookN
         course, submission.assignment, heal(nothing, course.master(submission.assignment)).notebook
     )
     notebook.metadata[KEY] = {'notes': [reason], 'problem': reason}
-    for cell in notebook.cells:
-        if cell.cell_type == 'code' and cell.metadata.get('nbgrader', {}).get('grade'):
-            cell.metadata[KEY] = {'outcome': 'failed', 'reason': reason, 'notes': []}
-            cell.outputs = [
-                nbformat.v4.new_output(
-                    'error', ename='CheckFailed', evalue=reason, traceback=[reason]
-                )
-            ]
+    refuse(notebook, reason)
     return notebook
 
 

@@ -13,14 +13,10 @@ from my_robot_basics.live.errors import LiveError
 
 from grader.errors import RoomFailure
 from grader.kernels import Kernel
+from grader.limits import CHECK_TIMEOUT_SEC, MAX_REPLY, REPLY_TIMEOUT_SEC
 from grader.outputs import CellRun
+from grader.sandbox import Sandbox
 
-REPLY_TIMEOUT_SEC = 10.0
-"""How long the student's kernel may take to answer one question of a check."""
-MAX_REPLY = 2 * 65_536
-"""Characters of a reply as a Python literal: a backslash takes two."""
-CHECK_TIMEOUT_SEC = 90.0
-"""A check has time limits of its own; this one ends a check that lost them."""
 SETUP_TIMEOUT_SEC = 60.0
 
 _RESPONDER = (
@@ -46,17 +42,24 @@ _STUDENT_GOES = 'probe.silence(); del probe, sys'
 class Rooms:
     """A student room and a test room for one exercise; `async with` starts and ends them."""
 
-    def __init__(self, *, extra_files: Sequence[Path] = (), seed: str = '') -> None:
-        """Prepare two rooms; the student's gets a copy of the submission's own modules."""
+    def __init__(
+        self, *, extra_files: Sequence[Path] = (), seed: str = '', isolated: bool = True
+    ) -> None:
+        """Prepare two rooms; the student's gets a copy of the submission's own modules.
+
+        Unless `isolated`, what runs in them has the rights of whoever grades.
+        """
         self._extra_files = tuple(extra_files)
         self._seed = seed
+        self._isolated = isolated
+        self._sandbox: Sandbox | None = None
         self._claim: Claim | None = None
         self._kernels: list[Kernel] = []
 
     async def __aenter__(self) -> 'Rooms':
         """Start both kernels, and see a message cross from one to the other."""
         try:
-            self._open()
+            await self._open()
             await _together(self._prepare_student(), self._prepare_test())
             await self._prepare(self._student, _STUDENT_GOES)
         except BaseException as error:
@@ -69,12 +72,10 @@ class Rooms:
     async def __aexit__(self, *_: object) -> None:
         """End both kernels, whatever state they are in, and give the domain back."""
         try:
-            # a check has closed its nodes itself; an interpreter with rclpy may be slow to end
-            stops = [k.stop(politely=k.room == 'student') for k in self._kernels]
-            failed = [e for e in await asyncio.gather(*stops, return_exceptions=True) if e]
-            if failed:
-                raise failed[0]
+            await self._stop_kernels()
         finally:
+            if self._sandbox is not None:
+                await self._sandbox.close()
             if self._claim is not None:
                 self._claim.release()
 
@@ -109,22 +110,36 @@ class Rooms:
                 return ast.literal_eval(text)
         return _failed('no usable answer')
 
-    def _open(self) -> None:
+    async def _open(self) -> None:
         self._claim = claim()
-        domain_id = self._claim.domain_id
-        self._student = Kernel(room='student', domain_id=domain_id)
-        self._kernels.append(self._student)
-        self._test = Kernel(room='test', domain_id=domain_id, seed=self._seed)
-        self._kernels.append(self._test)
+        if self._isolated:
+            self._sandbox = Sandbox(slot=self._claim.domain_id)
+            await self._sandbox.open()
+        self._student = self._kernel('student')
+        self._test = self._kernel('test', seed=self._seed)
+
+    def _kernel(self, room: str, *, seed: str = '') -> Kernel:
+        place = self._sandbox.place(room) if self._sandbox else None
+        kernel = Kernel(room=room, domain_id=self._claim.domain_id, seed=seed, place=place)
+        self._kernels.append(kernel)
+        return kernel
+
+    async def _stop_kernels(self) -> None:
+        # a check has closed its nodes itself; an interpreter with rclpy may be slow to end
+        polite = 'student' if self._sandbox is None else None
+        stops = [kernel.stop(politely=kernel.room == polite) for kernel in self._kernels]
+        failed = [e for e in await asyncio.gather(*stops, return_exceptions=True) if e]
+        if failed:
+            raise failed[0]
 
     async def _prepare_student(self) -> None:
-        files = self._student.folder / 'files'
-        files.mkdir()
+        place = self._student.place
         for file in self._extra_files:
-            shutil.copyfile(file, files / file.name)
+            shutil.copyfile(file, place.files / file.name)
         await self._student.start()
         # last on the path, so that they shadow nothing
-        await self._prepare(self._student, _STUDENT_COMES.format(files=str(files)))
+        files = str(place.inside / 'given' / 'files')
+        await self._prepare(self._student, _STUDENT_COMES.format(files=files))
 
     async def _prepare_test(self) -> None:
         await self._test.start()

@@ -9,7 +9,7 @@ import nbformat
 from nbformat import NotebookNode
 
 from grader.errors import RoomFailure
-from grader.heal import KEY, grade_id
+from grader.heal import KEY, grade_id, role
 from grader.outputs import CellRun
 from grader.text import printable, shorten
 
@@ -71,6 +71,17 @@ def ungraded(cell: NotebookNode, why: str) -> Verdict:
         points=float(cell.metadata.nbgrader.points),
         reason=reason,
     )
+
+
+def refuse(notebook: NotebookNode, problem: str) -> list[Verdict]:
+    """Fail every grade cell of a notebook that could not be read."""
+    verdicts = []
+    for cell in notebook.cells:
+        if role(cell) == 'grade' and cell.cell_type == 'code':
+            points = float(cell.metadata.nbgrader.points)
+            verdicts.append(Verdict(grade_id(cell), 'failed', points, reason=problem))
+            write_verdict(cell, verdicts[-1], [])
+    return verdicts
 
 
 def write_verdict(cell: NotebookNode, verdict: Verdict, outputs: Iterable[NotebookNode]) -> None:

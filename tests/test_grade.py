@@ -31,7 +31,7 @@ def released(tmp_path_factory):
 def course(released, tmp_path, monkeypatch):
     """A gradebook of its own; in the rooms' place, a look at the answer's text."""
 
-    async def look(notebook, *, extra_files=(), seed=''):
+    async def look(notebook, *, extra_files=(), seed='', trust_students=False):
         answer = next(cell.source for cell in notebook.cells if cell.id == 'double')
         assert len(seed) == 64 or seed == 'abc'
         if 'crash' in answer:

@@ -2,6 +2,7 @@
 
 import asyncio
 import os
+import tempfile
 import time
 from pathlib import Path
 
@@ -359,10 +360,10 @@ def test_cancelling_a_cell_leaves_a_kernel_that_can_be_stopped(own, loop):
 
 
 def test_a_long_path_for_temporary_files_is_not_used_for_sockets(monkeypatch, tmp_path):
-    monkeypatch.setattr(kernels.tempfile, 'tempdir', str(tmp_path / ('x' * 100)))
+    monkeypatch.setattr(tempfile, 'tempdir', str(tmp_path / ('x' * 100)))
     kernel = Kernel(room='student', domain_id=DOMAIN)
     try:
-        assert len(f'{kernel.folder}/zmq-10') < 107
+        assert len(f'{kernel.place.sockets}/zmq-10') < 107
     finally:
         asyncio.run(kernel.stop())
     assert not Path(kernel.folder).exists()

@@ -126,7 +126,11 @@ def test_running_takes_the_courses_seed_and_the_students_files(course, executed_
     at = resources(course, 'autograded')
     result = asyncio.run(formgrader()) if in_a_loop else ExecuteRooms().preprocess(notebook, at)
     assert result[0] is notebook
-    assert executed_with == {'extra_files': [folder / 'helper.py'], 'seed': course.seed(TOY)}
+    assert executed_with == {
+        'extra_files': [folder / 'helper.py'],
+        'seed': course.seed(TOY),
+        'trust_students': False,
+    }
 
 
 def test_both_passes_are_in_force():

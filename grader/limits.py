@@ -1,0 +1,55 @@
+"""What a student's code may use up, and why so much: the one table of limits."""
+
+import resource
+
+STUDENT_CELL_TIMEOUT_SEC = 10.0
+"""No answer of the course takes a second; a loop that waits for messages takes a few."""
+STUDENT_CELLS_BUDGET_SEC = 120.0
+"""The most that all student cells of a notebook may take together: a class has to end."""
+REPLY_TIMEOUT_SEC = 10.0
+"""How long the student's kernel may take to answer one question of a check: as for a cell."""
+CHECK_TIMEOUT_SEC = 90.0
+"""A check has time limits of its own; this one ends a check that lost them."""
+INTERRUPT_GRACE_SEC = 2.0
+"""A kernel that ignores an interrupt so long is killed."""
+MAX_MESSAGE_BYTES = 32_000_000
+"""A kernel that sends more at once is cut off; the message is lost. Pictures are far smaller."""
+MAX_REPLY = 2 * 65_536
+"""Characters of a reply as a Python literal: 64 kB, and a backslash takes two."""
+
+ROOM_DISK_BYTES = 64 * 2**20
+"""All that a room can write, on a file system in memory: logs, caches and plots take 2 MB."""
+ROOM_FILES = 8_192
+"""Files and folders in it: each takes memory that its size does not tell."""
+
+PROCESS_LIMITS = {
+    resource.RLIMIT_AS: 3 * 2**30,  # of each process; a lesson with plots and nodes: under 1 GB
+    resource.RLIMIT_NPROC: 256,  # processes and threads of a room together; a lesson: some 60
+    resource.RLIMIT_CPU: 300,  # seconds of each process; nothing outlives its submission anyway
+    resource.RLIMIT_FSIZE: ROOM_DISK_BYTES,  # no file can be larger than the disk
+    resource.RLIMIT_NOFILE: 1_024,  # what a login has; 30 nodes take 400
+    resource.RLIMIT_CORE: 0,  # nobody would look at it
+    resource.RLIMIT_MEMLOCK: 0,  # locked memory cannot be taken back
+    resource.RLIMIT_MSGQUEUE: 0,  # message queues outlive processes
+}
+"""What Linux enforces in each process of a student's room."""
+
+_OPTIONS = {
+    resource.RLIMIT_AS: 'as',
+    resource.RLIMIT_NPROC: 'nproc',
+    resource.RLIMIT_CPU: 'cpu',
+    resource.RLIMIT_FSIZE: 'fsize',
+    resource.RLIMIT_NOFILE: 'nofile',
+    resource.RLIMIT_CORE: 'core',
+    resource.RLIMIT_MEMLOCK: 'memlock',
+    resource.RLIMIT_MSGQUEUE: 'msgqueue',
+}
+
+
+def limited() -> list[str]:
+    """Return the beginning of a command that runs the rest within PROCESS_LIMITS.
+
+    Where memory runs out, Linux ends such processes before any other.
+    """
+    limits = [f'--{_OPTIONS[kind]}={most}:{most}' for kind, most in PROCESS_LIMITS.items()]
+    return ['choom', '-n', '1000', '--', 'prlimit', *limits]

@@ -1,0 +1,97 @@
+"""Where a kernel lives: its folders, what its process is told, and how its command begins."""
+
+import os
+import shutil
+import sys
+import tempfile
+from dataclasses import dataclass, field
+from pathlib import Path
+
+_PASSED_ON = ('LANG', 'LC_ALL', 'TZ')
+# the ROS wheels start an interpreter anew to set the one, unless they find the other
+_PASSED_ON += ('LD_LIBRARY_PATH', '_ROS_WHEELS_BOOTSTRAP_COMPLETE')
+
+
+@dataclass(frozen=True)
+class Place:
+    """The place of one kernel: what it is `given`, its sockets in `kernel`, its own in `home`."""
+
+    folder: Path
+    """The grader's folder for it; it holds `given`."""
+    sockets: Path
+    """The kernel's sockets as the grader reaches them."""
+    inside: Path
+    """What holds `given`, `kernel` and `home`, as the kernel's process knows it."""
+    prefix: tuple[str, ...] = ()
+    """How a command begins that runs there."""
+    environment: dict[str, str] = field(default_factory=dict)
+    """What its process is told, beside what every kernel is."""
+    pass_fds: tuple[int, ...] = ()
+    """What `prefix` reads."""
+
+    @property
+    def closed(self) -> bool:
+        """Whether what runs there has neither the rights nor the network of whoever grades."""
+        return bool(self.prefix)
+
+    @property
+    def files(self) -> Path:
+        """The folder of modules that are given to it."""
+        return self.folder / 'given' / 'files'
+
+    @property
+    def start_in(self) -> str:
+        """The folder in which `command` is run."""
+        return '/' if self.closed else str(self.folder / 'home' / 'work')
+
+    def command(self) -> list[str]:
+        """Return the command of a kernel that lives there."""
+        launcher = [sys.executable, '-m', 'ipykernel_launcher', '-f']
+        options = ['--InteractiveShellApp.ignore_cwd=True', '--HistoryManager.enabled=False']
+        connection = str(self.inside / 'given' / 'connection.json')
+        return [*self.prefix, *launcher, connection, *options]
+
+    def remove(self) -> None:
+        """Remove the grader's folder."""
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+
+def make_folder(name: str) -> Path:
+    """Make a temporary folder that nobody else can enter, with an empty `given` in it."""
+    # a Unix socket's path holds 107 characters at most
+    parent = '/tmp' if len(tempfile.gettempdir()) > 60 else None
+    folder = Path(tempfile.mkdtemp(prefix=f'mrb-{name}-', dir=parent))
+    (folder / 'given' / 'files').mkdir(parents=True)
+    return folder
+
+
+def open_place(room: str) -> Place:
+    """Return a place with the rights and the network of whoever grades."""
+    folder = make_folder(room)
+    (folder / 'kernel').mkdir()
+    (folder / 'home' / 'work').mkdir(parents=True)
+    names = ('PATH', 'HOME', 'TMPDIR', 'AMENT_PREFIX_PATH')
+    environment = {name: os.environ[name] for name in names if name in os.environ}
+    return Place(folder, folder / 'kernel', inside=folder, environment=environment)
+
+
+def environment_of(place: Place, *, room: str, domain_id: int, seed: str) -> dict[str, str]:
+    """Return what a kernel's process is told: nothing of the caller's own, but where things are.
+
+    Only the test room is told the seed.
+    """
+    home = place.inside / 'home'
+    environment = {name: os.environ[name] for name in _PASSED_ON if name in os.environ}
+    environment |= place.environment | {
+        'MY_ROBOT_BASICS_ROOM': room,
+        'MY_ROBOT_BASICS_DOMAIN_ID': str(domain_id),
+        'RCUTILS_LOGGING_USE_STDOUT': '1',
+        'ROS_LOG_DIR': str(home / 'ros_log'),
+        'IPYTHONDIR': str(home / 'ipython'),
+        'MPLBACKEND': 'module://matplotlib_inline.backend_inline',
+        'PYTHONSAFEPATH': '1',
+        'PYTHONDONTWRITEBYTECODE': '1',
+    }
+    if room == 'test':
+        environment['MY_ROBOT_BASICS_SEED'] = seed
+    return environment

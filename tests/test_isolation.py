@@ -1,0 +1,178 @@
+"""Where there is no sandbox: what is said, that nothing runs, and what is told when it must."""
+
+import os
+import shutil
+import subprocess
+from types import SimpleNamespace
+
+import pytest
+from course_maker import TOY, answered, make_course, submit
+
+from grader import isolation as module
+from grader.__main__ import main
+from grader.errors import CourseError
+from grader.feedback import write_feedback
+from grader.isolation import TRUST, TRUSTED, isolated, missing, protections
+from grader.passes import ExecuteRooms
+from grader.release import release
+from grader.scores import write_scores
+
+RIGHT = 'def double(x): return 2 * x'
+BWRAP = module.subprocess.run
+
+
+@pytest.fixture(autouse=True)
+def fresh(monkeypatch):
+    """What was found out about this machine is forgotten, before and after."""
+    monkeypatch.delenv(TRUST, raising=False)
+    protections.cache_clear()
+    yield
+    protections.cache_clear()
+
+
+@pytest.fixture
+def nowhere(monkeypatch):
+    """A machine without bubblewrap."""
+    which = shutil.which
+    monkeypatch.setattr(shutil, 'which', lambda tool: None if tool == 'bwrap' else which(tool))
+
+
+@pytest.fixture(scope='module')
+def course(tmp_path_factory):
+    course = make_course(tmp_path_factory.mktemp('course'))
+    release(course, TOY)
+    return course
+
+
+def refusing(*options, says='Operation not permitted'):
+    """Stand in for subprocess.run where bwrap refuses some of its options."""
+
+    def run(command, **more):
+        if command[0] == 'bwrap' and set(options) & set(command):
+            return SimpleNamespace(returncode=1, stderr=f'bwrap: {says}\n', stdout='')
+        return BWRAP(command, **more)
+
+    return run
+
+
+def test_this_machine_can_isolate():
+    assert missing() == ''
+    assert isolated()
+    assert len(protections()) == 7
+
+
+REFUSALS = {
+    'no user namespaces': ('--unshare-user', 'files and rights of its own'),
+    'no network namespaces': ('--unshare-net', 'a network of its own'),
+    'no fresh /proc': ('--proc', 'processes of its own'),
+    'nested user namespaces': ('--disable-userns', 'no namespaces of a student'),
+}
+
+
+@pytest.mark.parametrize(('option', 'name'), REFUSALS.values(), ids=REFUSALS)
+def test_exactly_what_is_missing_is_said(monkeypatch, option, name):
+    monkeypatch.setattr(module.subprocess, 'run', refusing(option))
+    assert f'Missing: {name}' in missing()
+    assert 'Operation not permitted' in missing()
+    assert sum(bool(protection.problem) for protection in protections()) == 1
+
+
+SETTINGS = {
+    'kernel/apparmor_restrict_unprivileged_userns': ('1', 'userns=0'),
+    'kernel/unprivileged_userns_clone': ('0', 'userns_clone=1'),
+    'user/max_user_namespaces': ('0', 'max_user_namespaces=10000'),
+}
+
+
+@pytest.mark.parametrize(('setting', 'said'), SETTINGS.items(), ids=SETTINGS)
+def test_the_remedy_fits_what_the_system_forbids(monkeypatch, setting, said):
+    value, remedy = said
+    monkeypatch.setattr(module, '_setting', lambda name: value if name == setting else '')
+    monkeypatch.setattr(module.subprocess, 'run', refusing('--unshare-user'))
+    assert f'sudo sysctl -w {setting.replace("/", ".").rpartition(".")[0]}' in missing()
+    assert remedy in missing()
+
+
+@pytest.mark.parametrize(
+    ('what', 'said'),
+    [
+        ('container', '--security-opt seccomp=unconfined'),
+        ('WSL', 'wsl --set-version'),
+        ('', '5.14'),
+    ],
+)
+def test_the_remedy_fits_the_kind_of_machine(monkeypatch, what, said):
+    monkeypatch.setattr(module, '_in_container', lambda: what == 'container')
+    monkeypatch.setattr(module, '_setting', lambda name: '')
+    wsl = '4.4.0-19041-Microsoft' if what == 'WSL' else '6.1.0'
+    monkeypatch.setattr(module.platform, 'release', lambda: wsl)
+    monkeypatch.setattr(module.subprocess, 'run', refusing('--unshare-user'))
+    assert said in missing()
+
+
+def test_an_old_bubblewrap_is_not_enough(monkeypatch):
+    def run(command, **more):
+        return SimpleNamespace(returncode=0, stdout='bubblewrap 0.6.1\n', stderr='')
+
+    monkeypatch.setattr(module.subprocess, 'run', run)
+    assert 'bubblewrap 0.8 or newer: this one is bubblewrap 0.6.1' in missing()
+
+
+def test_a_sandbox_that_fails_as_a_whole_is_missing(monkeypatch):
+    monkeypatch.setattr('grader.sandbox._HOLD', 'echo no mounts >&2; exit 1')
+    assert 'all of it together' in missing()
+    assert 'no mounts' in missing()
+
+
+def test_nothing_runs_where_there_is_no_sandbox(course, nowhere, capsys):
+    submit(course, 'ada', answered(course, "open('/tmp/it_ran', 'w')"))
+    assert main(['grade'], course=course) == 1
+    said = capsys.readouterr().err
+    assert 'sudo apt install bubblewrap' in said
+    assert '--trust-students' in said
+    assert main(['doctor'], course=course) == 1
+    told = capsys.readouterr().out
+    assert missing()[1:] in told  # the same text
+    assert missing() in said
+    assert not os.path.exists('/tmp/it_ran')
+    with pytest.raises(CourseError, match='nothing was run'):
+        isolated()
+
+
+def test_trust_is_told_to_whoever_reads_the_grade(course, nowhere, capsys):
+    submit(course, 'ada', answered(course, RIGHT))
+    assert main(['grade', '--trust-students', '--student', 'ada'], course=course) == 0
+    (page,) = write_feedback(course)
+    assert TRUSTED in page.read_text(encoding='utf-8')
+    rows = write_scores(course).read_text(encoding='utf-8').splitlines()
+    graded = [row for row in rows if row.startswith('ada') and ',double-' in row]
+    assert graded
+    assert all(TRUSTED in row for row in graded)
+
+
+def test_trust_changes_nothing_where_there_is_a_sandbox(course):
+    assert isolated(trust_students=True)
+    submit(course, 'bob', answered(course, RIGHT))
+    assert main(['grade', '--trust-students', '--student', 'bob'], course=course) == 0
+    rows = write_scores(course).read_text(encoding='utf-8').splitlines()
+    assert not [row for row in rows if row.startswith('bob') and TRUSTED in row]
+
+
+def test_nbgraders_own_commands_can_be_told_to_trust(nowhere, monkeypatch):
+    assert not ExecuteRooms().trust_students
+    assert not isolated(trust_students=True)
+    monkeypatch.setenv(TRUST, '1')
+    assert not isolated()
+    monkeypatch.setenv(TRUST, '')
+    with pytest.raises(CourseError):
+        isolated()
+
+
+def test_it_can_be_asked_inside_a_running_event_loop():
+    import asyncio
+
+    async def formgrader():
+        return isolated()
+
+    assert asyncio.run(formgrader())
+    assert subprocess.run is BWRAP

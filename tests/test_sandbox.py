@@ -1,0 +1,444 @@
+"""What student code finds in its room, what it can't reach from there, and what outlives it."""
+
+import asyncio
+import contextlib
+import os
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import psutil
+import pytest
+
+from grader import sandbox as module
+from grader.course import ROOT
+from grader.errors import RoomFailure
+from grader.limits import ROOM_DISK_BYTES, ROOM_FILES
+from grader.sandbox import FIRST_USER, Sandbox, slot_user
+from grader.seccomp import FORBIDDEN
+
+SLOTS = iter(range(200, 300))
+"""None that a claimed ROS domain gives."""
+
+
+@pytest.fixture(scope='module')
+def loop():
+    with asyncio.Runner() as runner:
+        yield runner
+
+
+@pytest.fixture
+def sandbox(loop):
+    """A sandbox of one test's own."""
+    sandbox = Sandbox(slot=next(SLOTS))
+    loop.run(sandbox.open())
+    yield sandbox
+    loop.run(sandbox.close())
+
+
+@pytest.fixture(scope='module')
+def shared(loop):
+    sandbox = Sandbox(slot=next(SLOTS))
+    loop.run(sandbox.open())
+    yield sandbox
+    loop.run(sandbox.close())
+
+
+def begin(sandbox, code, *, room='student'):
+    """Start Python in a room, told what a kernel there is told."""
+    place = sandbox.place(room)
+    return subprocess.Popen(
+        [*place.prefix, sys.executable, '-c', code],
+        env=place.environment | {'LD_LIBRARY_PATH': os.environ.get('LD_LIBRARY_PATH', '')},
+        pass_fds=place.pass_fds,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+
+
+def run(sandbox, code, *, room='student'):
+    """Return what Python printed in a room."""
+    return begin(sandbox, code, room=room).communicate(timeout=120)[0].strip()
+
+
+WALK = """
+import os
+for folder, folders, files in os.walk('/'):
+    folders[:] = [f for f in folders if os.path.join(folder, f) not in SKIPPED]
+    for name in files + folders:
+        path = os.path.join(folder, name)
+        print(WHAT)
+"""
+
+
+@pytest.mark.parametrize('room', ['student', 'test'])
+def test_the_course_and_the_machines_own_are_not_there(shared, tmp_path, room):
+    (tmp_path / 'canary.txt').write_text('x')
+    code = WALK.replace('SKIPPED', "('/proc', '/usr', '/dev')").replace('WHAT', 'path')
+    seen = run(shared, code, room=room).splitlines()
+    below = {p.removeprefix(f'{ROOT}/').split('/')[0] for p in seen if p.startswith(f'{ROOT}/')}
+    assert below == {'.venv', 'my_robot_basics'}
+    names = {Path(path).name for path in seen if not path.startswith(sys.prefix)}
+    assert not names & {'canary.txt', 'gradebook.db', 'course_secret'}
+    assert '/etc/shadow' not in seen
+    tops = {path.split('/')[1] for path in seen}
+    assert tops <= {
+        *('bin', 'sbin', 'lib', 'lib32', 'lib64', 'libx32', 'usr', 'etc', 'proc', 'dev'),
+        *('tmp', 'room', ROOT.parts[1], Path(sys.base_prefix).parts[1]),
+    }
+
+
+def test_only_a_small_disk_can_be_written_to(shared):
+    what = "path if not os.path.islink(path) and os.access(path, os.W_OK) else ''"
+    code = WALK.replace('SKIPPED', "('/proc',)").replace('WHAT', what)
+    devices = ('/dev/null', '/dev/zero', '/dev/full', '/dev/random', '/dev/urandom', '/dev/tty')
+    devices += ('/dev/pts', '/dev/ptmx')
+    writable = {p for p in run(shared, code).splitlines() if p and not p.startswith(devices)}
+    roots = ('/tmp', '/dev/shm', '/room/home', '/room/kernel')
+    assert {path for path in writable if not path.startswith(roots)} == set()
+    assert set(roots) <= writable
+
+
+STATUS = """
+import os
+for line in open('/proc/self/status'):
+    print(line.strip())
+print('ids:', os.getuid(), os.getgid())
+print('processes:', [p for p in os.listdir('/proc') if p.isdigit()])
+for kind in ('user', 'mnt', 'net', 'pid', 'ipc', 'uts'):
+    print(kind + ':', os.readlink(f'/proc/self/ns/{kind}'))
+print('network:', [line.split(':')[0].strip() for line in open('/proc/net/dev')][2:])
+"""
+
+
+def status(sandbox, room='student'):
+    lines = run(sandbox, STATUS, room=room).splitlines()
+    return {k: v.strip() for k, _, v in (line.partition(':') for line in lines)}
+
+
+def test_a_room_has_no_rights(shared):
+    seen = status(shared)
+    assert {seen[f'Cap{kind}'] for kind in ('Inh', 'Prm', 'Eff', 'Bnd', 'Amb')} == {'0' * 16}
+    assert (seen['NoNewPrivs'], seen['Seccomp']) == ('1', '2')
+    assert seen['ids'] == '1000 1000'
+
+
+def test_a_room_has_namespaces_of_its_own_and_shares_only_the_network(loop, shared, sandbox):
+    student, test, next_door = status(shared), status(shared, 'test'), status(sandbox)
+    kinds = ('user', 'mnt', 'net', 'pid', 'ipc', 'uts')
+    assert [k for k in kinds if student[k] == test[k]] == ['net']
+    for kind in kinds:
+        assert student[kind] != os.readlink(f'/proc/self/ns/{kind}')
+        assert student[kind] != next_door[kind]
+    assert student['network'] == "['lo']"
+    assert student['processes'] == "['1', '2']"
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason='an ordinary user cannot become another one')
+def test_root_gives_each_slot_a_user_of_its_own(loop):
+    users = []
+    for slot in (301, 302):
+        sandbox = Sandbox(slot=slot)
+        loop.run(sandbox.open())
+        try:
+            sleeping = begin(sandbox, "import time; print('.', flush=True); time.sleep(1000)")
+            assert sleeping.stdout.read(1) == '.'
+            (users_of,) = [
+                process.uids()
+                for process in psutil.Process(sleeping.pid).children(recursive=True)
+                if process.name().startswith('python')
+            ]
+            users.append(set(users_of))
+        finally:
+            loop.run(sandbox.close())
+        sleeping.wait(30)
+    assert users == [{slot_user(301)}, {slot_user(302)}]
+
+
+RANGES = {
+    '0 0 4294967295': FIRST_USER + 7,
+    '0 100000 65536': 65_528,
+    '0 1000 1': None,
+    '0 1000 1\n1 100000 65536': 65_529,
+}
+
+
+@pytest.mark.parametrize(('mapped', 'user'), RANGES.items())
+def test_a_slots_user_is_one_that_the_container_has(monkeypatch, mapped, user):
+    monkeypatch.setattr(module.Path, 'read_text', lambda self: mapped)
+    monkeypatch.setattr(os, 'geteuid', lambda: 0)
+    assert slot_user(7) == user
+    monkeypatch.setattr(os, 'geteuid', lambda: 1000)
+    assert slot_user(7) is None
+
+
+REACH = """
+import socket
+def reach(family, address):
+    try:
+        with socket.socket(family, socket.SOCK_STREAM) as s:
+            s.settimeout(3)
+            s.connect(address)
+        return 'reached'
+    except OSError as error:
+        return type(error).__name__
+print(reach(socket.AF_INET, ('127.0.0.1', PORT)), reach(socket.AF_INET, ('192.0.2.1', 80)),
+      reach(socket.AF_UNIX, ABSTRACT), end=' ')
+try:
+    print(socket.getaddrinfo('example.org', 80))
+except OSError as error:
+    print(type(error).__name__)
+"""
+
+
+def test_nothing_outside_is_reached_by_network(shared):
+    abstract = f'\0a-socket-of-the-machine-{os.getpid()}'
+    with (
+        socket.create_server(('127.0.0.1', 0)) as server,
+        socket.socket(socket.AF_UNIX) as local,
+    ):
+        local.bind(abstract)
+        local.listen()
+        code = REACH.replace('PORT', str(server.getsockname()[1]))
+        code = code.replace('ABSTRACT', repr(abstract))
+        assert (
+            run(shared, code) == 'ConnectionRefusedError OSError ConnectionRefusedError gaierror'
+        )
+        outside = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True)
+        words = outside.stdout.split()
+        assert (words[0], words[2]) == ('reached', 'reached')  # so it can be seen
+
+
+CALLS = f"""
+import ctypes, errno
+call = ctypes.CDLL(None, use_errno=True).syscall
+for name, number in {FORBIDDEN!r}.items():
+    call(number, *[ctypes.c_long(-1)] * 5)
+    if ctypes.get_errno() != errno.EPERM:
+        print(name, errno.errorcode[ctypes.get_errno()])
+import socket
+for family in range(1, 46):
+    try:
+        socket.socket(family, socket.SOCK_DGRAM).close()
+        print('family', family)
+    except PermissionError:
+        pass
+    except OSError as error:
+        print('family', family, error)
+"""
+
+
+def test_system_calls_that_nobody_needs_are_refused(shared):
+    said = run(shared, CALLS).splitlines()
+    assert [line for line in said if 'family' not in line] == []
+    # IPv6 may be missing; netlink takes no datagrams of an unknown protocol
+    assert {line.split()[1] for line in said} <= {'1', '2', '10', '16'}
+    assert {'family 1', 'family 2'} <= set(said)
+
+
+BOMBS = {
+    'processes': (
+        'import os\nn = 0\ntry:\n  while True:\n    if os.fork() == 0:\n'
+        '      import time; time.sleep(1000)\n    n += 1\n'
+        'except BlockingIOError:\n  print(n < 256)',
+        'True',
+    ),
+    'memory': ("try: bytearray(4 * 2**30)\nexcept MemoryError: print('no')", 'no'),
+    'the disk': (
+        "import os\ntry:\n  for i in range(1000):\n    for folder in ('/tmp', '/room/home', "
+        "'/dev/shm', '/room/kernel'):\n      open(f'{folder}/{i}', 'wb').write(bytes(10**6))\n"
+        'except OSError as e: print(e.strerror, i * 4)',
+        f'No space left on device {ROOM_DISK_BYTES // 10**6 // 4 * 4}',
+    ),
+    'files': (
+        "try:\n  for i in range(20_000): open(f'/tmp/{i}', 'w').close()\n"
+        f'except OSError as e: print(e.strerror, i < {ROOM_FILES})',
+        'No space left on device True',
+    ),
+    'a huge file': (
+        'import signal; signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n'
+        "try: open('/tmp/x', 'wb').truncate(10**10)\nexcept OSError as e: print(e.strerror)",
+        'File too large',
+    ),
+    'descriptors': (
+        "kept = []\ntry:\n  while True: kept.append(open('/dev/null'))\n"
+        'except OSError as e: print(e.strerror)',
+        'Too many open files',
+    ),
+    'locked memory': (
+        'import ctypes; print(ctypes.CDLL(None).mlockall(3))',
+        '-1',
+    ),
+    'an easy life when memory runs out': (
+        "print(open('/proc/self/oom_score_adj').read())",
+        '1000',
+    ),
+}
+
+
+@pytest.mark.parametrize(('code', 'said'), BOMBS.values(), ids=BOMBS)
+def test_a_room_can_use_up_only_its_share(sandbox, code, said):
+    assert run(sandbox, code) == said
+    # the other room has all of its own
+    fine = "open('/tmp/x', 'wb').write(bytes(30 * 10**6)); import os; os.fork() or print('fine')"
+    assert run(sandbox, fine, room='test') == 'fine'
+
+
+LINGER = """
+import os, subprocess, sys, time
+for _ in range(2):
+    if os.fork():
+        break
+    os.setsid()
+subprocess.Popen(['sleep', '4242'], start_new_session=True)
+print('.', flush=True)
+time.sleep(1000)
+"""
+
+
+def inhabitants(network):
+    found = []
+    for pid in psutil.pids():
+        with contextlib.suppress(OSError):
+            if os.readlink(f'/proc/{pid}/ns/net') == network:
+                found.append(pid)
+    return found
+
+
+@pytest.mark.parametrize('code', [LINGER, LINGER.replace('time.sleep(1000)', 'os._exit(0)')])
+def test_nothing_outlives_the_sandbox(loop, code):
+    sandbox = Sandbox(slot=next(SLOTS))
+    loop.run(sandbox.open())
+    network = os.readlink(f'/proc/{sandbox._pid}/ns/net')
+    room = begin(sandbox, code)
+    room.stdout.read(1)
+    assert len(inhabitants(network)) >= 1
+    loop.run(sandbox.close())
+    assert inhabitants(network) == []
+    room.wait(30)
+
+
+GRADER = f"""
+import asyncio, subprocess, sys, time
+from grader.sandbox import Sandbox
+async def main():
+    sandbox = Sandbox(slot=303)
+    await sandbox.open()
+    place = sandbox.place('student')
+    code = "import subprocess, time; subprocess.Popen(['sleep', '1000'], start_new_session=True); "
+    code += "print(flush=True); time.sleep(1000)"
+    room = subprocess.Popen([*place.prefix, {sys.executable!r}, '-c', code], text=True,
+        env=place.environment, pass_fds=place.pass_fds, stdout=subprocess.PIPE)
+    room.stdout.readline()
+    print(sandbox._pid, flush=True)
+    time.sleep(1000)
+asyncio.run(main())
+"""
+
+
+def test_nothing_outlives_a_grader_that_is_killed():
+    grader = subprocess.Popen(
+        [sys.executable, '-c', GRADER], stdout=subprocess.PIPE, text=True, cwd=ROOT
+    )
+    network = os.readlink(f'/proc/{int(grader.stdout.readline())}/ns/net')
+    assert len(inhabitants(network)) > 4
+    grader.send_signal(signal.SIGKILL)
+    grader.wait()
+    deadline = time.monotonic() + 60
+    while inhabitants(network) and time.monotonic() < deadline:
+        time.sleep(0.02)
+    assert inhabitants(network) == []
+
+
+def test_a_kill_in_the_room_kills_only_the_room(shared):
+    kill = 'import os\nos.fork()\nos.kill(-1, 9)\nos.kill(1, 9)\nos.kill(os.getpid(), 9)'
+    witness = begin(shared, "print('.', flush=True); input()", room='test')
+    assert witness.stdout.read(1) == '.'
+    assert run(shared, kill) == ''
+    assert begin(shared, 'print(1)').wait(60) == 0
+    witness.communicate(timeout=60)
+
+
+def test_a_terminal_is_out_of_reach(shared):
+    assert 'No such device or address' in run(shared, "open('/dev/tty')")
+
+
+def test_a_sandbox_that_can_not_be_made_is_the_graders_failure(loop, monkeypatch):
+    monkeypatch.setattr(module, '_HOLD', 'echo nothing works >&2; exit 1')
+    sandbox = Sandbox(slot=next(SLOTS))
+    with pytest.raises(RoomFailure, match='the sandbox could not be made: nothing works'):
+        loop.run(sandbox.open())
+    loop.run(sandbox.close())
+    assert not any(folder.exists() for folder in sandbox._folders.values())
+
+
+def test_a_closed_sandbox_leaves_no_file_and_no_descriptor(loop):
+    before = None
+    for _ in range(2):
+        sandbox = Sandbox(slot=next(SLOTS))
+        loop.run(sandbox.open())
+        assert run(sandbox, 'print(1)') == '1'
+        loop.run(sandbox.close())
+        loop.run(sandbox.close())  # twice does no harm
+        assert not any(folder.exists() for folder in sandbox._folders.values())
+        descriptors = len(os.listdir('/proc/self/fd'))
+        before = before or descriptors
+    assert descriptors <= before
+
+
+ORDINARY = 65_534
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason='we are an ordinary user')
+def test_an_ordinary_user_has_the_same_sandbox(tmp_path_factory):
+    home = tmp_path_factory.mktemp('home')
+    home.chmod(0o777)
+    code = f"""
+import asyncio, sys
+sys.path.insert(0, {str(ROOT)!r})
+from grader.rooms import Rooms
+async def main():
+    async with Rooms() as rooms:
+        run = await rooms.run_student_cell('import os; print(os.getuid()); x = 7', timeout_sec=60)
+        print(run.outputs[0].text.strip())
+        run = await rooms.run_check(
+            'from my_robot_basics.checks import student; print(student.value("x"))')
+        print(run.outputs[0].text.strip())
+asyncio.run(main())
+"""
+    reachable = ['--tmpfs', f'/{ROOT.parts[1]}', '--tmpfs', f'/{Path(sys.base_prefix).parts[1]}']
+    for path in dict.fromkeys([str(ROOT), sys.prefix, sys.base_prefix]):
+        reachable += ['--dir', path, '--ro-bind', path, path]
+    done = subprocess.run(
+        [
+            *('bwrap', '--dev-bind', '/', '/', *reachable),
+            *('--cap-add', 'CAP_SETUID', '--cap-add', 'CAP_SETGID', '--'),
+            *('setpriv', f'--reuid={ORDINARY}', f'--regid={ORDINARY}', '--clear-groups'),
+            *(sys.executable, '-c', code),
+        ],
+        env={'PATH': os.environ['PATH'], 'HOME': str(home)},
+        capture_output=True,
+        text=True,
+        cwd='/',
+    )
+    assert done.stdout.split() == ['1000', '7'], done.stderr
+
+
+def test_many_sandboxes_open_and_close_side_by_side(loop):
+    async def once():
+        sandbox = Sandbox(slot=next(SLOTS))
+        await sandbox.open()
+        await sandbox.close()
+
+    async def all_at_once():
+        await asyncio.gather(*(once() for _ in range(8)))
+
+    threads = threading.active_count()
+    loop.run(all_at_once())
+    assert threading.active_count() <= threads + 1
