@@ -177,6 +177,8 @@ def test_cells_of_an_exercise_stand_in_order(lesson, path):
         start = ids.index(order[0])
         assert ids[start : start + len(order)] == order
         assert lesson.cells[start - 1].cell_type == 'markdown'
+        unmarked = [c.id for c in lesson.cells[start : start + len(order)] if not marks(c)]
+        assert unmarked == [f'{exercise}-try'] * (exercise not in BY_HAND)
 
 
 def test_only_answers_are_open_and_only_grade_cells_have_points(lesson, path):
