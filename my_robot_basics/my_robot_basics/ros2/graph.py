@@ -13,7 +13,7 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from my_robot_basics.ros2 import discovery, environment, stopping
+from my_robot_basics.ros2 import discovery, environment, lookup, stopping
 from my_robot_basics.ros2.errors import CommandError
 
 if TYPE_CHECKING:
@@ -134,7 +134,7 @@ class Graph:
 
     def publishers_of(self, topic_name: str) -> list[Any]:
         """The TopicEndpointInfo of each publisher; raises CommandError for an impossible name."""
-        return self.node.get_publishers_info_by_topic(self._expanded(topic_name))
+        return self.node.get_publishers_info_by_topic(lookup.full_name(self.node, topic_name))
 
     def subscribe(
         self,
@@ -146,20 +146,26 @@ class Graph:
     ) -> None:
         """Make a subscription; raises CommandError for an impossible name."""
         self.node.create_subscription(
-            message_class, self._expanded(topic_name), callback, qos_profile, **options
+            message_class,
+            lookup.full_name(self.node, topic_name),
+            callback,
+            qos_profile,
+            **options,
         )
 
     def advertise(self, message_class: Any, topic_name: str, qos_profile: Any) -> Any:
         """Make a publisher; raises CommandError for an impossible name."""
-        return self.node.create_publisher(message_class, self._expanded(topic_name), qos_profile)
+        return self.node.create_publisher(
+            message_class, lookup.full_name(self.node, topic_name), qos_profile
+        )
 
     def topics(self, *, include_hidden: bool = False) -> list[tuple[str, list[str]]]:
         """Topic names and their types, sorted by name."""
-        return _visible(self.node.get_topic_names_and_types(), include_hidden)
+        return lookup.visible(self.node.get_topic_names_and_types(), include_hidden)
 
     def services(self, *, include_hidden: bool = False) -> list[tuple[str, list[str]]]:
         """Service names and their types, sorted by name."""
-        return _visible(self.node.get_service_names_and_types(), include_hidden)
+        return lookup.visible(self.node.get_service_names_and_types(), include_hidden)
 
     def nodes(self, *, include_hidden: bool = False) -> list[NodeName]:
         """The nodes; two nodes of one name are in it twice."""
@@ -185,57 +191,10 @@ class Graph:
         With `wait` it warns and waits until somebody has. Raises CommandError for a topic name
         that can't be one, and for a topic of two types.
         """
-        full_name = self._expanded(topic_name)
-        if (found := self._message_class(topic_name, full_name)) is None:
+        full_name = lookup.full_name(self.node, topic_name)
+        if (found := lookup.message_class(self.node, topic_name)) is None:
             print(f'WARNING: topic [{topic_name}] does not appear to be published yet')
             if wait:
-                self.wait_until(lambda: self._types(full_name) != [])
-                found = self._message_class(topic_name, full_name)
+                self.wait_until(lambda: lookup.types(self.node, full_name) != [])
+                found = lookup.message_class(self.node, topic_name)
         return found
-
-    def _expanded(self, topic_name: str) -> str:
-        from rclpy.exceptions import InvalidTopicNameException
-        from rclpy.expand_topic_name import expand_topic_name
-        from rclpy.validate_full_topic_name import validate_full_topic_name
-        from rclpy.validate_topic_name import validate_topic_name
-
-        try:
-            validate_topic_name(topic_name)  # it says what is wrong, expansion does not
-            full_name = expand_topic_name(
-                topic_name, self.node.get_name(), self.node.get_namespace()
-            )
-            validate_full_topic_name(full_name)
-        except (ValueError, InvalidTopicNameException) as error:
-            raise CommandError(str(error)) from None
-        return full_name
-
-    def _types(self, full_name: str) -> list[str]:
-        return dict(self.node.get_topic_names_and_types()).get(full_name, [])
-
-    def _message_class(self, topic_name: str, full_name: str) -> Any:
-        from my_robot_basics.ros2.interfaces import message_class
-
-        types = self._types(full_name)
-        if len(types) > 1:
-            raise CommandError(
-                f"Cannot echo topic '{topic_name}', as it contains more than one type: "
-                f'[{", ".join(types)}]'
-            )
-        if not types:
-            return None
-        found = message_class(types[0])
-        if found is None:
-            raise CommandError(f"The message type '{types[0]}' is invalid")
-        return found
-
-
-def _visible(
-    names_and_types: list[tuple[str, list[str]]], include_hidden: bool
-) -> list[tuple[str, list[str]]]:
-    from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
-
-    return [
-        (name, types)
-        for name, types in names_and_types
-        if include_hidden or not topic_or_service_is_hidden(name)
-    ]

@@ -1,0 +1,63 @@
+"""Names and types on the graph that a node sees."""
+
+from typing import TYPE_CHECKING, Any
+
+from my_robot_basics.ros2.errors import CommandError
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
+
+def full_name(node: 'Node', topic_name: str) -> str:
+    """The topic's name with its namespace; raises CommandError for an impossible one."""
+    from rclpy.exceptions import InvalidTopicNameException
+    from rclpy.expand_topic_name import expand_topic_name
+    from rclpy.validate_full_topic_name import validate_full_topic_name
+    from rclpy.validate_topic_name import validate_topic_name
+
+    try:
+        validate_topic_name(topic_name)  # it says what is wrong, expansion does not
+        name = expand_topic_name(topic_name, node.get_name(), node.get_namespace())
+        validate_full_topic_name(name)
+    except (ValueError, InvalidTopicNameException) as error:
+        raise CommandError(str(error)) from None
+    return name
+
+
+def types(node: 'Node', full_name: str) -> list[str]:
+    """The types that a topic has now."""
+    return dict(node.get_topic_names_and_types()).get(full_name, [])
+
+
+def message_class(node: 'Node', topic_name: str) -> Any:
+    """The message class of a topic, or None while nobody has it.
+
+    Raises CommandError for a topic of two types, and for a type that is not installed.
+    """
+    from my_robot_basics.ros2 import interfaces
+
+    found = types(node, full_name(node, topic_name))
+    if len(found) > 1:
+        raise CommandError(
+            f"Cannot echo topic '{topic_name}', as it contains more than one type: "
+            f'[{", ".join(found)}]'
+        )
+    if not found:
+        return None
+    class_ = interfaces.message_class(found[0])
+    if class_ is None:
+        raise CommandError(f"The message type '{found[0]}' is invalid")
+    return class_
+
+
+def visible(
+    names_and_types: list[tuple[str, list[str]]], include_hidden: bool
+) -> list[tuple[str, list[str]]]:
+    """Topics or services without the hidden ones, unless these are wanted, too."""
+    from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
+
+    return [
+        (name, types)
+        for name, types in names_and_types
+        if include_hidden or not topic_or_service_is_hidden(name)
+    ]
