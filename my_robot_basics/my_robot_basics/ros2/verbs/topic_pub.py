@@ -9,6 +9,8 @@ from my_robot_basics.ros2.errors import CommandError
 from my_robot_basics.ros2.graph import Graph
 
 REPORT_SEC = 1.0
+TAKEN_SEC = 2.0
+"""How long subscriptions may take to acknowledge the last message; most need a millisecond."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -100,6 +102,8 @@ def main(args: argparse.Namespace) -> None:
         raise CommandError(f'Failed to populate field: {error}') from None
 
     with Graph(args, node_name=args.node_name) as graph:
+        from rclpy.duration import Duration
+
         publisher = graph.advertise(type(message), args.topic_name, qos.profile(args))
         if wanted == 0:
             graph.settle()  # whoever is there already gets the first message, too
@@ -121,7 +125,8 @@ def main(args: argparse.Namespace) -> None:
         if times != 1:
             graph.node.create_timer(1.0 / args.rate, publish)
             graph.spin_until(lambda: 0 < times <= count)
-        # the last message has to reach the wire
+        # whoever we have met may not have met us yet, and what was not taken would go with us
+        graph.wait_until(lambda: publisher.wait_for_all_acked(Duration()), timeout_sec=TAKEN_SEC)
         graph.sleep(args.keep_alive)
 
 
