@@ -7,6 +7,7 @@ from pathlib import Path
 
 import nbformat
 import pytest
+from my_robot_basics.live.workspace import BUILD
 from nbclient import NotebookClient
 from nbformat.v4 import new_code_cell, new_notebook
 
@@ -73,6 +74,13 @@ def test_what_lies_where_is_there():
     named = re.findall(r'`([^`]+)`', ' '.join(re.findall(r'^\| (`.+?) \|', rows, re.MULTILINE)))
     assert len(named) > 5
     assert [name for name in named if not (ROOT / name).exists()] == []
+
+
+def test_the_lines_for_a_terminal_are_those_that_the_workspace_prints():
+    (block,) = re.findall(r'^```sh\n(cd .*?)^```', README, re.MULTILINE | re.DOTALL)
+    *lines, run = block.splitlines()
+    assert ' && '.join(lines) == BUILD
+    assert run == 'ros2 run my_robot_basics kinematics_publisher'
 
 
 def run_cells(*sources, allow_errors=False):

@@ -1,11 +1,12 @@
 """What the shell offers after Tab."""
 
+import os
 import subprocess
 import sys
 
 import pexpect
 import pytest
-from ros2_command import SCRIPT, on_the_graph, own_domain, ros2
+from ros2_command import PATIENCE_SEC, SCRIPT, on_the_graph, own_domain, ros2
 
 
 @pytest.fixture(scope='module')
@@ -41,6 +42,18 @@ def test_completes(line, expected, tmp_path):
     asked = {'_ARGCOMPLETE': '1', 'COMP_LINE': line, 'COMP_POINT': str(len(line)), 'IFS': '\v'}
     ros2(**asked, _ARGCOMPLETE_STDOUT_FILENAME=str(answer))
     assert sorted(word.strip() for word in answer.read_text().split('\v')) == expected
+
+
+@pytest.mark.usefixtures('system')
+def test_the_doctor_completes_topics_too(tmp_path):
+    line, answer = 'topic_doctor /kin', tmp_path / 'answer'
+    asked = {'_ARGCOMPLETE': '1', 'COMP_LINE': line, 'COMP_POINT': str(len(line)), 'IFS': '\v'}
+    subprocess.run(
+        [SCRIPT.with_name('topic_doctor')],
+        env={**os.environ, **asked, '_ARGCOMPLETE_STDOUT_FILENAME': str(answer)},
+        timeout=PATIENCE_SEC,
+    )
+    assert answer.read_text().strip() == '/kinematics/joint_states'
 
 
 def test_argcomplete_finds_its_marker_by_way_of_the_script():

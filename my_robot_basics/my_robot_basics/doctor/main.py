@@ -1,10 +1,11 @@
 """The console script `topic_doctor`."""
 
 import argparse
+import os
 import sys
 
 from my_robot_basics.doctor.names import full_topic_name
-from my_robot_basics.ros2 import environment
+from my_robot_basics.ros2 import completion, environment
 from my_robot_basics.ros2.errors import CommandError
 
 WELL, FAULT, USAGE, INTERRUPTED = 0, 1, 2, 130
@@ -17,7 +18,9 @@ def main(argv: list[str] | None = None) -> int:
         description='Says why no messages arrive on a topic, and what to do about it.',
         epilog='Exit status: 0 when all is well, 1 when a fault was named, 2 on wrong usage.',
     )
-    parser.add_argument('topic_name', help='for example /kinematics/joint_states')
+    parser.add_argument(
+        'topic_name', help='for example /kinematics/joint_states'
+    ).completer = completion.topic_names
     parser.add_argument(
         '--domains',
         action='store_true',
@@ -29,6 +32,11 @@ def main(argv: list[str] | None = None) -> int:
         default=6.0,
         help='how long to wait for messages at most (default: %(default)s)',
     )
+    if '_ARGCOMPLETE' in os.environ:
+        from argcomplete import autocomplete
+
+        environment.enter()
+        autocomplete(parser, exclude=['-h', '--help'])
     args = parser.parse_args(argv)
     environment.enter()
     try:

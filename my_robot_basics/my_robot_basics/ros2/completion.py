@@ -11,7 +11,7 @@ def topic_names(parsed_args: argparse.Namespace, **_: object) -> list[str]:
     """Topics."""
     with Graph(parsed_args) as graph:
         graph.settle()
-        include_hidden = parsed_args.include_hidden_topics
+        include_hidden = getattr(parsed_args, 'include_hidden_topics', False)
         return [name for name, _ in graph.topics(include_hidden=include_hidden)]
 
 
