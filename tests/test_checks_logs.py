@@ -69,6 +69,13 @@ def test_a_node_that_does_not_run_is_named(monkeypatch):
         rosout('ik_solver_node').__enter__()
 
 
+def test_a_best_effort_subscription_misses_no_target():
+    with running('ik_sensor_data'), rosout('ik_solver_node') as log:
+        for _ in range(5):
+            ask(log, TARGET)
+            log.expect_angles(ANGLES)
+
+
 def test_angles_for_a_target_out_of_reach_are_a_failure():
     with running('ik_stretches'), rosout('ik_solver_node') as log:
         ask(log, TOO_FAR)
