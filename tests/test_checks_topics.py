@@ -211,6 +211,23 @@ def test_the_wrong_answer_is_no_answer(run):
         )
 
 
+def test_a_question_to_a_subscription_for_another_type_says_so(run):
+    run(Echo, 10)
+    with pytest.raises(CheckFailed) as failed:
+        topic('/question').publish(JointState(), timeout_sec=0.5)
+    assert 'a subscription on /question for JointState, saw none' in str(failed.value)
+    assert 'one is there for geometry_msgs/msg/Point' in str(failed.value)
+
+
+def test_a_best_effort_subscription_gets_the_question(run):
+    run(Echo, QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT))
+    for number in range(5):
+        topic('/answer').wait_for(
+            lambda message, x=float(number): message.position[0] == x,
+            after=lambda x=float(number): topic('/question').publish(Point(x=x)),
+        )
+
+
 def test_the_wrong_answer_is_named_in_the_words_of_the_check(run):
     run(Echo, 10)
     with pytest.raises(CheckFailed) as failed:

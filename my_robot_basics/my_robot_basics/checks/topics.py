@@ -14,6 +14,8 @@ from my_robot_basics.checks.watcher import Watcher
 PUBLISHER_SEC = 10.0
 ABSENT_SEC = 3.0
 """How long to wait for an endpoint that the notebook's own process says it has not got."""
+ACQUAINTANCE_SEC = 0.5
+"""How long a BEST_EFFORT subscription is given to meet the publisher, and to read what it sent."""
 DEPTH = 5000
 """Queue of a recording: more messages than any look can bring (KEEP_LAST overwrites)."""
 
@@ -65,14 +67,17 @@ class Topic:
             if not watcher.spin_until(
                 lambda: publisher.get_subscription_count() > 0, timeout_sec=timeout_sec
             ):
-                fail(
-                    expected=f'a subscription on {self.name}',
-                    seen=f'none in {timeout_sec:g} s',
-                    hint=graphs.take(watcher).why_unheard(self.name),
-                )
+                self._fail_unheard(watcher, type(messages[0]), timeout_sec=timeout_sec)
+            infos = graphs.subscription_infos(watcher.node, self.name)
+            sent_once = any(
+                info.qos_profile.reliability == ReliabilityPolicy.BEST_EFFORT for info in infos
+            )
+            # such a subscription may not know yet of a publisher that knows of it
+            watcher.spin_for(ACQUAINTANCE_SEC if sent_once else 0.0)
             for message in messages:
                 publisher.publish(message)
             publisher.wait_for_all_acked(Duration(seconds=2))
+            watcher.spin_for(ACQUAINTANCE_SEC if sent_once else 0.0)
 
     def wait_for(
         self,
@@ -163,3 +168,10 @@ class Topic:
             self._message_type(watcher)
         hint = graphs.take(watcher).why_silent(self.name)
         fail(expected=f'messages on {self.name}', seen=seen, hint=hint)
+
+    def _fail_unheard(self, watcher: Watcher, type_: type, *, timeout_sec: float) -> None:
+        hint = graphs.take(watcher).why_unheard(self.name)
+        if infos := graphs.subscription_infos(watcher.node, self.name):
+            hint = f'one is there for {infos[0].topic_type}, so compare the message type'
+        seen = f'none in {timeout_sec:g} s'
+        fail(expected=f'a subscription on {self.name} for {type_.__name__}', seen=seen, hint=hint)
