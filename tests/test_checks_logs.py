@@ -76,6 +76,14 @@ def test_a_best_effort_subscription_misses_no_target():
             log.expect_angles(ANGLES)
 
 
+def test_a_second_warning_is_no_answer_to_the_next_target():
+    with running('ik_warns_twice'), rosout('ik_solver_node') as log:
+        ask(log, TOO_FAR)
+        log.expect_warning()
+        ask(log, TARGET)
+        log.expect_angles(ANGLES)
+
+
 def test_angles_for_a_target_out_of_reach_are_a_failure():
     with running('ik_stretches'), rosout('ik_solver_node') as log:
         ask(log, TOO_FAR)
