@@ -83,7 +83,9 @@ def test_the_course_and_the_machines_own_are_not_there(shared, tmp_path, room):
     code = WALK.replace('SKIPPED', "('/proc', '/usr', '/dev')").replace('WHAT', 'path')
     seen = run(shared, code, room=room).splitlines()
     below = {p.removeprefix(f'{ROOT}/').split('/')[0] for p in seen if p.startswith(f'{ROOT}/')}
-    assert below == {'.venv', 'my_robot_basics'}
+    assert below == {'.venv', 'my_robot_basics', 'grader'}
+    ours = {p for p in seen if p.startswith(f'{ROOT}/grader/')}
+    assert ours == {f'{ROOT}/grader/commands.py'}  # what `ros2` starts from
     names = {Path(path).name for path in seen if not path.startswith(sys.prefix)}
     assert not names & {'canary.txt', 'gradebook.db', 'course_secret'}
     assert '/etc/shadow' not in seen
