@@ -11,7 +11,7 @@ class IKWarnsTwice(IKSolver):
     def solve(self, point: Point):
         super().solve(point)
         if abs(point.x) > 2.0:
-            time.sleep(0.05)
+            time.sleep(0.15)
             self.get_logger().warning('I stay where I am')
 
 
