@@ -1,0 +1,5 @@
+"""Ends its kernel with success."""
+
+import os
+
+os._exit(0)

@@ -1,0 +1,3 @@
+"""Sends one message larger than any limit."""
+
+print('x' * 60_000_000)

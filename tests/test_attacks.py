@@ -1,0 +1,238 @@
+"""Attacks on the grader, honest students in between: nobody gains, leaks, stays or harms.
+
+`attacks/answers/` holds a file for each attack that is an answer, `attacks/notebooks.py` those
+that are something else. What an attack tries stands in its first line, and what it earns, if
+anything.
+"""
+
+import ast
+import csv
+import inspect
+import os
+import re
+import socket
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import nbformat
+import psutil
+import pytest
+from attacks import notebooks
+from course_maker import TOY, make_course, submit
+
+from grader.course import Course
+from grader.feedback import write_feedback
+from grader.grade import find_submissions, grade_all
+from grader.heal import KEY
+from grader.records import verdicts
+from grader.release import release
+from grader.scores import write_scores
+
+FOLDER = Path(__file__).parent / 'attacks' / 'answers'
+ANSWERS = {path.stem: path for path in sorted(FOLDER.glob('*.py'))}
+ROBOT = '03_publisher'
+OTHERS = {
+    name: function
+    for name, function in vars(notebooks).items()
+    if inspect.isfunction(function) and function.__module__ == notebooks.__name__
+}
+HONEST = 'def double(x):\n    return x + x'
+HONEST_ROBOT = Path(__file__).parent / 'submissions' / '03_publisher-pass-steady_clock_timer.ipynb'
+FULL = {TOY: 3.0, ROBOT: 5.0}
+EVERY = 5
+"""One honest student for so many attacks."""
+CANARY = 'hidden canary'
+LEFT = ('loaded_by_the_grader', 'evil_kernel', 'slipped')
+"""Files under /tmp that an attack would leave."""
+
+
+@dataclass
+class Class:
+    """What came of a class of attackers and honest students."""
+
+    rows: dict
+    course: Course
+    pages: dict[str, str]
+    scores: str
+    knocks: int
+    """How many connections the machine's own server got."""
+
+
+def earns(path):
+    """Return the points that an attack gets for the honest work in it."""
+    said = re.search(r'# earns (\d)', path.read_text(encoding='utf-8').splitlines()[0])
+    return float(said[1]) if said else 0.0
+
+
+def attack(course, name, port):
+    """Hand in one attack, that knows where everything lies."""
+    if name in OTHERS:
+        notebook = course.release(TOY)
+        path = submit(course, name, notebook)
+        OTHERS[name](notebook, path.parent)
+        submit(course, name, notebook)
+        return
+    source = ANSWERS[name].read_text(encoding='utf-8')
+    source = source.replace('GRADEBOOK', str(course.gradebook)).replace('PORT', str(port))
+    hand_in(course, name, source, TOY if not name.startswith('robot_') else ROBOT)
+
+
+def hand_in(course, student, answer, assignment):
+    notebook = course.release(assignment)
+    (cell,) = (
+        cell
+        for cell in notebook.cells
+        if cell.cell_type == 'code' and cell.metadata.get('nbgrader', {}).get('solution')
+    )
+    cell.source = answer
+    path = course.folder('submitted', student, assignment) / f'{assignment}.ipynb'
+    path.parent.mkdir(parents=True, exist_ok=True)
+    nbformat.write(notebook, path)
+
+
+def grade_class(root, names):
+    """Grade attacks, several at a time, honest students in between."""
+    course = make_course(root)
+    release(course, TOY)
+    for step in ('solutions', 'notebooks'):
+        (root / step / ROBOT).symlink_to(Path(__file__).parents[1] / step / ROBOT)
+    with socket.create_server(('127.0.0.1', 0)) as server:
+        server.setblocking(False)
+        for number, name in enumerate(names):
+            attack(course, f'{name}', server.getsockname()[1])
+            if number % EVERY == 0:
+                submit(course, f'honest-{name}', honest(course))
+        honest_robot = course.folder('submitted', 'honest-robot', ROBOT)
+        honest_robot.mkdir(parents=True)
+        (honest_robot / f'{ROBOT}.ipynb').write_bytes(HONEST_ROBOT.read_bytes())
+        submissions = sorted(find_submissions(course), key=lambda each: order(each.student_id))
+        rows = {row.student_id: row for row in grade_all(course, submissions, in_flight=8)}
+        knocks = 0
+        while True:
+            try:
+                server.accept()[0].close()
+                knocks += 1
+            except BlockingIOError:
+                break
+    pages = {page.parts[-3]: page.read_text(encoding='utf-8') for page in write_feedback(course)}
+    return Class(rows, course, pages, write_scores(course).read_text(encoding='utf-8'), knocks)
+
+
+def honest(course):
+    notebook = course.release(TOY)
+    for cell in notebook.cells:
+        if cell.id == 'double':
+            cell.source = HONEST
+    return notebook
+
+
+def order(student):
+    """An honest student comes right after the attack whose name it bears."""
+    return student.removeprefix('honest-'), student.startswith('honest-')
+
+
+NAMES = [*ANSWERS, *OTHERS]
+
+
+@pytest.fixture(scope='module')
+def graded(tmp_path_factory):
+    for name in LEFT:
+        Path('/tmp', name).unlink(missing_ok=True)
+    return grade_class(tmp_path_factory.mktemp('attacked'), NAMES)
+
+
+def test_each_attack_says_what_it_tries():
+    for path in ANSWERS.values():
+        assert ast.get_docstring(ast.parse(path.read_text(encoding='utf-8'))).endswith('.')
+    assert all(inspect.getdoc(function) for function in OTHERS.values())
+    assert len(NAMES) >= 40
+
+
+@pytest.mark.timeout(900)
+@pytest.mark.parametrize('name', NAMES)
+def test_an_attack_earns_what_its_honest_work_does(graded, name):
+    stored = graded.rows[name].stored
+    assert stored is not None, graded.rows[name].reason
+    said = verdicts(graded.course, name, ROBOT if name.startswith('robot_') else TOY)
+    outcomes = {v.outcome for v in said.values() if 'outcome' in v}
+    assert outcomes <= {'passed', 'failed'}, graded.rows[name].reason
+    assert stored.score == (earns(ANSWERS[name]) if name in ANSWERS else 0.0), said
+    assert stored.score >= FULL[TOY] or graded.rows[name].reason
+
+
+@pytest.mark.parametrize('name', NAMES)
+def test_an_attack_brings_nothing_hidden_back(graded, name):
+    assert CANARY not in graded.pages[name]
+    (path,) = graded.course.folder('autograded', name, '').glob('*/*.ipynb')
+    cells = nbformat.read(path, as_version=4).cells
+    told = str([(c.get('outputs'), c.metadata.get(KEY), c.get('attachments')) for c in cells])
+    assert CANARY not in told
+    assert graded.course.seed(TOY) not in told + graded.pages[name]
+
+
+def test_the_honest_get_what_is_theirs(graded):
+    theirs = {n: row.stored.score for n, row in graded.rows.items() if n.startswith('honest-')}
+    assert len(theirs) > len(NAMES) // EVERY
+    assert theirs == {n: FULL[ROBOT if n == 'honest-robot' else TOY] for n in theirs}
+
+
+def test_the_scores_hold_no_more_points_than_there_are(graded):
+    assert CANARY not in graded.scores
+    rows = list(csv.DictReader(graded.scores.splitlines()))
+    assert {float(row['max_score']) for row in rows} == {1.0, 2.0, 3.0}
+    assert [r for r in rows if r['score'] and float(r['score']) > float(r['max_score'])] == []
+
+
+def test_nothing_of_an_attack_is_left(graded):
+    assert graded.knocks == 0
+    assert [name for name in LEFT if Path('/tmp', name).exists()] == []
+    left = [p for p in psutil.process_iter(['cmdline']) if '86421' in (p.info['cmdline'] or ())]
+    assert left == []
+
+
+def test_nothing_runs_in_the_instructors_browser(graded):
+    page = graded.pages['html_and_escapes']
+    assert 'alert' in page  # it is shown, as text
+    assert re.findall(r'<script|<img src=x|<svg[^>]*>.*alert|\x1b|\u202e', page) == []
+
+
+def test_the_attacks_are_real(tmp_path):
+    """Some of them, run without a sandbox on what they may have: each does what it says."""
+    stolen = tmp_path / 'left.txt'
+    stolen.write_text(CANARY)
+    code = (
+        (FOLDER / 'reads_the_tests_from_disk.py').read_text().replace("'/'", repr(str(tmp_path)))
+    )
+    assert CANARY in run(code)
+    with socket.create_server(('127.0.0.1', 0)) as server:
+        code = (
+            (FOLDER / 'network_out.py').read_text().replace('PORT', str(server.getsockname()[1]))
+        )
+        assert '127.0.0.1' in run(code)
+    assert 'seed-of-the-course' in run(
+        (FOLDER / 'reads_the_seed.py').read_text(), MY_ROBOT_BASICS_SEED='seed-of-the-course'
+    )
+
+
+def run(code, **environment):
+    done = subprocess.run(
+        [sys.executable, '-c', f'{code}\nprint(double(1))'],
+        capture_output=True,
+        text=True,
+        env=os.environ | environment,
+    )
+    return done.stdout
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(3600)
+@pytest.mark.parametrize('repetition', range(5))
+def test_it_comes_to_the_same_each_time(tmp_path, graded, repetition):
+    again = grade_class(tmp_path, NAMES)
+    assert scores(again) == scores(graded)
+
+
+def scores(graded):
+    return {name: row.stored and row.stored.score for name, row in graded.rows.items()}
