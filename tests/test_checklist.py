@@ -1,0 +1,49 @@
+"""The checklist says what the lesson says, and fits on one page."""
+
+import html
+import re
+import shutil
+from pathlib import Path
+
+import nbformat
+import pytest
+
+FOLDER = Path(__file__).parents[1] / 'solutions' / '07_common_errors'
+CHECKLIST = FOLDER / 'checklist.html'
+CHROMIUM = next(filter(None, map(shutil.which, ['chromium', 'chromium-browser'])), None)
+TABLES = 'method', 'fix_topic_name_task', 'own_faults'
+"""Cells of the lesson whose tables the page brings together."""
+
+
+def cells():
+    notebook = nbformat.read(FOLDER / '07_common_errors.ipynb', as_version=4)
+    return {cell.id: cell.source for cell in notebook.cells}
+
+
+@pytest.mark.parametrize('cell', TABLES)
+def test_the_page_has_each_command_of_the_lessons_tables(cell):
+    page = html.unescape(re.sub(r'<[^>]+>', '', CHECKLIST.read_text(encoding='utf-8')))
+    rows = [line for line in cells()[cell].splitlines() if line.startswith('|')]
+    commands = set(re.findall(r'`([^`]+)`', ' '.join(rows)))
+    assert commands
+    assert {command for command in commands if command not in page} == set()
+
+
+def test_the_lesson_leads_to_it():
+    assert '](checklist.html)' in cells()['checklist']
+
+
+@pytest.mark.browser
+@pytest.mark.skipif(CHROMIUM is None, reason='no chromium here: .ci/run installs it')
+def test_it_prints_on_one_page():
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=['--no-sandbox'])
+        page = browser.new_page()
+        page.goto(CHECKLIST.as_uri())
+        printed = page.pdf(format='A4', prefer_css_page_size=True)
+        letter = page.pdf(format='Letter', prefer_css_page_size=False)
+        browser.close()
+    for pdf in printed, letter:
+        assert len(re.findall(rb'/Type\s*/Page\b', pdf)) == 1
