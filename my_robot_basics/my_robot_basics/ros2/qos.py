@@ -1,6 +1,8 @@
 """QoS profiles from the arguments that `arguments.add_qos` adds."""
 
 import argparse
+from collections.abc import Sequence
+from typing import Any
 
 from rclpy.duration import Duration
 from rclpy.qos import (
@@ -45,3 +47,30 @@ def profile(args: argparse.Namespace) -> QoSProfile:
     elif made.durability == QoSDurabilityPolicy.TRANSIENT_LOCAL and made.depth == 0:
         made.depth = 1  # what is kept for late joiners has to be kept somewhere
     return made
+
+
+def to_hear(publishers: Sequence[Any], args: argparse.Namespace) -> QoSProfile:
+    """The profile of the arguments, or one that hears every publisher (a TopicEndpointInfo).
+
+    Says so where it has to ask for less than some of them offer.
+    """
+    if has_overrides(args):
+        return profile(args)
+    made = preset(args)
+    policies = {
+        'reliability': (QoSReliabilityPolicy.RELIABLE, QoSReliabilityPolicy.BEST_EFFORT),
+        'durability': (QoSDurabilityPolicy.TRANSIENT_LOCAL, QoSDurabilityPolicy.VOLATILE),
+    }
+    for name, (stricter, looser) in policies.items() if publishers else ():
+        strict = [getattr(each.qos_profile, name) == stricter for each in publishers]
+        if any(strict) and not all(strict):
+            print(
+                f'Some, but not all, publishers are offering {_full(stricter)}. Falling back '
+                f'to {_full(looser)} as it will connect to all publishers'
+            )
+        setattr(made, name, stricter if all(strict) else looser)
+    return made
+
+
+def _full(policy: Any) -> str:
+    return f'QoS{type(policy).__name__}.{policy.name}'

@@ -87,9 +87,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def main(args: argparse.Namespace) -> None:
     """Run the verb."""
     with Graph(args) as graph:
-        echo = Echo(args)  # what it imports takes the time that discovery takes anyway
+        # what is imported here takes the time that discovery takes anyway
+        from my_robot_basics.ros2 import qos
+
+        echo = Echo(args)
         graph.settle()
-        profile = _choose_qos(graph, args)
+        profile = qos.to_hear(graph.publishers_of(args.topic_name), args)
         echo.subscribe(graph, _message_class(graph, args), profile)
         graph.spin_until(lambda: args.once and echo.has_printed, timeout_sec=args.timeout)
 
@@ -174,36 +177,6 @@ def _message_class(graph: Graph, args: argparse.Namespace) -> Any:
     if found is None:
         raise CommandError(complaint)
     return found
-
-
-def _choose_qos(graph: Graph, args: argparse.Namespace) -> 'QoSProfile':
-    """The profile of the arguments, or one that hears every publisher there is."""
-    from rclpy.qos import QoSDurabilityPolicy, QoSReliabilityPolicy
-
-    from my_robot_basics.ros2 import qos
-
-    if qos.has_overrides(args):
-        return qos.profile(args)
-    profile = qos.preset(args)
-    offers = [info.qos_profile for info in graph.publishers_of(args.topic_name)]
-    if offers:
-        policies = {
-            'reliability': (QoSReliabilityPolicy.RELIABLE, QoSReliabilityPolicy.BEST_EFFORT),
-            'durability': (QoSDurabilityPolicy.TRANSIENT_LOCAL, QoSDurabilityPolicy.VOLATILE),
-        }
-        for name, (stricter, looser) in policies.items():
-            strict = [getattr(offer, name) == stricter for offer in offers]
-            if any(strict) and not all(strict):
-                print(
-                    f'Some, but not all, publishers are offering {_full(stricter)}. Falling back '
-                    f'to {_full(looser)} as it will connect to all publishers'
-                )
-            setattr(profile, name, stricter if all(strict) else looser)
-    return profile
-
-
-def _full(policy: Any) -> str:
-    return f'QoS{type(policy).__name__}.{policy.name}'
 
 
 def _report_loss(status: Any) -> None:
