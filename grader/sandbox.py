@@ -9,6 +9,7 @@ import contextlib
 import os
 import shutil
 import signal
+import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -67,7 +68,7 @@ class Sandbox:
     def __init__(self, *, slot: int) -> None:
         """Prepare; `slot` is a small number that nobody else on this machine uses meanwhile."""
         self._user = slot_user(slot)
-        self._holder: asyncio.subprocess.Process | None = None
+        self._holder: subprocess.Popen | None = None
         self._network = -1
         self._filters: list[int] = []
         self._folders = {room: make_folder(room) for room in ROOMS}
@@ -77,21 +78,25 @@ class Sandbox:
 
     async def open(self) -> None:
         """Make the network and the disks. Raises RoomFailure."""
-        self._holder = await asyncio.create_subprocess_exec(
-            *self._holder_command(),
-            stdin=asyncio.subprocess.PIPE,
-            stdout=asyncio.subprocess.PIPE,
-            stderr=asyncio.subprocess.PIPE,
+        self._holder = subprocess.Popen(
+            self._holder_command(),
+            bufsize=0,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
             start_new_session=True,
             env={'PATH': f'{os.defpath}:/usr/sbin:/sbin'},
         )
+        os.set_blocking(self._holder.stdout.fileno(), False)
         line = b''
         with contextlib.suppress(TimeoutError):
             async with asyncio.timeout(OPEN_TIMEOUT_SEC):
-                line = await self._holder.stdout.readline()
+                while not line.endswith(b'\n') and self._holder.poll() is None:
+                    line += self._holder.stdout.read(100) or b''
+                    await asyncio.sleep(0.002)
         if not line.strip().isdigit():
             self._kill_holder()
-            said = (await self._holder.stderr.read()).decode(errors='replace').strip()
+            said = self._holder.stderr.read(10_000).decode(errors='replace').strip()
             raise RoomFailure(f'the sandbox could not be made: {said or "it did not answer"}')
         self._pid = int(line)
         self._network = os.open(f'/proc/{self._pid}/ns/net', os.O_RDONLY)
@@ -134,7 +139,10 @@ class Sandbox:
                 with contextlib.suppress(ProcessLookupError):
                     os.kill(pid, signal.SIGKILL)
             await asyncio.sleep(0.01)
-        await self._holder.wait()
+        while self._holder.poll() is None:
+            await asyncio.sleep(0.005)
+        for pipe in (self._holder.stdin, self._holder.stdout, self._holder.stderr):
+            pipe.close()
 
     def _kill_holder(self) -> None:
         with contextlib.suppress(ProcessLookupError):

@@ -1,0 +1,63 @@
+"""What the sandbox costs: the same gradings with it and without, in turns, in one run.
+
+    .venv/bin/python tests/benchmarks/sandbox_cost.py [RUNS]
+
+Nothing is asserted: look at the ratio, milliseconds are this machine's.
+"""
+
+import statistics
+import sys
+import tempfile
+import time
+from collections import defaultdict
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT), str(ROOT / 'tests')]
+
+import nbformat  # noqa: E402
+from sample_class import PATHS, assignment_of  # noqa: E402
+
+from grader import execute as module  # noqa: E402
+from grader.course import Course  # noqa: E402
+from grader.gradebook import register  # noqa: E402
+from grader.heal import heal  # noqa: E402
+from grader.isolation import isolated  # noqa: E402
+from grader.pipeline import prepare  # noqa: E402
+
+NAMES = (
+    '02_joint_state-pass-numpy',
+    '02_joint_state-fail-degrees',
+    '03_publisher-pass-one_fifth',
+    '03_publisher-fail-1hz',
+)
+
+
+def main(runs: int = 5) -> None:
+    """Print the table."""
+    isolated()  # what this finds out costs every run once, and no submission
+    course = Course(gradebook=Path(tempfile.mkdtemp(prefix='sandbox_cost-')))
+    for assignment in course.assignments():
+        register(course, assignment)
+    print(f'{"median s per notebook":32}  sandboxed  not  ratio')
+    ratios = []
+    for name in NAMES:
+        assignment = assignment_of(PATHS[name])
+        submitted = nbformat.read(PATHS[name], as_version=4)
+        healed = prepare(course, assignment, heal(submitted, course.master(assignment)).notebook)
+        times: dict[bool, list[float]] = defaultdict(list)
+        for run in range(runs):
+            # what comes second in a turn has warmer caches
+            for sandboxed in (True, False) if run % 2 else (False, True):
+                module.isolated = lambda *, trust_students, answer=sandboxed: answer
+                began = time.perf_counter()
+                module.execute(healed)
+                times[sandboxed].append(time.perf_counter() - began)
+        ours, bare = (statistics.median(times[kind]) for kind in (True, False))
+        ratios.append(ours / bare)
+        print(f'{name:32}  {ours:9.2f} {bare:4.2f}  {ratios[-1]:5.2f}', flush=True)
+    print(f'{"median of the ratios":32}  {statistics.median(ratios):21.2f}')
+
+
+if __name__ == '__main__':
+    main(*map(int, sys.argv[1:]))
