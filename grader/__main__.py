@@ -1,14 +1,17 @@
-"""The command line: python -m grader {release,grade,scores,feedback,demo,doctor}."""
+"""The command line: python -m grader {release,collect,grade,scores,feedback,demo,doctor}."""
 
 import argparse
 import sys
+from pathlib import Path
 
+from grader.collect import LEFT, collect
 from grader.course import Course
 from grader.demo import demo
 from grader.errors import CourseError
 from grader.feedback import write_feedback
 from grader.grade import find_submissions, grade_all
 from grader.gradebook import register
+from grader.intake import lines
 from grader.isolation import missing, protections
 from grader.release import release
 from grader.scores import write_scores
@@ -43,6 +46,16 @@ def _release(course: Course, asked: argparse.Namespace) -> int:
         print(f'notebooks/{path}')
     print(f'{len(changed)} files changed.' if changed else 'Nothing has changed.')
     return 0
+
+
+def _collect(course: Course, asked: argparse.Namespace) -> int:
+    rows = list(collect(course, asked.source, file_times=asked.file_times))
+    for line in lines(rows):
+        print(line)
+    taken = any(row.student_id for row in rows)
+    if taken:
+        print('Next: ./course grade')
+    return 0 if taken and not any(row.outcome == LEFT for row in rows) else 1
 
 
 def _grade(course: Course, asked: argparse.Namespace) -> int:
@@ -99,6 +112,15 @@ def _parser() -> argparse.ArgumentParser:
     verb = verbs.add_parser('release', help="make the students' notebooks/ from solutions/")
     verb.add_argument('assignment', nargs='?', metavar='ASSIGNMENT', help='only this one')
     verb.set_defaults(run=_release)
+
+    verb = verbs.add_parser('collect', help='take in a folder or an archive of submissions')
+    verb.add_argument('source', type=Path, metavar='FOLDER|ZIP|TAR')
+    verb.add_argument(
+        '--file-times',
+        action='store_true',
+        help="take a file's own time for the time it was handed in, where nothing else tells",
+    )
+    verb.set_defaults(run=_collect)
 
     verb = verbs.add_parser('grade', help='grade what lies in gradebook/submitted/')
     verb.add_argument('assignment', nargs='?', metavar='ASSIGNMENT', help='only this one')

@@ -2,6 +2,7 @@
 
 import csv
 import io
+from collections.abc import Iterable
 from pathlib import Path
 
 from grader.course import Course
@@ -17,12 +18,19 @@ def write_scores(course: Course) -> Path:
 
     The score is empty where nothing was handed in or a person has to decide; the comment says so.
     """
+    path = course.gradebook / 'scores.csv'
+    write_whole(path, as_csv(course, records(course)))
+    return path
+
+
+def as_csv(course: Course, found: Iterable[Record]) -> str:
+    """Return the table of some graded cells, with what the checks said of them."""
     text = io.StringIO(newline='')
     table = csv.writer(text)
     table.writerow(COLUMNS)
     said: dict[str, dict] = {}
     whose = None
-    for record in records(course):
+    for record in found:
         if whose != (whose := (record.student_id, record.assignment)):
             said = verdicts(course, *whose)
         table.writerow(
@@ -35,9 +43,7 @@ def write_scores(course: Course) -> Path:
                 spreadsheet_safe(_comment(record, said.get(record.grade_id, {}))),
             )
         )
-    path = course.gradebook / 'scores.csv'
-    write_whole(path, text.getvalue())
-    return path
+    return text.getvalue()
 
 
 def _comment(record: Record, verdict: dict) -> str:

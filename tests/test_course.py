@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-VERBS = ['lab', 'workspace', 'ros-shell', 'test', 'release', 'grade', 'scores', 'feedback']
-VERBS += ['demo']
+VERBS = ['lab', 'workspace', 'ros-shell', 'test', 'release', 'collect', 'grade']
+VERBS += ['scores', 'feedback', 'demo', 'doctor']
 TOOLS = ['sh', 'cat', 'cp', 'dirname', 'env', 'find', 'flock', 'grep', 'id', 'ln', 'mkdir', 'mv']
 TOOLS += ['readlink', 'rm', 'sed', 'sleep', 'tail', 'uname']
 IN_A_NAMESPACE = [
@@ -518,6 +518,11 @@ def test_lab_serves_the_lessons_alone(machine):
 def test_what_lab_starts_is_on_this_machine_alone(machine):
     run = machine.course('lab', PRINT_ENVIRONMENT='yes')
     assert 'ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST' in run.stdout.splitlines()
+
+
+def test_a_path_to_collect_is_the_caller_s(machine):
+    assert machine.course('collect', 'class.zip').returncode == 0
+    assert machine.calls()[-2:] == ['python -P -m grader collect class.zip', '/']
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,7 @@ def test_help_lists_every_verb(capsys):
         main(['--help'])
     assert end.value.code == 0
     text = capsys.readouterr().out
-    assert all(verb in text for verb in ('release', 'grade', 'scores', 'feedback', 'demo'))
+    assert all(verb in text for verb in ('release', 'collect', 'grade', 'scores', 'demo'))
 
 
 @pytest.mark.parametrize(

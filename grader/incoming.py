@@ -1,0 +1,135 @@
+"""What comes in: each file of a folder or an archive, and of the archives in it."""
+
+import os
+import stat
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
+from pathlib import Path
+
+from grader.archives import ARCHIVE, MAX_FILE_BYTES, MAX_PARTS, OTHER_ARCHIVE, Allowance, unpack
+from grader.errors import CourseError
+
+ALL = {'files': 100_000, 'bytes': 8_000_000_000}
+"""A class of 500 with all its lessons and pictures."""
+ONE = {'files': 5_000, 'bytes': 200_000_000}
+"""One student's archive, with all that the course's own bundle holds."""
+MAX_NESTED = 3
+"""Archives within archives: a course management system's, a student's, and one more."""
+
+TIMESTAMP = 'timestamp.txt'
+LITTER = {'__MACOSX', '__pycache__', 'Thumbs.db', 'desktop.ini'}
+
+
+@dataclass(frozen=True)
+class Incoming:
+    """A file that came in, wherever it lay."""
+
+    parts: tuple[str, ...]
+    """Its path within what was collected; archives are folders here."""
+    file: Path | None = None
+    """Where it can be read; None where it is not wanted, or has a problem."""
+    modified: datetime | None = None
+    """When it, or the archive it came in, was written."""
+    problem: str = ''
+    """Why it can't be read."""
+    archive: int = 0
+    """How many of its parts lead to a student's archive and name it; 0 where there is none."""
+
+    @property
+    def path(self) -> str:
+        """Return its path as one text."""
+        return '/'.join(self.parts)
+
+    @property
+    def litter(self) -> bool:
+        """Whether an editor or a desktop left it there, not a person."""
+        hidden = any(part.startswith('.') or part in LITTER for part in self.parts)
+        return hidden and not self.problem
+
+
+def look_into(source: Path, aside: Path) -> Iterator[Incoming]:
+    """Yield all files in a folder or an archive; `aside` is an empty folder for what is unpacked.
+
+    Links are not followed. An archive in it is taken for a student's. Raises CourseError where
+    there is nothing of the kind.
+    """
+    left = Allowance(**ALL)
+    if source.is_dir():
+        found: Iterator[Incoming] = _walk(source, ())
+    elif source.is_file() and ARCHIVE.search(source.name):
+        found = _inside(Incoming((), source), source.name, aside, left)
+    elif source.is_file() and source.suffix == '.ipynb':
+        found = iter([_on_disk(source, (source.name,))])
+    else:
+        raise CourseError(
+            f'{source} is {"another kind of file" if source.exists() else "not there"}: expected '
+            'a folder, a notebook or an archive (.zip, .tar, .tar.gz)'
+        )
+    for each in found:
+        yield from _opened(each, aside, left, nested=1)
+
+
+def wanted(name: str) -> bool:
+    """Whether a file of that name is read at all."""
+    return (
+        name.endswith(('.ipynb', '.py')) or name == TIMESTAMP or ARCHIVE.search(name) is not None
+    )
+
+
+def _opened(each: Incoming, aside: Path, left: Allowance, *, nested: int) -> Iterator[Incoming]:
+    """Yield a file; of an archive, what is in it."""
+    if each.problem or each.litter:
+        yield each
+    elif OTHER_ARCHIVE.search(each.parts[-1]) and not ARCHIVE.search(each.parts[-1]):
+        yield replace(each, problem='an archive of another kind: ask for a .zip or .tar.gz')
+    elif not ARCHIVE.search(each.parts[-1]):
+        yield each
+    elif nested > MAX_NESTED:
+        yield replace(each, problem=f'more than {MAX_NESTED} archives within each other')
+    else:
+        part = left.part(**ONE)
+        before = replace(part)
+        for inner in _inside(each, each.parts[-1], aside, part):
+            yield from _opened(inner, aside, part, nested=nested + 1)
+        left.less(before, part)
+
+
+def _inside(outer: Incoming, name: str, aside: Path, left: Allowance) -> Iterator[Incoming]:
+    for member in unpack(outer.file, name=name, aside=aside, left=left, wanted=wanted):
+        parts = outer.parts + member.parts
+        yield Incoming(
+            parts=parts or (name,),
+            file=member.file,
+            modified=outer.modified if outer.parts else member.modified,
+            problem=member.problem,
+            archive=outer.archive or len(outer.parts),
+        )
+
+
+def _walk(folder: Path, above: tuple[str, ...]) -> Iterator[Incoming]:
+    for path in sorted(folder.iterdir()):
+        parts = (*above, path.name)
+        each = _on_disk(path, parts)
+        if each.problem or each.litter or not path.is_dir():
+            yield each
+        elif len(parts) > MAX_PARTS:
+            yield Incoming(parts, problem=f'it lies more than {MAX_PARTS} folders deep')
+        else:
+            yield from _walk(path, parts)
+
+
+def _on_disk(path: Path, parts: tuple[str, ...]) -> Incoming:
+    """Describe a file or folder as it lies there."""
+    status = path.lstat()
+    problem = ''
+    if stat.S_ISLNK(status.st_mode):
+        problem = 'a link: only files are taken'
+    elif not stat.S_ISREG(status.st_mode) and not stat.S_ISDIR(status.st_mode):
+        problem = 'a device or the like: only files are taken'
+    elif status.st_size > MAX_FILE_BYTES and path.suffix in ('.ipynb', '.py'):
+        problem = f'over {MAX_FILE_BYTES / 1e6:.0f} MB: ask for it without outputs'
+    elif not os.access(path, os.R_OK | (os.X_OK if path.is_dir() else 0)):
+        problem = 'it must not be read: see its permissions'
+    modified = datetime.fromtimestamp(status.st_mtime, UTC)
+    return Incoming(parts, None if problem else path, modified, problem)

@@ -1,0 +1,295 @@
+import csv
+import os
+import zipfile
+from datetime import datetime
+from pathlib import Path
+
+import nbformat
+import pytest
+from course_maker import TOY, answered, executed, make_course
+from nbgrader.coursedir import CourseDirectory
+
+from grader import collect as module
+from grader.__main__ import main
+from grader.collect import AGAIN, EARLIER, KNOWN, LEFT, NEW, UNUSED, collect
+from grader.course import Course
+from grader.errors import CourseError
+from grader.grade import find_submissions
+from grader.gradebook import register, store
+from grader.heal import heal
+from grader.pipeline import prepare
+from grader.release import release
+from grader.submission import read_submission
+
+NOTEBOOK = f'{TOY}.ipynb'
+RIGHT, WRONG = 'def double(x):\n    return 2 * x', 'def double(x):\n    return x'
+
+
+@pytest.fixture(scope='module')
+def released(tmp_path_factory):
+    course = make_course(tmp_path_factory.mktemp('collect'))
+    release(course)
+    return course
+
+
+@pytest.fixture
+def course(released, tmp_path):
+    return Course(root=released.root, gradebook=tmp_path / 'gradebook')
+
+
+@pytest.fixture
+def source(tmp_path):
+    folder = tmp_path / 'came in'
+    folder.mkdir()
+    return folder
+
+
+def write(path, content):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(content)
+
+
+def rows(course, source, **options):
+    """What became of each file: outcome by path."""
+    return {row.path: row.outcome for row in collect(course, source, **options)}
+
+
+def tree(folder):
+    """All that lies in a folder: each file's path and content."""
+    found = sorted(path for path in folder.rglob('*') if path.is_file())
+    return {str(path.relative_to(folder)): path.read_text() for path in found}
+
+
+def submitted(course, student='ada'):
+    return tree(course.folder('submitted', student, TOY))
+
+
+def before(course, student='ada'):
+    return tree(course.folder('submitted_before', student, TOY))
+
+
+def exchanged(source, day, content):
+    folder = source / f'ada+{TOY}+2026-01-0{day} 10:00:00.000000 UTC'
+    write(folder / NOTEBOOK, content)
+    write(folder / 'timestamp.txt', f'2026-01-0{day} 10:00:00.000000 UTC')
+
+
+def test_what_came_in_lies_where_it_is_graded(course, source):
+    write(source / f'ada_{TOY}.ipynb', 'ada’s')
+    write(source / f'bob/{TOY}/{NOTEBOOK}', 'bob’s')
+    write(source / f'bob/{TOY}/helper.py', 'x = 1')
+    write(source / f'bob/{TOY}/timestamp.txt', '2026-01-01 12:00:00 CET')
+    write(source / 'whose.ipynb', '')
+    write(source / 'notes.txt', '')
+    untouched = tree(source)
+    assert rows(course, source) == {
+        f'ada_{TOY}.ipynb': NEW,
+        f'bob/{TOY}/{NOTEBOOK}': NEW,
+        'whose.ipynb': LEFT,
+        'notes.txt': UNUSED,
+    }
+    assert submitted(course) == {NOTEBOOK: 'ada’s'}
+    assert submitted(course, 'bob') == {
+        NOTEBOOK: 'bob’s',
+        'helper.py': 'x = 1',
+        'timestamp.txt': '2026-01-01 11:00:00.000000 UTC',
+    }
+    assert tree(source) == untouched
+    assert [each.problem for each in find_submissions(course)] == ['', '']
+
+
+def test_doing_it_again_changes_nothing(course, source):
+    for day in (1, 2, 3):
+        exchanged(source, day, f'version {day}')
+    write(source / f'bob/{TOY}/{NOTEBOOK}', 'bob’s')
+    assert set(rows(course, source).values()) == {NEW, AGAIN}
+    first = tree(course.gradebook)
+    assert submitted(course)[NOTEBOOK] == 'version 3'
+    assert [before(course)[f'{n}/submitted/{NOTEBOOK}'] for n in (1, 2)] == [
+        'version 1',
+        'version 2',
+    ]
+    for _ in range(2):
+        assert set(rows(course, source).values()) == {KNOWN}
+        assert tree(course.gradebook) == first
+
+
+def test_a_later_one_counts_and_the_earlier_is_kept_with_its_time(course, source):
+    exchanged(source, 1, 'first')
+    rows(course, source)
+    exchanged(source, 2, 'second')
+    assert sorted(rows(course, source).values()) == [AGAIN, KNOWN]
+    assert submitted(course)[NOTEBOOK] == 'second'
+    assert submitted(course)['timestamp.txt'].startswith('2026-01-02')
+    assert before(course) == {
+        f'1/submitted/{NOTEBOOK}': 'first',
+        '1/submitted/timestamp.txt': '2026-01-01 10:00:00.000000 UTC',
+    }
+
+
+def test_an_earlier_one_that_comes_late_is_kept_and_does_not_count(course, source, tmp_path):
+    exchanged(source, 2, 'second')
+    rows(course, source)
+    exchanged(tmp_path / 'mail', 1, 'first')
+    assert list(rows(course, tmp_path / 'mail').values()) == [EARLIER]
+    assert submitted(course)[NOTEBOOK] == 'second'
+    assert before(course)[f'1/submitted/{NOTEBOOK}'] == 'first'
+    assert list(rows(course, tmp_path / 'mail').values()) == [KNOWN]
+
+
+def test_without_times_what_comes_later_is_later(course, source):
+    for version in ('one', 'two'):
+        write(source / f'ada_{TOY}.ipynb', version)
+        rows(course, source)
+    assert submitted(course) == {NOTEBOOK: 'two'}
+    assert before(course) == {f'1/submitted/{NOTEBOOK}': 'one'}
+    write(source / f'ada_{TOY}.ipynb', 'one')
+    assert rows(course, source) == {f'ada_{TOY}.ipynb': KNOWN}
+    assert submitted(course) == {NOTEBOOK: 'two'}
+
+
+def test_who_goes_back_to_a_former_version_later_is_graded_by_it(course, source):
+    for day, content in ((1, 'good'), (2, 'bad'), (3, 'good')):
+        exchanged(source, day, content)
+        rows(course, source)
+    assert submitted(course)[NOTEBOOK] == 'good'
+    assert before(course)[f'2/submitted/{NOTEBOOK}'] == 'bad'
+
+
+def test_a_changed_helper_is_another_submission(course, source):
+    write(source / f'ada/{NOTEBOOK}', 'same')
+    rows(course, source)
+    write(source / 'ada/helper.py', 'x = 1')
+    assert rows(course, source) == {f'ada/{NOTEBOOK}': AGAIN}
+
+
+def test_the_earlier_one_keeps_its_grade(course, source):
+    write(source / f'ada_{TOY}.ipynb', '')
+    for answer, reasons in ((WRONG, {'double-check': 'expected 2, saw 1'}), (RIGHT, {})):
+        notebook = answered(course, answer)
+        (source / f'ada_{TOY}.ipynb').write_text(nbformat.writes(notebook))
+        rows(course, source)
+        register(course, TOY)
+        folder = course.folder('submitted', 'ada', TOY)
+        submission = read_submission(folder, student_id='ada', assignment=TOY)
+        healed = heal(submission.notebook, course.master(TOY)).notebook
+        store(course, submission, executed(prepare(course, TOY, healed), reasons))
+    kept = course.folder('submitted_before', 'ada', TOY) / '1'
+    assert sorted(path.name for path in kept.iterdir()) == [
+        'autograded',
+        'scores.csv',
+        'submitted',
+    ]
+    table = {row['grade_id']: row for row in csv.DictReader((kept / 'scores.csv').open())}
+    assert (table['double-check']['score'], table['double-hidden']['score']) == ('0.0', '2.0')
+    assert table['double-check']['comment'] == 'expected 2, saw 1'
+    assert WRONG.splitlines()[1].strip() in (kept / 'autograded' / NOTEBOOK).read_text()
+
+
+@pytest.mark.parametrize('survived', range(5))
+def test_a_run_that_ended_half_way_loses_nothing_and_goes_on(
+    survived, course, source, monkeypatch
+):
+    for day in (1, 2):
+        exchanged(source, day, f'version {day}')
+    rename, calls = Path.rename, []
+
+    def dies(path, target):
+        calls.append(path)
+        if len(calls) > survived:
+            raise KeyboardInterrupt
+        return rename(path, target)
+
+    monkeypatch.setattr(Path, 'rename', dies)
+    if survived < 4:  # new, one to the shelf, two to replace it
+        with pytest.raises(KeyboardInterrupt):
+            rows(course, source)
+    else:
+        rows(course, source)
+    monkeypatch.undo()
+    rows(course, source)
+    assert submitted(course)[NOTEBOOK] == 'version 2'
+    kept = {path: text for path, text in before(course).items() if path.endswith('.ipynb')}
+    assert kept == {f'1/submitted/{NOTEBOOK}': 'version 1'}
+    assert not list(course.gradebook.rglob('.new-*'))
+
+
+def test_no_archive_writes_anywhere_else(course, source, tmp_path):
+    secret = tmp_path / 'secret'
+    secret.write_text('secret')
+    link = zipfile.ZipInfo(f'eve/{NOTEBOOK}')
+    link.external_attr = 0o120777 << 16
+    with zipfile.ZipFile(source / 'class.zip', 'w') as box:
+        box.writestr(f'../../../submitted/ada/{TOY}/{NOTEBOOK}', 'slip')
+        box.writestr(f'/{tmp_path}/ada/{TOY}/{NOTEBOOK}', 'absolute')
+        box.writestr(link, str(secret))
+        box.writestr(f'../{TOY}.ipynb', 'slip')
+        box.writestr(f'bob\x1b[2J_{TOY}.ipynb', 'escape')
+        box.writestr(f'zoe/{TOY}/{NOTEBOOK}', 'fine')
+    outside = {path for path in tmp_path.rglob('*') if course.gradebook not in path.parents}
+    found = rows(course, source / 'class.zip')
+    assert sorted(found.values()) == [LEFT] * 5 + [NEW]
+    assert {path for path in tmp_path.rglob('*') if course.gradebook not in path.parents} == (
+        outside | {course.gradebook}
+    )
+    assert tree(course.gradebook / 'submitted') == {f'zoe/{TOY}/{NOTEBOOK}': 'fine'}
+
+
+def test_a_file_that_is_in_the_way_costs_only_its_own_row(course, source):
+    write(course.gradebook / 'submitted/ada', 'a file')
+    write(source / f'ada_{TOY}.ipynb', '')
+    write(source / f'bob_{TOY}.ipynb', '')
+    assert sorted(rows(course, source).values()) == [LEFT, NEW]
+    assert (course.gradebook / 'submitted/ada').read_text() == 'a file'
+
+
+def test_a_full_disk_is_said_in_a_sentence(course, source, monkeypatch):
+    def full(*_):
+        raise OSError(28, 'No space left on device')
+
+    write(source / f'ada_{TOY}.ipynb', '')
+    monkeypatch.setattr(module, '_put', full)
+    with pytest.raises(CourseError, match='the disk is full: what was collected is kept whole'):
+        rows(course, source)
+
+
+# --- the command ---------------------------------------------------------------------------------
+
+
+def test_the_command_prints_a_row_for_each_and_ends_with_1_where_one_was_not_taken(
+    course, source, capsys
+):
+    write(source / f'小明_{TOY}.ipynb', 'x')
+    os.utime(source / f'小明_{TOY}.ipynb', (1_700_000_000, 1_700_000_000))
+    assert main(['collect', str(source), '--file-times'], course=course) == 0
+    assert capsys.readouterr().out.splitlines() == [
+        'student  assignment  handed in (UTC)',
+        '小明     00_toy      2023-11-14 22:13:20  new',
+        '',
+        '1 new; 0 not taken.',
+        'Next: ./course grade',
+    ]
+    write(source / '\x1b[31mred.ipynb', '')
+    for number in range(5):
+        write(source / f'photos/{number}.png', '')
+    assert main(['collect', str(source)], course=course) == 1
+    out = capsys.readouterr().out
+    assert '\x1b' not in out
+    assert '\\x1b[31mred.ipynb  named after no assignment: expected STUDENT_ASSIGNMENT' in out
+    assert 'photos/0.png and 4 more  neither a notebook nor Python' in out
+    assert out.splitlines()[-2:] == ['1 there already; 1 not taken.', 'Next: ./course grade']
+
+
+def test_nothing_that_is_there_to_collect_is_said(course, tmp_path, capsys):
+    assert main(['collect', str(tmp_path / 'nowhere')], course=course) == 1
+    assert 'nowhere is not there: expected a folder' in capsys.readouterr().err
+    (tmp_path / 'empty').mkdir()
+    assert main(['collect', str(tmp_path / 'empty')], course=course) == 1
+    assert 'Nothing was taken; 0 not taken.' in capsys.readouterr().out
+
+
+def test_nbgrader_reads_the_time(course, source):
+    exchanged(source, 1, '{}')
+    rows(course, source)
+    folder = course.folder('submitted', 'ada', TOY)
+    assert CourseDirectory().get_existing_timestamp(str(folder)) == datetime(2026, 1, 1, 10)
