@@ -5,6 +5,7 @@ from typing import NoReturn
 
 import numpy as np
 
+from my_robot_basics.live.described import described
 from my_robot_basics.live.errors import in_lines
 
 MOST_CHARACTERS = 200
@@ -48,7 +49,8 @@ def show(picture: bytes, *, alt: str) -> None:
     if 'IPython' not in sys.modules:
         return
     from IPython import get_ipython
-    from IPython.display import Image, display
+    from IPython.display import display
 
     if get_ipython() is not None:
-        display(Image(data=picture, format='png', alt=alt))
+        bundle, metadata = described(picture, alt)
+        display(bundle, metadata=metadata, raw=True)

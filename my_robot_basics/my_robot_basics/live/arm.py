@@ -39,7 +39,7 @@ def show_arm(
         picture.dashed(*other)
         text += f'; dashed: θ1 = {other[0]:.1f}°, θ2 = {other[1]:.1f}°'
     picture.move(theta1_deg, theta2_deg, title=title)
-    display = notebook.Display({'image/png': {'alt': text}})
+    display = notebook.Display()
     display.show({'image/png': picture.png(), 'text/plain': text})
 
 

@@ -57,5 +57,5 @@ def show_branches(
     figure.legend(loc='outside lower center', ncols=2, frameon=False)
     counts = ' and '.join(f'{len(members)} in {branch}' for branch, members in poses.items())
     text = f'poses by branch: {counts}; elbow_up has θ2 below 0, elbow_down above'
-    display = notebook.Display({'image/png': {'alt': text}})
+    display = notebook.Display()
     display.show({'image/png': png(figure), 'text/plain': text})

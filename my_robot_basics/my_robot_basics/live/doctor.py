@@ -24,5 +24,5 @@ def why(topic_name: str, *, domains: bool = False) -> None:
     print(report.tell(diagnosis))
     if notebook.in_kernel():
         text = picture.describe(diagnosis)
-        display = notebook.Display({'image/png': {'alt': text}})
+        display = notebook.Display()
         display.show({'image/png': picture.draw(diagnosis), 'text/plain': text})

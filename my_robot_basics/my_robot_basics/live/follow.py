@@ -66,7 +66,7 @@ class ArmView:
         self._pose: tuple[float, float] | None = None
         self._ignored = 0
         self._trouble = f'waiting for messages on {topic_name}'
-        self._display = notebook.Display({'image/png': {'alt': self._text}})
+        self._display = notebook.Display()
         self._drawing = threading.Lock()
 
     def receive(self, message: JointState) -> None:

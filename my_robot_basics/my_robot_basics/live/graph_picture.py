@@ -48,7 +48,7 @@ def show_graph(title: str = '') -> None:
         nodes = graphs.take(watcher).nodes()
         arrows = arrows_of(nodes, endpoints_of(watcher.node))
     text = describe(arrows)
-    display = notebook.Display({'image/png': {'alt': text}})
+    display = notebook.Display()
     display.show({'image/png': draw(arrows, title=title), 'text/plain': text})
 
 

@@ -1,25 +1,20 @@
 """The way to a notebook's cells; outside a notebook kernel, to stdout."""
 
-import base64
-import html
 import itertools
 import os
 import threading
 import time
 from collections.abc import Callable
-from typing import Any
 
 import rclpy.logging
 
 from my_robot_basics.live import kernel
+from my_robot_basics.live.described import Bundle, described
 from my_robot_basics.live.log_lines import CONSOLE_FORMAT, LogRecord
 from my_robot_basics.live.stdout_tap import StdoutTap
 
 PAUSE_SEC = 0.25
 """Between two updates: a flood of messages must not become a flood of displays."""
-
-Bundle = dict[str, Any]
-"""MIME types and their data."""
 
 _tap: StdoutTap | None = None
 _numbers = itertools.count()
@@ -81,9 +76,8 @@ def sync() -> None:
 class Display:
     """One output of the cell that runs now, updated in place from any thread."""
 
-    def __init__(self, metadata: dict[str, Any] | None = None) -> None:
-        """Remember the cell, and what to say about each MIME type; nothing shows before `show`."""
-        self._metadata = metadata
+    def __init__(self) -> None:
+        """Remember the cell; nothing shows before `show`."""
         self._shell = kernel.shell()
         self._cell = self._shell.get_parent() if self._shell else None
         self._id = f'live-{next(_numbers)}-{time.time_ns():x}'
@@ -119,17 +113,12 @@ class Display:
             publisher.reset_thread_parent(token)
 
     def _publish(self, bundle: Bundle, *, update: bool) -> None:
+        metadata = None
         if 'image/png' in bundle:
-            bundle = bundle | {'text/html': _with_words(bundle['image/png'], bundle['text/plain'])}
+            bundle, metadata = described(bundle['image/png'], bundle['text/plain'])
         self._shell.display_pub.publish(
-            bundle, metadata=self._metadata, transient={'display_id': self._id}, update=update
+            bundle, metadata=metadata, transient={'display_id': self._id}, update=update
         )
-
-
-def _with_words(png: bytes, text: str) -> str:
-    """A picture and its alternative text, which JupyterLab leaves out of a plain PNG."""
-    source = base64.b64encode(png).decode('ascii')
-    return f'<img alt="{html.escape(text)}" src="data:image/png;base64,{source}">'
 
 
 class _Refresher:

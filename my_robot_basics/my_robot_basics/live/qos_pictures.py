@@ -109,5 +109,5 @@ def _draw_lost(heard: Mapping[str, Sequence[int]], *, sent: int, title: str) -> 
 
 
 def _show(figure: 'Figure', text: str) -> None:
-    display = notebook.Display({'image/png': {'alt': text.replace('\n', '; ')}})
+    display = notebook.Display()
     display.show({'image/png': png(figure), 'text/plain': text})

@@ -31,8 +31,7 @@ class ArmSliders:
         self.theta2 = _slider('θ2 in °', theta2_deg)
         self._l1, self._l2 = l1, l2
         self._picture = ArmPicture(l1=l1, l2=l2)
-        self._metadata = {'image/png': {'alt': ''}}
-        self._display = notebook.Display(self._metadata)
+        self._display = notebook.Display()
 
     def show(self) -> None:
         """Show sliders and picture with the cell that runs now."""
@@ -50,7 +49,6 @@ class ArmSliders:
         pose_deg = self.theta1.value, self.theta2.value
         self._picture.move(*pose_deg)
         text = describe(*pose_deg, l1=self._l1, l2=self._l2)
-        self._metadata['image/png']['alt'] = text
         return {'image/png': self._picture.png(), 'text/plain': text}
 
 

@@ -107,5 +107,5 @@ def _panels(heights_inches: Sequence[float], *, title: str) -> tuple:
 
 
 def _show(figure: object, text: str) -> None:
-    display = notebook.Display({'image/png': {'alt': text}})
+    display = notebook.Display()
     display.show({'image/png': png(figure), 'text/plain': text})
