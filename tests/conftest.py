@@ -5,13 +5,19 @@ import shutil
 import tempfile
 
 import _pytest.runner
+import pytest
 from hypothesis import HealthCheck, settings
 from my_robot_basics.live import classroom
+
+from grader.isolation import TRUST, missing
 
 # a busy machine fails no test
 settings.register_profile('busy', deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile('busy')
 
+
+UNTESTED = pytest.StashKey[list]()
+"""The tests that a machine without a sandbox leaves out."""
 
 LONG = (
     'same_scores',
@@ -24,11 +30,39 @@ LONG = (
 """Files that take longest: whoever begins with them does not wait for them at the end."""
 
 
-def pytest_collection_modifyitems(items: list) -> None:
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption(
+        '--no-isolation',
+        action='store_true',
+        help='where this machine has no sandbox: do without it, and without the tests of it',
+    )
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list) -> None:
     items.sort(key=lambda item: item.path.stem.removeprefix('test_') not in LONG)
 
+    if config.getoption('--no-isolation') and missing():
+        config.stash[UNTESTED] = [item for item in items if item.get_closest_marker('isolation')]
+        items[:] = [item for item in items if item not in config.stash[UNTESTED]]
+        config.hook.pytest_deselected(items=config.stash[UNTESTED])
 
-def pytest_configure() -> None:
+
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    if item.get_closest_marker('isolation') and missing():
+        pytest.fail(f'{missing()}. Or leave these tests out: --no-isolation', pytrace=False)
+
+
+def pytest_terminal_summary(terminalreporter: object, config: pytest.Config) -> None:
+    if config.getoption('--no-isolation') and missing():
+        # xdist's workers know how many, and have no summary
+        untested = len(config.stash.get(UNTESTED, [])) or 'all'
+        terminalreporter.section('not tested', yellow=True)
+        terminalreporter.line(f'{untested} tests of the sandbox: {missing()}')
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    if config.getoption('--no-isolation'):
+        os.environ[TRUST] = '1'
     # once in each xdist worker, too: two workers do not hear each other's nodes
     os.environ['MY_ROBOT_BASICS_WORKSPACE'] = tempfile.mkdtemp(prefix='ros ws ')
     classroom.enter()

@@ -30,6 +30,8 @@ from grader.records import verdicts
 from grader.release import release
 from grader.scores import write_scores
 
+pytestmark = pytest.mark.isolation
+
 FOLDER = Path(__file__).parent / 'attacks' / 'answers'
 ANSWERS = {path.stem: path for path in sorted(FOLDER.glob('*.py'))}
 ROBOT = '03_publisher'

@@ -55,6 +55,7 @@ def refusing(*options, says='Operation not permitted'):
     return run
 
 
+@pytest.mark.isolation
 def test_this_machine_can_isolate():
     assert missing() == ''
     assert isolated()
@@ -150,6 +151,7 @@ def test_trust_is_told_to_whoever_reads_the_grade(course, nowhere, capsys):
     assert all(TRUSTED in row for row in graded)
 
 
+@pytest.mark.isolation
 def test_trust_changes_nothing_where_there_is_a_sandbox(course):
     assert isolated(trust_students=True)
     submit(course, 'bob', answered(course, RIGHT))
@@ -168,6 +170,7 @@ def test_nbgraders_own_commands_can_be_told_to_trust(nowhere, monkeypatch):
         isolated()
 
 
+@pytest.mark.isolation
 def test_it_can_be_asked_inside_a_running_event_loop():
     import asyncio
 

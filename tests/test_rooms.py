@@ -13,6 +13,7 @@ from my_robot_basics.live.errors import NoFreeDomain
 
 from grader import rooms as module
 from grader.errors import RoomFailure
+from grader.isolation import isolated
 from grader.outputs import CellRun
 from grader.rooms import Rooms
 
@@ -39,7 +40,7 @@ def shared(loop, tmp_path_factory):
     ):
         (folder / f'{name}.py').write_text('raise SystemExit("shadowed")')
     (folder / 'helper.py').write_text('WHERE = "my own helper"')
-    rooms = Rooms(extra_files=sorted(folder.glob('*.py')), seed='beef')
+    rooms = Rooms(extra_files=sorted(folder.glob('*.py')), seed='beef', isolated=isolated())
     loop.run(rooms.__aenter__())
     yield rooms
     loop.run(rooms.__aexit__())
@@ -48,7 +49,7 @@ def shared(loop, tmp_path_factory):
 @pytest.fixture
 def rooms(loop):
     """Rooms of one test's own."""
-    rooms = Rooms(seed='beef')
+    rooms = Rooms(seed='beef', isolated=isolated())
     loop.run(rooms.__aenter__())
     yield rooms
     loop.run(rooms.__aexit__())
@@ -320,7 +321,7 @@ def test_rooms_that_do_not_open_are_the_graders_failure(
     (tmp_path / 'a.py').write_text('')
     monkeypatch.setattr(places[what], what, fail)
     with pytest.raises(RoomFailure, match=why):
-        loop.run(Rooms(extra_files=[tmp_path / 'a.py']).__aenter__())
+        loop.run(Rooms(extra_files=[tmp_path / 'a.py'], isolated=isolated()).__aenter__())
     assert left() == NOTHING
 
 
@@ -341,13 +342,25 @@ def test_a_room_that_is_not_made_ready_closes_both(loop, monkeypatch, left, code
     monkeypatch.setattr(module, '_TEST_HEARS', hears)
     monkeypatch.setattr(module, 'SETUP_TIMEOUT_SEC', 3600.0)
     with pytest.raises(RoomFailure, match=why):
-        loop.run(Rooms().__aenter__())
+        loop.run(Rooms(isolated=isolated()).__aenter__())
     assert left() == NOTHING
+
+
+IN_SHARED_MEMORY = PUBLISH.replace(
+    'rclpy.init()',
+    'import os; os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"\nrclpy.init()',
+)
+
+
+@pytest.mark.isolation
+def test_a_student_who_prefers_shared_memory_is_heard_too(rooms, student, check):
+    student(rooms, IN_SHARED_MEMORY)
+    assert said(check(rooms, HEAR)) == 'hello\n'
 
 
 def test_cancelling_while_rooms_open_closes_them(loop, left):
     async def cancelled():
-        task = asyncio.ensure_future(Rooms().__aenter__())
+        task = asyncio.ensure_future(Rooms(isolated=isolated()).__aenter__())
         while left()[0] < 2:
             await asyncio.sleep(0.05)
         task.cancel()
@@ -358,9 +371,9 @@ def test_cancelling_while_rooms_open_closes_them(loop, left):
     assert left() == NOTHING
 
 
-@pytest.mark.parametrize('isolated', [True, False])
-def test_rooms_leave_nothing(loop, left, isolated):
-    rooms = Rooms(isolated=isolated)
+@pytest.mark.parametrize('closed', [pytest.param(True, marks=pytest.mark.isolation), False])
+def test_rooms_leave_nothing(loop, left, closed):
+    rooms = Rooms(isolated=closed)
 
     async def once():
         async with rooms:
@@ -368,7 +381,7 @@ def test_rooms_leave_nothing(loop, left, isolated):
             return left()
 
     # a sandbox takes a few processes of its own
-    assert loop.run(once()) == ((9, 2, 1) if isolated else (2, 2, 1))
+    assert loop.run(once()) == ((9, 2, 1) if closed else (2, 2, 1))
     assert left() == NOTHING
 
 

@@ -21,6 +21,8 @@ from grader.limits import ROOM_DISK_BYTES, ROOM_FILES
 from grader.sandbox import FIRST_USER, Sandbox, slot_user
 from grader.seccomp import FORBIDDEN
 
+pytestmark = pytest.mark.isolation
+
 SLOTS = iter(range(200, 300))
 """None that a claimed ROS domain gives."""
 
