@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from my_robot_basics.live.exercise import reset, run_answer
     from my_robot_basics.live.follow import follow_arm
     from my_robot_basics.live.graph_picture import show_graph
+    from my_robot_basics.live.qos_pairs import measure_pairs
     from my_robot_basics.live.qos_pictures import show_lost_messages, show_qos_matrix
     from my_robot_basics.live.runner import run, stop
     from my_robot_basics.live.sliders import move_arm
@@ -32,6 +33,7 @@ __all__ = [
     'drag_target',
     'follow_arm',
     'make_workspace',
+    'measure_pairs',
     'move_arm',
     'reset',
     'run',
@@ -64,6 +66,7 @@ _MODULES = {
     'follow_arm': 'follow',
     'show_domain': 'classroom',
     'show_graph': 'graph_picture',
+    'measure_pairs': 'qos_pairs',
     'show_qos_matrix': 'qos_pictures',
     'show_lost_messages': 'qos_pictures',
     'send_pictures': 'camera',

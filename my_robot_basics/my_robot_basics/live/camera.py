@@ -13,7 +13,8 @@ from my_robot_basics.live import classroom
 from my_robot_basics.live.errors import LiveError
 
 TOPIC_NAME = '/camera'
-WIDTH, HEIGHT = 640, 480
+WIDTH, HEIGHT = 480, 320
+"""0.46 MB: small enough that a best-effort subscription gets some, large enough to lose others."""
 LISTENERS_SEC = 10.0
 ARRIVED_SEC = 10.0
 TIMEOUT_SEC = 30.0
@@ -24,7 +25,7 @@ class NoPictures(LiveError):
 
 
 def send_pictures(count: int, *, listeners: int) -> None:
-    """Publish `count` pictures (0.9 MB each) on /camera, once so many subscriptions listen.
+    """Publish `count` pictures (0.46 MB each) on /camera, once so many subscriptions listen.
 
     They are sent RELIABLE, without a pause, from a process of its own; it has ended when this
     returns. The number of a picture, from 1, is its frame_id. Raises NoPictures.

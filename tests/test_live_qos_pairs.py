@@ -1,0 +1,40 @@
+"""Pairs of QoS profiles are measured in a system of their own, and leave nothing behind."""
+
+import pytest
+from my_robot_basics.live import measure_pairs, qos_pairs, run, stop, wait_until
+from my_robot_basics.live.errors import WaitedInVain
+from rclpy.node import Node
+from rclpy.qos import QoSCompatibility, QoSProfile, ReliabilityPolicy, qos_check_compatible
+
+PROFILES = {
+    each.name: QoSProfile(depth=1, reliability=each)
+    for each in (ReliabilityPolicy.RELIABLE, ReliabilityPolicy.BEST_EFFORT)
+}
+
+
+@pytest.fixture
+def witness():
+    yield run(Node, 'witness')
+    stop()
+
+
+def test_each_pair_comes_out_as_the_middleware_foretells(witness):
+    outcome = measure_pairs(PROFILES)
+    assert list(outcome) == [(offered, asked) for offered in PROFILES for asked in PROFILES]
+    for (offered, asked), came_of_it in outcome.items():
+        foretold, _ = qos_check_compatible(PROFILES[offered], PROFILES[asked])
+        assert came_of_it == ('RELIABILITY' if foretold == QoSCompatibility.ERROR else 'yes')
+
+
+def test_nothing_stays_on_the_graph_and_nothing_is_logged(witness, capfd):
+    assert measure_pairs(PROFILES) == measure_pairs(PROFILES)
+    wait_until(lambda: not [n for n in witness.get_node_names() if 'pair' in n])
+    wait_until(lambda: not [n for n, _ in witness.get_topic_names_and_types() if 'pair' in n])
+    logged = capfd.readouterr()
+    assert 'incompatible' not in logged.out + logged.err
+
+
+def test_a_pair_that_tells_nothing_is_no_outcome(monkeypatch):
+    monkeypatch.setattr(qos_pairs, 'TIMEOUT_SEC', 0.0)
+    with pytest.raises(WaitedInVain):
+        measure_pairs(PROFILES)
