@@ -36,7 +36,7 @@ class KinematicsSubscriber(Node):
             x, y = forward_kinematics(*pose)
             solutions = inverse_kinematics(x, y)
         except ValueError as error:
-            self.get_logger().warn(f'ignored a message: {error}')
+            self.get_logger().warning(f'ignored a message: {error}')
             return
         branches = [name for name, solution in solutions.items() if same_pose(pose, solution)]
         match branches:
@@ -64,7 +64,7 @@ class KinematicsSubscriber(Node):
             if not math.isfinite(angles_rad[joint]):
                 raise ValueError(f'the position of {joint} is {angles_rad[joint]}')
         if [name for name in msg.name if name in JOINTS] != list(JOINTS):
-            self.get_logger().warn(
+            self.get_logger().warning(
                 f'the names come as {list(msg.name)}: the angles are taken by name, not by place'
             )
         return math.degrees(angles_rad['joint1']), math.degrees(angles_rad['joint2'])
