@@ -17,13 +17,15 @@ MAX_MESSAGE_BYTES = 32_000_000
 MAX_REPLY = 2 * 65_536
 """Characters of a reply as a Python literal: 64 kB, and a backslash takes two."""
 
+ROOM_MEMORY_BYTES = 2 * 2**30
+"""All processes of a room together; the kernel of a lesson uses 0.15 GB."""
 ROOM_DISK_BYTES = 64 * 2**20
 """All that a room can write, on a file system in memory: logs, caches and plots take 2 MB."""
 ROOM_FILES = 8_192
 """Files and folders in it: each takes memory that its size does not tell."""
 
 PROCESS_LIMITS = {
-    resource.RLIMIT_AS: 3 * 2**30,  # of each process; a lesson with plots and nodes: under 1 GB
+    resource.RLIMIT_AS: 3 * 2**30,  # of each process, asked for or used; a lesson: under 1 GB
     resource.RLIMIT_NPROC: 256,  # processes and threads of a room together; a lesson: some 60
     resource.RLIMIT_CPU: 300,  # seconds of each process; nothing outlives its submission anyway
     resource.RLIMIT_FSIZE: ROOM_DISK_BYTES,  # no file can be larger than the disk

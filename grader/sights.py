@@ -15,15 +15,13 @@ _SYSTEM = ('/usr', '/bin', '/sbin', '/lib', '/lib32', '/lib64', '/libx32')
 _SETTINGS = ('ld.so.cache', 'ld.so.conf', 'ld.so.conf.d', 'alternatives', 'fonts', 'localtime')
 """What programs look up under /etc; the machine's users, hosts and secrets are not among it."""
 _FONTS = 'fontlist-*.json'
-_COMMANDS = ROOT / 'grader' / 'commands.py'
-"""What `ros2` starts from, for answers that ask it: it knows nothing of the grader."""
 
 
 @cache
 def sources() -> tuple[Path, ...]:
     """Return what the rooms see and lies outside the system: each has its number in `shown`."""
     package = Path(my_robot_basics.__file__).parents[1]
-    return (Path(sys.base_prefix).resolve(), Path(sys.prefix), package, _COMMANDS, *_font_list())
+    return (Path(sys.base_prefix).resolve(), Path(sys.prefix), package, *_font_list())
 
 
 def shown(seen: str, *, configuration: str) -> list[str]:
@@ -32,7 +30,7 @@ def shown(seen: str, *, configuration: str) -> list[str]:
     `seen` holds `sources()` by their numbers; matplotlib's `configuration` is where the room's
     own will look for its list of fonts.
     """
-    base, prefix, package, commands, *fonts = sources()
+    base, prefix, package, *fonts = sources()
     options = []
     for name in _SYSTEM:
         if Path(name).is_symlink():
@@ -48,9 +46,8 @@ def shown(seen: str, *, configuration: str) -> list[str]:
     # the course itself is not there, even where it lies inside of what is
     options += ['--tmpfs', str(ROOT)]
     options += ['--ro-bind', f'{seen}/1', str(prefix), '--ro-bind', f'{seen}/2', str(package)]
-    options += ['--ro-bind', f'{seen}/3', str(commands)]
     options += ['--remount-ro', str(ROOT)]
-    for number, path in enumerate(fonts, start=4):
+    for number, path in enumerate(fonts, start=3):
         options += ['--ro-bind', f'{seen}/{number}', f'{configuration}/{path.name}']
     return options
 

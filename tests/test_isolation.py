@@ -120,7 +120,7 @@ def test_an_old_bubblewrap_is_not_enough(monkeypatch):
 
 
 def test_a_sandbox_that_fails_as_a_whole_is_missing(monkeypatch):
-    monkeypatch.setattr('grader.sandbox._HOLD', 'echo no mounts >&2; exit 1')
+    monkeypatch.setattr('grader.bubblewrap._HOLD', 'echo no mounts >&2; exit 1')
     assert 'all of it together' in missing()
     assert 'no mounts' in missing()
 
