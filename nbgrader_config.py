@@ -7,8 +7,8 @@ from pathlib import Path
 
 try:
     from grader.course import Course
+    from grader.database import make_ready
     from grader.feedback import FEEDBACK_PASSES
-    from grader.gradebook import make_ready
     from grader.pipeline import AUTOGRADE_PASSES, SANITIZE_PASSES
     from grader.release import CODE_STUB, PASSES
 

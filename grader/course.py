@@ -44,7 +44,12 @@ class Course:
     @property
     def db_url(self) -> str:
         """The database's address; a writer waits up to 60 s for another one."""
-        return f'sqlite:///{self.gradebook / "gradebook.db"}?timeout=60'
+        return f'sqlite:///{self.database}?timeout=60'
+
+    @property
+    def database(self) -> Path:
+        """The file that holds lessons and scores."""
+        return self.gradebook / 'gradebook.db'
 
     def folder(self, step: str, student_id: str, assignment: str) -> Path:
         """Return nbgrader's folder of a submission at a step, such as 'submitted'."""

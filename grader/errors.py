@@ -5,6 +5,10 @@ class CourseError(Exception):
     """Say what happened, what was expected and what to do next; shown without a traceback."""
 
 
+class GradebookError(CourseError):
+    """The gradebook can't be written to: nothing more is graded before that is mended."""
+
+
 class UnreadableSubmission(CourseError):
     """The submitted file can't be graded: it gets zero, and this text as the reason."""
 

@@ -10,7 +10,8 @@ from nbgrader.preprocessors import ClearHiddenTests, GetGrades
 from traitlets.config import Config
 
 from grader.course import Course
-from grader.gradebook import write_whole
+from grader.files import write_whole
+from grader.gradebook import recover
 from grader.heal import KEY, grade_id
 from grader.page import page
 
@@ -67,6 +68,7 @@ def write_feedback(
     exporter = FeedbackPage(config=Config({'Exporter': {'default_preprocessors': []}}))
     for name in FEEDBACK_PASSES:
         exporter.register_preprocessor(name)
+    recover(course)
     pages = []
     for graded in sorted(course.folder('autograded', '', '').glob('*/*/*.ipynb')):
         student, assignment = graded.parts[-3:-1]

@@ -1,30 +1,28 @@
 """The only writer of nbgrader's database: lessons, scores, executed notebooks."""
 
-import os
-import shutil
-import sys
+import logging
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from datetime import datetime
 from pathlib import Path
 
 import nbformat
 from nbformat import NotebookNode
 from nbgrader.api import Grade, Gradebook, MissingEntry, SubmittedNotebook
-from nbgrader.preprocessors import SaveAutoGrades
-from nbgrader.utils import parse_utc
 
 from grader.course import Course
-from grader.errors import CourseError
+from grader.database import in_sentences, make_database, wait_until_free
+from grader.errors import CourseError, GradebookError
+from grader.files import write_whole
 from grader.heal import KEY, grade_id
 from grader.pipeline import apply, finish, first_reason, resources_of
 from grader.release import PASSES
-from grader.submission import Submission
+from grader.submission import Submission, extra_python_files, handed_in, timestamps
+from grader.turn import Turn
 
 SAVE_CELLS = 'nbgrader.preprocessors.SaveCells'
-NO_ANSWER = 'there is no answer'
-"""Why a text that a person would have graded earns nothing."""
+_BEGUN = '.{}.ipynb.begun'
+"""An executed notebook lies beside its place until all of it is stored."""
 
 
 @dataclass(frozen=True)
@@ -41,51 +39,6 @@ class Stored:
     """Why points are missing: the first reason, or ''."""
 
 
-class SaveGrades(SaveAutoGrades):
-    """Store the verdicts of one notebook, all of them or none.
-
-    nbgrader reads a score off a cell's outputs, and a cell without any would earn its points. So a
-    verdict is wanted too: without one the cell has no score and waits for a person.
-    """
-
-    def preprocess(self, nb: NotebookNode, resources: dict) -> tuple[NotebookNode, dict]:
-        """Store the scores of a notebook that was executed."""
-        at = resources['nbgrader']
-        self.notebook_id, self.assignment_id = at['notebook'], at['assignment']
-        self.student_id, self.db_url = at['student'], at['db_url']
-        dated = {'timestamp': at['timestamp']} if at.get('timestamp') else {}
-        with _one_transaction(self.db_url) as self.gradebook:
-            self.gradebook.update_or_create_student(self.student_id)
-            with self.gradebook.db.no_autoflush:  # it warns of what is half built meanwhile
-                self.gradebook.update_or_create_submission(
-                    self.assignment_id, self.student_id, **dated
-                )
-            for index, cell in enumerate(nb.cells):
-                self.preprocess_cell(cell, resources, index)
-        return nb, resources
-
-    def _add_score(self, cell: NotebookNode, resources: dict) -> None:
-        super()._add_score(cell, resources)
-        grade = self.gradebook.find_grade(
-            grade_id(cell), self.notebook_id, self.assignment_id, self.student_id
-        )
-        verdict = cell.metadata.setdefault(KEY, nbformat.from_dict({}))
-        if cell.cell_type == 'code' and verdict.get('outcome') not in ('passed', 'failed'):
-            grade.auto_score, grade.needs_manual_grade = None, True
-        elif cell.cell_type != 'code' and grade.auto_score is not None:
-            # nobody has to read what nobody wrote
-            verdict |= {'outcome': 'failed', 'reason': NO_ANSWER, 'notes': []}
-
-
-def make_ready(course: Course) -> None:
-    """Make the gradebook's folder, and let nbgrader find the command that makes its database."""
-    course.gradebook.mkdir(parents=True, exist_ok=True)
-    programs = os.environ.get('PATH', os.defpath).split(os.pathsep)
-    ours = str(Path(sys.executable).parent)  # where `alembic` is
-    if ours not in programs:
-        os.environ['PATH'] = os.pathsep.join([ours, *programs])
-
-
 def register(course: Course, assignment: str) -> bool:
     """Tell the database what an assignment consists of; return whether that was news to it.
 
@@ -93,7 +46,7 @@ def register(course: Course, assignment: str) -> bool:
     """
     resources = resources_of(course, assignment)
     tidied = apply(PASSES[: PASSES.index(SAVE_CELLS)], course.source(assignment), resources)
-    make_ready(course)
+    make_database(course)
     with Gradebook(course.db_url) as book:
         known = _checksums_in(book, assignment)
         wanted = {
@@ -122,6 +75,7 @@ def register(course: Course, assignment: str) -> bool:
 def register_before_autograde(*, assignment: str, **_: object) -> None:
     """Register what `nbgrader autograde`, which runs in the course's folder, is going to grade."""
     course = Course.at(Path.cwd())
+    recover(course)
     for name in course.assignments() if assignment == '*' else [assignment]:
         register(course, name)
 
@@ -131,22 +85,23 @@ def store(course: Course, submission: Submission, graded: NotebookNode) -> Store
 
     The same nbgrader passes do it as in `nbgrader autograde`. Manual scores stay, the submitted
     files are only read, and storing twice is the same as once.
+    Whenever it is ended, `recover` finishes it. Raises GradebookError, and changes nothing, where
+    the disk is full or the database can't be had.
     """
-    student, assignment = submission.student_id, submission.assignment
-    at = resources_of(course, assignment, student)
-    at['nbgrader']['timestamp'], notes = _handed_in(submission)
-    graded = nbformat.from_dict(graded)
-    graded.metadata.setdefault(KEY, nbformat.from_dict({'notes': []})).notes += notes
-    former = _find(course, submission)
-    folder = course.folder('autograded', student, assignment)
-    folder.mkdir(parents=True, exist_ok=True)
-    saved = finish(graded, at)
-    write_whole(folder / f'{assignment}.ipynb', nbformat.writes(saved))
-    for extra in (*submission.extra_files, *_timestamps(submission)):
-        copy = folder / extra.name
-        copy.unlink(missing_ok=True)
-        shutil.copy(extra, copy)
-    now = _find(course, submission)
+    begun = _begun(course, submission)
+    try:
+        with in_sentences(course):
+            wait_until_free(course)
+            former = _find(course, submission)
+            begun.parent.mkdir(parents=True, exist_ok=True)
+            write_whole(begun, nbformat.writes(graded))
+            saved = _finish(course, submission, graded)
+            now = _find(course, submission)
+    except (GradebookError, OSError):
+        raise  # that can be mended, and then `recover` goes on
+    except Exception:
+        begun.unlink(missing_ok=True)
+        raise
     return Stored(
         score=now[0],
         max_score=now[1],
@@ -156,9 +111,55 @@ def store(course: Course, submission: Submission, graded: NotebookNode) -> Store
     )
 
 
+def recover(course: Course) -> None:
+    """Store the rest of what was being stored when a run was killed."""
+    found = sorted(course.folder('autograded', '', '').glob(f'*/*/{_BEGUN.format("*")}'))
+    if not found:
+        return
+    turn = Turn.take(course.gradebook)
+    make_database(course)
+    for begun in filter(Path.exists, found):
+        student, assignment = begun.parts[-3:-1]
+        folder = course.folder('submitted', student, assignment)
+        extra = tuple(extra_python_files(folder))
+        submission = Submission(student, assignment, folder / f'{assignment}.ipynb', None, extra)
+        try:
+            with in_sentences(course):
+                wait_until_free(course)
+                _finish(course, submission, nbformat.read(begun, as_version=4))
+        except GradebookError:
+            raise
+        except Exception:  # the lesson has changed since, for instance: it is graded again
+            logging.exception('%s of %s is not stored', assignment, student)
+            begun.unlink()
+    del turn  # whoever had it before keeps it
+
+
+def _finish(course: Course, submission: Submission, graded: NotebookNode) -> NotebookNode:
+    """Store what has begun to be stored: doing it again is the same as doing it once."""
+    student, assignment = submission.student_id, submission.assignment
+    at = resources_of(course, assignment, student)
+    at['nbgrader']['timestamp'], notes = handed_in(submission)
+    graded = nbformat.from_dict(graded)
+    graded.metadata.setdefault(KEY, nbformat.from_dict({'notes': []})).notes += notes
+    folder = course.folder('autograded', student, assignment)
+    saved = finish(graded, at)
+    for extra in (*submission.extra_files, *timestamps(submission)):
+        write_whole(folder / extra.name, extra.read_bytes())
+    write_whole(folder / f'{assignment}.ipynb', nbformat.writes(saved))
+    _begun(course, submission).unlink()
+    return saved
+
+
+def _begun(course: Course, submission: Submission) -> Path:
+    folder = course.folder('autograded', submission.student_id, submission.assignment)
+    return folder / _BEGUN.format(submission.assignment)
+
+
 @contextmanager
 def opened(course: Course) -> Iterator[Gradebook]:
     """Open the database to read in it; every assignment of the course is known to it then."""
+    recover(course)
     for assignment in course.assignments():
         register(course, assignment)
     with Gradebook(course.db_url) as book:
@@ -180,22 +181,6 @@ def waits_for_a_person(grade: Grade) -> bool:
     return grade.auto_score is None and grade.manual_score is None
 
 
-def write_whole(path: Path, text: str) -> None:
-    """Write a file so that nobody ever finds half of it."""
-    aside = path.with_name(f'.{path.name}.new')
-    aside.write_text(text, encoding='utf-8', newline='')
-    os.replace(aside, path)
-
-
-@contextmanager
-def _one_transaction(db_url: str) -> Iterator[Gradebook]:
-    """Open the database; what nbgrader would commit cell by cell is committed at the end."""
-    with Gradebook(db_url) as book:
-        commit, book.db.commit = book.db.commit, book.db.flush
-        yield book
-        commit()
-
-
 def _checksums_in(book: Gradebook, assignment: str) -> dict[str, str] | None:
     try:
         cells = book.find_notebook(assignment, assignment).source_cells
@@ -212,19 +197,3 @@ def _find(course: Course, submission: Submission) -> tuple[float, float, bool] |
             return None
         waits = any(waits_for_a_person(grade) for grade in found.grades)
         return found.score - (found.late_submission_penalty or 0), found.max_score, waits
-
-
-def _timestamps(submission: Submission) -> list[Path]:
-    """Return nbgrader's timestamp.txt, if it lies beside the notebook."""
-    path = submission.path.with_name('timestamp.txt')
-    return [path] if path.is_file() and not path.is_symlink() else []
-
-
-def _handed_in(submission: Submission) -> tuple[datetime | None, list[str]]:
-    """Read when it was handed in (UTC) and what is wrong with that file."""
-    if not (found := _timestamps(submission)):
-        return None, []
-    try:
-        return parse_utc(found[0].read_text(encoding='utf-8').strip() or None), []
-    except (ValueError, OverflowError):
-        return None, ['timestamp.txt holds no date: counted as handed in on time']

@@ -26,7 +26,7 @@ AUTOGRADE_PASSES = (
     'grader.passes.ExecuteRooms',
     'grader.turn.TakeTurns',
     'nbgrader.preprocessors.LimitOutput',
-    'grader.gradebook.SaveGrades',
+    'grader.saving.SaveGrades',
     'nbgrader.preprocessors.AssignLatePenalties',
     'nbgrader.preprocessors.CheckCellMetadata',
 )

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from grader.course import Course
-from grader.gradebook import write_whole
+from grader.files import write_whole
 from grader.records import Record, records, verdicts
 from grader.text import spreadsheet_safe
 

@@ -4,10 +4,12 @@ import json
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
+from datetime import datetime
 from pathlib import Path
 
 import nbformat
 from nbformat import NotebookNode
+from nbgrader.utils import parse_utc
 
 from grader.errors import UnreadableSubmission
 
@@ -53,6 +55,22 @@ def read_submission(folder: Path, *, student_id: str, assignment: str) -> Submis
 def extra_python_files(folder: Path) -> list[Path]:
     """Return the plain .py files that lie directly in `folder`, sorted; links don't count."""
     return sorted(p for p in folder.glob('*.py') if p.is_file() and not p.is_symlink())
+
+
+def timestamps(submission: Submission) -> list[Path]:
+    """Return nbgrader's timestamp.txt, if it lies beside the notebook."""
+    path = submission.path.with_name('timestamp.txt')
+    return [path] if path.is_file() and not path.is_symlink() else []
+
+
+def handed_in(submission: Submission) -> tuple[datetime | None, list[str]]:
+    """Read when it was handed in (UTC) and what is wrong with that file."""
+    if not (found := timestamps(submission)):
+        return None, []
+    try:
+        return parse_utc(found[0].read_text(encoding='utf-8').strip() or None), []
+    except (ValueError, OverflowError):
+        return None, ['timestamp.txt holds no date: counted as handed in on time']
 
 
 def read_notebook(path: Path) -> NotebookNode:
