@@ -20,6 +20,7 @@ UNTESTED = pytest.StashKey[list]()
 """The tests that a machine without a sandbox leaves out."""
 
 LONG = (
+    'attacks',
     'same_scores',
     'sample_class',
     'doctor_faults',
