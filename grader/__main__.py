@@ -15,7 +15,7 @@ from grader.intake import lines
 from grader.isolation import missing, protections
 from grader.release import release
 from grader.scores import write_scores
-from grader.table import print_rows
+from grader.table import changes, print_rows
 from grader.text import printable
 
 INTERRUPTED = 130
@@ -61,9 +61,16 @@ def _collect(course: Course, asked: argparse.Namespace) -> int:
 def _grade(course: Course, asked: argparse.Namespace) -> int:
     submissions = find_submissions(course, assignment=asked.assignment, student_id=asked.student)
     graded = grade_all(
-        course, submissions, seed=asked.seed or '', trust_students=asked.trust_students
+        course,
+        submissions,
+        seed=asked.seed or '',
+        trust_students=asked.trust_students,
+        force=asked.force,
     )
     rows = list(print_rows(graded, submissions))
+    if changed := changes(rows):
+        print(f'{len(changed)} score{"s" * (len(changed) > 1)} changed:')
+        print(*(f'  {line}' for line in changed), sep='\n')
     failed = sum(row.stored is None for row in rows)
     waiting = sum(row.stored is not None and row.stored.pending for row in rows)
     print(
@@ -132,6 +139,9 @@ def _parser() -> argparse.ArgumentParser:
         '--trust-students',
         action='store_true',
         help='grade even where this machine has no sandbox for their code (./course doctor)',
+    )
+    verb.add_argument(
+        '--force', action='store_true', help='grade again what has not changed since, too'
     )
     verb.set_defaults(run=_grade)
 

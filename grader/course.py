@@ -89,10 +89,10 @@ class Course:
         It is the same for the whole class and at each re-grading, and another one once the
         lesson's text changes; nobody without the course's secret can tell it.
         """
-        text = f'{assignment}:{self._version(assignment)}'
+        text = f'{assignment}:{self.version(assignment)}'
         return hmac.new(self._secret(), text.encode(), hashlib.sha256).hexdigest()
 
-    def _version(self, assignment: str) -> str:
+    def version(self, assignment: str) -> str:
         """Return a hash of what the lesson says: outputs and layout don't count."""
         cells = [
             (cell.cell_type, cell.source, cell.metadata.get('nbgrader', {}))

@@ -1,6 +1,7 @@
 """The whole flow: read a submission, heal it, run it in its rooms, store what came of it."""
 
 import logging
+import time
 from collections import deque
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future
@@ -9,14 +10,17 @@ from pathlib import Path
 
 from nbformat import NotebookNode
 
+from grader.backups import bring_in_order
 from grader.course import Course
-from grader.errors import CourseError
+from grader.database import in_sentences
+from grader.errors import CourseError, GradebookError
 from grader.execute import executed
 from grader.gradebook import Stored, register, store
 from grader.heal import heal
 from grader.isolation import isolated
 from grader.pipeline import prepare, unanswered
 from grader.pool import IN_FLIGHT, Pool
+from grader.reuse import conditions, held, kept, key_of, remember
 from grader.submission import Submission, read_submission
 from grader.turn import Turn
 
@@ -42,6 +46,21 @@ class Graded:
     submission: Submission
     notebook: NotebookNode
     """With a verdict in each grade cell."""
+    seconds: float | None = None
+    """How long that took; None where nothing was run, for it had been before."""
+
+
+@dataclass(frozen=True)
+class _Way:
+    """How the submissions of one run are graded."""
+
+    seeds: dict[str, str]
+    """By assignment."""
+    given: dict[str, str]
+    """What else a result depends on, as a hash, by assignment."""
+    trust_students: bool
+    force: bool
+    """Whether to run what was run before, too."""
 
 
 @dataclass(frozen=True)
@@ -53,6 +72,10 @@ class Row:
     stored: Stored | None
     """What the gradebook holds now; None where nothing could be stored."""
     reason: str
+    seconds: float | None = None
+    """How long it was graded; None where nothing was run."""
+    reused: bool = False
+    """Whether nothing has changed since, so that the stored result holds."""
 
 
 def grade_all(
@@ -62,59 +85,87 @@ def grade_all(
     seed: str = '',
     in_flight: int = IN_FLIGHT,
     trust_students: bool = False,
+    force: bool = False,
 ) -> Iterator[Row]:
     """Grade submissions, several at a time, and store them in their order, one after the other.
 
     Each gets its row, whatever becomes of it. `seed` replays inputs that hidden tests choose; by
-    default they are the assignment's own. Doing it again gives the same. Raises CourseError, and
+    default they are the assignment's own. Doing it again gives the same; where nothing has
+    changed the stored result holds, unless told to `force` a new one. Raises CourseError, and
     runs nothing, where there is no sandbox, unless told to `trust_students`.
     """
-    isolated(trust_students=trust_students)
-    with Turn.take(course.gradebook):
+    in_sandbox = isolated(trust_students=trust_students)
+    way = _Way(seeds={}, given={}, trust_students=trust_students, force=force)
+    with in_sentences(course), Turn.take(course.gradebook):
+        bring_in_order(course)
         for assignment in sorted({found.assignment for found in submissions if not found.problem}):
             register(course, assignment)
             course.master(assignment)  # says now what would be wrong with each submission
+            way.seeds[assignment] = the = seed or course.seed(assignment)
+            way.given[assignment] = conditions(course, assignment, seed=the, isolated=in_sandbox)
     under_way: deque[tuple[HandedIn, Future[Graded]]] = deque()
     with Pool(in_flight) as pool:
         for found in submissions:
-            under_way.append((found, pool.submit(_graded, course, found, seed, trust_students)))
+            under_way.append((found, pool.submit(_graded, course, found, way)))
             if len(under_way) >= AHEAD * in_flight:
                 yield _row(course, *under_way.popleft())
         while under_way:
             yield _row(course, *under_way.popleft())
 
 
-async def _graded(course: Course, found: HandedIn, seed: str, trust_students: bool) -> Graded:
-    """Read, heal and run one submission; nothing is stored yet."""
+async def _graded(course: Course, found: HandedIn, way: _Way) -> Graded:
+    """Read, heal and run one submission, or find what came of it before; nothing is stored yet."""
     if found.problem:
         raise CourseError(found.problem)
     assignment = found.assignment
     submission = read_submission(found.folder, student_id=found.student_id, assignment=assignment)
+    key = key_of(submission, way.given[assignment])
+    if not way.force and (before := kept(course, submission, key)):
+        return Graded(submission, before)
+    start = time.monotonic()
+    notebook = await judged(
+        course, submission, seed=way.seeds[assignment], trust_students=way.trust_students
+    )
+    remember(notebook, key)
+    return Graded(submission, notebook, seconds=time.monotonic() - start)
+
+
+async def judged(
+    course: Course, submission: Submission, *, seed: str, trust_students: bool
+) -> NotebookNode:
+    """Heal and run one submission with the inputs of a seed; return it with its verdicts."""
     if submission.problem:
-        return Graded(submission, unanswered(course, submission, submission.problem))
+        return unanswered(course, submission, submission.problem)
+    assignment = submission.assignment
     healed = heal(submission.notebook, course.master(assignment))
     execution = await executed(
         prepare(course, assignment, healed.notebook),
         extra_files=submission.extra_files,
-        seed=seed or course.seed(assignment),
+        seed=seed,
         trust_students=trust_students,
     )
-    return Graded(submission, execution.notebook)
+    return execution.notebook
 
 
 def _row(course: Course, found: HandedIn, work: Future[Graded]) -> Row:
     """Wait for a submission's turn to be stored, and store it."""
-    stored, reason = None, found.problem
+    stored, reason, seconds, reused = None, found.problem, None, False
     try:
         graded = work.result()
-        with Turn.take(course.gradebook):
-            stored = store(course, graded.submission, graded.notebook)
+        seconds = graded.seconds
+        with in_sentences(course), Turn.take(course.gradebook):
+            if seconds is None:
+                stored = held(course, graded.submission, graded.notebook)
+                reused = stored is not None
+            stored = stored or store(course, graded.submission, graded.notebook)
         reason = stored.reason
+    except GradebookError:
+        raise  # the next one could not be stored either
     except Exception as error:  # the next submission can do nothing for it
         if not found.problem:
             logging.exception('%s of %s', found.assignment, found.student_id)
             reason = f'not graded, the grader failed: {type(error).__name__}: {error}'
-    return Row(found.student_id, found.assignment, stored, reason)
+    return Row(found.student_id, found.assignment, stored, reason, seconds, reused)
 
 
 def find_submissions(

@@ -54,13 +54,26 @@ def score_of(row: Row) -> str:
 
 
 def why(row: Row) -> str:
-    """Return the reason of a row as one line, and what its score was before, if that changed."""
+    """Return the reason of a row as one line, and what is new about it, or that nothing is."""
     stored, text = row.stored, printable(row.reason)
     if stored and stored.pending and not text:
         text = 'the rest is graded by hand'
     if stored and stored.former is not None and stored.former != stored.score:
         text = f'(was {stored.former:g}) {text}'
+    elif row.reused:
+        text = f'(unchanged) {text}'
     return text
+
+
+def changes(rows: Iterable[Row]) -> list[str]:
+    """Return a line for each score that is not what it was before."""
+    return [
+        f'{printable(row.student_id)}  {printable(row.assignment)}  '
+        f'{row.stored.former:g} → {row.stored.score:g} '
+        f'({row.stored.score - row.stored.former:+g})'
+        for row in rows
+        if row.stored and row.stored.former not in (None, row.stored.score)
+    ]
 
 
 def _widest(title: str, names: Iterable[str]) -> int:

@@ -97,7 +97,7 @@ def test_a_notebook_without_an_answer_cell_is_graded_as_one_without_answers(cour
 
 
 def test_what_is_out_of_place_is_told_and_stops_nothing(course):
-    submit(course, 'ada', answered(course, RIGHT))
+    submit(course, 'ada', answered(course, RIGHT, explained='so'))
     submitted = course.folder('submitted', '', '')
     (submitted / 'loose.ipynb').touch()
     (submitted / 'bob').mkdir()
@@ -158,9 +158,12 @@ def test_the_table_shows_scores_reasons_and_no_escape(course, capsys):
     assert lines[:3] == [
         'student    assignment  score      reason',
         'a\\x1b[31m  00_toy      0/5        expected 2, saw 3: add it to itself',
-        '小明       00_toy      3/5 …',
+        '小明       00_toy      3/5 …      the rest is graded by hand',
     ]
-    assert lines[4] == 'a\\x1b[31m  00_toy      3/5        (was 0)'
+    assert lines[4:] == [
+        'a\\x1b[31m  00_toy      3/5        (was 0) there is no answer',
+        '小明       00_toy      3/5 …      (unchanged) the rest is graded by hand',
+    ]
 
 
 def test_a_demo_compares_what_came_with_what_the_names_say(course, tmp_path, capsys, monkeypatch):
@@ -168,7 +171,7 @@ def test_a_demo_compares_what_came_with_what_the_names_say(course, tmp_path, cap
     samples = tmp_path / 'samples'
     samples.mkdir()
     for name, answer in (('pass-right', RIGHT), ('fail-wrong', WRONG), ('zero-wrong', WRONG)):
-        source = submit(course, 'x', answered(course, answer))
+        source = submit(course, 'x', answered(course, answer, explained='so'))
         source.rename(samples / f'{TOY}-{name}.ipynb')
     (samples / f'{TOY}-fail-no_json.ipynb').write_text('')
     assert demo(samples, root=course.root)

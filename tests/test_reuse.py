@@ -1,0 +1,269 @@
+import sqlite3
+
+import nbformat
+import pytest
+from course_maker import TOY, answered, executed, make_course, submit, toy_lesson, write_source
+from nbgrader.api import Gradebook
+
+from grader import grade, reuse
+from grader.__main__ import main
+from grader.course import Course
+from grader.execute import Execution
+from grader.grade import find_submissions, grade_all
+from grader.gradebook import register
+from grader.heal import KEY
+from grader.records import records
+from grader.release import release
+from grader.table import changes
+
+RIGHT = 'def double(x):\n    return 2 * x'
+WRONG = 'def double(x):\n    return x + 1'
+
+
+@pytest.fixture(scope='module')
+def released(tmp_path_factory):
+    course = make_course(tmp_path_factory.mktemp('reuse'))
+    release(course)
+    register(course, TOY)
+    return course
+
+
+@pytest.fixture
+def looked():
+    """The answers that were run, in their order."""
+    return []
+
+
+@pytest.fixture
+def course(released, tmp_path, monkeypatch, looked):
+    """A gradebook of its own; in the rooms' place, a look at the answer's text."""
+
+    async def look(notebook, *, extra_files=(), seed='', trust_students=False):
+        answer = next(cell.source for cell in notebook.cells if cell.id == 'double')
+        looked.append(answer)
+        reason = '?' if 'no room' in answer else '' if '2 * x' in answer else 'count again'
+        if 'harder' in ''.join(cell.source for cell in notebook.cells):
+            reason = reason or 'not good enough'
+        reasons = {'double-check': '', 'double-hidden': reason}
+        return Execution(notebook=executed(notebook, reasons), verdicts=(), notes=())
+
+    monkeypatch.setattr(grade, 'executed', look)
+    gradebook = tmp_path / 'gradebook'
+    gradebook.mkdir()
+    # making a database takes long
+    (gradebook / 'gradebook.db').write_bytes((released.gradebook / 'gradebook.db').read_bytes())
+    yield Course(root=released.root, gradebook=gradebook)
+    write_source(released, toy_lesson())
+    release(released)
+
+
+def rows_of(course, **options):
+    return {row.student_id: row for row in grade_all(course, find_submissions(course), **options)}
+
+
+def score_by_hand(course, student, points):
+    with Gradebook(course.db_url) as book:
+        grade = book.find_grade('explain', TOY, TOY, student)
+        grade.manual_score, grade.needs_manual_grade = points, False
+        book.db.commit()
+
+
+def graded_path(course, student):
+    return course.folder('autograded', student, TOY) / f'{TOY}.ipynb'
+
+
+def test_what_has_not_changed_is_not_run_again_and_says_so(course, looked):
+    submit(course, 'ada', answered(course, RIGHT, explained='so'))
+    submit(course, 'bob', answered(course, WRONG))
+    submit(course, 'eve', b'')
+    first = rows_of(course)
+    assert not any(row.reused for row in first.values())
+    kept = graded_path(course, 'ada').read_bytes()
+    again = rows_of(course)
+    assert len(looked) == 2
+    for name, row in again.items():
+        assert row.reused
+        assert row.seconds is None
+        assert row.reason == first[name].reason
+        assert row.stored.score == row.stored.former == first[name].stored.score
+        assert row.stored.pending == first[name].stored.pending
+    assert graded_path(course, 'ada').read_bytes() == kept
+
+
+def test_force_runs_it_again(course, looked):
+    submit(course, 'ada', answered(course, RIGHT))
+    rows_of(course)
+    assert not rows_of(course, force=True)['ada'].reused
+    assert len(looked) == 2
+
+
+def another_answer(course, monkeypatch):
+    submit(course, 'ada', answered(course, WRONG))
+
+
+def a_file_beside_it(course, monkeypatch):
+    (course.folder('submitted', 'ada', TOY) / 'helper.py').write_text('x = 1')
+
+
+def another_time(course, monkeypatch):
+    (course.folder('submitted', 'ada', TOY) / 'timestamp.txt').write_text('2026-01-02 03:04 UTC')
+
+
+def another_lesson(course, monkeypatch):
+    lesson = toy_lesson()
+    lesson.cells[7].source += '\n# harder'
+    write_source(course, lesson)
+
+
+def another_stub(course, monkeypatch):
+    stub = course.release(TOY)
+    stub.cells[4].source += '\n# write here'
+    nbformat.write(stub, course.release_path(TOY))
+
+
+def other_machinery(course, monkeypatch):
+    monkeypatch.setattr(reuse, 'machinery', lambda: 'another rclpy')
+
+
+def no_sandbox(course, monkeypatch):
+    monkeypatch.setattr(grade, 'isolated', lambda trust_students: False)
+
+
+def a_notebook_of_nbgraders_own(course, monkeypatch):
+    notebook = nbformat.read(graded_path(course, 'ada'), as_version=4)
+    del notebook.metadata[KEY]
+    nbformat.write(notebook, graded_path(course, 'ada'))
+
+
+def a_damaged_notebook(course, monkeypatch):
+    path = graded_path(course, 'ada')
+    path.write_bytes(path.read_bytes()[:-9])
+
+
+@pytest.mark.parametrize(
+    'change',
+    [
+        another_answer,
+        a_file_beside_it,
+        another_time,
+        another_lesson,
+        another_stub,
+        other_machinery,
+        no_sandbox,
+        a_notebook_of_nbgraders_own,
+        a_damaged_notebook,
+    ],
+)
+def test_whatever_a_result_depends_on_makes_it_new(course, looked, monkeypatch, change):
+    monkeypatch.setattr(grade, 'isolated', lambda trust_students: True)
+    submit(course, 'ada', answered(course, RIGHT))
+    rows_of(course)
+    assert rows_of(course)['ada'].reused
+    change(course, monkeypatch)
+    assert not rows_of(course)['ada'].reused
+    assert len(looked) == 2
+
+
+def test_another_seed_makes_it_new(course, looked):
+    submit(course, 'ada', answered(course, RIGHT))
+    rows_of(course)
+    assert not rows_of(course, seed='abc')['ada'].reused
+    assert rows_of(course, seed='abc')['ada'].reused
+    assert len(looked) == 2
+
+
+def test_outputs_of_the_lesson_change_nothing(course, looked):
+    submit(course, 'ada', answered(course, RIGHT))
+    rows_of(course)
+    lesson = toy_lesson()
+    lesson.cells[2].outputs = []
+    write_source(course, lesson)
+    assert rows_of(course)['ada'].reused
+
+
+def test_the_graders_own_failure_is_never_taken_for_a_result(course, looked):
+    submit(course, 'ada', answered(course, '# no room'))
+    assert rows_of(course)['ada'].stored.pending
+    assert not rows_of(course)['ada'].reused
+    assert len(looked) == 2
+
+
+def test_what_the_gradebook_lost_or_holds_otherwise_is_stored_again_without_running(
+    course, looked
+):
+    submit(course, 'ada', answered(course, RIGHT))
+    rows_of(course)
+    with Gradebook(course.db_url) as book:
+        book.find_grade('double-hidden', TOY, TOY, 'ada').auto_score = 0.5
+        book.db.commit()
+    row = rows_of(course)['ada']
+    assert (row.stored.former, row.stored.score, row.reused) == (1.5, 3.0, False)
+    with Gradebook(course.db_url) as book:
+        book.remove_submission(TOY, 'ada')
+    row = rows_of(course)['ada']
+    assert (row.stored.former, row.stored.score, row.reused) == (None, 3.0, False)
+    assert rows_of(course)['ada'].reused
+    assert len(looked) == 1
+
+
+def test_a_persons_score_is_kept_and_not_asked_for_again(course):
+    submit(course, 'ada', answered(course, RIGHT, explained='so'))
+    rows_of(course)
+    score_by_hand(course, 'ada', 1.5)
+    row = rows_of(course)['ada']
+    assert (row.reused, row.stored.score, row.stored.pending) == (True, 4.5, False)
+    with sqlite3.connect(course.gradebook / 'gradebook.db') as database:
+        asked = 'select count(*) from grade where needs_manual_grade'
+        assert database.execute(asked).fetchone() == (0,)
+    assert rows_of(course, force=True)['ada'].stored.score == 4.5
+
+
+def test_a_lesson_that_was_released_again_grades_its_submissions_again(course, looked, capsys):
+    submit(course, 'ada', answered(course, RIGHT, explained='so'))
+    submit(course, 'bob', answered(course, WRONG))
+    assert main(['grade'], course=course) == 0
+    assert 'changed' not in capsys.readouterr().out
+    score_by_hand(course, 'ada', 1.5)
+    another_lesson(course, None)
+    assert main(['release', TOY], course=course) == 0
+    capsys.readouterr()
+    assert main(['grade'], course=course) == 0
+    assert '1 score changed:\n  ada  00_toy  4.5 → 2.5 (-2)\n' in capsys.readouterr().out
+    assert len(looked) == 4
+    by_hand = [r for r in records(course) if r.by_hand]
+    assert [(r.student_id, r.grade_id, r.score) for r in by_hand] == [('ada', 'explain', 1.5)]
+    assert main(['grade'], course=course) == 0
+    assert len(looked) == 4
+    assert main(['grade', '--force'], course=course) == 0
+    assert len(looked) == 6
+
+
+def test_only_scores_that_changed_are_listed(course):
+    submit(course, 'ada', answered(course, RIGHT))
+    submit(course, 'bob', answered(course, WRONG))
+    assert changes(rows_of(course).values()) == []
+    submit(course, 'bob', answered(course, RIGHT))
+    assert changes(rows_of(course).values()) == ['bob  00_toy  1 → 3 (+2)']
+
+
+def test_the_hash_of_the_machinery_holds_code_and_versions(tmp_path, monkeypatch):
+    from grader import versions
+
+    seen = {versions.machinery()}
+    (tmp_path / '__pycache__').mkdir()
+    (tmp_path / 'code.py').write_text('1')
+    monkeypatch.setattr(versions.my_robot_basics, '__file__', str(tmp_path / '__init__.py'))
+    for change in (
+        lambda: None,
+        lambda: (tmp_path / 'code.py').write_text('2'),
+        lambda: monkeypatch.setattr(versions, 'distributions', lambda: []),
+        lambda: monkeypatch.setattr(versions.platform, 'python_version', lambda: '3.99'),
+    ):
+        change()
+        versions.machinery.cache_clear()
+        seen.add(versions.machinery())
+        (tmp_path / '__pycache__' / 'code.pyc').write_text(str(len(seen)))
+        versions.machinery.cache_clear()
+        assert versions.machinery() in seen
+    versions.machinery.cache_clear()
+    assert len(seen) == 5
