@@ -7,9 +7,20 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from grader.course import Course
+from grader.database import in_sentences, wait_until_free
+from grader.gradebook import recover
 
 KEPT = 10
 """So many backups; the oldest goes when there is one more."""
+
+
+def bring_in_order(course: Course) -> None:
+    """Finish what a run that was killed had begun, and back the database up, before a run."""
+    recover(course)
+    with in_sentences(course):
+        if course.database.exists():
+            wait_until_free(course)
+            back_up(course)
 
 
 def back_up(course: Course) -> Path | None:

@@ -105,12 +105,14 @@ class Course:
         if not path.exists():
             self.gradebook.mkdir(parents=True, exist_ok=True)
             fresh = path.with_name(f'.course_secret.{secrets.token_hex(8)}')
-            fresh.touch(mode=0o600)
-            fresh.write_text(secrets.token_hex(32), encoding='ascii')
-            # whole or not at all, and one only where two begin at once
-            with contextlib.suppress(FileExistsError):
-                os.link(fresh, path)
-            fresh.unlink()
+            try:
+                fresh.touch(mode=0o600)
+                fresh.write_text(secrets.token_hex(32), encoding='ascii')
+                # whole or not at all, and one only where two begin at once
+                with contextlib.suppress(FileExistsError):
+                    os.link(fresh, path)
+            finally:
+                fresh.unlink(missing_ok=True)
         return bytes.fromhex(path.read_text(encoding='ascii'))
 
     def _unknown(self, assignment: str) -> str:

@@ -91,6 +91,7 @@ async def executed(
 ) -> Execution:
     """Do what `execute` does, on the running event loop."""
     graded = nbformat.from_dict(notebook)
+    graded.metadata.setdefault(KEY, nbformat.from_dict({'notes': []})).seed = seed
     if problem := graded.metadata.get(KEY, {}).get('problem'):
         verdicts = refuse(graded, problem)
     else:

@@ -2,6 +2,7 @@
 
 import asyncio
 import os
+import sys
 import threading
 from collections.abc import Awaitable, Callable
 from concurrent.futures import Future
@@ -32,9 +33,16 @@ class Pool:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Cancel what still runs, let it clean up, and end the loop."""
+        """Cancel what still runs, let it clean up, and end the loop.
+
+        Another Ctrl-C meanwhile changes nothing: it takes seconds, and else leaves kernels behind.
+        """
         self._loop.call_soon_threadsafe(self._left.set)
-        self._thread.join()
+        while self._thread.is_alive():
+            try:
+                self._thread.join()
+            except KeyboardInterrupt:
+                print('\nstill ending what was running: a few seconds more', file=sys.stderr)
 
     def submit(
         self, work: Callable[..., Awaitable[Result]], *args: Any, **kwargs: Any

@@ -1,0 +1,80 @@
+"""Grade once more with given inputs, beside what the gradebook holds, and store nothing."""
+
+from collections.abc import Iterator, Mapping, Sequence
+
+import nbformat
+from nbformat import NotebookNode
+
+from grader.course import Course
+from grader.errors import CourseError
+from grader.grade import HandedIn, judged
+from grader.heal import KEY, grade_id, role
+from grader.pool import Pool
+from grader.records import verdicts
+from grader.submission import read_submission
+from grader.text import printable
+
+RECORDED = 'recorded'
+"""Stands for the seed that a submission's stored result came from."""
+
+
+def replay(
+    course: Course,
+    submissions: Sequence[HandedIn],
+    *,
+    seed: str = RECORDED,
+    trust_students: bool = False,
+) -> Iterator[tuple[str, bool]]:
+    """Yield a line for each check of each submission, and whether it is as it is stored.
+
+    Raises CourseError where no seed is recorded.
+    """
+    found = [each for each in submissions if not each.problem]
+    seeds = [recorded_seed(course, each) if seed == RECORDED else seed for each in found]
+    with Pool() as pool:
+        work = [
+            pool.submit(
+                judged,
+                course,
+                read_submission(
+                    each.folder, student_id=each.student_id, assignment=each.assignment
+                ),
+                seed=its,
+                trust_students=trust_students,
+            )
+            for each, its in zip(found, seeds, strict=True)
+        ]
+        for each, its, result in zip(found, seeds, work, strict=True):
+            yield f'{printable(each.student_id)}  {each.assignment}  seed {its}', True
+            if its != course.seed(each.assignment):
+                yield '  (the course now uses another seed: the lesson was changed since)', True
+            stored = verdicts(course, each.student_id, each.assignment)
+            for cell in result.result().cells:
+                if role(cell) == 'grade' and cell.cell_type == 'code':
+                    yield _compared(grade_id(cell), cell.metadata[KEY], stored)
+
+
+def recorded_seed(course: Course, found: HandedIn) -> str:
+    """Return the seed of a submission's stored result. Raises CourseError where there is none."""
+    folder = course.folder('autograded', found.student_id, found.assignment)
+    path = folder / f'{found.assignment}.ipynb'
+    graded = nbformat.read(path, as_version=4) if path.exists() else NotebookNode(metadata={})
+    seed = graded.metadata.get(KEY, {}).get('seed')
+    if not seed:
+        raise CourseError(
+            f'no seed is recorded for {found.assignment} of {found.student_id}: it was not '
+            'graded yet, or could not be read. Give a seed: --seed HEX'
+        )
+    return seed
+
+
+def _compared(name: str, now: Mapping, stored: Mapping[str, Mapping]) -> tuple[str, bool]:
+    then = stored.get(name, {})
+    same = (now['outcome'], now['reason']) == (then.get('outcome'), then.get('reason'))
+    line = f'  {name}  {_told(now)}'
+    return (f'{line}  as stored', True) if same else (f'{line}  STORED: {_told(then)}', False)
+
+
+def _told(verdict: Mapping) -> str:
+    said = verdict.get('outcome') or 'nothing'
+    return printable(f'{said}: {verdict["reason"]}' if verdict.get('reason') else said)

@@ -1,0 +1,127 @@
+"""Grading that is killed and started again loses nothing, and nothing comes out differently."""
+
+import multiprocessing
+import random
+import shutil
+import sqlite3
+from contextlib import closing
+
+import pytest
+import survivor
+from course_maker import TOY, answered, make_course, submit
+
+from grader.course import Course
+from grader.gradebook import register
+from grader.records import records
+from grader.release import release
+
+RIGHT = '# {}\ndef double(x):\n    return 2 * x'
+WRONG = '# {}\ndef double(x):\n    return x + 1'
+
+
+@pytest.fixture(scope='module')
+def start():
+    """Starts a run in a process of its own, and waits for its end."""
+    context = multiprocessing.get_context('forkserver')
+    context.set_forkserver_preload(['grader.__main__'])
+
+    def start_run(course, log, kill_at=0):
+        log.write_text('')
+        arguments = (str(course.root), str(course.gradebook), str(log), kill_at)
+        process = context.Process(target=survivor.run, args=arguments)
+        process.start()
+        process.join()
+        lines = log.read_text(encoding='utf-8').splitlines()
+        judged = {line.removeprefix('judged ') for line in lines if line.startswith('judged ')}
+        return process.exitcode, judged, lines
+
+    return start_run
+
+
+@pytest.fixture(scope='module')
+def handed_in(tmp_path_factory):
+    """A class that nobody has graded; one of it handed in more than a notebook."""
+    course = make_course(tmp_path_factory.mktemp('survival'))
+    release(course)
+    register(course, TOY)
+    for student, answer in (('ada', RIGHT), ('bob', WRONG), ('zoe', RIGHT)):
+        notebook = submit(course, student, answered(course, answer.format(student)))
+    notebook.with_name('helper.py').write_text('x = 1')
+    notebook.with_name('timestamp.txt').write_text('2026-01-02 03:04:05 UTC')
+    submit(course, 'eve', b'no notebook')
+    course.seed(TOY)
+    return course
+
+
+@pytest.fixture(scope='module')
+def uninterrupted(handed_in, start, tmp_path_factory):
+    """What a run that nobody ended has stored, and how many calls it took."""
+    folder = tmp_path_factory.mktemp('uninterrupted')
+    course = fresh(handed_in, folder / 'gradebook')
+    code, judged, lines = start(course, folder / 'log')
+    status, calls = lines[-1].split()
+    assert (code, status, judged) == (0, '0', {'ada', 'bob', 'zoe'})
+    return stored(course), int(calls)
+
+
+def fresh(handed_in, gradebook):
+    shutil.rmtree(gradebook, ignore_errors=True)
+    shutil.copytree(handed_in.gradebook, gradebook)
+    return Course(root=handed_in.root, gradebook=gradebook)
+
+
+def stored(course):
+    """Return all that the gradebook holds. Where a run began to store, it goes on first."""
+    rows = records(course)
+    with closing(sqlite3.connect(course.database)) as database:
+        assert database.execute('PRAGMA integrity_check').fetchone() == ('ok',)
+        times = database.execute('SELECT timestamp FROM submitted_assignment').fetchall()
+    kept = course.folder('autograded', '', '')
+    files = {str(p.relative_to(kept)): p.read_bytes() for p in kept.rglob('*') if p.is_file()}
+    return rows, sorted(times, key=str), files
+
+
+def done(course):
+    """Return the students whose result is on the disk already."""
+    return {
+        path.parts[-3] for path in course.folder('autograded', '', '').glob(f'*/*/{TOY}.ipynb')
+    }
+
+
+def grade_with_kills(handed_in, uninterrupted, start, folder, moments):
+    """Grade, and be killed at such parts of a whole run; each time go on from there."""
+    whole, calls = uninterrupted
+    course = fresh(handed_in, folder / 'gradebook')
+    kills = 0
+    for moment in moments:
+        before = done(course)
+        code, judged, _ = start(course, folder / 'log', kill_at=max(1, int(moment * calls)))
+        assert not judged & before
+        if code == 0:  # so much was done before that this run ended sooner
+            assert stored(course) == whole
+            course = fresh(handed_in, folder / 'gradebook')
+        else:
+            assert code == -9
+            kills += 1
+    before = done(course)
+    code, judged, lines = start(course, folder / 'log')
+    assert (code, lines[-1].split()[0]) == (0, '0')
+    assert not judged & before
+    assert stored(course) == whole
+    return kills
+
+
+def test_a_run_killed_at_any_moment_goes_on_and_ends_as_if_nothing_had_been(
+    handed_in, uninterrupted, start, tmp_path
+):
+    moments = [0.5, 0.7, 0.4, 0.9, 0.8]
+    assert grade_with_kills(handed_in, uninterrupted, start, tmp_path, moments)
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(3600)
+def test_fifty_kills_change_nothing(handed_in, uninterrupted, start, tmp_path):
+    chance, kills = random.Random(5), 0
+    while kills < 50:
+        moments = [chance.random() for _ in range(10)]
+        kills += grade_with_kills(handed_in, uninterrupted, start, tmp_path, moments)
