@@ -244,14 +244,32 @@ def test_a_dragged_slider_moves_the_arm(opened):
     cell = lesson.shown('sliders')
     image = cell.locator('.jp-OutputArea img')
     expect(image).to_have_attribute('alt', re.compile('θ1 = 30.0°'))
+    readout = drag_first_slider(lesson, cell, before='30')
+    expect(image).to_have_attribute('alt', re.compile(f'θ1 = {readout}.0°'))
+
+
+def test_a_dragged_target_moves_the_arm_over_the_topic(opened):
+    lesson = opened('04_subscriber')
+    lesson.command('notebook:run-cell', lesson.index('imports'))
+    lesson.command('notebook:run-cell', lesson.index('drag'))
+    cell = lesson.shown('drag')
+    image = cell.locator('.jp-OutputArea img')
+    before = image.get_attribute('src')
+    drag_first_slider(lesson, cell, before='1.20')
+    expect(image).not_to_have_attribute('src', before)
+
+
+def drag_first_slider(lesson, cell, *, before):
+    """Drag it to the right, away from the number that it shows; return what it shows then."""
+    readout = cell.locator('.widget-readout').first
+    expect(readout).to_have_text(before)
     handle = cell.locator('.noUi-handle').first
     handle.hover()
     lesson.page.mouse.down()
     lesson.page.mouse.move(handle.bounding_box()['x'] + 50, handle.bounding_box()['y'] + 5)
     lesson.page.mouse.up()
-    readout = cell.locator('.widget-readout').first
-    expect(readout).not_to_have_text('30')
-    expect(image).to_have_attribute('alt', re.compile(f'θ1 = {readout.inner_text()}.0°'))
+    expect(readout).not_to_have_text(before)
+    return readout.inner_text()
 
 
 def test_validate_says_what_is_wrong_and_then_that_all_is_right(opened):
