@@ -1,7 +1,8 @@
-"""The command line: python -m grader {release,collect,grade,scores,feedback,demo,doctor}."""
+"""The command line: `python -m grader VERB`, which is what `./course VERB` runs."""
 
 import argparse
 import sys
+from datetime import datetime
 from pathlib import Path
 
 from grader.collect import LEFT, collect
@@ -9,11 +10,13 @@ from grader.course import Course
 from grader.demo import demo
 from grader.errors import CourseError
 from grader.feedback import write_feedback
-from grader.grade import find_submissions, grade_all
+from grader.grade import HandedIn, find_submissions, grade_all
 from grader.gradebook import register
 from grader.intake import lines
 from grader.isolation import missing, protections
 from grader.release import release
+from grader.report import Run, write_report
+from grader.replay import RECORDED, replay
 from grader.scores import write_scores
 from grader.table import changes, print_rows
 from grader.text import printable
@@ -29,10 +32,9 @@ def main(arguments: list[str] | None = None, *, course: Course | None = None) ->
     except CourseError as error:
         print(f'course: {printable(error)}', file=sys.stderr)
         return 1
-    except KeyboardInterrupt:
-        print(
-            '\ncourse: stopped. What was finished is kept; run it again to go on.', file=sys.stderr
-        )
+    except KeyboardInterrupt as stop:
+        kept = f'{stop}' or 'What was finished is kept'
+        print(f'\ncourse: stopped. {kept}; run it again to go on.', file=sys.stderr)
         return INTERRUPTED
 
 
@@ -60,6 +62,11 @@ def _collect(course: Course, asked: argparse.Namespace) -> int:
 
 def _grade(course: Course, asked: argparse.Namespace) -> int:
     submissions = find_submissions(course, assignment=asked.assignment, student_id=asked.student)
+    if asked.store and asked.seed == RECORDED:
+        raise CourseError('--store wants --seed HEX: what is recorded is stored already')
+    if asked.seed and not asked.store:
+        return _replay(course, submissions, asked)
+    run = Run(datetime.now().astimezone(), seed=asked.seed or '')
     graded = grade_all(
         course,
         submissions,
@@ -67,7 +74,15 @@ def _grade(course: Course, asked: argparse.Namespace) -> int:
         trust_students=asked.trust_students,
         force=asked.force,
     )
-    rows = list(print_rows(graded, submissions))
+    rows = []
+    try:
+        for row in print_rows(graded, submissions):
+            rows.append(row)
+    except KeyboardInterrupt:
+        graded.close()  # ends all that runs, before anybody is told so
+        told = f'{len(rows)} of {len(submissions)} submissions are graded and stored'
+        raise KeyboardInterrupt(told) from None
+    report = write_report(course, run, rows)
     if changed := changes(rows):
         print(f'{len(changed)} score{"s" * (len(changed) > 1)} changed:')
         print(*(f'  {line}' for line in changed), sep='\n')
@@ -75,9 +90,21 @@ def _grade(course: Course, asked: argparse.Namespace) -> int:
     waiting = sum(row.stored is not None and row.stored.pending for row in rows)
     print(
         f'{len(rows) - failed} graded, {waiting} of them wait for a person (…), '
-        f'{failed} could not be graded (–).\nNext: ./course feedback, ./course scores'
+        f'{failed} could not be graded (–).\nReport: {report}\nNext: ./course feedback, ./course scores'
     )
     return 1 if failed else 0
+
+
+def _replay(course: Course, submissions: list[HandedIn], asked: argparse.Namespace) -> int:
+    same = True
+    for line, as_stored in replay(
+        course, submissions, seed=asked.seed, trust_students=asked.trust_students
+    ):
+        print(line, flush=True)
+        same &= as_stored
+    print('The same as in the gradebook.' if same else 'NOT the same as in the gradebook.')
+    print('Nothing was stored; --store stores it.')
+    return 0 if same else 1
 
 
 def _scores(course: Course, asked: argparse.Namespace) -> int:
@@ -108,7 +135,8 @@ def _doctor(course: Course, asked: argparse.Namespace) -> int:
 
 def hexadecimal(text: str) -> str:
     """Check an argument; argparse names this function when it is wrong."""
-    int(text, 16)
+    if text != RECORDED:
+        int(text, 16)
     return text
 
 
@@ -133,8 +161,12 @@ def _parser() -> argparse.ArgumentParser:
     verb.add_argument('assignment', nargs='?', metavar='ASSIGNMENT', help='only this one')
     verb.add_argument('--student', metavar='ID', help='only this student')
     verb.add_argument(
-        '--seed', type=hexadecimal, metavar='HEX', help='replay these inputs of hidden tests'
+        '--seed',
+        type=hexadecimal,
+        metavar=f'HEX|{RECORDED}',
+        help='grade once more with these inputs of hidden tests, and only compare',
     )
+    verb.add_argument('--store', action='store_true', help='store what --seed HEX comes to')
     verb.add_argument(
         '--trust-students',
         action='store_true',
