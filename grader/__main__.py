@@ -5,6 +5,7 @@ import sys
 from datetime import datetime
 from pathlib import Path
 
+from grader.bundle import bundle
 from grader.collect import LEFT, collect
 from grader.course import Course
 from grader.demo import demo
@@ -47,6 +48,14 @@ def _release(course: Course, asked: argparse.Namespace) -> int:
     for path in changed:
         print(f'notebooks/{path}')
     print(f'{len(changed)} files changed.' if changed else 'Nothing has changed.')
+    return 0
+
+
+def _bundle(course: Course, asked: argparse.Namespace) -> int:
+    made = bundle(course, asked.file)
+    for path in made.left_out:
+        print(f'left out: {path}')
+    print(f'{asked.file}: {len(made.files)} files, {made.bytes / 1e6:.1f} MB')
     return 0
 
 
@@ -147,6 +156,10 @@ def _parser() -> argparse.ArgumentParser:
     verb = verbs.add_parser('release', help="make the students' notebooks/ from solutions/")
     verb.add_argument('assignment', nargs='?', metavar='ASSIGNMENT', help='only this one')
     verb.set_defaults(run=_release)
+
+    verb = verbs.add_parser('bundle', help='make the zip that students get')
+    verb.add_argument('file', nargs='?', type=Path, default=Path('students.zip'), metavar='FILE')
+    verb.set_defaults(run=_bundle)
 
     verb = verbs.add_parser('collect', help='take in a folder or an archive of submissions')
     verb.add_argument('source', type=Path, metavar='FOLDER|ZIP|TAR')

@@ -1,6 +1,6 @@
 """Find answers and hidden tests in what students are given."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
 import nbformat
@@ -14,17 +14,16 @@ MARKS = (
     *('BEGIN SOLUTION', 'END SOLUTION', 'BEGIN HIDDEN TESTS', 'END HIDDEN TESTS'),
     BROKEN.strip(),
 )
+COMMON_PHRASE = 25
+"""Shorter lines, such as `for _ in range(3):`, stand in any program."""
 
 
 def leaks_of(course: Course, assignment: str, released: Path) -> Iterator[str]:
     """Yield each answer and hidden test that can be read in an assignment's released files."""
-    source = course.source(assignment)
-    secret = {line for cell in source.cells for line in _secret_lines(cell)}
-    taught = {line for cell in source.cells for line in _open_lines(cell)}
-    secret = {line for line in secret if not any(line in open_line for open_line in taught)}
+    secret = _secrets(course.source(assignment).cells)
     for path in files_in(released / assignment):
         file = released / assignment / path
-        text = _all_text(file)
+        text = _text(file.name, file.read_bytes())
         for mark in MARKS:
             if mark in text:
                 yield f'{assignment}/{path} has a line with {mark!r}'
@@ -33,10 +32,44 @@ def leaks_of(course: Course, assignment: str, released: Path) -> Iterator[str]:
                 yield f'{assignment}/{path} shows a line of an answer or a hidden test: {line!r}'
 
 
+def leaks_beside(course: Course, files: Mapping[str, bytes]) -> Iterator[str]:
+    """Yield what students could learn from files that are no lesson: programs, texts, indexes.
+
+    A program may have a line in common with an answer. Two of one assignment are no accident, and
+    neither is a line of a hidden test that is longer than a common phrase.
+    """
+    for assignment in course.assignments():
+        cells = course.source(assignment).cells
+        secret = _secrets(cells)
+        tests = {line for cell in cells if _is_check(cell) for line in _secret_lines(cell)}
+        for name, content in files.items():
+            text = _text(name, content)
+            found = sorted(line for line in secret if line in text)
+            telling = [line for line in found if line in tests and len(line) > COMMON_PHRASE]
+            for line in telling or found[1:]:
+                yield f'{name} shows a line of an answer or a hidden test: {line!r}'
+    for name, content in files.items():
+        for mark in MARKS:
+            if mark in _text(name, content):
+                yield f'{name} has a line with {mark!r}'
+
+
 def files_in(folder: Path) -> list[Path]:
     """Return the files in `folder`, relative to it, sorted; what editors hide there left out."""
     found = (path.relative_to(folder) for path in folder.rglob('*') if path.is_file())
     return sorted(p for p in found if not any(part.startswith('.') for part in p.parts))
+
+
+def _secrets(cells: Iterable[NotebookNode]) -> set[str]:
+    """Return the lines that must not be released, but for what a lesson says openly."""
+    secret = {line for cell in cells for line in _secret_lines(cell)}
+    taught = {line for cell in cells for line in _open_lines(cell)}
+    return {line for line in secret if not any(line in open_line for open_line in taught)}
+
+
+def _is_check(cell: NotebookNode) -> bool:
+    marks = cell.metadata.get('nbgrader', {})
+    return bool(marks.get('grade') and not marks.get('solution'))
 
 
 def _secret_lines(cell: NotebookNode) -> Iterator[str]:
@@ -70,11 +103,11 @@ def _telling(lines: Iterable[str]) -> Iterator[str]:
     yield from (s for line in lines if len(s := line.strip()) > 5 and ' ' in s)
 
 
-def _all_text(file: Path) -> str:
+def _text(name: str, content: bytes) -> str:
     """Return all that can be read in a file; of a notebook, outputs and metadata included."""
-    if file.suffix != '.ipynb':
-        return file.read_bytes().decode(errors='replace')
-    return '\n'.join(_strings(nbformat.read(file, as_version=4)))
+    if not name.endswith('.ipynb'):
+        return content.decode(errors='replace')
+    return '\n'.join(_strings(nbformat.reads(content.decode(), as_version=4)))
 
 
 def _strings(value: object) -> Iterator[str]:

@@ -9,9 +9,23 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-VERBS = ['lab', 'workspace', 'ros-shell', 'test', 'release', 'collect', 'grade']
-VERBS += ['scores', 'feedback', 'demo', 'doctor']
-TOOLS = ['sh', 'cat', 'cp', 'dirname', 'env', 'find', 'flock', 'grep', 'id', 'ln', 'mkdir', 'mv']
+VERBS = ['lab', 'workspace', 'ros-shell', 'test', 'release', 'bundle', 'collect']
+VERBS += ['grade', 'scores', 'feedback', 'demo', 'doctor']
+TOOLS = [
+    'sh',
+    'cat',
+    'chmod',
+    'cp',
+    'dirname',
+    'env',
+    'find',
+    'flock',
+    'grep',
+    'id',
+    'ln',
+    'mkdir',
+    'mv',
+]
 TOOLS += ['readlink', 'rm', 'sed', 'sleep', 'tail', 'uname']
 IN_A_NAMESPACE = [
     shutil.which('unshare'),
@@ -595,3 +609,49 @@ def test_ci_gets_what_is_missing_and_ends_as_the_tests_do(bare, code):
     assert [call.split(' -')[0] for call in bare.calls()] == [*packages, 'course test']
     if packages:
         assert bare.calls('apt-get install')[0].endswith(' bubblewrap')
+
+
+# --- the students' bundle: the same script, without a grader -------------------------------------
+
+
+@pytest.fixture
+def bundle(machine):
+    """A course without its grader and what belongs to it."""
+    shutil.rmtree(machine.root / 'grader')
+    (machine.root / 'pyproject.toml').unlink()
+    return machine
+
+
+def test_in_a_bundle_help_lists_what_a_student_can_do(bundle):
+    run = bundle.course('--help')
+    assert (run.returncode, run.stderr) == (0, '')
+    verbs = [line.split()[0] for line in run.stdout.splitlines() if line.startswith('  ')]
+    assert verbs == ['lab', 'workspace', 'ros-shell']
+
+
+@pytest.mark.parametrize('verb', VERBS[3:])
+def test_in_a_bundle_an_instructors_verb_says_so_and_sets_nothing_up(bundle, verb):
+    sentence = the_one_sentence(bundle.course(verb))
+    assert sentence.startswith(f"'{verb}' is for instructors and needs the whole course")
+    assert not (bundle.root / '.venv').exists()
+
+
+def test_in_a_bundle_only_the_students_package_is_installed(bundle):
+    assert bundle.course('lab').returncode == 0
+    (_, installed) = bundle.calls('uv pip install')
+    assert installed.endswith('--no-build-isolation -e ./my_robot_basics')
+    assert bundle.course('lab').stderr == ''
+
+
+@pytest.mark.parametrize('name', ['ros2', 'topic_doctor'])
+def test_the_tools_are_those_of_the_installed_package_wherever_it_lies(bundle, name):
+    tools = bundle.root / 'my_robot_basics/my_robot_basics/ros2'
+    tools.mkdir()
+    (tools / 'start.py').touch()
+    assert bundle.course('lab').returncode == 0
+    script = bundle.root / '.venv/bin' / name
+    run = bundle.course('topic', 'two words', script=script)
+    assert run.returncode == 0, run.stderr
+    module = {'ros2': 'ros2.main', 'topic_doctor': 'doctor.main'}[name]
+    start = f'{script.parent}/../../my_robot_basics/my_robot_basics/ros2/start.py'
+    assert bundle.calls()[0] == f'python -P {start} {module} topic two words'

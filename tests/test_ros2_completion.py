@@ -2,7 +2,6 @@
 
 import os
 import subprocess
-import sys
 
 import pexpect
 import pytest
@@ -56,9 +55,10 @@ def test_the_doctor_completes_topics_too(tmp_path):
     assert answer.read_text().strip() == '/kinematics/joint_states'
 
 
-def test_argcomplete_finds_its_marker_by_way_of_the_script():
-    check = [sys.executable, '-m', 'argcomplete._check_console_script', SCRIPT]
-    assert subprocess.run(check).returncode == 0
+@pytest.mark.parametrize('name', ['ros2', 'topic_doctor'])
+def test_argcomplete_finds_its_marker_in_the_scripts(name):
+    # it reads so much of a script
+    assert b'PYTHON_ARGCOMPLETE_OK' in SCRIPT.with_name(name).read_bytes()[:1024]
 
 
 def test_the_tab_key_completes_in_bash(system):

@@ -1,4 +1,3 @@
-# PYTHON_ARGCOMPLETE_OK
 """The console script `ros2`: hands over to a real ros2cli, or runs a verb of the table."""
 
 import argparse

@@ -1,0 +1,364 @@
+import json
+import os
+import re
+import shutil
+import socket
+import subprocess
+import sys
+import time
+import urllib.request
+import zipfile
+from pathlib import Path
+
+import pytest
+from course_maker import TOY, make_course
+
+from grader.__main__ import main
+from grader.bundle import FOLDER, bundle
+from grader.course import ROOT, Course
+from grader.errors import CourseError
+from grader.release import release
+
+TOP = ['.jupyterlab', 'LICENSE', 'README.md', 'course', 'environment.txt', 'my_robot_basics']
+TOP += ['notebooks']
+ANSWER = '    return x + x  # the secret answer'
+CANARY = 'assert student.call("double", 21) == 42, "count again"  # hidden canary'
+
+
+@pytest.fixture(scope='module')
+def made(tmp_path_factory):
+    """A small course with all that a bundle takes from the real one."""
+    course = make_course(tmp_path_factory.mktemp('bundle'))
+    for name in ('course', 'environment.txt', 'LICENSE', 'solutions/students.md'):
+        shutil.copy(ROOT / name, course.root / name)
+    shutil.copytree(ROOT / '.jupyterlab', course.root / '.jupyterlab')
+    made_by_tools = shutil.ignore_patterns('__pycache__', '*.egg-info', '.*')
+    shutil.copytree(
+        ROOT / 'my_robot_basics', course.root / 'my_robot_basics', ignore=made_by_tools
+    )
+    release(course)
+    return course
+
+
+@pytest.fixture
+def course(made, tmp_path):
+    """The small course, to be spoiled."""
+    shutil.copytree(made.root, tmp_path / 'course')
+    return Course.at(tmp_path / 'course')
+
+
+@pytest.fixture
+def fresh_lessons(monkeypatch):
+    """Spare the time that a release takes: what else is wrong is looked for."""
+    monkeypatch.setattr('grader.bundle.stale_or_leaking', lambda course: [])
+
+
+def entries(path):
+    with zipfile.ZipFile(path) as box:
+        return {info.filename: info for info in box.infolist()}
+
+
+def names(path):
+    return {name.removeprefix(f'{FOLDER}/') for name in entries(path)}
+
+
+def unpacked(path, folder):
+    """Unpack as students do; return what came out."""
+    if unzip := shutil.which('unzip'):
+        subprocess.run([unzip, '-q', path, '-d', folder], check=True)
+    else:
+        with zipfile.ZipFile(path) as box:
+            box.extractall(folder)
+        (folder / FOLDER / 'course').chmod(0o755)
+    return folder / FOLDER
+
+
+# --- what is in it -------------------------------------------------------------------------------
+
+
+def test_it_holds_what_students_need_and_nothing_else(made, fresh_lessons, tmp_path):
+    bundle(made, tmp_path / 'students.zip')
+    found = names(tmp_path / 'students.zip')
+    assert sorted({name.split('/')[0] for name in found}) == TOP
+    assert {f'notebooks/{TOY}/{TOY}.ipynb', 'notebooks/index.ipynb'} < found
+    assert {'my_robot_basics/package.xml', 'my_robot_basics/my_robot_basics/ros2/start.py'} < found
+    tracked = subprocess.run(
+        ['git', 'ls-files', 'my_robot_basics'],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout.split()
+    assert {name for name in found if name.startswith('my_robot_basics/')} == set(tracked)
+
+
+def test_only_the_script_is_a_program(made, fresh_lessons, tmp_path):
+    bundle(made, tmp_path / 'students.zip')
+    modes = {
+        name.removeprefix(f'{FOLDER}/'): info.external_attr >> 16
+        for name, info in entries(tmp_path / 'students.zip').items()
+    }
+    assert modes.pop('course') == 0o100755
+    assert set(modes.values()) == {0o100644}
+    assert os.access(unpacked(tmp_path / 'students.zip', tmp_path) / 'course', os.X_OK)
+
+
+def test_the_same_files_give_the_same_bytes(made, course, fresh_lessons, tmp_path):
+    bundle(made, tmp_path / 'one.zip')
+    for path in course.root.rglob('*'):
+        os.utime(path, (1, 1))
+        path.chmod(0o700)
+    (course.root / 'my_robot_basics/my_robot_basics/__pycache__').mkdir()
+    (course.root / 'my_robot_basics/my_robot_basics/__pycache__/x.pyc').touch()
+    (course.root / 'my_robot_basics/my_robot_basics.egg-info').mkdir()
+    (course.root / 'my_robot_basics/my_robot_basics.egg-info/PKG-INFO').touch()
+    (course.root / 'notebooks/.ipynb_checkpoints').mkdir()
+    (course.root / 'notebooks/.ipynb_checkpoints/x.ipynb').touch()
+    bundle(course, tmp_path / 'two.zip')
+    assert (tmp_path / 'one.zip').read_bytes() == (tmp_path / 'two.zip').read_bytes()
+
+
+def test_the_command_tells_what_it_made_and_what_it_left_out(
+    course, tmp_path, capsys, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    (course.root / 'notebooks/scratch.ipynb').write_text(ANSWER)
+    assert main(['bundle'], course=course) == 0
+    out = capsys.readouterr().out
+    assert re.fullmatch(
+        r'left out: notebooks/scratch\.ipynb\nstudents\.zip: \d+ files, 0\.\d MB\n', out
+    )
+    assert 'notebooks/scratch.ipynb' not in names('students.zip')
+
+
+# --- when it is refused --------------------------------------------------------------------------
+
+
+def lesson_cell(course, text):
+    path = course.release_path(TOY)
+    notebook = json.loads(path.read_text())
+    notebook['cells'][0]['source'] = text
+    path.write_text(json.dumps(notebook))
+
+
+def in_the_index(course, text):
+    path = course.root / 'notebooks/index.ipynb'
+    notebook = json.loads(path.read_text())
+    notebook['cells'][0]['source'] = text
+    path.write_text(json.dumps(notebook))
+
+
+def in_a_file(name):
+    def append(course, text):
+        with (course.root / name).open('a') as file:
+            file.write(f'\n{text}\n')
+
+    append.__name__ = name
+    return append
+
+
+PLACES = [
+    in_the_index,
+    in_a_file('solutions/students.md'),
+    in_a_file('course'),
+    in_a_file('environment.txt'),
+    in_a_file('.jupyterlab/overrides.json'),
+    in_a_file('my_robot_basics/my_robot_basics/hello_node.py'),
+    in_a_file('my_robot_basics/test/test_nodes.py'),
+    in_a_file('my_robot_basics/my_robot_basics/live/fast_discovery.xml'),
+]
+
+
+@pytest.mark.parametrize('place', PLACES, ids=lambda place: place.__name__)
+@pytest.mark.parametrize('secret', [CANARY, '### BEGIN HIDDEN TESTS', '### BROKEN: x = 1'])
+@pytest.mark.usefixtures('fresh_lessons')
+def test_a_secret_anywhere_is_found_and_the_former_zip_stays(secret, place, course, tmp_path):
+    (tmp_path / 'students.zip').write_bytes(b'former')
+    place(course, secret)
+    with pytest.raises(CourseError, match='no bundle was made') as refusal:
+        bundle(course, tmp_path / 'students.zip')
+    assert re.search(
+        'shows a line of an answer or a hidden test|has a line with', str(refusal.value)
+    )
+    assert (tmp_path / 'students.zip').read_bytes() == b'former'
+    assert sorted(path.name for path in tmp_path.iterdir()) == ['course', 'students.zip']
+
+
+def test_an_answer_of_two_lines_in_the_package_is_no_accident(course, fresh_lessons, tmp_path):
+    module = 'my_robot_basics/my_robot_basics/hello_node.py'
+    in_a_file(module)(course, ANSWER)
+    bundle(course, tmp_path / 'students.zip')  # one line may stand in any program
+    in_a_file(module)(course, '# Because it is added to itself.')
+    with pytest.raises(CourseError, match=f'{module} shows a line of an answer'):
+        bundle(course, tmp_path / 'students.zip')
+
+
+@pytest.mark.parametrize(
+    'name',
+    [
+        'course',
+        'environment.txt',
+        'LICENSE',
+        '.jupyterlab/page_config.json',
+        'solutions/students.md',
+        'my_robot_basics/package.xml',
+        'my_robot_basics/setup.py',
+        'notebooks/index.ipynb',
+        f'notebooks/{TOY}/{TOY}.ipynb',
+    ],
+)
+@pytest.mark.usefixtures('fresh_lessons')
+def test_what_is_missing_is_named(name, course, tmp_path):
+    (course.root / name).unlink()
+    with pytest.raises(CourseError, match=f'no bundle was made: .*{re.escape(name)} is '):
+        bundle(course, tmp_path / 'students.zip')
+
+
+@pytest.mark.usefixtures('fresh_lessons')
+def test_what_is_on_no_list_is_named(course, tmp_path):
+    (course.root / 'my_robot_basics/my_robot_basics/notes.txt').touch()
+    (course.root / 'LICENSE').unlink()
+    (course.root / 'LICENSE').symlink_to('/etc/passwd')
+    with pytest.raises(CourseError) as refusal:
+        bundle(course, tmp_path / 'students.zip')
+    for part in (
+        'my_robot_basics/my_robot_basics/notes.txt is not on the list',
+        'LICENSE is a link',
+    ):
+        assert part in str(refusal.value)
+
+
+def test_a_stale_or_telling_lesson_is_not_bundled(course, tmp_path):
+    lesson_cell(course, CANARY)
+    (course.root / f'notebooks/{TOY}/more.txt').touch()
+    with pytest.raises(CourseError) as refusal:
+        bundle(course, tmp_path / 'students.zip')
+    for part in (
+        'not what solutions/ gives: run ./course release',
+        f'{TOY}.ipynb shows a line of an answer or a hidden test',
+        f'notebooks/{TOY}/more.txt comes from no assignment',
+    ):
+        assert part in str(refusal.value)
+
+
+# --- this course's own ---------------------------------------------------------------------------
+
+
+@pytest.fixture(scope='module')
+def students(tmp_path_factory):
+    """The real bundle, unpacked; that its lessons are fresh is for test_release.py to say."""
+    folder = tmp_path_factory.mktemp('a student')
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr('grader.bundle.stale_or_leaking', lambda course: [])
+        bundle(Course(), folder / 'students.zip')
+    return unpacked(folder / 'students.zip', folder)
+
+
+def test_its_readme_says_what_is_so(students):
+    readme = (students / 'README.md').read_text()
+    usage = subprocess.run([students / 'course', '--help'], capture_output=True, text=True)
+    assert usage.returncode == 0
+    verbs = set(re.findall(r'^  ([\w-]+)', usage.stdout, re.MULTILINE))
+    assert (
+        verbs
+        == set(re.findall(r'\./course ([\w-]+)', readme))
+        == {'lab', 'workspace', 'ros-shell'}
+    )
+    rows = readme.partition('## What lies where')[2]
+    named = re.findall(r'`([^`]+)`', ' '.join(re.findall(r'^\| (`.+?) \|', rows, re.MULTILINE)))
+    assert len(named) == 4
+    assert [name for name in named if not (students / name).exists()] == []
+    assert (students / 'notebooks/02_joint_state/02_joint_state.ipynb').is_file()
+
+
+def test_what_lab_is_given_is_there(students):
+    script = (students / 'course').read_text()
+    given = re.findall(r'\$root/([\w./-]+)', script.partition('\nlab() {')[2].partition('\n}')[0])
+    assert len(given) == 3
+    assert [name for name in given if not (students / name).exists()] == []
+
+
+def test_a_verb_that_needs_the_grader_says_so(students):
+    run = subprocess.run([students / 'course', 'grade'], capture_output=True, text=True)
+    assert run.returncode == 1
+    assert "'grade' is for instructors" in run.stderr
+
+
+@pytest.fixture
+def fresh(students, tmp_path):
+    """What a fresh machine has: no .venv, no settings, and nothing of this one's environment."""
+    home = tmp_path / 'home'
+    home.mkdir()
+    tools = tmp_path / 'tools'
+    tools.mkdir()
+    (tools / 'python3').symlink_to(sys._base_executable)
+    kept = ('LANG', 'http_proxy', 'https_proxy', 'no_proxy', 'SSL_CERT_FILE', 'PIP_CONFIG_FILE')
+    kept += ('HTTP_PROXY', 'HTTPS_PROXY', 'PIP_INDEX_URL', 'UV_INDEX_URL', 'UV_DEFAULT_INDEX')
+    environment = {name: os.environ[name] for name in kept if name in os.environ}
+    environment |= {'HOME': str(home), 'PATH': f'{tools}:/usr/local/bin:/usr/bin:/bin'}
+    for name in ('.config/pip/pip.conf', '.pip/pip.conf'):  # how this machine reaches a registry
+        if (there := Path.home() / name).is_file():
+            (home / name).parent.mkdir(parents=True)
+            shutil.copy(there, home / name)
+    yield environment
+    shutil.rmtree(students / '.venv', ignore_errors=True)
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(1800)
+def test_on_a_fresh_machine_lab_serves_the_lessons_and_the_tools_run(students, fresh, tmp_path):
+    with socket.socket() as free:
+        free.bind(('127.0.0.1', 0))
+        port = free.getsockname()[1]
+    options = ['--no-browser', f'--port={port}', '--ServerApp.port_retries=0']
+    log = (tmp_path / 'log').open('w+')
+    lab = subprocess.Popen(
+        [students / 'course', 'lab', *options, '--IdentityProvider.token=let-me-in'],
+        env=fresh,
+        stdout=log,
+        stderr=log,
+    )
+    try:
+        address = f'http://127.0.0.1:{port}'
+        listing = json.loads(_fetched(f'{address}/api/contents?token=let-me-in', lab))
+        served = {each['name'] for each in listing['content']}
+        assert {'index.ipynb', '02_joint_state', '07_common_errors'} <= served
+        page = _fetched(f'{address}/lab/tree/index.ipynb?token=let-me-in', lab).decode()
+        assert '@jupyter/nbgrader:formgrader' in page.partition('disabledExtensions')[2]
+    except AssertionError:
+        log.seek(0)
+        print(log.read())
+        raise
+    finally:
+        lab.terminate()
+        lab.wait(30)
+    asked = (
+        'ros2 pkg executables my_robot_basics; topic_doctor --help | head -1;'
+        'python -c "import my_robot_basics; print(my_robot_basics.__file__)"'
+    )
+    run = subprocess.run(
+        [students / 'course', 'ros-shell', '-c', asked], env=fresh, capture_output=True, text=True
+    )
+    *nodes, doctor, where = run.stdout.splitlines()
+    assert [line.split()[1] for line in nodes] == [
+        'hello_node',
+        'kinematics_node',
+        'kinematics_publisher',
+        'kinematics_subscriber',
+    ], run.stderr
+    assert doctor.startswith('usage: topic_doctor')
+    assert where.startswith(str(students))
+    # the same on a lesson: its set-up cells and its checks find all that they import
+    program = 'import my_robot_basics.checks, my_robot_basics.live, nbgrader.validator'
+    subprocess.run([students / '.venv/bin/python', '-c', program], env=fresh, check=True)
+
+
+def _fetched(address, server):
+    """What is served there, once it is."""
+    while server.poll() is None:
+        try:
+            with urllib.request.urlopen(address, timeout=30) as answer:
+                return answer.read()
+        except OSError:
+            time.sleep(0.5)
+    raise AssertionError(f'./course lab ended with status {server.returncode}')
