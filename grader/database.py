@@ -12,7 +12,7 @@ from pathlib import Path
 from nbgrader.api import Gradebook
 
 from grader.course import Course
-from grader.errors import GradebookError
+from grader.errors import CourseError, GradebookError
 
 PATIENCE_SEC = 60.0
 """How long another program may keep the database; the formgrader takes it for milliseconds."""
@@ -83,7 +83,7 @@ def in_sentences(course: Course) -> Iterator[None]:
 
 def _sentence(error: BaseException | None, course: Course) -> str | None:
     """Return what to tell of an error, or of what led to it: nbgrader wraps what it gets."""
-    if error is None or isinstance(error, GradebookError):
+    if error is None or isinstance(error, CourseError):
         return None
     code = getattr(error, 'sqlite_errorcode', 0) & 0xFF
     if code == sqlite3.SQLITE_FULL or (isinstance(error, OSError) and error.errno in _FULL):

@@ -1,0 +1,113 @@
+import errno
+import os
+import sqlite3
+import threading
+from contextlib import closing
+
+import pytest
+from nbgrader.api import Gradebook, InvalidEntry
+
+from grader import database
+from grader.course import Course
+from grader.database import in_sentences, make_database, wait_until_free
+from grader.errors import CourseError, GradebookError
+
+
+@pytest.fixture
+def course(tmp_path):
+    """A course with a database of some other kind: all databases wait and fail alike."""
+    course = Course.at(tmp_path)
+    course.gradebook.mkdir()
+    with closing(sqlite3.connect(course.database)) as made:
+        made.execute('CREATE TABLE some (thing)')
+    return course
+
+
+@pytest.fixture
+def other(course):
+    """Another program, in the middle of writing."""
+    connection = sqlite3.connect(course.database, isolation_level=None, check_same_thread=False)
+    connection.execute('BEGIN IMMEDIATE')
+    connection.execute('INSERT INTO some VALUES (1)')
+    with closing(connection):
+        yield connection
+
+
+def test_a_locked_database_is_waited_for_with_a_word(course, other):
+    said = []
+
+    def say(line):
+        said.append(line)
+        threading.Timer(0.3, other.execute, ['COMMIT']).start()
+
+    wait_until_free(course, say)
+    assert said == [f'waiting: another program is using {course.database}']
+    wait_until_free(course, said.append)
+    assert len(said) == 1
+
+
+def test_a_database_that_stays_locked_is_told_in_the_end(course, other, monkeypatch, capsys):
+    monkeypatch.setattr(database, 'PATIENCE_SEC', 0.2)
+    with (
+        pytest.raises(GradebookError, match=r'locked for 0 s.*run the same command again'),
+        in_sentences(course),
+    ):
+        wait_until_free(course)
+    assert capsys.readouterr().out.startswith('waiting: ')
+
+
+@pytest.mark.parametrize('code', [errno.ENOSPC, errno.EDQUOT])
+def test_a_full_disk_is_told_even_from_behind_other_errors(course, code):
+    wrapped = InvalidEntry('as nbgrader puts it')
+    wrapped.__context__ = OSError(code, os.strerror(code))
+    with pytest.raises(GradebookError, match='the disk is full') as told, in_sentences(course):
+        raise wrapped
+    assert 'run the same command again' in str(told.value)
+
+
+def test_a_full_database_is_told(course):
+    with closing(sqlite3.connect(course.database)) as full:
+        full.execute('PRAGMA max_page_count = 3')
+        with pytest.raises(GradebookError, match='the disk is full'), in_sentences(course):
+            full.execute('INSERT INTO some VALUES (?)', ['x' * 100_000])
+
+
+def test_a_damaged_database_is_told_with_the_newest_backup(course):
+    backups = course.gradebook / 'backups'
+    backups.mkdir()
+    (backups / 'gradebook-2026-01-01.db').touch()
+    (backups / 'gradebook-2026-01-02.db').touch()
+    course.database.write_bytes(b'not a database' * 100)
+    with pytest.raises(GradebookError, match='is damaged') as told, in_sentences(course):
+        wait_until_free(course)
+    assert f"cp '{backups / 'gradebook-2026-01-02.db'}' '{course.database}'" in str(told.value)
+
+
+@pytest.mark.parametrize('error', [OSError(errno.EACCES, 'no'), ValueError('x'), CourseError('y')])
+def test_other_errors_pass_as_they_are(course, error):
+    with pytest.raises(type(error)) as told, in_sentences(course):
+        raise error
+    assert told.value is error
+
+
+def test_a_database_is_there_whole_or_not_at_all(tmp_path, monkeypatch):
+    course = Course.at(tmp_path)
+
+    class Killed(BaseException):
+        pass
+
+    def killed(*_, **__):
+        raise Killed
+
+    with monkeypatch.context() as patch:
+        patch.setattr('nbgrader.api.get_alembic_version', killed)  # tables are made by then
+        with pytest.raises(Killed):
+            make_database(course)
+    assert not course.database.exists()
+    make_database(course)
+    assert os.listdir(course.gradebook) == ['gradebook.db']
+    with closing(sqlite3.connect(course.database)) as made:
+        assert made.execute('SELECT count(*) FROM alembic_version').fetchone() == (1,)
+    make_database(course)
+    with Gradebook(course.db_url) as book:
+        assert book.students == []

@@ -1,0 +1,30 @@
+import errno
+import os
+
+import pytest
+
+from grader import files
+from grader.files import write_whole
+
+
+@pytest.mark.parametrize('content', ['né\r\n', b'\x00\xff'])
+def test_what_is_written_is_all_there(tmp_path, content):
+    path = tmp_path / 'a.txt'
+    path.write_text('longer than what comes')
+    write_whole(path, content)
+    assert path.read_bytes() == (content.encode() if isinstance(content, str) else content)
+    assert os.listdir(tmp_path) == ['a.txt']
+
+
+@pytest.mark.parametrize('step', ['fsync', 'replace'])
+def test_a_full_disk_leaves_what_was_there(tmp_path, monkeypatch, step):
+    def full(*_):
+        raise OSError(errno.ENOSPC, 'No space left on device')
+
+    path = tmp_path / 'a.txt'
+    path.write_text('before')
+    monkeypatch.setattr(files.os, step, full)
+    with pytest.raises(OSError, match='No space'):
+        write_whole(path, 'after')
+    assert path.read_text() == 'before'
+    assert os.listdir(tmp_path) == ['a.txt']
