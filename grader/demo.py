@@ -3,6 +3,7 @@
 import shutil
 import tempfile
 from collections.abc import Callable
+from datetime import datetime
 from pathlib import Path
 
 from grader.course import ROOT, Course
@@ -10,6 +11,7 @@ from grader.errors import CourseError
 from grader.feedback import write_feedback
 from grader.grade import Row, find_submissions, grade_all
 from grader.records import verdicts
+from grader.report import Run, write_report
 from grader.table import print_rows
 
 SAMPLES = ROOT / 'tests' / 'submissions'
@@ -39,7 +41,8 @@ def demo(samples: Path = SAMPLES, *, root: Path = ROOT) -> bool:
     submissions = find_submissions(course)
     # the samples are ours, and do no harm where there is no sandbox
     graded = grade_all(course, submissions, trust_students=True)
-    rows = print_rows(graded, submissions, expected=expected)
+    run = Run(datetime.now().astimezone())
+    rows = list(print_rows(graded, submissions, expected=expected))
     surprises = [row for row in rows if not _as_named(course, row, expected[row.student_id])]
     pages = write_feedback(course)
     for row in surprises:
@@ -47,6 +50,7 @@ def demo(samples: Path = SAMPLES, *, root: Path = ROOT) -> bool:
     print(f'{len(submissions) - len(surprises)} of {len(submissions)} came out as named.')
     if pages:
         print(f'A page of feedback: {_most_telling(pages, expected)}')
+    print(f'A report of the run: {write_report(course, run, rows)}')
     return not surprises
 
 

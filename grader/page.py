@@ -116,7 +116,7 @@ def _check(cell: NotebookNode) -> Check:
     status = 'passed' if score >= points else 'missed'
     status = 'waiting' if verdict.get('waits') else 'by hand' if verdict.get('by_hand') else status
     reason = verdict.get('reason') or _missing_reason(status, is_answer=is_answer)
-    title = 'Your written answer' if is_answer else _docstring(cell.source) or name
+    title = 'Your written answer' if is_answer else docstring(cell.source) or name
     said = _REASON.fullmatch(reason)
     return Check(
         name=name,
@@ -141,7 +141,8 @@ def _missing_reason(status: str, *, is_answer: bool) -> str:
     return 'No reason is known.' if status == 'missed' else ''
 
 
-def _docstring(source: str) -> str:
+def docstring(source: str) -> str:
+    """Return the first line of a cell's docstring, or ''."""
     try:
         return (ast.get_docstring(ast.parse(source)) or '').partition('\n')[0]
     except (SyntaxError, ValueError):

@@ -1,6 +1,6 @@
 """What the gradebook and the executed notebooks say, cell by cell."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -29,22 +29,31 @@ class Record:
     """What a person wrote."""
 
 
-def records(course: Course) -> list[Record]:
-    """Return all graded cells of all students, in a stable order; registers what is new."""
+def records(course: Course, *, only: Collection[tuple[str, str]] | None = None) -> list[Record]:
+    """Return all graded cells of all students, in a stable order; registers what is new.
+
+    `only` asks for some submissions, as pairs of student and assignment.
+    """
     with opened(course) as book:
         return [
             record
             for student in sorted(student.id for student in book.students)
             for assignment in sorted(assignment.name for assignment in book.assignments)
+            if only is None or (student, assignment) in only
             for record in _records(course, book, student, assignment)
         ]
 
 
 def verdicts(course: Course, student_id: str, assignment: str) -> dict[str, NotebookNode]:
     """Return what the executed notebook says of each graded cell, by grade id."""
-    path = course.folder('autograded', student_id, assignment) / f'{assignment}.ipynb'
-    cells = nbformat.read(path, as_version=4).cells if path.exists() else []
+    cells = graded_notebook(course, student_id, assignment).cells
     return {grade_id(cell): cell.metadata.get(KEY, {}) for cell in cells if grade_id(cell)}
+
+
+def graded_notebook(course: Course, student_id: str, assignment: str) -> NotebookNode:
+    """Return the executed notebook of a submission; one without cells where there is none."""
+    path = course.folder('autograded', student_id, assignment) / f'{assignment}.ipynb'
+    return nbformat.read(path, as_version=4) if path.exists() else nbformat.v4.new_notebook()
 
 
 def _records(course: Course, book: Any, student: str, assignment: str) -> Iterator[Record]:

@@ -1,6 +1,7 @@
 """What axe-core finds in the pages that students read: nothing serious."""
 
 import shutil
+from datetime import datetime
 
 import nbformat
 import pytest
@@ -11,6 +12,7 @@ from sample_class import PATHS, assignment_of, grade
 
 from grader.course import ROOT, Course
 from grader.feedback import write_feedback
+from grader.report import Run, write_report
 
 CHROMIUM = next(filter(None, map(shutil.which, ['chromium', 'chromium-browser'])), None)
 LESSONS = sorted(ROOT.glob('notebooks/**/*.ipynb'))
@@ -69,11 +71,13 @@ def test_a_released_lesson(page, path):
 
 
 @pytest.mark.parametrize('name', ['03_publisher-fail-1hz', '03_publisher-zero-not_json'])
-def test_a_page_of_feedback(page, tmp_path, name):
+def test_a_page_of_feedback_and_the_report_of_a_run(page, tmp_path, name):
     course = Course(gradebook=tmp_path)
-    grade(course, [name])
+    rows = grade(course, [name])
     write_feedback(course)
     assignment = assignment_of(PATHS[name])
     html = (course.folder('feedback', name, assignment) / f'{assignment}.html').read_text()
     assert ('<img' in html) == ('fail' in name)
     assert serious(page, html) == []
+    report = write_report(course, Run(datetime.now().astimezone()), list(rows.values()))
+    assert serious(page, report.read_text(encoding='utf-8')) == []

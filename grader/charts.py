@@ -1,0 +1,70 @@
+"""Charts as plain SVG: they need nothing else, run nothing, and say in words what they show."""
+
+from collections import Counter
+from collections.abc import Sequence
+
+from markupsafe import Markup
+
+BLUE = '#0072b2'
+INK = '#1c2733'
+MOST_BARS = 12
+_BAR, _HEIGHT, _TOP, _BOTTOM = 56, 120, 22, 40
+
+
+def distribution(scores: Sequence[float], max_score: float, *, title: str) -> Markup:
+    """Return a histogram of scores, from 0 to `max_score` points."""
+    bars = histogram(scores, max_score)
+    tallest = max(count for _, count in bars) or 1
+    width, height = _BAR * len(bars), _TOP + _HEIGHT + _BOTTOM
+    words = '; '.join(f'{label} points: {count}' for label, count in bars)
+    svg = Markup(
+        '<svg role="img" viewBox="0 0 {w} {h}" width="{w}" height="{h}" aria-label="{alt}">'
+    ).format(w=width, h=height, alt=f'{title}. Students by score: {words}')
+    for place, (label, count) in enumerate(bars):
+        tall = round(_HEIGHT * count / tallest)
+        left, middle = place * _BAR, place * _BAR + _BAR // 2
+        svg += Markup(
+            '<rect x="{x}" y="{y}" width="{w}" height="{tall}" fill="{blue}"/>'
+            '<text x="{middle}" y="{above}" {style}>{count}</text>'
+            '<text x="{middle}" y="{below}" {style}>{label}</text>'
+        ).format(
+            x=left + 4,
+            y=_TOP + _HEIGHT - tall,
+            w=_BAR - 8,
+            tall=tall,
+            blue=BLUE,
+            middle=middle,
+            above=_TOP + _HEIGHT - tall - 6,
+            below=_TOP + _HEIGHT + 16,
+            style=Markup(f'text-anchor="middle" font-size="13" fill="{INK}"'),
+            count=count,
+            label=label,
+        )
+    svg += Markup(
+        '<line x1="0" x2="{w}" y1="{y}" y2="{y}" stroke="{ink}"/>'
+        '<text x="{middle}" y="{below}" text-anchor="middle" font-size="13" fill="{ink}">'
+        'points</text></svg>'
+    ).format(w=width, y=_TOP + _HEIGHT, ink=INK, middle=width // 2, below=height - 6)
+    return svg
+
+
+def histogram(scores: Sequence[float], max_score: float) -> list[tuple[str, int]]:
+    """Return label and count of each bar; a bar holds its lower border, the last one both."""
+    step = max(1, -(-int(max_score) // MOST_BARS))
+    last = int(max_score) // step
+    counts = Counter(min(last, int(max(0.0, score) // step)) for score in scores)
+    return [(_label(bar, step, max_score), counts[bar]) for bar in range(last + 1)]
+
+
+def _label(bar: int, step: int, max_score: float) -> str:
+    end = min(max_score, (bar + 1) * step - 1)
+    return f'{bar * step}–{end:g}' if step > 1 and end > bar * step else f'{bar * step}'
+
+
+def share(part: float, *, label: str) -> Markup:
+    """Return a bar that is filled to `part`, 0 to 1."""
+    return Markup(
+        '<svg role="img" viewBox="0 0 100 12" width="100" height="12" aria-label="{label}">'
+        '<rect width="100" height="12" fill="#d9e0e6"/>'
+        '<rect width="{filled:.0f}" height="12" fill="{blue}"/></svg>'
+    ).format(label=label, filled=100 * part, blue=BLUE)

@@ -1,0 +1,120 @@
+"""The report of one run, for whoever teaches: a page and the same as JSON."""
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from datetime import datetime
+from pathlib import Path
+
+from jinja2 import Environment, FileSystemLoader
+
+from grader.charts import distribution, share
+from grader.course import Course
+from grader.files import write_whole
+from grader.grade import Row
+from grader.isolation import isolated
+from grader.table import changes, score_of
+from grader.tally import Tally, tally
+from grader.text import printable
+from grader.versions import versions
+
+SLOWEST = 10
+MOST_SHOWN = 20
+"""Reasons on the page; the JSON has all."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """One call of `./course grade`."""
+
+    began: datetime
+    """With its time zone."""
+    seed: str = ''
+    """The seed that was replayed; '' for the assignments' own."""
+
+
+def write_report(course: Course, run: Run, rows: Sequence[Row]) -> Path:
+    """Write report.html and report.json into gradebook/runs/<time>/; return the page's path."""
+    counted = tally(course, rows)
+    facts = _facts(run, rows, counted)
+    folder = _new_folder(course.gradebook / 'runs', run.began)
+    write_whole(folder / 'report.json', json.dumps(facts, indent=2, ensure_ascii=False) + '\n')
+    page = folder / 'report.html'
+    write_whole(page, _TEMPLATE.render(facts, tally=counted, most=MOST_SHOWN))
+    return page
+
+
+def _facts(run: Run, rows: Sequence[Row], counted: Tally) -> dict:
+    """Return all that the report says, as plain values."""
+    seconds = (datetime.now().astimezone() - run.began).total_seconds()
+    timed = [row for row in rows if row.seconds is not None]
+    return {
+        'began': run.began.isoformat(timespec='seconds'),
+        'seconds': round(seconds, 1),
+        'counts': {
+            'submissions': len(rows),
+            'graded now': len(timed),
+            'unchanged': sum(row.reused for row in rows),
+            'wait for a person': sum(bool(row.stored and row.stored.pending) for row in rows),
+            'could not be graded': sum(row.stored is None for row in rows),
+        },
+        'per_minute': round(60 * len(timed) / seconds, 1) if seconds else None,
+        'looks': [asdict(look) for look in counted.looks],
+        'changes': changes(rows),
+        'assignments': [
+            asdict(each) | {'mean': each.mean, 'median': each.median}
+            for each in counted.assignments
+        ],
+        'reasons': [asdict(each) | {'count': len(each.students)} for each in counted.reasons],
+        'slowest': [
+            _submission(row) for row in sorted(timed, key=lambda row: -row.seconds)[:SLOWEST]
+        ],
+        'environment': versions()
+        | {
+            'isolation': 'each submission in a sandbox'
+            if isolated(trust_students=True)
+            else 'none: --trust-students',
+            'inputs of hidden tests': f'replayed from seed {run.seed}'
+            if run.seed
+            else "the assignments' own",
+        },
+        'submissions': [_submission(row) for row in rows],
+    }
+
+
+def _submission(row: Row) -> dict:
+    return {
+        'student_id': printable(row.student_id),
+        'assignment': printable(row.assignment),
+        'points': score_of(row),
+        'score': row.stored.score if row.stored else None,
+        'max_score': row.stored.max_score if row.stored else None,
+        'former': row.stored.former if row.stored else None,
+        'unchanged': row.reused,
+        'seconds': None if row.seconds is None else round(row.seconds, 2),
+        'reason': printable(row.reason),
+    }
+
+
+def _new_folder(runs: Path, began: datetime) -> Path:
+    """Make a folder named by a time; with a number behind it where there is one already."""
+    runs.mkdir(parents=True, exist_ok=True)
+    name, number = began.strftime('%Y-%m-%d_%H-%M-%S'), 1
+    while True:
+        folder = runs / (name if number == 1 else f'{name}_{number}')
+        try:
+            folder.mkdir()
+        except FileExistsError:
+            number += 1
+        else:
+            return folder
+
+
+_ENVIRONMENT = Environment(
+    loader=FileSystemLoader(Path(__file__).parent),
+    autoescape=True,
+    trim_blocks=True,
+    lstrip_blocks=True,
+)
+_ENVIRONMENT.globals |= {'distribution': distribution, 'share': share}
+_TEMPLATE = _ENVIRONMENT.get_template('report.html.j2')

@@ -1,0 +1,217 @@
+import json
+import re
+from datetime import UTC, datetime
+
+import pytest
+from course_maker import TOY, answered, executed, make_course, submit
+from nbgrader.api import Gradebook
+
+from grader.course import Course
+from grader.demo import demo
+from grader.grade import Row
+from grader.gradebook import register, store
+from grader.heal import heal
+from grader.pipeline import prepare, unanswered
+from grader.release import release
+from grader.report import Run, write_report
+from grader.submission import read_submission
+from grader.tally import numberless, tally
+
+ANSWER = 'def double(x):\n    return x + x'
+SCRIPT = '<script>alert("from a student")</script>'
+RUN = Run(datetime(2026, 11, 21, 8, 30, tzinfo=UTC))
+
+
+@pytest.fixture(scope='module')
+def released(tmp_path_factory):
+    course = make_course(tmp_path_factory.mktemp('report'))
+    release(course)
+    register(course, TOY)
+    return course
+
+
+@pytest.fixture
+def course(released, tmp_path):
+    gradebook = tmp_path / 'gradebook'
+    gradebook.mkdir()
+    # making a database takes long
+    (gradebook / 'gradebook.db').write_bytes((released.gradebook / 'gradebook.db').read_bytes())
+    return Course(root=released.root, gradebook=gradebook)
+
+
+def graded(course, student, reasons=None, *, explained='so', seconds=1.0, notebook=None):
+    """Store a submission with made-up verdicts; return its row."""
+    submit(course, student, notebook or answered(course, ANSWER, explained=explained))
+    folder = course.folder('submitted', student, TOY)
+    submission = read_submission(folder, student_id=student, assignment=TOY)
+    if submission.problem:
+        judged = unanswered(course, submission, submission.problem)
+    else:
+        healed = heal(submission.notebook, course.master(TOY)).notebook
+        judged = executed(prepare(course, TOY, healed), reasons or {})
+    stored = store(course, submission, judged)
+    return Row(student, TOY, stored, stored.reason, seconds)
+
+
+def reported(course, rows, run=RUN):
+    page = write_report(course, run, rows)
+    facts = json.loads(page.with_suffix('.json').read_text(encoding='utf-8'))
+    return facts, page.read_text(encoding='utf-8')
+
+
+@pytest.mark.parametrize(
+    ('reason', 'words'),
+    [
+        ('saw 23.5 at joint1: -4e-05 rad', 'saw … at joint1: … rad'),
+        ('saw (1, 2.0, -3) and 7', 'saw (…) and …'),
+        ('no number', 'no number'),
+    ],
+)
+def test_reasons_are_grouped_by_their_words_without_the_numbers(reason, words):
+    assert numberless(reason) == words
+
+
+def test_students_with_the_same_reason_are_counted_once_and_the_most_common_comes_first(course):
+    rows = [
+        graded(course, 'ada', {'double-hidden': 'expected 42, saw 1: count again'}),
+        graded(
+            course,
+            'bob',
+            {
+                'double-check': 'expected 2, saw 17: count again',
+                'double-hidden': 'expected 42, saw 17: count again',
+            },
+        ),
+        graded(course, 'eve', {'double-check': 'gave no reason'}),
+    ]
+    first, second = tally(course, rows).reasons
+    assert first.words == 'expected …, saw …: count again'
+    assert first.students == ('ada', 'bob')
+    assert first.checks == ('double-hidden', 'double-check')
+    assert second.students == ('eve',)
+    _, html = reported(course, rows)
+    assert html.index('2 students') < html.index('1 student')
+
+
+def test_each_check_has_its_share_of_those_who_have_a_score(course):
+    rows = [
+        graded(course, 'ada', {}),
+        graded(course, 'bob', {'double-check': 'no'}),
+        graded(course, 'eve', {'double-check': '?'}, explained=''),
+    ]
+    (toy,) = tally(course, rows).assignments
+    assert [(c.grade_id, c.passed, c.missed, c.waiting, c.rate) for c in toy.checks] == [
+        ('double-check', 1, 1, 1, 0.5),
+        ('double-hidden', 3, 0, 0, 1.0),
+        ('explain', 0, 1, 2, 0.0),
+    ]
+    assert toy.checks[0].title == 'Small numbers are doubled'
+    assert (toy.scores, toy.mean, toy.median) == ((2.0, 2.0, 3.0), 7 / 3, 2.0)
+
+
+def test_whatever_needs_a_person_is_listed_with_why(course):
+    rows = [
+        graded(course, 'ada', {}),
+        graded(course, 'bob', {'double-check': '?'}, explained=''),
+        graded(course, 'eve', notebook=b'no notebook'),
+        graded(course, 'zoe', {}, explained=''),
+        Row('x.ipynb', '', None, 'a file where a folder was expected'),
+        Row('kim', TOY, None, 'not graded, the grader failed: OSError: no room'),
+    ]
+    looks = [(each.student_id, each.why) for each in tally(course, rows).looks]
+    assert looks[:2] == [
+        ('ada', 'explain: a written answer that a person reads'),
+        ('bob', 'double-check: ?'),
+    ]
+    assert looks[2][0] == 'eve'
+    assert looks[2][1].startswith('unreadable, so it earned nothing: 00_toy.ipynb is not JSON')
+    assert looks[3:] == [('x.ipynb', rows[4].reason), ('kim', rows[5].reason)]
+
+
+def test_what_a_person_has_scored_waits_no_longer(course):
+    row = graded(course, 'ada', {})
+    with Gradebook(course.db_url) as book:
+        book.find_grade('explain', TOY, TOY, 'ada').manual_score = 2.0
+        book.db.commit()
+    counted = tally(course, [row])
+    assert counted.looks == ()
+    assert counted.assignments[0].checks[2].passed == 1
+
+
+def test_the_json_says_what_happened_how_long_it_took_and_with_what(course):
+    rows = [
+        graded(course, 'ada', {}, seconds=2.0),
+        graded(course, 'bob', {}, seconds=9.5),
+        graded(course, 'eve', {}, seconds=None),
+        Row('kim', TOY, None, 'not graded'),
+    ]
+    facts, html = reported(course, rows)
+    assert facts['began'] == '2026-11-21T08:30:00+00:00'
+    assert facts['counts'] == {
+        'submissions': 4,
+        'graded now': 2,
+        'unchanged': 0,
+        'wait for a person': 3,
+        'could not be graded': 1,
+    }
+    assert [(each['student_id'], each['seconds']) for each in facts['slowest']] == [
+        ('bob', 9.5),
+        ('ada', 2.0),
+    ]
+    assert [each['points'] for each in facts['submissions']] == ['3/5 …', '3/5 …', '3/5 …', '–']
+    assert facts['environment'].keys() >= {'Python', 'ros-jazzy-rclpy', 'nbgrader', 'isolation'}
+    assert facts['assignments'][0]['version'] == course.version(TOY)[:12]
+    assert all(value in html for value in facts['environment'].values() if "'" not in value)
+
+
+def test_the_report_says_whether_there_was_a_sandbox_and_which_inputs(course, monkeypatch):
+    rows = [graded(course, 'ada', {})]
+    said = set()
+    for sandbox in (True, False):
+        monkeypatch.setattr('grader.report.isolated', lambda trust_students, it=sandbox: it)
+        said.add(reported(course, rows)[0]['environment']['isolation'])
+    assert said == {'each submission in a sandbox', 'none: --trust-students'}
+    facts, _ = reported(course, rows, Run(RUN.began, seed='abc'))
+    assert facts['environment']['inputs of hidden tests'] == 'replayed from seed abc'
+
+
+def test_nothing_that_a_student_wrote_gets_into_the_page_as_it_is(course):
+    rows = [
+        graded(course, 'ada', {'double-check': f'expected 2, saw {SCRIPT}\x1b[31m\u202e: try'}),
+        Row(SCRIPT, SCRIPT, None, SCRIPT),
+    ]
+    facts, html = reported(course, rows)
+    assert SCRIPT not in html
+    assert html.count('&lt;script&gt;') >= 4
+    assert not re.search('[\x00-\x08\x1b\u202e]', html + json.dumps(facts, ensure_ascii=False))
+    assert "default-src 'none'; style-src 'unsafe-inline'" in html
+    assert not re.search(r'(?i)<script|\son\w+=|javascript:|https?://', html)
+
+
+def test_a_name_that_is_no_text_is_reported_too(course):
+    facts, _ = reported(course, [Row('\udcff', '', None, 'not UTF-8')])
+    assert facts['looks'][0]['student_id'] == '\\udcff'
+
+
+def test_two_runs_of_one_second_keep_their_reports(course):
+    rows = [graded(course, 'ada', {})]
+    pages = [write_report(course, RUN, rows) for _ in range(3)]
+    assert [page.parent.name for page in pages] == [
+        '2026-11-21_08-30-00',
+        '2026-11-21_08-30-00_2',
+        '2026-11-21_08-30-00_3',
+    ]
+    assert sorted(path.name for path in pages[0].parent.iterdir()) == [
+        'report.html',
+        'report.json',
+    ]
+
+
+def test_a_demo_leaves_a_report_too(released, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr('tempfile.tempdir', str(tmp_path))
+    samples = tmp_path / 'samples'
+    samples.mkdir()
+    (samples / f'{TOY}-fail-no_json.ipynb').write_text('')
+    assert demo(samples, root=released.root)
+    (page,) = tmp_path.glob('*/runs/*/report.html')
+    assert f'A report of the run: {page}\n' in capsys.readouterr().out
