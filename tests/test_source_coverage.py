@@ -18,9 +18,10 @@ QOS, ERRORS = '06_qos', '07_common_errors'
 TAUGHT = {
     'preface: a node that cannot speak yet': [
         (ARM, 'kinematics', 'KinematicsNode'),
+        (ARM, 'silent', 'silent'),
+        (ARM, 'its_topics', 'get_publisher_names_and_types_by_node'),
         (ARM, 'problem', 'log'),
-        (PUBLISHER, 'problem', 'silent'),
-        (PUBLISHER, 'silent_node', 'count_publishers'),
+        (PUBLISHER, 'smallest', 'silent'),
     ],
     '5.1 what a topic is': [(TOPICS, 'contract', 'Topics')],
     '5.1.1 like radio': [(TOPICS, 'radio_words', 'radio'), (TOPICS, 'nobody', 'Station')],
@@ -57,7 +58,7 @@ TAUGHT = {
     ],
     '5.3.2 the whole publisher': [
         (PUBLISHER, 'publish_pose', 'KinematicsPublisher.publish_pose'),
-        (PUBLISHER, 'depth', 'oldest'),
+        (PUBLISHER, 'full_node', 'oldest'),
         (PUBLISHER, 'absolute', 'namespace'),
         (PUBLISHER, 'urdf', 'robot_state_publisher'),
     ],
