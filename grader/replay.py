@@ -59,11 +59,12 @@ def recorded_seed(course: Course, found: HandedIn) -> str:
     folder = course.folder('autograded', found.student_id, found.assignment)
     path = folder / f'{found.assignment}.ipynb'
     graded = nbformat.read(path, as_version=4) if path.exists() else NotebookNode(metadata={})
-    seed = graded.metadata.get(KEY, {}).get('seed')
+    about = graded.metadata.get(KEY, {})
+    seed = course.seed(found.assignment) if 'problem' in about else about.get('seed')
     if not seed:
         raise CourseError(
             f'no seed is recorded for {found.assignment} of {found.student_id}: it was not '
-            'graded yet, or could not be read. Give a seed: --seed HEX'
+            'graded yet. Give a seed: --seed HEX'
         )
     return seed
 

@@ -4,18 +4,20 @@ import os
 import shutil
 import sqlite3
 import threading
+from pathlib import Path
 
 import nbformat
 import pytest
 from course_maker import TOY, answered, executed, make_course, submit, toy_lesson, write_source
 from nbgrader.api import Gradebook
 
+from grader import gradebook
 from grader.course import Course
 from grader.errors import CourseError
 from grader.gradebook import register, store
 from grader.heal import KEY, heal
 from grader.pipeline import prepare, unanswered
-from grader.records import records
+from grader.records import records, verdicts
 from grader.release import release
 from grader.scores import COLUMNS, write_scores
 from grader.submission import read_submission
@@ -176,6 +178,64 @@ def test_a_storing_that_fails_half_way_changes_nothing(course, monkeypatch):
     monkeypatch.undo()
     assert by_cell(course, 'ada')['double-check'].score == 1.0
     assert not by_cell(course, 'bob')
+
+
+class Killed(BaseException):
+    """As from SIGKILL: nothing of ours takes notice of it."""
+
+
+def kill_at(monkeypatch, step, when):
+    """Let a step be the last one that is done, or the first one that is not."""
+    place = {'replace': os, 'finish': gradebook, 'unlink': Path}[step]
+    does = getattr(place, step)
+
+    def done(*arguments):
+        if when == 'after':
+            does(*arguments)
+        raise Killed
+
+    monkeypatch.setattr(place, step, done)
+
+
+@pytest.mark.parametrize(
+    ('step', 'when', 'left'),
+    [
+        ('replace', 'before', 0),  # nothing has begun
+        ('replace', 'after', 1),
+        ('finish', 'before', 1),
+        ('finish', 'after', 1),  # the scores are in the database, and the notebook is not there
+        ('unlink', 'before', 1),
+        ('unlink', 'after', 0),  # all is stored
+    ],
+)
+def test_what_was_being_stored_is_stored_by_whoever_comes_next(
+    course, monkeypatch, step, when, left
+):
+    grade(course, 'ada', {'double-check': 'no'})
+    with monkeypatch.context() as patch:
+        kill_at(patch, step, when)
+        with pytest.raises(Killed):
+            grade(course, 'ada', {'double-hidden': 'not that'})
+    assert len(list(course.gradebook.glob('autograded/*/*/.*.begun'))) == left
+    cells = by_cell(course, 'ada')
+    stored = (cells['double-check'].score, cells['double-hidden'].score)
+    assert stored == ((0.0, 2.0) if (step, when) == ('replace', 'before') else (1.0, 0.0))
+    said = verdicts(course, 'ada', TOY)
+    assert ('no' if stored[1] else 'not that') in {said[name].reason for name in cells}
+    kept = course.folder('autograded', 'ada', TOY)
+    assert [p.name for p in kept.iterdir() if p.suffix != '.new'] == [f'{TOY}.ipynb']
+
+
+def test_what_can_never_be_stored_is_told_and_graded_again(course, caplog):
+    grade(course, 'ada', {})
+    kept = course.folder('autograded', 'ada', TOY)
+    strange = executed(nbformat.read(kept / f'{TOY}.ipynb', as_version=4), {})
+    strange.cells[-2].metadata['nbgrader']['grade_id'] = 'gone'
+    (kept / f'.{TOY}.ipynb.begun').write_text(nbformat.writes(strange))
+    before = (kept / f'{TOY}.ipynb').read_bytes()
+    assert by_cell(course, 'ada')['double-hidden'].score == 2.0
+    assert 'is not stored' in caplog.text
+    assert [(p.name, p.read_bytes()) for p in kept.iterdir()] == [(f'{TOY}.ipynb', before)]
 
 
 @pytest.mark.parametrize('student', ['小明', 'Зоя', 'a b', "o'hara", 'x[1]*', '=cmd()', 'é' * 100])
