@@ -8,6 +8,7 @@ from pathlib import Path
 from grader.bundle import bundle
 from grader.collect import LEFT, collect
 from grader.course import Course
+from grader.database import in_sentences
 from grader.demo import demo
 from grader.errors import CourseError
 from grader.feedback import write_feedback
@@ -16,8 +17,8 @@ from grader.gradebook import register
 from grader.intake import lines
 from grader.isolation import missing, protections
 from grader.release import release
-from grader.report import Run, write_report
 from grader.replay import RECORDED, replay
+from grader.report import Run, write_report
 from grader.scores import write_scores
 from grader.table import changes, print_rows
 from grader.text import printable
@@ -29,7 +30,9 @@ def main(arguments: list[str] | None = None, *, course: Course | None = None) ->
     """Run one command; return its exit status: 0, 1 when something needs a look, 130 on Ctrl-C."""
     asked = _parser().parse_args(arguments)
     try:
-        return asked.run(course or Course(), asked)
+        course = course or Course()
+        with in_sentences(course):
+            return asked.run(course, asked)
     except CourseError as error:
         print(f'course: {printable(error)}', file=sys.stderr)
         return 1
@@ -99,7 +102,8 @@ def _grade(course: Course, asked: argparse.Namespace) -> int:
     waiting = sum(row.stored is not None and row.stored.pending for row in rows)
     print(
         f'{len(rows) - failed} graded, {waiting} of them wait for a person (…), '
-        f'{failed} could not be graded (–).\nReport: {report}\nNext: ./course feedback, ./course scores'
+        f'{failed} could not be graded (–).\n'
+        f'Report: {report}\nNext: ./course feedback, ./course scores'
     )
     return 1 if failed else 0
 

@@ -2,10 +2,12 @@
 
 import asyncio
 import os
+import signal
 import sys
 import threading
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Iterator
 from concurrent.futures import Future
+from contextlib import contextmanager
 from typing import Any, Self, TypeVar
 
 Result = TypeVar('Result')
@@ -33,16 +35,10 @@ class Pool:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Cancel what still runs, let it clean up, and end the loop.
-
-        Another Ctrl-C meanwhile changes nothing: it takes seconds, and else leaves kernels behind.
-        """
-        self._loop.call_soon_threadsafe(self._left.set)
-        while self._thread.is_alive():
-            try:
-                self._thread.join()
-            except KeyboardInterrupt:
-                print('\nstill ending what was running: a few seconds more', file=sys.stderr)
+        """Cancel what still runs, let it clean up, and end the loop."""
+        with _patience():
+            self._loop.call_soon_threadsafe(self._left.set)
+            self._thread.join()
 
     def submit(
         self, work: Callable[..., Awaitable[Result]], *args: Any, **kwargs: Any
@@ -63,3 +59,20 @@ class Pool:
         self._loop, self._left = asyncio.get_running_loop(), asyncio.Event()
         self._ready.set()
         await self._left.wait()
+
+
+@contextmanager
+def _patience() -> Iterator[None]:
+    """Answer another Ctrl-C with a word: it takes seconds, and else leaves kernels behind."""
+    if threading.current_thread() is not threading.main_thread():
+        yield  # Python tells the main thread alone
+        return
+
+    def answer(*_: object) -> None:
+        print('\nstill ending what was running: a few seconds more', file=sys.stderr)
+
+    former = signal.signal(signal.SIGINT, answer)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, former)

@@ -1,4 +1,6 @@
 import asyncio
+import os
+import signal
 import threading
 
 import pytest
@@ -57,6 +59,27 @@ def test_leaving_cancels_what_runs_and_what_waits_and_lets_it_clean_up():
     assert runs.cancelled()
     assert waits.cancelled()
     assert 'pool' not in {thread.name for thread in threading.enumerate()}
+
+
+def test_ctrl_c_while_it_cleans_up_leaves_nothing_behind(capsys):
+    begun, cleaned = threading.Event(), []
+
+    async def work():
+        begun.set()
+        try:
+            await asyncio.Event().wait()
+        finally:
+            os.kill(os.getpid(), signal.SIGINT)
+            await asyncio.sleep(0.1)
+            cleaned.append(True)
+
+    former = signal.getsignal(signal.SIGINT)
+    with Pool() as pool:
+        pool.submit(work)
+        assert begun.wait(10)
+    assert cleaned == [True]
+    assert 'still ending what was running' in capsys.readouterr().err
+    assert signal.getsignal(signal.SIGINT) is former
 
 
 def test_it_works_inside_a_running_event_loop():

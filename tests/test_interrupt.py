@@ -1,0 +1,91 @@
+"""Ctrl-C while a class is graded in real rooms, and SIGKILL, which nobody can answer."""
+
+import signal
+import subprocess
+import sys
+import time
+
+import psutil
+import pytest
+from course_maker import TOY, answered, make_course, submit
+
+from grader.__main__ import main
+from grader.gradebook import register
+from grader.records import records
+from grader.release import release
+
+ENDLESS = 'import time\n\nwhile True:\n    time.sleep(0.1)'
+GRADE = (
+    'import sys\n'
+    'from pathlib import Path\n'
+    'from grader.__main__ import main\n'
+    'from grader.course import Course\n'
+    'sys.exit(main(["grade", "--trust-students"], course=Course.at(Path(sys.argv[1]))))\n'
+)
+
+
+@pytest.fixture
+def course(tmp_path):
+    course = make_course(tmp_path)
+    release(course)
+    register(course, TOY)
+    submit(course, 'ada', b'no notebook')
+    submit(course, 'bob', answered(course, ENDLESS))
+    return course
+
+
+@pytest.fixture
+def run(course):
+    command = [sys.executable, '-P', '-c', GRADE, str(course.root)]
+    run = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    yield run
+    run.kill()
+    run.communicate()
+
+
+def kernels_of(run):
+    """Wait until both kernels of a submission run; return all processes below the run."""
+    deadline = time.monotonic() + 120
+    while time.monotonic() < deadline and run.poll() is None:
+        below = psutil.Process(run.pid).children(recursive=True)
+        names = [' '.join(_command(process)) for process in below]
+        if sum('ipykernel_launcher' in name for name in names) >= 2:
+            return below
+        time.sleep(0.1)
+    pytest.fail(f'no kernels: {run.communicate()}')
+
+
+def _command(process):
+    try:
+        return process.cmdline()
+    except psutil.Error:
+        return []
+
+
+def alive(processes):
+    _, left = psutil.wait_procs(processes, timeout=30)
+    return [process for process in left if process.status() != psutil.STATUS_ZOMBIE]
+
+
+def test_a_run_that_is_stopped_leaves_nothing_running_and_says_how_to_go_on(course, run):
+    assert any(line.startswith('ada') for line in iter(run.stdout.readline, ''))
+    below = kernels_of(run)
+    run.send_signal(signal.SIGINT)
+    _, err = run.communicate(timeout=60)
+    assert run.returncode == 130
+    assert (
+        'course: stopped. 1 of 2 submissions are graded and stored; run it again to go on.' in err
+    )
+    assert 'Traceback' not in err
+    assert not alive(below)
+    assert {r.student_id for r in records(course)} == {'ada'}
+
+
+def test_a_run_that_is_killed_takes_its_kernels_with_it_and_is_done_again(course, run):
+    below = kernels_of(run)
+    run.kill()
+    run.communicate()
+    assert not alive(below)
+    submit(course, 'bob', b'no notebook either')
+    assert main(['grade', '--trust-students'], course=course) == 0
+    assert {r.student_id for r in records(course)} == {'ada', 'bob'}
