@@ -15,7 +15,7 @@ from grader.page import docstring
 from grader.records import Record, graded_notebook, records
 from grader.text import printable
 
-NUMBER = re.compile(r'(?<![A-Za-z_])[-+]?\d+(\.\d+)?(e[-+]?\d+)?')
+NUMBER = re.compile(r'(?<!\w)[-+]?\d+(\.\d+)?(e[-+]?\d+)?(?!\w)')
 _MANY = re.compile(r'…(, …)+')
 
 
@@ -67,7 +67,7 @@ class Reason:
 
     assignment: str
     words: str
-    """The reason with … for its numbers."""
+    """The reason, with … for its numbers where those differ."""
     example: str
     students: tuple[str, ...]
     checks: tuple[str, ...]
@@ -155,7 +155,7 @@ def _reasons(notebooks: dict[tuple[str, str], NotebookNode]) -> list[Reason]:
     reasons = [
         Reason(
             assignment=assignment,
-            words=words,
+            words=said[0][2] if len({text for *_, text in said}) == 1 else words,
             example=said[0][2],
             students=tuple(dict.fromkeys(student for student, _, _ in said)),
             checks=tuple(dict.fromkeys(name for _, name, _ in said)),
