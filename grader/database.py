@@ -1,6 +1,7 @@
 """nbgrader's database as a file: made whole, waited for, written in one go."""
 
 import errno
+import logging
 import os
 import sqlite3
 import sys
@@ -16,6 +17,11 @@ from grader.errors import CourseError, GradebookError
 
 PATIENCE_SEC = 60.0
 """How long another program may keep the database; the formgrader takes it for milliseconds."""
+
+# nbgrader prints a traceback of what it raises all the same
+logging.getLogger('tornado.application').addFilter(
+    lambda record: not str(record.msg).startswith('Rolling back session')
+)
 
 _FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 _BUSY = {sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED}
