@@ -18,6 +18,7 @@ from grader.execute import executed
 from grader.gradebook import Stored, register, store
 from grader.heal import heal
 from grader.isolation import isolated
+from grader.lateness import deadlines
 from grader.pipeline import prepare, unanswered
 from grader.pool import IN_FLIGHT, Pool
 from grader.reuse import conditions, held, kept, key_of, remember
@@ -96,11 +97,13 @@ def grade_all(
     """
     in_sandbox = isolated(trust_students=trust_students)
     way = _Way(seeds={}, given={}, trust_students=trust_students, force=force)
+    # what would be wrong with each submission is said now
+    deadlines(course.gradebook, course.assignments())
     with in_sentences(course), Turn.take(course.gradebook):
         bring_in_order(course)
         for assignment in sorted({found.assignment for found in submissions if not found.problem}):
             register(course, assignment)
-            course.master(assignment)  # says now what would be wrong with each submission
+            course.master(assignment)
             way.seeds[assignment] = the = seed or course.seed(assignment)
             way.given[assignment] = conditions(course, assignment, seed=the, isolated=in_sandbox)
     under_way: deque[tuple[HandedIn, Future[Graded]]] = deque()

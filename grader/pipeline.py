@@ -27,7 +27,7 @@ AUTOGRADE_PASSES = (
     'grader.turn.TakeTurns',
     'nbgrader.preprocessors.LimitOutput',
     'grader.saving.SaveGrades',
-    'nbgrader.preprocessors.AssignLatePenalties',
+    'grader.lateness.LatePenalties',
     'nbgrader.preprocessors.CheckCellMetadata',
 )
 """What nbgrader does with it then."""

@@ -15,7 +15,7 @@ from grader.pipeline import apply, first_reason, resources_of
 from grader.submission import Submission
 from grader.versions import machinery
 
-LATE = ('nbgrader.preprocessors.AssignLatePenalties',)
+LATE = ('grader.lateness.LatePenalties',)
 """A due date may have moved, which the result does not depend on."""
 _UNDER = 'graded_under'
 

@@ -167,7 +167,7 @@ def test_healing_comes_first_and_running_before_the_scores_are_saved():
     assert SANITIZE_PASSES[0] == 'grader.passes.HealSubmission'
     assert 'nbgrader.preprocessors.Execute' not in AUTOGRADE_PASSES
     run = AUTOGRADE_PASSES.index('grader.passes.ExecuteRooms')
-    assert run < AUTOGRADE_PASSES.index('grader.gradebook.SaveGrades')
+    assert run < AUTOGRADE_PASSES.index('grader.saving.SaveGrades')
 
 
 def test_our_saver_overrides_what_nbgraders_calls():
