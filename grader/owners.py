@@ -1,7 +1,6 @@
 """Whose file it is: student, assignment and time, read off where it lay and how it is named."""
 
 import re
-import unicodedata
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
@@ -13,6 +12,7 @@ from nbgrader.utils import parse_utc
 
 from grader.archives import ARCHIVE
 from grader.incoming import TIMESTAMP, Incoming, wanted
+from grader.students import Unclear, problem_of_id, student_in
 
 EXPECTED = (
     'expected STUDENT_ASSIGNMENT.ipynb, STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb or an archive named '
@@ -20,10 +20,6 @@ EXPECTED = (
 )
 COLLECTIONS = {'notebooks', 'submitted', 'submissions', 'inbound'}
 """Folders that are named after no student."""
-MAX_ID_CHARACTERS, MAX_ID_BYTES = 128, 200
-"""What nbgrader's database keeps of a name, and what a folder's name may be long, with a rest."""
-JOINERS = '\u200c\u200d'
-"""Not printable, and part of some alphabets' spelling."""
 
 
 @dataclass(frozen=True)
@@ -47,10 +43,6 @@ class Left:
     reason: str
     matters: bool = True
     """Whether a person should look at it; else nobody would grade it anyway."""
-
-
-class _Unclear(Exception):
-    """Says in a sentence why a file is nobody's."""
 
 
 @dataclass(frozen=True)
@@ -77,7 +69,7 @@ def match(
         if each.parts[-1].lower().endswith('.ipynb'):
             try:
                 owners[each] = names.owner(each)
-            except _Unclear as unclear:
+            except Unclear as unclear:
                 rest.append(Left(each, str(unclear)))
         elif wanted(each.parts[-1]):
             beside[each.parts[:-1]][each.parts[-1]] = each
@@ -104,18 +96,6 @@ def match(
     return _in_order(hand_ins, rest), rest
 
 
-def problem_of_id(student_id: str) -> str:
-    """Say why a text can't be the name of a student's folder, if it can't."""
-    plain = student_id.translate(dict.fromkeys(map(ord, JOINERS)))
-    if not plain or student_id.startswith('.'):
-        return 'there is no name of a student in it'
-    if not plain.isprintable() or '/' in plain:
-        return "the student's name holds characters that can't be shown: rename it"
-    if len(student_id) > MAX_ID_CHARACTERS or len(student_id.encode()) > MAX_ID_BYTES:
-        return f"the student's name is too long: at most {MAX_ID_CHARACTERS} characters are kept"
-    return ''
-
-
 class _Names:
     """Reads names of files and folders."""
 
@@ -130,30 +110,30 @@ class _Names:
         self._shared = len(_shared(folders))
 
     def owner(self, each: Incoming) -> _Owner:
-        """Return whose notebook it is. Raises _Unclear."""
+        """Return whose notebook it is. Raises Unclear."""
         folders = each.parts[: each.archive] or each.parts[:-1]
         stem = re.sub(r' \(\d+\)$', '', each.parts[-1][: -len('.ipynb')])  # a browser's second one
         for folder in folders:
             if exchanged := self._exchange.fullmatch(folder):
                 if stem != exchanged['what'] or each.parts[-2] != folder:
-                    raise _Unclear(f'in the exchange, {exchanged["what"]}.ipynb was expected here')
+                    raise Unclear(f'in the exchange, {exchanged["what"]}.ipynb was expected here')
                 when = _date(re.sub(r'(\d\d)_(\d\d)_(\d\d)', r'\1:\2:\3', exchanged['when']))
-                return _Owner(_id(exchanged['who']), stem, by_folder=True, handed_in=when)
+                return _Owner(student_in(exchanged['who']), stem, by_folder=True, handed_in=when)
         if stem in self.known:
             return _Owner(self._student_of(folders, stem), stem, by_folder=True)
         if named := self._named.fullmatch(stem):
-            student, assignment = _id(named['who']), named['what']
+            student, assignment = student_in(named['who']), named['what']
             if each.archive:
                 holder = self._student_of(folders, assignment)
                 if student != holder:
-                    raise _Unclear(f'it is named after {student}, and in the archive of {holder}')
+                    raise Unclear(f'it is named after {student}, and in the archive of {holder}')
             elif strange := self._other_student(folders, student):
-                raise _Unclear(
+                raise Unclear(
                     f'it is named after {student}, and in a folder {strange}: collect that '
                     'folder by itself, or rename it'
                 )
             return _Owner(student, assignment, by_folder=False)
-        raise _Unclear(f'named after no assignment: {EXPECTED}, with {", ".join(self.known)}')
+        raise Unclear(f'named after no assignment: {EXPECTED}, with {", ".join(self.known)}')
 
     def _student_of(self, folders: Sequence[str], assignment: str) -> str:
         """Return the student after whom the nearest folder is named."""
@@ -162,17 +142,17 @@ class _Names:
             if name == assignment or name in COLLECTIONS:
                 continue
             if name in self.known:
-                raise _Unclear(f'it lies in a folder of another assignment, {name}')
+                raise Unclear(f'it lies in a folder of another assignment, {name}')
             named = self._named.fullmatch(name)
             if named and named['what'] != assignment:
-                raise _Unclear(f'it lies in a folder of another assignment, {named["what"]}')
-            return _id(named['who'] if named else name)
-        raise _Unclear(f'nothing says whose it is: {EXPECTED}')
+                raise Unclear(f'it lies in a folder of another assignment, {named["what"]}')
+            return student_in(named['who'] if named else name)
+        raise Unclear(f'nothing says whose it is: {EXPECTED}')
 
     def _other_student(self, folders: Sequence[str], student: str) -> str:
         """Return a folder that may be another student's: what they put there is named by them."""
         for folder in folders[self._shared :]:
-            if folder not in (*self.known, *COLLECTIONS) and _id(folder) != student:
+            if folder not in (*self.known, *COLLECTIONS) and student_in(folder) != student:
                 return folder
         return ''
 
@@ -184,22 +164,6 @@ def _shared(folders: Sequence[tuple[str, ...]]) -> tuple[str, ...]:
     low, high = min(folders), max(folders)
     alike = [a == b for a, b in zip(low, high, strict=False)]
     return low[: alike.index(False) if False in alike else len(alike)]
-
-
-# what course management systems put around a name: Moodle's, and Canvas's
-_MOODLE = re.compile(r'(?P<who>.+?)_\d+_assignsubmission_(file|onlinetext)_?.*')
-_CANVAS = re.compile(r'(?P<who>[^_]+)(_LATE)?_\d{3,}_\d{3,}(_.*)?')
-
-
-def _id(name: str) -> str:
-    """Return the student's name in a name. Raises _Unclear."""
-    name = unicodedata.normalize('NFC', name)
-    if decorated := _MOODLE.fullmatch(name) or _CANVAS.fullmatch(name):
-        name = decorated['who']
-    name = name.strip(' ')
-    if problem := problem_of_id(name):
-        raise _Unclear(problem)
-    return name
 
 
 def date_of(stamp: Path) -> datetime | None:

@@ -1,10 +1,9 @@
 from datetime import UTC, datetime
-from pathlib import Path
 
 import pytest
 
 from grader.incoming import Incoming
-from grader.owners import match, problem_of_id
+from grader.owners import match
 
 ASSIGNMENTS = ['00_two_link_arm', '02_joint_state', '03_publisher']
 LATER = datetime(2026, 1, 1, 12, tzinfo=UTC)
@@ -201,14 +200,3 @@ def test_what_can_t_be_read_and_what_nobody_grades_is_told_apart(at):
         ('broken', True),
         ('neither a notebook nor Python', False),
     ]
-
-
-@pytest.mark.parametrize('student', ['ada', '小明', 'é' * 100, 'a.b', 'نگار\u200cمحمدی'])
-def test_an_id_that_can_be_a_folder_has_no_problem(student):
-    assert problem_of_id(student) == ''
-    assert Path(student).name == student
-
-
-@pytest.mark.parametrize('student', ['', '.', '..', '.git', 'a/b', 'a\0b', '\u200c', '小' * 70])
-def test_an_id_that_can_t_be_a_folder_has_one(student):
-    assert problem_of_id(student)
