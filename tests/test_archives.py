@@ -1,4 +1,5 @@
 import io
+import random
 import shutil
 import stat
 import struct
@@ -243,6 +244,24 @@ def test_a_full_disk_is_not_the_archive_s_fault(tmp_path, monkeypatch):
     archive = zipped(tmp_path, ('a.py', b'x'))
     with pytest.raises(OSError, match='No space'):
         members(archive)
+
+
+@pytest.mark.parametrize('name', ['x.zip', 'x.tar', 'x.tgz', 'x.tar.xz'])
+def test_whatever_is_damaged_the_archive_is_to_blame_and_nothing_lies_elsewhere(name, tmp_path):
+    rolls = random.Random(name)
+    content = [(f'a{i}/b{i}.py', rolls.randbytes(rolls.randrange(900))) for i in range(4)]
+    mode = {'x.tar': 'w', 'x.tgz': 'w:gz', 'x.tar.xz': 'w:xz'}.get(name)
+    make = tarred(tmp_path, *content, name=name, mode=mode) if mode else zipped(tmp_path, *content)
+    whole = make.read_bytes()
+    complaints = 0
+    for _ in range(150):
+        damaged = bytearray(whole)
+        for _ in range(rolls.randrange(1, 6)):
+            place = rolls.randrange(len(damaged))
+            damaged[place : place + rolls.randrange(3)] = rolls.randbytes(rolls.randrange(3))
+        make.write_bytes(damaged)
+        complaints += any(member.problem for member in members(make))  # which looks at the rest
+    assert complaints
 
 
 def test_times_are_kept_where_they_make_sense(tmp_path):
