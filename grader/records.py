@@ -2,10 +2,11 @@
 
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
-from typing import Any
+from functools import cache, partial
 
 import nbformat
 from nbformat import NotebookNode
+from nbgrader.api import Gradebook
 
 from grader.course import Course
 from grader.gradebook import opened, submitted_notebook, waits_for_a_person
@@ -32,15 +33,16 @@ class Record:
 def records(course: Course, *, only: Collection[tuple[str, str]] | None = None) -> list[Record]:
     """Return all graded cells of all students, in a stable order; registers what is new.
 
-    `only` asks for some submissions, as pairs of student and assignment.
+    `only` asks for some submissions that were graded, as pairs of student and assignment.
     """
-    with opened(course) as book:
+    place_in = cache(partial(_place_in, course))
+    with opened(course) if only is None else Gradebook(course.db_url) as book:
         return [
             record
             for student in sorted(student.id for student in book.students)
             for assignment in sorted(assignment.name for assignment in book.assignments)
             if only is None or (student, assignment) in only
-            for record in _records(course, book, student, assignment)
+            for record in _records(book, student, assignment, place_in(assignment))
         ]
 
 
@@ -56,14 +58,16 @@ def graded_notebook(course: Course, student_id: str, assignment: str) -> Noteboo
     return nbformat.read(path, as_version=4) if path.exists() else nbformat.v4.new_notebook()
 
 
-def _records(course: Course, book: Any, student: str, assignment: str) -> Iterator[Record]:
+def _records(
+    book: Gradebook, student: str, assignment: str, place: Callable[[object], tuple[int, str]]
+) -> Iterator[Record]:
     known = [cell for nb in book.find_assignment(assignment).notebooks for cell in nb.grade_cells]
     found = submitted_notebook(book, student, assignment)
     grades = {grade.name: grade for grade in found.grades} if found else {}
     comments = (
         {comment.name: comment.manual_comment for comment in found.comments} if found else {}
     )
-    for cell in sorted(known, key=_place_in(course, assignment)):
+    for cell in sorted(known, key=place):
         grade = grades.get(cell.name)
         yield Record(
             student_id=student,
