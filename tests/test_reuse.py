@@ -228,7 +228,11 @@ def test_a_lesson_that_was_released_again_grades_its_submissions_again(course, l
     assert main(['release', TOY], course=course) == 0
     capsys.readouterr()
     assert main(['grade'], course=course) == 0
-    assert '1 score changed:\n  ada  00_toy  4.5 → 2.5 (-2)\n' in capsys.readouterr().out
+    out = capsys.readouterr().out
+    assert '1 score changed:\n  ada  00_toy  4.5 → 2.5 (-2)\n' in out
+    report = sorted((course.gradebook / 'runs').glob('*/report.html'))[-1]
+    assert f'Report: {report}\n' in out
+    assert '<li>ada  00_toy  4.5 → 2.5 (-2)</li>' in report.read_text(encoding='utf-8')
     assert len(looked) == 4
     by_hand = [r for r in records(course) if r.by_hand]
     assert [(r.student_id, r.grade_id, r.score) for r in by_hand] == [('ada', 'explain', 1.5)]
