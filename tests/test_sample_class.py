@@ -5,7 +5,7 @@ from functools import cache
 
 import nbformat
 import pytest
-from sample_class import EXPECTED, PATHS, assignment_of, grade, rebased
+from sample_class import EXPECTED, FOLDER, PATHS, assignment_of, grade, rebased
 from stock_validator import validate_all
 
 from grader.course import Course
@@ -36,6 +36,20 @@ OUT_OF_ORDER = {'02_joint_state-pass-helper_in_the_last_cell': "name 'to_rad' is
 """Notebooks that do not run from top to bottom, as Validate runs them; the grader lets them."""
 
 
+def of_assignment(assignment):
+    return [name for name, path in PATHS.items() if assignment_of(path) == assignment]
+
+
+def one_of_each_outcome():
+    outcomes = {'-'.join(name.split('-')[:2]): name for name in reversed(PATHS)}
+    return set(outcomes.values())
+
+
+SPECIAL = {*NO_VERDICT, *CHANGED, *ABSENT, *TRUSTS, *OUT_OF_ORDER}
+AT_ONCE = SPECIAL | {n for n, p in PATHS.items() if p.parent == FOLDER} | one_of_each_outcome()
+"""Samples that go through Validate in an ordinary run; `./course test --slow` takes all."""
+
+
 @pytest.fixture(scope='module')
 def graded(tmp_path_factory):
     """Gives, for a sample, the gradebook of its assignment's class, and the row that it got."""
@@ -57,14 +71,11 @@ def validated():
     """Gives what nbgrader's Validate says of a sample."""
 
     @cache
-    def validate_class(assignment):
-        return validate_all(PATHS[name] for name in of_assignment(assignment))
+    def validate_class(assignment, at_once):
+        names = [name for name in of_assignment(assignment) if (name in AT_ONCE) == at_once]
+        return validate_all(PATHS[name] for name in names)
 
-    return lambda name: validate_class(assignment_of(PATHS[name]))[name]
-
-
-def of_assignment(assignment):
-    return [name for name, path in PATHS.items() if assignment_of(path) == assignment]
+    return lambda name: validate_class(assignment_of(PATHS[name]), name in AT_ONCE)[name]
 
 
 def test_something_is_expected_of_every_sample():
@@ -103,7 +114,14 @@ def test_the_row_of_a_broken_cell_names_the_cause_first(graded):
         assert graded(name)[1].reason.startswith(cause)
 
 
-@pytest.mark.parametrize('name', [n for n in PATHS if n not in (*NO_VERDICT, *CHANGED)])
+@pytest.mark.parametrize(
+    'name',
+    [
+        pytest.param(name, marks=[] if name in AT_ONCE else [pytest.mark.slow])
+        for name in PATHS
+        if name not in (*NO_VERDICT, *CHANGED)
+    ],
+)
 def test_validate_says_the_same_of_each_visible_cell(graded, validated, name):
     course, _ = graded(name)
     notebook = nbformat.read(PATHS[name], as_version=4)
