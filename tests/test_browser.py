@@ -218,7 +218,8 @@ def test_a_lesson_runs_to_its_exercise(opened, name):
     assert warnings(cells) == []
     before = cells[: lesson.index(first_check)]
     assert [c.id for c in before if c.cell_type == 'code' and c.execution_count is None] == []
-    for cell in released:
+    # JupyterLab takes away the outputs of cells that it then did not come to
+    for cell in released[: lesson.index(first_check)]:
         if count := len(pictures(cell)):
             images = lesson.shown(cell.id).locator('.jp-OutputArea img')
             expect(images).to_have_count(count)
