@@ -17,8 +17,8 @@ TOPIC = '/kinematics/joint_states'
     ],
 )
 def test_a_wrong_rate_fails(monkeypatch, node, seen):
-    monkeypatch.setattr(clock, 'BUDGET_SEC', 100.0)
-    monkeypatch.setattr(clock, 'SLOWEST_MEDIAN_SEC', 100.0)
+    for limit in ('BUDGET_SEC', 'SLOWEST_BARRIER_SEC', 'SLOWEST_MEDIAN_SEC'):
+        monkeypatch.setattr(clock, limit, 100.0)
     with running(node):
         recording = topic(TOPIC).record(seconds=10.0)
         assert recording.clock == 'simulated'
@@ -29,8 +29,8 @@ def test_a_wrong_rate_fails(monkeypatch, node, seen):
 
 
 def test_the_first_look_stands_when_the_node_has_gone(monkeypatch):
-    monkeypatch.setattr(clock, 'BUDGET_SEC', 100.0)
-    monkeypatch.setattr(clock, 'SLOWEST_MEDIAN_SEC', 100.0)
+    for limit in ('BUDGET_SEC', 'SLOWEST_BARRIER_SEC', 'SLOWEST_MEDIAN_SEC'):
+        monkeypatch.setattr(clock, limit, 100.0)
     with running('too_slow'):
         recording = topic(TOPIC).record(seconds=10.0)
     monkeypatch.setattr(topics, 'PUBLISHER_SEC', 1.0)
@@ -63,8 +63,8 @@ def test_honest_nodes_that_are_no_plain_timers_pass(capfd, node, out):
 @pytest.mark.parametrize(
     ('node', 'seen'),
     [
-        ('bursts', 'pauses of 1.0'),
-        ('pairs', 'pauses of 0.4'),
+        ('bursts', r'pauses of (0\.9|1\.)'),
+        ('pairs', r'pauses of 0\.[345]'),
         ('too_busy', r'[34]\.\d+ Hz over 4 s'),
     ],
 )
