@@ -71,7 +71,7 @@ def test_a_run_that_is_stopped_leaves_nothing_running_and_says_how_to_go_on(cour
     assert any(line.startswith('ada') for line in iter(run.stdout.readline, ''))
     below = kernels_of(run)
     run.send_signal(signal.SIGINT)
-    _, err = run.communicate(timeout=60)
+    _, err = run.communicate(timeout=240)
     assert run.returncode == 130
     assert (
         'course: stopped. 1 of 2 submissions are graded and stored; run it again to go on.' in err
