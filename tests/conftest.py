@@ -2,6 +2,7 @@
 
 import os
 import shutil
+import signal
 import tempfile
 
 import _pytest.runner
@@ -64,6 +65,8 @@ def pytest_terminal_summary(terminalreporter: object, config: pytest.Config) -> 
 def pytest_configure(config: pytest.Config) -> None:
     if config.getoption('--no-isolation'):
         os.environ[TRUST] = '1'
+    # a session in the background ignores Ctrl-C, and so would all that it starts
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     # once in each xdist worker, too: two workers do not hear each other's nodes
     os.environ['MY_ROBOT_BASICS_WORKSPACE'] = tempfile.mkdtemp(prefix='ros ws ')
     classroom.enter()

@@ -16,9 +16,7 @@ from grader.release import release
 
 ENDLESS = 'import time\n\nwhile True:\n    time.sleep(0.1)'
 GRADE = (
-    'import signal, sys\n'
-    # a test session in the background ignores Ctrl-C, and so would all that it starts
-    'signal.signal(signal.SIGINT, signal.default_int_handler)\n'
+    'import sys\n'
     'from pathlib import Path\n'
     'from grader.__main__ import main\n'
     'from grader.course import Course\n'
