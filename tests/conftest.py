@@ -24,6 +24,7 @@ LONG = (
     'attacks',
     'same_scores',
     'sample_class',
+    'lessons_run',
     'doctor_faults',
     'browser',
     'nbgrader_commands',

@@ -177,6 +177,8 @@ def test_a_flood_is_drained_and_bounded_and_the_kernel_goes_on(own, run, code):
     result = run(own, code)
     assert not result.died
     assert size_of(result) < 1.1 * MAX_OUTPUT_CHARACTERS
+    # ZMQ drops what a full queue has no room for, and that may be the first words after the flood
+    assert run(own, 'print("lost, perhaps")').ran_to_end
     after = run(own, 'print("after")')
     assert after.ran_to_end
     assert 'after\n' in text_of(after)
