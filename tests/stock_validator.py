@@ -6,6 +6,9 @@ import os
 from collections.abc import Iterable
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from traitlets.config import Config
 
 OURS = ('MY_ROBOT_BASICS_', 'ROS_', 'RCUTILS_', 'FASTRTPS_', 'PYTEST_', 'JPY_')
 """What a test session has in its environment and a student's JupyterLab has not."""
@@ -32,7 +35,10 @@ def _leave_the_tests() -> None:
 def _validate(path: Path) -> dict:
     from nbgrader.validator import Validator
 
-    try:
-        return Validator().validate(str(path))
-    except Exception as error:
-        return {'broken': f'{type(error).__name__}: {error}'}
+    # kernels of other tests may take the TCP ports that were chosen for this one
+    with TemporaryDirectory(prefix='validate-') as sockets:
+        config = Config(KernelManager={'transport': 'ipc', 'ip': f'{sockets}/zmq'})
+        try:
+            return Validator(config=config).validate(str(path))
+        except Exception as error:
+            return {'broken': f'{type(error).__name__}: {error}'}
