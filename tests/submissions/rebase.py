@@ -35,8 +35,8 @@ def assignment_of(sample: Path) -> str:
     return sample.stem.split('-', maxsplit=1)[0]
 
 
-def rebased(sample: Path) -> str:
-    """Return the text of a sample's file on today's release."""
+def rebased(sample: Path, *, with_demos: bool | None = None) -> str:
+    """Return the text of a sample's file on today's release; as it is kept, unless told."""
     text = sample.read_text(encoding='utf-8')
     if '-zero-' in sample.stem:
         return text
@@ -49,8 +49,9 @@ def rebased(sample: Path) -> str:
         if role(cell) == 'answer' and not _is_unanswered(sample):
             cell.source = '\n\n'.join(answers[grade_id(cell)])
         cells += [cell, *own[cell.id]]
-    shorter = sample.parent != FOLDER
-    notebook.cells = [cell for cell in cells if not (shorter and role(cell) == 'demo')]
+    if with_demos is None:
+        with_demos = sample.parent == FOLDER
+    notebook.cells = [cell for cell in cells if with_demos or role(cell) != 'demo']
     DAMAGE.get(sample.stem, lambda notebook: None)(notebook)
     return nbformat.writes(notebook) + '\n'
 
