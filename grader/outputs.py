@@ -125,7 +125,8 @@ def _output(kind: str, content: dict) -> NotebookNode | None:
         case 'stream', {'name': 'stdout' | 'stderr' as name, 'text': str(text)}:
             return nbformat.v4.new_output('stream', name=name, text=_clean(text))
         case 'display_data' | 'execute_result', {'data': dict(data)}:
-            data = {mime: _clean(text) for mime, text in data.items() if isinstance(text, str)}
+            texts = {mime: text for mime, text in data.items() if isinstance(text, str)}
+            data = {_clean(mime): _clean(text) for mime, text in texts.items()}
             about = _about_pictures(content.get('metadata'))
             return nbformat.v4.new_output(kind, data=data, metadata=about)
         case 'error', {'ename': str(name), 'evalue': str(value), 'traceback': list(lines)}:
@@ -143,6 +144,7 @@ def _about_pictures(metadata: object) -> dict[str, dict[str, int | str]]:
     kept = {}
     for mime, about in metadata.items() if isinstance(metadata, dict) else ():
         if isinstance(about, dict):
+            mime = _clean(mime)
             kept[mime] = {k: about[k] for k in ('width', 'height') if type(about.get(k)) is int}
             if isinstance(about.get('alt'), str):
                 kept[mime]['alt'] = _clean(about['alt'])[:MAX_ALT_CHARACTERS]

@@ -42,6 +42,10 @@ KEPT = {
         [display({'text/html': '\udfff'})],
         [('display_data', {'text/html': '?'})],
     ),
+    'a surrogate in a kind of display': (
+        [display({'text/\ud800': 'x'}, metadata={'\udcff': {'alt': '\udfff'}})],
+        [('display_data', {'text/?': 'x'})],
+    ),
     'a display that is no text': (
         [display({'text/plain': 'x', 'image/png': {'a': 1}, 'a/json': [1]})],
         [('display_data', {'text/plain': 'x'})],
@@ -63,6 +67,7 @@ def test_outputs_are_kept(messages, expected):
     run = run_of(*messages)
     assert [brief(output) for output in run.outputs] == expected
     nbformat.validate(notebook_with(run.outputs))
+    nbformat.writes(notebook_with(run.outputs)).encode()  # what a file can hold
 
 
 def notebook_with(outputs):

@@ -1,0 +1,15 @@
+"""Answers a check with half characters, zero bytes and escapes that are none."""
+
+import itertools
+
+from my_robot_basics.checks import responder
+
+BROKEN = itertools.cycle(['\\ud800', '\0', '\\x', '\\N{none}', '\\U00110000', '\r'])
+
+
+class Reply:
+    def __repr__(self):
+        return f"'{next(BROKEN)}'"
+
+
+responder.answer = lambda request: Reply()
