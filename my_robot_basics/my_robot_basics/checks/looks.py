@@ -17,6 +17,10 @@ FIRST_MESSAGE_SEC = 20.0
 IGNORES = 'the node ignores the clock'
 FINER = (1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01)
 """Steps of the clock, as parts of the one asked for, tried until messages skip a tick."""
+PROOF_PARTS = 5
+"""The proof takes steps of this part of the recording's …"""
+PROOF_STEPS = 20
+"""… for at least so many of the recording's steps."""
 
 Again = Callable[[str, float], Recording]
 """Makes one more recording on the wall clock, of so many seconds, for the reason given."""
@@ -71,9 +75,12 @@ def simulated(
         with SimulatedClock(watcher, needed=set(ears.publishers())) as clock:
             _hold(watcher, ears, clock)
             recording = _drive(ears, clock, seconds=seconds, step_sec=step_sec, again=again)
+            if not rates.is_even(recording):
+                return 'its messages are not evenly spaced'
+            _prove(ears, clock, recording)
     except Inconclusive as why:
         return str(why)
-    return recording if rates.is_even(recording) else 'its messages are not evenly spaced'
+    return recording
 
 
 def wall(
@@ -158,6 +165,24 @@ def _find_step(ears: Ears, clock: SimulatedClock, *, step_sec: float) -> tuple[i
         if _tick_to_message(ears, clock, step_ns=step_ns) > 1:
             break
     return step_ns, clock.now_ns
+
+
+def _prove(ears: Ears, clock: SimulatedClock, recording: Recording) -> None:
+    """See the same period in finer steps, too. Raises Inconclusive.
+
+    A timer fires once a tick at most. One that is faster than the ticks, and publishes every so
+    many calls, shows a period that the steps have made.
+    """
+    step_ns = round(recording.step_sec * 1e9 / PROOF_PARTS)
+    _tick_to_message(ears, clock, step_ns=step_ns)
+    ticks = messages = 0
+    while ticks < PROOF_STEPS * PROOF_PARTS:
+        ticks += _tick_to_message(ears, clock, step_ns=step_ns)
+        messages += 1
+    recorded_ns = messages * 1e9 / recording.rate_hz
+    unsure_ns = step_ns + messages * recording.step_sec * 1e9 / len(recording.messages)
+    if abs(ticks * step_ns - recorded_ns) > 1.5 * unsure_ns:
+        raise Inconclusive("it counts the calls of a timer that is faster than the clock's steps")
 
 
 def _tick_to_message(ears: Ears, clock: SimulatedClock, *, step_ns: int) -> int:
