@@ -7,6 +7,8 @@ import tempfile
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from grader.leftovers import own_folder
+
 _PASSED_ON = ('LANG', 'LC_ALL', 'TZ')
 # the ROS wheels start an interpreter anew to set the one, unless they find the other
 _PASSED_ON += ('LD_LIBRARY_PATH', '_ROS_WHEELS_BOOTSTRAP_COMPLETE')
@@ -58,9 +60,7 @@ class Place:
 
 def make_folder(name: str) -> Path:
     """Make a temporary folder that nobody else can enter, with an empty `given` in it."""
-    # a Unix socket's path holds 107 characters at most
-    parent = '/tmp' if len(tempfile.gettempdir()) > 60 else None
-    folder = Path(tempfile.mkdtemp(prefix=f'mrb-{name}-', dir=parent))
+    folder = Path(tempfile.mkdtemp(prefix=f'{name}-', dir=own_folder()))
     (folder / 'given' / 'files').mkdir(parents=True)
     return folder
 
