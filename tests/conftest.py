@@ -3,7 +3,10 @@
 import os
 import shutil
 import signal
+import sys
 import tempfile
+import time
+from collections.abc import Iterator
 
 import _pytest.runner
 import pytest
@@ -75,6 +78,24 @@ def pytest_configure(config: pytest.Config) -> None:
 
 def pytest_unconfigure() -> None:
     shutil.rmtree(os.environ['MY_ROBOT_BASICS_WORKSPACE'])
+
+
+LEAVE_SEC = 10.0
+"""How long the nodes of a file's last test may take to end."""
+
+
+@pytest.fixture(scope='module', autouse=True)
+def nobody_stays() -> Iterator[None]:
+    """See that a file of tests leaves no node to the next one in the same domain."""
+    yield
+    if 'rclpy' not in sys.modules:
+        return
+    from my_robot_basics.checks import graph  # not before: most tests need no rclpy
+
+    deadline = time.monotonic() + LEAVE_SEC
+    while (left := graph().nodes()) and time.monotonic() < deadline:
+        pass
+    assert not left, f'the tests of this file left nodes behind: {", ".join(left)}'
 
 
 # ipykernel leaves the logs of C code alone where it finds PYTEST_CURRENT_TEST, and every kernel

@@ -77,3 +77,4 @@ def test_a_check_waits_for_a_node_that_is_slow_to_return():
         finally:
             executor.shutdown()
             thread.join()
+            node.destroy_node()

@@ -31,10 +31,15 @@ def description():
 @pytest.mark.parametrize('place', ['here', 'elsewhere'])
 def test_nobody_gets_what_was_said_before_without_asking_for_it(run, place, times):
     heard, said_before = [], set()
-    run(Node, 'probe').create_subscription(
+    probe = run(Node, 'probe')
+    probe.create_subscription(
         String, '/monitor/arm_description', lambda message: heard.append(message.data), 10
     )
     with volatile_monitor(run, place):
+        # what the monitor says before it has met us would be lost
+        greeter = probe.create_publisher(String, '/arm_description', 10)
+        live.wait_until(lambda: greeter.publish(String(data='hello')) or 'hello' in heard, 20.0)
+        probe.destroy_publisher(greeter)
         for _ in range(times):
             with said_to_nobody('/arm_description', description) as (message, publisher):
                 said_before.add(message.data)
