@@ -1,6 +1,7 @@
 """The command line: `python -m grader VERB`, which is what `./course VERB` runs."""
 
 import argparse
+import contextlib
 import sys
 from datetime import datetime
 from pathlib import Path
@@ -20,26 +21,30 @@ from grader.release import release
 from grader.replay import RECORDED, replay
 from grader.report import Run, write_report
 from grader.scores import write_scores
+from grader.stopping import stoppable
 from grader.table import changes, print_rows
 from grader.text import printable
 
-INTERRUPTED = 130
-
 
 def main(arguments: list[str] | None = None, *, course: Course | None = None) -> int:
-    """Run one command; return its exit status: 0, 1 when something needs a look, 130 on Ctrl-C."""
+    """Run one command; return its exit status: 0, 1 when something needs a look, 130 on Ctrl-C.
+
+    It is 143 on SIGTERM and 129 on SIGHUP, which end a run in the same way.
+    """
     asked = _parser().parse_args(arguments)
-    try:
-        course = course or Course()
-        with in_sentences(course):
-            return asked.run(course, asked)
-    except CourseError as error:
-        print(f'course: {printable(error)}', file=sys.stderr)
-        return 1
-    except KeyboardInterrupt as stop:
-        kept = f'{stop}' or 'What was finished is kept'
-        print(f'\ncourse: stopped. {kept}; run it again to go on.', file=sys.stderr)
-        return INTERRUPTED
+    with stoppable() as stop:
+        try:
+            course = course or Course()
+            with in_sentences(course):
+                return asked.run(course, asked)
+        except CourseError as error:
+            print(f'course: {printable(error)}', file=sys.stderr)
+            return 1
+        except KeyboardInterrupt as told:
+            kept = f'{told}' or 'What was finished is kept'
+            with contextlib.suppress(OSError):  # SIGHUP: the terminal is gone
+                print(f'\ncourse: stopped. {kept}; run it again to go on.', file=sys.stderr)
+            return stop.status
 
 
 def _release(course: Course, asked: argparse.Namespace) -> int:

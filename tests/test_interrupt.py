@@ -1,4 +1,4 @@
-"""Ctrl-C while a class is graded in real rooms, and SIGKILL, which nobody can answer."""
+"""Ctrl-C and the like while a class is graded in real rooms; SIGKILL, which nobody can answer."""
 
 import signal
 import subprocess
@@ -67,12 +67,16 @@ def alive(processes):
     return [process for process in left if process.status() != psutil.STATUS_ZOMBIE]
 
 
-def test_a_run_that_is_stopped_leaves_nothing_running_and_says_how_to_go_on(course, run):
+@pytest.mark.parametrize(
+    'number',
+    [signal.SIGINT, signal.SIGTERM, pytest.param(signal.SIGHUP, marks=pytest.mark.slow)],
+)
+def test_a_run_that_is_stopped_leaves_nothing_running_and_says_how_to_go_on(course, run, number):
     assert any(line.startswith('ada') for line in iter(run.stdout.readline, ''))
     below = kernels_of(run)
-    run.send_signal(signal.SIGINT)
+    run.send_signal(number)
     _, err = run.communicate(timeout=240)
-    assert run.returncode == 130
+    assert run.returncode == 128 + number
     assert (
         'course: stopped. 1 of 2 submissions are graded and stored; run it again to go on.' in err
     )
