@@ -9,6 +9,7 @@ from pathlib import Path
 from grader.bundle import bundle
 from grader.collect import LEFT, collect
 from grader.course import Course
+from grader.crew import Crew
 from grader.database import in_sentences
 from grader.demo import demo
 from grader.errors import CourseError
@@ -24,6 +25,7 @@ from grader.scores import write_scores
 from grader.stopping import stoppable
 from grader.table import changes, print_rows
 from grader.text import printable
+from grader.workers import Workers
 
 
 def main(arguments: list[str] | None = None, *, course: Course | None = None) -> int:
@@ -87,6 +89,7 @@ def _grade(course: Course, asked: argparse.Namespace) -> int:
     graded = grade_all(
         course,
         submissions,
+        crew=_crew(asked),
         seed=asked.seed or '',
         trust_students=asked.trust_students,
         force=asked.force,
@@ -113,10 +116,18 @@ def _grade(course: Course, asked: argparse.Namespace) -> int:
     return 1 if failed else 0
 
 
+def _crew(asked: argparse.Namespace) -> Crew | None:
+    return Workers(asked.workers) if asked.workers else None
+
+
 def _replay(course: Course, submissions: list[HandedIn], asked: argparse.Namespace) -> int:
     same = True
     for line, as_stored in replay(
-        course, submissions, seed=asked.seed, trust_students=asked.trust_students
+        course,
+        submissions,
+        crew=_crew(asked),
+        seed=asked.seed,
+        trust_students=asked.trust_students,
     ):
         print(line, flush=True)
         same &= as_stored
@@ -158,6 +169,13 @@ def hexadecimal(text: str) -> str:
     return text
 
 
+def at_least_one(text: str) -> int:
+    """Check an argument; argparse shows what this raises."""
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f'{text!r} is not a number from 1 on')
+    return int(text)
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog='./course', description='Release, grade, tell.')
     verbs = parser.add_subparsers(required=True, metavar='VERB')
@@ -193,6 +211,12 @@ def _parser() -> argparse.ArgumentParser:
         '--trust-students',
         action='store_true',
         help='grade even where this machine has no sandbox for their code (./course doctor)',
+    )
+    verb.add_argument(
+        '--workers',
+        type=at_least_one,
+        metavar='N',
+        help='grade in so many processes; without it, one for each core',
     )
     verb.add_argument(
         '--force', action='store_true', help='grade again what has not changed since, too'

@@ -15,3 +15,16 @@ class UnreadableSubmission(CourseError):
 
 class RoomFailure(CourseError):
     """The grader itself failed: never the student's fault, never a zero."""
+
+
+class TaskFailed(CourseError):
+    """A submission came to no result: it is not graded, and the next one may be."""
+
+    def __init__(self, why: str, trace: str = '') -> None:
+        """Say why, and where in the code, for the log."""
+        super().__init__(why)
+        self.trace = trace
+
+
+class ClusterError(CourseError):
+    """The machines that grade can't be used, or are gone: the run ends, and can go on later."""

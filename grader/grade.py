@@ -1,7 +1,6 @@
 """The whole flow: read a submission, heal it, run it in its rooms, store what came of it."""
 
 import logging
-import time
 from collections import deque
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future
@@ -12,18 +11,18 @@ from nbformat import NotebookNode
 
 from grader.backups import bring_in_order
 from grader.course import Course
+from grader.crew import Crew
 from grader.database import in_sentences
-from grader.errors import CourseError, GradebookError
-from grader.execute import executed
+from grader.errors import ClusterError, CourseError, GradebookError, TaskFailed
 from grader.gradebook import Stored, register, store
 from grader.heal import heal
-from grader.isolation import isolated
 from grader.lateness import deadlines
 from grader.pipeline import prepare, unanswered
-from grader.pool import IN_FLIGHT, Pool
 from grader.reuse import conditions, held, kept, key_of, remember
 from grader.submission import Submission, read_submission
+from grader.task import Result, Task
 from grader.turn import Turn
+from grader.workers import Workers
 
 AHEAD = 4
 """How many times more submissions may be done and wait for a slower one before them."""
@@ -48,7 +47,7 @@ class Graded:
     notebook: NotebookNode
     """With a verdict in each grade cell."""
     seconds: float | None = None
-    """How long that took; None where nothing was run, for it had been before."""
+    """How long that took where it ran; None where nothing was run, for it had been before."""
 
 
 @dataclass(frozen=True)
@@ -83,71 +82,98 @@ def grade_all(
     course: Course,
     submissions: Sequence[HandedIn],
     *,
+    crew: Crew | None = None,
     seed: str = '',
-    in_flight: int = IN_FLIGHT,
     trust_students: bool = False,
     force: bool = False,
 ) -> Iterator[Row]:
-    """Grade submissions, several at a time, and store them in their order, one after the other.
+    """Let a crew grade submissions, and store them in their order, one after the other.
 
-    Each gets its row, whatever becomes of it. `seed` replays inputs that hidden tests choose; by
-    default they are the assignment's own. Doing it again gives the same; where nothing has
-    changed the stored result holds, unless told to `force` a new one. Raises CourseError, and
-    runs nothing, where there is no sandbox, unless told to `trust_students`.
+    Each gets its row, whatever becomes of it. The crew is this machine's worker processes unless
+    another is given. `seed` replays inputs that hidden tests choose; by default they are the
+    assignment's own. Doing it again gives the same; where nothing has changed the stored result
+    holds, unless told to `force` a new one. Raises CourseError, and runs nothing, where there is
+    no sandbox, unless told to `trust_students`.
     """
-    in_sandbox = isolated(trust_students=trust_students)
-    way = _Way(seeds={}, given={}, trust_students=trust_students, force=force)
-    # what would be wrong with each submission is said now
-    deadlines(course.gradebook, course.assignments())
-    with in_sentences(course), Turn.take(course.gradebook):
-        bring_in_order(course)
-        for assignment in sorted({found.assignment for found in submissions if not found.problem}):
-            register(course, assignment)
-            course.master(assignment)
-            way.seeds[assignment] = the = seed or course.seed(assignment)
-            way.given[assignment] = conditions(course, assignment, seed=the, isolated=in_sandbox)
-    under_way: deque[tuple[HandedIn, Future[Graded]]] = deque()
-    with Pool(in_flight) as pool:
+    with crew or Workers() as crew:
+        in_sandbox = crew.isolated(trust_students=trust_students)
+        way = _Way(seeds={}, given={}, trust_students=trust_students, force=force)
+        # what would be wrong with each submission is said now
+        deadlines(course.gradebook, course.assignments())
+        with in_sentences(course), Turn.take(course.gradebook):
+            bring_in_order(course)
+            for assignment in sorted(
+                {each.assignment for each in submissions if not each.problem}
+            ):
+                register(course, assignment)
+                course.master(assignment)
+                way.seeds[assignment] = the = seed or course.seed(assignment)
+                way.given[assignment] = conditions(
+                    course, assignment, seed=the, isolated=in_sandbox
+                )
+        under_way: deque[tuple[HandedIn, Future[Graded]]] = deque()
         for found in submissions:
-            under_way.append((found, pool.submit(_graded, course, found, way)))
-            if len(under_way) >= AHEAD * in_flight:
+            under_way.append((found, _begun(course, found, way, crew)))
+            while under_way and (len(under_way) >= AHEAD * crew.room or under_way[0][1].done()):
                 yield _row(course, *under_way.popleft())
         while under_way:
             yield _row(course, *under_way.popleft())
 
 
-async def _graded(course: Course, found: HandedIn, way: _Way) -> Graded:
-    """Read, heal and run one submission, or find what came of it before; nothing is stored yet."""
-    if found.problem:
-        raise CourseError(found.problem)
-    assignment = found.assignment
-    submission = read_submission(found.folder, student_id=found.student_id, assignment=assignment)
-    key = key_of(submission, way.given[assignment])
-    if not way.force and (before := kept(course, submission, key)):
-        return Graded(submission, before)
-    start = time.monotonic()
-    notebook = await judged(
-        course, submission, seed=way.seeds[assignment], trust_students=way.trust_students
-    )
-    remember(notebook, key)
-    return Graded(submission, notebook, seconds=time.monotonic() - start)
+def _begun(course: Course, found: HandedIn, way: _Way, crew: Crew) -> 'Future[Graded]':
+    """Have one submission graded, or find what came of it before; nothing is stored yet."""
+    graded: Future[Graded] = Future()
+    try:
+        if found.problem:
+            raise CourseError(found.problem)
+        assignment = found.assignment
+        submission = read_submission(
+            found.folder, student_id=found.student_id, assignment=assignment
+        )
+        key = key_of(submission, way.given[assignment])
+        if not way.force and (before := kept(course, submission, key)):
+            graded.set_result(Graded(submission, before))
+            return graded
+        work = judged(
+            course,
+            submission,
+            crew=crew,
+            seed=way.seeds[assignment],
+            trust_students=way.trust_students,
+        )
+    except Exception as error:  # it is told in its turn
+        graded.set_exception(error)
+        return graded
+
+    def settle(done: 'Future[Result]') -> None:
+        try:
+            result = done.result()
+            remember(result.notebook, key)
+            graded.set_result(Graded(submission, result.notebook, seconds=result.seconds))
+        except BaseException as error:
+            graded.set_exception(error)
+
+    work.add_done_callback(settle)
+    return graded
 
 
-async def judged(
-    course: Course, submission: Submission, *, seed: str, trust_students: bool
-) -> NotebookNode:
-    """Heal and run one submission with the inputs of a seed; return it with its verdicts."""
+def judged(
+    course: Course, submission: Submission, *, crew: Crew, seed: str, trust_students: bool
+) -> 'Future[Result]':
+    """Heal one submission and have it run with the inputs of a seed."""
     if submission.problem:
-        return unanswered(course, submission, submission.problem)
-    assignment = submission.assignment
-    healed = heal(submission.notebook, course.master(assignment))
-    execution = await executed(
-        prepare(course, assignment, healed.notebook),
-        extra_files=submission.extra_files,
-        seed=seed,
-        trust_students=trust_students,
+        nothing: Future[Result] = Future()
+        nothing.set_result(Result(unanswered(course, submission, submission.problem), 0.0))
+        return nothing
+    healed = heal(submission.notebook, course.master(submission.assignment))
+    return crew.submit(
+        Task(
+            notebook=prepare(course, submission.assignment, healed.notebook),
+            files={path.name: path.read_bytes() for path in submission.extra_files},
+            seed=seed,
+            trust_students=trust_students,
+        )
     )
-    return execution.notebook
 
 
 def _row(course: Course, found: HandedIn, work: Future[Graded]) -> Row:
@@ -162,8 +188,11 @@ def _row(course: Course, found: HandedIn, work: Future[Graded]) -> Row:
                 reused = stored is not None
             stored = stored or store(course, graded.submission, graded.notebook)
         reason = stored.reason
-    except GradebookError:
-        raise  # the next one could not be stored either
+    except (GradebookError, ClusterError):
+        raise  # nothing comes of the next one either
+    except TaskFailed as error:
+        logging.error('%s of %s: %s\n%s', found.assignment, found.student_id, error, error.trace)
+        reason = f'not graded, the grader failed: {error}'
     except Exception as error:  # the next submission can do nothing for it
         if not found.problem:
             logging.exception('%s of %s', found.assignment, found.student_id)

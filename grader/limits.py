@@ -10,6 +10,8 @@ REPLY_TIMEOUT_SEC = 10.0
 """How long the student's kernel may take to answer one question of a check: as for a cell."""
 CHECK_TIMEOUT_SEC = 90.0
 """A check has time limits of its own; this one ends a check that lost them."""
+SUBMISSION_TIMEOUT_SEC = 1_800.0
+"""Each part of a submission has a limit of its own; this one bounds all of it."""
 INTERRUPT_GRACE_SEC = 2.0
 """A kernel that ignores an interrupt so long is killed."""
 MAX_MESSAGE_BYTES = 32_000_000
@@ -24,6 +26,11 @@ ROOM_DISK_BYTES = 64 * 2**20
 ROOM_FILES = 8_192
 """Files and folders in it: each takes memory that its size does not tell."""
 
+SUBMISSION_MEMORY_BYTES = 600 * 2**20
+"""Set aside for each submission that is in flight; the two kernels of a lesson use half of it."""
+IN_FLIGHT_EACH = 2
+"""How many a worker process grades at a time, memory permitting: most of each is waiting."""
+
 PROCESS_LIMITS = {
     resource.RLIMIT_AS: 3 * 2**30,  # of each process, asked for or used; a lesson: under 1 GB
     resource.RLIMIT_NPROC: 256,  # processes and threads of a room together; a lesson: some 60
@@ -35,6 +42,9 @@ PROCESS_LIMITS = {
     resource.RLIMIT_MSGQUEUE: 0,  # message queues outlive processes
 }
 """What Linux enforces in each process of a student's room."""
+
+OUT_OF_MEMORY_SCORE = 1_000
+"""Where the machine's memory runs out, Linux ends such processes before any other."""
 
 _OPTIONS = {
     resource.RLIMIT_AS: 'as',
@@ -49,9 +59,6 @@ _OPTIONS = {
 
 
 def limited() -> list[str]:
-    """Return the beginning of a command that runs the rest within PROCESS_LIMITS.
-
-    Where memory runs out, Linux ends such processes before any other.
-    """
+    """Return the beginning of a command that runs the rest within PROCESS_LIMITS."""
     limits = [f'--{_OPTIONS[kind]}={most}:{most}' for kind, most in PROCESS_LIMITS.items()]
-    return ['choom', '-n', '1000', '--', 'prlimit', *limits]
+    return ['choom', '-n', str(OUT_OF_MEMORY_SCORE), '--', 'prlimit', *limits]

@@ -1,7 +1,6 @@
 """Many submissions at a time: coroutines on one event loop, in a thread of its own."""
 
 import asyncio
-import os
 import signal
 import sys
 import threading
@@ -12,9 +11,6 @@ from typing import Any, Self, TypeVar
 
 Result = TypeVar('Result')
 
-IN_FLIGHT = 2 * (os.cpu_count() or 1)
-"""Most of a submission is waiting; its two kernels need some 250 MB."""
-
 
 class Pool:
     """Runs what is submitted, at most `in_flight` at a time; leaving the `with` cancels the rest.
@@ -22,7 +18,7 @@ class Pool:
     May be used inside a running event loop: the loop here is another one, in another thread.
     """
 
-    def __init__(self, in_flight: int = IN_FLIGHT) -> None:
+    def __init__(self, in_flight: int) -> None:
         """Let so many run at a time."""
         self._gate = asyncio.Semaphore(in_flight)
         self._ready = threading.Event()

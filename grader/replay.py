@@ -6,13 +6,14 @@ import nbformat
 from nbformat import NotebookNode
 
 from grader.course import Course
+from grader.crew import Crew
 from grader.errors import CourseError
 from grader.grade import HandedIn, judged
 from grader.heal import KEY, grade_id, role
-from grader.pool import Pool
 from grader.records import verdicts
 from grader.submission import read_submission
 from grader.text import printable
+from grader.workers import Workers
 
 RECORDED = 'recorded'
 """Stands for the seed that a submission's stored result came from."""
@@ -22,6 +23,7 @@ def replay(
     course: Course,
     submissions: Sequence[HandedIn],
     *,
+    crew: Crew | None = None,
     seed: str = RECORDED,
     trust_students: bool = False,
 ) -> Iterator[tuple[str, bool]]:
@@ -31,14 +33,15 @@ def replay(
     """
     found = [each for each in submissions if not each.problem]
     seeds = [recorded_seed(course, each) if seed == RECORDED else seed for each in found]
-    with Pool() as pool:
+    with crew or Workers() as crew:
+        crew.isolated(trust_students=trust_students)
         work = [
-            pool.submit(
-                judged,
+            judged(
                 course,
                 read_submission(
                     each.folder, student_id=each.student_id, assignment=each.assignment
                 ),
+                crew=crew,
                 seed=its,
                 trust_students=trust_students,
             )
@@ -49,7 +52,7 @@ def replay(
             if its != course.seed(each.assignment):
                 yield '  (the course now uses another seed: the lesson was changed since)', True
             stored = verdicts(course, each.student_id, each.assignment)
-            for cell in result.result().cells:
+            for cell in result.result().notebook.cells:
                 if role(cell) == 'grade' and cell.cell_type == 'code':
                     yield _compared(grade_id(cell), cell.metadata[KEY], stored)
 

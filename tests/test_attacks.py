@@ -29,6 +29,7 @@ from grader.heal import KEY
 from grader.records import verdicts
 from grader.release import release
 from grader.scores import write_scores
+from grader.workers import Workers
 
 pytestmark = pytest.mark.isolation
 
@@ -110,7 +111,10 @@ def grade_class(root, names):
         honest_robot.mkdir(parents=True)
         (honest_robot / f'{ROBOT}.ipynb').write_bytes(HONEST_ROBOT.read_bytes())
         submissions = sorted(find_submissions(course), key=lambda each: order(each.student_id))
-        rows = {row.student_id: row for row in grade_all(course, submissions, in_flight=8)}
+        rows = {
+            row.student_id: row
+            for row in grade_all(course, submissions, crew=Workers(in_flight=8))
+        }
         knocks = 0
         while True:
             try:

@@ -3,8 +3,8 @@ import tempfile
 
 import pytest
 from course_maker import TOY, answered, executed, make_course, submit
+from stand_in import stand_in
 
-from grader import grade
 from grader.course import Course
 from grader.demo import demo
 from grader.errors import CourseError
@@ -40,7 +40,7 @@ def course(released, tmp_path, monkeypatch):
         notebook = executed(notebook, {'double-check': reason, 'double-hidden': reason})
         return Execution(notebook=notebook, verdicts=(), notes=())
 
-    monkeypatch.setattr(grade, 'executed', look)
+    stand_in(look, monkeypatch)
     gradebook = tmp_path / 'gradebook'
     gradebook.mkdir()
     (gradebook / 'gradebook.db').write_bytes(

@@ -17,7 +17,7 @@ async def raised():
 
 
 def test_results_and_exceptions_come_back():
-    with Pool() as pool:
+    with Pool(2) as pool:
         fine, broken = pool.submit(returned, 7), pool.submit(raised)
         assert fine.result() == 7
         with pytest.raises(OSError, match='no room'):
@@ -74,7 +74,7 @@ def test_ctrl_c_while_it_cleans_up_leaves_nothing_behind(capsys):
             cleaned.append(True)
 
     former = signal.getsignal(signal.SIGINT)
-    with Pool() as pool:
+    with Pool(2) as pool:
         pool.submit(work)
         assert begun.wait(10)
     assert cleaned == [True]
@@ -84,7 +84,7 @@ def test_ctrl_c_while_it_cleans_up_leaves_nothing_behind(capsys):
 
 def test_it_works_inside_a_running_event_loop():
     async def outer():
-        with Pool() as pool:
+        with Pool(2) as pool:
             return pool.submit(returned, 'inner').result()
 
     assert asyncio.run(outer()) == 'inner'

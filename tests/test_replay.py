@@ -2,8 +2,8 @@ import shutil
 
 import pytest
 from course_maker import TOY, answered, executed, make_course, submit, toy_lesson, write_source
+from stand_in import stand_in
 
-from grader import grade
 from grader.__main__ import main
 from grader.execute import Execution, execute
 from grader.gradebook import register
@@ -20,7 +20,7 @@ def graded(tmp_path_factory):
         course = make_course(tmp_path_factory.mktemp('replay'))
         release(course)
         register(course, TOY)
-        patch.setattr(grade, 'executed', chosen_inputs)
+        stand_in(chosen_inputs, patch)
         submit(course, 'ada', answered(course, ANSWER))
         submit(course, 'eve', b'no notebook')
         assert main(['grade'], course=course) == 0

@@ -4,8 +4,9 @@ import nbformat
 import pytest
 from course_maker import TOY, answered, executed, make_course, submit, toy_lesson, write_source
 from nbgrader.api import Gradebook
+from stand_in import Here, stand_in
 
-from grader import grade, reuse
+from grader import reuse
 from grader.__main__ import main
 from grader.course import Course
 from grader.execute import Execution
@@ -47,7 +48,7 @@ def course(released, tmp_path, monkeypatch, looked):
         reasons = {'double-check': '', 'double-hidden': reason}
         return Execution(notebook=executed(notebook, reasons), verdicts=(), notes=())
 
-    monkeypatch.setattr(grade, 'executed', look)
+    stand_in(look, monkeypatch)
     gradebook = tmp_path / 'gradebook'
     gradebook.mkdir()
     # making a database takes long
@@ -126,7 +127,7 @@ def other_machinery(course, monkeypatch):
 
 
 def no_sandbox(course, monkeypatch):
-    monkeypatch.setattr(grade, 'isolated', lambda trust_students: False)
+    monkeypatch.setattr(Here, 'isolated', lambda self, trust_students: False)
 
 
 def a_notebook_of_nbgraders_own(course, monkeypatch):
@@ -155,7 +156,7 @@ def a_damaged_notebook(course, monkeypatch):
     ],
 )
 def test_whatever_a_result_depends_on_makes_it_new(course, looked, monkeypatch, change):
-    monkeypatch.setattr(grade, 'isolated', lambda trust_students: True)
+    monkeypatch.setattr(Here, 'isolated', lambda self, trust_students: True)
     submit(course, 'ada', answered(course, RIGHT))
     rows_of(course)
     assert rows_of(course)['ada'].reused

@@ -1,0 +1,135 @@
+import asyncio
+import json
+
+import nbformat
+import pytest
+from course_maker import executed as judged
+from course_maker import toy_lesson
+
+from grader import task
+from grader.errors import TaskFailed
+from grader.execute import Execution
+from grader.task import Task, graded, packed, unpacked
+
+ODD = 'lone \udcff, nul \0, ideographs 小明, escapes \x1b[31m, </script>'
+
+
+@pytest.fixture
+def work():
+    return Task(notebook=toy_lesson(), seed='abc', files={'helper.py': b'\xff\0', 'a b.py': b''})
+
+
+@pytest.fixture
+def looked(monkeypatch):
+    """What the rooms were given."""
+    seen = {}
+
+    async def look(notebook, *, extra_files, seed, trust_students):
+        seen.update(files={p.name: p.read_bytes() for p in extra_files}, seed=seed)
+        seen.update(folder=extra_files[0].parent, trusted=trust_students)
+        notebook = judged(notebook, {'double-check': ODD})
+        return Execution(notebook=notebook, verdicts=(), notes=())
+
+    monkeypatch.setattr(task, 'executed', look)
+    return seen
+
+
+def do(text):
+    return asyncio.run(graded(text))
+
+
+def test_it_goes_as_text_and_comes_back_the_same(work, looked):
+    text = packed(work)
+    assert text.isascii()
+    answer = do(text)
+    assert answer.isascii()
+    result = unpacked(answer, work)
+    assert result.notebook == judged(toy_lesson_like(work), {'double-check': ODD})
+    assert isinstance(result.notebook.cells[0].metadata, nbformat.NotebookNode)
+    assert result.seconds >= 0
+    assert looked['files'] == work.files
+    assert (looked['seed'], looked['trusted']) == ('abc', False)
+    assert not looked['folder'].exists()
+
+
+def toy_lesson_like(work):
+    return nbformat.from_dict(json.loads(json.dumps(work.notebook)))
+
+
+def test_doing_it_does_not_change_it(work, looked):
+    text = packed(work)
+    assert do(text) != text
+    assert packed(work) == text
+
+
+def test_no_file_leaves_its_folder(work, looked):
+    sent = json.loads(packed(work))
+    sent['files'] = {'../../up.py': ''}
+    unpacked(do(json.dumps(sent)), work)
+    assert looked['files'] == {'up.py': b''}
+
+
+def test_what_takes_too_long_is_given_up(work, monkeypatch):
+    async def endless(notebook, **_):
+        await asyncio.Event().wait()
+
+    monkeypatch.setattr(task, 'executed', endless)
+    monkeypatch.setattr(task, 'SUBMISSION_TIMEOUT_SEC', 0.01)
+    with pytest.raises(TaskFailed, match='it had not come to its end after 0 minutes'):
+        unpacked(do(packed(work)), work)
+
+
+def test_whatever_fails_is_an_answer_too(work):
+    with pytest.raises(TaskFailed, match='JSONDecodeError') as failed:
+        unpacked(do('{'), work)
+    assert 'Traceback' in failed.value.trace
+
+
+def result(work, **changes):
+    return {'notebook': work.notebook, 'seconds': 1.0} | changes
+
+
+def another_text(work):
+    notebook = toy_lesson_like(work)
+    notebook.cells[4].source += ' '
+    return result(work, notebook=notebook)
+
+
+def other_points(work):
+    notebook = toy_lesson_like(work)
+    notebook.cells[6].metadata.nbgrader.points = 99
+    return result(work, notebook=notebook)
+
+
+def fewer_cells(work):
+    notebook = toy_lesson_like(work)
+    notebook.cells.pop()
+    return result(work, notebook=notebook)
+
+
+@pytest.mark.parametrize(
+    ('answer', 'why'),
+    [
+        (lambda work: [], 'not a result'),
+        (lambda work: {}, 'not a result'),
+        (lambda work: result(work, seconds='1'), 'not a result'),
+        (lambda work: result(work, seconds=-1), 'not a result'),
+        (lambda work: result(work, notebook=[]), 'not a result'),
+        (lambda work: result(work, score=99), 'not a result'),
+        (lambda work: result(work, notebook={'cells': [1], 'metadata': {}}), 'not a notebook'),
+        (lambda work: result(work, notebook={'cells': 1, 'metadata': {}}), 'not a notebook'),
+        (another_text, 'another notebook'),
+        (other_points, 'another notebook'),
+        (fewer_cells, 'another notebook'),
+    ],
+)
+def test_what_is_no_result_of_it_is_refused(work, answer, why):
+    assert unpacked(json.dumps(result(work)), work).seconds == 1.0
+    with pytest.raises(TaskFailed, match=f'what came back is {why}'):
+        unpacked(json.dumps(answer(work)), work)
+
+
+@pytest.mark.parametrize('text', ['', '{', '[' * 100_000, 'NaN'])
+def test_what_is_no_json_is_refused(work, text):
+    with pytest.raises(TaskFailed, match='what came back is not a result'):
+        unpacked(text, work)

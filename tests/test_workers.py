@@ -1,0 +1,160 @@
+import signal
+import sys
+import time
+from pathlib import Path
+
+import psutil
+import pytest
+from course_maker import TOY, answered, make_course, submit
+
+from grader import workers
+from grader.course import Course
+from grader.errors import TaskFailed
+from grader.grade import find_submissions, grade_all
+from grader.gradebook import register
+from grader.limits import SUBMISSION_MEMORY_BYTES
+from grader.records import records
+from grader.release import release
+from grader.task import Task
+from grader.workers import Workers
+
+COMMAND = (sys.executable, str(Path(__file__).with_name('toy_worker.py')))
+RIGHT = 'def double(x):\n    return 2 * x'
+WRONG = 'def double(x):\n    return x + 1'
+
+
+@pytest.fixture(scope='module')
+def course(tmp_path_factory):
+    course = make_course(tmp_path_factory.mktemp('workers'))
+    release(course)
+    register(course, TOY)
+    return course
+
+
+def task(course, first_line=''):
+    return Task(notebook=answered(course, f'{first_line}\n{RIGHT}'), seed='abc')
+
+
+def pid_of(result):
+    seed, pid = result.notebook.metadata.my_robot_basics.seed.split()
+    assert seed == 'abc'
+    return int(pid)
+
+
+def outcomes(result):
+    cells = result.notebook.cells
+    return [c.metadata.my_robot_basics.outcome for c in cells if 'my_robot_basics' in c.metadata]
+
+
+def team():
+    """The worker processes that this test has started."""
+    return [p for p in psutil.Process().children() if 'toy_worker' in ' '.join(p.cmdline())]
+
+
+def wait_for(happened):
+    deadline = time.monotonic() + 120
+    while not happened():
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+
+
+def test_as_many_processes_grade_as_asked_for_and_end_with_the_run(course, tmp_path):
+    mark = tmp_path / 'go'
+    with Workers(2, command=COMMAND) as crew:
+        under_way = [crew.submit(task(course, f'# wait {mark}')) for _ in range(6)]
+        wait_for(lambda: len(team()) == 2)
+        mark.touch()
+        results = [work.result() for work in under_way]
+        processes = team()
+    assert len({pid_of(result) for result in results}) == 2
+    assert [outcomes(result) for result in results] == [['passed', 'passed']] * 6
+    assert all(result.seconds >= 0 for result in results)
+    assert not any(process.is_running() for process in processes)
+
+
+def test_no_process_is_started_where_there_is_nothing_to_do():
+    with Workers(2, command=COMMAND):
+        assert team() == []
+
+
+def test_a_failure_comes_back_with_its_trace(course):
+    with Workers(1, command=COMMAND) as crew:
+        with pytest.raises(TaskFailed, match=r'^OSError: no room$') as failed:
+            crew.submit(task(course, '# fail')).result()
+        assert "raise OSError('no room')" in failed.value.trace
+
+
+def test_a_worker_that_is_killed_is_replaced_and_its_submissions_are_graded_elsewhere(
+    course, tmp_path
+):
+    mark = tmp_path / 'go'
+    with Workers(1, in_flight=3, command=COMMAND) as crew:
+        first = pid_of(crew.submit(task(course)).result())
+        under_way = [crew.submit(task(course, f'# wait {mark}')) for _ in range(3)]
+        wait_for(lambda: team()[0].pid == first)
+        team()[0].send_signal(signal.SIGKILL)
+        mark.touch()
+        pids = {pid_of(work.result()) for work in under_way}
+        assert first not in pids
+        assert pid_of(crew.submit(task(course)).result()) not in pids | {first}
+
+
+def test_a_submission_that_kills_whoever_grades_it_costs_nobody_else(course, tmp_path):
+    with Workers(1, in_flight=3, command=COMMAND) as crew:
+        works = [crew.submit(task(course, line)) for line in ('', '# die', '')]
+        works.append(crew.submit(task(course, f'# die once {tmp_path / "mark"}')))
+        with pytest.raises(TaskFailed, match='ended before it was done, 3 times'):
+            works.pop(1).result()
+        for work in works:
+            assert outcomes(work.result()) == ['passed', 'passed']
+
+
+def test_a_worker_that_hangs_is_replaced(course, tmp_path, monkeypatch):
+    mark = tmp_path / 'stopped'
+    monkeypatch.setattr(workers, 'BEAT_SEC', 0.1)
+    with Workers(1, command=COMMAND) as crew:
+        work = crew.submit(task(course, f'# stop {mark}'))
+        wait_for(mark.exists)
+        hung = team()[0].pid
+        monkeypatch.setattr(workers, 'MOST_MISSED', 5)
+        wait_for(lambda: hung not in {process.pid for process in team()})
+        monkeypatch.setattr(workers, 'MOST_MISSED', 10_000)
+        assert pid_of(work.result()) != hung
+
+
+def test_what_a_worker_starts_inherits_no_way_to_the_run(course):
+    with Workers(1, command=COMMAND) as crew:
+        told = crew.submit(task(course, '# child')).result().notebook.metadata.my_robot_basics
+    assert told.handles == '0 1 2'
+
+
+def test_memory_bounds_how_many_are_in_flight(monkeypatch):
+    rooms = []
+    for submissions in (0, 1, 2.5, 1000):
+        left = int(submissions * SUBMISSION_MEMORY_BYTES)
+        monkeypatch.setattr(workers, 'available_bytes', lambda left=left: left)
+        rooms.append(Workers(2).room)
+    assert rooms == [1, 1, 2, 2 * workers.IN_FLIGHT_EACH]
+
+
+def test_killed_workers_change_no_grade(course, tmp_path):
+    graded = []
+    for name in ('whole', 'killed'):
+        its = Course(root=course.root, gradebook=tmp_path / name)
+        mark = tmp_path / f'{name} goes'
+        (its.gradebook).mkdir()
+        (its.gradebook / 'gradebook.db').write_bytes(course.database.read_bytes())
+        (its.gradebook / 'course_secret').write_text('ab' * 32)
+        for student, answer in (('ada', RIGHT), ('bob', WRONG), ('eve', RIGHT), ('kim', WRONG)):
+            first = f'# wait {mark}\n' if student in ('bob', 'eve') else ''
+            submit(its, student, answered(its, f'{first}{answer}'))
+        rows = grade_all(its, find_submissions(its), crew=Workers(2, command=COMMAND))
+        names = [next(rows).student_id]
+        if name == 'killed':
+            for process in team():
+                process.send_signal(signal.SIGKILL)
+        mark.touch()
+        names += [row.student_id for row in rows]
+        assert names == ['ada', 'bob', 'eve', 'kim']
+        graded.append([(r.student_id, r.grade_id, r.score) for r in records(its)])
+    assert graded[0] == graded[1]
