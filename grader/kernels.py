@@ -21,6 +21,7 @@ from grader.places import Place, environment_of, open_place
 
 START_TIMEOUT_SEC = 60.0
 STOP_GRACE_SEC = 2.0
+LOOK_EVERY_SEC = 0.2
 
 
 class _OurKernelSpec(KernelSpecManager):
@@ -195,13 +196,18 @@ class Kernel:
             await asyncio.sleep(0.01)
 
     async def _finished(self, done: asyncio.Future, timeout_sec: float) -> bool:
-        """Wait for a cell's end, its time limit, or the kernel's death."""
-        deadline = time.monotonic() + timeout_sec
+        """Wait for a cell's end, its time limit, or the kernel's death.
+
+        What counts is time in which we could look: a grader that stood still for seconds, on a
+        machine that was too busy, has not seen the cell take them.
+        """
+        left_sec = timeout_sec
         while not done.done():
-            remaining = deadline - time.monotonic()
-            if remaining <= 0:
+            if left_sec <= 0:
                 return False
-            await asyncio.wait([done], timeout=min(0.2, remaining))
+            tick_sec = min(LOOK_EVERY_SEC, left_sec)
+            await asyncio.wait([done], timeout=tick_sec)
+            left_sec -= tick_sec
             if not done.done() and not await self._manager.is_alive():
                 await asyncio.wait([done], timeout=0.2)  # what it said last may be under way
                 self.alive = False

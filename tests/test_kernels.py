@@ -106,6 +106,19 @@ def test_a_question_is_answered_only_where_somebody_answers(shared, run):
     assert run(shared, "input('name? ')").error.ename == 'StdinNotImplementedError'
 
 
+def test_a_cell_does_not_pay_for_a_grader_that_stood_still(shared, loop):
+    async def stands_still_meanwhile():
+        cell = asyncio.create_task(
+            shared.run('import time; time.sleep(0.5); print(1)', timeout_sec=1.0)
+        )
+        await asyncio.sleep(0.1)
+        time.sleep(2.0)
+        return await cell
+
+    result = loop.run(stands_still_meanwhile())
+    assert (text_of(result), result.timed_out) == ('1\n', False)
+
+
 def test_an_answer_that_fails_is_an_error_at_once(own, loop):
     async def answer(prompt):
         raise RuntimeError('no answer to ' + prompt)
