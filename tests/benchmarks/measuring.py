@@ -1,0 +1,186 @@
+"""What the benchmarks of whole classes share: a throw-away gradebook, and watched commands.
+
+    .venv/bin/python tests/benchmarks/measuring.py GRADEBOOK VERB ...
+
+is `./course VERB ...` with a gradebook that lies elsewhere; the last line on stderr says how many
+seconds went into storing.
+"""
+
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import psutil
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT), str(ROOT / 'tests')]
+
+from grader import grade  # noqa: E402
+from grader.__main__ import main  # noqa: E402
+from grader.course import Course  # noqa: E402
+
+STORED = re.compile(r'^seconds in the database: ([\d.]+)$', re.MULTILINE)
+LOOK_SEC = 0.5
+"""So often memory is looked at."""
+
+
+@dataclass
+class Watched:
+    """A command that ran to its end, or was killed."""
+
+    status: int = 0
+    seconds: float = 0.0
+    done_at: list[float] = field(default_factory=list)
+    """When each submission was done, in seconds since the start."""
+    peak_bytes: int = 0
+    """Of the command and all below it: what shared pages hold is counted once (PSS)."""
+    said: str = ''
+    """On stdout and stderr."""
+
+    @property
+    def database_sec(self) -> float:
+        """Return how long storing took."""
+        return float(STORED.findall(self.said)[-1])
+
+    @property
+    def per_minute(self) -> float:
+        """Return the rate of the whole command: with its start and its end."""
+        return 60 * len(self.done_at) / self.seconds
+
+    @property
+    def per_minute_warm(self) -> float:
+        """Return the rate from the first third of the submissions on."""
+        first = len(self.done_at) // 3
+        return 60 * (len(self.done_at) - 1 - first) / (self.done_at[-1] - self.done_at[first])
+
+
+def new_course(name: str) -> Course:
+    """Return the course's lessons with an empty gradebook in a temporary folder, which stays."""
+    return Course(gradebook=Path(tempfile.mkdtemp(prefix=f'{name}-'), 'gradebook'))
+
+
+def course_command(course: Course, *arguments: object) -> list[str]:
+    """Return the command that is `./course ...` with this gradebook."""
+    return [sys.executable, '-P', __file__, str(course.gradebook), *map(str, arguments)]
+
+
+def watch(
+    command: Sequence[str], *, done: str, cwd: Path = ROOT, kill_after: int | None = None
+) -> Watched:
+    """Run a command; a line that matches `done` tells of a submission.
+
+    `kill_after` so many it is ended with SIGKILL; what it started has to notice by itself.
+    """
+    watched, lines = Watched(), []
+    began = time.perf_counter()
+    process = subprocess.Popen(
+        command,
+        cwd=cwd,
+        # as from the environment's command line
+        env=os.environ | {'PATH': f'{Path(sys.executable).parent}:{os.environ["PATH"]}'},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        errors='replace',
+    )
+    with _memory_of(process.pid, watched):
+        for line in process.stdout:
+            lines.append(line)
+            if re.search(done, line):
+                watched.done_at.append(time.perf_counter() - began)
+                if len(watched.done_at) == kill_after:
+                    process.kill()
+        watched.status = process.wait()
+    watched.seconds = time.perf_counter() - began
+    watched.said = ''.join(lines)
+    return watched
+
+
+@contextmanager
+def busy(loops: int) -> Iterator[None]:
+    """Keep so many cores busy."""
+    started = [subprocess.Popen([sys.executable, '-c', 'while True: pass']) for _ in range(loops)]
+    try:
+        yield
+    finally:
+        for process in started:
+            process.kill()
+            process.wait()
+
+
+def table(heads: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
+    """Print a table; numbers are put below each other."""
+    texts = [list(heads), *([_text(field) for field in row] for row in rows)]
+    widths = [max(len(row[i]) for row in texts) for i in range(len(heads))]
+    for row in texts:
+        first, *others = (
+            field.ljust(width) if i == 0 else field.rjust(width)
+            for i, (field, width) in enumerate(zip(row, widths, strict=True))
+        )
+        print('  '.join([first, *others]).rstrip(), flush=True)
+
+
+def _text(field: object) -> str:
+    return f'{field:,.1f}' if isinstance(field, float) else str(field)
+
+
+@contextmanager
+def _memory_of(pid: int, watched: Watched) -> Iterator[None]:
+    over = threading.Event()
+
+    def look() -> None:
+        while not over.wait(LOOK_SEC):
+            watched.peak_bytes = max(watched.peak_bytes, _pss_of_tree(pid))
+
+    thread = threading.Thread(target=look, daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        over.set()
+        thread.join()
+
+
+def _pss_of_tree(pid: int) -> int:
+    try:
+        root = psutil.Process(pid)
+        processes = [root, *root.children(recursive=True)]
+    except psutil.NoSuchProcess:
+        return 0
+    return sum(map(_pss, processes))
+
+
+def _pss(process: psutil.Process) -> int:
+    try:
+        rollup = Path(f'/proc/{process.pid}/smaps_rollup').read_text(encoding='ascii')
+    except (FileNotFoundError, ProcessLookupError):
+        return 0  # it has ended since
+    return 1024 * int(re.search(r'^Pss:\s+(\d+) kB', rollup, re.MULTILINE)[1])
+
+
+def _timed(work: Callable, spent: list[float]) -> Callable:
+    def timed(*args: object, **kwargs: object) -> object:
+        began = time.perf_counter()
+        try:
+            return work(*args, **kwargs)
+        finally:
+            spent.append(time.perf_counter() - began)
+
+    return timed
+
+
+if __name__ == '__main__':
+    in_database: list[float] = []
+    grade.store = _timed(grade.store, in_database)
+    status = main(sys.argv[2:], course=Course(gradebook=Path(sys.argv[1])))
+    print(f'seconds in the database: {sum(in_database):.3f}', file=sys.stderr)
+    sys.exit(status)
