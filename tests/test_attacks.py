@@ -19,8 +19,22 @@ from pathlib import Path
 import nbformat
 import psutil
 import pytest
-from attacks import notebooks
-from course_maker import TOY, make_course, submit
+from attacks.corpus import (
+    ANSWERS,
+    CANARY,
+    FOLDER,
+    FULL,
+    LEFT,
+    NAMES,
+    OTHERS,
+    ROBOT,
+    add_robot_lesson,
+    assignment_of,
+    attack,
+    earns,
+    hand_in_honestly,
+)
+from course_maker import TOY, make_course
 
 from grader.course import Course
 from grader.feedback import write_feedback
@@ -33,22 +47,8 @@ from grader.workers import Workers
 
 pytestmark = pytest.mark.isolation
 
-FOLDER = Path(__file__).parent / 'attacks' / 'answers'
-ANSWERS = {path.stem: path for path in sorted(FOLDER.glob('*.py'))}
-ROBOT = '03_publisher'
-OTHERS = {
-    name: function
-    for name, function in vars(notebooks).items()
-    if inspect.isfunction(function) and function.__module__ == notebooks.__name__
-}
-HONEST = 'def double(x):\n    return x + x'
-HONEST_ROBOT = Path(__file__).parent / 'submissions' / '03_publisher-pass-steady_clock_timer.ipynb'
-FULL = {TOY: 3.0, ROBOT: 5.0}
 EVERY = 5
 """One honest student for so many attacks."""
-CANARY = 'hidden canary'
-LEFT = ('loaded_by_the_grader', 'evil_kernel', 'slipped')
-"""Files under /tmp that an attack would leave."""
 
 
 @dataclass
@@ -63,53 +63,18 @@ class Class:
     """How many connections the machine's own server got."""
 
 
-def earns(path):
-    """Return the points that an attack gets for the honest work in it."""
-    said = re.search(r'# earns (\d)', path.read_text(encoding='utf-8').splitlines()[0])
-    return float(said[1]) if said else 0.0
-
-
-def attack(course, name, port):
-    """Hand in one attack, that knows where everything lies."""
-    if name in OTHERS:
-        notebook = course.release(TOY)
-        path = submit(course, name, notebook)
-        OTHERS[name](notebook, path.parent)
-        submit(course, name, notebook)
-        return
-    source = ANSWERS[name].read_text(encoding='utf-8')
-    source = source.replace('GRADEBOOK', str(course.gradebook)).replace('PORT', str(port))
-    hand_in(course, name, source, TOY if not name.startswith('robot_') else ROBOT)
-
-
-def hand_in(course, student, answer, assignment):
-    notebook = course.release(assignment)
-    (cell,) = (
-        cell
-        for cell in notebook.cells
-        if cell.cell_type == 'code' and cell.metadata.get('nbgrader', {}).get('solution')
-    )
-    cell.source = answer
-    path = course.folder('submitted', student, assignment) / f'{assignment}.ipynb'
-    path.parent.mkdir(parents=True, exist_ok=True)
-    nbformat.write(notebook, path)
-
-
 def grade_class(root, names):
     """Grade attacks, several at a time, honest students in between."""
     course = make_course(root)
     release(course, TOY)
-    for step in ('solutions', 'notebooks'):
-        (root / step / ROBOT).symlink_to(Path(__file__).parents[1] / step / ROBOT)
+    add_robot_lesson(course)
     with socket.create_server(('127.0.0.1', 0)) as server:
         server.setblocking(False)
         for number, name in enumerate(names):
-            attack(course, f'{name}', server.getsockname()[1])
+            attack(course, name, port=server.getsockname()[1])
             if number % EVERY == 0:
-                submit(course, f'honest-{name}', honest(course))
-        honest_robot = course.folder('submitted', 'honest-robot', ROBOT)
-        honest_robot.mkdir(parents=True)
-        (honest_robot / f'{ROBOT}.ipynb').write_bytes(HONEST_ROBOT.read_bytes())
+                hand_in_honestly(course, f'honest-{name}')
+        hand_in_honestly(course, 'honest-robot', ROBOT)
         submissions = sorted(find_submissions(course), key=lambda each: order(each.student_id))
         rows = {
             row.student_id: row
@@ -126,20 +91,9 @@ def grade_class(root, names):
     return Class(rows, course, pages, write_scores(course).read_text(encoding='utf-8'), knocks)
 
 
-def honest(course):
-    notebook = course.release(TOY)
-    for cell in notebook.cells:
-        if cell.id == 'double':
-            cell.source = HONEST
-    return notebook
-
-
 def order(student):
     """An honest student comes right after the attack whose name it bears."""
     return student.removeprefix('honest-'), student.startswith('honest-')
-
-
-NAMES = [*ANSWERS, *OTHERS]
 
 
 @pytest.fixture(scope='module')
@@ -161,10 +115,10 @@ def test_each_attack_says_what_it_tries():
 def test_an_attack_earns_what_its_honest_work_does(graded, name):
     stored = graded.rows[name].stored
     assert stored is not None, graded.rows[name].reason
-    said = verdicts(graded.course, name, ROBOT if name.startswith('robot_') else TOY)
+    said = verdicts(graded.course, name, assignment_of(name))
     outcomes = {v.outcome for v in said.values() if 'outcome' in v}
     assert outcomes <= {'passed', 'failed'}, graded.rows[name].reason
-    assert stored.score == (earns(ANSWERS[name]) if name in ANSWERS else 0.0), said
+    assert stored.score == earns(name), said
     assert stored.score >= FULL[TOY] or graded.rows[name].reason
 
 
