@@ -56,7 +56,8 @@ def test_header_names_the_command_that_makes_the_file():
 
 
 def test_every_direct_requirement_is_pinned_and_in_its_range():
-    requirements = [Requirement(text) for text in PROJECT['dependencies']]
+    extras = [text for extra in PROJECT['optional-dependencies'].values() for text in extra]
+    requirements = [Requirement(text) for text in [*PROJECT['dependencies'], *extras]]
     requirements += [Requirement(text) for text in metadata.requires('my_robot_basics') or []]
     requirements = [r for r in requirements if not r.marker or r.marker.evaluate({'extra': ''})]
     missing = [r.name for r in requirements if canonicalize_name(r.name) not in PINS]
@@ -95,7 +96,7 @@ def test_a_resolver_adds_nothing_to_the_pins(version, tmp_path):
     resolved = run(
         *(UV, 'pip', 'compile', '--quiet', '--no-annotate', '--no-header'),
         *('--python-version', version, '--python-platform', 'x86_64-manylinux_2_28'),
-        *('--constraints', 'environment.txt', 'pyproject.toml'),
+        *('--all-extras', '--constraints', 'environment.txt', 'pyproject.toml'),
     )
     assert resolved.returncode == 0, resolved.stderr
     assert pins_of(resolved.stdout.splitlines()).items() - PINS.items() == set()
