@@ -12,6 +12,8 @@ INSIDE = Path('/room')
 """Where a room finds what is its own."""
 FIRST_USER = 1_879_048_192
 """Users from here on are nobody's, says systemd."""
+KEEPER = ['sh', '-c', "trap '' CHLD; echo; exec sleep infinity >/dev/null 2>&1"]
+"""Keeps a room that is built, says so, and leaves no orphan a zombie."""
 
 _SEEN, DISKS = '/tmp/seen', '/tmp/disks'
 """Where the holder keeps what the rooms see of the machine, and what they write to."""
@@ -70,11 +72,15 @@ def holder_command(user: int | None, given: dict[str, Path]) -> list[str]:
     return [*_MACHINE, *seen, *become, *_MACHINE, *hold]
 
 
-def room_command(user: int | None, *, holder: int, room: str, seccomp: int) -> list[str]:
+def room_command(
+    user: int | None, *, holder: int, room: str, seccomp: int, told: int | None = None
+) -> list[str]:
     """Return how a command begins that runs in a room.
 
-    `holder` is the holder's process ID, `seccomp` the file descriptor of a filter.
+    `holder` is the holder's process ID, `seccomp` the file descriptor of a filter. Where there is
+    one to be `told` on, the command is the room's first process, and it is told which that is.
     """
+    first = [] if told is None else ['--as-pid-1', '--info-fd', str(told)]
     disk = f'{DISKS}/{room}'
     accounts = []
     for name in ACCOUNTS:
@@ -83,7 +89,7 @@ def room_command(user: int | None, *, holder: int, room: str, seccomp: int) -> l
     return [
         *_drop(user),
         *enter, '--preserve-credentials', '--',
-        'bwrap', *_ROOM,
+        'bwrap', *_ROOM, *first,
         '--proc', '/proc',
         '--dev', '/dev',
         '--bind', f'{disk}/shm', '/dev/shm',

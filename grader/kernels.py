@@ -2,7 +2,6 @@
 
 import asyncio
 import contextlib
-import json
 import queue
 import time
 from pathlib import Path
@@ -18,6 +17,7 @@ from grader.limits import INTERRUPT_GRACE_SEC, MAX_MESSAGE_BYTES
 from grader.messages import Messages, OnInput
 from grader.outputs import CellRun
 from grader.places import Place, environment_of, open_place
+from grader.provisioner import NAME
 
 START_TIMEOUT_SEC = 60.0
 STOP_GRACE_SEC = 2.0
@@ -28,6 +28,7 @@ class _OurKernelSpec(KernelSpecManager):
     """One kernel, the interpreter we run on: no kernelspec of a student is ever looked up."""
 
     argv: tuple[str, ...] = ()
+    metadata: dict = {}
 
     def get_kernel_spec(self, kernel_name: str) -> KernelSpec:
         return KernelSpec(
@@ -35,6 +36,7 @@ class _OurKernelSpec(KernelSpecManager):
             display_name='my_robot_basics',
             language='python',
             interrupt_mode='message',  # a signal from outside would end a sandbox
+            metadata=self.metadata,
         )
 
 
@@ -55,6 +57,8 @@ class Kernel:
         self._context.setsockopt(zmq.MAXMSGSIZE, MAX_MESSAGE_BYTES)
         specs = _OurKernelSpec()
         specs.argv = tuple(self.place.command())
+        if self.place.closed:
+            specs.metadata = {'kernel_provisioner': {'provisioner_name': NAME}}
         self._manager = AsyncKernelManager(
             context=self._context,
             kernel_spec_manager=specs,
@@ -73,14 +77,7 @@ class Kernel:
     async def start(self) -> 'Kernel':
         """Start the kernel and wait until its outputs are heard; raises RoomFailure."""
         try:
-            self._tell_where_to_listen()
-            await self._manager.start_kernel(
-                cwd=self.place.start_in,
-                env=self._environment,
-                stdout=DEVNULL,
-                stderr=DEVNULL,
-                pass_fds=self.place.pass_fds,
-            )
+            await self._launch()
             async with asyncio.timeout(START_TIMEOUT_SEC):
                 await self._connect()
         except Exception as error:
@@ -137,12 +134,20 @@ class Kernel:
         self._context.destroy(linger=0)
         self.place.remove()
 
-    def _tell_where_to_listen(self) -> None:
-        """Write the kernel's connection file: it may know its sockets by another path than we."""
+    async def _launch(self) -> None:
+        if self.place.closed:
+            await self._manager.start_kernel(
+                place=self.place, room=self.room, env=self._environment
+            )
+            return
         self._manager.write_connection_file()
-        told = json.loads((self.folder / 'connection.json').read_text(encoding='utf-8'))
-        told['ip'] = str(self.place.inside / 'kernel' / 'zmq')
-        (self.folder / 'given' / 'connection.json').write_text(json.dumps(told), encoding='utf-8')
+        self.place.tell(Path(self._manager.connection_file))
+        await self._manager.start_kernel(
+            cwd=self.place.folder / 'home' / 'work',
+            env=self._environment,
+            stdout=DEVNULL,
+            stderr=DEVNULL,
+        )
 
     async def _connect(self) -> None:
         """Wait until the kernel's sockets are there, and until it knows that we listen.

@@ -1,5 +1,6 @@
 """Where a kernel lives: its folders, what its process is told, and how its command begins."""
 
+import json
 import os
 import shutil
 import sys
@@ -12,6 +13,24 @@ from grader.leftovers import own_folder
 _PASSED_ON = ('LANG', 'LC_ALL', 'TZ')
 # the ROS wheels start an interpreter anew to set the one, unless they find the other
 _PASSED_ON += ('LD_LIBRARY_PATH', '_ROS_WHEELS_BOOTSTRAP_COMPLETE')
+_ALWAYS = {
+    'MPLBACKEND': 'module://matplotlib_inline.backend_inline',
+    'PYTHONSAFEPATH': '1',
+    'PYTHONDONTWRITEBYTECODE': '1',
+}
+
+
+@dataclass(frozen=True)
+class Keeper:
+    """A process that keeps a room, so that one which was forked elsewhere can join it there."""
+
+    command: tuple[str, ...]
+    """Says a line when the room is built."""
+    pass_fds: tuple[int, ...]
+    told: int
+    """The file descriptor where bubblewrap tells about it."""
+    user: int | None
+    """Whom root becomes before it joins."""
 
 
 @dataclass(frozen=True)
@@ -30,6 +49,8 @@ class Place:
     """What its process is told, beside what every kernel is."""
     pass_fds: tuple[int, ...] = ()
     """What `prefix` reads."""
+    keeper: Keeper | None = None
+    """Where a forked kernel can join."""
 
     @property
     def closed(self) -> bool:
@@ -41,17 +62,22 @@ class Place:
         """The folder of modules that are given to it."""
         return self.folder / 'given' / 'files'
 
-    @property
-    def start_in(self) -> str:
-        """The folder in which `command` is run."""
-        return '/' if self.closed else str(self.folder / 'home' / 'work')
-
-    def command(self) -> list[str]:
-        """Return the command of a kernel that lives there."""
+    def kernel_command(self) -> list[str]:
+        """Return the command of a kernel, as its process knows it."""
         launcher = [sys.executable, '-m', 'ipykernel_launcher', '-f']
         options = ['--InteractiveShellApp.ignore_cwd=True', '--HistoryManager.enabled=False']
         connection = str(self.inside / 'given' / 'connection.json')
-        return [*self.prefix, *launcher, connection, *options]
+        return [*launcher, connection, *options]
+
+    def command(self) -> list[str]:
+        """Return the command of a kernel that lives there."""
+        return [*self.prefix, *self.kernel_command()]
+
+    def tell(self, connection_file: Path) -> None:
+        """Write the kernel's own connection file: it may know its sockets by another path."""
+        told = json.loads(connection_file.read_text(encoding='utf-8'))
+        told['ip'] = str(self.inside / 'kernel' / 'zmq')
+        (self.folder / 'given' / 'connection.json').write_text(json.dumps(told), encoding='utf-8')
 
     def remove(self) -> None:
         """Remove the grader's folder."""
@@ -75,22 +101,25 @@ def open_place(room: str) -> Place:
     return Place(folder, folder / 'kernel', inside=folder, environment=environment)
 
 
-def environment_of(place: Place, *, room: str, domain_id: int, seed: str) -> dict[str, str]:
+def passed_on() -> dict[str, str]:
+    """Return what every Python of the grader's is told, wherever it lives."""
+    environment = {name: os.environ[name] for name in _PASSED_ON if name in os.environ}
+    return environment | _ALWAYS
+
+
+def environment_of(place: Place, *, room: str, domain_id: int, seed: str = '') -> dict[str, str]:
     """Return what a kernel's process is told: nothing of the caller's own, but where things are.
 
     Only the test room is told the seed.
     """
     home = place.inside / 'home'
-    environment = {name: os.environ[name] for name in _PASSED_ON if name in os.environ}
+    environment = passed_on()
     environment |= place.environment | {
         'MY_ROBOT_BASICS_ROOM': room,
         'MY_ROBOT_BASICS_DOMAIN_ID': str(domain_id),
         'RCUTILS_LOGGING_USE_STDOUT': '1',
         'ROS_LOG_DIR': str(home / 'ros_log'),
         'IPYTHONDIR': str(home / 'ipython'),
-        'MPLBACKEND': 'module://matplotlib_inline.backend_inline',
-        'PYTHONSAFEPATH': '1',
-        'PYTHONDONTWRITEBYTECODE': '1',
     }
     if room == 'test':
         environment['MY_ROBOT_BASICS_SEED'] = seed

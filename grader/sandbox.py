@@ -20,6 +20,7 @@ from grader.bubblewrap import (
     DISKS,
     ENVIRONMENT,
     INSIDE,
+    KEEPER,
     ROOMS,
     holder_command,
     room_command,
@@ -27,7 +28,7 @@ from grader.bubblewrap import (
 )
 from grader.errors import RoomFailure
 from grader.limits import ROOM_MEMORY_BYTES
-from grader.places import Place, make_folder
+from grader.places import Keeper, Place, make_folder
 from grader.seccomp import seccomp_filter
 
 OPEN_TIMEOUT_SEC = 30.0
@@ -44,7 +45,7 @@ class Sandbox:
         self._holder: subprocess.Popen | None = None
         self._network = -1
         self._watch: asyncio.Future | None = None
-        self._filters: list[int] = []
+        self._files: list[int] = []
         self._folders = {room: make_folder(room) for room in ROOMS}
         for folder in self._folders.values():
             for name, text in ACCOUNTS.items():
@@ -78,10 +79,7 @@ class Sandbox:
 
     def place(self, room: str) -> Place:
         """Return the place of the 'student' or the 'test' kernel, for one command."""
-        seccomp = os.memfd_create('seccomp')
-        self._filters.append(seccomp)
-        os.write(seccomp, seccomp_filter())
-        os.lseek(seccomp, 0, os.SEEK_SET)
+        seccomp = self._filter()
         prefix = room_command(self._user, holder=self._pid, room=room, seccomp=seccomp)
         return Place(
             self._folders[room],
@@ -90,7 +88,23 @@ class Sandbox:
             prefix=tuple(prefix),
             environment=ENVIRONMENT,
             pass_fds=(seccomp,),
+            keeper=self._keeper(room),
         )
+
+    def _keeper(self, room: str) -> Keeper:
+        seccomp = self._filter()
+        told, tell = os.pipe()
+        self._files += [told, tell]
+        begin = room_command(self._user, holder=self._pid, room=room, seccomp=seccomp, told=tell)
+        return Keeper((*begin, *KEEPER), (seccomp, tell), told=told, user=self._user)
+
+    def _filter(self) -> int:
+        """Return a file with the filter of system calls: bubblewrap reads it up."""
+        seccomp = os.memfd_create('seccomp')
+        self._files.append(seccomp)
+        os.write(seccomp, seccomp_filter())
+        os.lseek(seccomp, 0, os.SEEK_SET)
+        return seccomp
 
     async def close(self) -> None:
         """End whatever still runs in it, and wait until it has gone."""
@@ -101,10 +115,10 @@ class Sandbox:
         except TimeoutError:
             raise RoomFailure('processes of a sandbox could not be ended') from None
         finally:
-            for file in (*self._filters, self._network):
+            for file in (*self._files, self._network):
                 if file >= 0:
                     os.close(file)
-            self._filters, self._network, self._holder = [], -1, None
+            self._files, self._network, self._holder = [], -1, None
             for folder in self._folders.values():
                 shutil.rmtree(folder, ignore_errors=True)
 

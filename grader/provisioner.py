@@ -1,0 +1,92 @@
+"""How Jupyter starts a kernel in a sandbox: by the name of its kernelspec, or in a given room.
+
+jupyter_client finds this class by its entry point, so nbclient, JupyterLab and nbgrader can run a
+notebook in the kernel that is called NAME. The grader itself names the rooms that it has opened.
+"""
+
+from pathlib import Path
+from subprocess import DEVNULL
+from typing import Any
+
+from jupyter_client.connect import KernelConnectionInfo
+from jupyter_client.provisioning import LocalProvisioner
+from my_robot_basics.live.domain import Claim, claim
+
+from grader.places import Place, environment_of
+from grader.sandbox import Sandbox
+from grader.warm import NoWarmKernel, fork_into
+
+NAME = 'my_robot_basics_sandbox'
+"""Of the kernelspec, and of this provisioner's entry point."""
+
+
+class SandboxProvisioner(LocalProvisioner):
+    """Runs one kernel in a room, forked warm where this machine can."""
+
+    why_not_warm = ''
+    """Why the kernel was started the slow way, where it was."""
+    _place: Place
+    _room = 'student'
+    _sandbox: Sandbox | None = None
+    _claim: Claim | None = None
+
+    async def pre_launch(
+        self, *, place: Place | None = None, room: str = 'student', **kwargs: Any
+    ) -> dict[str, Any]:
+        """Prepare the room: the given `place`, or one in a sandbox of this kernel's own.
+
+        In one of its own a kernel is told nothing of the caller's environment. Raises RoomFailure.
+        """
+        self._room, manager = room, self.parent
+        if place is None:
+            place = await self._open()
+            kwargs['env'] = environment_of(place, room=room, domain_id=self._claim.domain_id)
+            manager.transport, manager.ip = 'ipc', str(place.sockets / 'zmq')
+        self._place = place
+        kwargs = await super().pre_launch(**kwargs)
+        place.tell(Path(manager.connection_file))
+        return kwargs | {'cmd': place.command()}
+
+    async def launch_kernel(self, cmd: list[str], **kwargs: Any) -> KernelConnectionInfo:
+        """Fork the kernel, or start it: in the same room, and with no more rights."""
+        try:
+            self.process = await fork_into(self._place, room=self._room, environment=kwargs['env'])
+        except NoWarmKernel as problem:
+            self.why_not_warm = str(problem)
+            return await super().launch_kernel(
+                cmd,
+                env=kwargs['env'],
+                cwd='/',
+                stdout=DEVNULL,
+                stderr=DEVNULL,
+                pass_fds=self._place.pass_fds,
+            )
+        self.pid = self.process.pid
+        return self.connection_info
+
+    async def cleanup(self, restart: bool = False) -> None:
+        """Close the sandbox, if it is this kernel's own."""
+        await super().cleanup(restart=restart)
+        if self._sandbox is not None and not restart:
+            await self._close()
+
+    def resolve_path(self, path_str: str) -> None:
+        """Tell no path: the kernel's files are not on this machine's disk."""
+
+    async def _open(self) -> Place:
+        if self._sandbox is None:
+            self._claim = claim()
+            self._sandbox = Sandbox(slot=self._claim.domain_id)
+            try:
+                await self._sandbox.open()
+            except BaseException:
+                await self._close()
+                raise
+        return self._sandbox.place('student')
+
+    async def _close(self) -> None:
+        try:
+            await self._sandbox.close()
+        finally:
+            self._sandbox = None
+            self._claim.release()
