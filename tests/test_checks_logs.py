@@ -42,6 +42,13 @@ def test_a_near_miss_is_told_what_is_missing(node, reason):
             log.expect_angles(ANGLES, timeout_sec=1.0)
 
 
+def test_what_was_logged_at_another_level_is_shown():
+    with running('ik_solver'), rosout('ik_solver_node') as log:
+        ask(log, TOO_FAR)
+        with pytest.raises(CheckFailed, match="saw no INFO record but 'WARN the target is 3 m"):
+            log.expect_angles(ANGLES, timeout_sec=1.0)
+
+
 def test_an_answer_to_an_older_question_does_not_count():
     with running('ik_solver'):
         with rosout('ik_solver_node') as log:

@@ -111,7 +111,7 @@ def test_a_new_stamp_does_no_harm(run):
         (PROFILES['BEST_EFFORT TRANSIENT_LOCAL'], r'LOCAL \(incompatible: DURABILITY\)'),
         (
             QoSProfile(depth=1, reliability=BEST_EFFORT, deadline=Duration(seconds=1)),
-            r'saw BEST_EFFORT/VOLATILE \(incompatible: DEADLINE\)',
+            r'saw BEST_EFFORT/VOLATILE \(incompatible: DEADLINE\): the publisher promises',
         ),
     ],
 )
@@ -125,6 +125,18 @@ def test_a_subscription_that_asks_for_too_much_is_named(run, asked, reason):
 def test_a_volatile_subscription_is_named(run, reliability):
     run(monitor.JointStateMonitor, description=QoSProfile(depth=10, reliability=reliability))
     with pytest.raises(CheckFailed, match='with durability TRANSIENT_LOCAL, saw VOLATILE: what'):
+        check_late_joiner()
+
+
+def test_a_promise_that_nobody_gives_is_named_to_a_late_joiner(run, impatient):
+    asked = QoSProfile(
+        depth=1,
+        reliability=RELIABLE,
+        durability=TRANSIENT_LOCAL,
+        deadline=Duration(seconds=1),
+    )
+    run(monitor.JointStateMonitor, description=asked)
+    with pytest.raises(CheckFailed, match='the publisher promises no deadline, so leave that'):
         check_late_joiner()
 
 

@@ -88,8 +88,9 @@ class Graph:
             return 'the node is not running, so run the cell that starts it and read what it says'
         if similar := _similar(topic_name, [name for name in names if name not in _PLUMBING]):
             return f'{", ".join(names[similar])} uses {similar}, so compare the spelling'
+        verb = 'runs' if len(runs) == 1 else 'run'
         return (
-            f'{", ".join(runs)} runs, so look at the topic name in {maker}(…)'
+            f'{", ".join(runs)} {verb}, so look at the topic name in {maker}(…)'
             f' and that the node calls it'
         )
 

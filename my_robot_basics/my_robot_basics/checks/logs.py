@@ -174,7 +174,10 @@ class Log:
 
     def _shown(self, level: str) -> str:
         texts = [record.text for record in self.records if record.level == level]
-        return f"'{shorten(' | '.join(texts))}'" if texts else f'no {level} record'
+        if texts:
+            return f"'{shorten(' | '.join(texts))}'"
+        others = ' | '.join(f'{record.level} {record.text}' for record in self.records)
+        return f'no {level} record' + (f" but '{shorten(others)}'" if others else '')
 
 
 def _near(angle_deg: float, number: float, within_deg: float) -> bool:

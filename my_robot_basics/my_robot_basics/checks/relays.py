@@ -16,6 +16,7 @@ from rclpy.qos import (
 
 from my_robot_basics.checks import graphs
 from my_robot_basics.checks.errors import expect, fail
+from my_robot_basics.checks.fits import brief, incompatible, leave_out
 from my_robot_basics.checks.latched import said_to_nobody
 from my_robot_basics.checks.looks import Ears
 from my_robot_basics.checks.topics import Topic
@@ -104,13 +105,16 @@ class Relay:
             return publisher
         if not refused:
             self._fail_absent(watcher, patience_sec=patience_sec)
-        asked = {_brief(asked) for asked in _requests(watcher.node, self.source)}
-        policies = ' and '.join(sorted(qos_policy_name_from_kind(kind) for kind in refused))
+        asked = {brief(asked) for asked in _requests(watcher.node, self.source)}
+        policies = {qos_policy_name_from_kind(kind) for kind in refused}
+        hint = 'give create_subscription a profile with reliability and durability as offered'
+        if unpromised := policies - {'RELIABILITY', 'DURABILITY'}:
+            hint = leave_out(unpromised)
         fail(
             expected=f'a subscription on {self.source} that asks for no more than'
-            f' {_brief(offered)}, which is what the publisher offers',
-            seen=f'{" and ".join(sorted(asked))} (incompatible: {policies})',
-            hint='give create_subscription a profile with reliability and durability as offered',
+            f' {brief(offered)}, which is what the publisher offers',
+            seen=f'{" and ".join(sorted(asked))} (incompatible: {" and ".join(sorted(policies))})',
+            hint=hint,
         )
 
     def _expect_transient_local(self, watcher: Watcher) -> None:
@@ -149,13 +153,17 @@ class Relay:
         )
 
     def _why_lost(self, watcher: Watcher, *, is_latched: bool, has_others: bool) -> str:
-        reliable = {
-            asked.reliability
+        asked = [
+            asked
             for asked in _requests(watcher.node, self.source)
             if asked.durability == DurabilityPolicy.TRANSIENT_LOCAL
-        }
-        if is_latched and reliable == {ReliabilityPolicy.BEST_EFFORT}:
+        ]
+        if is_latched and {each.reliability for each in asked} == {ReliabilityPolicy.BEST_EFFORT}:
             return 'what was said before you joined comes only to a RELIABLE subscription'
+        offers = watcher.node.get_publishers_info_by_topic(self.source)
+        gaps = [incompatible(offer.qos_profile, each) for offer in offers for each in asked]
+        if is_latched and gaps and all(gaps):
+            return leave_out(gaps[0])
         if has_others:
             return 'publish the very message that your callback is given'
         return 'see that your callback publishes each message, and that it raises nothing'
@@ -177,10 +185,6 @@ class Relay:
 def _requests(node: Node, topic_name: str) -> list[QoSProfile]:
     """What the student's subscriptions on a topic ask for."""
     return [info.qos_profile for info in graphs.subscription_infos(node, topic_name)]
-
-
-def _brief(qos_profile: QoSProfile) -> str:
-    return f'{qos_profile.reliability.name}/{qos_profile.durability.name}'
 
 
 def _says(heard: Any, sent: Any) -> bool:

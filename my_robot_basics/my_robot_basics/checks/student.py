@@ -31,6 +31,8 @@ def call(name: str, *args: object, returns: type | tuple[type, ...] | None = Non
     if kind == 'unsupported':
         seen = _article(shorten(body))
         hint = 'return plain values (numbers, text, lists, dicts) or a ROS message'
+        if wire.WRONG_FIELD in body:
+            hint = 'give each field a value of the type that get_fields_and_field_types() names'
         fail(expected=f'`{shorten(shown)}` to return {_wanted(returns)}', seen=seen, hint=hint)
     if body is None:
         hint = f'end `{name}` with `return …` (printing a result does not return it)'

@@ -34,6 +34,9 @@ MESSAGE_PACKAGES = (
     'visualization_msgs',
 )
 
+WRONG_FIELD = 'a field of a wrong type'
+"""What is unsupported about a message that does not travel."""
+
 _MESSAGE_NAME = re.compile(rf'({"|".join(MESSAGE_PACKAGES)})/msg/([A-Z][A-Za-z0-9]*)')
 _SPECIAL_FLOATS = {'nan': math.nan, 'inf': math.inf, '-inf': -math.inf}
 _REPLIES = {'ok': object, 'raised': dict, 'missing': str, 'unsupported': str, 'failed': str}
@@ -53,7 +56,7 @@ def encode(value: object, depth: int = 0) -> Any:
         raise UnsupportedValue(f'values nested more than {MOST_DEPTH} deep')
     if isinstance(value, np.generic | np.ndarray):
         if value.dtype.kind not in 'biufU':
-            raise UnsupportedValue(f'numpy {value.dtype}')
+            raise UnsupportedValue(f'numpy {value.dtype}{_within(depth)}')
         value = value.tolist()
     if value is None or isinstance(value, bool | str):
         return value
@@ -70,7 +73,7 @@ def encode(value: object, depth: int = 0) -> Any:
     if isinstance(value, dict):
         pairs = value.items()
         return {'dict': [[encode(k, depth + 1), encode(v, depth + 1)] for k, v in pairs]}
-    return _encode_message(value)
+    return _encode_message(value, depth)
 
 
 def decode(encoded: object, depth: int = 0) -> Any:
@@ -151,21 +154,26 @@ def message_type(name: str) -> type:
     return found
 
 
-def _encode_message(value: object) -> dict:
+def _within(depth: int) -> str:
+    """Words for a value that stands in the one that was asked for."""
+    return ' in it' if depth else ''
+
+
+def _encode_message(value: object, depth: int) -> dict:
     name = f'{type(value).__module__.partition(".")[0]}/msg/{type(value).__name__}'
     try:
         known = message_type(name) is type(value)
     except WireError:
         known = False
     if not known:
-        raise UnsupportedValue(type(value).__name__)
+        raise UnsupportedValue(f'{type(value).__name__}{_within(depth)}')
     from rclpy.serialization import serialize_message
 
     try:
         cdr = serialize_message(value)
     except Exception as error:
         # rclpy raises whatever the field's conversion raised: TypeError, AttributeError, …
-        raise UnsupportedValue(f'{name} with a field of a wrong type ({error})') from error
+        raise UnsupportedValue(f'{name} with {WRONG_FIELD} ({error})') from error
     return {'ros': name, 'cdr': base64.b64encode(cdr).decode('ascii')}
 
 

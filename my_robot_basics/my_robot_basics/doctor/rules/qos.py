@@ -2,13 +2,9 @@
 
 from collections.abc import Iterator
 
-from rclpy.qos import (
-    DurabilityPolicy,
-    LivelinessPolicy,
-    QoSProfile,
-    ReliabilityPolicy,
-)
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
+from my_robot_basics.checks.fits import incompatible
 from my_robot_basics.doctor import code
 from my_robot_basics.doctor.evidence import Evidence, Finding
 
@@ -43,34 +39,6 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
             )
 
 
-def incompatible(offered: QoSProfile, asked: QoSProfile) -> dict[str, tuple[str, str]]:
-    """Each policy of which less is offered than asked for, with both values in words."""
-    gaps = {}
-    if (
-        offered.reliability == ReliabilityPolicy.BEST_EFFORT
-        and asked.reliability == ReliabilityPolicy.RELIABLE
-    ):
-        gaps['RELIABILITY'] = ('BEST_EFFORT', 'RELIABLE')
-    if (
-        offered.durability == DurabilityPolicy.VOLATILE
-        and asked.durability == DurabilityPolicy.TRANSIENT_LOCAL
-    ):
-        gaps['DURABILITY'] = ('VOLATILE', 'TRANSIENT_LOCAL')
-    if offered.deadline > asked.deadline:
-        gaps['DEADLINE'] = (_sec(offered.deadline), _sec(asked.deadline))
-    if (
-        offered.liveliness == LivelinessPolicy.AUTOMATIC
-        and asked.liveliness == LivelinessPolicy.MANUAL_BY_TOPIC
-    ):
-        gaps['LIVELINESS'] = ('AUTOMATIC', 'MANUAL_BY_TOPIC')
-    if offered.liveliness_lease_duration > asked.liveliness_lease_duration:
-        gaps['LIVELINESS LEASE'] = (
-            _sec(offered.liveliness_lease_duration),
-            _sec(asked.liveliness_lease_duration),
-        )
-    return gaps
-
-
 def _modest(offered: QoSProfile, asked: QoSProfile) -> str:
     """A profile in Python that the offer satisfies, and no more modest than need be."""
     gaps = incompatible(offered, asked)
@@ -83,8 +51,3 @@ def _modest(offered: QoSProfile, asked: QoSProfile) -> str:
 
 
 _RELIABILITY = {True: 'RELIABLE', False: 'BEST_EFFORT'}
-
-
-def _sec(duration: object) -> str:
-    seconds = duration.nanoseconds / 1e9
-    return 'none' if seconds > 1e8 else f'{seconds:g} s'

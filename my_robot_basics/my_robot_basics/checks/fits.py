@@ -1,0 +1,49 @@
+"""Whether two QoS profiles fit together, and what to say where they do not."""
+
+from collections.abc import Iterable
+
+from rclpy.qos import DurabilityPolicy, LivelinessPolicy, QoSProfile, ReliabilityPolicy
+
+
+def incompatible(offered: QoSProfile, asked: QoSProfile) -> dict[str, tuple[str, str]]:
+    """Each policy of which less is offered than asked for, with both values in words."""
+    gaps = {}
+    if (
+        offered.reliability == ReliabilityPolicy.BEST_EFFORT
+        and asked.reliability == ReliabilityPolicy.RELIABLE
+    ):
+        gaps['RELIABILITY'] = ('BEST_EFFORT', 'RELIABLE')
+    if (
+        offered.durability == DurabilityPolicy.VOLATILE
+        and asked.durability == DurabilityPolicy.TRANSIENT_LOCAL
+    ):
+        gaps['DURABILITY'] = ('VOLATILE', 'TRANSIENT_LOCAL')
+    if offered.deadline > asked.deadline:
+        gaps['DEADLINE'] = (_sec(offered.deadline), _sec(asked.deadline))
+    if (
+        offered.liveliness == LivelinessPolicy.AUTOMATIC
+        and asked.liveliness == LivelinessPolicy.MANUAL_BY_TOPIC
+    ):
+        gaps['LIVELINESS'] = ('AUTOMATIC', 'MANUAL_BY_TOPIC')
+    if offered.liveliness_lease_duration > asked.liveliness_lease_duration:
+        gaps['LIVELINESS LEASE'] = (
+            _sec(offered.liveliness_lease_duration),
+            _sec(asked.liveliness_lease_duration),
+        )
+    return gaps
+
+
+def brief(qos_profile: QoSProfile) -> str:
+    """The two policies of which the lessons speak, in one word."""
+    return f'{qos_profile.reliability.name}/{qos_profile.durability.name}'
+
+
+def leave_out(policies: Iterable[str]) -> str:
+    """What to do about policies that nobody promises."""
+    named = ' and '.join(sorted(policies)).lower()
+    return f'the publisher promises no {named}, so leave that out of the profile'
+
+
+def _sec(duration: object) -> str:
+    seconds = duration.nanoseconds / 1e9
+    return 'none' if seconds > 1e8 else f'{seconds:g} s'
