@@ -94,6 +94,7 @@ def wall(
     """A recording of `seconds` on the wall clock, beginning at a message."""
     began_ns = time.time_ns()
     if watcher.spin_until(lambda: ears.count_since(began_ns) > 0, timeout_sec=seconds):
+        watcher.late_sec = 0.0
         watcher.spin_for(seconds)
     sent = [(message, sent_ns) for message, sent_ns in ears.heard if sent_ns > began_ns]
     start_ns = sent[0][1] if sent else began_ns
@@ -110,6 +111,7 @@ def wall(
         seconds=seconds,
         start_sec=start_ns / 1e9,
         note=_note(ears, why),
+        late_sec=watcher.late_sec,
         look_again=again and (lambda longer: again(why, longer)),
     )
 

@@ -43,6 +43,8 @@ class Recording:
     """How far a tick moved the simulated clock."""
     note: str = ''
     """A remark for the feedback that costs nothing."""
+    late_sec: float = 0.0
+    """How long the machine kept the recording itself waiting at most: a node fares no better."""
     look_again: Callable[[float], 'Recording'] | None = field(default=None, repr=False)
     """Records so many seconds more on the wall clock, for a second opinion."""
 
@@ -61,7 +63,8 @@ class Recording:
         """The one publisher sends `hz` messages a second, evenly.
 
         ±2 % on the robot's clock, ±3 % on the wall clock. Before it fails it looks a second time,
-        on the wall clock, unless the robot's clock has shown a plain timer of another period.
+        on the wall clock, unless the robot's clock has shown a plain timer of another period; and
+        some times more where the machine is too busy for a node to keep its rate.
         """
         self._expect_one_publisher()
         if rates.has_rate(self, hz):

@@ -28,6 +28,8 @@ class Watcher:
     def __init__(self, *, domain_id: int | None = None) -> None:
         """`domain_id`: the ROS domain to join, instead of the lesson's."""
         self._domain_id = domain_id
+        self.late_sec = 0.0
+        """How long the machine has kept this waiting at most, against its intention."""
 
     def __enter__(self) -> Self:
         """Join the domain."""
@@ -81,7 +83,10 @@ class Watcher:
             if left <= 0.0:
                 return False
             # `done` may look at the graph, which wakes nobody up
-            self._executor.spin_once(timeout_sec=min(left, 0.02))
+            pause = min(left, 0.02)
+            start = time.monotonic()
+            self._executor.spin_once(timeout_sec=pause)
+            self.late_sec = max(self.late_sec, time.monotonic() - start - pause)
         return True
 
     def spin_for(self, seconds: float) -> None:
