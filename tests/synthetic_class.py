@@ -101,8 +101,8 @@ def wrong_scores(course: Course, papers: Sequence[Paper]) -> list[str]:
     whose = {(paper.student_id, paper.assignment) for paper in papers}
     found = {
         (record.student_id, record.assignment, record.grade_id): record.score
-        for record in records(course)
-        if record.submitted and (record.student_id, record.assignment) in whose
+        for record in records(course, only=whose)
+        if record.submitted
     }
     wanted = {
         (paper.student_id, paper.assignment, name): score

@@ -1,0 +1,199 @@
+"""Submissions a minute, beside stock nbgrader on the same files in the same run.
+
+    .venv/bin/python tests/benchmarks/throughput.py [--papers 24] [--runs 3] [--workers 1 2]
+    .venv/bin/python tests/benchmarks/throughput.py --sizes 10 100 1000
+    .venv/bin/python tests/benchmarks/throughput.py --hostile
+
+The files are the released lessons 2, 3, 4 and 7 with ordinary answers, right and wrong, filled
+in, demonstrations included; stock is `nbgrader autograde`, an assignment after the other, with
+none of this course's configuration but its folders. Both have an empty gradebook each time.
+`cold` counts a command from its start to its end, `warm` what comes between its submissions.
+`--sizes` asks whether one submission costs the same in a small class and in a large one.
+`--hostile` takes the other samples of these lessons, those that hang, die, cheat or are damaged.
+Nothing is asserted: look at the ratios, a minute is this machine's.
+"""
+
+import argparse
+import os
+import shutil
+import statistics
+import sys
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+from itertools import pairwise
+from pathlib import Path
+
+import nbformat
+from measuring import ROOT, Course, Watched, course_command, new_course, table, watch
+from sample_class import PATHS, assignment_of
+from synthetic_class import Paper, hand_in, synthetic_class, wrong_scores
+
+from grader.heal import role
+
+LESSONS = ('02_joint_state', '03_publisher', '04_subscriber', '07_common_errors')
+HOSTILE = (
+    *('-zero-', 'infinite_loop', 'blocking_spin', 'os_exit', 'patches_', 'searches_'),
+    *('deleted_', 'repeated_', 'split_', 'edited_', 'skip_'),
+)
+"""Parts of the names of samples that are no ordinary answers."""
+ROW = r'^student_\d+ '
+STOCK_CONFIG = """
+c = get_config()
+c.CourseDirectory.source_directory = 'solutions'
+c.CourseDirectory.release_directory = 'notebooks'
+"""
+
+
+def main() -> None:
+    """Print what was asked for."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument('--papers', type=int, default=24)
+    parser.add_argument('--runs', type=int, default=3)
+    parser.add_argument('--workers', type=int, nargs='*', default=[1, 2])
+    parser.add_argument('--sizes', type=int, nargs='*')
+    parser.add_argument('--hostile', action='store_true')
+    asked = parser.parse_args()
+    samples = [
+        name
+        for name in PATHS
+        if assignment_of(PATHS[name]) in LESSONS
+        and any(part in name for part in HOSTILE) == asked.hostile
+    ]
+    print(f'load at the start: {os.getloadavg()[0]:.1f} on {len(os.sched_getaffinity(0))} cores')
+    if asked.sizes:
+        _sizes(asked.sizes, samples)
+    elif asked.hostile:
+        _compare(_one_of_each(samples), workers=asked.workers[-1:], runs=1)
+    else:
+        papers = synthetic_class(asked.papers, samples=samples)
+        _compare(papers, workers=asked.workers, runs=asked.runs)
+    print(f'load at the end: {os.getloadavg()[0]:.1f}')
+
+
+def _one_of_each(samples: Sequence[str]) -> list[Paper]:
+    papers = []
+    for number, name in enumerate(samples, start=1):
+        [paper] = synthetic_class(1, samples=[name])
+        papers.append(Paper(f'student_{number:04}', paper.assignment, name, paper.text))
+    return papers
+
+
+def _compare(papers: Sequence[Paper], *, workers: Sequence[int], runs: int) -> None:
+    """Print the rates of stock and of ours, in turns."""
+    shorter = [_without_demonstrations(paper) for paper in papers]
+    ways = {
+        'stock': partial(_stock, papers),
+        'stock, no demonstrations': partial(_stock, shorter),
+        **{f'ours, --workers {number}': partial(_ours, papers, number) for number in workers},
+    }
+    found: dict[str, list[dict]] = {name: [] for name in ways}
+    for run in range(runs):
+        # whoever comes first in a turn has colder caches
+        for name in reversed(ways) if run % 2 else ways:
+            found[name].append(ways[name]())
+    of_stock = {kind: _median(found['stock'], kind) for kind in ('cold', 'warm')}
+    print(f'{len(papers)} submissions, {len({p.sample for p in papers})} answers, {runs} runs')
+    table(
+        ('median', 'cold/min', 'ratio', 'warm/min', 'ratio', 'wrong scores', 'peak MB'),
+        [
+            (
+                name,
+                _median(each, 'cold'),
+                f'{_median(each, "cold") / of_stock["cold"]:.2f}',
+                _median(each, 'warm'),
+                f'{_median(each, "warm") / of_stock["warm"]:.2f}',
+                max(run['wrong'] for run in each),
+                _median(each, 'peak'),
+            )
+            for name, each in found.items()
+        ],
+    )
+    print(f'of {sum(len(paper.expected) for paper in papers)} scores')
+    for line in found['stock'][-1]['which']:
+        print(f'  stock: {line}')
+    for name, each in found.items():
+        if name.startswith('ours') and any(run['wrong'] for run in each):
+            print(*(f'  {name}: {line}' for run in each for line in run['which']), sep='\n')
+
+
+def _median(runs: Sequence[dict], kind: str) -> float:
+    return statistics.median(run[kind] for run in runs)
+
+
+def _ours(papers: Sequence[Paper], workers: int | None) -> dict:
+    course = new_course('ours')
+    hand_in(course, papers)
+    options = ['--workers', workers] if workers else []
+    return _found(course, papers, [watch(course_command(course, 'grade', *options), done=ROW)])
+
+
+def _stock(papers: Sequence[Paper]) -> dict:
+    """Grade papers as a course without this grader would."""
+    root = new_course('stock').gradebook
+    lessons = sorted({paper.assignment for paper in papers})
+    for lesson in lessons:
+        shutil.copytree(ROOT / 'solutions' / lesson, root / 'solutions' / lesson)
+    (root / 'nbgrader_config.py').write_text(STOCK_CONFIG, encoding='ascii')
+    course = Course(gradebook=root)  # its database lies where ours would
+    nbgrader = Path(sys.executable).with_name('nbgrader')
+    for lesson in lessons:
+        made = watch([nbgrader, 'generate_assignment', lesson], done='$^', cwd=root)
+        assert made.status == 0, made.said
+    hand_in(course, papers)
+    ran = [
+        watch([nbgrader, 'autograde', lesson], done=r'\bAutograding ', cwd=root)
+        for lesson in lessons
+    ]
+    return _found(course, papers, ran)
+
+
+def _found(course: Course, papers: Sequence[Paper], ran: Sequence[Watched]) -> dict:
+    """Return rates a minute, wrong scores, and MB; and clean up."""
+    between = [later - one for each in ran for one, later in pairwise(_warm(each))]
+    wrong = wrong_scores(course, papers)
+    shutil.rmtree(course.gradebook.parent)
+    return {
+        'cold': 60 * len(papers) / sum(each.seconds for each in ran),
+        'warm': 60 / statistics.mean(between) if between else float('nan'),
+        'wrong': len(wrong),
+        'which': wrong,
+        'peak': max(each.peak_bytes for each in ran) / 1e6,
+    }
+
+
+def _warm(watched: Watched) -> list[float]:
+    """Return when submissions were done once all was under way."""
+    done = watched.done_at
+    return done[len(done) // 4 :]
+
+
+def _without_demonstrations(paper: Paper) -> Paper:
+    notebook = nbformat.reads(paper.text, as_version=4)
+    notebook.cells = [cell for cell in notebook.cells if role(cell) != 'demo']
+    return replace(paper, text=nbformat.writes(notebook))
+
+
+def _sizes(sizes: Sequence[int], samples: Sequence[str]) -> None:
+    """Print what one submission costs in classes of these sizes."""
+    rows = []
+    for size in sizes:
+        course, papers = new_course('size'), synthetic_class(size, samples=samples)
+        hand_in(course, papers)
+        watched = watch(course_command(course, 'grade'), done=ROW)
+        rows.append(
+            (
+                f'{size} submissions',
+                1000 * watched.seconds / size,
+                60_000 / watched.per_minute_warm,
+                1000 * watched.database_sec / size,
+                watched.peak_bytes / 1e6,
+                len(wrong_scores(course, papers)),
+            )
+        )
+        shutil.rmtree(course.gradebook.parent)
+    table(('', 'ms each', 'ms each, warm', 'ms database', 'peak MB', 'wrong scores'), rows)
+
+
+if __name__ == '__main__':
+    main()
