@@ -7,7 +7,9 @@ from datetime import datetime
 from pathlib import Path
 
 from grader.bundle import bundle
+from grader.cluster import Cluster
 from grader.collect import LEFT, collect
+from grader.connection import Certificates
 from grader.course import Course
 from grader.crew import Crew
 from grader.database import in_sentences
@@ -80,16 +82,17 @@ def _collect(course: Course, asked: argparse.Namespace) -> int:
 
 
 def _grade(course: Course, asked: argparse.Namespace) -> int:
+    crew = _crew(asked)
     submissions = find_submissions(course, assignment=asked.assignment, student_id=asked.student)
     if asked.store and asked.seed == RECORDED:
         raise CourseError('--store wants --seed HEX: what is recorded is stored already')
     if asked.seed and not asked.store:
-        return _replay(course, submissions, asked)
+        return _replay(course, submissions, asked, crew)
     run = Run(datetime.now().astimezone(), seed=asked.seed or '')
     graded = grade_all(
         course,
         submissions,
-        crew=_crew(asked),
+        crew=crew,
         seed=asked.seed or '',
         trust_students=asked.trust_students,
         force=asked.force,
@@ -117,15 +120,27 @@ def _grade(course: Course, asked: argparse.Namespace) -> int:
 
 
 def _crew(asked: argparse.Namespace) -> Crew | None:
-    return Workers(asked.workers) if asked.workers else None
+    certificates = Certificates(asked.tls_ca_file, asked.tls_cert, asked.tls_key)
+    if not asked.dask:
+        if certificates != Certificates():
+            raise CourseError('--tls-ca-file, --tls-cert and --tls-key go with --dask tls://…')
+        return Workers(asked.workers) if asked.workers else None
+    if asked.trust_students:
+        raise CourseError(
+            '--trust-students and --dask do not go together: a worker without a sandbox would '
+            'run what students wrote with the rights of all the cluster'
+        )
+    return Cluster(asked.dask, certificates)
 
 
-def _replay(course: Course, submissions: list[HandedIn], asked: argparse.Namespace) -> int:
+def _replay(
+    course: Course, submissions: list[HandedIn], asked: argparse.Namespace, crew: Crew | None
+) -> int:
     same = True
     for line, as_stored in replay(
         course,
         submissions,
-        crew=_crew(asked),
+        crew=crew,
         seed=asked.seed,
         trust_students=asked.trust_students,
     ):
@@ -212,12 +227,20 @@ def _parser() -> argparse.ArgumentParser:
         action='store_true',
         help='grade even where this machine has no sandbox for their code (./course doctor)',
     )
-    verb.add_argument(
+    where = verb.add_mutually_exclusive_group()
+    where.add_argument(
         '--workers',
         type=at_least_one,
         metavar='N',
         help='grade in so many processes; without it, one for each core',
     )
+    where.add_argument(
+        '--dask',
+        metavar='tls://HOST:8786',
+        help='grade on the workers of this Dask scheduler; on this machine, tcp://127.0.0.1:8786',
+    )
+    for option in ('--tls-ca-file', '--tls-cert', '--tls-key'):
+        verb.add_argument(option, metavar='FILE', help='for --dask tls://…, as dask takes it')
     verb.add_argument(
         '--force', action='store_true', help='grade again what has not changed since, too'
     )

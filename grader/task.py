@@ -17,6 +17,7 @@ from nbformat import NotebookNode
 from grader.errors import CourseError, TaskFailed
 from grader.execute import executed
 from grader.heal import KEY
+from grader.leftovers import own_folder
 from grader.limits import SUBMISSION_TIMEOUT_SEC
 
 
@@ -114,7 +115,7 @@ def unpacked(text: str, task: Task) -> Result:
 
 async def _graded(task: dict) -> dict:
     start = time.monotonic()
-    with tempfile.TemporaryDirectory(prefix='submission-') as folder:
+    with tempfile.TemporaryDirectory(prefix='files-', dir=own_folder()) as folder:
         paths = []
         for name, text in task['files'].items():
             paths.append(Path(folder, Path(name).name))

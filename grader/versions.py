@@ -2,6 +2,7 @@
 
 import hashlib
 import platform
+import sysconfig
 from collections.abc import Iterator
 from functools import cache
 from importlib.metadata import distributions, version
@@ -27,7 +28,9 @@ def versions() -> dict[str, str]:
 def machinery() -> str:
     """Return a hash of the grader's code, my_robot_basics and everything that is installed."""
     text = hashlib.sha256(f'{platform.python_version()} {platform.machine()}'.encode())
-    for distribution in sorted({f'{each.name}=={each.version}' for each in distributions()}):
+    # not along sys.path, to which programs add: setuptools brings packages of its own
+    installed = distributions(path=[sysconfig.get_path('purelib')])
+    for distribution in sorted({f'{each.name}=={each.version}' for each in installed}):
         text.update(f'\n{distribution}'.encode())
     for package in (Path(__file__).parent, Path(my_robot_basics.__file__).parent):
         for path in _code(package):

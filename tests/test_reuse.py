@@ -261,7 +261,7 @@ def test_the_hash_of_the_machinery_holds_code_and_versions(tmp_path, monkeypatch
     for change in (
         lambda: None,
         lambda: (tmp_path / 'code.py').write_text('2'),
-        lambda: monkeypatch.setattr(versions, 'distributions', lambda: []),
+        lambda: monkeypatch.setattr(versions, 'distributions', lambda path: []),
         lambda: monkeypatch.setattr(versions.platform, 'python_version', lambda: '3.99'),
     ):
         change()
