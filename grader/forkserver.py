@@ -45,6 +45,7 @@ ROOMS = {
 }
 """What is imported for each room, beside what both need. None of it holds a test."""
 _BOTH = (
+    'runpy',
     'ipykernel.kernelapp',
     'ipykernel.debugger',
     'IPython.core.completerlib',
@@ -95,6 +96,7 @@ def main(control: socket.socket, room: str) -> None:
         before = dict(os.environ)
         for name in (*_BOTH, *ROOMS[room]):
             importlib.import_module(name)
+        _load_type_supports()
         made = {name: text for name, text in os.environ.items() if before.get(name) != text}
         _leave_threads_behind()
         _unshare_memory()
@@ -117,6 +119,18 @@ def main(control: socket.socket, room: str) -> None:
             _become_a_kernel(errand, made)
             return
         errand.close()
+
+
+def _load_type_supports() -> None:
+    """Load what ROS otherwise loads when the first node, publisher or subscription is made."""
+    modules = [name for name in sys.modules if name.endswith(('.msg', '.srv'))]
+    for package in sorted({name.partition('.')[0] for name in modules} | {'service_msgs'}):
+        for kind in ('fastrtps_c', 'introspection_c'):
+            ctypes.CDLL(f'lib{package}__rosidl_typesupport_{kind}.so')
+    for name in modules:
+        for thing in vars(sys.modules[name]).values():
+            if hasattr(type(thing), '__import_type_support__'):
+                type(thing).__import_type_support__()
 
 
 def _leave_threads_behind() -> None:

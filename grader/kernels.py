@@ -74,6 +74,11 @@ class Kernel:
         """The grader's folder for this kernel."""
         return self.place.folder
 
+    @property
+    def why_not_warm(self) -> str:
+        """Why a kernel in a sandbox was started and not forked; '' where it was."""
+        return self._manager.provisioner.why_not_warm
+
     async def start(self) -> 'Kernel':
         """Start the kernel and wait until its outputs are heard; raises RoomFailure."""
         try:
@@ -178,6 +183,8 @@ class Kernel:
             await self._manager.provisioner.kill()
             with contextlib.suppress(TimeoutError):
                 await asyncio.wait_for(self._exited(), STOP_GRACE_SEC)
+                # else it would be sent an interrupt, and that be waited for
+                await self._manager.provisioner.wait()
             await self._manager.shutdown_kernel(now=True)
         deadline = time.monotonic() + STOP_GRACE_SEC
         while (

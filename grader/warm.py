@@ -82,6 +82,8 @@ class Forked:
 class _Server:
     """A process that forks kernels, as long as this one lives and does not close it."""
 
+    has_forked = False
+
     def __init__(self, room: str) -> None:
         self._control, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         with theirs:
@@ -104,13 +106,15 @@ class _Server:
     def settle(self) -> None:
         """Forget the process that it was forked from; to be called when it has answered."""
         self._first.wait()
+        self.has_forked = True
 
     def last_words(self) -> str:
         """Return why it ended."""
         self._control.setblocking(False)
-        with contextlib.suppress(OSError):
-            if said := self._control.recv(_MAX_ANSWER):
-                return said.decode(errors='replace')
+        for _ in range(2):  # that it left something unread is told first
+            with contextlib.suppress(OSError):
+                if said := self._control.recv(_MAX_ANSWER):
+                    return said.decode(errors='replace')
         return 'the process that forks them has ended'
 
     def close(self) -> None:
@@ -213,7 +217,10 @@ async def _answer(errand: socket.socket, server: '_Server', room: str) -> int:
     try:
         while True:
             await _readable(errand.fileno())
-            text, files, _, _ = socket.recv_fds(errand, _MAX_ANSWER, 1)
+            try:
+                text, files, _, _ = socket.recv_fds(errand, _MAX_ANSWER, 1)
+            except ConnectionResetError:  # nobody has read what was sent
+                break
             if not text:
                 break
             if files:
@@ -221,9 +228,10 @@ async def _answer(errand: socket.socket, server: '_Server', room: str) -> int:
             else:
                 said = text.decode(errors='replace')
         if kernel < 0 and not said:
-            # it has ended before it read this: what it can't do once, it can't do at all
-            _unfit[room] = server.last_words()
-            raise NoWarmKernel(_unfit[room])
+            problem = server.last_words()
+            if not server.has_forked:
+                _unfit[room] = problem  # the next one would not, either
+            raise NoWarmKernel(problem)
         if said:
             raise RoomFailure(f'the forked kernel could not enter its room: {said}')
     except BaseException:
