@@ -13,6 +13,7 @@ from grader.course import Course
 from grader.files import write_whole
 from grader.grade import Row
 from grader.isolation import isolated
+from grader.reasons import Reason
 from grader.table import changes, score_of
 from grader.tally import Tally, tally
 from grader.text import printable
@@ -21,6 +22,8 @@ from grader.versions import versions
 SLOWEST = 10
 MOST_SHOWN = 20
 """Reasons on the page; the JSON has all."""
+HARDEST = 8
+"""Checks that are named first; all of them come with their assignments."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +43,7 @@ def write_report(course: Course, run: Run, rows: Sequence[Row]) -> Path:
     folder = _new_folder(course.gradebook / 'runs', run.began)
     write_whole(folder / 'report.json', json.dumps(facts, indent=2, ensure_ascii=False) + '\n')
     page = folder / 'report.html'
-    write_whole(page, _TEMPLATE.render(facts, tally=counted, most=MOST_SHOWN))
+    write_whole(page, _TEMPLATE.render(facts, tally=counted, most=MOST_SHOWN, hardest=HARDEST))
     return page
 
 
@@ -59,13 +62,13 @@ def _facts(run: Run, rows: Sequence[Row], counted: Tally) -> dict:
             'could not be graded': sum(row.stored is None for row in rows),
         },
         'per_minute': round(60 * len(timed) / seconds, 1) if seconds else None,
-        'looks': [asdict(look) for look in counted.looks],
+        'looks': [_reason(each) for each in counted.looks],
         'changes': changes(rows),
         'assignments': [
             asdict(each) | {'mean': each.mean, 'median': each.median}
             for each in counted.assignments
         ],
-        'reasons': [asdict(each) | {'count': len(each.students)} for each in counted.reasons],
+        'reasons': [_reason(each) for each in counted.reasons],
         'slowest': [
             _submission(row) for row in sorted(timed, key=lambda row: -row.seconds)[:SLOWEST]
         ],
@@ -80,6 +83,10 @@ def _facts(run: Run, rows: Sequence[Row], counted: Tally) -> dict:
         },
         'submissions': [_submission(row) for row in rows],
     }
+
+
+def _reason(reason: Reason) -> dict:
+    return asdict(reason) | {'count': len(reason.students)}
 
 
 def _submission(row: Row) -> dict:

@@ -1,6 +1,5 @@
 """What one run says of a class: scores, checks, reasons, and what a person should look at."""
 
-import re
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -12,11 +11,10 @@ from grader.course import Course
 from grader.grade import Row
 from grader.heal import KEY, grade_id
 from grader.page import docstring
+from grader.reasons import Reason, Said, grouped
 from grader.records import Record, graded_notebook, records
-from grader.text import printable
 
-NUMBER = re.compile(r'(?<!\w)[-+]?\d+(\.\d+)?(e[-+]?\d+)?(?!\w)')
-_MANY = re.compile(r'…(, …)+')
+WRITTEN = 'a written answer that a person reads'
 
 
 @dataclass(frozen=True)
@@ -31,6 +29,8 @@ class Check:
     missed: int
     waiting: int
     """Students whose score a person has to decide."""
+    why: Reason | None = None
+    """What most of those who missed it were told."""
 
     @property
     def rate(self) -> float:
@@ -62,34 +62,25 @@ class Assignment:
 
 
 @dataclass(frozen=True)
-class Reason:
-    """Why points are missing, for all students for whom it is the same but for numbers."""
-
-    assignment: str
-    words: str
-    """The reason, with … for its numbers where those differ."""
-    example: str
-    students: tuple[str, ...]
-    checks: tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class Look:
-    """Something that a person should look at."""
-
-    student_id: str
-    assignment: str
-    why: str
-
-
-@dataclass(frozen=True)
 class Tally:
     """What one run says of a class; everything that students wrote is printable text."""
 
     assignments: tuple[Assignment, ...]
     reasons: tuple[Reason, ...]
-    """The most common one first."""
-    looks: tuple[Look, ...]
+    """Why points are missing, the most common reason first."""
+    looks: tuple[Reason, ...]
+    """Why a person should look, and at whose submissions; what is only to be read comes last."""
+
+    @property
+    def hardest(self) -> list[tuple[str, Check]]:
+        """Return assignment and check where anybody missed points, the hardest one first."""
+        missed = [
+            (each.name, check)
+            for each in self.assignments
+            for check in each.checks
+            if check.missed
+        ]
+        return sorted(missed, key=lambda found: (found[1].rate, -found[1].missed))
 
 
 def tally(course: Course, rows: Sequence[Row]) -> Tally:
@@ -99,20 +90,20 @@ def tally(course: Course, rows: Sequence[Row]) -> Tally:
     for record in records(course, only=whose.keys()):
         of_cells[record.student_id, record.assignment].append(record)
     notebooks = {each: graded_notebook(course, *each) for each in whose}
+    failures = list(_failures(notebooks))
+    looks = grouped(_looks(rows, of_cells, notebooks))
     return Tally(
-        assignments=tuple(_assignments(course, whose, of_cells)),
-        reasons=tuple(_reasons(notebooks)),
-        looks=tuple(_looks(rows, of_cells, notebooks)),
+        assignments=tuple(_assignments(course, whose, of_cells, failures)),
+        reasons=tuple(grouped(failures)),
+        looks=tuple(sorted(looks, key=lambda each: each.words == WRITTEN)),
     )
 
 
-def numberless(reason: str) -> str:
-    """Return a reason with … in the place of its numbers, and of lists of them."""
-    return _MANY.sub('…', NUMBER.sub('…', reason))
-
-
 def _assignments(
-    course: Course, whose: dict[tuple, Row], of_cells: dict[tuple, list[Record]]
+    course: Course,
+    whose: dict[tuple, Row],
+    of_cells: dict[tuple, list[Record]],
+    failures: list[Said],
 ) -> Iterable[Assignment]:
     for name in sorted({assignment for _, assignment in whose}):
         stored = [row.stored for (_, assignment), row in whose.items() if assignment == name]
@@ -120,6 +111,10 @@ def _assignments(
             r for (_, assignment), found in of_cells.items() if assignment == name for r in found
         ]
         titles = {grade_id(c): docstring(c.source) for c in course.source(name).cells}
+        said = defaultdict(list)
+        for failure in failures:
+            if failure.assignment == name:
+                said[failure.grade_id].append(failure)
         ids = dict.fromkeys(r.grade_id for r in cells if r.max_score)
         yield Assignment(
             name=name,
@@ -127,12 +122,13 @@ def _assignments(
             max_score=max(each.max_score for each in stored),
             scores=tuple(sorted(each.score for each in stored)),
             checks=tuple(
-                _check([r for r in cells if r.grade_id == each], titles.get(each)) for each in ids
+                _check([r for r in cells if r.grade_id == each], titles.get(each), said[each])
+                for each in ids
             ),
         )
 
 
-def _check(cells: list[Record], title: str | None) -> Check:
+def _check(cells: list[Record], title: str | None, failures: list[Said]) -> Check:
     scored = [record for record in cells if record.score is not None]
     passed = sum(record.score >= record.max_score for record in scored)
     return Check(
@@ -142,49 +138,36 @@ def _check(cells: list[Record], title: str | None) -> Check:
         passed=passed,
         missed=len(scored) - passed,
         waiting=len(cells) - len(scored),
+        why=next(iter(grouped(failures)), None),
     )
 
 
-def _reasons(notebooks: dict[tuple[str, str], NotebookNode]) -> list[Reason]:
-    found = defaultdict(list)
-    for (student, assignment), notebook in notebooks.items():
+def _failures(notebooks: dict[tuple[str, str], NotebookNode]) -> Iterable[Said]:
+    for whose, notebook in notebooks.items():
         for name, verdict in _verdicts(notebook).items():
             if verdict.get('outcome') == 'failed':
-                said = printable(verdict.get('reason', ''))
-                found[assignment, numberless(said)].append((printable(student), name, said))
-    reasons = [
-        Reason(
-            assignment=assignment,
-            words=said[0][2] if len({text for *_, text in said}) == 1 else words,
-            example=said[0][2],
-            students=tuple(dict.fromkeys(student for student, _, _ in said)),
-            checks=tuple(dict.fromkeys(name for _, name, _ in said)),
-        )
-        for (assignment, words), said in found.items()
-    ]
-    return sorted(reasons, key=lambda each: (-len(each.students), each.assignment, each.words))
+                yield Said(*whose, name, verdict.get('reason', ''))
 
 
 def _looks(
     rows: Sequence[Row],
     of_cells: dict[tuple, list[Record]],
     notebooks: dict[tuple[str, str], NotebookNode],
-) -> Iterable[Look]:
+) -> Iterable[Said]:
     for row in rows:
-        whose = printable(row.student_id), printable(row.assignment)
+        whose = row.student_id, row.assignment
         if row.stored is None:
-            yield Look(*whose, printable(row.reason))
+            yield Said(*whose, '', row.reason)
             continue
-        notebook = notebooks[row.student_id, row.assignment]
+        notebook = notebooks[whose]
         if problem := notebook.metadata.get(KEY, {}).get('problem'):
-            yield Look(*whose, f'unreadable, so it earned nothing: {printable(problem)}')
+            yield Said(*whose, '', f'unreadable, so it earned nothing: {problem}')
             continue
         verdicts = _verdicts(notebook)
-        for record in of_cells[row.student_id, row.assignment]:
+        for record in of_cells[whose]:
             if record.score is None:
-                said = verdicts.get(record.grade_id, {})
-                reason = said.get('reason') or 'a written answer that a person reads'
-                yield Look(*whose, f'{record.grade_id}: {printable(reason)}')
+                reason = verdicts.get(record.grade_id, {}).get('reason') or WRITTEN
+                yield Said(*whose, record.grade_id, reason)
 
 
 def _verdicts(notebook: NotebookNode) -> dict[str, dict]:

@@ -15,7 +15,7 @@ from grader.pipeline import prepare, unanswered
 from grader.release import release
 from grader.report import Run, write_report
 from grader.submission import read_submission
-from grader.tally import numberless, tally
+from grader.tally import WRITTEN, tally
 
 ANSWER = 'def double(x):\n    return x + x'
 SCRIPT = '<script>alert("from a student")</script>'
@@ -59,18 +59,6 @@ def reported(course, rows, run=RUN):
     return facts, page.read_text(encoding='utf-8')
 
 
-@pytest.mark.parametrize(
-    ('reason', 'words'),
-    [
-        ('saw 23.5 at joint1: -4e-05 rad', 'saw … at joint1: … rad'),
-        ('saw (1, 2.0, -3) and 7', 'saw (…) and …'),
-        ('03_publisher.ipynb has no number, nor has joint1', None),
-    ],
-)
-def test_reasons_are_grouped_by_their_words_without_the_numbers(reason, words):
-    assert numberless(reason) == (words or reason)
-
-
 def test_students_with_the_same_reason_are_counted_once_and_the_most_common_comes_first(course):
     rows = [
         graded(course, 'ada', {'double-hidden': 'expected 42, saw 1: count again'}),
@@ -90,7 +78,8 @@ def test_students_with_the_same_reason_are_counted_once_and_the_most_common_come
     assert first.checks == ('double-hidden', 'double-check')
     assert (second.students, second.words) == (('eve',), 'gave none in 2 s')
     _, html = reported(course, rows)
-    assert html.index('2 students') < html.index('1 student')
+    reasons = html.partition('Why points are missing')[2]
+    assert reasons.index('2 students') < reasons.index('1 student')
 
 
 def test_each_check_has_its_share_of_those_who_have_a_score(course):
@@ -118,14 +107,49 @@ def test_whatever_needs_a_person_is_listed_with_why(course):
         Row('x.ipynb', '', None, 'a file where a folder was expected'),
         Row('kim', TOY, None, 'not graded, the grader failed: OSError: no room'),
     ]
-    looks = [(each.student_id, each.why) for each in tally(course, rows).looks]
-    assert looks[:2] == [
-        ('ada', 'explain: a written answer that a person reads'),
-        ('bob', 'double-check: ?'),
+    looks = tally(course, rows).looks
+    assert [(each.students, each.checks, each.words) for each in looks if each.checks] == [
+        (('bob',), ('double-check',), '?'),
+        (('ada',), ('explain',), WRITTEN),
     ]
-    assert looks[2][0] == 'eve'
-    assert looks[2][1].startswith('unreadable, so it earned nothing: 00_toy.ipynb is not JSON')
-    assert looks[3:] == [('x.ipynb', rows[4].reason), ('kim', rows[5].reason)]
+    assert looks[-1].words == WRITTEN
+    whole = {each.students: each.words for each in looks if not each.checks}
+    assert whole.keys() == {('eve',), ('kim',), ('x.ipynb',)}
+    assert whole['eve',].startswith('unreadable, so it earned nothing: 00_toy.ipynb is not JSON')
+    assert (whole['x.ipynb',], whole['kim',]) == (rows[4].reason, rows[5].reason)
+
+
+def test_a_hundred_for_the_same_reason_are_one_line_for_a_person(course):
+    rows = [graded(course, name, {'double-check': '?'}) for name in ('ada', 'bob', 'eve')]
+    broken, written = tally(course, rows).looks
+    assert (broken.words, broken.students) == ('?', ('ada', 'bob', 'eve'))
+    assert (written.words, written.students) == (WRITTEN, ('ada', 'bob', 'eve'))
+    facts, html = reported(course, rows)
+    assert [each['count'] for each in facts['looks']] == [3, 3]
+    assert html.count(WRITTEN) == 1
+
+
+def test_what_most_missed_comes_first_with_what_they_were_told(course):
+    rows = [
+        graded(course, 'ada', {'double-check': 'a', 'double-hidden': 'saw 1'}, explained=''),
+        graded(course, 'bob', {'double-check': 'b'}, explained=''),
+        graded(course, 'eve', {'double-check': 'b'}),
+        graded(course, 'zoe', {}),
+    ]
+    counted = tally(course, rows)
+    assert [(name, c.grade_id, c.missed) for name, c in counted.hardest] == [
+        (TOY, 'explain', 2),
+        (TOY, 'double-check', 3),
+        (TOY, 'double-hidden', 1),
+    ]
+    by_hand, check, hidden = (check.why for _, check in counted.hardest)
+    assert by_hand.words == 'there is no answer'
+    assert (check.words, check.students) == ('b', ('bob', 'eve'))
+    assert hidden.words == 'saw 1'
+    _, html = reported(course, rows)
+    section = html.partition('did not understand')[2].partition('</section>')[0]
+    assert '75 % missed it' in section
+    assert section.index('3 of 4') < section.index('1 of 4')
 
 
 def test_what_a_person_has_scored_waits_no_longer(course):
@@ -190,7 +214,7 @@ def test_nothing_that_a_student_wrote_gets_into_the_page_as_it_is(course):
 
 def test_a_name_that_is_no_text_is_reported_too(course):
     facts, _ = reported(course, [Row('\udcff', '', None, 'not UTF-8')])
-    assert facts['looks'][0]['student_id'] == '\\udcff'
+    assert facts['looks'][0]['students'] == ['\\udcff']
 
 
 def test_two_runs_of_one_second_keep_their_reports(course):
