@@ -4,14 +4,13 @@ import re
 import shutil
 import socket
 import subprocess
-import sys
 import time
 import urllib.request
 import zipfile
-from pathlib import Path
 
 import pytest
 from course_maker import TOY, make_course
+from fresh_machine import fresh_environment
 
 from grader.__main__ import main
 from grader.bundle import FOLDER, bundle
@@ -287,20 +286,7 @@ def test_a_verb_that_needs_the_grader_says_so(students):
 @pytest.fixture
 def fresh(students, tmp_path):
     """What a fresh machine has: no .venv, no settings, and nothing of this one's environment."""
-    home = tmp_path / 'home'
-    home.mkdir()
-    tools = tmp_path / 'tools'
-    tools.mkdir()
-    (tools / 'python3').symlink_to(sys._base_executable)
-    kept = ('LANG', 'http_proxy', 'https_proxy', 'no_proxy', 'SSL_CERT_FILE', 'PIP_CONFIG_FILE')
-    kept += ('HTTP_PROXY', 'HTTPS_PROXY', 'PIP_INDEX_URL', 'UV_INDEX_URL', 'UV_DEFAULT_INDEX')
-    environment = {name: os.environ[name] for name in kept if name in os.environ}
-    environment |= {'HOME': str(home), 'PATH': f'{tools}:/usr/local/bin:/usr/bin:/bin'}
-    for name in ('.config/pip/pip.conf', '.pip/pip.conf'):  # how this machine reaches a registry
-        if (there := Path.home() / name).is_file():
-            (home / name).parent.mkdir(parents=True)
-            shutil.copy(there, home / name)
-    yield environment
+    yield fresh_environment(tmp_path)
     shutil.rmtree(students / '.venv', ignore_errors=True)
 
 
