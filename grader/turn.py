@@ -22,12 +22,16 @@ class Turn:
         handle = os.open(path, os.O_RDWR | os.O_CREAT, 0o644)
         self.end = weakref.finalize(self, os.close, handle)
         try:
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            say(f'waiting: process {_text(handle)} is grading into {path.parent}')
-            fcntl.flock(handle, fcntl.LOCK_EX)
-        os.ftruncate(handle, 0)
-        os.pwrite(handle, str(os.getpid()).encode(), 0)
+            try:
+                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                say(f'waiting: process {_text(handle)} is grading into {path.parent}')
+                fcntl.flock(handle, fcntl.LOCK_EX)
+            os.ftruncate(handle, 0)
+            os.pwrite(handle, str(os.getpid()).encode(), 0)
+        except BaseException:
+            self.end()  # whoever keeps the error would keep the turn with it
+            raise
 
     @classmethod
     def take(cls, gradebook: Path, say: Callable[[str], None] = print) -> 'Turn':

@@ -1,3 +1,4 @@
+import errno
 import os
 import signal
 import subprocess
@@ -84,6 +85,20 @@ def test_a_second_writer_waits_for_the_first_and_says_so(tmp_path):
             first.send_signal(signal.SIGKILL)  # a turn ends with its holder
             assert second.stdout.readline() == 'mine\n'
             second.communicate('')
+
+
+def test_a_turn_that_could_not_be_written_down_is_not_taken(tmp_path, monkeypatch):
+    from grader.turn import Turn
+
+    def full(*_):
+        raise OSError(errno.ENOSPC, 'No space left on device')
+
+    with monkeypatch.context() as patch:
+        patch.setattr(os, 'pwrite', full)
+        with pytest.raises(OSError, match='No space') as kept:
+            Turn.take(tmp_path)
+    with Turn.take(tmp_path, say=pytest.fail):
+        assert kept.value
 
 
 def test_a_turn_is_the_same_for_all_of_a_process_and_ends_with_its_last_holder(tmp_path):
