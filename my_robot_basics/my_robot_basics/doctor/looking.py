@@ -23,6 +23,8 @@ ENOUGH_MESSAGES, ENOUGH_SEC = 4, 2.0
 """So many messages, in so long since the first of them, are a good look."""
 MISSING_SEC = 4.0
 """How long to wait for participants that the operating system knows and the graph does not."""
+DOMAINS = (*range(domain.LAST + 1), *range(215, 233))
+"""Those whose ports are not Linux's for outgoing connections."""
 DEPTH = 5000
 """Of the doctor's own queue: more messages than it can hear in one look."""
 ANNOUNCEMENTS = 'ros_discovery_info'
@@ -47,7 +49,7 @@ def diagnose(
     if other_domains and not (evidence.publishers and evidence.subscriptions):
         elsewhere = {
             other: _look_into(other, topic_name)
-            for other in range(domain.LAST + 1)
+            for other in DOMAINS
             if other != domain_id and participants.count(other)
         }
         evidence = dataclasses.replace(evidence, elsewhere=elsewhere)
