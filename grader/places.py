@@ -49,6 +49,8 @@ class Place:
     """What its process is told, beside what every kernel is."""
     pass_fds: tuple[int, ...] = ()
     """What `prefix` reads."""
+    made: Path | None = None
+    """Where a room's kernel makes its sockets, and may make something else of them later."""
     keeper: Keeper | None = None
     """Where a forked kernel can join."""
 

@@ -4,6 +4,8 @@ jupyter_client finds this class by its entry point, so nbclient, JupyterLab and 
 notebook in the kernel that is called NAME. The grader itself names the rooms that it has opened.
 """
 
+import asyncio
+import os
 from pathlib import Path
 from subprocess import DEVNULL
 from typing import Any
@@ -12,10 +14,12 @@ from jupyter_client.connect import KernelConnectionInfo
 from jupyter_client.provisioning import LocalProvisioner
 from my_robot_basics.live.domain import Claim, claim
 
+from grader.errors import RoomFailure
 from grader.places import Place, environment_of
 from grader.sandbox import Sandbox
 from grader.warm import NoWarmKernel, fork_into
 
+START_TIMEOUT_SEC = 60.0
 NAME = 'my_robot_basics_sandbox'
 """Of the kernelspec, and of this provisioner's entry point."""
 
@@ -26,6 +30,7 @@ class SandboxProvisioner(LocalProvisioner):
     why_not_warm = ''
     """Why the kernel was started the slow way, where it was."""
     _place: Place
+    _pins: dict[str, int]
     _room = 'student'
     _sandbox: Sandbox | None = None
     _claim: Claim | None = None
@@ -37,13 +42,15 @@ class SandboxProvisioner(LocalProvisioner):
 
         In one of its own a kernel is told nothing of the caller's environment. Raises RoomFailure.
         """
-        self._room, manager = room, self.parent
+        self._room, self._pins, manager = room, {}, self.parent
         if place is None:
             place = await self._open()
             kwargs['env'] = environment_of(place, room=room, domain_id=self._claim.domain_id)
             manager.transport, manager.ip = 'ipc', str(place.sockets / 'zmq')
         self._place = place
         kwargs = await super().pre_launch(**kwargs)
+        for port in manager.ports:  # of a former kernel, on a restart
+            (place.made / f'zmq-{port}').unlink(missing_ok=True)
         place.tell(Path(manager.connection_file))
         return kwargs | {'cmd': place.command()}
 
@@ -64,9 +71,31 @@ class SandboxProvisioner(LocalProvisioner):
         self.pid = self.process.pid
         return self.connection_info
 
+    async def post_launch(self, **kwargs: Any) -> None:
+        """Let all connections lead to the sockets that the kernel makes now.
+
+        Their folder is the student's, too, who may put links there to sockets of the machine.
+        Raises RoomFailure.
+        """
+        await super().post_launch(**kwargs)
+        names = [f'zmq-{port}' for port in self.parent.ports]
+        async with asyncio.timeout(START_TIMEOUT_SEC):
+            while not all((self._place.made / name).exists() for name in names):
+                if await self.poll() is not None:
+                    raise RoomFailure('its process ended')
+                await asyncio.sleep(0.01)
+        for name in names:
+            pin = os.open(self._place.made / name, os.O_PATH | os.O_NOFOLLOW)
+            self._pins[name] = pin
+            (self._place.sockets / name).symlink_to(f'/proc/self/fd/{pin}')
+
     async def cleanup(self, restart: bool = False) -> None:
         """Close the sandbox, if it is this kernel's own."""
         await super().cleanup(restart=restart)
+        for name, pin in self._pins.items():
+            (self._place.sockets / name).unlink(missing_ok=True)
+            os.close(pin)
+        self._pins = {}
         if self._sandbox is not None and not restart:
             await self._close()
 

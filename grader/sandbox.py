@@ -83,8 +83,9 @@ class Sandbox:
         prefix = room_command(self._user, holder=self._pid, room=room, seccomp=seccomp)
         return Place(
             self._folders[room],
-            Path(f'/proc/{self._pid}/root{DISKS}/{room}/kernel'),
+            self._folders[room],
             inside=INSIDE,
+            made=Path(f'/proc/{self._pid}/root{DISKS}/{room}/kernel'),
             prefix=tuple(prefix),
             environment=ENVIRONMENT,
             pass_fds=(seccomp,),
