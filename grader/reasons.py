@@ -43,12 +43,12 @@ def grouped(all_said: Iterable[Said]) -> list[Reason]:
     reasons = [
         Reason(
             assignment=assignment,
-            words=alike[0][1] if len({text for _, text in alike}) == 1 else words,
+            words=_common([text for _, text in alike]),
             example=alike[0][1],
             students=tuple(dict.fromkeys(printable(said.student_id) for said, _ in alike)),
             checks=tuple(dict.fromkeys(said.grade_id for said, _ in alike if said.grade_id)),
         )
-        for (assignment, words), alike in found.items()
+        for (assignment, _), alike in found.items()
     ]
     return sorted(reasons, key=lambda each: (-len(each.students), each.assignment, each.words))
 
@@ -56,3 +56,12 @@ def grouped(all_said: Iterable[Said]) -> list[Reason]:
 def numberless(reason: str) -> str:
     """Return a reason with … in the place of its numbers, and of lists of them."""
     return _MANY.sub('…', NUMBER.sub('…', reason))
+
+
+def _common(reasons: list[str]) -> str:
+    """Return what reasons say that are alike but for numbers, with … for those that differ."""
+    numbers = [[found[0] for found in NUMBER.finditer(reason)] for reason in reasons]
+    if len(set(map(len, numbers))) > 1:  # lists of numbers, of different lengths
+        return numberless(reasons[0])
+    same = iter([len(set(each)) == 1 for each in zip(*numbers, strict=True)])
+    return _MANY.sub('…', NUMBER.sub(lambda found: found[0] if next(same) else '…', reasons[0]))

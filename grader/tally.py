@@ -37,6 +37,11 @@ class Check:
         """Return the share of those with a score who got all points, 0 to 1."""
         return self.passed / max(1, self.passed + self.missed)
 
+    @property
+    def students(self) -> int:
+        """Return how many handed in."""
+        return self.passed + self.missed + self.waiting
+
 
 @dataclass(frozen=True)
 class Assignment:
@@ -73,14 +78,14 @@ class Tally:
 
     @property
     def hardest(self) -> list[tuple[str, Check]]:
-        """Return assignment and check where anybody missed points, the hardest one first."""
+        """Return assignment and check where anybody missed points, most of the class first."""
         missed = [
             (each.name, check)
             for each in self.assignments
             for check in each.checks
             if check.missed
         ]
-        return sorted(missed, key=lambda found: (found[1].rate, -found[1].missed))
+        return sorted(missed, key=lambda found: -found[1].missed / found[1].students)
 
 
 def tally(course: Course, rows: Sequence[Row]) -> Tally:

@@ -30,3 +30,21 @@ def test_what_differs_in_numbers_alone_is_one_reason_of_each_assignment():
         ('two', 'saw 1', 'saw 1', ('eve', '\\x1b'), ()),
         ('two', 'heard 1', 'heard 1', ('zoe',), ('a',)),
     ]
+
+
+@pytest.mark.parametrize(
+    ('one', 'other', 'words'),
+    [
+        (
+            'saw 4.0 Hz: period = 1 / rate',
+            'saw 6.0 Hz: period = 1 / rate',
+            'saw … Hz: period = 1 / rate',
+        ),
+        ('saw 1, 2, 3 of 4', 'saw 1, 5, 6 of 4', 'saw 1, … of 4'),
+        ('saw (1, 2)', 'saw (1, 2, 3)', 'saw (…)'),
+        ('saw 7', 'saw 7', 'saw 7'),
+    ],
+)
+def test_a_number_that_is_the_same_for_all_is_told(one, other, words):
+    [reason] = grouped([Said('ada', 'one', 'a', one), Said('bob', 'one', 'a', other)])
+    assert reason.words == words

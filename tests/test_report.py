@@ -138,18 +138,19 @@ def test_what_most_missed_comes_first_with_what_they_were_told(course):
     ]
     counted = tally(course, rows)
     assert [(name, c.grade_id, c.missed) for name, c in counted.hardest] == [
-        (TOY, 'explain', 2),
         (TOY, 'double-check', 3),
+        (TOY, 'explain', 2),
         (TOY, 'double-hidden', 1),
     ]
-    by_hand, check, hidden = (check.why for _, check in counted.hardest)
+    check, by_hand, hidden = (check.why for _, check in counted.hardest)
     assert by_hand.words == 'there is no answer'
     assert (check.words, check.students) == ('b', ('bob', 'eve'))
     assert hidden.words == 'saw 1'
     _, html = reported(course, rows)
     section = html.partition('did not understand')[2].partition('</section>')[0]
     assert '75 % missed it' in section
-    assert section.index('3 of 4') < section.index('1 of 4')
+    assert section.index('3 of 4') < section.index('2 of 4') < section.index('1 of 4')
+    assert 'what waits for a person counts nothing yet' in html
 
 
 def test_what_a_person_has_scored_waits_no_longer(course):
