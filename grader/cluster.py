@@ -4,6 +4,7 @@ import json
 import sys
 import threading
 from concurrent.futures import Future
+from contextlib import suppress
 from typing import Any, Self
 
 from grader.connection import PATIENCE_SEC, Certificates, check_address, connected
@@ -11,6 +12,7 @@ from grader.errors import ClusterError, TaskFailed
 from grader.task import Result, Task, packed, unpacked
 from grader.versions import machinery, versions
 
+_START = 'Start workers from the same checkout, set up by ./course: .venv/bin/dask worker ADDRESS'
 LOOK_SEC = 5.0
 """How often we look whether the scheduler is still there."""
 
@@ -89,25 +91,23 @@ class Cluster:
         """Return how many submissions all workers have room for; refuse one that won't do."""
         from grader import remote
 
-        try:
+        with suppress(TimeoutError):
             self._client.wait_for_workers(1, timeout=PATIENCE_SEC)
-        except TimeoutError:
-            raise ClusterError(
-                f'{self._address} has no workers. Start one, with this very checkout: '
-                f'.venv/bin/dask worker {self._address}'
-            ) from None
         room = 0
         for address, said in self._client.run(remote.describe, on_error='return').items():
             check_address(address)
+            if isinstance(said, OSError):
+                continue  # it has gone meanwhile
             if isinstance(said, BaseException):
                 raise ClusterError(
-                    f"the worker {address} can't grade: {type(said).__name__}: {said}. "
-                    'Start it with this very checkout: .venv/bin/dask worker'
+                    f"the worker {address} can't grade: {type(said).__name__}: {said}. {_START}"
                 )
             about = json.loads(said)
             if about['missing'] or about['machinery'] != machinery():
                 raise ClusterError(f'the worker {address} {_difference(about)}')
             room += about['room']
+        if not room:
+            raise ClusterError(f'{self._address} has no workers. {_START}')
         return room
 
     def _look_after(self) -> None:
@@ -142,7 +142,4 @@ def _difference(about: dict) -> str:
         if name != 'system' and its != ours.get(name)
     ]
     listed = '; '.join(others) or 'other packages are installed there'
-    return (
-        f'would not grade as this machine does: {listed}. Both must come from the same checkout, '
-        'set up by ./course.'
-    )
+    return f'would not grade as this machine does: {listed}. {_START}'

@@ -8,6 +8,7 @@ from functools import cache
 
 from distributed import Worker, get_worker
 
+from grader.errors import TaskFailed
 from grader.isolation import missing
 from grader.limits import IN_FLIGHT_EACH
 from grader.versions import machinery, versions
@@ -31,7 +32,10 @@ def grade(text: str, wanted: str) -> str:
     about = json.loads(_described(in_flight))
     if about['machinery'] != wanted or about['missing']:
         return json.dumps({'refused': about})
-    return _workers(in_flight).submit_text(text).result()
+    try:
+        return _workers(in_flight).submit_text(text).result()
+    except TaskFailed as error:
+        return json.dumps({'failed': str(error), 'traceback': error.trace})
 
 
 @cache

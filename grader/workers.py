@@ -33,7 +33,7 @@ class Workers:
         number: int | None = None,
         *,
         in_flight: int | None = None,
-        command: tuple[str, ...] = COMMAND,
+        command: tuple[str, ...] | None = None,
     ) -> None:
         """Use so many processes, by default one for each core, as soon as there is work for them.
 
@@ -42,7 +42,7 @@ class Workers:
         self._number = number or len(os.sched_getaffinity(0))
         wanted = in_flight or IN_FLIGHT_EACH * self._number
         self.room = max(1, min(wanted, available_bytes() // SUBMISSION_MEMORY_BYTES))
-        self._command = command
+        self._command = command or COMMAND
         self._team: list[_Worker] = []
         self._pool = Pool(self.room)
 

@@ -1,0 +1,183 @@
+import os
+import signal
+import subprocess
+import sys
+import time
+from contextlib import suppress
+from importlib.metadata import version
+from pathlib import Path
+
+import psutil
+import pytest
+from course_maker import TOY, answered, make_course, submit
+
+from grader import cluster
+from grader.__main__ import main
+from grader.cluster import Cluster
+from grader.course import Course
+from grader.errors import ClusterError, TaskFailed
+from grader.grade import find_submissions, grade_all
+from grader.gradebook import register
+from grader.records import records
+from grader.release import release
+from grader.task import Task
+from grader.workers import Workers
+
+TESTS = Path(__file__).parent
+LOCALLY = (sys.executable, str(TESTS / 'toy_worker.py'))
+DASK = [str(Path(sys.executable).with_name('dask'))]
+RIGHT = 'def double(x):\n    return 2 * x'
+WRONG = 'def double(x):\n    return x + 1'
+ANSWERS = {'ada': RIGHT, 'bob': WRONG, 'eve': RIGHT, 'kim': WRONG, 'zoe': RIGHT}
+
+
+@pytest.fixture(autouse=True)
+def machinery(monkeypatch):
+    """What toy_dask_worker.py says of itself."""
+    monkeypatch.setattr(cluster, 'machinery', lambda: f'toy, numpy {version("numpy")}')
+
+
+@pytest.fixture(scope='module')
+def course(tmp_path_factory):
+    course = make_course(tmp_path_factory.mktemp('cluster'))
+    release(course)
+    register(course, TOY)
+    return course
+
+
+@pytest.fixture
+def start(tmp_path):
+    """Starts a scheduler or a worker, and ends it with the test."""
+    started = []
+
+    def start_one(*arguments, **environment):
+        log = (tmp_path / f'dask {len(started)}.log').open('w')
+        process = subprocess.Popen(
+            [*DASK, *arguments, '--no-dashboard'],
+            env=os.environ | {'PYTHONPATH': str(TESTS)} | environment,
+            stderr=log,
+            stdout=log,
+        )
+        process.log = Path(log.name)
+        started.append(process)
+        return process
+
+    yield start_one
+    for process in started:
+        process.kill()
+        process.wait()
+
+
+@pytest.fixture
+def scheduler(start):
+    return start_scheduler(start)
+
+
+def start_scheduler(start, port=0):
+    process = start('scheduler', '--host', '127.0.0.1', '--port', str(port))
+    mark = 'Scheduler at:'
+    wait_for(lambda: mark in process.log.read_text(), process)
+    process.address = process.log.read_text().partition(mark)[2].split()[0]
+    return process
+
+
+def start_worker(start, address, **environment):
+    options = ['--nthreads', '2', '--no-nanny', '--preload', 'toy_dask_worker']
+    return start('worker', address, *options, **environment)
+
+
+def wait_for(happened, process=None):
+    deadline = time.monotonic() + 120
+    while not happened():
+        assert process is None or process.poll() is None, process.log.read_text()
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+
+
+def handed_in(course, folder, first_lines=None):
+    """Return a course whose class has handed in what the ANSWERS are."""
+    its = Course(root=course.root, gradebook=folder)
+    folder.mkdir()
+    (folder / 'gradebook.db').write_bytes(course.database.read_bytes())
+    (folder / 'course_secret').write_text('ab' * 32)
+    for student, answer in ANSWERS.items():
+        first = (first_lines or {}).get(student, '')
+        submit(its, student, answered(its, f'{first}\n{answer}'))
+    return its
+
+
+def scores(course):
+    return [(r.student_id, r.grade_id, r.score, r.comment) for r in records(course)]
+
+
+def grades(worker):
+    """Whether a worker of the cluster has begun to grade."""
+    with suppress(psutil.Error):  # its processes come and go
+        return any('toy_' in str(p.cmdline()) for p in psutil.Process(worker.pid).children())
+
+
+def test_a_cluster_grades_as_this_machine_does_and_a_lost_worker_changes_nothing(
+    course, scheduler, start, tmp_path
+):
+    workers = [start_worker(start, scheduler.address) for _ in range(2)]
+    mark = tmp_path / 'go'
+    waits = dict.fromkeys(('bob', 'eve', 'kim'), f'# wait {mark}')
+    there = handed_in(course, tmp_path / 'there', waits)
+    with Cluster(scheduler.address) as crew:
+        failing = crew.submit(Task(notebook=answered(course, f'# fail\n{RIGHT}'), seed='abc'))
+        with pytest.raises(TaskFailed, match=r'^OSError: no room$'):
+            failing.result()
+    rows = grade_all(there, find_submissions(there), crew=Cluster(scheduler.address))
+    names = [next(rows).student_id]
+    wait_for(lambda: grades(workers[0]))
+    workers[0].send_signal(signal.SIGKILL)
+    mark.touch()
+    names += [row.student_id for row in rows]
+    assert names == sorted(ANSWERS)
+    here = handed_in(course, tmp_path / 'here', waits)
+    list(grade_all(here, find_submissions(here), crew=Workers(2, command=LOCALLY)))
+    assert scores(there) == scores(here)
+    assert len(scores(there)) == 3 * len(ANSWERS)
+
+
+def test_a_lost_scheduler_ends_the_run_which_goes_on_with_another_one(
+    course, scheduler, start, tmp_path, capsys
+):
+    start_worker(start, scheduler.address)
+    mark = tmp_path / 'go'
+    there = handed_in(course, tmp_path / 'there', {'eve': f'# wait {mark}'})
+    rows = grade_all(there, find_submissions(there), crew=Cluster(scheduler.address))
+    done = [next(rows).student_id, next(rows).student_id]
+    scheduler.send_signal(signal.SIGKILL)
+    with pytest.raises(ClusterError, match='run the same command again, and it goes on'):
+        next(rows)
+    mark.touch()
+    again = start_scheduler(start, port=scheduler.address.rpartition(':')[2])
+    start_worker(start, again.address)
+    assert main(['grade', '--dask', again.address], course=there) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines if '(unchanged)' in line] == done
+    assert {record.student_id for record in records(there)} == ANSWERS.keys()
+
+
+@pytest.mark.parametrize(
+    ('environment', 'said'),
+    [
+        ({'TOY_MISSING': 'no bubblewrap here'}, 'refuses: no bubblewrap here'),
+        ({'TOY_NUMPY': '0.1'}, 'would not grade as this machine does: numpy 0.1, and [1-9]'),
+    ],
+)
+def test_a_worker_that_is_not_as_we_are_grades_nothing(scheduler, start, environment, said):
+    start_worker(start, scheduler.address, **environment)
+    with pytest.raises(ClusterError, match=said), Cluster(scheduler.address):
+        pass
+
+
+def test_a_worker_that_comes_later_is_looked_at_too(course, scheduler, start):
+    good = start_worker(start, scheduler.address)
+    with Cluster(scheduler.address) as crew:
+        good.kill()
+        start_worker(start, scheduler.address, TOY_MISSING='no bubblewrap here')
+        work = crew.submit(Task(notebook=answered(course, RIGHT), seed='abc'))
+        with pytest.raises(ClusterError, match='refuses: no bubblewrap here'):
+            work.result()
