@@ -67,6 +67,7 @@ class Machine:
         (package / '__init__.py').touch()
         (self.root / 'grader').mkdir()
         (self.root / 'grader/__init__.py').touch()
+        shutil.copytree(ROOT / 'grader/kernelspec', self.root / 'grader/kernelspec')
         (self.root / 'notebooks').mkdir()
         for name in ('package.xml', 'setup.py', 'setup.cfg'):
             shutil.copy(ROOT / 'my_robot_basics' / name, package.parent)
@@ -558,14 +559,16 @@ def test_lab_without_lessons_says_what_to_do(machine):
     assert './course release' in the_one_sentence(machine.course('lab'))
 
 
-def checks(machine, *arguments, ruff=0, pytest=0):
+def checks(machine, *arguments, ruff=0, pytest=0, again=None):
     """Run ./course test with checks that end so; return its exit code and its calls of pytest."""
+    again = pytest if again is None else again
     machine.course('scores')
     bin_folder = machine.root / '.venv/bin'
     (bin_folder / 'ruff').write_text(f'#!/bin/sh\nexit {ruff}\n')
     (bin_folder / 'ruff').chmod(0o755)
     (bin_folder / 'python').write_text(
-        f'#!/bin/sh\n{PYTHON}\ncase $* in *pytest*) exit {pytest} ;; esac\n'
+        f'#!/bin/sh\n{PYTHON}\n'
+        f'case $* in *--last-failed*) exit {again} ;; *pytest*) exit {pytest} ;; esac\n'
     )
     run = machine.course('test', *arguments)
     return run.returncode, [call for call in machine.calls('python') if 'pytest' in call]
@@ -577,7 +580,14 @@ def checks(machine, *arguments, ruff=0, pytest=0):
 def test_test_ends_with_the_last_failure(machine, ruff, pytest, code):
     seen, calls = checks(machine, ruff=ruff, pytest=pytest)
     assert seen == code
-    assert len(calls) == 1
+    assert len(calls) == (2 if pytest == 1 else 1)
+
+
+@pytest.mark.parametrize('again', [0, 1, 5])
+def test_what_failed_beside_other_tests_is_judged_alone(machine, again):
+    seen, calls = checks(machine, '-k', 'a name', pytest=1, again=again)
+    assert seen == again
+    assert '-k a name --last-failed -n 0' in calls[-1]
 
 
 def test_test_passes_arguments_on(machine):
