@@ -19,7 +19,9 @@ from grader import sandbox as module
 from grader.bubblewrap import FIRST_USER, slot_user
 from grader.course import ROOT
 from grader.errors import RoomFailure
+from grader.kernels import Kernel
 from grader.limits import ROOM_DISK_BYTES, ROOM_FILES
+from grader.places import Place
 from grader.sandbox import Sandbox
 from grader.seccomp import FORBIDDEN
 
@@ -71,6 +73,28 @@ def run(sandbox, code, *, room='student'):
     return begin(sandbox, code, room=room).communicate(timeout=120)[0].strip()
 
 
+@pytest.fixture(params=['started', 'forked'])
+def inside(request, loop):
+    """Return what Python printed in a room: a process of its own, or a kernel that was forked."""
+
+    async def in_a_kernel(sandbox, code, room):
+        kernel = Kernel(room=room, domain_id=0, place=sandbox.place(room))
+        await kernel.start()
+        assert kernel.why_not_warm == ''
+        ran = await kernel.run(code, timeout_sec=120.0)
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(Place, 'remove', lambda place: None)  # others will live there
+            await kernel.stop()
+        return ''.join(o.get('text', '') or o.evalue for o in ran.outputs).strip()
+
+    def inside(sandbox, code, *, room='student'):
+        if request.param == 'started':
+            return run(sandbox, code, room=room)
+        return loop.run(in_a_kernel(sandbox, code, room))
+
+    return inside
+
+
 WALK = """
 import os
 for folder, folders, files in os.walk('/'):
@@ -79,13 +103,17 @@ for folder, folders, files in os.walk('/'):
         path = os.path.join(folder, name)
         print(WHAT)
 """
+PYTHONS = [str(f) for p in (sys.prefix, sys.base_prefix) for f in Path(p).iterdir() if f.is_dir()]
+"""Thousands of files, and no place for others."""
 
 
 @pytest.mark.parametrize('room', ['student', 'test'])
-def test_the_course_and_the_machines_own_are_not_there(shared, tmp_path, room):
+def test_the_course_and_the_machines_own_are_not_there(shared, tmp_path, room, inside):
     (tmp_path / 'canary.txt').write_text('x')
-    code = WALK.replace('SKIPPED', "('/proc', '/usr', '/dev')").replace('WHAT', 'path')
-    seen = run(shared, code, room=room).splitlines()
+    code = WALK.replace('SKIPPED', repr(('/proc', '/usr', '/dev', *PYTHONS))).replace(
+        'WHAT', 'path'
+    )
+    seen = inside(shared, code, room=room).splitlines()
     below = {p.removeprefix(f'{ROOT}/').split('/')[0] for p in seen if p.startswith(f'{ROOT}/')}
     assert below == {'.venv', 'my_robot_basics'}
     names = {Path(path).name for path in seen if not path.startswith(sys.prefix)}
@@ -98,12 +126,12 @@ def test_the_course_and_the_machines_own_are_not_there(shared, tmp_path, room):
     }
 
 
-def test_only_a_small_disk_can_be_written_to(shared):
-    what = "path if not os.path.islink(path) and os.access(path, os.W_OK) else ''"
-    code = WALK.replace('SKIPPED', "('/proc',)").replace('WHAT', what)
+def test_only_a_small_disk_can_be_written_to(shared, inside):
+    what = 'not os.path.islink(path) and os.access(path, os.W_OK)'
+    code = WALK.replace('SKIPPED', "('/proc',)").replace('print(WHAT)', f'if {what}: print(path)')
     devices = ('/dev/null', '/dev/zero', '/dev/full', '/dev/random', '/dev/urandom', '/dev/tty')
     devices += ('/dev/pts', '/dev/ptmx')
-    writable = {p for p in run(shared, code).splitlines() if p and not p.startswith(devices)}
+    writable = {p for p in inside(shared, code).splitlines() if p and not p.startswith(devices)}
     roots = ('/tmp', '/dev/shm', '/room/home', '/room/kernel')
     assert {path for path in writable if not path.startswith(roots)} == set()
     assert set(roots) <= writable
@@ -121,13 +149,13 @@ print('network:', [line.split(':')[0].strip() for line in open('/proc/net/dev')]
 """
 
 
-def status(sandbox, room='student'):
-    lines = run(sandbox, STATUS, room=room).splitlines()
+def status(sandbox, room='student', look=run):
+    lines = look(sandbox, STATUS, room=room).splitlines()
     return {k: v.strip() for k, _, v in (line.partition(':') for line in lines)}
 
 
-def test_a_room_has_no_rights(shared):
-    seen = status(shared)
+def test_a_room_has_no_rights(shared, inside):
+    seen = status(shared, look=inside)
     assert {seen[f'Cap{kind}'] for kind in ('Inh', 'Prm', 'Eff', 'Bnd', 'Amb')} == {'0' * 16}
     assert (seen['NoNewPrivs'], seen['Seccomp']) == ('1', '2')
     assert seen['ids'] == '1000 1000'
@@ -201,7 +229,7 @@ except OSError as error:
 """
 
 
-def test_nothing_outside_is_reached_by_network(shared):
+def test_nothing_outside_is_reached_by_network(shared, inside):
     abstract = f'\0a-socket-of-the-machine-{os.getpid()}'
     with (
         socket.create_server(('127.0.0.1', 0)) as server,
@@ -212,7 +240,8 @@ def test_nothing_outside_is_reached_by_network(shared):
         code = REACH.replace('PORT', str(server.getsockname()[1]))
         code = code.replace('ABSTRACT', repr(abstract))
         assert (
-            run(shared, code) == 'ConnectionRefusedError OSError ConnectionRefusedError gaierror'
+            inside(shared, code)
+            == 'ConnectionRefusedError OSError ConnectionRefusedError gaierror'
         )
         outside = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True)
         words = outside.stdout.split()
@@ -238,8 +267,8 @@ for family in range(1, 46):
 """
 
 
-def test_system_calls_that_nobody_needs_are_refused(shared):
-    said = run(shared, CALLS).splitlines()
+def test_system_calls_that_nobody_needs_are_refused(shared, inside):
+    said = inside(shared, CALLS).splitlines()
     assert [line for line in said if 'family' not in line] == []
     # IPv6 may be missing; netlink takes no datagrams of an unknown protocol
     assert {line.split()[1] for line in said} <= {'1', '2', '10', '16'}
@@ -402,8 +431,8 @@ def test_a_kill_in_the_room_kills_only_the_room(shared):
     witness.communicate(timeout=60)
 
 
-def test_a_terminal_is_out_of_reach(shared):
-    assert 'No such device or address' in run(shared, "open('/dev/tty')")
+def test_a_terminal_is_out_of_reach(shared, inside):
+    assert 'No such device or address' in inside(shared, "open('/dev/tty')")
 
 
 def test_a_sandbox_that_can_not_be_made_is_the_graders_failure(loop, monkeypatch):
