@@ -46,6 +46,10 @@ KEPT = {
         [display({'text/\ud800': 'x'}, metadata={'\udcff': {'alt': '\udfff'}})],
         [('display_data', {'text/?': 'x'})],
     ),
+    'a widget that claims to be text': (
+        [display({'application/vnd.jupyter.widget-view+json': 'x', 'text/plain': 'a slider'})],
+        [('display_data', {'text/plain': 'a slider'})],
+    ),
     'a display that is no text': (
         [display({'text/plain': 'x', 'image/png': {'a': 1}, 'a/json': [1]})],
         [('display_data', {'text/plain': 'x'})],
