@@ -159,7 +159,8 @@ print(locale.setlocale(locale.LC_ALL), time.tzname, __name__)
     'frames': """
 import sys
 frame, names = sys._getframe(), []
-while names[-1:] != ['launch_instance']:  # what called that is another file, as it has to be
+# what launches an instance is another file, as it has to be
+while frame and names[-1:] != ['launch_instance']:
     names.append(frame.f_code.co_name)
     frame = frame.f_back
 print(names)
@@ -495,7 +496,7 @@ FAULTS = {
         'import threading, time; threading.Thread(target=time.sleep, args=(1e6,)).start()',
         'started threads',
     ),
-    'shared memory': ('import mmap, sys; sys.kept = mmap.mmap(-1, 4096)', 'made shared memory: rw-s'),
+    'shared memory': ('import mmap, sys; sys.kept = mmap.mmap(-1, 4096)', 'made shared memory'),
     'an import that fails': ('import nothing_of_that_name', 'nothing_of_that_name'),
     'its end': ('import os; os._exit(1)', 'has ended'),
 }  # fmt: skip
