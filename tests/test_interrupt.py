@@ -1,5 +1,6 @@
 """Ctrl-C and the like while a class is graded in real rooms; SIGKILL, which nobody can answer."""
 
+import os
 import signal
 import subprocess
 import sys
@@ -44,15 +45,34 @@ def run(course):
 
 
 def kernels_of(run):
-    """Wait until both kernels of a submission run; return all processes below the run."""
-    deadline = time.monotonic() + 120
+    """Wait until both kernels of a submission run; return all processes of the run."""
+    deadline, sessions = time.monotonic() + 120, set()
     while time.monotonic() < deadline and run.poll() is None:
         below = psutil.Process(run.pid).children(recursive=True)
-        names = [' '.join(_command(process)) for process in below]
-        if sum('ipykernel_launcher' in name for name in names) >= 2:
-            return below
+        commands = {process: ' '.join(_command(process)) for process in below}
+        started = [p for p, command in commands.items() if 'ipykernel_launcher' in command]
+        sessions |= {p.pid for p, command in commands.items() if 'forkserver.py' in command}
+        # they leave their parent, and keep the session that they began
+        servers = [p for p in psutil.process_iter() if _session(p) in sessions and p not in below]
+        forked = [kernel for kernels in map(_below, servers) for kernel in kernels]
+        if len(started) + sum(bool(_below(server)) for server in servers) >= 2:
+            return below + servers + forked
         time.sleep(0.1)
     pytest.fail(f'no kernels: {run.communicate()}')
+
+
+def _below(process):
+    try:
+        return process.children(recursive=True)
+    except psutil.Error:
+        return []
+
+
+def _session(process):
+    try:
+        return os.getsid(process.pid)
+    except ProcessLookupError:
+        return None
 
 
 def _command(process):
