@@ -92,6 +92,7 @@ def main(control: socket.socket, room: str) -> None:
 
     Why it can't go on, it says over `control`. It ends when whoever holds the other end does.
     """
+    _close_all_but(control.fileno())  # the file of Python may be open, too
     try:
         before = dict(os.environ)
         for name in (*_BOTH, *ROOMS[room]):
@@ -193,6 +194,9 @@ def expect_nothing_shared() -> None:
     threads = len(os.listdir('/proc/self/task'))
     if threads != 1 or threading.active_count() != 1:
         raise RuntimeError(f'there are {threads} threads, and none but one would be forked')
+    python = Path('/proc/self/exe')
+    if python.stat().st_uid == os.geteuid() != 0 and not os.readlink(python).startswith('/memfd:'):
+        raise RuntimeError(f'{python.resolve()} is the own file of whom its kernels would be')
     for _, _, rights, path in _shared():
         if rights != 'r--s' or not path.startswith(('/usr/', sys.prefix, sys.base_prefix)):
             raise RuntimeError(f'an import has made shared memory: {rights} {path}')
@@ -246,8 +250,7 @@ def _settle(order: dict, *, keep: int) -> None:
     _call('prctl', _PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0)
     _filter_system_calls(bytes.fromhex(order['seccomp']))
     _forget(order['command'])
-    os.closerange(3, keep)
-    os.closerange(keep + 1, 1 << 20)
+    _close_all_but(keep)
 
 
 def _forget(command: list[str]) -> None:
@@ -257,6 +260,11 @@ def _forget(command: list[str]) -> None:
     sys.path_importer_cache.clear()
     sys.orig_argv[:] = command
     sys.argv[:] = [sys.modules['ipykernel'].__path__[0] + '_launcher.py', *command[3:]]
+
+
+def _close_all_but(keep: int) -> None:
+    os.closerange(3, keep)
+    os.closerange(keep + 1, 1 << 20)
 
 
 def _drop_capabilities() -> None:

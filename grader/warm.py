@@ -7,6 +7,7 @@ student may know it.
 
 import asyncio
 import contextlib
+import fcntl
 import json
 import os
 import select
@@ -15,8 +16,8 @@ import socket
 import subprocess
 import sys
 import threading
-from functools import cache
 from pathlib import Path
+from typing import IO
 
 import matplotlib
 
@@ -30,6 +31,7 @@ _SCRIPT = Path(__file__).with_name('forkserver.py')
 _TIMEOUT_SEC = 60.0
 _NAMESPACES = ('user', 'mnt', 'net', 'pid', 'ipc', 'uts', 'cgroup')
 _MAX_ANSWER = 4_000
+_ALL_SEALS = fcntl.F_SEAL_SEAL | fcntl.F_SEAL_SHRINK | fcntl.F_SEAL_GROW | fcntl.F_SEAL_WRITE
 
 
 class NoWarmKernel(Exception):
@@ -86,16 +88,17 @@ class _Server:
 
     def __init__(self, room: str) -> None:
         self._control, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-        with theirs:
+        with theirs, _python() as python:
             # safe path: neither the grader's folder nor where we are is looked in
             self._first = subprocess.Popen(
                 [sys.executable, '-P', str(_SCRIPT), str(theirs.fileno()), room],
+                executable=f'/proc/self/fd/{python.fileno()}',
                 env=_environment(),
                 cwd='/',
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,
                 stderr=subprocess.DEVNULL,
-                pass_fds=(theirs.fileno(),),
+                pass_fds=(theirs.fileno(), python.fileno()),
                 start_new_session=True,
             )
 
@@ -121,6 +124,26 @@ class _Server:
         self._control.close()
 
 
+def _python() -> IO[bytes]:
+    """Return the file of this Python, or a copy that nobody can change.
+
+    A kernel reaches the file that it was forked with through /proc/self/exe, and not by the
+    read-only way of its room. Where that is its user's own, it could be made unusable.
+    """
+    own = Path('/proc/self/exe')
+    if own.stat().st_uid == os.geteuid() != 0:
+        return _sealed_copy(own)
+    return own.open('rb')
+
+
+def _sealed_copy(path: Path) -> IO[bytes]:
+    copy = os.fdopen(os.memfd_create('python', os.MFD_ALLOW_SEALING), 'r+b')
+    copy.write(path.read_bytes())
+    copy.flush()
+    fcntl.fcntl(copy, fcntl.F_ADD_SEALS, _ALL_SEALS)
+    return copy
+
+
 _servers: dict[str, _Server] = {}
 _unfit: dict[str, str] = {}
 _lock = threading.Lock()
@@ -137,23 +160,13 @@ def close_servers() -> None:
 os.register_at_fork(after_in_child=close_servers)
 
 
-@cache
-def why_not() -> str:
-    """Return why this machine's rooms can't be entered by a forked kernel; '' where they can."""
-    executable = Path('/proc/self/exe')
-    if os.geteuid() != 0 and executable.stat().st_uid == os.geteuid():
-        # through /proc/self/exe a kernel reaches the very file, where it may be changed
-        return f'{executable.resolve()} is your own, and a forked kernel could change its mode'
-    return ''
-
-
 async def fork_into(place: Place, *, room: str, environment: dict[str, str]) -> Forked:
     """Build the room of a place, and fork a kernel of the 'student' or 'test' kind into it.
 
     Raises NoWarmKernel where none can be forked, and RoomFailure where the room can't be built.
     """
-    if problem := why_not() or _unfit.get(room, ''):
-        raise NoWarmKernel(problem)
+    if room in _unfit:
+        raise NoWarmKernel(_unfit[room])
     keeper = subprocess.Popen(
         place.keeper.command,
         bufsize=0,

@@ -43,7 +43,7 @@ async def opened(*, room='student', seed='', fresh=False):
     kernel = Kernel(room=room, domain_id=DOMAIN, seed=seed, place=sandbox.place(room))
     with pytest.MonkeyPatch.context() as patch:
         if fresh:
-            patch.setattr(warm, 'why_not', lambda: 'the test says so')
+            patch.setitem(warm._unfit, room, 'the test says so')
         await kernel.start()
     assert kernel.why_not_warm == ('the test says so' if fresh else '')
     return sandbox, kernel
@@ -538,12 +538,37 @@ def test_a_kernel_that_can_not_enter_its_room_is_the_graders_failure(loop, monke
         loop.run(opened())
 
 
-def test_a_python_of_ones_own_is_not_forked(monkeypatch):
-    """Its file could be changed through /proc/self/exe: the room's user is its owner."""
-    monkeypatch.setattr(os, 'geteuid', lambda: Path('/proc/self/exe').stat().st_uid or 4242)
-    warm.why_not.cache_clear()
-    if Path('/proc/self/exe').stat().st_uid != 0:
-        assert 'is your own' in warm.why_not()
-    else:
-        assert warm.why_not() == ''
-    warm.why_not.cache_clear()
+def test_a_python_of_ones_own_is_copied_first(loop, monkeypatch, servers, said):
+    """Its file could be changed through /proc/self/exe: the room's user would be its owner."""
+    python = Path('/proc/self/exe')
+    monkeypatch.setattr(warm, '_python', lambda: warm._sealed_copy(python))
+    sandbox, kernel = loop.run(opened())
+    try:
+        link = said(kernel, "import os; print(os.readlink('/proc/self/exe'))")
+        assert link.startswith('/memfd:python')
+        assert process_of(kernel).status() != psutil.STATUS_ZOMBIE
+    finally:
+        loop.run(closed(sandbox, kernel))
+
+
+def test_the_copy_of_python_can_not_be_changed(tmp_path):
+    (tmp_path / 'python').write_bytes(b'python')
+    with warm._sealed_copy(tmp_path / 'python') as copy:
+        path = f'/proc/self/fd/{copy.fileno()}'
+        assert Path(path).read_bytes() == b'python'
+        with pytest.raises(PermissionError):
+            os.truncate(path, 3)
+        with pytest.raises(PermissionError):
+            Path(path).write_bytes(b'x')
+        with Path(path).open('r+b', buffering=0) as again, pytest.raises(PermissionError):
+            again.write(b'x')
+
+
+@pytest.mark.parametrize(
+    ('user', 'owner', 'copied'), [(0, 0, False), (1000, 0, False), (1000, 1000, True)]
+)
+def test_only_a_python_of_ones_own_is_copied(monkeypatch, user, owner, copied):
+    monkeypatch.setattr(Path, 'stat', lambda path: type('Found', (), {'st_uid': owner}))
+    monkeypatch.setattr(os, 'geteuid', lambda: user)
+    with warm._python() as python:
+        assert (python.name != Path('/proc/self/exe')) is copied
