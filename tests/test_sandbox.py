@@ -476,6 +476,7 @@ async def main():
         run = await rooms.run_check(
             'from my_robot_basics.checks import student; print(student.value("x"))')
         print(run.outputs[0].text.strip())
+        print(rooms._student.why_not_warm or 'forked')
 asyncio.run(main())
 """
     reachable = ['--tmpfs', f'/{ROOT.parts[1]}', '--tmpfs', f'/{Path(sys.base_prefix).parts[1]}']
@@ -493,7 +494,7 @@ asyncio.run(main())
         text=True,
         cwd='/',
     )
-    assert done.stdout.split() == ['1000', '7'], done.stderr
+    assert done.stdout.splitlines() == ['1000', '7', 'forked'], done.stderr
 
 
 def test_many_sandboxes_open_and_close_side_by_side(loop):
