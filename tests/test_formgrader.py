@@ -1,0 +1,154 @@
+"""A written answer of lesson 5, read and scored in the formgrader, in a real browser."""
+
+import csv
+import os
+import re
+import shutil
+import socket
+import subprocess
+import sys
+import time
+import urllib.error
+import urllib.request
+from pathlib import Path
+
+import nbformat
+import pytest
+from course_maker import executed
+from playwright.sync_api import expect, sync_playwright
+from sample_class import FOLDER
+from stand_in import stand_in
+
+from grader import reuse
+from grader.__main__ import main
+from grader.course import ROOT, Course
+from grader.execute import Execution
+
+LESSON, ANSWER = '05_command_line', 'explain_counts'
+SAMPLE = '05_command_line-pass-typed_with_slashes'
+COMMENT = 'Right. Which node is it?'
+TOKEN = 'a-token-of-this-test'
+CHROMIUM = next(filter(None, map(shutil.which, ['chromium', 'chromium-browser'])), None)
+LONG = 120_000
+"""Milliseconds: what a slow machine may need for anything here; nothing is judged by it."""
+expect.set_options(timeout=LONG)
+
+pytestmark = [
+    pytest.mark.browser,
+    pytest.mark.skipif(CHROMIUM is None, reason='no chromium here: .ci/run installs it'),
+]
+
+
+@pytest.fixture
+def course(tmp_path, monkeypatch):
+    """Lesson 5 and what Ada handed in; her answers count as right without being run."""
+
+    async def look(notebook, *, extra_files=(), seed='', trust_students=False):
+        return Execution(notebook=executed(notebook, {}), verdicts=(), notes=())
+
+    stand_in(look, monkeypatch)
+    monkeypatch.setattr(reuse, 'machinery', lambda: 'the same code')  # hashing it takes long
+    course = Course.at(tmp_path / 'course')
+    for part in ('solutions', 'notebooks'):
+        shutil.copytree(ROOT / part / LESSON, course.root / part / LESSON)
+    shutil.copy(ROOT / 'nbgrader_config.py', course.root)
+    folder = course.folder('submitted', 'ada', LESSON)
+    folder.mkdir(parents=True)
+    shutil.copy(FOLDER / 'more' / f'{SAMPLE}.ipynb', folder / f'{LESSON}.ipynb')
+    return course
+
+
+@pytest.fixture
+def lab(course, tmp_path):
+    """What the README says: `.venv/bin/jupyter lab` in the course's folder; gives its address."""
+    with socket.socket() as free:
+        free.bind(('127.0.0.1', 0))
+        port = free.getsockname()[1]
+    # neither what this user's own JupyterLab remembers, nor what a test session sets
+    mine = {f'JUPYTER_{name}_DIR': str(tmp_path / name) for name in ('CONFIG', 'DATA', 'RUNTIME')}
+    clean = {k: v for k, v in os.environ.items() if not k.startswith(('PYTEST_', 'COV_'))}
+    with (tmp_path / 'log').open('w') as log:
+        server = subprocess.Popen(
+            [
+                *(Path(sys.executable).with_name('jupyter'), 'lab', '--no-browser'),
+                *('--allow-root', f'--port={port}', '--ServerApp.port_retries=0'),
+                f'--IdentityProvider.token={TOKEN}',
+            ],
+            cwd=course.root,
+            env=clean | mine,
+            stdin=subprocess.DEVNULL,
+            stdout=log,
+            stderr=subprocess.STDOUT,
+        )
+    address = f'http://127.0.0.1:{port}'
+    try:
+        deadline = time.monotonic() + LONG / 1000
+        while True:
+            try:
+                urllib.request.urlopen(f'{address}/api/status?token={TOKEN}').close()
+                break
+            except urllib.error.URLError:
+                assert server.poll() is None, (tmp_path / 'log').read_text()
+                assert time.monotonic() < deadline, (tmp_path / 'log').read_text()
+                time.sleep(0.2)
+        yield address
+    finally:
+        server.terminate()
+        server.wait(30)
+
+
+def told(capsys, course, *arguments):
+    capsys.readouterr()
+    assert main(list(arguments), course=course) == 0
+    return capsys.readouterr().out
+
+
+def exported(capsys, course):
+    """Score and comment of the written answer in the table of scores."""
+    told(capsys, course, 'scores')
+    with (course.gradebook / 'scores.csv').open(encoding='utf-8', newline='') as file:
+        [row] = [row for row in csv.DictReader(file) if row['grade_id'] == ANSWER]
+    return row['score'], row['comment']
+
+
+def test_points_and_a_comment_given_in_the_formgrader_stay_when_ada_is_graded_again(
+    course, lab, capsys
+):
+    assert re.search(r'^ada .* 2/4 … ', told(capsys, course, 'grade'), re.MULTILINE)
+    assert exported(capsys, course) == ('', 'to be graded by hand')
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=['--no-sandbox'])
+        page = browser.new_page()
+        page.set_default_timeout(LONG)
+        page.goto(f'{lab}/lab?token={TOKEN}&reset')
+        page.get_by_role('menuitem', name='Nbgrader').click()
+        page.get_by_role('menuitem', name='Formgrader').click()
+        formgrader = page.frame_locator('iframe[src*="formgrader"]')
+        formgrader.get_by_role('link', name='Manual Grading').first.click()
+        for _ in ('the assignment', 'its notebook'):
+            formgrader.locator('td a', has_text=LESSON).click()
+            expect(formgrader.locator('.breadcrumb li', has_text=LESSON).last).to_be_visible()
+        formgrader.locator('td a', has_text='Submission #1').click()
+
+        written = nbformat.read(FOLDER / 'more' / f'{SAMPLE}.ipynb', as_version=4)
+        [text] = [cell.source for cell in written.cells if cell.id == ANSWER]
+        expect(formgrader.locator('body')).to_contain_text(' '.join(text.split()[:4]))
+        score = formgrader.locator(f'input.score#{ANSWER}')
+        expect(score).to_have_class(re.compile('needs_manual_grade'))
+        for field, value, api in (
+            (score, '1.5', 'grade'),
+            (formgrader.locator(f'textarea#{ANSWER}-comment'), COMMENT, 'comment'),
+        ):
+            field.fill(value)
+            with page.expect_response(lambda reply, api=api: f'/api/{api}/' in reply.url) as saved:
+                field.press('Tab')
+            assert saved.value.ok
+        browser.close()
+    assert exported(capsys, course) == ('1.5', f'scored by hand; {COMMENT}')
+
+    for again in (['grade'], ['grade', '--force'], ['grade', LESSON]):
+        assert re.search(r'^ada .* 3.5/4( |$)', told(capsys, course, *again), re.MULTILINE)
+        assert exported(capsys, course) == ('1.5', f'scored by hand; {COMMENT}')
+    told(capsys, course, 'feedback')
+    [html] = course.gradebook.glob(f'feedback/ada/*/{LESSON}.html')
+    assert COMMENT in html.read_text(encoding='utf-8')
