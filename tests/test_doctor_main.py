@@ -73,6 +73,8 @@ def test_help_needs_no_ros():
 def test_a_notebook_asks_for_a_topic_with_an_impossible_name():
     with pytest.raises(NoTopicName, match='is no topic name'):
         why('/joint states')
+    with pytest.raises(NoTopicName, match='is no text: expected the name of a topic'):
+        why(why)
 
 
 @pytest.fixture

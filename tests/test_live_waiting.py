@@ -33,6 +33,11 @@ def run_cell(source):
     return client.__dict__.get('shown', []), notebook.cells[0].outputs
 
 
+def test_a_condition_that_is_no_function_is_told_how_to_be_one():
+    with pytest.raises(LiveError, match=r'saw \[\]: write wait_until\(lambda: …\)'):
+        wait_until([])
+
+
 def test_what_is_true_already_is_not_waited_for():
     looked = []
     wait_until(lambda: looked.append(1) or True, timeout_sec=0.0)

@@ -136,3 +136,9 @@ def test_rclpy_is_loaded_only_for_what_needs_it():
     code = f'import sys; sys.argv[1:] = {light}; from my_robot_basics.ros2 import main;'
     code += "main.main(); sys.exit('rclpy' in sys.modules)"
     assert pexpect.run(f'{sys.executable} -c "{code}"', withexitstatus=True)[1] == 0
+
+
+def test_what_writes_message_modules_is_not_loaded():
+    code = "import sys; sys.argv[1:] = ['topic', 'list']; from my_robot_basics.ros2 import main;"
+    code += "main.main(); sys.exit('rclpy' not in sys.modules or 'lark' in sys.modules)"
+    assert pexpect.run(f'{sys.executable} -c "{code}"', withexitstatus=True)[1] == 0

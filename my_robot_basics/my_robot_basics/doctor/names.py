@@ -6,6 +6,11 @@ def full_topic_name(text: str) -> str:
     from rclpy.exceptions import InvalidTopicNameException
     from rclpy.validate_full_topic_name import validate_full_topic_name
 
+    if not isinstance(text, str):
+        raise ValueError(
+            f'{text!r:.60} is no text: expected the name of a topic, such as '
+            "'/kinematics/joint_states'"
+        )
     name = text if text.startswith('/') else f'/{text}'
     try:
         validate_full_topic_name(name)

@@ -27,7 +27,7 @@ class BadDomain(LiveError):
 
 
 class NotRunnable(LiveError):
-    """`run` or `run_answer` was given something that it cannot start."""
+    """`run`, `run_answer` or `wait_until` was given something that it cannot start or call."""
 
 
 class WaitedInVain(LiveError, TimeoutError):

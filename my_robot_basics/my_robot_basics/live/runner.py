@@ -18,6 +18,7 @@ from my_robot_basics.live.errors import NotRunnable
 from my_robot_basics.live.naming import announce_name
 from my_robot_basics.live.neighbours import Neighbours, bury_the_dead
 from my_robot_basics.live.panel import Panel
+from my_robot_basics.live.refusals import is_made, no_node_yet, not_a_class
 
 _running: dict[str, Background] = {}
 _panels: dict[str, Panel] = {}
@@ -40,7 +41,7 @@ def run(NodeClass: type[Node], *args: Any, key: str | None = None, **kwargs: Any
     """
     __tracebackhide__ = True
     if not (isinstance(NodeClass, type) and issubclass(NodeClass, Node)):
-        raise NotRunnable(_not_a_class(NodeClass))
+        raise NotRunnable(not_a_class(NodeClass))
     key = NodeClass.__name__ if key is None else key
     return launch(NodeClass, args, kwargs, key=key, make_panel=lambda: Panel(NodeClass.__name__))
 
@@ -69,16 +70,22 @@ def launch(
     try:
         with announce_name(node, on_name):
             node.__init__(*args, **kwargs)
+        if not is_made(node):
+            raise NotRunnable(no_node_yet(NodeClass))
     except _LivesElsewhere as found:
         print(
             f'a node named {found} already lives outside live: no second one was started. '
             'Stop that one first, or give yours another name.'
         )
         return None
-    except BaseException:
-        _destroy_half_made(node)
+    except BaseException as error:
+        too_soon = isinstance(error, AttributeError) and error.obj is node and not is_made(node)
+        if is_made(node):
+            node.destroy_node()  # or the publishers that it has made would live on
         panel.show('its constructor failed')
         panel.close('its constructor failed')
+        if too_soon:
+            raise NotRunnable(no_node_yet(NodeClass)) from None
         raise
     panel.show('running')
     with _lock:
@@ -100,7 +107,8 @@ def stop(key_or_node: str | type[Node] | Node | None = None) -> None:
         if key_or_node in (key, background.node, type(background.node))
     ]
     if not keys:
-        print(f'nothing to stop: no node runs as {key_or_node!r}')
+        name = getattr(key_or_node, '__name__', repr(key_or_node))
+        print(f'nothing to stop: no node runs as {name}')
     _stop_keys(keys)
 
 
@@ -127,19 +135,6 @@ def _ensure_rclpy() -> None:
             f'{domain_of_lesson}: call rclpy.shutdown(), then run this cell again'
         )
     _neighbours.meet()
-
-
-def _destroy_half_made(node: Node) -> None:
-    """Take away what a constructor left behind when it failed: its publishers would live on."""
-    if getattr(node, 'handle', None) is not None:  # else it failed before rclpy's constructor
-        node.destroy_node()
-
-
-def _not_a_class(thing: object) -> str:
-    if isinstance(thing, Node):
-        name = type(thing).__name__
-        return f'run expects the class, saw a node made from it: write run({name})'
-    return f'run expects a class derived from rclpy.node.Node, saw {thing!r:.80}'
 
 
 def shut_down() -> None:

@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable
 
 from my_robot_basics.live import notebook
-from my_robot_basics.live.errors import WaitedInVain
+from my_robot_basics.live.errors import NotRunnable, WaitedInVain
 
 PAUSE_SEC = 0.01
 """Between two looks at the condition."""
@@ -17,9 +17,14 @@ def wait_until(condition: Callable[[], object], timeout_sec: float = 5.0) -> Non
     """Return as soon as condition() is true.
 
     A wait of more than a second shows how long it has taken so far; nothing of that stays in the
-    cell. Raises WaitedInVain, a TimeoutError, when it is still false after `timeout_sec`.
+    cell. Raises WaitedInVain, a TimeoutError, when it is still false after `timeout_sec`, and
+    NotRunnable for a condition that is no function.
     """
     __tracebackhide__ = True
+    if not callable(condition):
+        raise NotRunnable(
+            f'wait_until expects a function, saw {condition!r:.40}: write wait_until(lambda: …)'
+        )
     start = time.monotonic()
     progress = _Progress(timeout_sec)
     try:

@@ -54,6 +54,9 @@ class Graph:
 
     def __enter__(self) -> 'Graph':
         """Join the graph."""
+        # a fifth of all that starts: messages ask for a package whose other half, which writes
+        # message modules, may be missing
+        sys.modules.setdefault('rosidl_generator_py.generate_py_impl', None)
         import rclpy
         from rclpy.exceptions import InvalidNodeNameException
         from rclpy.executors import SingleThreadedExecutor

@@ -1,0 +1,52 @@
+"""What `run` says to what it cannot run, and that nothing of it stays behind."""
+
+import math
+
+import pytest
+from my_robot_basics.live import run, stop
+from my_robot_basics.live.errors import NotRunnable
+from rclpy.node import Node
+from std_msgs.msg import String
+
+
+class Late(Node):
+    def __init__(self):
+        self.publisher = self.create_publisher(String, '/late', 10)
+        super().__init__('late')
+
+
+class Never(Node):
+    def __init__(self):
+        self.count = 0
+
+
+class OwnMistake(Node):
+    def __init__(self):
+        super().__init__('own_mistake')
+        self.publisher = self.create_publsher(String, '/late', 10)
+
+
+@pytest.mark.parametrize('NodeClass', [Late, Never])
+def test_a_node_that_was_never_made_is_told_how_to_begin(NodeClass):
+    with pytest.raises(NotRunnable, match=rf'of {NodeClass.__name__} to begin with super\(\)\._'):
+        run(NodeClass)
+
+
+def test_a_mistake_of_another_kind_is_shown_as_it_is():
+    with pytest.raises(AttributeError, match='create_publsher'):
+        run(OwnMistake)
+    stop()
+
+
+@pytest.mark.parametrize(
+    ('thing', 'words'),
+    [
+        (math, 'the module math: write run(math.…)'),
+        ('Late', "derived from rclpy.node.Node, saw 'Late'"),
+        (dict, "saw <class 'dict'>"),
+    ],
+)
+def test_what_is_no_node_class_is_named(thing, words):
+    with pytest.raises(NotRunnable) as refused:
+        run(thing)
+    assert words in str(refused.value)
