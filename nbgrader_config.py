@@ -39,4 +39,6 @@ c.Autograde.pre_convert_hook = 'grader.gradebook.register_before_autograde'
 c.GenerateFeedback.preprocessors = list(FEEDBACK_PASSES)
 c.GenerateFeedback.exporter_class = 'grader.feedback.FeedbackPage'
 
+# the formgrader shows what students wrote: nothing of it may run there
 c.HTMLExporter.sanitize_html = True
+c.HTMLExporter.filters = {'markdown2html': 'grader.formgrader.harmless_markdown'}

@@ -19,6 +19,7 @@ from grader.heal import heal
 from grader.lateness import deadlines
 from grader.pipeline import prepare, unanswered
 from grader.reuse import conditions, held, kept, key_of, remember
+from grader.students import HTML, problem_of_id
 from grader.submission import Submission, read_submission
 from grader.task import Result, Task
 from grader.turn import Turn
@@ -237,6 +238,8 @@ def _of_student(student: Path, known: list[str]) -> Iterator[HandedIn]:
         problem = ''
         if not _is_text(name):
             problem = "the folder's name is not UTF-8: rename it to the student's id"
+        elif HTML.intersection(name):
+            problem = problem_of_id(name)
         elif not folder.is_dir():
             problem = f"a file where an assignment's folder was expected: {where}"
         elif folder.name not in known:

@@ -5,6 +5,8 @@ import unicodedata
 
 MAX_ID_CHARACTERS, MAX_ID_BYTES = 128, 200
 """What nbgrader's database keeps of a name, and what a folder's name may be long, with a rest."""
+HTML = frozenset('<>"')
+"""The formgrader's tables show names as they are, in text and in attributes."""
 JOINERS = '\u200c\u200d'
 """Not printable, and part of some alphabets' spelling."""
 
@@ -35,6 +37,8 @@ def problem_of_id(student_id: str) -> str:
         return 'there is no name of a student in it'
     if not plain.isprintable() or '/' in plain:
         return "the student's name holds characters that can't be shown: rename it"
+    if HTML.intersection(plain):
+        return 'the student\'s name holds one of < > ": the formgrader would take it for HTML'
     if len(student_id) > MAX_ID_CHARACTERS or len(student_id.encode()) > MAX_ID_BYTES:
         return f"the student's name is too long: at most {MAX_ID_CHARACTERS} characters are kept"
     return ''

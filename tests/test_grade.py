@@ -105,6 +105,7 @@ def test_what_is_out_of_place_is_told_and_stops_nothing(course):
     (submitted / 'eve' / '99_other').mkdir(parents=True)
     (submitted / '.DS_Store').touch()
     (submitted / os.fsdecode(b'\xff\xfe') / TOY).mkdir(parents=True)
+    submit(course, '<b>', answered(course, RIGHT))
     rows = rows_of(course)
     assert {name: row.reason[:30] for name, row in rows.items()} == {
         'ada': '',
@@ -112,6 +113,7 @@ def test_what_is_out_of_place_is_told_and_stops_nothing(course):
         'eve': 'there is no such assignment: e',
         'loose.ipynb': "a file where a student's folde",
         '\udcff\udcfe': "the folder's name is not UTF-8",
+        '<b>': "the student's name holds one o",
     }
     assert [name for name, row in rows.items() if row.stored] == ['ada']
 

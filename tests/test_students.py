@@ -26,12 +26,17 @@ def test_what_can_be_no_name_is_refused():
         student_in('..')
 
 
-@pytest.mark.parametrize('student', ['ada', '小明', 'é' * 100, 'a.b', 'نگار\u200cمحمدی'])
+@pytest.mark.parametrize(
+    'student', ['ada', '小明', "O'Neill", 'é' * 100, 'a.b', 'نگار\u200cمحمدی']
+)
 def test_an_id_that_can_be_a_folder_has_no_problem(student):
     assert problem_of_id(student) == ''
     assert Path(student).name == student
 
 
-@pytest.mark.parametrize('student', ['', '.', '..', '.git', 'a/b', 'a\0b', '\u200c', '小' * 70])
+NO_IDS = ['', '.', '..', '.git', 'a/b', 'a\0b', '\u200c', '小' * 70, '<b>a', 'a" onclick="b']
+
+
+@pytest.mark.parametrize('student', NO_IDS)
 def test_an_id_that_can_t_be_a_folder_has_one(student):
     assert problem_of_id(student)

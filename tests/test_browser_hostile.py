@@ -1,0 +1,234 @@
+"""What a hostile student handed in, in the instructor's browser: it is shown, and does nothing."""
+
+import os
+import shutil
+import socket
+import subprocess
+import sys
+import time
+import urllib.error
+import urllib.request
+from datetime import datetime
+from urllib.parse import quote
+
+import pytest
+from course_maker import TOY, answered, executed, make_course, submit, toy_lesson, write_source
+from nbformat.v4 import new_output
+from nbgrader.api import Gradebook
+from playwright.sync_api import sync_playwright
+
+from grader.feedback import write_feedback
+from grader.grade import Row, find_submissions
+from grader.gradebook import register, store
+from grader.heal import heal
+from grader.outputs import CellRun
+from grader.pipeline import prepare
+from grader.release import release
+from grader.report import Run, write_report
+from grader.submission import read_submission
+
+CHROMIUM = next(filter(None, map(shutil.which, ['chromium', 'chromium-browser'])), None)
+TOKEN = 'a-token-of-this-test'
+PATIENCE_SEC = 120
+
+pytestmark = [
+    pytest.mark.browser,
+    pytest.mark.skipif(CHROMIUM is None, reason='no chromium here: .ci/run installs it'),
+]
+
+ELSEWHERE = 'evil.invalid'
+BY_NAME = '<img src=x onerror=alert(1)>'
+STUDENT = "'-alert(1)-'&lt;{{7*7}}"
+"""What a folder can be called; one of BY_NAME is not graded."""
+EVIL = (
+    f'evil <script>alert(1)</script>{BY_NAME}<svg onload=alert(1)></svg>'
+    '<iframe srcdoc="<script>parent.alert(1)</script>"></iframe>'
+    '<a href="javascript:alert(1)">x</a><style onload=alert(1)>*{}</style>'
+    f'<math><mtext><mglyph><style><img src=x onerror=alert(1)></style></mtext></math>'
+    f'<object data="javascript:alert(1)"></object><link rel=stylesheet href="//{ELSEWHERE}/x">'
+)
+SVG = (
+    f'<svg xmlns="http://www.w3.org/2000/svg" onload="alert(1)">'
+    f'<script>alert(1)</script>{EVIL}</svg>'
+)
+VIEW = 'application/vnd.jupyter.widget-view+json'
+STATE = 'application/vnd.jupyter.widget-state+json'
+MODEL = {
+    'model_name': 'HTMLModel',
+    'model_module': '@jupyter-widgets/controls',
+    'model_module_version': '2.0.0',
+    'state': {'value': EVIL},
+}
+OUTPUTS = [
+    new_output('stream', text=EVIL),
+    new_output('stream', name='stderr', text=f'\x1b[31m{EVIL}\x1b]8;;javascript:alert(1)\x07x'),
+    new_output('display_data', {'text/html': EVIL, 'text/plain': EVIL}),
+    new_output('display_data', {'image/svg+xml': SVG}),
+    new_output('display_data', {'application/javascript': 'alert(1)', 'text/plain': EVIL}),
+    new_output('display_data', {'text/markdown': f'{EVIL} [x](javascript:alert(1))'}),
+    new_output('display_data', {'text/latex': f'$\\href{{javascript:alert(1)}}{{x}}$ {EVIL}'}),
+    new_output('display_data', {'image/png': f'"><script>{EVIL}'}),
+    new_output(
+        'display_data',
+        {'image/png': 'AAAA', 'text/plain': EVIL},
+        metadata={'image/png': {'width': 5, 'alt': f'">{EVIL}'}},
+    ),
+    new_output('display_data', {VIEW: '{"model_id": "0"}', EVIL: EVIL, 'text/plain': EVIL}),
+    new_output('error', ename=EVIL, evalue=EVIL, traceback=[EVIL]),
+]
+
+
+class Browser:
+    """A page that writes down what it was made to do."""
+
+    def __init__(self, page):
+        self.page, self.harm = page, []
+        page.set_default_timeout(PATIENCE_SEC * 1000)
+        page.on('dialog', self._dialog)
+        page.route('**/*', self._request)
+
+    def _dialog(self, dialog):
+        self.harm.append(f'ran: {dialog.message}')
+        dialog.dismiss()
+
+    def _request(self, route):
+        if ELSEWHERE in route.request.url:
+            self.harm.append(f'asked for {route.request.url}')
+        if '127.0.0.1' in route.request.url or route.request.url.startswith(('file:', 'data:')):
+            route.continue_()
+        else:
+            route.abort()  # nothing here needs the world
+
+    def harm_of(self, address):
+        """Open a page; return what it did, and what it would do when touched."""
+        self.harm.clear()
+        self.page.goto(address)
+        self.page.wait_for_load_state('networkidle')
+        waiting = self.page.evaluate("""() => [...document.querySelectorAll('*')].flatMap(each =>
+            [...each.attributes].filter(a => /^\\s*javascript:(?!void)/i.test(a.value)
+                || (a.name.startsWith('on') && a.value.includes('alert(1)'))
+            ).map(a => `${each.tagName} ${a.name}=${a.value}`))""")
+        return self.harm + waiting
+
+    def text(self):
+        return self.page.evaluate('document.documentElement.innerHTML')
+
+
+@pytest.fixture(scope='module')
+def browser():
+    with sync_playwright() as playwright:
+        chromium = playwright.chromium.launch(executable_path=CHROMIUM, args=['--no-sandbox'])
+        yield Browser(chromium.new_page())
+        chromium.close()
+
+
+@pytest.fixture(scope='module')
+def course(tmp_path_factory):
+    """One hostile submission, graded, stored and told of."""
+    course = make_course(tmp_path_factory.mktemp('hostile'))
+    lesson = toy_lesson()
+    del lesson.metadata['widgets']  # the state of no widget at all
+    write_source(course, lesson)
+    release(course)
+    register(course, TOY)
+    notebook = answered(course, f'# {EVIL}', explained=f'{EVIL} [x](javascript:alert(1)) ![y](z)')
+    notebook.metadata['widgets'] = {STATE: {'version_major': 2, 'state': {'0': MODEL}}}
+    notebook.metadata['title'] = EVIL
+    for cell in notebook.cells:
+        if cell.cell_type == 'markdown':
+            cell['attachments'] = {f'">{BY_NAME}': {'image/svg+xml': SVG}}
+    submit(course, BY_NAME, notebook)
+    assert all(each.problem for each in find_submissions(course))
+    path = submit(course, STUDENT, notebook)
+    (path.parent / f'{BY_NAME}.py').write_text('x = 1')
+    folder = course.folder('submitted', STUDENT, TOY)
+    submission = read_submission(folder, student_id=STUDENT, assignment=TOY)
+    healed = heal(submission.notebook, course.master(TOY)).notebook
+    said = f'expected {EVIL}, saw {EVIL}: {EVIL}'
+    graded = executed(prepare(course, TOY, healed), {'double-check': said, 'double-hidden': '?'})
+    run = CellRun()
+    for output in OUTPUTS:
+        run.keep(output.output_type, output)
+    for cell in graded.cells:
+        if cell.cell_type == 'code' and not cell.metadata.get('nbgrader', {}).get('grade'):
+            cell.outputs = run.outputs
+        elif cell.id == 'double-check':
+            cell.outputs = [*run.outputs[:-1], *cell.outputs]
+    store(course, submission, graded)
+    return course
+
+
+@pytest.fixture(scope='module')
+def formgrader(course):
+    """The address of the formgrader, as an instructor starts it in the course's folder."""
+    with socket.socket() as free:
+        free.bind(('127.0.0.1', 0))
+        port = free.getsockname()[1]
+    address, log = f'http://127.0.0.1:{port}', course.root / 'server.log'
+    folders = {f'JUPYTER_{n}_DIR': str(course.root / n) for n in ('CONFIG', 'DATA', 'RUNTIME')}
+    path = os.pathsep.join([str(sys.prefix) + '/bin', os.environ['PATH']])
+    options = [f'--port={port}', '--ServerApp.port_retries=0', f'--IdentityProvider.token={TOKEN}']
+    with log.open('w') as said:
+        server = subprocess.Popen(
+            [sys.executable, '-m', 'jupyter_server', '--no-browser', '--allow-root', *options],
+            cwd=course.root,
+            env=os.environ | folders | {'PATH': path},
+            stdin=subprocess.DEVNULL,
+            stdout=said,
+            stderr=subprocess.STDOUT,
+        )
+    try:
+        deadline = time.monotonic() + PATIENCE_SEC
+        while True:
+            try:
+                urllib.request.urlopen(f'{address}/api/status?token={TOKEN}').close()
+                break
+            except urllib.error.URLError:
+                assert server.poll() is None, log.read_text()
+                assert time.monotonic() < deadline, log.read_text()
+                time.sleep(0.2)
+        yield f'{address}/formgrader'
+    finally:
+        server.terminate()
+        server.communicate()
+
+
+def test_what_does_harm_is_seen(browser, tmp_path):
+    page = tmp_path / 'page.html'
+    page.write_text(f'<!doctype html><body>{EVIL}{SVG}')
+    harm = browser.harm_of(page.as_uri())
+    assert {'ran: 1', f'asked for file://{ELSEWHERE}/x'} <= set(harm)
+    assert any('href=javascript' in each for each in harm)
+
+
+def test_a_page_of_feedback_does_nothing(browser, course):
+    (page,) = write_feedback(course)
+    assert browser.harm_of(page.as_uri()) == []
+    assert 'evil &lt;script&gt;' in browser.text()  # so it is shown
+
+
+def test_the_report_of_a_run_does_nothing(browser, course):
+    rows = [Row(BY_NAME, TOY, None, f'{EVIL} <{BY_NAME}', 1.0), Row(EVIL, EVIL, None, EVIL)]
+    page = write_report(course, Run(datetime.now().astimezone(), seed=''), rows)
+    assert browser.harm_of(page.as_uri()) == []
+    assert 'evil &lt;script&gt;' in browser.text()
+
+
+def test_the_formgrader_does_nothing(browser, course, formgrader):
+    with Gradebook(course.db_url) as gradebook:
+        (submission,) = gradebook.notebook_submissions(TOY, TOY)
+        number = submission.id
+    browser.harm_of(f'{formgrader}?token={TOKEN}')  # signed in from here on
+    assert browser.harm_of(f'{formgrader}/submissions/{number}/') == []
+    assert 'evil <script>' in browser.page.locator('body').inner_text()
+    for view in (
+        f'manage_submissions/{TOY}',
+        'manage_students',
+        f'manage_students/{quote(STUDENT, safe="")}',
+        f'manage_students/{quote(STUDENT, safe="")}/{TOY}',
+        f'gradebook/{TOY}',
+        f'gradebook/{TOY}/{TOY}',
+        'manage_assignments',
+    ):
+        assert browser.harm_of(f'{formgrader}/{view}') == [], view
+        assert 'encountered an error' not in browser.text(), view
