@@ -2,7 +2,10 @@
 
 import shutil
 import sys
+import threading
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 
 from tqdm import tqdm
 
@@ -10,6 +13,8 @@ from grader.grade import HandedIn, Row
 from grader.text import columns, pad, printable, shorten
 
 MAX_NAME_COLUMNS = 40
+TICK_SEC = 1.0
+_OUTCOMES = ('with all points', 'with fewer', 'for a person', 'not graded')
 
 
 def print_rows(
@@ -30,8 +35,13 @@ def print_rows(
 
     more = ['expected'] if expected else []
     print(line('student', 'assignment', *more, 'score', 'reason'), flush=True)
-    with tqdm(rows, total=len(submissions), disable=None, leave=False, unit='notebook') as bar:
+    bar = tqdm(rows, total=len(submissions), disable=None, leave=False, unit='notebook')
+    outcomes: Counter[str] = Counter()
+    with bar, _ticking(bar):
         for row in bar:
+            outcomes[_outcome(row)] += 1
+            counted = (f'{outcomes[said]} {said}' for said in _OUTCOMES if outcomes[said])
+            bar.set_postfix_str(', '.join(counted), refresh=False)
             more = [expected.get(row.student_id, '')] if expected else []
             text = line(
                 printable(row.student_id),
@@ -43,6 +53,35 @@ def print_rows(
             tqdm.write(text)
             sys.stdout.flush()
             yield row
+
+
+@contextmanager
+def _ticking(bar: tqdm) -> Iterator[None]:
+    """Draw a bar each second: a slow submission lets others wait, and time goes on."""
+    done = threading.Event()
+
+    def draw() -> None:
+        while not done.wait(TICK_SEC):
+            bar.refresh()
+
+    if bar.disable:  # no terminal
+        yield
+        return
+    thread = threading.Thread(target=draw, name='bar', daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        done.set()
+        thread.join()
+
+
+def _outcome(row: Row) -> str:
+    if row.stored is None:
+        return 'not graded'
+    if row.stored.pending:
+        return 'for a person'
+    return 'with all points' if row.stored.score >= row.stored.max_score else 'with fewer'
 
 
 def score_of(row: Row) -> str:

@@ -1,9 +1,18 @@
 import io
 import sys
+import threading
 import time
 
+from grader import table
 from grader.grade import HandedIn, Row
+from grader.gradebook import Stored
 from grader.table import print_rows
+
+SAID = {
+    'ada': Stored(score=5.0, max_score=5.0, former=None, pending=False, reason=''),
+    'bob': Stored(score=2.0, max_score=5.0, former=None, pending=False, reason='?'),
+    'eve': Stored(score=5.0, max_score=5.0, former=None, pending=True, reason='?'),
+}
 
 
 class Terminal(io.StringIO):
@@ -14,7 +23,7 @@ class Terminal(io.StringIO):
 def slowly(names):
     for name in names:
         time.sleep(0.2)  # the bar is drawn ten times a second at most
-        yield Row(name, '00_toy', None, 'no room')
+        yield Row(name, '00_toy', SAID.get(name), 'no room')
 
 
 def test_a_terminal_sees_how_many_are_done_how_fast_and_how_long_it_will_take(
@@ -30,13 +39,29 @@ def test_a_terminal_sees_how_many_are_done_how_fast_and_how_long_it_will_take(
     assert done.startswith('00:')
     assert rate.startswith('00:')  # and not ?, as before the first one
     assert 'notebook/s' in rate
+    assert '1 with all points, 1 with fewer, 1 for a person' in rate
+
+
+def test_time_goes_on_while_one_submission_takes_long(monkeypatch, tmp_path):
+    monkeypatch.setattr(sys, 'stderr', Terminal())
+    monkeypatch.setattr(table, 'TICK_SEC', 0.01)
+
+    def one_long():
+        deadline = time.monotonic() + 60
+        while sys.stderr.getvalue().count('0/1') < 5:
+            assert time.monotonic() < deadline
+            time.sleep(0.01)
+        yield Row('ada', '00_toy', None, 'no room')
+
+    list(print_rows(one_long(), [HandedIn('ada', '00_toy', tmp_path)]))
+    assert not [thread for thread in threading.enumerate() if thread.name == 'bar']
 
 
 def test_a_log_sees_rows_alone(monkeypatch, tmp_path, capsys):
-    list(print_rows(slowly(['ada']), [HandedIn('ada', '00_toy', tmp_path)]))
+    list(print_rows(slowly(['zoe']), [HandedIn('zoe', '00_toy', tmp_path)]))
     printed = capsys.readouterr()
     assert printed.err == ''
     assert [line.split() for line in printed.out.splitlines()] == [
         ['student', 'assignment', 'score', 'reason'],
-        ['ada', '00_toy', '–', 'no', 'room'],
+        ['zoe', '00_toy', '–', 'no', 'room'],
     ]
