@@ -1,0 +1,106 @@
+"""Hidden tests stay hidden: nothing that a class leaves behind holds any of their text."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import nbformat
+import pytest
+from course_maker import TOY, answered, make_course, submit, toy_lesson, write_source
+
+from grader.__main__ import main
+
+pytestmark = pytest.mark.isolation
+
+CANARIES = ('hidden canary', 'canary_of_a_name', 'canary of a broken test')
+ANSWERS = {
+    'right': 'def double(x):\n    return 2 * x',
+    'wrong': 'def double(x):\n    return 0 if x else 0.0',
+    'raises': 'def double(x):\n    return {}[x]',
+    'exits': 'import os\ndef double(x):\n    os._exit(0)',
+    'tells': 'import sys\ndef double(x):\n    print(x, file=sys.stderr)\n    return "x" * x * 99',
+    'silent': '# nothing',
+    'interrupts': 'def double(x):\n    raise KeyboardInterrupt(x)',
+}
+
+
+@pytest.fixture(scope='module')
+def left(tmp_path_factory):
+    """A course that was graded, told of and exported; what was printed and logged meanwhile."""
+    course = make_course(tmp_path_factory.mktemp('hidden'))
+    lesson = toy_lesson()
+    cells = {cell.id: cell for cell in lesson.cells}
+    cells['double-hidden'].source = cells['double-hidden'].source.replace(
+        'assert', 'canary_of_a_name = student.call("double", 7)\nassert'
+    )
+    # the instructor's own mistake, which ends every check in an error that names a line of it
+    cells[
+        'double-check'
+    ].source += '\n### BEGIN HIDDEN TESTS\n{}["canary of a broken test"]\n### END HIDDEN TESTS'
+    write_source(course, lesson)
+    run = [sys.executable, '-P', '-c', RUN, str(course.root)]
+    path = os.pathsep.join([str(Path(sys.executable).parent), os.environ['PATH']])
+    environment = os.environ | {'PATH': path}
+    said = b''
+    assert main(['release'], course=course) == 0
+    for student, answer in ANSWERS.items():
+        submit(course, student, answered(course, answer))
+    for arguments in (['grade'], ['feedback'], ['scores']):
+        done = subprocess.run([*run, *arguments], capture_output=True, check=False)
+        assert done.returncode == 0, done.stderr
+        said += done.stdout + done.stderr
+    export = [sys.executable, '-m', 'nbgrader', 'export', '--to', 'export.csv']
+    subprocess.run(export, cwd=course.root, env=environment, check=True, capture_output=True)
+    return course, said.decode()
+
+
+RUN = (
+    'import sys\n'
+    'from pathlib import Path\n'
+    'from grader.__main__ import main\n'
+    'from grader.course import Course\n'
+    'sys.exit(main(sys.argv[2:], course=Course.at(Path(sys.argv[1]))))\n'
+)
+
+
+def found_in(text):
+    return [canary for canary in CANARIES if canary in text]
+
+
+def test_no_log_and_no_line_on_the_terminal_holds_any(left):
+    _, said = left
+    assert 'wrong' in said
+    assert 'silent' in said
+    assert found_in(said) == []
+
+
+def test_no_file_that_tells_of_the_class_holds_any(left):
+    course, _ = left
+    seed = course.seed(TOY)
+    told = [course.root / 'export.csv', course.gradebook / 'scores.csv']
+    told += course.folder('feedback', '', '').rglob('*.html')
+    assert len(told) == 2 + len(ANSWERS)
+    for path in told:
+        text = path.read_text(encoding='utf-8')
+        assert text
+        assert (found_in(text), seed in text) == ([], False), path
+    for path in (course.gradebook / 'runs').rglob('report.*'):
+        assert found_in(path.read_text(encoding='utf-8')) == [], path
+
+
+def test_nothing_that_students_are_given_holds_any(left):
+    course, _ = left
+    for path in (course.root / 'notebooks').rglob('*'):
+        if path.is_file():
+            assert found_in(path.read_text(encoding='utf-8')) == [], path
+
+
+def test_no_output_and_no_reason_in_the_gradebook_holds_any(left):
+    course, _ = left
+    for student in ANSWERS:
+        path = course.folder('autograded', student, TOY) / f'{TOY}.ipynb'
+        cells = nbformat.read(path, as_version=4).cells
+        sources = str([cell.source for cell in cells])
+        assert set(found_in(sources)) == set(CANARIES)  # so a search finds them
+        assert found_in(str([(c.get('outputs'), c.metadata) for c in cells])) == []
