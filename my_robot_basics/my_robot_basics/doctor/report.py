@@ -1,6 +1,12 @@
 """A diagnosis in words for a beginner."""
 
+import textwrap
+
 from my_robot_basics.doctor.evidence import Diagnosis, Evidence, Finding
+from my_robot_basics.live.errors import COLUMNS
+
+INDENT = ' ' * 13
+"""Below the words of a paragraph, whose labels stand before them."""
 
 
 def tell(diagnosis: Diagnosis) -> str:
@@ -45,12 +51,18 @@ def _names(evidence: Evidence, kind: str, verb: str, plural: str) -> str:
 
 
 def _paragraph(number: int, finding: Finding) -> str:
-    lines = [
-        f'{number}. {finding.title}',
-        f'   expected  {finding.expected}',
-        f'   saw       {finding.seen}',
-        f'   to do     {finding.mend}{":" if finding.code else ""}',
-    ]
+    mend = f'{finding.mend}{":" if finding.code else ""}'
+    told = {'expected': finding.expected, 'saw': finding.seen, 'to do': mend}
+    lines = [f'{number}. {finding.title}']
+    for label, text in told.items():
+        lines += textwrap.wrap(
+            text,
+            COLUMNS,
+            initial_indent=f'   {label:10}',
+            subsequent_indent=INDENT,
+            break_long_words=False,
+            break_on_hyphens=False,
+        )
     if finding.code:
-        lines.append(f'                 {finding.code}')
+        lines.append(f'{INDENT}{finding.code}')  # in one line, to be copied
     return '\n'.join(lines)
