@@ -1,10 +1,12 @@
 """Ctrl-C and the like while a class is graded in real rooms; SIGKILL, which nobody can answer."""
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
 import time
+from typing import NamedTuple
 
 import psutil
 import pytest
@@ -44,8 +46,18 @@ def run(course):
     run.communicate()
 
 
+class Processes(NamedTuple):
+    below: list[psutil.Process]
+    servers: list[psutil.Process]
+    forked: list[psutil.Process]
+
+
 def kernels_of(run):
-    """Wait until both kernels of a submission run; return all processes of the run."""
+    """Wait until both kernels of a submission run; return all processes of the run, sorted out.
+
+    Below it are its workers, their rooms, and kernels that were started; what forks kernels, and
+    kernels that were forked, no longer are.
+    """
     deadline, sessions = time.monotonic() + 120, set()
     while time.monotonic() < deadline and run.poll() is None:
         below = psutil.Process(run.pid).children(recursive=True)
@@ -56,7 +68,7 @@ def kernels_of(run):
         servers = [p for p in psutil.process_iter() if _session(p) in sessions and p not in below]
         forked = [kernel for kernels in map(_below, servers) for kernel in kernels]
         if len(started) + sum(bool(_below(server)) for server in servers) >= 2:
-            return below + servers + forked
+            return Processes(below, servers, forked)
         time.sleep(0.1)
     pytest.fail(f'no kernels: {run.communicate()}')
 
@@ -83,7 +95,8 @@ def _command(process):
 
 
 def alive(processes):
-    _, left = psutil.wait_procs(processes, timeout=30)
+    """Wait for the end of all; return what goes on."""
+    _, left = psutil.wait_procs([one for each in processes for one in each], timeout=30)
     return [process for process in left if process.status() != psutil.STATUS_ZOMBIE]
 
 
@@ -113,3 +126,39 @@ def test_a_run_that_is_killed_takes_its_kernels_with_it_and_is_done_again(course
     submit(course, 'bob', b'no notebook either')
     assert main(['grade', '--trust-students'], course=course) == 0
     assert {r.student_id for r in records(course)} == {'ada', 'bob'}
+
+
+def killed(found):
+    """Kill the workers that are at something, with all that they have begun."""
+    for process in found.below:
+        if 'grader.worker' in ' '.join(_command(process)):
+            process.kill()
+    return found
+
+
+def killed_servers(found):
+    """Kill what forks kernels."""
+    for process in found.servers:
+        process.kill()
+    return Processes([], found.servers, [])
+
+
+@pytest.fixture
+def slow_ones(course):
+    """Three who take long instead of one who never ends; to be listed before `run`."""
+    shutil.rmtree(course.folder('submitted', 'bob', ''))
+    slowly = 'import time\n\ntime.sleep(3)\n\n\ndef double(x):\n    return 2 * x'
+    for name in ('carl', 'dora', 'eve'):
+        submit(course, name, answered(course, slowly))
+
+
+@pytest.mark.isolation
+@pytest.mark.parametrize('kill', [killed, killed_servers])
+def test_what_is_killed_below_a_run_changes_no_grade(course, slow_ones, run, kill):
+    found = kernels_of(run)
+    assert found.servers
+    assert not alive(kill(found))
+    out, _ = run.communicate(timeout=240)
+    assert run.returncode == 0, out
+    scores = {(r.student_id, r.score) for r in records(course) if r.grade_id == 'double-hidden'}
+    assert scores == {('ada', 0.0), ('carl', 2.0), ('dora', 2.0), ('eve', 2.0)}
