@@ -1,0 +1,124 @@
+"""Where the time of an exercise goes, part by part, with forked kernels and with started ones.
+
+    .venv/bin/python tests/benchmarks/where_time_goes.py [RUNS]
+
+Medians over all exercises of some sample answers, judged one after the other in one run; what two
+rooms do side by side counts once, as the slower does it. Nothing is asserted.
+"""
+
+import statistics
+import sys
+import tempfile
+import time
+from collections import defaultdict
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+
+import nbformat
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT), str(ROOT / 'tests')]
+
+from sample_class import PATHS, assignment_of  # noqa: E402
+
+from grader import execute, warm  # noqa: E402
+from grader.course import Course  # noqa: E402
+from grader.gradebook import register  # noqa: E402
+from grader.heal import heal  # noqa: E402
+from grader.isolation import isolated  # noqa: E402
+from grader.kernels import Kernel  # noqa: E402
+from grader.pipeline import prepare  # noqa: E402
+from grader.provisioner import SandboxProvisioner  # noqa: E402
+from grader.rooms import Rooms  # noqa: E402
+from grader.sandbox import Sandbox  # noqa: E402
+
+NAMES = (
+    '02_joint_state-pass-numpy',
+    '03_publisher-pass-steady_clock_timer',
+    '03_publisher-fail-1hz',
+    '03_publisher-pass-own_thread_and_init',
+)
+WATCHED = {
+    'open the sandbox': (Sandbox, 'open'),
+    'build the room': (warm, '_built'),
+    'fork the kernel': (warm, '_forked'),
+    'IPython starts': (SandboxProvisioner, 'post_launch'),
+    'connect to it': (Kernel, '_connect'),
+    'student cells': (Rooms, 'run_student_cell'),
+    'checks': (Rooms, 'run_check'),
+    'end it all': (Rooms, '__aexit__'),
+    'start a kernel': (Kernel, 'start'),
+    'open the rooms': (Rooms, '__aenter__'),
+    'all of it': (execute, '_try_plans'),
+}
+"""Parts, and what is timed. The last three hold others in them."""
+PAIRED = ('build the room', 'fork the kernel', 'IPython starts', 'connect to it', 'start a kernel')
+
+spent: dict[str, list[float]] = defaultdict(list)
+"""How long each call of a part took in this exercise, in seconds."""
+exercises: list[dict[str, float]] = []
+
+
+def watch(part: str, owner: object, name: str) -> None:
+    """Let an asynchronous function also write down how long it takes."""
+    function: Callable[..., Awaitable] = getattr(owner, name)
+
+    async def timed(*args: object, **kwargs: object) -> object:
+        began = time.perf_counter()
+        try:
+            return await function(*args, **kwargs)
+        finally:
+            spent[part].append(time.perf_counter() - began)
+            if part == 'all of it':
+                exercises.append(parts())
+
+    setattr(owner, name, timed)
+
+
+def parts() -> dict[str, float]:
+    """Return how long each part of the exercise took that has just ended, and forget it."""
+    took = {part: sum(spent[part]) for part in WATCHED}
+    for part in PAIRED:
+        took[part] = sum(max(pair) for pair in zip(*[iter(spent[part])] * 2, strict=True))
+    opened = took.pop('open the rooms')
+    took['a message crosses'] = opened - took['open the sandbox'] - took.pop('start a kernel')
+    known = (opened, took['student cells'], took['checks'], took['end it all'])
+    took['what is left'] = took['all of it'] - sum(known)
+    spent.clear()
+    return took
+
+
+def judge(course: Course) -> list[dict[str, float]]:
+    """Return the parts of each exercise of the samples, in seconds."""
+    exercises.clear()
+    for name in NAMES:
+        assignment = assignment_of(PATHS[name])
+        submitted = nbformat.read(PATHS[name], as_version=4)
+        healed = prepare(course, assignment, heal(submitted, course.master(assignment)).notebook)
+        execute.execute(healed)
+    return list(exercises)
+
+
+def main(runs: int = 3) -> None:
+    """Print the table."""
+    isolated()  # what this finds out costs every run once, and no submission
+    course = Course(gradebook=Path(tempfile.mkdtemp(prefix='where_time_goes-')))
+    for assignment in course.assignments():
+        register(course, assignment)
+    for part, (owner, name) in WATCHED.items():
+        watch(part, owner, name)
+    judge(course)  # starts the servers
+    forked, started = [], []
+    for _ in range(runs):
+        warm._unfit.clear()
+        forked += judge(course)
+        warm._unfit.update(student='to compare', test='to compare')
+        started += judge(course)
+    print(f'median ms of {len(forked)} exercises   forked  started')
+    for part in forked[0]:
+        columns = (1000 * statistics.median(e[part] for e in each) for each in (forked, started))
+        print(f'{part:27}  {"{:8.1f} {:8.1f}".format(*columns)}')
+
+
+if __name__ == '__main__':
+    main(*map(int, sys.argv[1:]))
