@@ -13,6 +13,8 @@ from grader.course import Course
 FOLDER = Path(__file__).parent / 'answers'
 ANSWERS = {path.stem: path for path in sorted(FOLDER.glob('*.py'))}
 """Attacks that are an answer; those that begin with `robot_` are one to lesson 3."""
+PUBLISHER = Path(__file__).with_name('publisher.py')
+"""What stands before those."""
 OTHERS = {
     name: function
     for name, function in vars(notebooks).items()
@@ -53,6 +55,8 @@ def attack(
         submit(course, student, notebook)
         return
     source = ANSWERS[name].read_text(encoding='utf-8')
+    if assignment_of(name) == ROBOT:
+        source = f'{PUBLISHER.read_text(encoding="utf-8")}\n\n{source}'
     source = source.replace('GRADEBOOK', str(gradebook or course.gradebook))
     hand_in(course, student, source.replace('PORT', str(port)), assignment_of(name))
 

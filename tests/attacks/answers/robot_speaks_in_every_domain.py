@@ -1,26 +1,12 @@
 """Runs at 5 Hz, and publishes wrong poses in the ROS domains of others."""  # earns 5
 
-import random
 import threading
 import time
 
 import rclpy
-from rclpy.node import Node
 from sensor_msgs.msg import JointState
 
-
-class KinematicsPublisher(Node):
-    def __init__(self):
-        super().__init__('kinematics_publisher')
-        self.publisher = self.create_publisher(JointState, '/kinematics/joint_states', 10)
-        self.timer = self.create_timer(0.2, self.publish)
-
-    def publish(self):
-        message = JointState(name=['joint1', 'joint2'])
-        message.header.stamp = self.get_clock().now().to_msg()
-        message.header.frame_id = 'base_link'
-        message.position = [random.uniform(-1.5, 1.5), random.uniform(-2.0, 2.0)]
-        self.publisher.publish(message)
+PERIOD_SEC = 0.2
 
 
 def shout():
