@@ -28,8 +28,6 @@ _STRING = re.compile(rf"""'(?:[^'\\\n]|{_ESCAPE})*'|"(?:[^"\\\n]|{_ESCAPE})*\"""
 """The literal of one string as Python writes it, and no other Python."""
 
 _STUDENT_COMES = """
-import sys
-sys.path.append({files!r})
 from my_robot_basics.checks import probe
 probe.announce()
 """
@@ -37,8 +35,9 @@ _TEST_HEARS = """
 from my_robot_basics.checks import probe
 probe.hear()
 """
-_STUDENT_GOES = 'probe.silence(); del probe, sys'
-"""Nothing of ours stays among the names of the student's notebook."""
+_STUDENT_GOES = 'import sys; probe.silence(); sys.path.append({files!r}); del probe, sys'
+"""Modules of the student's come last, and after the probe: libraries look for some that they may
+do without. Nothing of ours stays among the names of the notebook."""
 
 
 class Rooms:
@@ -63,7 +62,8 @@ class Rooms:
         try:
             await self._open()
             await _together(self._prepare_student(), self._prepare_test())
-            await self._prepare(self._student, _STUDENT_GOES)
+            files = str(self._student.place.inside / 'given' / 'files')
+            await self._prepare(self._student, _STUDENT_GOES.format(files=files))
         except BaseException as error:
             await self.__aexit__()
             if isinstance(error, OSError | LiveError):
@@ -141,9 +141,7 @@ class Rooms:
         for file in self._extra_files:
             shutil.copyfile(file, place.files / file.name)
         await self._student.start()
-        # last on the path, so that they shadow nothing
-        files = str(place.inside / 'given' / 'files')
-        await self._prepare(self._student, _STUDENT_COMES.format(files=files))
+        await self._prepare(self._student, _STUDENT_COMES)
 
     async def _prepare_test(self) -> None:
         await self._test.start()

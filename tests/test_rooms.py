@@ -88,6 +88,17 @@ def test_own_modules_can_be_imported_and_shadow_nothing(shared, student):
     assert said(result) == 'my own helper\n'
 
 
+def test_own_modules_are_not_there_before_the_probe(loop, student, tmp_path):
+    """Some that libraries look for, and do without: they would end the kernel."""
+    for name in ('regex', 'atomicwrites', 'future_builtins', 'nothing_else'):
+        (tmp_path / f'{name}.py').write_text('import os; os._exit(0)')
+    rooms = Rooms(extra_files=sorted(tmp_path.glob('*.py')), isolated=False)
+    loop.run(rooms.__aenter__())
+    assert said(student(rooms, 'print(1)')) == '1\n'
+    assert student(rooms, 'import nothing_else').died
+    loop.run(rooms.__aexit__())
+
+
 def test_the_student_room_holds_no_seed(shared, student, check):
     code = "import os; print([k for k, v in os.environ.items() if 'beef' in v or 'SEED' in k])"
     assert text_of(student(shared, code)) == '[]\n'

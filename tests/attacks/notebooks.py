@@ -77,6 +77,12 @@ def brings_modules_of_ours(notebook: NotebookNode, folder: Path) -> None:
     (folder / 'evil.pth').write_text(f'import os; {evil}')
 
 
+def brings_modules_that_nobody_has(notebook: NotebookNode, folder: Path) -> None:
+    """Hands in modules that libraries look for and do without, to end the kernel as it starts."""
+    for name in ('regex', 'atomicwrites', 'future_builtins', 'debugpy', 'ujson', 'uvloop'):
+        (folder / f'{name}.py').write_text('import os; os._exit(0)')
+
+
 def brings_links(notebook: NotebookNode, folder: Path) -> None:
     """Hands in links to files of the machine."""
     (folder / 'secrets.py').symlink_to('/etc/passwd')
