@@ -73,16 +73,16 @@ def scheduler(start):
     return start_scheduler(start)
 
 
-def start_scheduler(start, port=0):
-    process = start('scheduler', '--host', '127.0.0.1', '--port', str(port))
+def start_scheduler(start, port=0, options=()):
+    process = start('scheduler', '--host', '127.0.0.1', '--port', str(port), *options)
     mark = 'Scheduler at:'
     wait_for(lambda: mark in process.log.read_text(), process)
     process.address = process.log.read_text().partition(mark)[2].split()[0]
     return process
 
 
-def start_worker(start, address, **environment):
-    options = ['--nthreads', '2', '--no-nanny', '--preload', 'toy_dask_worker']
+def start_worker(start, address, *more, **environment):
+    options = [*more, '--nthreads', '2', '--no-nanny', '--preload', 'toy_dask_worker']
     return start('worker', address, *options, **environment)
 
 
@@ -181,3 +181,23 @@ def test_a_worker_that_comes_later_is_looked_at_too(course, scheduler, start):
         work = crew.submit(Task(notebook=answered(course, RIGHT), seed='abc'))
         with pytest.raises(ClusterError, match='refuses: no bubblewrap here'):
             work.result()
+
+
+@pytest.mark.slow
+def test_with_certificates_it_speaks_tls_and_to_nobody_without_them(course, start, tmp_path):
+    cert, key = str(tmp_path / 'cert.pem'), str(tmp_path / 'key.pem')
+    own = ['openssl', 'req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1']
+    name = ['-subj', '/CN=toy', '-addext', 'subjectAltName=IP:127.0.0.1']
+    subprocess.run([*own, '-nodes', '-keyout', key, '-out', cert, *name], check=True)
+    tls = ['--tls-ca-file', cert, '--tls-cert', cert, '--tls-key', key]
+    scheduler = start_scheduler(start, options=['--protocol', 'tls', *tls])
+    assert scheduler.address.startswith('tls://')
+    start_worker(start, scheduler.address, *tls)
+    there = handed_in(course, tmp_path / 'there')
+    assert main(['grade', '--dask', scheduler.address, *tls], course=there) == 0
+    assert {record.student_id for record in records(there)} == ANSWERS.keys()
+    with pytest.raises(ClusterError, match='needs certificates'), Cluster(scheduler.address):
+        pass
+    unencrypted = scheduler.address.replace('tls:', 'tcp:')
+    with pytest.raises(ClusterError, match='no scheduler at'), Cluster(unencrypted):
+        pass

@@ -39,7 +39,7 @@ def test_every_command_is_a_verb():
 
 def test_every_nbgrader_command_exists():
     named = re.findall(r'`\.venv/bin/(\w+) (\w+)`(?:, `(\w+)`, `(\w+)`)?', README)
-    assert {program for program, *_ in named} == {'jupyter', 'nbgrader'}
+    assert {program for program, *_ in named} == {'dask', 'jupyter', 'nbgrader'}
     assert all(Path(sys.prefix, 'bin', program).is_file() for program, *_ in named)
     from nbgrader.apps.nbgraderapp import NbGraderApp
 
