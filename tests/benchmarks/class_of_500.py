@@ -1,13 +1,14 @@
 """A class of five hundred, from the archive that comes in to feedback; every score is verified.
 
     .venv/bin/python tests/benchmarks/class_of_500.py [--students 500] [--workers N]
-    .venv/bin/python tests/benchmarks/class_of_500.py --kill
+    .venv/bin/python tests/benchmarks/class_of_500.py --kill run worker
     .venv/bin/python tests/benchmarks/class_of_500.py --steady 200
 
-`--kill` ends the run in mid-class, twice, goes on each time, and compares all that is in the
-gradebook with that of a run which nobody ended. `--steady` grades the right answers of lessons 2
-and 3 so many times instead, beside two busy loops, and counts the scores that differ. Ends with 1
-where a score is wrong.
+`--kill run` grades the class once more, ends the run in mid-class with SIGKILL, twice, goes on
+each time, and compares all that is in the gradebook with that of the run which nobody ended.
+`--kill worker` does so to a worker process, twice, while the run goes on. `--steady` grades the
+right answers of lessons 2 and 3 so many times instead, beside two busy loops, and counts the
+scores that differ. Ends with 1 where a score is wrong.
 """
 
 import argparse
@@ -17,7 +18,17 @@ import sys
 from collections.abc import Sequence
 from dataclasses import replace
 
-from measuring import Course, Watched, busy, course_command, new_course, table, watch
+import psutil
+from measuring import (
+    Course,
+    Watched,
+    busy,
+    course_command,
+    kill_a_worker,
+    new_course,
+    table,
+    watch,
+)
 from sample_class import PATHS, assignment_of
 from synthetic_class import Paper, synthetic_class, wrong_scores, zip_up
 
@@ -35,7 +46,7 @@ def main() -> int:
     parser.add_argument('--students', type=int, default=500)
     parser.add_argument('--seed', type=int, default=0)
     parser.add_argument('--workers', help='for ./course grade; default: its own')
-    parser.add_argument('--kill', action='store_true')
+    parser.add_argument('--kill', nargs='+', choices=('run', 'worker'), default=())
     parser.add_argument('--steady', type=int, metavar='TIMES')
     asked = parser.parse_args()
     options = ['--workers', asked.workers] if asked.workers else []
@@ -44,7 +55,8 @@ def main() -> int:
             return _whole_class(_right_answers(asked.steady), options)[1]
     papers = synthetic_class(asked.students, seed=asked.seed)
     course, status = _whole_class(papers, options)
-    return _killed(course, papers, options) or status if asked.kill else status
+    differs = [_killed(what, course, papers, options) for what in asked.kill]
+    return status or int(any(differs))
 
 
 def _right_answers(times: int) -> list[Paper]:
@@ -100,41 +112,32 @@ def _report(course: Course) -> dict:
     return json.loads(path.read_text(encoding='utf-8'))
 
 
-def _killed(whole: Course, papers: Sequence[Paper], options: list[str]) -> int:
-    """Grade the class once more, killed twice; return 1 where it ends otherwise."""
+def _killed(what: str, whole: Course, papers: Sequence[Paper], options: list[str]) -> bool:
+    """Grade the class once more, with kills; return whether it ends otherwise."""
     course = new_course('killed')
     list(collect(course, whole.gradebook.with_name('class.zip')))
     # hidden tests choose the same inputs
     shutil.copy(whole.gradebook / 'course_secret', course.gradebook)
-    third = max(1, len(papers) // 3)
+    moments = [max(1, len(papers) // 3), max(2, 2 * len(papers) // 3)]
+    if what == 'run':
+        runs = [*({moment: psutil.Process.kill} for moment in moments), {}]
+    else:
+        runs = [dict.fromkeys(moments, kill_a_worker)]
     rows = []
-    for kill_after in (third, 2 * third, None):
-        watched = watch(course_command(course, 'grade', *options), done=ROW, kill_after=kill_after)
+    for meanwhile in runs:
+        command = course_command(course, 'grade', *options)
+        watched = watch(command, done=ROW, meanwhile=meanwhile)
+        stored = len(list(course.gradebook.glob('autograded/*/*/*.ipynb')))
         unchanged = watched.said.count('(unchanged)')
-        rows.append(
-            (
-                watched.status,
-                len(watched.done_at),
-                unchanged,
-                watched.seconds,
-                len(_graded(course)),
-            )
-        )
-    print('\nKilled in mid-class:')
+        rows.append((watched.status, len(watched.done_at), unchanged, watched.seconds, stored))
+    print(f'\nWith the {what} killed in mid-class, twice:')
     table(('exit', 'rows', 'unchanged', 'seconds', 'stored by then'), rows)
-    differ = [
-        (one, other)
-        for one, other in zip(records(whole), records(course), strict=True)
-        if one != other
-    ]
-    print(f'Differs from the run that nobody ended: {len(differ)} of {len(records(whole))} scores')
+    found = [records(each) for each in (whole, course)]
+    differ = [(one, other) for one, other in zip(*found, strict=True) if one != other]
+    print(f'Differs from the run that nobody ended: {len(differ)} of {len(found[0])} scores')
     for one, other in differ[:MOST_SHOWN]:
         print(f'  {one}\n  {other}')
-    return 1 if differ else 0
-
-
-def _graded(course: Course) -> list:
-    return list(course.gradebook.glob('autograded/*/*/*.ipynb'))
+    return bool(differ)
 
 
 if __name__ == '__main__':

@@ -13,10 +13,11 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import MappingProxyType
 
 import psutil
 
@@ -73,11 +74,15 @@ def course_command(course: Course, *arguments: object) -> list[str]:
 
 
 def watch(
-    command: Sequence[str], *, done: str, cwd: Path = ROOT, kill_after: int | None = None
+    command: Sequence[str],
+    *,
+    done: str,
+    cwd: Path = ROOT,
+    meanwhile: Mapping[int, Callable[[psutil.Process], None]] = MappingProxyType({}),
 ) -> Watched:
     """Run a command; a line that matches `done` tells of a submission.
 
-    `kill_after` so many it is ended with SIGKILL; what it started has to notice by itself.
+    `meanwhile` says what to do to the command after so many.
     """
     watched, lines = Watched(), []
     began = time.perf_counter()
@@ -97,12 +102,18 @@ def watch(
             lines.append(line)
             if re.search(done, line):
                 watched.done_at.append(time.perf_counter() - began)
-                if len(watched.done_at) == kill_after:
-                    process.kill()
+                if act := meanwhile.get(len(watched.done_at)):
+                    act(psutil.Process(process.pid))
         watched.status = process.wait()
     watched.seconds = time.perf_counter() - began
     watched.said = ''.join(lines)
     return watched
+
+
+def kill_a_worker(run: psutil.Process) -> None:
+    """End one of a run's worker processes as Linux does where memory runs out."""
+    workers = [each for each in run.children() if 'grader.worker' in each.cmdline()]
+    workers[0].kill()
 
 
 @contextmanager
