@@ -65,7 +65,8 @@ class Graph:
             who = ', '.join(senders)
             return (
                 f'{who} has a publisher there and sends nothing, so see that it spins, that its '
-                'timer is created, and that no callback raises'
+                'timer is created (with the name of a method, without parentheses), and that no '
+                'callback raises'
             )
         others = self.subscriptions(topic_name)
         return self._why_none(topic_name, self.publisher_names, 'create_publisher', others)
