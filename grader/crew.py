@@ -3,6 +3,10 @@
 from concurrent.futures import Future
 from typing import Protocol, Self
 
+from grader.course import Course
+from grader.heal import heal
+from grader.pipeline import prepare, unanswered
+from grader.submission import Submission
 from grader.task import Result, Task
 
 
@@ -27,3 +31,22 @@ class Crew(Protocol):
     def submit(self, task: Task) -> 'Future[Result]':
         """Grade a task as soon as there is room. The future raises TaskFailed for no result."""
         ...
+
+
+def judged(
+    course: Course, submission: Submission, *, crew: Crew, seed: str, trust_students: bool
+) -> 'Future[Result]':
+    """Heal one submission and have it run with the inputs of a seed."""
+    if submission.problem:
+        nothing: Future[Result] = Future()
+        nothing.set_result(Result(unanswered(course, submission, submission.problem), 0.0))
+        return nothing
+    healed = heal(submission.notebook, course.master(submission.assignment))
+    return crew.submit(
+        Task(
+            notebook=prepare(course, submission.assignment, healed.notebook),
+            files={path.name: path.read_bytes() for path in submission.extra_files},
+            seed=seed,
+            trust_students=trust_students,
+        )
+    )

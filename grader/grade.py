@@ -11,17 +11,15 @@ from nbformat import NotebookNode
 
 from grader.backups import bring_in_order
 from grader.course import Course
-from grader.crew import Crew
+from grader.crew import Crew, judged
 from grader.database import in_sentences
 from grader.errors import ClusterError, CourseError, GradebookError, TaskFailed
 from grader.gradebook import Stored, register, store
-from grader.heal import heal
 from grader.lateness import deadlines
-from grader.pipeline import prepare, unanswered
 from grader.reuse import conditions, held, kept, key_of, remember
 from grader.students import HTML, problem_of_id
 from grader.submission import Submission, read_submission
-from grader.task import Result, Task
+from grader.task import Result
 from grader.turn import Turn
 from grader.workers import Workers
 
@@ -156,25 +154,6 @@ def _begun(course: Course, found: HandedIn, way: _Way, crew: Crew) -> 'Future[Gr
 
     work.add_done_callback(settle)
     return graded
-
-
-def judged(
-    course: Course, submission: Submission, *, crew: Crew, seed: str, trust_students: bool
-) -> 'Future[Result]':
-    """Heal one submission and have it run with the inputs of a seed."""
-    if submission.problem:
-        nothing: Future[Result] = Future()
-        nothing.set_result(Result(unanswered(course, submission, submission.problem), 0.0))
-        return nothing
-    healed = heal(submission.notebook, course.master(submission.assignment))
-    return crew.submit(
-        Task(
-            notebook=prepare(course, submission.assignment, healed.notebook),
-            files={path.name: path.read_bytes() for path in submission.extra_files},
-            seed=seed,
-            trust_students=trust_students,
-        )
-    )
 
 
 def _row(course: Course, found: HandedIn, work: Future[Graded]) -> Row:

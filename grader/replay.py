@@ -6,9 +6,9 @@ import nbformat
 from nbformat import NotebookNode
 
 from grader.course import Course
-from grader.crew import Crew
+from grader.crew import Crew, judged
 from grader.errors import CourseError
-from grader.grade import HandedIn, judged
+from grader.grade import HandedIn
 from grader.heal import KEY, grade_id, role
 from grader.records import verdicts
 from grader.submission import read_submission

@@ -21,7 +21,17 @@ def test_help_lists_every_verb(capsys):
 
 
 @pytest.mark.parametrize(
-    'arguments', [[], ['nothing'], ['grade', '--seed', 'no hex'], ['release', 'a', 'b']]
+    'arguments',
+    [
+        [],
+        ['nothing'],
+        ['grade', '--seed', 'no hex'],
+        ['grade', '--workers', '0'],
+        ['grade', '--workers', '-1'],
+        ['grade', '--workers', 'two'],
+        ['grade', '--workers', '2', '--dask', 'tcp://127.0.0.1:8786'],
+        ['release', 'a', 'b'],
+    ],
 )
 def test_wrong_arguments_end_with_status_2(arguments):
     with pytest.raises(SystemExit) as end:
