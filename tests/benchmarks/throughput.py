@@ -91,7 +91,8 @@ def _compare(papers: Sequence[Paper], *, workers: Sequence[int], runs: int) -> N
     for run in range(runs):
         # whoever comes first in a turn has colder caches
         for name in reversed(ways) if run % 2 else ways:
-            found[name].append(ways[name]())
+            found[name].append(one := ways[name]())
+            print(f'  run {run + 1}, {name}: {one["cold"]:.1f} a minute', flush=True)
     of_stock = {kind: _median(found['stock'], kind) for kind in ('cold', 'warm')}
     print(f'{len(papers)} submissions, {len({p.sample for p in papers})} answers, {runs} runs')
     table(
