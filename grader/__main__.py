@@ -19,7 +19,7 @@ from grader.feedback import write_feedback
 from grader.grade import HandedIn, find_submissions, grade_all
 from grader.gradebook import register
 from grader.intake import lines
-from grader.isolation import missing, protections
+from grader.isolation import missing, protections, slow
 from grader.release import release
 from grader.replay import RECORDED, replay
 from grader.report import Run, write_report
@@ -174,6 +174,8 @@ def _doctor(course: Course, asked: argparse.Namespace) -> int:
         print(f'\n{problem[0].upper()}{problem[1:]}.')
         return 1
     print('Nothing is missing: ./course grade runs each submission in a sandbox.')
+    if problem := slow():
+        print(f'It is slower than it could be: no kernel can be forked here, for {problem}.')
     return 0
 
 

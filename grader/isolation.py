@@ -14,6 +14,7 @@ from pathlib import Path
 from grader.errors import CourseError
 from grader.pool import Pool
 from grader.sandbox import Sandbox
+from grader.warm import NoWarmKernel, fork_into
 
 TRUST = 'MY_ROBOT_BASICS_TRUST_STUDENTS'
 """Set to 1, it says to nbgrader's own commands what `--trust-students` says to `./course`."""
@@ -85,6 +86,28 @@ def isolated(*, trust_students: bool = False) -> bool:
             'account: ./course grade --trust-students. It will stand in each feedback.'
         )
     return not problem
+
+
+def slow() -> str:
+    """Return why kernels have to be started one by one on this machine; '' where they are forked.
+
+    They are as closed in, and take longer.
+    """
+    with Pool(in_flight=1) as pool:
+        return pool.submit(_fork_one).result()
+
+
+async def _fork_one() -> str:
+    sandbox = Sandbox(slot=0)
+    try:
+        await sandbox.open()
+        place = sandbox.place('student')
+        (await fork_into(place, room='student', environment=place.environment)).kill()
+    except NoWarmKernel as problem:
+        return str(problem)
+    finally:
+        await sandbox.close()
+    return ''
 
 
 def _try_all() -> Iterator[Protection]:

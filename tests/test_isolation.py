@@ -9,6 +9,7 @@ import pytest
 from course_maker import TOY, answered, make_course, submit
 
 from grader import isolation as module
+from grader import warm
 from grader.__main__ import main
 from grader.errors import CourseError
 from grader.feedback import write_feedback
@@ -60,6 +61,15 @@ def test_this_machine_can_isolate():
     assert missing() == ''
     assert isolated()
     assert len(protections()) == 7
+
+
+@pytest.mark.isolation
+@pytest.mark.parametrize('problem', ['', 'the test says so'])
+def test_the_doctor_says_where_kernels_can_not_be_forked(course, monkeypatch, capsys, problem):
+    if problem:
+        monkeypatch.setitem(warm._unfit, 'student', problem)
+    assert main(['doctor'], course=course) == 0
+    assert ('It is slower' in capsys.readouterr().out) is bool(problem)
 
 
 REFUSALS = {
