@@ -47,8 +47,17 @@ def outcomes(result):
 
 
 def team():
-    """The worker processes that this test has started."""
-    return [p for p in psutil.Process().children() if 'toy_worker' in ' '.join(p.cmdline())]
+    """The worker processes that this test has started and that have not ended."""
+    return [
+        process for process in psutil.Process().children() if 'toy_worker' in _command(process)
+    ]
+
+
+def _command(process):
+    try:
+        return ' '.join(process.cmdline())
+    except psutil.Error:
+        return ''
 
 
 def wait_for(happened):
@@ -112,14 +121,18 @@ def test_a_submission_that_kills_whoever_grades_it_costs_nobody_else(course, tmp
 def test_a_worker_that_hangs_is_replaced(course, tmp_path, monkeypatch):
     mark = tmp_path / 'stopped'
     monkeypatch.setattr(workers, 'BEAT_SEC', 0.1)
+    monkeypatch.setattr(workers, 'MOST_MISSED', 10_000)
     with Workers(1, command=COMMAND) as crew:
         work = crew.submit(task(course, f'# stop {mark}'))
         wait_for(mark.exists)
-        hung = team()[0].pid
-        monkeypatch.setattr(workers, 'MOST_MISSED', 5)
-        wait_for(lambda: hung not in {process.pid for process in team()})
-        monkeypatch.setattr(workers, 'MOST_MISSED', 10_000)
-        assert pid_of(work.result()) != hung
+        (hung,) = team()
+        (worker,) = crew._team
+        wait_for(lambda: worker._missed > 50)
+        monkeypatch.setattr(workers, 'MOST_MISSED', 50)
+        wait_for(lambda: worker.ended)
+        monkeypatch.setattr(workers, 'MOST_MISSED', 10_000)  # the next one may take its time
+        assert pid_of(work.result()) != hung.pid
+        assert not hung.is_running()
 
 
 def test_what_a_worker_starts_inherits_no_way_to_the_run(course):
