@@ -104,7 +104,7 @@ def main(control: socket.socket, room: str) -> None:
         expect_nothing_shared()
     except Exception as error:
         control.send(f'{type(error).__name__}: {error}'[:2000].encode())
-        raise SystemExit(1) from None
+        os._exit(1)  # a thread may be what is wrong, and would be waited for
     gc.collect()
     gc.freeze()  # a collection in a kernel would else copy all of it
     # what ends is waited for by nobody; a kernel's parent leaves at once, and this process follows

@@ -112,7 +112,8 @@ class _Server:
         self.has_forked = True
 
     def last_words(self) -> str:
-        """Return why it ended."""
+        """Return why it ended; to be called when it has."""
+        self._first.wait()
         self._control.setblocking(False)
         for _ in range(2):  # that it left something unread is told first
             with contextlib.suppress(OSError):

@@ -526,6 +526,8 @@ def test_what_can_not_be_forked_is_started_and_says_why(
     loop.run(kernel.start())
     try:
         assert why in kernel.why_not_warm
+        commands = [process.info['cmdline'] for process in psutil.process_iter(['cmdline'])]
+        assert [command for command in commands if command and str(script) in command] == []
         assert said(kernel, 'print(1)') == '1\n'
         assert said(kernel, LOOKS['processes']) == "['1', '2']\n"
     finally:
