@@ -11,7 +11,7 @@ there as it is on a machine of its own.
 - told: the attacker's outputs hold text of a hidden test.
 - spoiled: the neighbour has another score, or something is left: a process, file, connection.
 
-Nothing is asserted; the counts are at the end. The whole corpus takes about half an hour.
+Nothing is asserted; the counts are at the end. The whole corpus takes some 45 minutes.
 """
 
 import argparse
