@@ -157,8 +157,14 @@ def close_servers() -> None:
             _servers.popitem()[1].close()
 
 
+def _let_go() -> None:
+    global _lock
+    _lock = threading.Lock()  # another thread may have held it when this process was forked
+    close_servers()
+
+
 # a forked process must not keep them alive; it may start its own
-os.register_at_fork(after_in_child=close_servers)
+os.register_at_fork(after_in_child=_let_go)
 
 
 async def fork_into(place: Place, *, room: str, environment: dict[str, str]) -> Forked:
