@@ -71,6 +71,8 @@ def pytest_configure(config: pytest.Config) -> None:
         os.environ[TRUST] = '1'
     # a session in the background ignores Ctrl-C, and so would all that it starts
     signal.signal(signal.SIGINT, signal.default_int_handler)
+    # colcon's builds warn where somebody has set it
+    os.environ.pop('PYTHONDONTWRITEBYTECODE', None)
     # once in each xdist worker, too: two workers do not hear each other's nodes
     os.environ['MY_ROBOT_BASICS_WORKSPACE'] = tempfile.mkdtemp(prefix='ros ws ')
     classroom.enter()

@@ -46,7 +46,7 @@ def moved(home: Path, deep: Path) -> list[str]:
         own.write_text(path.read_text().replace(str(ROOT), str(deep)))
         own.chmod(0o755)
         options += ['--ro-bind', str(own), str(deep / path.relative_to(ROOT))]
-    return ['bwrap', '--dev-bind', '/', '/', *options, '--tmpfs', f'/{ROOT.parts[1]}']
+    return ['bwrap', '--dev-bind', '/', '/', *options, '--tmpfs', str(ROOT)]
 
 
 @pytest.fixture
