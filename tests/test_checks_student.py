@@ -65,7 +65,7 @@ FAILURES = {
     'forgot return': (lambda x: print('!'), 'expected `f(2)` to return a value, saw None: end'),
     'int for a bool': (lambda x: 1, 'expected `f(2)` to return a bool, saw an int (1)'),
     'a generator': (lambda x: iter([]), 'to return a bool, saw a list_iterator: return plain'),
-    'a generator within': (lambda x: {'a': iter([])}, 'to return a bool, saw a list_iterator in it'),
+    'a generator within': (lambda x: {'a': iter([])}, 'bool, saw a list_iterator in it'),
     'a wrong field': (with_a_stamp_for_a_header, "'stamp'): give each field a value of the type"),
     'not a function': (5, "saw TypeError: 'int' object is not callable"),
     'too much': (lambda x: 'a' * 70_000, 'saw more than 64 kB of text'),
