@@ -21,7 +21,7 @@ ANNOUNCEMENTS = 'ros_discovery_info'
 POLL_SEC = 0.01
 COMPLETE_SEC = 0.05
 """A graph with everybody on it counts as settled when it has not changed for so long."""
-INCOMPLETE_SEC = 2.0
+INCOMPLETE_SEC = 1.0
 """… and so long while somebody is still missing, who may have nothing to say to ROS."""
 NETWORK_SEC = 0.5
 """Other machines have so long to answer: ros2cli's own time."""
