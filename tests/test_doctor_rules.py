@@ -209,6 +209,29 @@ def test_what_follows_from_what_was_seen(evidence, titles):
     assert [finding.title for finding in judge(evidence).findings] == titles
 
 
+def with_bursts(*firsts, number=6):
+    """100 Hz from a queue of one, in which `number` messages each came at once."""
+    evidence = healthy(rate_hz=100.0, number=200)
+    heard = list(evidence.heard)
+    for first in firsts:
+        for i in range(first, first + number):
+            heard[i] = dataclasses.replace(heard[i], sent_sec=heard[first + number - 1].sent_sec)
+    ends = end('publisher', '/talker', depth=1), end('subscription', '/listener')
+    return replaced(evidence, heard=tuple(heard), endpoints=ends)
+
+
+@pytest.mark.parametrize(
+    ('evidence', 'titles'),
+    [
+        (with_bursts(50), []),  # a machine that stood still for a moment
+        (with_bursts(50, 120), []),
+        (with_bursts(*range(0, 180, 10)), ['messages lost to a short queue']),
+    ],
+)
+def test_who_sends_in_bursts_does_it_again_and_again(evidence, titles):
+    assert [finding.title for finding in judge(evidence).findings] == titles
+
+
 def test_the_waiting_one_of_two_similar_names_is_meant():
     met = '/kinematics/joint_statez'
     ends = (

@@ -115,16 +115,18 @@ class Evidence:
         return (len(times) - 1) / (times[-1] - times[0]) if len(set(times)) > 1 else 0.0
 
     @property
-    def largest_burst(self) -> int:
-        """How many messages came in one go, at most."""
+    def bursts(self) -> list[int]:
+        """How many messages came in one go, each time; one message alone is a 1."""
         times = [each.sent_sec for each in self.fresh]
-        largest = length = min(1, len(times))
         period_sec = self.listened_sec / max(1, len(times))
         most_sec = min(LARGEST_PAUSE_SEC, PART_OF_PERIOD * period_sec)
+        lengths = [1] * bool(times)
         for earlier, later in itertools.pairwise(times):
-            length = length + 1 if later - earlier <= most_sec else 1
-            largest = max(largest, length)
-        return largest
+            if later - earlier <= most_sec:
+                lengths[-1] += 1
+            else:
+                lengths.append(1)
+        return lengths
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,13 +8,17 @@ from my_robot_basics.doctor.evidence import Evidence, Finding
 
 FEWEST = 5
 """Fewer at once are no burst; so are two of each publisher, whose timers fire together."""
+PART_IN_BURSTS = 0.5
+"""Who sends in bursts sends most messages so; a machine that stood still makes one or two."""
 
 
 def examine(evidence: Evidence) -> Iterator[Finding]:
     """Name queues that are shorter than a burst, of nodes whose queues are known."""
-    burst = evidence.largest_burst
-    if burst < FEWEST or burst <= 2 * len(evidence.publishers):
+    fewest = max(FEWEST, 2 * len(evidence.publishers) + 1)
+    bursts = [length for length in evidence.bursts if length >= fewest]
+    if not bursts or sum(bursts) < PART_IN_BURSTS * len(evidence.fresh):
         return
+    burst = max(bursts)
     depth = _round(burst)
     for end in evidence.publishers + evidence.subscriptions:
         if not end.depth or end.depth >= burst:
