@@ -32,6 +32,12 @@ LONG = (
     'browser',
     'nbgrader_commands',
     'live_kernel',
+    'environment',
+    'interrupt',
+    'hidden',
+    'full_disk',
+    'cluster',
+    'checks_looks',
 )
 """Files that take longest: whoever begins with them does not wait for them at the end."""
 
