@@ -161,8 +161,25 @@ def test_a_room_has_no_rights(shared, inside):
     assert seen['ids'] == '1000 1000'
 
 
-def test_a_room_has_namespaces_of_its_own_and_shares_only_the_network(loop, shared, sandbox):
-    student, test, next_door = status(shared), status(shared, 'test'), status(sandbox)
+def stays(stack):
+    """Look as `run` does, at rooms that stay: the numbers of one that has gone are given again."""
+
+    def look(sandbox, code, *, room):
+        code += "print('.', flush=True); import time; time.sleep(1000)"
+        process = begin(sandbox, code, room=room)
+        stack.enter_context(process)
+        stack.callback(process.kill)
+        return ''.join(iter(process.stdout.readline, '.\n'))
+
+    return look
+
+
+def test_a_room_has_namespaces_of_its_own_and_shares_only_the_network(shared, sandbox):
+    with contextlib.ExitStack() as stack:
+        look = stays(stack)
+        student, test, next_door = (
+            status(*room, look=look) for room in [(shared,), (shared, 'test'), (sandbox,)]
+        )
     kinds = ('user', 'mnt', 'net', 'pid', 'ipc', 'uts')
     assert [k for k in kinds if student[k] == test[k]] == ['net']
     for kind in kinds:
