@@ -2,7 +2,8 @@
 
     .venv/bin/python tests/benchmarks/sandbox_cost.py [RUNS]
 
-Nothing is asserted: look at the ratio, milliseconds are this machine's.
+In the sandbox kernels are forked from a process that has imported what they need; without one they
+are started. Nothing is asserted: look at the ratio, milliseconds are this machine's.
 """
 
 import statistics
