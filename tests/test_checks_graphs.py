@@ -34,6 +34,10 @@ def picture(nodes=('/a',), publishers=None, subscriptions=None):
         (picture(nodes=()), 'the node is not running, so run the cell that starts it'),
         (picture(subscriptions={'/t/joint_states': ('/a',)}), 'the node is not running'),
         (picture(), '/a runs, so look at the topic name in create_publisher'),
+        (
+            picture(nodes=('/a', '/b')),
+            '/a, /b run, so if yours is among them, look',
+        ),
         (picture(publishers={'/t/joint_states': ('/a',)}), '/a has a publisher there and sends'),
         (picture(publishers={'/t/joint_state': ('/a',)}), '/a uses /t/joint_state, so compare'),
         (picture(publishers={'/joint_states': ('/a',)}), '/a uses /joint_states, so compare'),

@@ -31,7 +31,7 @@ def test_an_answer_is_an_answer_in_any_layout(node):
     [
         ('ik_prints', r'saw no INFO record: .*print\(…\) does not reach the log'),
         ('ik_coarse', 'two decimals or more'),
-        ('ik_one_branch', 'log every solution'),
+        ('ik_one_branch', 'log every solution, both angles of both branches: '),
         ('ik_always_warns', "saw 'careful': warn only when"),
     ],
 )
@@ -45,7 +45,10 @@ def test_a_near_miss_is_told_what_is_missing(node, reason):
 def test_what_was_logged_at_another_level_is_shown():
     with running('ik_solver'), rosout('ik_solver_node') as log:
         ask(log, TOO_FAR)
-        with pytest.raises(CheckFailed, match="saw no INFO record but 'WARN the target is 3 m"):
+        words = (
+            "saw no INFO record but 'WARN the target is 3 m.*: warn only when inverse_kinematics"
+        )
+        with pytest.raises(CheckFailed, match=words):
             log.expect_angles(ANGLES, timeout_sec=1.0)
 
 
@@ -61,6 +64,13 @@ def test_an_answer_to_an_older_question_does_not_count():
             # latched: the old records do arrive, and are left out
             assert not later.wait_for(lambda log: bool(log.records), timeout_sec=0.5)
             assert later._heard
+
+
+def test_the_target_is_named():
+    with running('ik_one_branch'), rosout('ik_solver_node') as log:
+        ask(log, TARGET)
+        with pytest.raises(CheckFailed, match=r'° for \(1\.200, 0\.800\) in the INFO log of /ik'):
+            log.expect_angles(ANGLES, target=(1.2, 0.8), timeout_sec=1.0)
 
 
 def test_no_warning_is_a_failure():

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import pytest
-from my_robot_basics.checks import CheckFailed, clock, looks, topic, topics
+from my_robot_basics.checks import CheckFailed, looks, topic, topics
 from my_robot_basics.checks import recording as recording_module
 from nodes.running import running
 
@@ -19,9 +19,8 @@ TOPIC = '/kinematics/joint_states'
         ('too_fast', r'5\.[23]\d* Hz over 4 s'),
     ],
 )
-def test_a_wrong_rate_fails(monkeypatch, node, seen):
-    for limit in ('BUDGET_SEC', 'SLOWEST_BARRIER_SEC', 'SLOWEST_MEDIAN_SEC'):
-        monkeypatch.setattr(clock, limit, 100.0)
+@pytest.mark.usefixtures('patient')
+def test_a_wrong_rate_fails(node, seen):
     with running(node):
         recording = topic(TOPIC).record(seconds=10.0)
         assert recording.clock == 'simulated'
@@ -31,13 +30,12 @@ def test_a_wrong_rate_fails(monkeypatch, node, seen):
             recording.assert_rate(hz=5.0)
 
 
+@pytest.mark.usefixtures('patient')
 def test_the_first_look_stands_when_the_node_has_gone(monkeypatch):
-    for limit in ('BUDGET_SEC', 'SLOWEST_BARRIER_SEC', 'SLOWEST_MEDIAN_SEC'):
-        monkeypatch.setattr(clock, limit, 100.0)
     with running('too_slow'):
         recording = topic(TOPIC).record(seconds=10.0)
     monkeypatch.setattr(topics, 'PUBLISHER_SEC', 1.0)
-    with pytest.raises(CheckFailed, match=r'saw 4\.75 Hz over 10 s \(47 messages\)'):
+    with pytest.raises(CheckFailed, match=r'saw 4\.(75|8) Hz over 10 s \(47 messages\)'):
         recording.assert_rate(hz=5.0)
 
 
@@ -59,7 +57,10 @@ def test_a_machine_that_is_late_itself_looks_again(monkeypatch, late_sec, looks_
     assert len(recorded) == looks_in_all
 
 
-IGNORES = "note: /kinematics_publisher ignores the robot's clock (use_sim_time); judged on the wall clock\n"  # noqa: E501
+IGNORES = (
+    "note: /kinematics_publisher ignores the robot's clock (use_sim_time); "
+    'judged on the wall clock\n'
+)
 
 
 @pytest.mark.parametrize(

@@ -175,11 +175,14 @@ def test_a_wrong_message_is_explained(clock, changes, reason):
 @pytest.mark.parametrize(
     ('clock', 'off_sec', 'passes'),
     [
-        ('simulated', 0.3, True),
-        ('simulated', -0.3, True),
+        ('simulated', 0.1, True),
+        ('simulated', -0.1, True),
+        # the stamp of the message before
+        ('simulated', -0.2, False),
         ('simulated', 0.7, False),
         ('simulated', -8.0, False),
-        ('wall', 0.7, True),
+        ('wall', -0.1, True),
+        ('wall', -0.2, False),
         ('wall', -1.2, False),
     ],
 )
@@ -191,6 +194,27 @@ def test_a_stamp_is_near_the_clock(clock, off_sec, passes):
         made.assert_stamps()
     else:
         with pytest.raises(CheckFailed, match=r'(ahead of|behind) it: set'):
+            made.assert_stamps()
+
+
+@pytest.mark.parametrize(
+    ('clock', 'off_sec', 'passes'),
+    [
+        ('simulated', -0.3, True),
+        ('simulated', -0.7, False),
+        ('wall', -0.7, True),
+        ('wall', 1.2, False),
+    ],
+)
+def test_one_late_message_is_not_all_of_them(clock, off_sec, passes):
+    def one_late(time):
+        return joint_state(time, stamp=START_SEC + time + (off_sec if time == 4.0 else 0.0))
+
+    made = recording(every(2.0, 10), clock=clock, message=one_late)
+    if passes:
+        made.assert_stamps()
+    else:
+        with pytest.raises(CheckFailed, match=f'a stamp {abs(off_sec)} s (behind|ahead of) it'):
             made.assert_stamps()
 
 

@@ -7,7 +7,7 @@ import sys
 import numpy as np
 import pytest
 from builtin_interfaces.msg import Time
-from my_robot_basics.checks import CheckFailed, responder, student, wire
+from my_robot_basics.checks import CheckFailed, responder, student, values
 from sensor_msgs.msg import JointState
 
 MODES = ['one process', 'test room']
@@ -63,7 +63,8 @@ FAILURES = {
     'raises': (raising, 'expected `f(2)` to return, saw ValueError: out of reach: call'),
     'exits': (exiting, 'expected `f(2)` to return, saw SystemExit: 3: call'),
     'forgot return': (lambda x: print('!'), 'expected `f(2)` to return a value, saw None: end'),
-    'int for a bool': (lambda x: 1, 'expected `f(2)` to return a bool, saw an int (1)'),
+    'int for a bool': (lambda x: 1, 'a bool, saw an int (1): write True or False, or a c'),
+    'text for a bool': (lambda x: 'True', "saw a str ('True'): a text in quotes is no other"),
     'a generator': (lambda x: iter([]), 'to return a bool, saw a list_iterator: return plain'),
     'a generator within': (lambda x: {'a': iter([])}, 'bool, saw a list_iterator in it'),
     'a wrong field': (with_a_stamp_for_a_header, "'stamp'): give each field a value of the type"),
@@ -105,6 +106,21 @@ def test_value_reads_a_name(notebook):
 
 
 @pytest.mark.parametrize(
+    ('wanted', 'advice'),
+    [
+        (dict, 'write a dict, {key: value, …}, with the keys of the answer cell'),
+        (JointState, 'make a message with JointState(), fill in its fields, and return it'),
+        (list, 'print(type(…)) of the value shows what it is'),
+    ],
+)
+def test_advice_follows_the_type_that_is_wanted(notebook, wanted, advice):
+    notebook(f=lambda: 5)
+    with pytest.raises(CheckFailed) as failed:
+        student.call('f', returns=wanted)
+    assert str(failed.value).endswith(f'saw an int (5): {advice}')
+
+
+@pytest.mark.parametrize(
     'reply',
     ['', '{"ok":' * 9_000, '{"ok":{"pickle":"x"}}', '{"failed":"the kernel died"}', None],
 )
@@ -128,7 +144,7 @@ def test_the_question_is_the_agreed_text(monkeypatch):
 
 
 def test_the_responder_refuses_another_protocol():
-    with pytest.raises(wire.WireError):
+    with pytest.raises(values.WireError):
         responder.answer('{"protocol": "other/1", "op": "call", "name": "f"}')
 
 
@@ -146,6 +162,6 @@ def test_answering_loads_no_check():
     done = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True, check=True)
     names = [
         'my_robot_basics.checks',
-        *(f'my_robot_basics.checks.{m}' for m in ['responder', 'wire']),
+        *(f'my_robot_basics.checks.{m}' for m in ['responder', 'values', 'wire']),
     ]
     assert done.stdout.strip() == str(names)

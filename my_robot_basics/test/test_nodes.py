@@ -129,7 +129,7 @@ def test_publisher_stays_within_the_joint_ranges_and_uses_them_all(stage):
     stage.wait_until(lambda: node.publisher.get_subscription_count(), 'a match')
     for count in range(1, 201):
         node.publish_pose()
-        stage.wait_until(lambda: len(stage.peer.received) >= count, f'message {count}')  # noqa: B023
+        stage.wait_until(lambda count=count: len(stage.peer.received) >= count, f'message {count}')
     for message in stage.peer.received:
         assert list(message.name) == NAMES
         assert message.header.frame_id == 'base_link'

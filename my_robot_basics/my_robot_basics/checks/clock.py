@@ -7,7 +7,6 @@ loaded the machine is. A node that doesn't follow raises Inconclusive, and wall 
 import bisect
 import statistics
 import time
-from types import TracebackType
 from typing import Self
 
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
@@ -20,7 +19,9 @@ from rosgraph_msgs.msg import Clock
 
 from my_robot_basics.checks.watcher import HIDDEN, Watcher
 
-BUDGET_SEC = 5.0
+BUDGET_SEC = 10.0
+"""How long the clock is driven at most: a crowded machine needs it for a timer of 5 s, and
+*Validate* gives a cell 30 s in all."""
 SLOWEST_BARRIER_SEC = 0.5
 SLOWEST_MEDIAN_SEC = 0.02
 FIRST_ANSWER_SEC = 1.0
@@ -66,12 +67,7 @@ class SimulatedClock:
             raise
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         """Switch them back."""
         self._restore()
 
@@ -93,13 +89,16 @@ class SimulatedClock:
         self._tick_wall_ns.append(time.time_ns())
         self._publish()
         self._barrier(questions=2)
-        if time.monotonic() > self._deadline:
-            raise Inconclusive(f'the clock could not be driven within {BUDGET_SEC:g} s')
+        self._expect_time_left()
 
     def time_ns(self, wall_ns: int) -> int:
         """What `/clock` showed at a wall time (a message's source timestamp), in ns; 0 before."""
         tick = bisect.bisect_right(self._tick_wall_ns, wall_ns) - 1
         return self._tick_ns[tick] if tick >= 0 else 0
+
+    def _expect_time_left(self) -> None:
+        if time.monotonic() > self._deadline:
+            raise Inconclusive(f'the clock could not be driven within {BUDGET_SEC:g} s')
 
     def _publish(self) -> None:
         self._publisher.publish(Clock(clock=Time(nanoseconds=self.now_ns).to_msg()))
@@ -124,6 +123,7 @@ class SimulatedClock:
         for name in self._with_services():
             self._barriers[name] = node.create_client(GetParameters, f'{name}/get_parameters')
             self._setters[name] = node.create_client(SetParameters, f'{name}/set_parameters')
+            self._expect_time_left()
         clients = [*self._barriers.values(), *self._setters.values()]
         self._watcher.spin_until(
             lambda: all(client.service_is_ready() for client in clients),
@@ -151,6 +151,11 @@ class SimulatedClock:
 
     def _restore(self) -> None:
         former, self._former = self._former, {}
+        # back to wall time first: rcl leaves a timer that is due this very moment where it is, and
+        # in the future of wall time it would be silent until that has come
+        self.now_ns = time.time_ns()
+        self._publish()
+        self._wait([self._ask(self._barriers[name]) for name in former], SLOWEST_BARRIER_SEC)
         # a busy node gets its time: left on a clock that nobody drives, it would be frozen
         self._set_all(former, timeout_sec=RESTORE_SEC)
         self._watcher.node.destroy_publisher(self._publisher)

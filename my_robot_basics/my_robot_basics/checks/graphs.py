@@ -13,6 +13,8 @@ from my_robot_basics.checks.watcher import HIDDEN, Watcher
 SETTLE_SEC = 0.4
 """The graph counts as settled when it has not changed for so long."""
 MOST_SETTLE_SEC = 5.0
+MOST_TAKE_SEC = 15.0
+"""The same with the looks themselves: a busy machine, or a large graph, takes longer for each."""
 NEWCOMER_SEC = 0.2
 """How long to look out for a second publisher after the first."""
 UNKNOWN = '_NODE_NAME_UNKNOWN_'
@@ -89,10 +91,12 @@ class Graph:
             return 'the node is not running, so run the cell that starts it and read what it says'
         if similar := _similar(topic_name, [name for name in names if name not in _PLUMBING]):
             return f'{", ".join(names[similar])} uses {similar}, so compare the spelling'
-        verb = 'runs' if len(runs) == 1 else 'run'
+        look = f'look at the topic name in {maker}(…) and that the node calls it'
+        if len(runs) == 1:
+            return f'{runs[0]} runs, so {look}'
         return (
-            f'{", ".join(runs)} {verb}, so look at the topic name in {maker}(…)'
-            f' and that the node calls it'
+            f'{", ".join(runs)} run, so if yours is among them, {look}; if it is not, run the cell'
+            ' that starts it and read what it says'
         )
 
 
@@ -107,7 +111,12 @@ def take(watcher: Watcher) -> Graph:
     last = _look(watcher.node)
     steady = 0.0
     waited = 0.0
-    while waited < MOST_SETTLE_SEC and (steady < SETTLE_SEC or _has_unknown(last)):
+    deadline = time.monotonic() + MOST_TAKE_SEC
+    while (
+        waited < MOST_SETTLE_SEC
+        and (steady < SETTLE_SEC or _has_unknown(last))
+        and time.monotonic() < deadline
+    ):
         watcher.spin_for(0.05)
         waited += 0.05
         now = _look(watcher.node)

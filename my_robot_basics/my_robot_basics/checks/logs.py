@@ -2,15 +2,14 @@
 
 import re
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from types import TracebackType
 from typing import Self
 
 from rcl_interfaces.msg import Log as LogMessage
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
-from my_robot_basics.checks import graphs
+from my_robot_basics.checks import angles, graphs
 from my_robot_basics.checks.errors import fail, shorten
 from my_robot_basics.checks.watcher import Watcher
 
@@ -18,7 +17,7 @@ LEVELS = {10: 'DEBUG', 20: 'INFO', 30: 'WARN', 40: 'ERROR', 50: 'FATAL'}
 DEPTH = 1000
 NODE_SEC = 10.0
 AFTERTHOUGHT_SEC = 0.3
-WITHIN_DEG = 0.01
+WARN_ONLY = 'warn only when inverse_kinematics(x, y) raises ValueError'
 _NUMBER = re.compile(r'[-−+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?')
 
 
@@ -55,19 +54,14 @@ class Log:
         try:
             self._meet()
         except BaseException:
-            self._watcher.__exit__(None, None, None)
+            self._watcher.__exit__()
             raise
         self.mark()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         """Stop listening."""
-        self._watcher.__exit__(kind, error, traceback)
+        self._watcher.__exit__()
 
     def mark(self) -> None:
         """Let only records count that are logged from now on."""
@@ -91,33 +85,36 @@ class Log:
         self,
         angles_deg: Iterable[float],
         *,
-        within_deg: float = WITHIN_DEG,
+        target: Sequence[float] = (),
+        within_deg: float = angles.WITHIN_DEG,
         timeout_sec: float = 5.0,
     ) -> None:
         """INFO records hold every one of these angles, on any number of lines; no WARN is there.
 
-        Other numbers don't matter, nor do whole turns. Raises CheckFailed after `timeout_sec`.
+        Other numbers don't matter, nor do whole turns. Raises CheckFailed after `timeout_sec`;
+        it names the `target` (m) that has these angles.
         """
         wanted = list(angles_deg)
 
-        def missing() -> list[float]:
-            seen = self.numbers()
-            return [a for a in wanted if not any(_near(a, n, within_deg) for n in seen)]
+        def is_answered(log: Self) -> bool:
+            return not angles.missing(wanted, log.numbers(), within_deg)
 
-        listed = ', '.join(f'{angle:.2f}°' for angle in wanted)
-        if not self.wait_for(lambda log: not missing(), timeout_sec=timeout_sec):
+        what = f'({", ".join(f"{metres:.3f}" for metres in target)})' if target else 'a target'
+        if not self.wait_for(is_answered, timeout_sec=timeout_sec):
+            listed = ', '.join(f'{angle:.2f}°' for angle in wanted)
             fail(
-                expected=f'{listed} in the INFO log of {self._node_name}',
+                expected=f'{listed} for {what} in the INFO log of {self._node_name}',
                 seen=self._shown('INFO'),
-                hint='log every solution with self.get_logger().info(…) and two decimals '
-                'or more (print(…) does not reach the log)',
+                hint=WARN_ONLY
+                if self._has('WARN') and not self._has('INFO')
+                else angles.what_to_try(wanted, self.numbers()),
             )
         # a warning may come just behind the answer
         if self.wait_for(lambda log: log._has('WARN'), timeout_sec=AFTERTHOUGHT_SEC):
             fail(
-                expected=f'no warning from {self._node_name} for a reachable target',
+                expected=f'no warning from {self._node_name} for {what}, which is in reach',
                 seen=self._shown('WARN'),
-                hint='warn only when inverse_kinematics raises ValueError',
+                hint=WARN_ONLY,
             )
 
     def expect_warning(self, *, no_angles: Iterable[float] = (), timeout_sec: float = 5.0) -> None:
@@ -129,13 +126,13 @@ class Log:
         if not self.wait_for(lambda log: log._has('WARN'), timeout_sec=timeout_sec):
             fail(
                 expected=f'a warning in the log of {self._node_name}',
-                seen=self._shown('INFO'),
-                hint='catch ValueError and log it with self.get_logger().warning(…) '
-                '(print(…) does not reach the log)',
+                seen=self._shown('WARN'),
+                hint='catch ValueError each time and log it with self.get_logger().warning(…) '
+                f'{angles.HOW}',
             )
 
         def has_unwanted(log: Self) -> bool:
-            return any(_near(a, n, WITHIN_DEG) for a in unwanted for n in log.numbers())
+            return any(angles.near(a, n) for a in unwanted for n in log.numbers())
 
         # angles may come just behind the warning, and so may a second one, which is no answer to
         # the next target
@@ -178,9 +175,3 @@ class Log:
             return f"'{shorten(' | '.join(texts))}'"
         others = ' | '.join(f'{record.level} {record.text}' for record in self.records)
         return f'no {level} record' + (f" but '{shorten(others)}'" if others else '')
-
-
-def _near(angle_deg: float, number: float, within_deg: float) -> bool:
-    off = (angle_deg - number + 180.0) % 360.0 - 180.0
-    # a text of two decimals is no better than half a unit of the last one
-    return abs(off) <= within_deg + 1e-9

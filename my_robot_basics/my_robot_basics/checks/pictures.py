@@ -28,13 +28,20 @@ def arrivals(recording: 'Recording', *, hz: float | None = None) -> bytes:
     figure = Figure(figsize=(7.0, 1.6), layout='constrained')
     axes = figure.add_subplot()
     for row, (_, times, colour) in enumerate(rows):
-        axes.plot(times, [row] * len(times), '|', color=colour, markersize=18, markeredgewidth=2)
+        axes.plot(
+            *(times, [row] * len(times), '|'),
+            color=colour,
+            markersize=18,
+            markeredgewidth=2,
+            clip_on=False,  # the last one stands on the frame
+        )
     axes.set_yticks(range(len(rows)), [label for label, _, _ in rows])
     axes.set_ylim(-0.6, len(rows) - 0.4)
     axes.set_xlim(0.0, until)
     clock = "robot's clock" if recording.clock == 'simulated' else 'wall clock'
     axes.set_xlabel(f'seconds on the {clock}')
-    axes.set_title(f'messages on {recording.topic_name}')
+    part = f', the first {until:g} s' if until < recording.seconds else ''
+    axes.set_title(f'messages on {recording.topic_name}{part}')
     return _png(figure)
 
 

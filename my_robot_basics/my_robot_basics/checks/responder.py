@@ -1,23 +1,23 @@
 """The student's side of `student`: look a name or an endpoint up, answer in JSON.
 
-This module and wire.py are all of `checks` that a student's kernel runs at grading.
+This module, wire.py and values.py are all of `checks` that a student's kernel runs at grading.
 """
 
 import contextlib
 import sys
 
-from my_robot_basics.checks import wire
+from my_robot_basics.checks import values, wire
 
 
 def answer(request_text: str) -> str:
     """Answer one request against the notebook's namespace (`__main__`); the reply's text.
 
-    Raises wire.WireError for a request that is not of this protocol.
+    Raises values.WireError for a request that is not of this protocol.
     """
     request = wire.loads(request_text)
     op, name, args = request.get('op'), request.get('name'), request.get('args', [])
     if request.get('protocol') != wire.PROTOCOL or op not in ('call', 'value', 'endpoint'):
-        raise wire.WireError('a request of another protocol')
+        raise values.WireError('a request of another protocol')
     if op == 'endpoint':
         return _reply(_has_endpoint(name))
     namespace = vars(sys.modules['__main__'])
@@ -25,7 +25,7 @@ def answer(request_text: str) -> str:
         return wire.dumps({'missing': name})
     value = namespace[name]
     if op == 'call':
-        arguments = [wire.decode(argument) for argument in args]
+        arguments = [values.decode(argument) for argument in args]
         try:
             # a warning or a log line of the function never costs points
             with contextlib.redirect_stderr(sys.stdout):
@@ -51,8 +51,8 @@ def _has_endpoint(topic_name: str) -> bool:
 
 def _reply(value: object) -> str:
     try:
-        text = wire.dumps({'ok': wire.encode(value)})
-    except wire.UnsupportedValue as error:
+        text = wire.dumps({'ok': values.encode(value)})
+    except values.UnsupportedValue as error:
         return wire.dumps({'unsupported': _text(error)})
     except Exception as error:
         # a list that changes while it is read, a dict subclass with ideas of its own, …

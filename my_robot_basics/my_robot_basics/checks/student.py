@@ -8,7 +8,7 @@ import builtins
 import os
 from typing import Any
 
-from my_robot_basics.checks import responder, wire
+from my_robot_basics.checks import responder, values, wire
 from my_robot_basics.checks.errors import CheckFailed, fail, shorten
 
 _ANSWER_CELL = 'in the answer cell, and run the cell'
@@ -17,7 +17,7 @@ _ANSWER_CELL = 'in the answer cell, and run the cell'
 def call(name: str, *args: object, returns: type | tuple[type, ...] | None = None) -> Any:
     """Call the student's function and return what it returned.
 
-    Arguments and result are plain values or ROS messages (see wire.py). With `returns`, any
+    Arguments and result are plain values or ROS messages (see values.py). With `returns`, any
     other type fails the check; a bool is no int, an int will do for a float.
     """
     shown = f'{name}({", ".join(_brief(argument) for argument in args)})'
@@ -31,7 +31,7 @@ def call(name: str, *args: object, returns: type | tuple[type, ...] | None = Non
     if kind == 'unsupported':
         seen = _article(shorten(body))
         hint = 'return plain values (numbers, text, lists, dicts) or a ROS message'
-        if wire.WRONG_FIELD in body:
+        if values.WRONG_FIELD in body:
             hint = 'give each field a value of the type that get_fields_and_field_types() names'
         fail(expected=f'`{shorten(shown)}` to return {_wanted(returns)}', seen=seen, hint=hint)
     if body is None:
@@ -64,7 +64,7 @@ def has_endpoint(topic_name: str) -> bool:
     """
     try:
         kind, body = wire.parse_reply(_send(wire.request(op='endpoint', name=topic_name)))
-    except wire.WireError:
+    except values.WireError:
         return True
     return kind != 'ok' or body is not False
 
@@ -77,7 +77,7 @@ def _send(question: str) -> str:
 def _ask(question: str, shown: str) -> tuple[str, Any]:
     try:
         kind, body = wire.parse_reply(_send(question))
-    except wire.WireError as error:
+    except values.WireError as error:
         raise CheckFailed(
             f'expected an answer from `{shorten(shown)}`, saw {error}: '
             'return plain values (numbers, text, lists, dicts) or a ROS message'
@@ -100,7 +100,19 @@ def _check_type(found: object, wanted: type | tuple[type, ...] | None, *, what: 
     if type(found) in types or (type(found) is int and float in types):
         return
     seen = f'{_article(type(found).__name__)} ({_brief(found)})'
-    fail(expected=f'{what} {_wanted(wanted)}', seen=seen, hint='check the type of the value')
+    fail(expected=f'{what} {_wanted(wanted)}', seen=seen, hint=_other_type(found, types))
+
+
+def _other_type(found: object, wanted: tuple[type, ...]) -> str:
+    if isinstance(found, str) and str not in wanted:
+        return 'a text in quotes is no other value, even if it reads like one'
+    if dict in wanted:
+        return 'write a dict, {key: value, …}, with the keys of the answer cell'
+    if bool in wanted:
+        return 'write True or False, or a comparison, which makes one of them'
+    if any(hasattr(each, 'get_fields_and_field_types') for each in wanted):
+        return f'make a message with {wanted[0].__name__}(), fill in its fields, and return it'
+    return 'print(type(…)) of the value shows what it is'
 
 
 def _wanted(types: type | tuple[type, ...] | None) -> str:

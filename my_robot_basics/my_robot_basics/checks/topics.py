@@ -7,7 +7,7 @@ from typing import Any
 from rclpy.duration import Duration
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
-from my_robot_basics.checks import graphs, looks, student, wire
+from my_robot_basics.checks import graphs, looks, student, values
 from my_robot_basics.checks.errors import fail, shorten
 from my_robot_basics.checks.recording import Recording
 from my_robot_basics.checks.watcher import Watcher
@@ -17,6 +17,8 @@ ABSENT_SEC = 3.0
 """How long to wait for an endpoint that the notebook's own process says it has not got."""
 ACQUAINTANCE_SEC = 0.5
 """How long a BEST_EFFORT subscription is given to meet the publisher, and to read what it sent."""
+AFTERTHOUGHT_SEC = 0.2
+"""How long to listen for what must not come beside the right message."""
 LATE_SEC = 0.02
 """A machine that keeps a check waiting so long may make an honest node miss a period."""
 LATE_LOOKS = 2
@@ -93,13 +95,14 @@ class Topic:
         expected: str = '',
         seen: Callable[[Any], object] | None = None,
         hint: str = 'print what your node publishes and compare',
+        never: Callable[[Any], object] | None = None,
     ) -> Any:
         """The first message for which the predicate holds (the first of all without one).
 
         `after` is called once the subscription stands: what it publishes can't be missed.
         Raises CheckFailed when there is no publisher or no such message in time. Where there were
         others, it speaks of what was `expected`, of the last one, as `seen` puts it in words, and
-        gives the `hint`.
+        gives the `hint`; so it does where one comes for which `never` holds, beside the right one.
         """
         with Watcher() as watcher:
             ears = self.listen(watcher)
@@ -109,13 +112,17 @@ class Topic:
             def found() -> list:
                 return [m for m in ears.messages() if predicate is None or predicate(m)]
 
-            if not watcher.spin_until(lambda: bool(found()), timeout_sec=timeout_sec):
-                heard = ears.messages()
+            is_there = watcher.spin_until(lambda: bool(found()), timeout_sec=timeout_sec)
+            if is_there and never is not None:
+                watcher.spin_for(AFTERTHOUGHT_SEC)
+            heard = ears.messages()
+            wrong = [m for m in heard if never is not None and never(m)]
+            if wrong or not is_there:
                 if not heard:
                     self._fail_silent(watcher, seen=f'no message in {timeout_sec:g} s')
                 fail(
                     expected=expected or f'a message on {self.name} that answers',
-                    seen=shorten(seen(heard[-1]))
+                    seen=shorten(seen([*heard, *wrong][-1]))
                     if seen
                     else f'{len(heard)} others in {timeout_sec:g} s',
                     hint=hint,
@@ -155,7 +162,7 @@ class Topic:
         types = sorted({info.topic_type for info in infos})
         try:
             (name,) = types
-            return wire.message_type(name)
+            return values.message_type(name)
         except ValueError:
             fail(
                 expected=f'one standard message type on {self.name}',

@@ -2,7 +2,6 @@
 
 import time
 from collections.abc import Callable, Sequence
-from types import TracebackType
 from typing import Self
 
 import rclpy
@@ -12,10 +11,15 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
 
+from my_robot_basics.checks.errors import fail
 from my_robot_basics.live import classroom
 
 HIDDEN = '_'
 """Nodes whose names start so are the course's own; no count and no check includes them."""
+MOST_ENDPOINTS = 1_000
+"""Publishers, subscriptions and services in a domain: thirty nodes have some 400. With many
+thousands, no look at the graph comes to an end."""
+COUNT_EVERY_SEC = 0.5
 
 
 class Watcher:
@@ -30,6 +34,7 @@ class Watcher:
         self._domain_id = domain_id
         self.late_sec = 0.0
         """How long the machine has kept this waiting at most, against its intention."""
+        self._next_count = 0.0
 
     def __enter__(self) -> Self:
         """Join the domain."""
@@ -46,12 +51,7 @@ class Watcher:
         self.node = self.add_node('check')
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         """Leave it, with all that was made here."""
         self._executor.shutdown()
         for node in self._nodes:
@@ -76,9 +76,15 @@ class Watcher:
         return node
 
     def spin_until(self, done: Callable[[], bool], *, timeout_sec: float) -> bool:
-        """Spin until `done()`, at most `timeout_sec` of steady wall time; whether it is done."""
+        """Spin until `done()`, at most `timeout_sec` of steady wall time; whether it is done.
+
+        Raises CheckFailed where there are more than MOST_ENDPOINTS.
+        """
         deadline = time.monotonic() + timeout_sec
-        while not done():
+        while True:
+            self._expect_no_crowd()
+            if done():
+                return True
             left = deadline - time.monotonic()
             if left <= 0.0:
                 return False
@@ -87,8 +93,22 @@ class Watcher:
             start = time.monotonic()
             self._executor.spin_once(timeout_sec=pause)
             self.late_sec = max(self.late_sec, time.monotonic() - start - pause)
-        return True
 
     def spin_for(self, seconds: float) -> None:
         """Spin for a while of steady wall time."""
         self.spin_until(lambda: False, timeout_sec=seconds)
+
+    def _expect_no_crowd(self) -> None:
+        if time.monotonic() < self._next_count:
+            return
+        topic_names = [name for name, _ in self.node.get_topic_names_and_types()]
+        count = len(self.node.get_service_names_and_types())
+        for look_up in self.node.count_publishers, self.node.count_subscribers:
+            count += sum(map(look_up, topic_names))
+        if count > MOST_ENDPOINTS:
+            fail(
+                expected=f'at most {MOST_ENDPOINTS:,} publishers, subscriptions and services',
+                seen=f'{count:,}',
+                hint='create each of them once, and none in a loop that goes on or in a callback',
+            )
+        self._next_count = time.monotonic() + COUNT_EVERY_SEC

@@ -1,103 +1,14 @@
-"""The words that cross between the test kernel and the student's kernel: bounded JSON text.
+"""The texts that cross between the test kernel and the student's kernel: bounded JSON."""
 
-A value is JSON as it stands (null, true, 1, 1.5, "text", a list), or an object with one tag:
-{"float": "nan"}, {"tuple": […]}, {"set": […]}, {"dict": [[key, value], …]}, or a ROS message
-{"ros": "sensor_msgs/msg/JointState", "cdr": base64}. NumPy scalars and arrays travel as the
-plain numbers and lists that they hold. Nothing outside MESSAGE_PACKAGES is ever imported.
-"""
-
-import base64
-import contextlib
-import importlib
 import json
 import math
-import os
-import re
-from collections.abc import Iterator
 from typing import Any
 
-import numpy as np
+from my_robot_basics.checks.values import WireError, decode, encode
 
 PROTOCOL = 'my_robot_basics.student/1'
 MOST_BYTES = 64 * 1024
-MOST_DEPTH = 32
-MESSAGE_PACKAGES = (
-    'builtin_interfaces',
-    'diagnostic_msgs',
-    'geometry_msgs',
-    'nav_msgs',
-    'sensor_msgs',
-    'shape_msgs',
-    'std_msgs',
-    'stereo_msgs',
-    'trajectory_msgs',
-    'visualization_msgs',
-)
-
-WRONG_FIELD = 'a field of a wrong type'
-"""What is unsupported about a message that does not travel."""
-
-_MESSAGE_NAME = re.compile(rf'({"|".join(MESSAGE_PACKAGES)})/msg/([A-Z][A-Za-z0-9]*)')
-_SPECIAL_FLOATS = {'nan': math.nan, 'inf': math.inf, '-inf': -math.inf}
 _REPLIES = {'ok': object, 'raised': dict, 'missing': str, 'unsupported': str, 'failed': str}
-
-
-class WireError(ValueError):
-    """A text that is not of this protocol."""
-
-
-class UnsupportedValue(TypeError):
-    """A value that does not travel; the message is its type, in words."""
-
-
-def encode(value: object, depth: int = 0) -> Any:
-    """Turn a plain value into what JSON can hold. Raises UnsupportedValue."""
-    if depth > MOST_DEPTH:
-        raise UnsupportedValue(f'values nested more than {MOST_DEPTH} deep')
-    if isinstance(value, np.generic | np.ndarray):
-        if value.dtype.kind not in 'biufU':
-            raise UnsupportedValue(f'numpy {value.dtype}{_within(depth)}')
-        value = value.tolist()
-    if value is None or isinstance(value, bool | str):
-        return value
-    if isinstance(value, int):
-        return int(value)
-    if isinstance(value, float):
-        return float(value) if math.isfinite(value) else {'float': repr(float(value))}
-    if type(value) is list:
-        return [encode(item, depth + 1) for item in value]
-    if isinstance(value, tuple):
-        return {'tuple': [encode(item, depth + 1) for item in value]}
-    if isinstance(value, set | frozenset):
-        return {'set': [encode(item, depth + 1) for item in value]}
-    if isinstance(value, dict):
-        pairs = value.items()
-        return {'dict': [[encode(k, depth + 1), encode(v, depth + 1)] for k, v in pairs]}
-    return _encode_message(value, depth)
-
-
-def decode(encoded: object, depth: int = 0) -> Any:
-    """Turn encoded JSON back into a value. Raises WireError, and nothing else."""
-    if depth > MOST_DEPTH:
-        raise WireError(f'values nested more than {MOST_DEPTH} deep')
-    if encoded is None or isinstance(encoded, bool | int | float | str):
-        return encoded
-    if isinstance(encoded, list):
-        return [decode(item, depth + 1) for item in encoded]
-    match encoded:
-        case {'float': str(name), **rest} if name in _SPECIAL_FLOATS and not rest:
-            return _SPECIAL_FLOATS[name]
-        case {'tuple': list(items), **rest} if not rest:
-            return tuple(decode(item, depth + 1) for item in items)
-        case {'set': list(items), **rest} if not rest:
-            return {_hashable(decode(item, depth + 1)) for item in items}
-        case {'dict': list(pairs), **rest} if not rest:
-            if not all(isinstance(pair, list) and len(pair) == 2 for pair in pairs):
-                raise WireError('a dict that is not a list of pairs')
-            return {_hashable(decode(k, depth + 1)): decode(v, depth + 1) for k, v in pairs}
-        case {'ros': str(name), 'cdr': str(cdr), **rest} if not rest:
-            return _decode_message(name, cdr)
-    raise WireError('an object with an unknown tag')
 
 
 def dumps(message: object) -> str:
@@ -145,74 +56,8 @@ def parse_reply(text: object) -> tuple[str, Any]:
     return kind, body
 
 
-def message_type(name: str) -> type:
-    """The class of an allow-listed message name like 'std_msgs/msg/String'. Raises WireError."""
-    parts = _MESSAGE_NAME.fullmatch(name)
-    found = parts and getattr(importlib.import_module(f'{parts[1]}.msg'), parts[2], None)
-    if not found:
-        raise WireError('a message type that is not allowed')
-    return found
-
-
-def _within(depth: int) -> str:
-    """Words for a value that stands in the one that was asked for."""
-    return ' in it' if depth else ''
-
-
-def _encode_message(value: object, depth: int) -> dict:
-    name = f'{type(value).__module__.partition(".")[0]}/msg/{type(value).__name__}'
-    try:
-        known = message_type(name) is type(value)
-    except WireError:
-        known = False
-    if not known:
-        raise UnsupportedValue(f'{type(value).__name__}{_within(depth)}')
-    from rclpy.serialization import serialize_message
-
-    try:
-        cdr = serialize_message(value)
-    except Exception as error:
-        # rclpy raises whatever the field's conversion raised: TypeError, AttributeError, …
-        raise UnsupportedValue(f'{name} with {WRONG_FIELD} ({error})') from error
-    return {'ros': name, 'cdr': base64.b64encode(cdr).decode('ascii')}
-
-
-def _decode_message(name: str, cdr: str) -> object:
-    wanted = message_type(name)
-    from rclpy.serialization import deserialize_message
-
-    try:
-        data = base64.b64decode(cdr, validate=True)
-        with _quiet_c_stderr():
-            return deserialize_message(data, wanted)
-    except Exception as error:
-        # The bytes come from a student: whatever the C library says of them, they are wrong.
-        raise WireError(f'bytes that are no {name}') from error
-
-
-@contextlib.contextmanager
-def _quiet_c_stderr() -> Iterator[None]:
-    """Fast CDR prints its complaint to descriptor 2 before it raises; a check prints nothing."""
-    saved, nowhere = os.dup(2), os.open(os.devnull, os.O_WRONLY)
-    try:
-        os.dup2(nowhere, 2)
-        yield
-    finally:
-        os.dup2(saved, 2)
-        os.close(saved)
-        os.close(nowhere)
-
-
 def _is_exception(body: dict) -> bool:
     return set(body) == {'type', 'message'} and all(isinstance(v, str) for v in body.values())
-
-
-def _hashable(value: object) -> object:
-    try:
-        hash(value)
-    except TypeError as error:
-        raise WireError('a set member or dict key that cannot be one') from error
-    return value
 
 
 def _finite(text: str) -> float:

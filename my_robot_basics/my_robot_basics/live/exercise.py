@@ -17,7 +17,7 @@ def reset(*names: str) -> None:
     runner.shut_down()
     for name in names:
         _notebook().pop(name, None)
-    print(f'reset: no node of live runs; {", ".join(names) or "nothing"} is yours to write')
+    print(f'reset: no node is running; {", ".join(names) or "nothing"} is yours to write')
 
 
 def run_answer(name: str, *args: Any, **kwargs: Any) -> Node | None:
@@ -25,7 +25,8 @@ def run_answer(name: str, *args: Any, **kwargs: Any) -> Node | None:
     answer = _notebook().get(name)
     where = 'write it in the answer cell: only the notebook is submitted'
     if answer is None:
-        raise NotRunnable(f'expected a class {name}, saw nothing of that name: {where}')
+        first = 'run the answer cell, and where that ends in an error, mend it first'
+        raise NotRunnable(f'expected a class {name}, saw nothing of that name: {first}')
     if not (isinstance(answer, type) and issubclass(answer, Node)):
         kind = type(answer).__name__
         raise NotRunnable(f'expected {name} to be a class derived from Node, saw {kind}: {where}')

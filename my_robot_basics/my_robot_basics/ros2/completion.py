@@ -49,15 +49,6 @@ def node_names(parsed_args: argparse.Namespace, **_: object) -> list[str]:
         return [node.full_name for node in graph.nodes(include_hidden=include_hidden)]
 
 
-def parameter_names(parsed_args: argparse.Namespace, **_: object) -> list[str]:
-    """Parameters of the node that was typed before."""
-    from my_robot_basics.ros2.parameters import ParameterServices, absolute
-
-    with Graph(parsed_args) as graph:
-        graph.settle()
-        return ParameterServices(graph, absolute(parsed_args.node_name)).names()
-
-
 def service_names(parsed_args: argparse.Namespace, **_: object) -> list[str]:
     """Services."""
     with Graph(parsed_args) as graph:

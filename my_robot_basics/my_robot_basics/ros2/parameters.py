@@ -93,9 +93,7 @@ def add_one_parameter(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--include-hidden-nodes', action='store_true', help='Consider hidden nodes as well'
     )
-    parser.add_argument(
-        'parameter_name', help='Name of the parameter'
-    ).completer = completion.parameter_names
+    parser.add_argument('parameter_name', help='Name of the parameter').completer = parameter_names
     parser.add_argument(
         '--timeout',
         metavar='N',
@@ -103,6 +101,13 @@ def add_one_parameter(parser: argparse.ArgumentParser) -> None:
         default=1,
         help='Wait for N seconds until node becomes available (default %(default)s sec)',
     )
+
+
+def parameter_names(parsed_args: argparse.Namespace, **_: object) -> list[str]:
+    """What the shell offers after Tab: parameters of the node that was typed before."""
+    with Graph(parsed_args) as graph:
+        graph.settle()
+        return ParameterServices(graph, absolute(parsed_args.node_name)).names()
 
 
 def services_of(graph: Graph, args: argparse.Namespace) -> ParameterServices:

@@ -1,0 +1,38 @@
+"""Angles among the numbers of a log: which are there, and what to say where some are missing."""
+
+import math
+from collections.abc import Sequence
+
+WITHIN_DEG = 0.01
+ROUNDED_DEG = 0.5
+"""Angles that were rounded are no further off, in whole degrees or in hundredths of a radian."""
+HOW = '(print(…) does not reach the log)'
+
+
+def near(angle_deg: float, number: float, within_deg: float = WITHIN_DEG) -> bool:
+    """Whether a number is that angle, whole turns aside."""
+    off = (angle_deg - number + 180.0) % 360.0 - 180.0
+    # a text of two decimals is no better than half a unit of the last one
+    return abs(off) <= within_deg + 1e-9
+
+
+def missing(
+    wanted: Sequence[float], numbers: Sequence[float], within_deg: float = WITHIN_DEG
+) -> list[float]:
+    """Those of the wanted angles that no number is near to."""
+    return [a for a in wanted if not any(near(a, n, within_deg) for n in numbers)]
+
+
+def what_to_try(wanted: Sequence[float], numbers: Sequence[float]) -> str:
+    """Advice for a log that lacks some of the wanted angles, by what it holds instead."""
+    if not numbers:
+        return f'log every solution for each target, with self.get_logger().info(…) {HOW}'
+    if not missing(wanted, numbers, ROUNDED_DEG):
+        return 'log the angles with two decimals or more'
+    if not missing(wanted, [math.degrees(number) for number in numbers], ROUNDED_DEG):
+        return 'these are radians, so log them with math.degrees(…)'
+    absent = missing(wanted, numbers)
+    if len(absent) < len(wanted):
+        listed = ', '.join(f'{angle:.2f}°' for angle in absent)
+        return f'log every solution, both angles of both branches: {listed} not found'
+    return 'compare with what inverse_kinematics(x, y) returns for this target'

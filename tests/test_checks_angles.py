@@ -1,0 +1,36 @@
+"""Angles in a log: what counts as one, and what is said of those that are not there."""
+
+import math
+
+import pytest
+from my_robot_basics.checks import angles
+
+WANTED = (23.4, -67.8, -35.92, 67.8)
+
+
+@pytest.mark.parametrize(
+    ('number', 'is_near'),
+    [(23.41, True), (23.4 - 360.0, True), (383.4, True), (23.42, False), (-23.4, False)],
+)
+def test_an_angle_is_what_it_is_whole_turns_aside(number, is_near):
+    assert angles.near(23.4, number) is is_near
+
+
+@pytest.mark.parametrize(
+    ('numbers', 'advice'),
+    [
+        ((), 'print(…) does not reach the log'),
+        ([round(angle) for angle in WANTED], 'two decimals or more'),
+        ([round(angle, 1) for angle in WANTED], 'two decimals or more'),
+        ([math.radians(angle) for angle in WANTED], 'these are radians'),
+        ([round(math.radians(angle), 2) for angle in WANTED], 'these are radians'),
+        (WANTED[:2], 'both angles of both branches: -35.92°, 67.80° not found'),
+        ([WANTED[0], WANTED[2]], '-67.80°, 67.80° not found'),
+        ([-angle / 2 for angle in WANTED], 'compare with what inverse_kinematics(x, y) returns'),
+        # those of the target, and the number of its branches
+        ((1.2, 0.8, 2), 'compare with what inverse_kinematics(x, y) returns'),
+    ],
+)
+def test_advice_follows_what_is_there_instead(numbers, advice):
+    assert angles.missing(WANTED, numbers)
+    assert advice in angles.what_to_try(WANTED, numbers)

@@ -1,0 +1,54 @@
+"""A check's own node among more endpoints than a lesson can have."""
+
+import pytest
+from my_robot_basics.checks import CheckFailed, graphs, topic, watcher
+from my_robot_basics.checks.watcher import Watcher
+from rclpy.node import Node
+from std_msgs.msg import Empty, String
+
+from my_robot_basics import live
+
+
+@pytest.fixture
+def node():
+    yield live.run(Node, 'talker', key='talker')
+    live.stop()
+
+
+@pytest.mark.parametrize('spread', [True, False], ids=['on many topics', 'on one topic'])
+def test_a_crowd_of_endpoints_fails_a_check(node, monkeypatch, spread):
+    for number in range(80):
+        node.create_publisher(Empty, f'/crowd/t{number if spread else 0}', 1)
+    node.create_publisher(String, '/talk', 1)
+    with Watcher() as here:
+        assert graphs.wait_for_publisher(here, '/talk', timeout_sec=20.0)
+        monkeypatch.setattr(watcher, 'MOST_ENDPOINTS', 80)
+        with pytest.raises(CheckFailed, match=r'expected at most 80 publishers.*saw \d+: create'):
+            here.spin_for(20.0)
+
+
+def test_a_crowd_of_services_fails_a_check(node, monkeypatch):
+    monkeypatch.setattr(watcher, 'MOST_ENDPOINTS', 2)
+    with pytest.raises(CheckFailed, match='expected at most 2 publishers'):
+        topic('/nowhere').wait_for()
+
+
+def test_the_nodes_of_a_lesson_are_no_crowd():
+    nodes = [live.run(Node, f'node_{number}', key=number) for number in range(5)]
+    with Watcher() as here:
+        here.spin_for(1.0)
+        topics = [name for name, _ in here.node.get_topic_names_and_types()]
+        assert len(here.node.get_service_names_and_types()) + len(topics) < 0.1 * (
+            watcher.MOST_ENDPOINTS
+        )
+    assert len(nodes) == 5
+    live.stop()
+
+
+def test_a_look_at_a_graph_that_never_rests_ends(monkeypatch):
+    looks = iter(range(1_000_000))
+    monkeypatch.setattr(graphs, 'MOST_TAKE_SEC', 0.0)
+    monkeypatch.setattr(graphs, '_look', lambda node: next(looks))
+    monkeypatch.setattr(graphs, '_has_unknown', lambda picture: True)
+    with Watcher() as here:
+        assert graphs.take(here) < 3
