@@ -1,7 +1,6 @@
 """Make the students' zip: what is on a list, nothing else, and nothing of it stale or telling."""
 
 import io
-import os
 import zipfile
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -10,6 +9,7 @@ from pathlib import Path
 
 from grader.course import Course
 from grader.errors import CourseError
+from grader.files import write_whole
 from grader.index import INDEX, TERMS
 from grader.leaks import files_in, leaks_beside
 from grader.release import stale_or_leaking
@@ -48,6 +48,10 @@ def bundle(course: Course, target: Path) -> Bundle:
     Raises CourseError, and writes nothing, where something is missing or stale, is not on the
     list, or holds an answer or a hidden test.
     """
+    if not (course.root / 'notebooks').is_dir():
+        raise CourseError(
+            'no bundle was made: there is no folder notebooks/: run ./course release'
+        )
     faults = stale_or_leaking(course)
     files = dict(sorted(_contents(course, faults)))
     faults += leaks_beside(course, {n: c for n, c in files.items() if not _is_lesson(course, n)})
@@ -55,9 +59,7 @@ def bundle(course: Course, target: Path) -> Bundle:
         raise CourseError('no bundle was made: ' + '; '.join(faults))
     packed = _zipped(files)
     target.parent.mkdir(parents=True, exist_ok=True)
-    aside = target.with_name(f'.{target.name}.new')
-    aside.write_bytes(packed)
-    os.replace(aside, target)
+    write_whole(target, packed)
     released = {f'notebooks/{path}' for path in files_in(course.root / 'notebooks')}
     left_out = sorted(released - {name.partition('/')[2] for name in files})
     return Bundle(tuple(files), len(packed), tuple(left_out))

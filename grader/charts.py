@@ -9,6 +9,7 @@ BLUE = '#0072b2'
 INK = '#1c2733'
 MOST_BARS = 12
 _BAR, _HEIGHT, _TOP, _BOTTOM = 56, 120, 22, 40
+"""Pixels: a bar's width, the tallest one's height, and the room above and below for text."""
 
 
 def distribution(scores: Sequence[float], max_score: float, *, title: str) -> Markup:

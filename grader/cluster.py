@@ -54,10 +54,11 @@ class Cluster:
         return True
 
     def submit(self, task: Task) -> 'Future[Result]':
-        """Have a task graded. The future raises TaskFailed for no result, ClusterError for no
-        cluster.
+        """Have a task graded.
+
+        The future raises TaskFailed for no result, and ClusterError where the cluster is lost.
         """
-        from grader import remote
+        from grader import remote  # needs Dask, which one machine does without
 
         work: Future[Result] = Future()
         asked = self._client.submit(remote.grade, packed(task), machinery(), pure=False)

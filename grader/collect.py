@@ -15,11 +15,12 @@ from pathlib import Path
 
 from grader.course import Course
 from grader.errors import CourseError
-from grader.gradebook import write_whole
-from grader.incoming import TIMESTAMP, look_into
+from grader.files import write_whole
+from grader.incoming import look_into
 from grader.owners import HandIn, date_of, match
 from grader.records import Record, records
 from grader.scores import as_csv
+from grader.submission import TIMESTAMP
 from grader.turn import Turn
 
 NEW, AGAIN, EARLIER, KNOWN = 'new', 'again', 'earlier', 'known'
@@ -146,7 +147,7 @@ def _copy_all(
         there = course.folder(step, each.student_id, each.assignment)
         if there.is_dir():
             shutil.copytree(there, folder / step, symlinks=True)
-    if not (course.gradebook / 'gradebook.db').exists():
+    if not course.database.exists():
         return
     whose = (each.student_id, each.assignment)
     theirs = [grade for grade in grades() if (grade.student_id, grade.assignment) == whose]

@@ -35,11 +35,13 @@ class Course:
         return cls(root=root, gradebook=root / 'gradebook')
 
     @classmethod
-    def of_database(cls, db_url: str, *, root: Path) -> 'Course':
-        """Return the course whose database nbgrader has been told to use."""
-        return cls(
-            root=root, gradebook=Path(db_url.removeprefix('sqlite:///').split('?')[0]).parent
-        )
+    def of_nbgrader(cls, resources: dict) -> 'Course':
+        """Return the course of which nbgrader converts a notebook: it runs in the course's root.
+
+        The gradebook lies where the database does that it has been told to use.
+        """
+        database = resources['nbgrader']['db_url'].removeprefix('sqlite:///').split('?')[0]
+        return cls(root=Path.cwd(), gradebook=Path(database).parent)
 
     @property
     def db_url(self) -> str:

@@ -3,9 +3,8 @@
 from concurrent.futures import Future
 from typing import Protocol, Self
 
-from grader.course import Course
-from grader.heal import heal
-from grader.pipeline import prepare, unanswered
+from grader.heal import Master, heal
+from grader.pipeline import unanswered
 from grader.submission import Submission
 from grader.task import Result, Task
 
@@ -34,17 +33,16 @@ class Crew(Protocol):
 
 
 def judged(
-    course: Course, submission: Submission, *, crew: Crew, seed: str, trust_students: bool
+    submission: Submission, master: Master, *, crew: Crew, seed: str, trust_students: bool
 ) -> 'Future[Result]':
-    """Heal one submission and have it run with the inputs of a seed."""
+    """Heal one submission from a prepared master, and have it run with the inputs of a seed."""
     if submission.problem:
         nothing: Future[Result] = Future()
-        nothing.set_result(Result(unanswered(course, submission, submission.problem), 0.0))
+        nothing.set_result(Result(unanswered(master, submission.problem), 0.0))
         return nothing
-    healed = heal(submission.notebook, course.master(submission.assignment))
     return crew.submit(
         Task(
-            notebook=prepare(course, submission.assignment, healed.notebook),
+            notebook=heal(submission.notebook, master).notebook,
             files={path.name: path.read_bytes() for path in submission.extra_files},
             seed=seed,
             trust_students=trust_students,

@@ -67,13 +67,43 @@ def wait_until_free(course: Course, say: Callable[[str], None] = print) -> None:
             time.sleep(0.1)
 
 
+_engines: dict[str, Gradebook | None] = {}
+"""Of databases that are opened again and again just now."""
+
+
+@contextmanager
+def one_engine(db_url: str) -> Iterator[None]:
+    """Let `connected` make what opens this database once: it costs more than all the rest.
+
+    Each time the file is opened anew all the same, and let go at the end.
+    """
+    _engines[db_url] = None
+    try:
+        yield
+    finally:
+        del _engines[db_url]
+
+
+@contextmanager
+def connected(db_url: str) -> Iterator[Gradebook]:
+    """Open the database; what is not committed at the end is forgotten."""
+    book = _engines.get(db_url) or Gradebook(db_url)
+    if db_url in _engines:
+        _engines[db_url] = book
+    with book:  # the end of its connections, which it makes again when it has to
+        yield book
+
+
 @contextmanager
 def transaction(db_url: str) -> Iterator[Gradebook]:
     """Open the database; what nbgrader would commit cell by cell is committed at the end."""
-    with Gradebook(db_url) as book:
+    with connected(db_url) as book:
         commit, book.db.commit = book.db.commit, book.db.flush
-        yield book
-        commit()
+        try:
+            yield book
+            commit()
+        finally:
+            book.db.commit = commit
 
 
 @contextmanager

@@ -9,9 +9,10 @@ from pathlib import Path
 from grader.course import ROOT, Course
 from grader.errors import CourseError
 from grader.feedback import write_feedback
-from grader.grade import Row, find_submissions, grade_all
+from grader.grade import Row, grade_all
 from grader.records import verdicts
 from grader.report import Run, write_report
+from grader.submitted import find_submissions
 from grader.table import print_rows
 
 SAMPLES = ROOT / 'tests' / 'submissions'

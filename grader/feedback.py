@@ -14,6 +14,7 @@ from grader.files import write_whole
 from grader.gradebook import recover
 from grader.heal import KEY, grade_id
 from grader.page import page
+from grader.pipeline import resources_of
 
 FEEDBACK_PASSES = ('grader.feedback.GatherVerdicts',)
 """What nbgrader does with a graded notebook before it shows it."""
@@ -74,15 +75,8 @@ def write_feedback(
         student, assignment = graded.parts[-3:-1]
         if graded.stem != assignment:
             continue
-        resources = {
-            'nbgrader': {
-                'student': student,
-                'assignment': assignment,
-                'notebook': assignment,
-                'db_url': course.db_url,
-            }
-        }
-        html, _ = exporter.from_notebook_node(nbformat.read(graded, as_version=4), resources)
+        notebook = nbformat.read(graded, as_version=4)
+        html, _ = exporter.from_notebook_node(notebook, resources_of(course, assignment, student))
         place = course.folder('feedback', student, assignment) / f'{assignment}.html'
         if not place.exists() or place.read_text(encoding='utf-8') != html:
             place.parent.mkdir(parents=True, exist_ok=True)

@@ -5,37 +5,27 @@ from collections import deque
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass
-from pathlib import Path
 
 from nbformat import NotebookNode
 
 from grader.backups import bring_in_order
 from grader.course import Course
 from grader.crew import Crew, judged
-from grader.database import in_sentences
+from grader.database import in_sentences, one_engine
 from grader.errors import ClusterError, CourseError, GradebookError, TaskFailed
 from grader.gradebook import Stored, register, store
+from grader.heal import Master
 from grader.lateness import deadlines
+from grader.pipeline import prepared_master
 from grader.reuse import conditions, held, kept, key_of, remember
-from grader.students import HTML, problem_of_id
 from grader.submission import Submission, read_submission
+from grader.submitted import HandedIn
 from grader.task import Result
 from grader.turn import Turn
 from grader.workers import Workers
 
 AHEAD = 4
 """How many times more submissions may be done and wait for a slower one before them."""
-
-
-@dataclass(frozen=True)
-class HandedIn:
-    """Something under gradebook/submitted/."""
-
-    student_id: str
-    assignment: str
-    folder: Path
-    problem: str = ''
-    """Why it can't be a submission of anything."""
 
 
 @dataclass(frozen=True)
@@ -53,10 +43,11 @@ class Graded:
 class _Way:
     """How the submissions of one run are graded."""
 
+    masters: dict[str, Master]
+    """By assignment; so are the next two."""
     seeds: dict[str, str]
-    """By assignment."""
     given: dict[str, str]
-    """What else a result depends on, as a hash, by assignment."""
+    """What else a result depends on, as a hash."""
     trust_students: bool
     force: bool
     """Whether to run what was run before, too."""
@@ -96,7 +87,7 @@ def grade_all(
     """
     with crew or Workers() as crew:
         in_sandbox = crew.isolated(trust_students=trust_students)
-        way = _Way(seeds={}, given={}, trust_students=trust_students, force=force)
+        way = _Way({}, {}, {}, trust_students=trust_students, force=force)
         # what would be wrong with each submission is said now
         deadlines(course.gradebook, course.assignments())
         with in_sentences(course), Turn.take(course.gradebook):
@@ -105,18 +96,21 @@ def grade_all(
                 {each.assignment for each in submissions if not each.problem}
             ):
                 register(course, assignment)
-                course.master(assignment)
+                way.masters[assignment] = prepared_master(course, assignment)
                 way.seeds[assignment] = the = seed or course.seed(assignment)
                 way.given[assignment] = conditions(
                     course, assignment, seed=the, isolated=in_sandbox
                 )
-        under_way: deque[tuple[HandedIn, Future[Graded]]] = deque()
-        for found in submissions:
-            under_way.append((found, _begun(course, found, way, crew)))
-            while under_way and (len(under_way) >= AHEAD * crew.room or under_way[0][1].done()):
+        with one_engine(course.db_url):
+            under_way: deque[tuple[HandedIn, Future[Graded]]] = deque()
+            for found in submissions:
+                under_way.append((found, _begun(course, found, way, crew)))
+                while under_way and (
+                    len(under_way) >= AHEAD * crew.room or under_way[0][1].done()
+                ):
+                    yield _row(course, *under_way.popleft())
+            while under_way:
                 yield _row(course, *under_way.popleft())
-        while under_way:
-            yield _row(course, *under_way.popleft())
 
 
 def _begun(course: Course, found: HandedIn, way: _Way, crew: Crew) -> 'Future[Graded]':
@@ -134,8 +128,8 @@ def _begun(course: Course, found: HandedIn, way: _Way, crew: Crew) -> 'Future[Gr
             graded.set_result(Graded(submission, before))
             return graded
         work = judged(
-            course,
             submission,
+            way.masters[assignment],
             crew=crew,
             seed=way.seeds[assignment],
             trust_students=way.trust_students,
@@ -178,64 +172,3 @@ def _row(course: Course, found: HandedIn, work: Future[Graded]) -> Row:
             logging.exception('%s of %s', found.assignment, found.student_id)
             reason = f'not graded, the grader failed: {type(error).__name__}: {error}'
     return Row(found.student_id, found.assignment, stored, reason, seconds, reused)
-
-
-def find_submissions(
-    course: Course, *, assignment: str | None = None, student_id: str | None = None
-) -> list[HandedIn]:
-    """Return what lies under gradebook/submitted/, sorted; what is out of place has a problem.
-
-    Raises CourseError when nothing fits the assignment and the student asked for.
-    """
-    known = course.assignments()
-    if assignment and assignment not in known:
-        raise CourseError(f'there is no assignment {assignment!r}; there are: {", ".join(known)}')
-    submitted = course.folder('submitted', '', '')
-    found = [
-        each
-        for student in _visible(submitted)
-        for each in _of_student(student, known)
-        if assignment in (None, each.assignment) and student_id in (None, each.student_id)
-    ]
-    if not found:
-        wanted = f' of {assignment}' if assignment else ''
-        wanted += f' by {student_id}' if student_id else ''
-        raise CourseError(
-            f'there is no submission{wanted} in {submitted}: put each notebook at '
-            f'{submitted}/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb'
-        )
-    return found
-
-
-def _of_student(student: Path, known: list[str]) -> Iterator[HandedIn]:
-    where = f'expected {student.parent.name}/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb'
-    name = student.name
-    if not student.is_dir():
-        yield HandedIn(name, '', student, f"a file where a student's folder was expected: {where}")
-        return
-    for folder in _visible(student):
-        problem = ''
-        if not _is_text(name):
-            problem = "the folder's name is not UTF-8: rename it to the student's id"
-        elif HTML.intersection(name):
-            problem = problem_of_id(name)
-        elif not folder.is_dir():
-            problem = f"a file where an assignment's folder was expected: {where}"
-        elif folder.name not in known:
-            problem = f'there is no such assignment: {where}, one of {", ".join(known)}'
-        yield HandedIn(name, folder.name, folder, problem)
-
-
-def _visible(folder: Path) -> list[Path]:
-    """Return what lies in a folder, sorted; what editors and desktops hide there left out."""
-    if not folder.is_dir():
-        return []
-    return sorted(path for path in folder.iterdir() if not path.name.startswith('.'))
-
-
-def _is_text(name: str) -> bool:
-    try:
-        name.encode()
-    except UnicodeEncodeError:
-        return False
-    return True

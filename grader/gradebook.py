@@ -11,7 +11,7 @@ from nbformat import NotebookNode
 from nbgrader.api import Grade, Gradebook, MissingEntry, SubmittedNotebook
 
 from grader.course import Course
-from grader.database import in_sentences, make_database, wait_until_free
+from grader.database import connected, in_sentences, make_database, wait_until_free
 from grader.errors import CourseError, GradebookError
 from grader.files import write_whole
 from grader.heal import KEY, grade_id
@@ -47,7 +47,7 @@ def register(course: Course, assignment: str) -> bool:
     resources = resources_of(course, assignment)
     tidied = apply(PASSES[: PASSES.index(SAVE_CELLS)], course.source(assignment), resources)
     make_database(course)
-    with Gradebook(course.db_url) as book:
+    with connected(course.db_url) as book:
         known = _checksums_in(book, assignment)
         wanted = {
             grade_id(cell): cell.metadata['nbgrader']['checksum']
@@ -162,7 +162,7 @@ def opened(course: Course) -> Iterator[Gradebook]:
     recover(course)
     for assignment in course.assignments():
         register(course, assignment)
-    with Gradebook(course.db_url) as book:
+    with connected(course.db_url) as book:
         yield book
 
 
@@ -191,7 +191,7 @@ def _checksums_in(book: Gradebook, assignment: str) -> dict[str, str] | None:
 
 def _find(course: Course, submission: Submission) -> tuple[float, float, bool] | None:
     """Return score, most that can be had, and whether a person has to look; None if not graded."""
-    with Gradebook(course.db_url) as book:
+    with connected(course.db_url) as book:
         found = submitted_notebook(book, submission.student_id, submission.assignment)
         if found is None:
             return None

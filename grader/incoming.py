@@ -1,14 +1,17 @@
 """What comes in: each file of a folder or an archive, and of the archives in it."""
 
 import os
+import re
 import stat
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 
-from grader.archives import ARCHIVE, MAX_FILE_BYTES, MAX_PARTS, OTHER_ARCHIVE, Allowance, unpack
+from grader.archives import MAX_FILE_BYTES, Allowance, unpack
+from grader.entries import ARCHIVE, MAX_PARTS
 from grader.errors import CourseError
+from grader.submission import TIMESTAMP
 
 ALL = {'files': 100_000, 'bytes': 8_000_000_000}
 """A class of 500 with all its lessons and pictures."""
@@ -17,7 +20,8 @@ ONE = {'files': 5_000, 'bytes': 200_000_000}
 MAX_NESTED = 3
 """Archives within archives: a course management system's, a student's, and one more."""
 
-TIMESTAMP = 'timestamp.txt'
+OTHER_ARCHIVE = re.compile(r'\.(rar|7z|gz|bz2|xz|zst|lzh|cab|iso|dmg)$', re.IGNORECASE)
+"""How names of archives end that can't be read here."""
 LITTER = {'__MACOSX', '__pycache__', 'Thumbs.db', 'desktop.ini'}
 
 

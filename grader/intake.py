@@ -25,7 +25,8 @@ def lines(rows: Iterable[Row]) -> Iterator[str]:
         yield from _table(('file', 'reason'), unused)
     count = Counter(row.outcome for row in rows)
     parts = [f'{count[outcome]} {words}' for outcome, words in WORDS.items() if count[outcome]]
-    yield from ('', f'{", ".join(parts) or "Nothing was taken"}; {len(left)} not taken.')
+    nothing = 'Nothing was taken' if rows else 'Nothing was taken, for there is no file in it'
+    yield from ('', f'{", ".join(parts) or nothing}; {len(left)} not taken.')
 
 
 def _taken(row: Row) -> tuple[str, ...]:

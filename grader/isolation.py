@@ -14,7 +14,8 @@ from pathlib import Path
 from grader.errors import CourseError
 from grader.pool import Pool
 from grader.sandbox import Sandbox
-from grader.warm import NoWarmKernel, fork_into
+from grader.servers import NoWarmKernel
+from grader.warm import fork_into
 
 TRUST = 'MY_ROBOT_BASICS_TRUST_STUDENTS'
 """Set to 1, it says to nbgrader's own commands what `--trust-students` says to `./course`."""

@@ -12,8 +12,9 @@ import zmq.asyncio
 from jupyter_client import AsyncKernelManager
 from jupyter_client.kernelspec import KernelSpec, KernelSpecManager
 
+from grader import pressure
 from grader.errors import RoomFailure
-from grader.limits import INTERRUPT_GRACE_SEC, MAX_MESSAGE_BYTES
+from grader.limits import INTERRUPT_GRACE_SEC, INTERRUPT_MOST_SEC, MAX_MESSAGE_BYTES
 from grader.messages import Messages, OnInput
 from grader.outputs import CellRun
 from grader.places import Place, environment_of, open_place
@@ -117,7 +118,7 @@ class Kernel:
             result.timed_out = not await self._finished(done, timeout_sec)
             if result.timed_out and self.alive:
                 await self._manager.interrupt_kernel()
-                if not await self._finished(done, INTERRUPT_GRACE_SEC):
+                if not await self._finished_in_grace(done):
                     await self._kill()
         finally:
             done.cancel()
@@ -206,6 +207,16 @@ class Kernel:
     async def _exited(self) -> None:
         while await self._manager.is_alive():
             await asyncio.sleep(0.01)
+
+    async def _finished_in_grace(self, done: asyncio.Future) -> bool:
+        """Wait for the end of a cell that was interrupted."""
+        began, crowded = time.monotonic(), pressure.crowded_sec()
+        while not (finished := await self._finished(done, LOOK_EVERY_SEC)):
+            waited = time.monotonic() - began
+            free = waited - (pressure.crowded_sec() - crowded)
+            if free >= INTERRUPT_GRACE_SEC or waited >= INTERRUPT_MOST_SEC:
+                break
+        return finished
 
     async def _finished(self, done: asyncio.Future, timeout_sec: float) -> bool:
         """Wait for a cell's end, its time limit, or the kernel's death.

@@ -24,12 +24,12 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 from nbformat import NotebookNode
-from nbgrader.api import Gradebook
 from nbgrader.plugins import BasePlugin, LateSubmissionPlugin
 from nbgrader.preprocessors import AssignLatePenalties
 from traitlets import Type
 
 from grader.course import Course
+from grader.database import connected
 from grader.errors import CourseError
 
 FILE = 'deadlines.toml'
@@ -133,14 +133,18 @@ class LatePenalties(AssignLatePenalties):
         """Give one submission its due date and its penalty; the notebook stays as it is."""
         at = resources['nbgrader']
         assignment, student = at['assignment'], at['student']
-        found = deadlines(Course.of_database(at['db_url'], root=Path.cwd()).gradebook)
+        found = deadlines(Course.of_nbgrader(resources).gradebook)
         self.deadlines = found or Deadlines()
-        if found:  # else whatever nbgrader was told stays
-            due = found.due.get(assignment)
-            later = found.extended.get((assignment, student), due)
-            with Gradebook(at['db_url']) as book:
-                book.find_assignment(assignment).duedate = due
+        with connected(at['db_url']) as book:
+            submission = book.find_submission(assignment, student)
+            if found:  # else whatever nbgrader was told stays
+                due = found.due.get(assignment)
+                later = found.extended.get((assignment, student), due)
                 extension = max(later - due, timedelta()) if due else None
-                book.find_submission(assignment, student).extension = extension or None
+                submission.assignment.duedate = due
+                submission.extension = extension or None
                 book.db.commit()
-        return super().preprocess(nb, resources)
+            was_late = any(each.late_submission_penalty for each in submission.notebooks)
+            concerned = was_late or submission.total_seconds_late > 0
+        # nbgrader opens the database once more, and most are in time
+        return super().preprocess(nb, resources) if concerned else (nb, resources)

@@ -13,7 +13,10 @@ CHECK_TIMEOUT_SEC = 90.0
 SUBMISSION_TIMEOUT_SEC = 1_800.0
 """Each part of a submission has a limit of its own; this one bounds all of it."""
 INTERRUPT_GRACE_SEC = 2.0
-"""A kernel that ignores an interrupt so long is killed."""
+"""A kernel that ignores an interrupt so long is killed. Time in which processes had to wait for a
+processor does not count, …"""
+INTERRUPT_MOST_SEC = 10.0
+"""… within this: a crowded machine may take seconds to end a node."""
 MAX_MESSAGE_BYTES = 32_000_000
 """A kernel that sends more at once is cut off; the message is lost. Pictures are far smaller."""
 MAX_REPLY = 2 * 65_536
@@ -29,7 +32,9 @@ ROOM_FILES = 8_192
 SUBMISSION_MEMORY_BYTES = 600 * 2**20
 """Set aside for each submission that is in flight; the two kernels of a lesson use half of it."""
 IN_FLIGHT_EACH = 2
-"""How many a worker process grades at a time, memory permitting: most of each is waiting."""
+"""How many a worker process grades at a time, memory permitting: most of each is waiting. More
+would be faster on a machine with nothing else to do; but where processors are short, nodes follow
+the robot's clock too slowly, and are judged on the wall clock."""
 
 PROCESS_LIMITS = {
     resource.RLIMIT_AS: 3 * 2**30,  # of each process, asked for or used; a lesson: under 1 GB

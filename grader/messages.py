@@ -75,7 +75,7 @@ async def next_message(
             message = await get(timeout=None)
         except zmq.ZMQError:
             raise
-        except Exception:
+        except Exception:  # whatever the reading of a forged message raises
             continue
         parent, content = message['parent_header'], message['content']
         ours = isinstance(parent, dict) and parent.get('msg_id') == request

@@ -2,12 +2,17 @@
 
 import ast
 import builtins
+import re
 import symtable
 from dataclasses import dataclass
+from functools import lru_cache
 
 from IPython.core.inputtransformer2 import TransformerManager
 
-MAX_SOURCE_CHARACTERS = 200_000
+MAX_SOURCE_CHARACTERS = 20_000
+"""Ten times the longest answer. Some texts take a time that grows with the square of it."""
+MAX_IPYTHON = {'characters': 4_000, 'lines': 10}
+"""The same for text that is not Python without IPython's help: it reads all for each magic."""
 
 
 @dataclass(frozen=True)
@@ -19,15 +24,16 @@ class Names:
     """Read somewhere in the cell, bound nowhere in it, and no builtin."""
 
 
+@lru_cache(maxsize=1_000)
 def names_of(source: str) -> Names:
     """Read a cell's global names; a cell that does not parse has none."""
     if len(source) > MAX_SOURCE_CHARACTERS:
         return Names()
     try:
-        code = TransformerManager().transform_cell(source)
+        code, tree = _python(source)
         table = symtable.symtable(code, 'cell', 'exec')
-        nodes = list(ast.walk(ast.parse(code)))
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        nodes = list(ast.walk(tree))
+    except (SyntaxError, ValueError, RuntimeError, MemoryError):  # a RecursionError, too
         return Names()
     bound, read = set(), set()
     _collect(table, bound, read)
@@ -51,7 +57,20 @@ def string_arguments(source: str, function: str) -> tuple[str, ...]:
     )
 
 
+_MAGIC = re.compile(r'^\s*[!%?,;/]|\?\s*$|=\s*[!%]', re.MULTILINE)
 _IPYTHON = {'display', 'get_ipython', 'In', 'Out', '_', '__', '___', '__name__', '__file__'}
+
+
+def _python(source: str) -> tuple[str, ast.Module]:
+    """Return a cell as plain Python. Raises SyntaxError, and what else `ast.parse` does."""
+    try:
+        return source, ast.parse(source)
+    except SyntaxError:
+        lines = len(_MAGIC.findall(source))
+        if len(source) > MAX_IPYTHON['characters'] or lines > MAX_IPYTHON['lines']:
+            raise
+    code = TransformerManager().transform_cell(source)
+    return code, ast.parse(code)
 
 
 def _collect(table: symtable.SymbolTable, bound: set[str], read: set[str]) -> None:

@@ -13,7 +13,7 @@ MAX_OUTPUT_CHARACTERS = 200_000
 MAX_ALT_CHARACTERS = 500
 MAX_ERROR_CHARACTERS = 10_000
 
-_WIDGET = 'application/vnd.jupyter.widget-view+json'
+WIDGET_VIEW = 'application/vnd.jupyter.widget-view+json'
 """Outlives no kernel; as text it ends whatever wants to show the notebook."""
 _OVERHEAD = 100
 """What an output costs besides its text: many small ones are as bad as a large one."""
@@ -128,7 +128,7 @@ def _output(kind: str, content: dict) -> NotebookNode | None:
             return nbformat.v4.new_output('stream', name=name, text=_clean(text))
         case 'display_data' | 'execute_result', {'data': dict(data)}:
             texts = {mime: text for mime, text in data.items() if isinstance(text, str)}
-            data = {_clean(m): _clean(text) for m, text in texts.items() if m != _WIDGET}
+            data = {_clean(m): _clean(text) for m, text in texts.items() if m != WIDGET_VIEW}
             about = _about_pictures(content.get('metadata'))
             return nbformat.v4.new_output(kind, data=data, metadata=about)
         case 'error', {'ename': str(name), 'evalue': str(value), 'traceback': list(lines)}:

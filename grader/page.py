@@ -4,10 +4,8 @@ import ast
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from pathlib import Path
 
 import bleach
-from jinja2 import Environment, FileSystemLoader
 from markupsafe import Markup, escape
 from nbconvert.filters import markdown2html, strip_ansi
 from nbformat import NotebookNode
@@ -16,6 +14,7 @@ from pygments.formatters import HtmlFormatter
 from pygments.lexers import PythonLexer
 
 from grader.heal import KEY, grade_id, role
+from grader.templates import template
 
 MAX_TEXT_CHARACTERS = 5_000
 """What is shown of one output."""
@@ -200,12 +199,8 @@ def _number(value: float) -> str:
     return f'{value:.2f}'.rstrip('0').rstrip('.')
 
 
-_ENVIRONMENT = Environment(
-    loader=FileSystemLoader(Path(__file__).parent),
-    autoescape=True,
-    trim_blocks=True,
-    lstrip_blocks=True,
+_TEMPLATE = template(
+    'page.html.j2',
+    filters={'colour': _colour, 'rich': _rich, 'words': _words, 'number': _number},
+    values={'code_style': Markup(_CODE.get_style_defs('pre'))},
 )
-_ENVIRONMENT.filters |= {'colour': _colour, 'rich': _rich, 'words': _words, 'number': _number}
-_ENVIRONMENT.globals['code_style'] = Markup(_CODE.get_style_defs('pre'))
-_TEMPLATE = _ENVIRONMENT.get_template('page.html.j2')

@@ -31,7 +31,7 @@ class HealSubmission(Preprocessor):
         )
         healed = heal(
             submission.notebook or nbformat.v4.new_notebook(),
-            _course(resources).master(at['assignment']),
+            Course.of_nbgrader(resources).master(at['assignment']),
         ).notebook
         if submission.problem:
             healed.metadata[KEY] = {'notes': [submission.problem], 'problem': submission.problem}
@@ -55,11 +55,7 @@ class ExecuteRooms(Preprocessor):
         execution = execute(
             nb,
             extra_files=extra_python_files(folder),
-            seed=_course(resources).seed(resources['nbgrader']['assignment']),
+            seed=Course.of_nbgrader(resources).seed(resources['nbgrader']['assignment']),
             trust_students=self.trust_students,
         )
         return execution.notebook, resources
-
-
-def _course(resources: dict) -> Course:
-    return Course.of_database(resources['nbgrader']['db_url'], root=Path.cwd())

@@ -1,6 +1,7 @@
 """The passes that a submission goes through, the same for `nbgrader autograde` and for us."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import nbformat
 from nbconvert.exporters import Exporter
@@ -8,9 +9,8 @@ from nbformat import NotebookNode
 from traitlets.config import Config
 
 from grader.course import Course
-from grader.heal import KEY, NO_ANSWERS, heal
+from grader.heal import KEY, NO_ANSWERS, Master, heal
 from grader.release import CODE_STUB
-from grader.submission import Submission
 from grader.verdict import refuse
 
 SANITIZE_PASSES = (
@@ -69,17 +69,26 @@ def prepare(course: Course, assignment: str, healed: NotebookNode) -> NotebookNo
     )
 
 
+def prepared_master(course: Course, assignment: str) -> Master:
+    """Return what submissions are healed from with all done to it that `prepare` does.
+
+    What is healed from it need not be prepared: whatever nbgrader changes is the master's.
+    """
+    master = course.master(assignment)
+    return replace(master, notebook=prepare(course, assignment, master.notebook))
+
+
 def finish(executed: NotebookNode, resources: dict) -> NotebookNode:
     """Do with an executed notebook what nbgrader does then: it stores the scores."""
     return apply(_after('grader.passes.ExecuteRooms', AUTOGRADE_PASSES), executed, resources)
 
 
-def unanswered(course: Course, submission: Submission, reason: str) -> NotebookNode:
-    """Return what stands for a submission that can't be graded: nothing answered, and why."""
-    nothing = nbformat.v4.new_notebook()
-    notebook = prepare(
-        course, submission.assignment, heal(nothing, course.master(submission.assignment)).notebook
-    )
+def unanswered(master: Master, reason: str) -> NotebookNode:
+    """Return what stands for a submission that can't be graded: nothing answered, and why.
+
+    The master is a prepared one.
+    """
+    notebook = heal(nbformat.v4.new_notebook(), master).notebook
     notebook.metadata[KEY] = {'notes': [reason], 'problem': reason}
     refuse(notebook, reason)
     return notebook

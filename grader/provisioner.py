@@ -17,7 +17,8 @@ from my_robot_basics.live.domain import Claim, claim
 from grader.errors import RoomFailure
 from grader.places import Place, environment_of
 from grader.sandbox import Sandbox
-from grader.warm import NoWarmKernel, fork_into
+from grader.servers import NoWarmKernel
+from grader.warm import fork_into
 
 START_TIMEOUT_SEC = 60.0
 NAME = 'my_robot_basics_sandbox'

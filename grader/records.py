@@ -48,8 +48,12 @@ def records(course: Course, *, only: Collection[tuple[str, str]] | None = None) 
 
 def verdicts(course: Course, student_id: str, assignment: str) -> dict[str, NotebookNode]:
     """Return what the executed notebook says of each graded cell, by grade id."""
-    cells = graded_notebook(course, student_id, assignment).cells
-    return {grade_id(cell): cell.metadata.get(KEY, {}) for cell in cells if grade_id(cell)}
+    return verdicts_in(graded_notebook(course, student_id, assignment))
+
+
+def verdicts_in(graded: NotebookNode) -> dict[str, NotebookNode]:
+    """Return what an executed notebook says of each graded cell, by grade id."""
+    return {grade_id(cell): cell.metadata.get(KEY, {}) for cell in graded.cells if grade_id(cell)}
 
 
 def graded_notebook(course: Course, student_id: str, assignment: str) -> NotebookNode:

@@ -9,7 +9,6 @@ of that stand as comments right behind the answer, and take the stub's place:
     ### BROKEN: self.timer = self.create_timer(5.0, self.tick)
 """
 
-import os
 import re
 import subprocess
 import sys
@@ -22,8 +21,10 @@ from nbformat import NotebookNode
 
 from grader.course import Course
 from grader.errors import CourseError
+from grader.files import write_whole
 from grader.index import write_pages
 from grader.leaks import BROKEN, files_in, leaks_of
+from grader.outputs import WIDGET_VIEW
 
 PASSES = (
     'grader.release.TidyMetadata',
@@ -47,7 +48,6 @@ CODE_STUB = {'python': '# YOUR CODE HERE'}
 KERNELSPEC = {'display_name': 'Python 3 (ipykernel)', 'language': 'python', 'name': 'python3'}
 METADATA = {'kernelspec': KERNELSPEC, 'language_info': {'name': 'python'}}
 CELL_METADATA = ('nbgrader', 'tags', 'deletable', 'editable')
-WIDGET_VIEW = 'application/vnd.jupyter.widget-view+json'
 
 
 class TidyMetadata(Preprocessor):
@@ -131,7 +131,9 @@ def release(course: Course, assignment: str = '*') -> list[str]:
             raise CourseError('nothing was released: ' + '; '.join(leaks))
         changed = [path for path in files_in(built) if _differs(built, course, path)]
         for path in changed:
-            _put(built / path, course.root / 'notebooks' / path)
+            place = course.root / 'notebooks' / path
+            place.parent.mkdir(parents=True, exist_ok=True)
+            write_whole(place, (built / path).read_bytes())
     return [str(path) for path in changed]
 
 
@@ -184,10 +186,3 @@ def _names(built: Path) -> list[str]:
 def _differs(built: Path, course: Course, path: Path) -> bool:
     released = course.root / 'notebooks' / path
     return not released.is_file() or released.read_bytes() != (built / path).read_bytes()
-
-
-def _put(built: Path, place: Path) -> None:
-    place.parent.mkdir(parents=True, exist_ok=True)
-    aside = place.with_name(f'.{place.name}.new')
-    aside.write_bytes(built.read_bytes())
-    os.replace(aside, place)

@@ -2,16 +2,14 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 
-import nbformat
-from nbformat import NotebookNode
-
 from grader.course import Course
 from grader.crew import Crew, judged
 from grader.errors import CourseError
-from grader.grade import HandedIn
 from grader.heal import KEY, grade_id, role
-from grader.records import verdicts
+from grader.pipeline import prepared_master
+from grader.records import graded_notebook, verdicts
 from grader.submission import read_submission
+from grader.submitted import HandedIn
 from grader.text import printable
 from grader.workers import Workers
 
@@ -33,14 +31,15 @@ def replay(
     """
     found = [each for each in submissions if not each.problem]
     seeds = [recorded_seed(course, each) if seed == RECORDED else seed for each in found]
+    masters = {name: prepared_master(course, name) for name in {each.assignment for each in found}}
     with crew or Workers() as crew:
         crew.isolated(trust_students=trust_students)
         work = [
             judged(
-                course,
                 read_submission(
                     each.folder, student_id=each.student_id, assignment=each.assignment
                 ),
+                masters[each.assignment],
                 crew=crew,
                 seed=its,
                 trust_students=trust_students,
@@ -59,9 +58,7 @@ def replay(
 
 def recorded_seed(course: Course, found: HandedIn) -> str:
     """Return the seed of a submission's stored result. Raises CourseError where there is none."""
-    folder = course.folder('autograded', found.student_id, found.assignment)
-    path = folder / f'{found.assignment}.ipynb'
-    graded = nbformat.read(path, as_version=4) if path.exists() else NotebookNode(metadata={})
+    graded = graded_notebook(course, found.student_id, found.assignment)
     about = graded.metadata.get(KEY, {})
     seed = course.seed(found.assignment) if 'problem' in about else about.get('seed')
     if not seed:

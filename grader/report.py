@@ -6,8 +6,6 @@ from dataclasses import asdict, dataclass
 from datetime import datetime
 from pathlib import Path
 
-from jinja2 import Environment, FileSystemLoader
-
 from grader.charts import distribution, share
 from grader.course import Course
 from grader.files import write_whole
@@ -16,6 +14,7 @@ from grader.isolation import isolated
 from grader.reasons import Reason
 from grader.table import changes, score_of
 from grader.tally import Tally, tally
+from grader.templates import template
 from grader.text import printable
 from grader.versions import versions
 
@@ -117,11 +116,4 @@ def _new_folder(runs: Path, began: datetime) -> Path:
             return folder
 
 
-_ENVIRONMENT = Environment(
-    loader=FileSystemLoader(Path(__file__).parent),
-    autoescape=True,
-    trim_blocks=True,
-    lstrip_blocks=True,
-)
-_ENVIRONMENT.globals |= {'distribution': distribution, 'share': share}
-_TEMPLATE = _ENVIRONMENT.get_template('report.html.j2')
+_TEMPLATE = template('report.html.j2', values={'distribution': distribution, 'share': share})

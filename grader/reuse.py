@@ -6,13 +6,14 @@ from pathlib import Path
 
 import nbformat
 from nbformat import NotebookNode
-from nbgrader.api import Gradebook, SubmittedNotebook
+from nbgrader.api import SubmittedNotebook
 
 from grader.course import Course
+from grader.database import connected
 from grader.gradebook import Stored, submitted_notebook, waits_for_a_person
 from grader.heal import KEY, grade_id, role
 from grader.pipeline import apply, first_reason, resources_of
-from grader.submission import Submission
+from grader.submission import TIMESTAMP, Submission
 from grader.versions import machinery
 
 LATE = ('grader.lateness.LatePenalties',)
@@ -28,7 +29,7 @@ def conditions(course: Course, assignment: str, *, seed: str, isolated: bool) ->
 
 def key_of(submission: Submission, given: str) -> str:
     """Return a hash of a submission's files and of the conditions under which it is graded."""
-    files = [submission.path.with_name('timestamp.txt'), *submission.extra_files]
+    files = [submission.path.with_name(TIMESTAMP), *submission.extra_files]
     if submission.problem is None:
         files.append(submission.path)
     parts = [given, submission.assignment, submission.problem or '']
@@ -60,13 +61,13 @@ def held(course: Course, submission: Submission, graded: NotebookNode) -> Stored
     Manual scores are left as they are. None where the gradebook holds anything else for it.
     """
     student, assignment = submission.student_id, submission.assignment
-    with Gradebook(course.db_url) as book:
+    with connected(course.db_url) as book:
         found = submitted_notebook(book, student, assignment)
         if found is None or not _agree(found.grades, graded):
             return None
         former = _score(found)
     apply(LATE, graded, resources_of(course, assignment, student))
-    with Gradebook(course.db_url) as book:
+    with connected(course.db_url) as book:
         found = submitted_notebook(book, student, assignment)
         return Stored(
             score=_score(found),

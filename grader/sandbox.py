@@ -7,7 +7,7 @@ each room beside it, and everything in a room dies with its first process.
 import asyncio
 import contextlib
 import os
-import resource
+import re
 import shutil
 import signal
 import subprocess
@@ -30,6 +30,8 @@ from grader.errors import RoomFailure
 from grader.limits import ROOM_MEMORY_BYTES
 from grader.places import Keeper, Place, make_folder
 from grader.seccomp import seccomp_filter
+
+_OWN = re.compile(r'^Rss(?:Anon|Shmem):\s+(\d+) kB$', re.MULTILINE)
 
 OPEN_TIMEOUT_SEC = 30.0
 CLOSE_TIMEOUT_SEC = 10.0
@@ -170,6 +172,6 @@ class Sandbox:
 
 
 def _own_memory(pid: int) -> int:
-    """Return the bytes that a process shares with no file."""
-    resident, shared = Path(f'/proc/{pid}/statm').read_text(encoding='ascii').split()[1:3]
-    return (int(resident) - int(shared)) * resource.getpagesize()
+    """Return the bytes that a process shares with no file; with other processes, perhaps."""
+    status = Path(f'/proc/{pid}/status').read_text(encoding='utf-8', errors='replace')
+    return 1_024 * sum(map(int, _OWN.findall(status)))

@@ -2,6 +2,7 @@
 
 import json
 import re
+import secrets
 from collections.abc import Iterable
 from dataclasses import dataclass
 from datetime import datetime
@@ -17,6 +18,10 @@ MAX_NOTEBOOK_BYTES = 20_000_000
 """More than any lesson with all its pictures; a larger file is refused, not read."""
 
 MAX_CELLS = 2_000
+MAX_CHARACTERS = 500_000
+"""Of all cells together, pictures apart: twenty times what a lesson has."""
+TIMESTAMP = 'timestamp.txt'
+"""Beside a notebook: when it was handed in, as nbgrader writes it."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +64,7 @@ def extra_python_files(folder: Path) -> list[Path]:
 
 def timestamps(submission: Submission) -> list[Path]:
     """Return nbgrader's timestamp.txt, if it lies beside the notebook."""
-    path = submission.path.with_name('timestamp.txt')
+    path = submission.path.with_name(TIMESTAMP)
     return [path] if path.is_file() and not path.is_symlink() else []
 
 
@@ -70,7 +75,7 @@ def handed_in(submission: Submission) -> tuple[datetime | None, list[str]]:
     try:
         return parse_utc(found[0].read_text(encoding='utf-8').strip() or None), []
     except (ValueError, OverflowError):
-        return None, ['timestamp.txt holds no date: counted as handed in on time']
+        return None, [f'{TIMESTAMP} holds no date: counted as handed in on time']
 
 
 def read_notebook(path: Path) -> NotebookNode:
@@ -93,6 +98,12 @@ def read_notebook(path: Path) -> NotebookNode:
     if len(cells) > MAX_CELLS:
         raise UnreadableSubmission(
             f'{path.name} has {len(cells)} cells, more than the {MAX_CELLS} that are graded.'
+        )
+    characters = sum(len(cell.source) for cell in cells)
+    if characters > MAX_CHARACTERS:
+        raise UnreadableSubmission(
+            f'{path.name} has {characters:,} characters of text and code, more than the '
+            f'{MAX_CHARACTERS:,} that are graded.'
         )
     return nbformat.v4.new_notebook(cells=cells)
 
@@ -132,17 +143,21 @@ def _clean_cell(cell: dict) -> NotebookNode:
     grade_id = nbgrader.get('grade_id') if isinstance(nbgrader, dict) else None
     if isinstance(grade_id, str):
         metadata = {'nbgrader': {'grade_id': grade_id}}
-    if cell.get('cell_type') == 'code':
-        clean = nbformat.v4.new_code_cell(source, metadata=metadata)
-    elif cell.get('cell_type') == 'raw':
-        clean = nbformat.v4.new_raw_cell(source, metadata=metadata)
-    else:
-        clean = nbformat.v4.new_markdown_cell(source, metadata=metadata)
-        if pictures := _pictures(cell.get('attachments')):
-            clean.attachments = pictures
+    kind = cell.get('cell_type')
+    # nbformat's own functions for this check each cell against all of their schema
+    clean = {
+        'id': secrets.token_hex(4),
+        'cell_type': kind if kind in ('code', 'raw') else 'markdown',
+        'metadata': metadata,
+        'source': source,
+    }
     if isinstance(cell_id, str) and re.fullmatch('[a-zA-Z0-9_-]{1,64}', cell_id):
-        clean.id = cell_id
-    return clean
+        clean['id'] = cell_id
+    if kind == 'code':
+        clean |= {'execution_count': None, 'outputs': []}
+    elif clean['cell_type'] == 'markdown' and (pictures := _pictures(cell.get('attachments'))):
+        clean['attachments'] = pictures
+    return nbformat.from_dict(clean)
 
 
 def _pictures(attachments: object) -> NotebookNode:

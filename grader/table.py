@@ -9,7 +9,8 @@ from contextlib import contextmanager
 
 from tqdm import tqdm
 
-from grader.grade import HandedIn, Row
+from grader.grade import Row
+from grader.submitted import HandedIn
 from grader.text import columns, pad, printable, shorten
 
 MAX_NAME_COLUMNS = 40

@@ -12,7 +12,7 @@ from grader.grade import Row
 from grader.heal import KEY, grade_id
 from grader.page import docstring
 from grader.reasons import Reason, Said, grouped
-from grader.records import Record, graded_notebook, records
+from grader.records import Record, graded_notebook, records, verdicts_in
 
 WRITTEN = 'a written answer that a person reads'
 
@@ -149,7 +149,7 @@ def _check(cells: list[Record], title: str | None, failures: list[Said]) -> Chec
 
 def _failures(notebooks: dict[tuple[str, str], NotebookNode]) -> Iterable[Said]:
     for whose, notebook in notebooks.items():
-        for name, verdict in _verdicts(notebook).items():
+        for name, verdict in verdicts_in(notebook).items():
             if verdict.get('outcome') == 'failed':
                 yield Said(*whose, name, verdict.get('reason', ''))
 
@@ -168,12 +168,8 @@ def _looks(
         if problem := notebook.metadata.get(KEY, {}).get('problem'):
             yield Said(*whose, '', f'unreadable, so it earned nothing: {problem}')
             continue
-        verdicts = _verdicts(notebook)
+        verdicts = verdicts_in(notebook)
         for record in of_cells[whose]:
             if record.score is None:
                 reason = verdicts.get(record.grade_id, {}).get('reason') or WRITTEN
                 yield Said(*whose, record.grade_id, reason)
-
-
-def _verdicts(notebook: NotebookNode) -> dict[str, dict]:
-    return {grade_id(c): c.metadata.get(KEY, {}) for c in notebook.cells if grade_id(c)}

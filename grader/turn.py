@@ -64,7 +64,7 @@ class TakeTurns(Preprocessor):
 
     def preprocess(self, nb: NotebookNode, resources: dict) -> tuple[NotebookNode, dict]:
         """Wait for the turn; change nothing."""
-        course = Course.of_database(resources['nbgrader']['db_url'], root=Path.cwd())
+        course = Course.of_nbgrader(resources)
         resources['my_robot_basics_turn'] = Turn.take(course.gradebook, self.log.warning)
         return nb, resources
 

@@ -1,0 +1,161 @@
+"""List what stands in a zip or a tar that nobody vouches for: its paths are read as text alone."""
+
+import bz2
+import gzip
+import io
+import lzma
+import re
+import stat
+import tarfile
+import tempfile
+import unicodedata
+import zipfile
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from functools import partial
+from pathlib import Path
+from typing import BinaryIO
+
+MAX_PARTS, MAX_NAME_BYTES = 20, 255
+"""Folders within folders, and what a file system takes as a name."""
+MAX_READ_BYTES = 8_000_000
+"""A zip's table of contents and a tar's headers are read at once: so much names 50,000 files."""
+CHUNK = 1 << 20
+
+TAR_READERS = {'.tar': open, '.gz': gzip.open, '.tgz': gzip.open}
+TAR_READERS |= {'.bz2': bz2.open, '.tbz2': bz2.open, '.xz': lzma.open, '.txz': lzma.open}
+ARCHIVE = re.compile(r'\.(zip|tar|tgz|tbz2|txz|tar\.(gz|bz2|xz))$', re.IGNORECASE)
+"""How names of archives end that can be read."""
+
+
+@dataclass(frozen=True)
+class Entry:
+    """What an archive says of one file in it."""
+
+    parts: tuple[str, ...]
+    """Its path, component by component."""
+    modified: datetime | None
+    """In UTC; None where that is no time."""
+    problem: str
+    """Why it must not be unpacked."""
+    content: Callable[[], BinaryIO]
+    """Open it; what is read then, and whether it can be, is up to the archive."""
+
+
+class Refused(Exception):
+    """Says in a sentence why there is no going on."""
+
+
+def entries(archive: Path, *, name: str, aside: Path, most: int) -> Iterator[Entry]:
+    """Yield the files that an archive names; folders are left out.
+
+    `name` tells its kind. A tar is unpacked into `aside` first, `most` bytes of it. Raises
+    Refused, and whatever Python's readers of archives raise at a broken one.
+    """
+    if name.lower().endswith('.zip'):
+        yield from _zipped(archive)
+    else:
+        yield from _tarred(archive, name=name, aside=aside, most=most)
+
+
+def copy(source: BinaryIO, target: BinaryIO, *, most: int) -> bool:
+    """Copy `most` bytes at most; return whether that was all."""
+    while chunk := source.read(min(CHUNK, most + 1)):
+        most -= len(chunk)
+        if most < 0:
+            return False
+        target.write(chunk)
+    return True
+
+
+class _Careful(io.FileIO):
+    """A file of which nobody reads much at once, whatever lengths it claims to have."""
+
+    def read(self, size: int = -1) -> bytes:
+        if size > MAX_READ_BYTES:
+            raise Refused(f'broken: its table of contents claims {size / 1e6:.0f} MB')
+        return super().read(size)
+
+
+def _zipped(archive: Path) -> Iterator[Entry]:
+    with _Careful(archive) as raw, zipfile.ZipFile(raw) as box:
+        for info in box.infolist():
+            if info.is_dir():
+                continue
+            parts, problem = _parts(_decoded(info))
+            kind = stat.S_IFMT(info.external_attr >> 16)
+            if kind == stat.S_IFLNK:
+                problem = 'a link: only files are taken'
+            elif kind not in (0, stat.S_IFREG):
+                problem = 'a device or the like: only files are taken'
+            elif info.flag_bits & 1:
+                problem = 'encrypted: ask for it without a password'
+            yield Entry(parts, _local(info.date_time), problem, partial(box.open, info))
+
+
+def _decoded(info: zipfile.ZipInfo) -> str:
+    """Return a name as it was meant: many programs write UTF-8 and do not say so."""
+    name = info.orig_filename
+    if not info.flag_bits & 0x800:
+        try:
+            name = name.encode('cp437').decode()
+        except UnicodeError:
+            return name
+    return name
+
+
+def _local(date: tuple[int, ...]) -> datetime | None:
+    """Return a zip's time, which is that of a wall clock, taken to be this machine's."""
+    try:
+        return datetime(*date).astimezone(UTC)
+    except (ValueError, OverflowError, OSError):
+        return None
+
+
+def _tarred(archive: Path, *, name: str, aside: Path, most: int) -> Iterator[Entry]:
+    reader = TAR_READERS[Path(name.lower()).suffix]
+    with tempfile.TemporaryDirectory(dir=aside) as folder:
+        plain = Path(folder, 'plain.tar')
+        with reader(archive, 'rb') as packed, plain.open('wb') as unpacked:
+            if not copy(packed, unpacked, most=most):
+                raise Refused(f'over {most / 1e6:.0f} MB once unpacked: a bomb?')
+        with _Careful(plain) as raw, tarfile.open(fileobj=raw, mode='r:') as box:
+            while (info := box.next()) is not None:
+                box.members.clear()  # a million headers need no memory
+                if info.isdir():
+                    continue
+                parts, problem = _parts(info.name)
+                if info.issym() or info.islnk():
+                    problem = 'a link: only files are taken'
+                elif not info.isreg() or info.issparse():
+                    problem = 'a device or the like: only files are taken'
+                yield Entry(parts, _utc(info.mtime), problem, partial(box.extractfile, info))
+            raw.seek(box.offset)
+            end = raw.read(tarfile.BLOCKSIZE)
+            if len(end) < tarfile.BLOCKSIZE or any(end):
+                raise Refused('broken: it ends too early, or is no tar any more')
+
+
+def _utc(seconds: float) -> datetime | None:
+    try:
+        return datetime.fromtimestamp(seconds, UTC)
+    except (ValueError, OverflowError, OSError):
+        return None
+
+
+def _parts(path: str) -> tuple[tuple[str, ...], str]:
+    """Split a path as Unix and Windows write it; say what is wrong with it."""
+    path = path.replace('\\', '/')
+    parts = tuple(unicodedata.normalize('NFC', part) for part in path.split('/') if part)
+    problem = ''
+    if path.startswith('/') or re.match('[A-Za-z]:', path):
+        problem = 'its path is an absolute one'
+    elif '..' in parts:
+        problem = 'its path leads out of the archive'
+    elif len(parts) > MAX_PARTS:
+        problem = f'it lies more than {MAX_PARTS} folders deep'
+    elif any(len(part.encode(errors='replace')) > MAX_NAME_BYTES for part in parts):
+        problem = 'its name is longer than a file system takes'
+    parts = tuple(part for part in parts if part != '.')
+    return parts or ('.',), problem or ('' if parts else 'it has no name')

@@ -1,0 +1,82 @@
+"""Be a process that can be forked: one thread, and no memory that others share."""
+
+import os
+import sys
+import threading
+import time
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+
+import libc
+
+_ASLEEP_SEC = 10.0
+
+
+def become_alone() -> None:
+    """Leave behind what an import has started or shares. Raises RuntimeError where more is left.
+
+    What goes on is a child of the process that called it.
+    """
+    _leave_threads_behind()
+    _unshare_memory()
+    _expect_nothing_shared()
+
+
+def _leave_threads_behind() -> None:
+    """Go on as a process that has this thread alone.
+
+    LTTng, which the ROS wheels bring, waits for its daemon in two. They do nothing else, and hold
+    no lock while they sleep.
+    """
+    deadline = time.monotonic() + _ASLEEP_SEC
+    while not all(_asleep(task) for task in _other_threads()):
+        if time.monotonic() > deadline:
+            raise RuntimeError('an import has started threads that do not come to rest')
+        time.sleep(0.001)
+    with warnings.catch_warnings():
+        warnings.simplefilter('ignore', DeprecationWarning)  # that there are threads, we know
+        if os.fork():
+            os._exit(0)
+
+
+def _other_threads() -> list[str]:
+    if threading.active_count() > 1:
+        raise RuntimeError(f'an import has started threads: {threading.enumerate()}')
+    return [task for task in os.listdir('/proc/self/task') if int(task) != os.getpid()]
+
+
+def _asleep(task: str) -> bool:
+    stat = Path('/proc/self/task', task, 'stat').read_text(encoding='utf-8')
+    return stat.rpartition(')')[2].split()[0] == 'S'
+
+
+def _unshare_memory() -> None:
+    """Put memory of our own in the place of what an import shares with the machine."""
+    for start, end in [(s, e) for s, e, _, path in _shared() if path.startswith('/dev/shm/')]:
+        libc.put_own_memory(start, end)
+
+
+def _shared() -> Iterator[tuple[int, int, str, str]]:
+    """Yield begin, end, rights and path of this process's shared memory."""
+    for line in Path('/proc/self/maps').read_text(encoding='utf-8').splitlines():
+        addresses, rights, _, _, _, *path = line.split(maxsplit=5)
+        if rights.endswith('s'):
+            start, end = (int(address, 16) for address in addresses.split('-'))
+            yield start, end, rights, ''.join(path)
+
+
+def _expect_nothing_shared() -> None:
+    """Raise RuntimeError where a fork would not get all, or would share memory with others.
+
+    A read-only file that each room has anyway is no such memory.
+    """
+    threads = len(os.listdir('/proc/self/task'))
+    if threads != 1 or threading.active_count() != 1:
+        raise RuntimeError(f'there are {threads} threads, and none but one would be forked')
+    python = Path('/proc/self/exe')
+    if python.stat().st_uid == os.geteuid() != 0 and not os.readlink(python).startswith('/memfd:'):
+        raise RuntimeError(f'{python.resolve()} is the own file of whom its kernels would be')
+    for _, _, rights, path in _shared():
+        if rights != 'r--s' or not path.startswith(('/usr/', sys.prefix, sys.base_prefix)):
+            raise RuntimeError(f'an import has made shared memory: {rights} {path}')

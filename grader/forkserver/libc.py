@@ -1,0 +1,28 @@
+"""System calls for which this Python has no function of its own."""
+
+import ctypes
+import mmap
+import os
+
+_MAP_FIXED = 0x10
+
+_libc = ctypes.CDLL(None, use_errno=True)
+_libc.mmap.restype = ctypes.c_void_p
+
+
+def call(name: str, *arguments: int | bytes) -> None:
+    """Call a function of the C library that returns -1 where it fails. Raises OSError then."""
+    given = [ctypes.c_ulong(a) if isinstance(a, int) else a for a in arguments]
+    if getattr(_libc, name)(*given) == -1:
+        number = ctypes.get_errno()
+        raise OSError(number, f'{name}: {os.strerror(number)}')
+
+
+def put_own_memory(start: int, end: int) -> None:
+    """Put empty memory, to be read alone, in the place of what lies there. Raises OSError."""
+    place = _libc.mmap(
+        ctypes.c_void_p(start), ctypes.c_size_t(end - start), mmap.PROT_READ,
+        mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS | _MAP_FIXED, -1, ctypes.c_long(0),
+    )  # fmt: skip
+    if place != start:
+        raise OSError(ctypes.get_errno(), 'mmap')

@@ -1,0 +1,105 @@
+"""What a forked process does to become a kernel: enter its room, and give up all rights."""
+
+import ctypes
+import json
+import os
+import random
+import resource
+import signal
+import socket
+import struct
+import sys
+import time
+from pathlib import Path
+
+from libc import call
+
+_MAX_ORDER = 1_000_000
+_NAMESPACES = {
+    'user': 0x10000000, 'mnt': 0x00020000, 'net': 0x40000000, 'pid': 0x20000000,
+    'ipc': 0x08000000, 'uts': 0x04000000, 'cgroup': 0x02000000,
+}  # fmt: skip
+_PR_SET_DUMPABLE, _PR_SET_SECCOMP, _PR_CAPBSET_DROP = 4, 22, 24
+_PR_SET_NO_NEW_PRIVS, _PR_CAP_AMBIENT = 38, 47
+_SECCOMP_MODE_FILTER, _CLEAR_ALL, _CAPABILITIES_V3 = 2, 4, 0x20080522
+
+
+def become_a_kernel(errand: socket.socket, made: dict[str, str]) -> None:
+    """Do as ordered, in the room of an errand, and return where only the kernel is left to start.
+
+    `made` is what imports have put into the environment. The process that was forked first can't
+    enter a PID namespace itself: its child does. Neither returns where something fails.
+    """
+    try:
+        signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+        text, (room,), _, _ = socket.recv_fds(errand, _MAX_ORDER, 1)
+        order = json.loads(text)
+        order['environment'] |= made
+        _enter(room, order)
+        os.setsid()
+        if child := os.fork():
+            socket.send_fds(errand, [b'kernel'], [os.pidfd_open(child)])
+            os._exit(0)
+        _settle(order, keep=errand.fileno())
+    except BaseException as error:
+        errand.send(f'{type(error).__name__}: {error}'[:2000].encode())
+        os._exit(1)
+    errand.close()  # its end says that all went well
+
+
+def close_all_but(keep: int) -> None:
+    """Close all files but the standard ones and `keep`."""
+    os.closerange(3, keep)
+    os.closerange(keep + 1, 1 << 20)
+
+
+def _enter(room: int, order: dict) -> None:
+    """Go where the process of a pidfd is; groups and user first: they are not known there."""
+    if order['user'] is not None:
+        os.setgroups([])
+        os.setresgid(*[order['user']] * 3)
+        os.setresuid(*[order['user']] * 3)
+    call('setns', room, sum(_NAMESPACES[name] for name in order['namespaces']))
+
+
+def _settle(order: dict, *, keep: int) -> None:
+    """Give up all rights, and be as a new process is there; only the file `keep` stays open."""
+    null = os.open('/dev/null', os.O_RDWR)
+    for standard in (0, 1, 2):
+        os.dup2(null, standard)
+    os.chdir(order['folder'])
+    _drop_capabilities()
+    call('prctl', _PR_SET_DUMPABLE, 1, 0, 0, 0)  # else /proc/self would be somebody else's
+    Path('/proc/self/oom_score_adj').write_text(str(order['oom_score_adj']), encoding='ascii')
+    for kind, most in order['limits']:
+        resource.setrlimit(kind, (most, most))
+    os.environ.clear()
+    os.environ.update(order['environment'])
+    time.tzset()
+    call('prctl', _PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0)
+    _filter_system_calls(bytes.fromhex(order['seccomp']))
+    _forget(order['command'])
+    close_all_but(keep)
+
+
+def _drop_capabilities() -> None:
+    last = int(Path('/proc/sys/kernel/cap_last_cap').read_text(encoding='ascii'))
+    for capability in range(last + 1):
+        call('prctl', _PR_CAPBSET_DROP, capability, 0, 0, 0)
+    call('prctl', _PR_CAP_AMBIENT, _CLEAR_ALL, 0, 0, 0)
+    call('capset', struct.pack('=Ii', _CAPABILITIES_V3, 0), bytes(24))
+
+
+def _filter_system_calls(program: bytes) -> None:
+    instructions = ctypes.create_string_buffer(program, len(program))
+    header = struct.pack('@HP', len(program) // 8, ctypes.addressof(instructions))
+    call('prctl', _PR_SET_SECCOMP, _SECCOMP_MODE_FILTER, header, 0, 0)
+
+
+def _forget(command: list[str]) -> None:
+    """Have nothing in common with other kernels that was made up by chance, nor old listings."""
+    random.seed()
+    sys.modules['numpy'].random.seed()
+    sys.path_importer_cache.clear()
+    sys.orig_argv[:] = command
+    sys.argv[:] = [sys.modules['ipykernel'].__path__[0] + '_launcher.py', *command[3:]]
