@@ -7,12 +7,14 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from grader.course import Course
-from grader.grade import Row, find_submissions, grade_all
+from grader.crew import Crew
+from grader.grade import Row, grade_all
+from grader.submitted import find_submissions
 
 FOLDER = Path(__file__).parent / 'submissions'
 sys.path.insert(0, str(FOLDER))
 
-from rebase import assignment_of, rebased, samples  # noqa: E402
+from rebase import assignment_of, rebased, samples  # noqa: E402 - found only now
 
 __all__ = ['EXPECTED', 'FOLDER', 'PATHS', 'assignment_of', 'grade', 'hand_in', 'rebased']
 
@@ -35,7 +37,7 @@ def hand_in(course: Course, names: Iterable[str]) -> None:
         shutil.copyfile(PATHS[name], folder / f'{assignment}.ipynb')
 
 
-def grade(course: Course, names: Iterable[str]) -> dict[str, Row]:
+def grade(course: Course, names: Iterable[str], *, crew: Crew | None = None) -> dict[str, Row]:
     """Grade samples as `./course grade` does; return the rows by the samples' names."""
     hand_in(course, names)
-    return {row.student_id: row for row in grade_all(course, find_submissions(course))}
+    return {row.student_id: row for row in grade_all(course, find_submissions(course), crew=crew)}

@@ -3,8 +3,9 @@
 import logging
 import multiprocessing
 import os
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -14,16 +15,23 @@ OURS = ('MY_ROBOT_BASICS_', 'ROS_', 'RCUTILS_', 'FASTRTPS_', 'PYTEST_', 'JPY_')
 """What a test session has in its environment and a student's JupyterLab has not."""
 
 
-def validate_all(paths: Iterable[Path], *, at_a_time: int = 6) -> dict[str, dict]:
-    """Put notebooks through nbgrader's stock Validator; return what it found, by the file's stem.
+@contextmanager
+def validators(at_a_time: int = 4) -> Iterator[Callable[[Iterable[Path]], dict[str, dict]]]:
+    """Yield a function that puts notebooks through nbgrader's stock Validator, several at a time.
 
-    That is the Validator's own answer ('failed', 'changed' and 'type_changed' are lists of cells,
-    by their source), or {'broken': why} where it came to none.
+    What it returns, by the file's stem, is the Validator's own answer ('failed', 'changed' and
+    'type_changed' are lists of cells, by their source), or {'broken': why} where it came to none.
     """
-    spawn = multiprocessing.get_context('spawn')
-    with ProcessPoolExecutor(at_a_time, mp_context=spawn, initializer=_leave_the_tests) as pool:
-        paths = list(paths)
-        return dict(zip([path.stem for path in paths], pool.map(_validate, paths), strict=True))
+    context = multiprocessing.get_context('forkserver')  # each importing nbgrader takes long
+    context.set_forkserver_preload(['nbgrader.validator', __name__])
+    with ProcessPoolExecutor(at_a_time, mp_context=context, initializer=_leave_the_tests) as pool:
+
+        def validate_all(paths: Iterable[Path]) -> dict[str, dict]:
+            paths = list(paths)
+            found = pool.map(_validate, paths)
+            return dict(zip([path.stem for path in paths], found, strict=True))
+
+        yield validate_all
 
 
 def _leave_the_tests() -> None:

@@ -30,7 +30,7 @@ def run(root: str, gradebook: str, log: str, kill_at: int = 0) -> None:
                 os.kill(os.getpid(), signal.SIGKILL)
 
     stand_in(Path(log))
-    sys.stdout = sys.stderr = open(os.devnull, 'w')  # noqa: SIM115
+    sys.stdout = sys.stderr = open(os.devnull, 'w')  # noqa: SIM115 - open to the end
     sys.setprofile(count)
     status = main(['grade'], course=Course(root=Path(root), gradebook=Path(gradebook)))
     sys.setprofile(None)

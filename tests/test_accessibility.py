@@ -1,20 +1,18 @@
 """What axe-core finds in the pages that students read: nothing serious."""
 
-import shutil
 from datetime import datetime
 
 import nbformat
 import pytest
 from axe_playwright_python.sync_playwright import Axe
+from chromium import drives_chromium, launched
 from nbconvert import HTMLExporter
-from playwright.sync_api import sync_playwright
 from sample_class import PATHS, assignment_of, grade
 
 from grader.course import ROOT, Course
 from grader.feedback import write_feedback
 from grader.report import Run, write_report
 
-CHROMIUM = next(filter(None, map(shutil.which, ['chromium', 'chromium-browser'])), None)
 LESSONS = sorted(ROOT.glob('notebooks/**/*.ipynb'))
 OF_THE_THEME = ['.jp-InputPrompt', '.jp-OutputPrompt', '.highlight']
 """Coloured by Jupyter and not by us: the numbers of cells, and the code."""
@@ -23,18 +21,13 @@ LINKS_OF_THE_THEME = {'link-in-text-block': {'enabled': False}}
 NO_WORDS = 'No description has been provided for this image'
 """What nbconvert says of a picture that comes without alternative text."""
 
-pytestmark = [
-    pytest.mark.browser,
-    pytest.mark.skipif(CHROMIUM is None, reason='no chromium here: .ci/run installs it'),
-]
+pytestmark = drives_chromium
 
 
 @pytest.fixture(scope='module')
 def page():
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=['--no-sandbox'])
+    with launched() as browser:
         yield browser.new_page(bypass_csp=True)
-        browser.close()
 
 
 def serious(page, html):

@@ -8,7 +8,7 @@ import zipfile
 
 import pytest
 
-from grader import archives
+from grader import archives, entries
 from grader.archives import Allowance, unpack
 
 A_ZIP, A_TAR = 'x.zip', 'x.tar.gz'
@@ -65,7 +65,7 @@ def test_files_are_copied_and_told_by_their_paths(make, tmp_path):
 )
 def test_every_kind_of_tar_is_read(suffix, mode, tmp_path):
     archive = tarred(tmp_path, ('a.py', b'one'), name=f'x{suffix}', mode=mode)
-    assert archives.ARCHIVE.search(archive.name)
+    assert entries.ARCHIVE.search(archive.name)
     assert said(archive) == {'a.py': 'one'}
 
 
@@ -177,7 +177,7 @@ def test_too_many_files_are_not_read(make, tmp_path):
 
 
 def test_a_table_of_contents_that_claims_to_be_huge_is_not_read(tmp_path, monkeypatch):
-    monkeypatch.setattr(archives, 'MAX_READ_BYTES', 1_000)
+    monkeypatch.setattr(entries, 'MAX_READ_BYTES', 1_000)
     archive = zipped(tmp_path, *((f'{i:0100}.py', b'') for i in range(20)))
     (refused,) = members(archive)
     assert 'its table of contents claims' in refused.problem
@@ -214,6 +214,7 @@ def test_a_damaged_file_does_not_keep_the_others_from_being_read(tmp_path):
     archive.write_bytes(content)
     found = said(archive)
     assert found['a.py'].startswith('broken: ')
+    assert found['a.py'].endswith('; get it again, or collect the folder that it was made from')
     assert found['b.py'] == 'good'
 
 
@@ -237,10 +238,10 @@ def test_an_encrypted_file_is_named(tmp_path):
 
 
 def test_a_full_disk_is_not_the_archive_s_fault(tmp_path, monkeypatch):
-    def full(*_):
+    def full(*_, **__):
         raise OSError(28, 'No space left on device')
 
-    monkeypatch.setattr(archives, '_copy', full)
+    monkeypatch.setattr(archives, 'copy', full)
     archive = zipped(tmp_path, ('a.py', b'x'))
     with pytest.raises(OSError, match='No space'):
         members(archive)

@@ -34,15 +34,15 @@ from attacks.corpus import (
     earns,
     hand_in_honestly,
 )
-from course_maker import TOY, make_course
+from course_maker import TOY, released_course
 
 from grader.course import Course
 from grader.feedback import write_feedback
-from grader.grade import find_submissions, grade_all
+from grader.grade import grade_all
 from grader.heal import KEY
 from grader.records import verdicts
-from grader.release import release
 from grader.scores import write_scores
+from grader.submitted import find_submissions
 from grader.workers import Workers
 
 pytestmark = pytest.mark.isolation
@@ -65,8 +65,7 @@ class Class:
 
 def grade_class(root, names):
     """Grade attacks, several at a time, honest students in between."""
-    course = make_course(root)
-    release(course, TOY)
+    course = released_course(root)
     add_robot_lesson(course)
     course.gradebook.mkdir(exist_ok=True)
     with (

@@ -14,20 +14,14 @@ from pathlib import Path
 
 import nbformat
 import pytest
-from playwright.sync_api import expect, sync_playwright
+from chromium import LONG, drives_chromium, launched
+from playwright.sync_api import expect
 
 ROOT = Path(__file__).parents[1]
 LESSONS = sorted(path.stem for path in ROOT.glob('notebooks/*/*.ipynb'))
 TOKEN = 'a-token-of-this-test'
-CHROMIUM = next(filter(None, map(shutil.which, ['chromium', 'chromium-browser'])), None)
-LONG = 120_000
-"""Milliseconds: what a slow machine may need for anything here; nothing is judged by it."""
-expect.set_options(timeout=LONG)
 
-pytestmark = [
-    pytest.mark.browser,
-    pytest.mark.skipif(CHROMIUM is None, reason='no chromium here: .ci/run installs it'),
-]
+pytestmark = drives_chromium
 
 WRONG = """\
 def to_joint_state(theta1_deg, theta2_deg, stamp):
@@ -187,10 +181,8 @@ def lab(tmp_path_factory):
 
 @pytest.fixture(scope='module')
 def chromium():
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=['--no-sandbox'])
+    with launched() as browser:
         yield browser
-        browser.close()
 
 
 @pytest.fixture

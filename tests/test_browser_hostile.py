@@ -1,7 +1,6 @@
 """What a hostile student handed in, in the instructor's browser: it is shown, and does nothing."""
 
 import os
-import shutil
 import socket
 import subprocess
 import sys
@@ -12,13 +11,13 @@ from datetime import datetime
 from urllib.parse import quote
 
 import pytest
+from chromium import drives_chromium, launched
 from course_maker import TOY, answered, executed, make_course, submit, toy_lesson, write_source
 from nbformat.v4 import new_output
 from nbgrader.api import Gradebook
-from playwright.sync_api import sync_playwright
 
 from grader.feedback import write_feedback
-from grader.grade import Row, find_submissions
+from grader.grade import Row
 from grader.gradebook import register, store
 from grader.heal import heal
 from grader.outputs import CellRun
@@ -26,15 +25,12 @@ from grader.pipeline import prepare
 from grader.release import release
 from grader.report import Run, write_report
 from grader.submission import read_submission
+from grader.submitted import find_submissions
 
-CHROMIUM = next(filter(None, map(shutil.which, ['chromium', 'chromium-browser'])), None)
 TOKEN = 'a-token-of-this-test'
 PATIENCE_SEC = 120
 
-pytestmark = [
-    pytest.mark.browser,
-    pytest.mark.skipif(CHROMIUM is None, reason='no chromium here: .ci/run installs it'),
-]
+pytestmark = drives_chromium
 
 ELSEWHERE = 'evil.invalid'
 BY_NAME = '<img src=x onerror=alert(1)>'
@@ -116,10 +112,8 @@ class Browser:
 
 @pytest.fixture(scope='module')
 def browser():
-    with sync_playwright() as playwright:
-        chromium = playwright.chromium.launch(executable_path=CHROMIUM, args=['--no-sandbox'])
+    with launched() as chromium:
         yield Browser(chromium.new_page())
-        chromium.close()
 
 
 @pytest.fixture(scope='module')

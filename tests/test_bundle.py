@@ -72,6 +72,13 @@ def unpacked(path, folder):
     return folder / FOLDER
 
 
+def test_a_course_that_was_never_released_is_told_in_one_sentence(course, tmp_path):
+    shutil.rmtree(course.root / 'notebooks')
+    with pytest.raises(CourseError, match=r'no folder notebooks/: run \./course release$'):
+        bundle(course, tmp_path / 'students.zip')
+    assert not (tmp_path / 'students.zip').exists()
+
+
 # --- what is in it -------------------------------------------------------------------------------
 
 

@@ -2,15 +2,14 @@
 
 import html
 import re
-import shutil
 from pathlib import Path
 
 import nbformat
 import pytest
+from chromium import PROGRAM, launched
 
 FOLDER = Path(__file__).parents[1] / 'solutions' / '07_common_errors'
 CHECKLIST = FOLDER / 'checklist.html'
-CHROMIUM = next(filter(None, map(shutil.which, ['chromium', 'chromium-browser'])), None)
 TABLES = 'method', 'fix_topic_name_task', 'own_faults'
 """Cells of the lesson whose tables the page brings together."""
 
@@ -34,16 +33,12 @@ def test_the_lesson_leads_to_it():
 
 
 @pytest.mark.browser
-@pytest.mark.skipif(CHROMIUM is None, reason='no chromium here: .ci/run installs it')
+@pytest.mark.skipif(PROGRAM is None, reason='no chromium here: .ci/run installs it')
 def test_it_prints_on_one_page():
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=['--no-sandbox'])
+    with launched() as browser:
         page = browser.new_page()
         page.goto(CHECKLIST.as_uri())
         printed = page.pdf(format='A4', prefer_css_page_size=True)
         letter = page.pdf(format='Letter', prefer_css_page_size=False)
-        browser.close()
     for pdf in printed, letter:
         assert len(re.findall(rb'/Type\s*/Page\b', pdf)) == 1

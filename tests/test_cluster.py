@@ -1,31 +1,26 @@
-import os
 import signal
 import subprocess
 import sys
-import time
 from contextlib import suppress
 from importlib.metadata import version
-from pathlib import Path
 
 import psutil
 import pytest
-from course_maker import TOY, answered, make_course, submit
+from course_maker import answered, released_course, submit
+from dask_processes import TESTS, start_scheduler, starter, wait_for
 
 from grader import cluster
 from grader.__main__ import main
 from grader.cluster import Cluster
 from grader.course import Course
 from grader.errors import ClusterError, TaskFailed
-from grader.grade import find_submissions, grade_all
-from grader.gradebook import register
+from grader.grade import grade_all
 from grader.records import records
-from grader.release import release
+from grader.submitted import find_submissions
 from grader.task import Task
 from grader.workers import Workers
 
-TESTS = Path(__file__).parent
 LOCALLY = (sys.executable, str(TESTS / 'toy_worker.py'))
-DASK = [str(Path(sys.executable).with_name('dask'))]
 RIGHT = 'def double(x):\n    return 2 * x'
 WRONG = 'def double(x):\n    return x + 1'
 ANSWERS = {'ada': RIGHT, 'bob': WRONG, 'eve': RIGHT, 'kim': WRONG, 'zoe': RIGHT}
@@ -39,33 +34,12 @@ def machinery(monkeypatch):
 
 @pytest.fixture(scope='module')
 def course(tmp_path_factory):
-    course = make_course(tmp_path_factory.mktemp('cluster'))
-    release(course)
-    register(course, TOY)
-    return course
+    return released_course(tmp_path_factory.mktemp('cluster'))
 
 
 @pytest.fixture
 def start(tmp_path):
-    """Starts a scheduler or a worker, and ends it with the test."""
-    started = []
-
-    def start_one(*arguments, **environment):
-        log = (tmp_path / f'dask {len(started)}.log').open('w')
-        process = subprocess.Popen(
-            [*DASK, *arguments, '--no-dashboard'],
-            env=os.environ | {'PYTHONPATH': str(TESTS)} | environment,
-            stderr=log,
-            stdout=log,
-        )
-        process.log = Path(log.name)
-        started.append(process)
-        return process
-
-    yield start_one
-    for process in started:
-        process.kill()
-        process.wait()
+    yield from starter(tmp_path)
 
 
 @pytest.fixture
@@ -73,25 +47,9 @@ def scheduler(start):
     return start_scheduler(start)
 
 
-def start_scheduler(start, port=0, options=()):
-    process = start('scheduler', '--host', '127.0.0.1', '--port', str(port), *options)
-    mark = 'Scheduler at:'
-    wait_for(lambda: mark in process.log.read_text(), process)
-    process.address = process.log.read_text().partition(mark)[2].split()[0]
-    return process
-
-
 def start_worker(start, address, *more, **environment):
     options = [*more, '--nthreads', '2', '--no-nanny', '--preload', 'toy_dask_worker']
     return start('worker', address, *options, **environment)
-
-
-def wait_for(happened, process=None):
-    deadline = time.monotonic() + 120
-    while not happened():
-        assert process is None or process.poll() is None, process.log.read_text()
-        assert time.monotonic() < deadline
-        time.sleep(0.05)
 
 
 def handed_in(course, folder, first_lines=None):

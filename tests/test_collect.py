@@ -6,7 +6,7 @@ from pathlib import Path
 
 import nbformat
 import pytest
-from course_maker import TOY, answered, executed, make_course
+from course_maker import TOY, answered, executed, released_course
 from nbgrader.coursedir import CourseDirectory
 
 from grader import collect as module
@@ -14,12 +14,11 @@ from grader.__main__ import main
 from grader.collect import AGAIN, EARLIER, KNOWN, LEFT, NEW, UNUSED, collect
 from grader.course import Course
 from grader.errors import CourseError
-from grader.grade import find_submissions
 from grader.gradebook import register, store
 from grader.heal import heal
 from grader.pipeline import prepare
-from grader.release import release
 from grader.submission import read_submission
+from grader.submitted import find_submissions
 
 NOTEBOOK = f'{TOY}.ipynb'
 RIGHT, WRONG = 'def double(x):\n    return 2 * x', 'def double(x):\n    return x'
@@ -27,9 +26,7 @@ RIGHT, WRONG = 'def double(x):\n    return 2 * x', 'def double(x):\n    return x
 
 @pytest.fixture(scope='module')
 def released(tmp_path_factory):
-    course = make_course(tmp_path_factory.mktemp('collect'))
-    release(course)
-    return course
+    return released_course(tmp_path_factory.mktemp('collect'))
 
 
 @pytest.fixture
@@ -285,7 +282,7 @@ def test_nothing_that_is_there_to_collect_is_said(course, tmp_path, capsys):
     assert 'nowhere is not there: expected a folder' in capsys.readouterr().err
     (tmp_path / 'empty').mkdir()
     assert main(['collect', str(tmp_path / 'empty')], course=course) == 1
-    assert 'Nothing was taken; 0 not taken.' in capsys.readouterr().out
+    assert 'Nothing was taken, for there is no file in it' in capsys.readouterr().out
 
 
 def test_nbgrader_reads_the_time(course, source):

@@ -1,15 +1,24 @@
 import errno
 import os
+import shutil
 import sqlite3
 import threading
 from contextlib import closing
 
+import psutil
 import pytest
-from nbgrader.api import Gradebook, InvalidEntry
+from nbgrader.api import Gradebook, InvalidEntry, Student
 
 from grader import database
 from grader.course import Course
-from grader.database import in_sentences, make_database, wait_until_free
+from grader.database import (
+    connected,
+    in_sentences,
+    make_database,
+    one_engine,
+    transaction,
+    wait_until_free,
+)
 from grader.errors import CourseError, GradebookError
 
 
@@ -24,6 +33,14 @@ def course(tmp_path):
 
 
 @pytest.fixture
+def empty(tmp_path):
+    """A course with nbgrader's database, in which nothing is."""
+    course = Course.at(tmp_path)
+    make_database(course)
+    return course
+
+
+@pytest.fixture
 def other(course):
     """Another program, in the middle of writing."""
     connection = sqlite3.connect(course.database, isolation_level=None, check_same_thread=False)
@@ -31,6 +48,10 @@ def other(course):
     connection.execute('INSERT INTO some VALUES (1)')
     with closing(connection):
         yield connection
+
+
+def open_files(path):
+    return [each for each in psutil.Process().open_files() if each.path == str(path)]
 
 
 def test_a_locked_database_is_waited_for_with_a_word(course, other):
@@ -111,3 +132,56 @@ def test_a_database_is_there_whole_or_not_at_all(tmp_path, monkeypatch):
     make_database(course)
     with Gradebook(course.db_url) as book:
         assert book.students == []
+
+
+def test_one_engine_serves_as_long_as_it_is_wanted(empty):
+    with one_engine(empty.db_url):
+        engines = set()
+        for _ in range(3):
+            with connected(empty.db_url) as book:
+                assert book.students == []
+                engines.add(book.engine)
+        assert len(engines) == 1
+    with connected(empty.db_url) as book:
+        assert book.engine not in engines
+
+
+def test_between_two_uses_of_one_engine_the_file_is_let_go(empty):
+    with one_engine(empty.db_url):
+        with connected(empty.db_url) as book:
+            book.update_or_create_student('ada')
+            book.db.add(Student(id='bob'))  # not committed
+            book.db.flush()
+        assert not open_files(empty.database)
+        wait_until_free(empty, pytest.fail)
+        with connected(empty.db_url) as book:
+            assert [student.id for student in book.students] == ['ada']
+
+
+def test_a_database_that_was_put_in_the_place_of_another_is_written_to(empty, tmp_path):
+    backup = shutil.copy(empty.database, tmp_path / 'backup.db')
+    with one_engine(empty.db_url):
+        with transaction(empty.db_url) as book:
+            book.update_or_create_student('ada')
+        os.replace(backup, empty.database)
+        with transaction(empty.db_url) as book:
+            assert book.students == []
+            book.update_or_create_student('bob')
+    with Gradebook(empty.db_url) as book:
+        assert [student.id for student in book.students] == ['bob']
+
+
+def test_a_transaction_with_one_engine_is_all_or_nothing_and_leaves_no_trace(empty):
+    def add_twice():
+        with transaction(empty.db_url) as book:
+            book.add_student('ada')
+            book.add_student('ada')
+
+    with one_engine(empty.db_url):
+        with pytest.raises(InvalidEntry):
+            add_twice()
+        with connected(empty.db_url) as book:
+            assert book.students == []
+            book.update_or_create_student('bob')  # nbgrader commits
+        with connected(empty.db_url) as book:
+            assert [student.id for student in book.students] == ['bob']

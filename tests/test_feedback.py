@@ -1,15 +1,14 @@
 import base64
 
 import pytest
-from course_maker import PIXEL, TOY, answered, executed, make_course, submit
+from course_maker import PIXEL, TOY, answered, executed, released_course, submit
 from nbformat.v4 import new_output
 
 from grader.course import Course
 from grader.feedback import write_feedback
-from grader.gradebook import register, store
+from grader.gradebook import store
 from grader.heal import KEY, heal
-from grader.pipeline import prepare, unanswered
-from grader.release import release
+from grader.pipeline import prepare, prepared_master, unanswered
 from grader.submission import read_submission
 
 RIGHT = 'def double(x):\n    return 2 * x'
@@ -18,10 +17,7 @@ SCRIPT = '<script>alert("from a student")</script>'
 
 @pytest.fixture(scope='module')
 def course(tmp_path_factory):
-    course = make_course(tmp_path_factory.mktemp('feedback'))
-    release(course)
-    register(course, TOY)
-    return course
+    return released_course(tmp_path_factory.mktemp('feedback'))
 
 
 def feedback(course, student, notebook, *, reasons=None, outputs=None, notes=()):
@@ -29,7 +25,7 @@ def feedback(course, student, notebook, *, reasons=None, outputs=None, notes=())
     folder = course.folder('submitted', student, TOY)
     submission = read_submission(folder, student_id=student, assignment=TOY)
     if submission.problem:
-        graded = unanswered(course, submission, submission.problem)
+        graded = unanswered(prepared_master(course, TOY), submission.problem)
     else:
         healed = heal(submission.notebook, course.master(TOY)).notebook
         graded = executed(prepare(course, TOY, healed), reasons or {})

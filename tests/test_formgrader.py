@@ -14,8 +14,9 @@ from pathlib import Path
 
 import nbformat
 import pytest
+from chromium import LONG, drives_chromium, launched
 from course_maker import executed
-from playwright.sync_api import expect, sync_playwright
+from playwright.sync_api import expect
 from sample_class import FOLDER
 from stand_in import stand_in
 
@@ -28,15 +29,8 @@ LESSON, ANSWER = '05_command_line', 'explain_counts'
 SAMPLE = '05_command_line-pass-typed_with_slashes'
 COMMENT = 'Right. Which node is it?'
 TOKEN = 'a-token-of-this-test'
-CHROMIUM = next(filter(None, map(shutil.which, ['chromium', 'chromium-browser'])), None)
-LONG = 120_000
-"""Milliseconds: what a slow machine may need for anything here; nothing is judged by it."""
-expect.set_options(timeout=LONG)
 
-pytestmark = [
-    pytest.mark.browser,
-    pytest.mark.skipif(CHROMIUM is None, reason='no chromium here: .ci/run installs it'),
-]
+pytestmark = drives_chromium
 
 
 @pytest.fixture
@@ -116,8 +110,7 @@ def test_points_and_a_comment_given_in_the_formgrader_stay_when_ada_is_graded_ag
 ):
     assert re.search(r'^ada .* 2/4 … ', told(capsys, course, 'grade'), re.MULTILINE)
     assert exported(capsys, course) == ('', 'to be graded by hand')
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=['--no-sandbox'])
+    with launched() as browser:
         page = browser.new_page()
         page.set_default_timeout(LONG)
         page.goto(f'{lab}/lab?token={TOKEN}&reset')
@@ -143,7 +136,6 @@ def test_points_and_a_comment_given_in_the_formgrader_stay_when_ada_is_graded_ag
             with page.expect_response(lambda reply, api=api: f'/api/{api}/' in reply.url) as saved:
                 field.press('Tab')
             assert saved.value.ok
-        browser.close()
     assert exported(capsys, course) == ('1.5', f'scored by hand; {COMMENT}')
 
     for again in (['grade'], ['grade', '--force'], ['grade', LESSON]):

@@ -8,13 +8,11 @@ from pathlib import Path
 
 import pytest
 import survivor
-from course_maker import TOY, answered, make_course, submit
+from course_maker import TOY, answered, released_course, submit
 
 from grader.__main__ import main
 from grader.course import Course
-from grader.gradebook import register
 from grader.records import records
-from grader.release import release
 
 DISK_BYTES = 3_000_000
 ROOM_BYTES = (0, 4_096, 150_000, 230_000, 250_000, 270_000, 290_000, 310_000)
@@ -23,9 +21,7 @@ ROOM_BYTES = (0, 4_096, 150_000, 230_000, 250_000, 270_000, 290_000, 310_000)
 
 @pytest.mark.isolation
 def test_a_full_disk_stops_with_a_word_and_without_half_a_file(tmp_path):
-    course = make_course(tmp_path)
-    release(course)
-    register(course, TOY)
+    course = released_course(tmp_path)
     course.seed(TOY)
     for student in ('ada', 'bob', 'zoe'):
         submit(course, student, answered(course, f'# {student}\ndef double(x):\n    return 2 * x'))

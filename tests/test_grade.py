@@ -2,17 +2,16 @@ import os
 import tempfile
 
 import pytest
-from course_maker import TOY, answered, executed, make_course, submit
+from course_maker import TOY, answered, executed, released_course, submit
 from stand_in import stand_in
 
 from grader.course import Course
 from grader.demo import demo
 from grader.errors import CourseError
 from grader.execute import Execution
-from grader.grade import find_submissions, grade_all
-from grader.gradebook import register
+from grader.grade import grade_all
 from grader.records import records
-from grader.release import release
+from grader.submitted import find_submissions
 from grader.table import print_rows
 
 RIGHT = 'def double(x):\n    return 2 * x'
@@ -21,10 +20,7 @@ WRONG = 'def double(x):\n    return x + 1'
 
 @pytest.fixture(scope='module')
 def released(tmp_path_factory):
-    course = make_course(tmp_path_factory.mktemp('grade'))
-    release(course)
-    register(course, TOY)
-    return course
+    return released_course(tmp_path_factory.mktemp('grade'))
 
 
 @pytest.fixture

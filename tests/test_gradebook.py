@@ -8,7 +8,7 @@ from pathlib import Path
 
 import nbformat
 import pytest
-from course_maker import TOY, answered, executed, make_course, submit, toy_lesson, write_source
+from course_maker import TOY, answered, executed, released_course, submit, toy_lesson, write_source
 from nbgrader.api import Gradebook
 
 from grader import gradebook
@@ -16,9 +16,8 @@ from grader.course import Course
 from grader.errors import CourseError
 from grader.gradebook import register, store
 from grader.heal import KEY, heal
-from grader.pipeline import prepare, unanswered
+from grader.pipeline import prepare, prepared_master, unanswered
 from grader.records import records, verdicts
-from grader.release import release
 from grader.scores import COLUMNS, write_scores
 from grader.submission import read_submission
 
@@ -27,10 +26,7 @@ RIGHT = 'def double(x):\n    return 2 * x'
 
 @pytest.fixture(scope='module')
 def released(tmp_path_factory):
-    course = make_course(tmp_path_factory.mktemp('released'))
-    release(course)
-    register(course, TOY)
-    return course
+    return released_course(tmp_path_factory.mktemp('released'))
 
 
 @pytest.fixture
@@ -244,7 +240,9 @@ def test_names_from_any_alphabet_are_stored_under_themselves(course, student):
     folder = course.folder('submitted', student, TOY)
     submission = read_submission(folder, student_id=student, assignment=TOY)
     register(course, TOY)
-    stored = store(course, submission, unanswered(course, submission, submission.problem))
+    stored = store(
+        course, submission, unanswered(prepared_master(course, TOY), submission.problem)
+    )
     assert (stored.score, stored.pending) == (0.0, False)
     assert 'is not JSON' in stored.reason
     assert folder.with_name(TOY).joinpath(f'{TOY}.ipynb').read_bytes() == b'no notebook'
@@ -313,7 +311,7 @@ def test_what_stands_for_an_unreadable_submission_is_a_notebook_with_its_reason(
     folder = course.folder('submitted', 'ada', TOY)
     submission = read_submission(folder, student_id='ada', assignment=TOY)
     register(course, TOY)
-    store(course, submission, unanswered(course, submission, submission.problem))
+    store(course, submission, unanswered(prepared_master(course, TOY), submission.problem))
     kept = nbformat.read(course.folder('autograded', 'ada', TOY) / f'{TOY}.ipynb', as_version=4)
     nbformat.validate(kept)
     assert kept.metadata[KEY].problem == submission.problem

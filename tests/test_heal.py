@@ -2,13 +2,12 @@
 
 import nbformat
 import pytest
-from course_maker import TOY, answered, make_course
+from course_maker import TOY, answered, released_course
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
 from grader.heal import KEY, grade_id, heal, make_master, role
-from grader.release import release
 
 ANSWER = 'def double(x):\n    return 2 * x'
 ANSWERS = ('double', 'explain')
@@ -18,9 +17,7 @@ KEPT = ('grade', 'locked', 'setup')
 
 @pytest.fixture(scope='module')
 def course(tmp_path_factory):
-    course = make_course(tmp_path_factory.mktemp('course'))
-    release(course, TOY)
-    return course
+    return released_course(tmp_path_factory.mktemp('course'))
 
 
 @pytest.fixture(scope='module')

@@ -11,12 +11,10 @@ from typing import NamedTuple
 
 import psutil
 import pytest
-from course_maker import TOY, answered, make_course, submit
+from course_maker import answered, released_course, submit
 
 from grader.__main__ import main
-from grader.gradebook import register
 from grader.records import records
-from grader.release import release
 
 ENDLESS = 'import time\n\nwhile True:\n    time.sleep(0.1)'
 GRADE = (
@@ -30,9 +28,7 @@ GRADE = (
 
 @pytest.fixture
 def course(tmp_path):
-    course = make_course(tmp_path)
-    release(course)
-    register(course, TOY)
+    course = released_course(tmp_path)
     submit(course, 'ada', b'no notebook')
     submit(course, 'bob', answered(course, ENDLESS))
     return course
@@ -64,7 +60,7 @@ def kernels_of(run):
         below = psutil.Process(run.pid).children(recursive=True)
         commands = {process: ' '.join(_command(process)) for process in below}
         started = [p for p, command in commands.items() if 'ipykernel_launcher' in command]
-        sessions |= {p.pid for p, command in commands.items() if 'forkserver.py' in command}
+        sessions |= {p.pid for p, command in commands.items() if 'forkserver' in command}
         # they leave their parent, and keep the session that they began
         servers = [p for p in psutil.process_iter() if _session(p) in sessions and p not in below]
         forked = [kernel for kernels in map(_below, servers) for kernel in kernels]

@@ -6,16 +6,15 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-from course_maker import TOY, answered, make_course, submit
+from course_maker import answered, released_course, submit
 
 from grader import isolation as module
-from grader import warm
+from grader import servers
 from grader.__main__ import main
 from grader.errors import CourseError
 from grader.feedback import write_feedback
 from grader.isolation import TRUST, TRUSTED, isolated, missing, protections
 from grader.passes import ExecuteRooms
-from grader.release import release
 from grader.scores import write_scores
 
 RIGHT = 'def double(x): return 2 * x'
@@ -49,9 +48,7 @@ def nowhere(monkeypatch, programs_but_bubblewrap):
 
 @pytest.fixture(scope='module')
 def course(tmp_path_factory):
-    course = make_course(tmp_path_factory.mktemp('course'))
-    release(course, TOY)
-    return course
+    return released_course(tmp_path_factory.mktemp('course'))
 
 
 def refusing(*options, says='Operation not permitted'):
@@ -76,7 +73,7 @@ def test_this_machine_can_isolate():
 @pytest.mark.parametrize('problem', ['', 'the test says so'])
 def test_the_doctor_says_where_kernels_can_not_be_forked(course, monkeypatch, capsys, problem):
     if problem:
-        monkeypatch.setitem(warm._unfit, 'student', problem)
+        monkeypatch.setitem(servers._unfit, 'student', problem)
     assert main(['doctor'], course=course) == 0
     assert ('It is slower' in capsys.readouterr().out) is bool(problem)
 

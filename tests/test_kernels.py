@@ -163,6 +163,31 @@ def test_a_cell_that_ignores_the_interrupt_is_killed(own, run):
     assert processes_of(own) == []
 
 
+SLOW_TO_END = """
+import time
+try:
+    while True: time.sleep(0.1)
+except KeyboardInterrupt:
+    time.sleep(3.0)
+"""
+
+
+@pytest.mark.parametrize(('is_crowded', 'died'), [(False, True), (True, False)])
+def test_a_crowded_machine_gives_an_interrupted_cell_more_time(
+    monkeypatch, own, run, is_crowded, died
+):
+    crowded_sec = time.monotonic if is_crowded else lambda: 0.0
+    monkeypatch.setattr(kernels.pressure, 'crowded_sec', crowded_sec)
+    result = run(own, SLOW_TO_END, timeout_sec=0.5)
+    assert (result.timed_out, result.died) == (True, died)
+
+
+def test_no_crowd_gives_more_than_its_limit(monkeypatch, own, run):
+    monkeypatch.setattr(kernels.pressure, 'crowded_sec', time.monotonic)
+    monkeypatch.setattr(kernels, 'INTERRUPT_MOST_SEC', 1.0)
+    assert run(own, IGNORES, timeout_sec=0.5).died
+
+
 FATAL = {
     '_exit': 'import os; print(1, flush=True); os._exit(0)',
     'SIGKILL': 'import os; os.kill(os.getpid(), 9)',

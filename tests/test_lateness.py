@@ -2,18 +2,17 @@ import shutil
 from datetime import datetime
 
 import pytest
-from course_maker import TOY, answered, executed, make_course, submit
+from course_maker import TOY, answered, executed, released_course, submit
 from nbgrader.api import Gradebook
 
 from grader.course import Course
 from grader.errors import CourseError
 from grader.grade import grade_all
-from grader.gradebook import register, store
+from grader.gradebook import store
 from grader.heal import heal
 from grader.lateness import FILE, Deadlines, deadlines
 from grader.pipeline import prepare
 from grader.records import records
-from grader.release import release
 from grader.submission import read_submission
 
 RULES = f"""
@@ -33,10 +32,7 @@ grace_minutes = 15
 
 @pytest.fixture(scope='module')
 def released(tmp_path_factory):
-    course = make_course(tmp_path_factory.mktemp('late'))
-    release(course)
-    register(course, TOY)
-    return course
+    return released_course(tmp_path_factory.mktemp('late'))
 
 
 @pytest.fixture

@@ -468,9 +468,11 @@ def test_reset_and_run_answer(lesson):
     lesson.run('class Answer(Talker): pass')
     assert 'reset' in lesson.run("reset('Answer', 'never_defined')").stdout
     assert lesson.value("'Answer' in globals(), rclpy.ok()") == '(False, False)'
+    error = lesson.run("run_answer('Answer')").error
+    assert 'saw nothing of that name: run the answer cell' in ' '.join(error.split())
+    assert len(error.splitlines()) <= 2
     where = 'write it in the answer cell: only the notebook is submitted'
     for definition in (
-        'pass',
         'Answer = 3',
         'from my_robot_basics.kinematics_publisher import KinematicsPublisher as Answer',
     ):

@@ -1,14 +1,18 @@
 import errno
 import os
 import signal
+import sqlite3
 import subprocess
 import sys
+from contextlib import closing
 
 import pytest
 from course_maker import TOY, make_course, submit
 
+from grader import database
 from grader.__main__ import main
 from grader.course import Course
+from grader.database import make_database
 from grader.errors import CourseError
 
 
@@ -52,7 +56,7 @@ def test_a_stopped_run_says_how_to_go_on(tmp_path, capsys, monkeypatch):
     def interrupted(*_, **__):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr('grader.__main__.find_submissions', interrupted)
+    monkeypatch.setattr('grader.verbs.find_submissions', interrupted)
     assert main(['grade'], course=Course.at(tmp_path)) == 130
     assert 'run it again to go on' in capsys.readouterr().err
 
@@ -62,6 +66,11 @@ def test_all_verbs_in_a_row(tmp_path, capsys):
     assert main(['release', TOY], course=course) == 0
     released = f'notebooks/{TOY}/{TOY}.ipynb\nnotebooks/index.ipynb\n'
     assert capsys.readouterr().out == f'{released}2 files changed.\n'
+    for verb in ('scores', 'feedback'):
+        assert main([verb], course=course) == 0
+        assert capsys.readouterr().out.endswith('Nothing is graded yet. Next: ./course grade\n')
+    assert main(['grade'], course=course) == 1
+    assert 'where ./course collect FOLDER puts' in capsys.readouterr().err
     submit(course, 'ada', b'')
     (course.folder('submitted', 'eve', '99_other')).mkdir(parents=True)
     assert main(['grade'], course=course) == 1  # eve's could not be placed
@@ -70,9 +79,23 @@ def test_all_verbs_in_a_row(tmp_path, capsys):
     assert main(['feedback'], course=course) == 0
     assert 'feedback/ada/' in capsys.readouterr().out
     assert main(['scores'], course=course) == 0
+    assert capsys.readouterr().out == f'{course.gradebook / "scores.csv"}\n'
     assert 'ada,00_toy,double-check,0.0,1.0' in (course.gradebook / 'scores.csv').read_text()
     assert main(['release'], course=course) == 0
     assert 'Nothing has changed' in capsys.readouterr().out
+
+
+def test_a_database_in_use_is_waited_for_with_a_word(tmp_path, capsys, monkeypatch):
+    course = make_course(tmp_path)
+    make_database(course)
+    monkeypatch.setattr(database, 'PATIENCE_SEC', 0.2)
+    with closing(sqlite3.connect(course.database, isolation_level=None)) as other:
+        other.execute('BEGIN EXCLUSIVE')
+        for verb in ('scores', 'feedback'):
+            assert main([verb], course=course) == 1
+            said = capsys.readouterr()
+            assert said.out == f'waiting: another program is using {course.database}\n'
+            assert 'run the same command again' in said.err
 
 
 def test_a_second_writer_waits_for_the_first_and_says_so(tmp_path):

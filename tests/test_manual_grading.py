@@ -12,14 +12,13 @@ import urllib.request
 from pathlib import Path
 
 import pytest
-from course_maker import TOY, answered, executed, make_course, submit
+from course_maker import TOY, answered, executed, released_course, submit
 
 from grader.feedback import write_feedback
 from grader.grade import Row
-from grader.gradebook import register, store
+from grader.gradebook import store
 from grader.heal import heal
 from grader.pipeline import prepare
-from grader.release import release
 from grader.scores import write_scores
 from grader.submission import read_submission
 from grader.table import score_of, why
@@ -31,9 +30,7 @@ BECAUSE = 'Because **two** of it are twice of it.'
 
 @pytest.fixture(scope='module')
 def course(tmp_path_factory):
-    course = make_course(tmp_path_factory.mktemp('course'))
-    release(course)
-    register(course, TOY)
+    course = released_course(tmp_path_factory.mktemp('course'))
     grade(course, 'ada', BECAUSE)
     grade(course, 'bob', '')
     return course

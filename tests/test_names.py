@@ -2,7 +2,7 @@
 
 import pytest
 
-from grader.names import MAX_SOURCE_CHARACTERS, names_of, string_arguments
+from grader.names import MAX_SOURCE_CHARACTERS, Names, names_of, string_arguments
 
 CELLS = {
     'nothing': ('', '', ''),
@@ -55,6 +55,13 @@ def test_names_of_a_cell(source, bound, needed):
 def test_reading_a_cell_runs_none_of_it(capfd):
     names_of('print("ran")\n!echo ran\nraise SystemExit')
     assert capfd.readouterr() == ('', '')
+
+
+@pytest.mark.parametrize('line', ['a?', '%a', '!a', 'a=%b', ',f a'])
+def test_magics_beyond_number_are_not_read(line):
+    """IPython would read all of the cell anew for each of them, and give up after 500."""
+    assert names_of(f'{line}\n' * 600) == Names()
+    assert names_of(f'x = 1\n{line}\n').bound >= {'x'}
 
 
 ARGUMENTS = {

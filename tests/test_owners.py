@@ -73,6 +73,11 @@ def test_a_name_is_the_same_however_its_letters_are_composed(at):
     assert {student for student, _ in found[0]} == {'Zo\u00eb'}
 
 
+def test_who_named_no_assignment_reads_all_of_them_in_order(at):
+    _, (left,) = match([at('ada/homework.ipynb')], ['00_arm', '01_a_longer_name'])
+    assert left.reason.endswith(', with 00_arm, 01_a_longer_name')
+
+
 @pytest.mark.parametrize(
     ('path', 'reason'),
     [

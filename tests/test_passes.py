@@ -4,23 +4,20 @@ import asyncio
 
 import nbformat
 import pytest
-from course_maker import TOY, answered, make_course, submit
+from course_maker import TOY, answered, released_course, submit
 from nbformat.v4 import new_code_cell
 
 from grader import passes
 from grader.execute import Execution
 from grader.heal import KEY, grade_id
 from grader.passes import ExecuteRooms, HealSubmission
-from grader.release import release
 
 ANSWER = 'def double(x): return 2 * x'
 
 
 @pytest.fixture(scope='module')
 def released(tmp_path_factory):
-    course = make_course(tmp_path_factory.mktemp('course'))
-    release(course, TOY)
-    return course
+    return released_course(tmp_path_factory.mktemp('course'))
 
 
 @pytest.fixture

@@ -17,7 +17,7 @@ from jupyter_client.kernelspec import KernelSpecManager
 from nbclient import NotebookClient
 from nbclient.exceptions import CellTimeoutError
 
-from grader import sandbox, warm
+from grader import sandbox, servers
 from grader.course import ROOT
 from grader.errors import RoomFailure
 from grader.provisioner import NAME, SandboxProvisioner
@@ -30,7 +30,7 @@ SPEC = Path(sys.prefix, 'share', 'jupyter', 'kernels', NAME, 'kernel.json')
 @pytest.fixture(autouse=True)
 def no_server_before():
     """So that what a test leaves can be counted."""
-    warm.close_servers()
+    servers.close_servers()
 
 
 @pytest.fixture(autouse=True)

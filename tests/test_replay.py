@@ -1,14 +1,12 @@
 import shutil
 
 import pytest
-from course_maker import TOY, answered, executed, make_course, submit, toy_lesson, write_source
+from course_maker import TOY, answered, executed, released_course, submit, toy_lesson, write_source
 from stand_in import stand_in
 
 from grader.__main__ import main
 from grader.execute import Execution, execute
-from grader.gradebook import register
 from grader.heal import KEY
-from grader.release import release
 
 ANSWER = 'def double(x):\n    return 2 * x'
 
@@ -17,9 +15,7 @@ ANSWER = 'def double(x):\n    return 2 * x'
 def graded(tmp_path_factory):
     """A course in which ada's answer is right for half of the inputs, and eve's can't be read."""
     with pytest.MonkeyPatch.context() as patch:
-        course = make_course(tmp_path_factory.mktemp('replay'))
-        release(course)
-        register(course, TOY)
+        course = released_course(tmp_path_factory.mktemp('replay'))
         stand_in(chosen_inputs, patch)
         submit(course, 'ada', answered(course, ANSWER))
         submit(course, 'eve', b'no notebook')

@@ -3,16 +3,15 @@ import re
 from datetime import UTC, datetime
 
 import pytest
-from course_maker import TOY, answered, executed, make_course, submit
+from course_maker import TOY, answered, executed, released_course, submit
 from nbgrader.api import Gradebook
 
 from grader.course import Course
 from grader.demo import demo
 from grader.grade import Row
-from grader.gradebook import register, store
+from grader.gradebook import store
 from grader.heal import heal
-from grader.pipeline import prepare, unanswered
-from grader.release import release
+from grader.pipeline import prepare, prepared_master, unanswered
 from grader.report import Run, write_report
 from grader.submission import read_submission
 from grader.tally import WRITTEN, tally
@@ -24,10 +23,7 @@ RUN = Run(datetime(2026, 11, 21, 8, 30, tzinfo=UTC))
 
 @pytest.fixture(scope='module')
 def released(tmp_path_factory):
-    course = make_course(tmp_path_factory.mktemp('report'))
-    release(course)
-    register(course, TOY)
-    return course
+    return released_course(tmp_path_factory.mktemp('report'))
 
 
 @pytest.fixture
@@ -45,7 +41,7 @@ def graded(course, student, reasons=None, *, explained='so', seconds=1.0, notebo
     folder = course.folder('submitted', student, TOY)
     submission = read_submission(folder, student_id=student, assignment=TOY)
     if submission.problem:
-        judged = unanswered(course, submission, submission.problem)
+        judged = unanswered(prepared_master(course, TOY), submission.problem)
     else:
         healed = heal(submission.notebook, course.master(TOY)).notebook
         judged = executed(prepare(course, TOY, healed), reasons or {})

@@ -2,31 +2,21 @@ import sqlite3
 
 import nbformat
 import pytest
-from course_maker import TOY, answered, executed, make_course, submit, toy_lesson, write_source
+from course_maker import TOY, answered, executed, released_course, submit, toy_lesson, write_source
 from nbgrader.api import Gradebook
 from stand_in import Here, stand_in
 
 from grader import reuse
 from grader.__main__ import main
-from grader.course import Course
 from grader.execute import Execution
-from grader.grade import find_submissions, grade_all
-from grader.gradebook import register
+from grader.grade import grade_all
 from grader.heal import KEY
 from grader.records import records
-from grader.release import release
+from grader.submitted import find_submissions
 from grader.table import changes
 
 RIGHT = 'def double(x):\n    return 2 * x'
 WRONG = 'def double(x):\n    return x + 1'
-
-
-@pytest.fixture(scope='module')
-def released(tmp_path_factory):
-    course = make_course(tmp_path_factory.mktemp('reuse'))
-    release(course)
-    register(course, TOY)
-    return course
 
 
 @pytest.fixture
@@ -36,8 +26,8 @@ def looked():
 
 
 @pytest.fixture
-def course(released, tmp_path, monkeypatch, looked):
-    """A gradebook of its own; in the rooms' place, a look at the answer's text."""
+def course(tmp_path, monkeypatch, looked):
+    """A course of its own; in the rooms' place, a look at the answer's text."""
 
     async def look(notebook, *, extra_files=(), seed='', trust_students=False):
         answer = next(cell.source for cell in notebook.cells if cell.id == 'double')
@@ -49,13 +39,7 @@ def course(released, tmp_path, monkeypatch, looked):
         return Execution(notebook=executed(notebook, reasons), verdicts=(), notes=())
 
     stand_in(look, monkeypatch)
-    gradebook = tmp_path / 'gradebook'
-    gradebook.mkdir()
-    # making a database takes long
-    (gradebook / 'gradebook.db').write_bytes((released.gradebook / 'gradebook.db').read_bytes())
-    yield Course(root=released.root, gradebook=gradebook)
-    write_source(released, toy_lesson())
-    release(released)
+    return released_course(tmp_path)
 
 
 def rows_of(course, **options):

@@ -55,7 +55,7 @@ PRINTED = [
     ((TOPIC, '--field', 'position'), rf"array\('d', \[{NUMBER}, {NUMBER}\]\)\n---\n"),
     ((TOPIC, '--field', 'name', '-i'), r'---Got new message, message info:---\n{.*}\n'
      r"---Message data:---\n\['joint1', 'joint2'\]\n---\n"),
-    ((TOPIC, '--raw'), r"b'.*base_link.*'\n---\n"),
+    ((TOPIC, '--raw'), r"""b(['"]).*base_link.*\1\n---\n"""),
     ((TOPIC, '--field', 'header', '--flow-style', '--no-str'),
      r"stamp:\n  sec: \d+\n  nanosec: \d+\nframe_id: '<string length: <9>>'\n---\n"),
     ((TOPIC, '--field', 'name', '--filter', 'len(m) == 2'), r"\['joint1', 'joint2'\]\n---\n"),

@@ -6,12 +6,13 @@ from functools import cache
 import nbformat
 import pytest
 from sample_class import EXPECTED, FOLDER, PATHS, assignment_of, grade, rebased
-from stock_validator import validate_all
+from stock_validator import validators
 
 from grader.course import Course
 from grader.execute import execute
 from grader.heal import heal, make_master
 from grader.records import verdicts
+from grader.workers import Workers
 
 NO_VERDICT = {
     '03_publisher-fail-os_exit': 'Kernel died',
@@ -48,6 +49,21 @@ def one_of_each_outcome():
 SPECIAL = {*NO_VERDICT, *CHANGED, *ABSENT, *TRUSTS, *OUT_OF_ORDER}
 AT_ONCE = SPECIAL | {n for n, p in PATHS.items() if p.parent == FOLDER} | one_of_each_outcome()
 """Samples that go through Validate in an ordinary run; `./course test --slow` takes all."""
+WITH_DEMOS = ('02_joint_state-pass-numpy', '03_publisher-pass-sleep_loop')
+"""Those that it runs whole: for the others, what the lesson shows would be run once more each."""
+
+
+class Standing:
+    """A crew that is there for several runs: beginning with each anew takes long."""
+
+    def __init__(self, crew):
+        self.room, self.isolated, self.submit = crew.room, crew.isolated, crew.submit
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *exception):
+        pass
 
 
 @pytest.fixture(scope='module')
@@ -57,25 +73,36 @@ def graded(tmp_path_factory):
     @cache
     def grade_class(assignment):
         course = Course(gradebook=tmp_path_factory.mktemp('gradebook'))
-        return course, grade(course, of_assignment(assignment))
+        return course, grade(course, of_assignment(assignment), crew=crew)
 
     def graded_sample(name):
         course, rows = grade_class(assignment_of(PATHS[name]))
         return course, rows[name]
 
-    return graded_sample
+    with Workers() as workers:
+        crew = Standing(workers)
+        yield graded_sample
 
 
 @pytest.fixture(scope='module')
-def validated():
+def validated(tmp_path_factory):
     """Gives what nbgrader's Validate says of a sample."""
+    folder = tmp_path_factory.mktemp('validated')
+
+    def as_validated(name):
+        if name in WITH_DEMOS:
+            return PATHS[name]
+        shorter = folder / PATHS[name].name
+        shorter.write_text(rebased(PATHS[name], with_demos=False), encoding='utf-8')
+        return shorter
 
     @cache
     def validate_class(assignment, at_once):
         names = [name for name in of_assignment(assignment) if (name in AT_ONCE) == at_once]
-        return validate_all(PATHS[name] for name in names)
+        return validate_all(map(as_validated, names))
 
-    return lambda name: validate_class(assignment_of(PATHS[name]), name in AT_ONCE)[name]
+    with validators() as validate_all:
+        yield lambda name: validate_class(assignment_of(PATHS[name]), name in AT_ONCE)[name]
 
 
 def test_something_is_expected_of_every_sample():

@@ -7,7 +7,13 @@ import pytest
 from nbformat.v4 import new_code_cell, new_notebook
 
 from grader.errors import UnreadableSubmission
-from grader.submission import MAX_CELLS, extra_python_files, read_notebook, read_submission
+from grader.submission import (
+    MAX_CELLS,
+    MAX_CHARACTERS,
+    extra_python_files,
+    read_notebook,
+    read_submission,
+)
 
 NAME = '03_publisher.ipynb'
 CODE = {'cell_type': 'code', 'source': 'x = 1', 'metadata': {}, 'outputs': []}
@@ -48,6 +54,10 @@ UNREADABLE = {
     'cells hold no objects': ('{"nbformat": 4, "cells": [1, null, "x", []]}', 'has no cells'),
     'old, worksheets are a number': ('{"nbformat": 3, "worksheets": 7}', 'has no cells'),
     'too many cells': (notebook_text(*[CODE] * (MAX_CELLS + 1)), 'cells, more than the 2000'),
+    'too much text': (
+        notebook_text(*[CODE | {'source': 'x' * 100_000}] * (MAX_CHARACTERS // 100_000 + 1)),
+        'has 600,000 characters',
+    ),
 }  # fmt: skip
 
 

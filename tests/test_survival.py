@@ -8,12 +8,10 @@ from contextlib import closing
 
 import pytest
 import survivor
-from course_maker import TOY, answered, make_course, submit
+from course_maker import TOY, answered, released_course, submit
 
 from grader.course import Course
-from grader.gradebook import register
 from grader.records import records
-from grader.release import release
 
 RIGHT = '# {}\ndef double(x):\n    return 2 * x'
 WRONG = '# {}\ndef double(x):\n    return x + 1'
@@ -41,9 +39,7 @@ def start():
 @pytest.fixture(scope='module')
 def handed_in(tmp_path_factory):
     """A class that nobody has graded; one of it handed in more than a notebook."""
-    course = make_course(tmp_path_factory.mktemp('survival'))
-    release(course)
-    register(course, TOY)
+    course = released_course(tmp_path_factory.mktemp('survival'))
     for student, answer in (('ada', RIGHT), ('bob', WRONG), ('zoe', RIGHT)):
         notebook = submit(course, student, answered(course, answer.format(student)))
     notebook.with_name('helper.py').write_text('x = 1')

@@ -11,8 +11,9 @@ from synthetic_class import hand_in, synthetic_class, wrong_scores, zip_up
 
 from grader.collect import NEW, collect
 from grader.course import Course
-from grader.grade import find_submissions, grade_all
+from grader.grade import grade_all
 from grader.heal import heal, role
+from grader.submitted import find_submissions
 
 
 @pytest.fixture(scope='module')

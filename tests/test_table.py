@@ -4,8 +4,9 @@ import threading
 import time
 
 from grader import table
-from grader.grade import HandedIn, Row
+from grader.grade import Row
 from grader.gradebook import Stored
+from grader.submitted import HandedIn
 from grader.table import print_rows
 
 SAID = {

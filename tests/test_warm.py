@@ -2,31 +2,30 @@
 
 import ast
 import asyncio
+import functools
 import os
-import re
-import signal
-import subprocess
-import sys
-import threading
 import time
 from pathlib import Path
 
 import psutil
 import pytest
+from forked_kernels import (
+    FIRST_SLOT,
+    closed,
+    kernel_of,
+    opened,
+    printed,
+    process_of,
+    server_of,
+)
 
 from grader import warm
 from grader.bubblewrap import slot_user
 from grader.course import ROOT
 from grader.errors import RoomFailure
-from grader.kernels import Kernel
-from grader.sandbox import Sandbox
 
 pytestmark = pytest.mark.isolation
 
-SLOTS = iter(range(320, 400))
-"""None that a claimed ROS domain gives."""
-DOMAIN = 0
-"""No kernel of this module makes a node."""
 SEED = 'canary-seed-' + '5eed' * 8
 
 
@@ -34,30 +33,6 @@ SEED = 'canary-seed-' + '5eed' * 8
 def loop():
     with asyncio.Runner() as runner:
         yield runner
-
-
-async def opened(*, room='student', seed='', fresh=False):
-    """Return a sandbox and a kernel in it; it is forked, unless it has to be started `fresh`."""
-    sandbox = Sandbox(slot=next(SLOTS))
-    await sandbox.open()
-    kernel = Kernel(room=room, domain_id=DOMAIN, seed=seed, place=sandbox.place(room))
-    with pytest.MonkeyPatch.context() as patch:
-        if fresh:
-            patch.setitem(warm._unfit, room, 'the test says so')
-        await kernel.start()
-    assert kernel.why_not_warm == ('the test says so' if fresh else '')
-    return sandbox, kernel
-
-
-async def closed(sandbox, kernel):
-    await kernel.stop()
-    await sandbox.close()
-
-
-def kernel_of(loop, **options):
-    sandbox, kernel = loop.run(opened(**options))
-    yield kernel
-    loop.run(closed(sandbox, kernel))
 
 
 @pytest.fixture(scope='module')
@@ -78,26 +53,8 @@ def own(loop):
 
 @pytest.fixture
 def said(loop):
-    """Return what a cell prints."""
-
-    def said(kernel, code):
-        run = loop.run(kernel.run(code, timeout_sec=60.0))
-        assert run.ran_to_end, run.error or run
-        return ''.join(o.text for o in run.outputs)
-
-    return said
-
-
-def process_of(kernel):
-    """Return the kernel's process as the machine knows it."""
-    process = kernel._manager.provisioner.process
-    info = Path(f'/proc/self/fdinfo/{process._kernel}').read_text()
-    return psutil.Process(int(re.search(r'^Pid:\s*(\d+)', info, re.MULTILINE)[1]))
-
-
-def server_of(kernel):
-    """Return the process that the kernel was forked from."""
-    return process_of(kernel).parent()
+    """Return what returns what a cell prints."""
+    return functools.partial(printed, loop)
 
 
 # -- the same kernel ------------------------------------------------------------------------------
@@ -209,6 +166,10 @@ for process in ('self', '1'):
 
 
 MODULES = 'import sys; print(sorted(sys.modules))'
+FOLDERS = """
+import os, sys
+print(sorted({os.path.dirname(getattr(m, '__file__', None) or '') for m in sys.modules.values()}))
+"""
 
 
 def test_a_forked_kernel_has_imported_more_but_nothing_of_the_grader(forked, started, said):
@@ -216,6 +177,9 @@ def test_a_forked_kernel_has_imported_more_but_nothing_of_the_grader(forked, sta
     assert set(ast.literal_eval(said(started, MODULES))) <= warm_ones
     assert {'rclpy', 'numpy', 'matplotlib.pyplot', 'sensor_msgs.msg'} <= warm_ones
     assert [name for name in warm_ones if name.split('.')[0] in ('grader', 'nbgrader')] == []
+    # neither under a name that a student may give to a module
+    folders = ast.literal_eval(said(forked, FOLDERS))
+    assert [folder for folder in folders if Path(folder).is_relative_to(ROOT / 'grader')] == []
 
 
 PLOT = """
@@ -252,21 +216,6 @@ def test_no_two_kernels_have_chance_in_common(forked, own, said):
     assert not set(said(forked, CHANCE).split()) & set(said(own, CHANCE).split())
 
 
-SEARCH = """
-import sys
-def memory():
-    with open('/proc/self/maps') as maps, open('/proc/self/mem', 'rb', 0) as memory:
-        for line in maps:
-            start, end = (int(address, 16) for address in line.split()[0].split('-'))
-            try:
-                memory.seek(start)
-                yield memory.read(end - start)
-            except (OSError, OverflowError):
-                continue
-print([text for text in TEXTS if any(bytes(text) in part for part in memory())])
-"""
-
-
 def memory_of(process):
     """Yield the memory of a process."""
     with (
@@ -297,33 +246,6 @@ def test_what_a_test_room_is_told_is_in_no_server_and_in_no_later_kernel(loop, s
     finally:
         loop.run(closed(sandbox, told))
         loop.run(closed(later_sandbox, later))
-
-
-def test_a_server_holds_nothing_of_the_grader(forked):
-    server = server_of(forked)
-    assert server.num_threads() == 1
-    held = [
-        os.readlink(f'/proc/{server.pid}/fd/{fd}') for fd in os.listdir(f'/proc/{server.pid}/fd')
-    ]
-    assert {re.sub(r'\d+', '', link) for link in held} <= {'/dev/null', 'socket:[]'}
-    assert len(held) <= 4  # three of them are the standard ones
-    assert server.cwd() == '/'
-    assert set(server.environ()) <= {
-        *warm.ENVIRONMENT,
-        *('MPLBACKEND', 'PYTHONSAFEPATH', 'PYTHONDONTWRITEBYTECODE', 'LD_LIBRARY_PATH'),
-        *('_ROS_WHEELS_BOOTSTRAP_COMPLETE', 'LANG', 'LC_ALL', 'TZ'),
-    }
-    maps = Path(f'/proc/{server.pid}/maps').read_text().splitlines()
-    shared = [line for line in maps if line.split()[1].endswith('s')]
-    assert [line for line in shared if '/dev/shm' in line or 'w' in line.split()[1]] == []
-
-
-def test_students_and_tests_kernels_lie_differently_in_memory(loop, forked):
-    sandbox, test = loop.run(opened(room='test'))
-    try:
-        assert server_of(test) != server_of(forked)
-    finally:
-        loop.run(closed(sandbox, test))
 
 
 HOSTILE = """
@@ -387,7 +309,8 @@ def test_root_gives_the_kernels_of_each_slot_a_user_of_its_own(forked, own):
     users = [set(process_of(kernel).uids()) for kernel in (forked, own)]
     assert users[0] != users[1]
     assert all(len(ids) == 1 for ids in users)
-    assert {slot_user(slot) for slot in range(320, 400)} > users[0] | users[1]
+    slots = range(FIRST_SLOT, FIRST_SLOT + 100)
+    assert {slot_user(slot) for slot in slots} > users[0] | users[1]
     assert {0} not in users
 
 
@@ -426,151 +349,7 @@ def test_a_room_ends_with_its_kernel(loop, code):
     assert inhabitants(network) == []
 
 
-def test_a_server_that_has_died_is_replaced(loop, own):
-    former = server_of(own)
-    former.kill()
-    while former.is_running() and former.status() != psutil.STATUS_ZOMBIE:
-        time.sleep(0.01)
-    sandbox, kernel = loop.run(opened())
-    try:
-        assert server_of(kernel).is_running()
-        assert own.alive  # what it had forked lives on
-        assert loop.run(own.run('1', timeout_sec=60.0)).ran_to_end
-    finally:
-        loop.run(closed(sandbox, kernel))
-
-
-def test_many_are_forked_at_a_time_and_by_several_threads():
-    kernels = []
-
-    async def some():
-        opened_ones = await asyncio.gather(*(opened() for _ in range(3)))
-        try:
-            runs = [kernel.run('print(1)', timeout_sec=60.0) for _, kernel in opened_ones]
-            kernels.extend(run.ran_to_end for run in await asyncio.gather(*runs))
-        finally:
-            await asyncio.gather(*(closed(*each) for each in opened_ones))
-
-    threads = [threading.Thread(target=lambda: asyncio.run(some())) for _ in range(2)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert kernels == [True] * 6
-
-
-GRADER = """
-import asyncio, time, sys
-sys.path[:0] = [{root!r}, {root!r} + '/tests']
-from test_warm import opened, server_of
-async def main():
-    kept = await opened()
-    print(server_of(kept[1]).pid, flush=True)
-    {then}
-asyncio.run(main())
-"""
-
-
-@pytest.mark.parametrize('then', ['time.sleep(1000)', 'return'], ids=['killed', 'ended'])
-def test_no_server_outlives_its_grader(then):
-    code = GRADER.format(root=str(ROOT), then=then)
-    grader = subprocess.Popen([sys.executable, '-c', code], stdout=subprocess.PIPE, text=True)
-    server = psutil.Process(int(grader.stdout.readline()))
-    if then != 'return':
-        grader.send_signal(signal.SIGKILL)
-    grader.wait(60)
-    assert psutil.wait_procs([server], timeout=60)[1] == []
-
-
-def test_a_process_forked_from_a_grader_does_not_keep_its_servers(forked):
-    if os.fork() == 0:
-        os._exit(len(warm._servers))
-    assert os.waitstatus_to_exitcode(os.wait()[1]) == 0
-    assert warm._servers
-
-
-# -- where it can't be ----------------------------------------------------------------------------
-
-FAULTS = {
-    'a thread': (
-        'import threading, time; threading.Thread(target=time.sleep, args=(1e6,)).start()',
-        'started threads',
-    ),
-    'shared memory': ('import mmap, sys; sys.kept = mmap.mmap(-1, 4096)', 'made shared memory'),
-    'an import that fails': ('import nothing_of_that_name', 'nothing_of_that_name'),
-    'its end': ('import os; os._exit(1)', 'has ended'),
-}  # fmt: skip
-
-
-@pytest.fixture
-def servers():
-    """No server yet, and none left."""
-    warm.close_servers()
-    warm._unfit.clear()
-    yield
-    warm.close_servers()
-    warm._unfit.clear()
-
-
-@pytest.mark.parametrize(('fault', 'why'), FAULTS.values(), ids=FAULTS)
-def test_what_can_not_be_forked_is_started_and_says_why(
-    loop, monkeypatch, tmp_path, servers, said, fault, why
-):
-    script = tmp_path / 'forkserver.py'
-    code = warm._SCRIPT.read_text().replace('_load_type_supports()\n', f'exec({fault!r})\n', 1)
-    script.write_text(code)
-    monkeypatch.setattr(warm, '_SCRIPT', script)
-    sandbox = Sandbox(slot=next(SLOTS))
-    loop.run(sandbox.open())
-    kernel = Kernel(room='student', domain_id=DOMAIN, place=sandbox.place('student'))
-    loop.run(kernel.start())
-    try:
-        assert why in kernel.why_not_warm
-        commands = [process.info['cmdline'] for process in psutil.process_iter(['cmdline'])]
-        assert [command for command in commands if command and str(script) in command] == []
-        assert said(kernel, 'print(1)') == '1\n'
-        assert said(kernel, LOOKS['processes']) == "['1', '2']\n"
-    finally:
-        loop.run(closed(sandbox, kernel))
-
-
 def test_a_kernel_that_can_not_enter_its_room_is_the_graders_failure(loop, monkeypatch):
     monkeypatch.setattr(warm, '_NAMESPACES', ('user', 'net'))
     with pytest.raises(RoomFailure, match='could not enter its room'):
         loop.run(opened())
-
-
-def test_a_python_of_ones_own_is_copied_first(loop, monkeypatch, servers, said):
-    """Its file could be changed through /proc/self/exe: the room's user would be its owner."""
-    python = Path('/proc/self/exe')
-    monkeypatch.setattr(warm, '_python', lambda: warm._sealed_copy(python))
-    sandbox, kernel = loop.run(opened())
-    try:
-        link = said(kernel, "import os; print(os.readlink('/proc/self/exe'))")
-        assert link.startswith('/memfd:python')
-        assert process_of(kernel).status() != psutil.STATUS_ZOMBIE
-    finally:
-        loop.run(closed(sandbox, kernel))
-
-
-def test_the_copy_of_python_can_not_be_changed(tmp_path):
-    (tmp_path / 'python').write_bytes(b'python')
-    with warm._sealed_copy(tmp_path / 'python') as copy:
-        path = f'/proc/self/fd/{copy.fileno()}'
-        assert Path(path).read_bytes() == b'python'
-        with pytest.raises(PermissionError):
-            os.truncate(path, 3)
-        with pytest.raises(PermissionError):
-            Path(path).write_bytes(b'x')
-        with Path(path).open('r+b', buffering=0) as again, pytest.raises(PermissionError):
-            again.write(b'x')
-
-
-@pytest.mark.parametrize(
-    ('user', 'owner', 'copied'), [(0, 0, False), (1000, 0, False), (1000, 1000, True)]
-)
-def test_only_a_python_of_ones_own_is_copied(monkeypatch, user, owner, copied):
-    monkeypatch.setattr(Path, 'stat', lambda path: type('Found', (), {'st_uid': owner}))
-    monkeypatch.setattr(os, 'geteuid', lambda: user)
-    with warm._python() as python:
-        assert (python.name != '/proc/self/exe') is copied

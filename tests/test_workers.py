@@ -5,16 +5,15 @@ from pathlib import Path
 
 import psutil
 import pytest
-from course_maker import TOY, answered, make_course, submit
+from course_maker import answered, released_course, submit
 
 from grader import workers
 from grader.course import Course
 from grader.errors import TaskFailed
-from grader.grade import find_submissions, grade_all
-from grader.gradebook import register
+from grader.grade import grade_all
 from grader.limits import SUBMISSION_MEMORY_BYTES
 from grader.records import records
-from grader.release import release
+from grader.submitted import find_submissions
 from grader.task import Task
 from grader.workers import Workers
 
@@ -25,10 +24,7 @@ WRONG = 'def double(x):\n    return x + 1'
 
 @pytest.fixture(scope='module')
 def course(tmp_path_factory):
-    course = make_course(tmp_path_factory.mktemp('workers'))
-    release(course)
-    register(course, TOY)
-    return course
+    return released_course(tmp_path_factory.mktemp('workers'))
 
 
 def task(course, first_line=''):

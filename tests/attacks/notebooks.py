@@ -37,6 +37,13 @@ def edits_its_checks(notebook: NotebookNode, folder: Path) -> None:
             cell.source = 'print("passed")'
 
 
+def is_made_of_magics(notebook: NotebookNode, folder: Path) -> None:
+    """Answers in magics alone: IPython reads a cell anew for each, and gives up in the end."""
+    for cell in notebook.cells:
+        if cell.metadata.get('nbgrader', {}).get('solution') and cell.cell_type == 'code':
+            cell.source = 'x = %who\n' * 600
+
+
 def makes_text_of_its_checks(notebook: NotebookNode, folder: Path) -> None:
     """Turns the checks into cells that nobody runs."""
     for cell in notebook.cells:

@@ -30,8 +30,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / 'tests')]
 
-import nbformat  # noqa: E402
-from attacks.corpus import (  # noqa: E402
+import nbformat
+from attacks.corpus import (
     CANARY,
     FULL,
     LEFT,
@@ -43,13 +43,14 @@ from attacks.corpus import (  # noqa: E402
     earns,
     hand_in_honestly,
 )
-from course_maker import TOY, make_course, toy_lesson, write_source  # noqa: E402
+from course_maker import TOY, make_course, toy_lesson, write_source
 
-from grader.course import Course  # noqa: E402
-from grader.errors import RoomFailure  # noqa: E402
-from grader.grade import find_submissions, grade_all  # noqa: E402
-from grader.release import release  # noqa: E402
-from grader.sandbox import Sandbox  # noqa: E402
+from grader.course import Course
+from grader.errors import RoomFailure
+from grader.grade import grade_all
+from grader.release import release
+from grader.sandbox import Sandbox
+from grader.submitted import find_submissions
 
 ATTACKER, NEIGHBOUR = 'a-attacker', 'b-neighbour'
 PORT = 40_861

@@ -20,16 +20,16 @@ import nbformat
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / 'tests')]
 
-from nbgrader.preprocessors import Execute  # noqa: E402
-from sample_class import PATHS, assignment_of, grade  # noqa: E402
+from nbgrader.preprocessors import Execute
+from sample_class import PATHS, assignment_of, grade
 
-from grader.course import Course  # noqa: E402
-from grader.execute import execute  # noqa: E402
-from grader.gradebook import register  # noqa: E402
-from grader.heal import heal, role  # noqa: E402
-from grader.kernels import Kernel  # noqa: E402
-from grader.pipeline import prepare  # noqa: E402
-from grader.rooms import Rooms  # noqa: E402
+from grader.course import Course
+from grader.execute import execute
+from grader.gradebook import register
+from grader.heal import heal, role
+from grader.kernels import Kernel
+from grader.pipeline import prepare
+from grader.rooms import Rooms
 
 NAMES = (
     '02_joint_state-pass-numpy',

@@ -24,9 +24,9 @@ import psutil
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / 'tests')]
 
-from grader import grade  # noqa: E402
-from grader.__main__ import main  # noqa: E402
-from grader.course import Course  # noqa: E402
+from grader import grade
+from grader.__main__ import main
+from grader.course import Course
 
 STORED = re.compile(r'^seconds in the database: ([\d.]+)$', re.MULTILINE)
 LOOK_SEC = 0.5

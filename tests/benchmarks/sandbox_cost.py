@@ -16,15 +16,15 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / 'tests')]
 
-import nbformat  # noqa: E402
-from sample_class import PATHS, assignment_of  # noqa: E402
+import nbformat
+from sample_class import PATHS, assignment_of
 
-from grader import execute as module  # noqa: E402
-from grader.course import Course  # noqa: E402
-from grader.gradebook import register  # noqa: E402
-from grader.heal import heal  # noqa: E402
-from grader.isolation import isolated  # noqa: E402
-from grader.pipeline import prepare  # noqa: E402
+from grader import execute as module
+from grader.course import Course
+from grader.gradebook import register
+from grader.heal import heal
+from grader.isolation import isolated
+from grader.pipeline import prepare
 
 NAMES = (
     '02_joint_state-pass-numpy',

@@ -19,18 +19,18 @@ import nbformat
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / 'tests')]
 
-from sample_class import PATHS, assignment_of  # noqa: E402
+from sample_class import PATHS, assignment_of
 
-from grader import execute, warm  # noqa: E402
-from grader.course import Course  # noqa: E402
-from grader.gradebook import register  # noqa: E402
-from grader.heal import heal  # noqa: E402
-from grader.isolation import isolated  # noqa: E402
-from grader.kernels import Kernel  # noqa: E402
-from grader.pipeline import prepare  # noqa: E402
-from grader.provisioner import SandboxProvisioner  # noqa: E402
-from grader.rooms import Rooms  # noqa: E402
-from grader.sandbox import Sandbox  # noqa: E402
+from grader import execute, servers, warm
+from grader.course import Course
+from grader.gradebook import register
+from grader.heal import heal
+from grader.isolation import isolated
+from grader.kernels import Kernel
+from grader.pipeline import prepare
+from grader.provisioner import SandboxProvisioner
+from grader.rooms import Rooms
+from grader.sandbox import Sandbox
 
 NAMES = (
     '02_joint_state-pass-numpy',
@@ -110,9 +110,9 @@ def main(runs: int = 3) -> None:
     judge(course)  # starts the servers
     forked, started = [], []
     for _ in range(runs):
-        warm._unfit.clear()
+        servers._unfit.clear()
         forked += judge(course)
-        warm._unfit.update(student='to compare', test='to compare')
+        servers._unfit.update(student='to compare', test='to compare')
         started += judge(course)
     print(f'median ms of {len(forked)} exercises   forked  started')
     for part in forked[0]:

@@ -1,0 +1,126 @@
+"""Which process uses the CPU while a submission is graded, and at what.
+
+    .venv/bin/python tests/benchmarks/where_cpu_goes.py [RUNS]
+
+Means of some right and wrong sample answers, graded one after the other. What waits costs nothing
+here, so that a busy machine shows much the same. Nothing is asserted.
+"""
+
+import asyncio
+import os
+import re
+import resource
+import sys
+import time
+from collections import Counter
+from collections.abc import Callable
+from pathlib import Path
+
+from measuring import Course, new_course, table
+from sample_class import PATHS, assignment_of
+
+from grader.database import one_engine
+from grader.execute import executed
+from grader.gradebook import register, store
+from grader.heal import heal
+from grader.isolation import isolated
+from grader.kernels import Kernel
+from grader.pipeline import prepared_master
+from grader.submission import read_submission
+
+NAMES = (
+    '02_joint_state-pass-one_constructor',
+    '03_publisher-pass-one_fifth',
+    '03_publisher-fail-degrees',
+    '04_subscriber-pass-one_line',
+    '07_common_errors-pass-helpers_and_one_message_object',
+)
+START, PROBE, REST = 'starts', 'probe', 'cells, and nodes meanwhile'
+TICKS = os.sysconf('SC_CLK_TCK')
+
+used: Counter[tuple[str, str]] = Counter()
+"""Seconds of CPU, by process and part."""
+before: dict[int, float] = {}
+"""What each kernel had used when it was looked at last, by its process ID."""
+
+
+def note(kernel: Kernel, part: str) -> None:
+    """Count for a part what a kernel has used since it was looked at last."""
+    provisioner = kernel._manager.provisioner
+    if not kernel._manager.has_kernel or not hasattr(provisioner.process, '_kernel'):
+        return
+    about = Path(f'/proc/self/fdinfo/{provisioner.process._kernel}')
+    try:
+        pid = int(re.search(r'^Pid:\s+(-?\d+)', about.read_text('ascii'), re.MULTILINE)[1])
+        fields = Path(f'/proc/{pid}/stat').read_text('utf-8').rpartition(')')[2].split()
+    except FileNotFoundError:  # it has ended
+        return
+    now = (int(fields[11]) + int(fields[12])) / TICKS
+    used[f'{kernel.room} kernel', part] += now - before.get(pid, 0.0)
+    before[pid] = now
+
+
+def watch(name: str, part_of: Callable[..., str], *, first: bool = False) -> None:
+    """Let a method of kernels note what they use in it, or `first` what they used before."""
+    method = getattr(Kernel, name)
+
+    async def noted(kernel: Kernel, *args: object, **kwargs: object) -> object:
+        if first:
+            note(kernel, part_of())
+        result = await method(kernel, *args, **kwargs)
+        if not first:
+            note(kernel, part_of(*args))
+        return result
+
+    setattr(Kernel, name, noted)
+
+
+def grade(course: Course, name: str, number: int) -> None:
+    """Grade a sample as somebody's submission, and store it."""
+    assignment, student = assignment_of(PATHS[name]), f'student_{number}'
+    folder = course.folder('submitted', student, assignment)
+    folder.mkdir(parents=True)
+    (folder / f'{assignment}.ipynb').write_bytes(PATHS[name].read_bytes())
+    master = prepared_master(course, assignment)
+    parts = [time.process_time()]
+    submission = read_submission(folder, student_id=student, assignment=assignment)
+    healed = heal(submission.notebook, master).notebook
+    parts.append(time.process_time())
+    graded = asyncio.run(executed(healed)).notebook
+    parts.append(time.process_time())
+    store(course, submission, graded)
+    parts.append(time.process_time())
+    names = (('run', 'read and heal'), ('worker', 'rooms and messages'), ('run', 'store'))
+    for which, start, end in zip(names, parts, parts[1:], strict=False):
+        used[which] += end - start
+
+
+def main(runs: int = 3) -> None:
+    """Print the table."""
+    isolated()
+    course = new_course('cpu')
+    for assignment in {assignment_of(PATHS[name]) for name in NAMES}:
+        register(course, assignment)
+    watch('start', lambda *_: START)
+    watch('run', lambda code, *_: PROBE if 'probe' in code else REST)
+    watch('stop', lambda *_: REST, first=True)
+    with one_engine(course.db_url):
+        grade(course, NAMES[0], 0)  # starts the servers
+        used.clear()
+        children, number = _of_children(), 0
+        for number, name in enumerate(runs * NAMES, start=1):
+            grade(course, name, number)
+    used['bubblewrap and the like', 'rooms'] = _of_children() - children
+    print(f'{number} submissions, load {os.getloadavg()[0]:.1f}')
+    rows = [(who, part, 1000 * seconds / number) for (who, part), seconds in sorted(used.items())]
+    total = 1000 * sum(used.values()) / number
+    table(('', '', 'CPU ms each'), [*rows, ('all', '', total)])
+
+
+def _of_children() -> float:
+    spent = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return spent.ru_utime + spent.ru_stime
+
+
+if __name__ == '__main__':
+    main(*map(int, sys.argv[1:]))

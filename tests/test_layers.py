@@ -1,0 +1,83 @@
+"""Imports go one way, inside of functions too, and no module takes another's private names."""
+
+import ast
+import graphlib
+import re
+from functools import cache
+from pathlib import Path
+
+import grader
+
+ROOT = Path(__file__).parents[1]
+PACKAGES = {
+    'grader': ROOT / 'grader',
+    'my_robot_basics': ROOT / 'my_robot_basics' / 'my_robot_basics',
+}
+PROGRAM = 'grader.forkserver.'
+"""Run by its folder, so its modules know each other by their own names."""
+
+
+@cache
+def modules():
+    """Return the code of each module, parsed, by its name."""
+    return {
+        '.'.join((package, *path.relative_to(folder).with_suffix('').parts)).removesuffix(
+            '.__init__'
+        ): ast.parse(path.read_text(encoding='utf-8'))
+        for package, folder in PACKAGES.items()
+        for path in sorted(folder.rglob('*.py'))
+    }
+
+
+def imported(module):
+    """Yield what a module imports of ours, in functions too: the module, and the name in it.
+
+    What only a type checker imports does not count.
+    """
+    beside = PROGRAM if module.startswith(PROGRAM) else ''
+    for node in nodes(modules()[module]):
+        if isinstance(node, ast.ImportFrom):
+            for alias in node.names:
+                whole = f'{beside}{node.module}.{alias.name}'
+                yield (whole, '') if whole in modules() else (beside + node.module, alias.name)
+        elif isinstance(node, ast.Import):
+            yield from ((beside + alias.name, '') for alias in node.names)
+
+
+def nodes(tree):
+    for node in ast.iter_child_nodes(tree):
+        if not (isinstance(node, ast.If) and getattr(node.test, 'id', '') == 'TYPE_CHECKING'):
+            yield node
+            yield from nodes(node)
+
+
+def test_no_module_needs_one_that_needs_it():
+    needs = {
+        module: {other for other, _ in imported(module) if other in modules() and other != module}
+        for module in modules()
+    }
+    assert needs['grader.__main__'] >= {'grader.arguments', 'grader.course'}
+    assert needs['grader.forkserver.__main__'] >= {'grader.forkserver.settling'}
+    graphlib.TopologicalSorter(needs).prepare()  # raises CycleError, which names them
+
+
+def test_what_a_module_keeps_to_itself_is_imported_nowhere():
+    taken = [
+        (module, f'{other}.{name}')
+        for module in modules()
+        for other, name in imported(module)
+        if other in modules() and any(p.startswith('_') for p in f'{other}.{name}'.split('.'))
+    ]
+    assert taken == []
+
+
+def test_the_map_of_the_grader_names_each_module_once():
+    told = re.findall(r'`(\w+)`', grader.__doc__)
+    found = {path.stem for path in PACKAGES['grader'].iterdir() if path.suffix == '.py'}
+    found |= {'forkserver'}
+    assert sorted(told) == sorted(found - {'__init__'})
+
+
+def test_what_students_get_needs_no_grader():
+    ours = [module for module in modules() if module.startswith('my_robot_basics')]
+    assert [m for m in ours for other, _ in imported(m) if other.startswith('grader')] == []

@@ -1,0 +1,39 @@
+import nbformat
+import pytest
+from sample_class import PATHS, assignment_of
+
+from grader.course import Course
+from grader.gradebook import register
+from grader.heal import heal
+from grader.pipeline import prepare, prepared_master
+from grader.submission import read_submission
+
+NAMES = (
+    '02_joint_state-pass-helper_in_the_last_cell',
+    '03_publisher-fail-edited_grade_cells',
+    '03_publisher-pass-deleted_grade_cells',
+    '03_publisher-pass-repeated_grade_cells',
+    '03_publisher-pass-split_answer',
+    '05_command_line-fail-untouched',
+)
+
+
+@pytest.fixture(scope='module')
+def course(tmp_path_factory):
+    course = Course(gradebook=tmp_path_factory.mktemp('pipeline') / 'gradebook')
+    for assignment in {assignment_of(PATHS[name]) for name in NAMES}:
+        register(course, assignment)
+    return course
+
+
+@pytest.mark.parametrize('name', NAMES)
+def test_what_is_healed_from_a_prepared_master_is_prepared(name, course, tmp_path):
+    assignment = assignment_of(PATHS[name])
+    (tmp_path / f'{assignment}.ipynb').write_bytes(PATHS[name].read_bytes())
+    submission = read_submission(tmp_path, student_id='ada', assignment=assignment)
+    notebook = submission.notebook or nbformat.v4.new_notebook()
+    one = prepare(course, assignment, heal(notebook, course.master(assignment)).notebook)
+    other = heal(notebook, prepared_master(course, assignment)).notebook
+    assert one == other
+    assert any('checksum' in cell.metadata.get('nbgrader', {}) for cell in other.cells)
+    nbformat.validate(other)
