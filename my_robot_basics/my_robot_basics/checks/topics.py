@@ -94,7 +94,7 @@ class Topic:
         after: Callable[[], None] | None = None,
         expected: str = '',
         seen: Callable[[Any], object] | None = None,
-        hint: str = 'print what your node publishes and compare',
+        hint: str | Callable[[Any], str] = 'print what your node publishes and compare',
         never: Callable[[Any], object] | None = None,
     ) -> Any:
         """The first message for which the predicate holds (the first of all without one).
@@ -102,7 +102,8 @@ class Topic:
         `after` is called once the subscription stands: what it publishes can't be missed.
         Raises CheckFailed when there is no publisher or no such message in time. Where there were
         others, it speaks of what was `expected`, of the last one, as `seen` puts it in words, and
-        gives the `hint`; so it does where one comes for which `never` holds, beside the right one.
+        gives the `hint` (on that one, if it is a function); so it does where one comes for which
+        `never` holds, beside the right one.
         """
         with Watcher() as watcher:
             ears = self.listen(watcher)
@@ -120,12 +121,12 @@ class Topic:
             if wrong or not is_there:
                 if not heard:
                     self._fail_silent(watcher, seen=f'no message in {timeout_sec:g} s')
+                last = [*heard, *wrong][-1]
+                others = f'{len(heard)} others in {timeout_sec:g} s'
                 fail(
                     expected=expected or f'a message on {self.name} that answers',
-                    seen=shorten(seen([*heard, *wrong][-1]))
-                    if seen
-                    else f'{len(heard)} others in {timeout_sec:g} s',
-                    hint=hint,
+                    seen=shorten(seen(last)) if seen else others,
+                    hint=hint(last) if callable(hint) else hint,
                 )
             return found()[0]
 
