@@ -4,10 +4,12 @@ import io
 import math
 import re
 from concurrent.futures import ThreadPoolExecutor
+from itertools import product
 
 import numpy as np
 import pytest
 from matplotlib.image import imread
+from matplotlib.transforms import Bbox
 from my_robot_basics.live import show_arm
 from my_robot_basics.live.arm import ArmPicture, describe
 from my_robot_basics.live.follow import ArmView, what_is_wrong
@@ -43,6 +45,26 @@ def test_links_and_words_fit_the_pose(pose):
     assert words == [f'θ1 = {pose[0]:.1f}°', f'θ2 = {pose[1]:.1f}°']
     told = [float(number) for number in re.findall(r'[xy] = (\S+) m', describe(*pose))]
     assert told == pytest.approx([tip.real, tip.imag], abs=6e-4)
+
+
+@pytest.mark.parametrize('dashed', [None, (0, 90)])
+def test_the_words_hide_neither_links_nor_each_other(dashed):
+    picture = ArmPicture(l1=1.0, l2=0.8)
+    if dashed:
+        picture.dashed(*dashed)
+    axes, covered = axes_of(picture), []
+    for pose in [*product(range(-180, 181, 45), repeat=2), (-79.6, 1.8), (1718.9, 2578.3)]:
+        picture.move(*pose)
+        renderer = picture._canvas.get_renderer()
+        first, second = (words.get_window_extent(renderer) for words in axes.texts)
+        if Bbox.intersection(first, second):
+            covered.append((pose, 'θ2 on θ1'))
+        for line in axes.lines:
+            if line.get_linestyle() in ('-', '--') and len(line.get_xydata()):
+                path = line.get_transform().transform_path(line.get_path())
+                hidden = (box for box in (first, second) if path.intersects_bbox(box, False))
+                covered += [(pose, line.get_label()) for _ in hidden]
+    assert covered == []
 
 
 def test_moving_leaves_nothing_of_the_former_pose():

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from my_robot_basics.live import notebook
+from my_robot_basics.live.labels import Label, place, points_along
 from my_robot_basics.two_link_kinematics import L1, L2, forward_kinematics
 
 # Okabe and Ito's colours are told apart by everyone
@@ -76,6 +77,10 @@ class ArmPicture:
             xlabel='x in base_link (m)',
             ylabel='y in base_link (m)',
         )
+        axes.apply_aspect()  # else words are measured in other metres before the first drawing
+        (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
+        frame = [(left, bottom), (right, bottom), (right, top), (left, top), (left, bottom)]
+        self._frame = points_along(frame)
         axes.grid(color='0.9')
         axes.set_axisbelow(True)
         ring = Wedge(
@@ -102,8 +107,12 @@ class ArmPicture:
         self._effector.set_data([x], [y])
         while self._angles:
             self._angles.pop().remove()
-        self._angle('θ1', theta1_deg, at=np.zeros(2), start_deg=0.0)
-        self._angle('θ2', theta2_deg, at=elbow, start_deg=theta1_deg)
+        first = self._angle('θ1', theta1_deg, at=np.zeros(2), start_deg=0.0)
+        second = self._angle('θ2', theta2_deg, at=elbow, start_deg=theta1_deg)
+        lines = self._link1, self._link2, self._dashed, self._target
+        avoid = np.concatenate([self._frame, *(points_along(line.get_xydata()) for line in lines)])
+        avoid = np.concatenate([avoid, place(first, avoid=avoid)])
+        place(second, avoid=avoid)
         pose = f'θ1 = {theta1_deg:.1f}°, θ2 = {theta2_deg:.1f}°  →  ({x:.3f}, {y:.3f}) m'
         self.title('\n'.join(filter(None, [title, pose])))
 
@@ -131,8 +140,11 @@ class ArmPicture:
         self._figure.savefig(buffer, format='png', pil_kwargs={'compress_level': 1})
         return buffer.getvalue()
 
-    def _angle(self, name: str, angle_deg: float, *, at: np.ndarray, start_deg: float) -> None:
-        """Draw an arc from the direction `start_deg` on, its zero line, and the angle in words."""
+    def _angle(self, name: str, angle_deg: float, *, at: np.ndarray, start_deg: float) -> Label:
+        """Draw an arc from the direction `start_deg` on, its zero line, and the angle in words.
+
+        The words are still to be placed.
+        """
         from matplotlib.patches import Arc
         from matplotlib.patheffects import withStroke
 
@@ -142,16 +154,15 @@ class ArmPicture:
         arc = Arc(at, size, size, theta1=first, theta2=last, color=ANGLE, lw=1.2)
         zero_line = np.array([at, at + 0.8 * size * _direction(start_deg)]).T
         zero = self._axes.plot(*zero_line, color=ANGLE, lw=0.8, ls=':')
-        middle = _direction(start_deg + shown_deg / 2)
-        label = self._axes.annotate(
+        words = self._axes.annotate(
             f'{name} = {angle_deg:.1f}°',
-            at + 0.62 * size * middle,
+            at,
             fontsize=9,
-            ha='left' if middle[0] >= 0 else 'right',
-            va='center',
+            va='bottom',
             path_effects=[withStroke(linewidth=3, foreground='white')],
         )
-        self._angles += [self._axes.add_patch(arc), *zero, label]
+        self._angles += [self._axes.add_patch(arc), *zero, words]
+        return Label(words, at, distance=0.62 * size, direction_deg=start_deg + shown_deg / 2)
 
 
 def _direction(angle_deg: float) -> np.ndarray:

@@ -1,0 +1,70 @@
+"""Words in a picture, put where they hide nothing."""
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+if TYPE_CHECKING:
+    from matplotlib.text import Text
+
+TURNS_DEG = (0, 30, -30, 60, -60, 90, -90, 120, -120, 150, -150, 180)
+"""From where words belong to where else they may stand, the nearest first."""
+POINTS = 60
+"""Stand for a straight line."""
+MARGIN = 0.35
+"""Left free around words, in heights of them: as much as the widest line needs on each side."""
+
+
+@dataclass(frozen=True)
+class Label:
+    """Words that stand beside a point of the picture."""
+
+    words: 'Text'
+    at: np.ndarray
+    """The point, (x, y) in metres."""
+    distance: float
+    """From that point, in metres."""
+    direction_deg: float
+    """Where they belong, as seen from the point."""
+
+
+def points_along(corners: ArrayLike) -> np.ndarray:
+    """Return points close to each other on the line through `corners`: rows (x, y) in metres."""
+    corners = np.asarray(corners, dtype=float).reshape(-1, 2)
+    sides = pairwise(corners)
+    return np.concatenate([corners, *(np.linspace(*side, POINTS) for side in sides)])
+
+
+def place(label: Label, *, avoid: np.ndarray) -> np.ndarray:
+    """Put words where they hide the fewest of the points `avoid`; return points around them."""
+    size = _size(label.words)
+    spots = [_spot(label, turn_deg, size) for turn_deg in TURNS_DEG]
+    hidden = [_count(low, low + size, avoid) for low in spots]
+    low = spots[hidden.index(min(hidden))]
+    label.words.set_position(low)
+    (left, bottom), (right, top) = low, low + size
+    return points_along([(left, bottom), (right, bottom), (right, top), (left, top), low])
+
+
+def _size(words: 'Text') -> np.ndarray:
+    """Return width and height of words as they are drawn, in metres."""
+    renderer = words.get_figure().canvas.get_renderer()
+    drawn = words.axes.transData.inverted().transform(words.get_window_extent(renderer))
+    return drawn[1] - drawn[0]
+
+
+def _spot(label: Label, turn_deg: float, size: np.ndarray) -> np.ndarray:
+    """Return the lower left corner of words that stand in that direction."""
+    angle = np.radians(label.direction_deg + turn_deg)
+    towards = np.array([np.cos(angle), np.sin(angle)])
+    on_the_left = size[0] if towards[0] < -1e-9 else 0.0
+    return label.at + label.distance * towards - (on_the_left, size[1] / 2)
+
+
+def _count(low: np.ndarray, high: np.ndarray, points: np.ndarray) -> int:
+    """Count the points that lie in that box, or close to it."""
+    margin = MARGIN * (high[1] - low[1])
+    return np.all((points > low - margin) & (points < high + margin), axis=1).sum()
