@@ -3,9 +3,10 @@
 import contextlib
 import threading
 import time
+import types
 
 import pytest
-from my_robot_basics.checks import CheckFailed, clock, looks, topic
+from my_robot_basics.checks import CheckFailed, clock, looks, pressure, topic
 from my_robot_basics.checks.watcher import Watcher
 from nodes.running import imported, running
 from rclpy.callback_groups import ReentrantCallbackGroup
@@ -14,6 +15,7 @@ from rclpy.clock import ClockType
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
+from std_msgs.msg import Empty
 
 TOPIC = '/kinematics/joint_states'
 
@@ -117,3 +119,78 @@ def test_a_timer_that_was_due_when_the_clock_was_given_back_is_not_left_in_the_f
         gate.is_closed = False
         fired.clear()
         assert fired.wait(10.0)
+
+
+@pytest.mark.parametrize(('is_crowded', 'clock_name'), [(True, 'simulated'), (False, 'wall')])
+def test_slow_answers_tell_of_a_slow_node_only_where_processors_are_free(
+    monkeypatch, is_crowded, clock_name
+):
+    monkeypatch.setattr(clock, 'SLOWEST_MEDIAN_SEC', 0.0)
+    share = 2.0 if is_crowded else 0.0
+    monkeypatch.setattr(pressure, 'crowded_sec', lambda: share * time.monotonic())
+    with running('five_hz'):
+        assert topic(TOPIC).record().clock == clock_name
+
+
+@pytest.mark.parametrize(
+    ('answers_after_sec', 'crowded_share', 'in_time'),
+    [(0.4, 0.0, True), (1.0, 0.0, False), (1.0, 0.75, True), (3.0, 1.0, False)],
+)
+def test_a_crowded_machine_gives_more_time_to_answer_but_not_without_end(
+    monkeypatch, answers_after_sec, crowded_share, in_time
+):
+    now = [0.0]
+
+    def spin_until(done, *, timeout_sec):
+        now[0] += timeout_sec
+        return done()
+
+    monkeypatch.setattr(pressure, 'time', types.SimpleNamespace(monotonic=lambda: now[0]))
+    monkeypatch.setattr(pressure, 'crowded_sec', lambda: crowded_share * now[0])
+    watcher = types.SimpleNamespace(spin_until=spin_until)
+    simulated = clock.SimulatedClock(watcher, needed=set())
+    assert simulated._in_time(lambda: now[0] >= answers_after_sec, 0.5) == in_time
+
+
+class Counter(Node):
+    """Publishes with every 50th call of a timer that the clock's steps skip calls of."""
+
+    def __init__(self, **kwargs):
+        super().__init__('counter', **kwargs)
+        self.publisher = self.create_publisher(Empty, '/counted', 10)
+        self.calls = 0
+        self.create_timer(0.02, self.count)
+
+    def count(self):
+        self.calls += 1
+        if self.calls % 50 == 0:
+            self.publisher.publish(Empty())
+
+
+def test_coarse_steps_find_a_slow_period_that_the_steps_have_made(monkeypatch):
+    monkeypatch.setattr(looks, 'PROOF_STEPS', 1)
+    with spinning(lambda context: Counter(context=context)):
+        recording = topic('/counted').record()
+    assert recording.clock == 'wall'
+    assert recording.rate_hz == pytest.approx(1.0, rel=0.2)
+
+
+def test_coarse_steps_prove_a_slow_period_in_little_time(monkeypatch):
+    steps_ns = set()
+
+    class Ticks(clock.SimulatedClock):
+        def tick(self, step_ns):
+            steps_ns.add(step_ns)
+            super().tick(step_ns)
+
+    monkeypatch.setattr(looks, 'SimulatedClock', Ticks)
+    with running('fifth_hz'):
+        assert topic(TOPIC).record().clock == 'simulated'
+    assert steps_ns == {10**8, 5 * 10**8}
+
+
+def test_a_recording_goes_on_until_there_are_messages_enough_to_judge():
+    with running('fifth_hz'):
+        recording = topic(TOPIC).record(seconds=2.0)
+    assert (recording.clock, len(recording.messages)) == ('simulated', 2)
+    assert recording.seconds == pytest.approx(10.0, abs=0.11)

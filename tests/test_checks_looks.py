@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 from my_robot_basics.checks import CheckFailed, looks, topic, topics
 from my_robot_basics.checks import recording as recording_module
+from my_robot_basics.checks.watcher import Watcher
 from nodes.running import running
 
 TOPIC = '/kinematics/joint_states'
@@ -39,9 +40,15 @@ def test_the_first_look_stands_when_the_node_has_gone(monkeypatch):
         recording.assert_rate(hz=5.0)
 
 
-@pytest.mark.parametrize(('late_sec', 'looks_in_all'), [(0.0, 2), (1.0, 4)])
-def test_a_machine_that_is_late_itself_looks_again(monkeypatch, late_sec, looks_in_all):
+@pytest.mark.parametrize(
+    ('late_sec', 'validate_sec', 'looks_in_all'),
+    [(0.0, 1000.0, 2), (1.0, 1000.0, 4), (1.0, 0.0, 1)],
+)
+def test_a_machine_that_is_late_itself_looks_again_while_there_is_time(
+    monkeypatch, late_sec, validate_sec, looks_in_all
+):
     recorded = []
+    monkeypatch.setattr(topics, 'VALIDATE_SEC', validate_sec)
 
     def wall(*args, **options):
         recorded.append(replace(on_wall(*args, **options), late_sec=late_sec))
@@ -93,3 +100,21 @@ def test_honest_nodes_that_are_no_plain_timers_pass(capfd, node, out):
 def test_a_near_miss_fails_on_the_wall_clock(node, seen):
     with running(node), pytest.raises(CheckFailed, match=seen):
         topic(TOPIC).record().assert_rate(hz=5.0)
+
+
+def looked_at(node, *, patience_sec):
+    with running(node), Watcher() as watcher:
+        ears = topic(TOPIC).listen(watcher)
+        return looks.wall(watcher, ears, why='', seconds=0.1, patience_sec=patience_sec)
+
+
+def test_the_wall_clock_waits_for_the_next_message_of_a_slow_node():
+    recording = looked_at('one_hz', patience_sec=10.0)
+    (sample,) = recording.messages
+    assert sample.time_sec == recording.seconds > 0.1
+
+
+@pytest.mark.parametrize(('patience_sec', 'seconds'), [(0.4, 0.4), (0.0, 0.1)])
+def test_the_wall_clock_tells_how_long_there_was_nothing(patience_sec, seconds):
+    recording = looked_at('never_spins', patience_sec=patience_sec)
+    assert (recording.messages, recording.seconds) == ((), seconds)

@@ -32,6 +32,9 @@ def what_to_try(wanted: Sequence[float], numbers: Sequence[float]) -> str:
     if not missing(wanted, [math.degrees(number) for number in numbers], ROUNDED_DEG):
         return 'these are radians, so log them with math.degrees(…)'
     absent = missing(wanted, numbers)
+    if not missing([90.0 - angle for angle in absent], numbers):
+        # mirrored in the line x = y, and the branches change places with it
+        return 'x and y are swapped: call inverse_kinematics(x, y) with x first'
     if len(absent) < len(wanted):
         listed = ', '.join(f'{angle:.2f}°' for angle in absent)
         return f'log every solution, both angles of both branches: {listed} not found'

@@ -2,12 +2,13 @@
 
 import difflib
 import time
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass
 
 from rclpy.node import Node
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
+from my_robot_basics.checks import student
 from my_robot_basics.checks.watcher import HIDDEN, Watcher
 
 SETTLE_SEC = 0.4
@@ -65,6 +66,8 @@ class Graph:
         """What to try when nothing arrives on a topic: one clause."""
         if senders := self.publishers(topic_name):
             who = ', '.join(senders)
+            if raised := what_raised(senders):
+                return f'{who} has a publisher there and sends nothing, because {raised}'
             return (
                 f'{who} has a publisher there and sends nothing, so see that it spins, that its '
                 'timer is created (with the name of a method, without parentheses), and that no '
@@ -157,6 +160,12 @@ def wait_for_publisher(watcher: Watcher, topic_name: str, *, timeout_sec: float)
         return known and time.monotonic() - since >= NEWCOMER_SEC
 
     return watcher.spin_until(is_settled, timeout_sec=timeout_sec)
+
+
+def what_raised(node_names: Iterable[str]) -> str:
+    """A clause on the callback of one of the nodes that has raised, or ''."""
+    said = next(filter(None, map(student.trouble, sorted(set(node_names)))), '')
+    return f'its callback raised {said}' if said else ''
 
 
 def _look(node: Node) -> Graph:

@@ -18,6 +18,7 @@ DEPTH = 1000
 NODE_SEC = 10.0
 AFTERTHOUGHT_SEC = 0.3
 WARN_ONLY = 'warn only when inverse_kinematics(x, y) raises ValueError'
+INFO_FOR_ANGLES = 'log angles with self.get_logger().info(…), and ' + WARN_ONLY
 _NUMBER = re.compile(r'[-−+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?')
 
 
@@ -72,9 +73,9 @@ class Log:
         """The records that were heard since the mark, oldest first."""
         return tuple(record for sent_ns, record in self._heard if sent_ns > self._since_ns)
 
-    def numbers(self, level: str = 'INFO') -> tuple[float, ...]:
-        """All numbers in the records of a level since the mark, in order."""
-        texts = [record.text for record in self.records if record.level == level]
+    def numbers(self, level: str = 'INFO', *, since: int = 0) -> tuple[float, ...]:
+        """All numbers in the records of a level since the mark, in order; or `since` its n-th."""
+        texts = [record.text for record in self.records if record.level == level][since:]
         return tuple(float(n.replace('−', '-')) for text in texts for n in _NUMBER.findall(text))
 
     def wait_for(self, done: Callable[[Self], bool], *, timeout_sec: float = 5.0) -> bool:
@@ -88,11 +89,14 @@ class Log:
         target: Sequence[float] = (),
         within_deg: float = angles.WITHIN_DEG,
         timeout_sec: float = 5.0,
-    ) -> None:
+        may_lag: bool = False,
+    ) -> bool:
         """INFO records hold every one of these angles, on any number of lines; no WARN is there.
 
         Other numbers don't matter, nor do whole turns. Raises CheckFailed after `timeout_sec`;
-        it names the `target` (m) that has these angles.
+        it names the `target` (m) that has these angles. With `may_lag`, a WARN before the answer
+        may be about the target before, which a timer has taken up once more; returns whether
+        there was one.
         """
         wanted = list(angles_deg)
 
@@ -105,34 +109,46 @@ class Log:
             fail(
                 expected=f'{listed} for {what} in the INFO log of {self._node_name}',
                 seen=self._shown('INFO'),
-                hint=WARN_ONLY
-                if self._has('WARN') and not self._has('INFO')
-                else angles.what_to_try(wanted, self.numbers()),
+                hint=self._why_unanswered(wanted),
             )
+        before = self._count('WARN') if may_lag else 0
         # a warning may come just behind the answer
-        if self.wait_for(lambda log: log._has('WARN'), timeout_sec=AFTERTHOUGHT_SEC):
+        if self.wait_for(lambda log: log._count('WARN') > before, timeout_sec=AFTERTHOUGHT_SEC):
             fail(
                 expected=f'no warning from {self._node_name} for {what}, which is in reach',
                 seen=self._shown('WARN'),
                 hint=WARN_ONLY,
             )
+        return before > 0
 
-    def expect_warning(self, *, no_angles: Iterable[float] = (), timeout_sec: float = 5.0) -> None:
+    def expect_warning(
+        self,
+        *,
+        no_angles: Iterable[float] = (),
+        no_longer: Iterable[float] = (),
+        timeout_sec: float = 5.0,
+    ) -> None:
         """At least one WARN record comes, and INFO records hold none of the angles `no_angles`.
 
+        Nor do they hold any of `no_longer`, those of the target before, once the warning is there.
         Raises CheckFailed after `timeout_sec`.
         """
-        unwanted = list(no_angles)
+        unwanted, former = list(no_angles), list(no_longer)
         if not self.wait_for(lambda log: log._has('WARN'), timeout_sec=timeout_sec):
             fail(
                 expected=f'a warning in the log of {self._node_name}',
                 seen=self._shown('WARN'),
-                hint='catch ValueError each time and log it with self.get_logger().warning(…) '
-                f'{angles.HOW}',
+                hint=self._why_unwarned(),
             )
+        levels = [record.level for record in self.records]
+        count = levels[: levels.index('WARN')].count('INFO')
 
         def has_unwanted(log: Self) -> bool:
-            return any(angles.near(a, n) for a in unwanted for n in log.numbers())
+            found = [
+                *((a, n) for a in unwanted for n in log.numbers()),
+                *((a, n) for a in former for n in log.numbers(since=count)),
+            ]
+            return any(angles.near(*pair) for pair in found)
 
         # angles may come just behind the warning, and so may a second one, which is no answer to
         # the next target
@@ -158,7 +174,7 @@ class Log:
             fail(
                 expected=f'a node {self._node_name}',
                 seen=', '.join(others) or 'no node',
-                hint='run the cell that starts it, and compare the name in super().__init__(…)',
+                hint=self._why_absent(others),
             )
 
     def _hear(self, message: LogMessage, info: dict) -> None:
@@ -166,8 +182,38 @@ class Log:
             level = LEVELS.get(message.level, str(message.level))
             self._heard.append((info['source_timestamp'], Record(level, message.msg)))
 
+    def _why_absent(self, others: Sequence[str]) -> str:
+        if not others:
+            return 'the node is not running, so run the cell that starts it and read what it says'
+        name = self._node_name.strip('/')
+        if any(other.endswith(self._node_name) for other in others):
+            return f'the name {name} is right, so leave the namespace out of super().__init__(…)'
+        return f"if that is yours, write super().__init__('{name}'), letter for letter"
+
+    def _why_unanswered(self, wanted: Sequence[float]) -> str:
+        raised = '' if self._has('INFO') else graphs.what_raised([self._node_name])
+        if raised:
+            return f'{raised}, so mend that first'
+        if self._has('INFO') or not self._has('WARN'):
+            return angles.what_to_try(wanted, self.numbers())
+        elsewhere = not angles.missing(wanted, self.numbers('WARN'), angles.ROUNDED_DEG)
+        return INFO_FOR_ANGLES if elsewhere else WARN_ONLY
+
+    def _why_unwarned(self) -> str:
+        raised = graphs.what_raised([self._node_name])
+        if raised and 'ValueError' not in raised:
+            return f'{raised}, so mend that first'
+        if self.records:
+            return 'a target out of reach asks for the level WARN: self.get_logger().warning(…)'
+        return (
+            f'catch ValueError each time and log it with self.get_logger().warning(…) {angles.HOW}'
+        )
+
     def _has(self, level: str) -> bool:
-        return any(record.level == level for record in self.records)
+        return self._count(level) > 0
+
+    def _count(self, level: str) -> int:
+        return sum(record.level == level for record in self.records)
 
     def _shown(self, level: str) -> str:
         texts = [record.text for record in self.records if record.level == level]

@@ -1,80 +1,38 @@
 """The two ways to record a topic: on the clock that the check drives, and on the wall clock."""
 
 import time
-from collections.abc import Callable
-from typing import Any
 
-from rclpy.qos import QoSProfile
-
-from my_robot_basics.checks import graphs, rates
+from my_robot_basics.checks import rates
 from my_robot_basics.checks.clock import Inconclusive, SimulatedClock
+from my_robot_basics.checks.ears import Ears
 from my_robot_basics.checks.recording import Recording, Sample
 from my_robot_basics.checks.watcher import Watcher
 
 HOLD_SEC = 1.0
 WALL_SEC = 4.0
+PATIENCE_SEC = 7.0
+"""How long to wait on the wall clock for a message, and for the next one: 5 s apart is slow, but
+no silence."""
 FIRST_MESSAGE_SEC = 20.0
+FEWEST = 2
+"""Messages that tell whether they are evenly spaced, beside the one to begin at."""
 IGNORES = 'the node ignores the clock'
 FINER = (1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01)
 """Steps of the clock, as parts of the one asked for, tried until messages skip a tick."""
 PROOF_PARTS = 5
-"""The proof takes steps of this part of the recording's …"""
+"""The proof takes steps so many times as fine as the recording's, or as coarse …"""
 PROOF_STEPS = 20
-"""… for at least so many of the recording's steps."""
-
-Again = Callable[[str, float], Recording]
-"""Makes one more recording on the wall clock, of so many seconds, for the reason given."""
-
-
-class Ears:
-    """A subscription that keeps every message with the wall time at which it was sent."""
-
-    def __init__(
-        self, watcher: Watcher, *, topic_name: str, type_: type, qos_profile: QoSProfile
-    ) -> None:
-        self.topic_name = topic_name
-        self.type = type_
-        self.heard: list[tuple[Any, int]] = []
-        self._node = watcher.node
-        self._subscription = self._node.create_subscription(
-            type_, topic_name, self._hear, qos_profile
-        )
-        self._publishers = ()
-
-    def is_connected(self) -> bool:
-        """Whether a publisher has been met."""
-        return self._subscription.get_publisher_count() > 0
-
-    def publishers(self) -> tuple[str, ...]:
-        """Full names of the nodes that publish on the topic, one for each publisher.
-
-        The most that were ever seen: one may have gone when the recording ends.
-        """
-        infos = graphs.publisher_infos(self._node, self.topic_name)
-        now = tuple(sorted(graphs.full_name(info) for info in infos))
-        self._publishers = max(now, self._publishers, key=len)
-        return self._publishers
-
-    def messages(self) -> list[Any]:
-        """The messages heard so far."""
-        return [message for message, _ in self.heard]
-
-    def count_since(self, wall_ns: int) -> int:
-        """How many messages were sent after that wall time."""
-        return sum(sent_ns > wall_ns for _, sent_ns in self.heard)
-
-    def _hear(self, message: Any, info: dict) -> None:
-        self.heard.append((message, info['source_timestamp']))
+"""… for at least so many of the recording's steps, or of the coarse ones. …"""
+COARSE_STEPS = 4
+"""… Coarse ones take a slow timer less time; so many of them fit in its period at least."""
 
 
-def simulated(
-    watcher: Watcher, ears: Ears, *, seconds: float, step_sec: float, again: Again
-) -> Recording | str:
+def simulated(watcher: Watcher, ears: Ears, *, seconds: float, step_sec: float) -> Recording | str:
     """A recording on the robot's clock, or a clause that says why there is none."""
     try:
         with SimulatedClock(watcher, needed=set(ears.publishers())) as clock:
             _hold(watcher, ears, clock)
-            recording = _drive(ears, clock, seconds=seconds, step_sec=step_sec, again=again)
+            recording = _drive(ears, clock, seconds=seconds, step_sec=step_sec)
             if not rates.is_even(recording):
                 return 'its messages are not evenly spaced'
             _prove(ears, clock, recording)
@@ -89,30 +47,36 @@ def wall(
     *,
     why: str,
     seconds: float = WALL_SEC,
-    again: Again | None = None,
+    patience_sec: float = PATIENCE_SEC,
 ) -> Recording:
-    """A recording of `seconds` on the wall clock, beginning at a message."""
+    """A recording of `seconds` on the wall clock, beginning at a message.
+
+    It waits for that one `patience_sec` at most, and as long for the next one, should that be
+    longer: then it ends there.
+    """
     began_ns = time.time_ns()
-    if watcher.spin_until(lambda: ears.count_since(began_ns) > 0, timeout_sec=seconds):
+    if watcher.spin_until(lambda: ears.count_since(began_ns) > 0, timeout_sec=patience_sec):
         watcher.late_sec = 0.0
         watcher.spin_for(seconds)
+        watcher.spin_until(
+            lambda: ears.count_since(began_ns) > 1, timeout_sec=patience_sec - seconds
+        )
     sent = [(message, sent_ns) for message, sent_ns in ears.heard if sent_ns > began_ns]
     start_ns = sent[0][1] if sent else began_ns
     samples = [
-        Sample(message, (sent_ns - start_ns) / 1e9, sent_ns / 1e9)
-        for message, sent_ns in sent
-        if sent_ns <= start_ns + seconds * 1e9
+        Sample(message, (sent_ns - start_ns) / 1e9, sent_ns / 1e9) for message, sent_ns in sent[1:]
     ]
+    next_sec = samples[0].time_sec if samples else patience_sec
+    seconds = max(seconds, next_sec)
     return Recording(
         topic_name=ears.topic_name,
-        messages=tuple(samples[1:]),
+        messages=tuple(sample for sample in samples if sample.time_sec <= seconds),
         clock='wall',
         publishers=ears.publishers(),
         seconds=seconds,
         start_sec=start_ns / 1e9,
         note=_note(ears, why),
         late_sec=watcher.late_sec,
-        look_again=again and (lambda longer: again(why, longer)),
     )
 
 
@@ -133,12 +97,14 @@ def _hold(watcher: Watcher, ears: Ears, clock: SimulatedClock) -> None:
             raise Inconclusive(IGNORES)
 
 
-def _drive(
-    ears: Ears, clock: SimulatedClock, *, seconds: float, step_sec: float, again: Again
-) -> Recording:
+def _drive(ears: Ears, clock: SimulatedClock, *, seconds: float, step_sec: float) -> Recording:
+    """Record `seconds`, or until there are FEWEST messages. Raises Inconclusive."""
     step_ns, start_ns = _find_step(ears, clock, step_sec=step_sec)
+    before = len(ears.heard)
     for _ in range(round(seconds * 1e9 / step_ns)):
         clock.tick(step_ns)
+    while len(ears.heard) < before + FEWEST:
+        _tick_to_message(ears, clock, step_ns=step_ns)
     samples = [
         Sample(message, (clock.time_ns(sent_ns) - start_ns) / 1e9, sent_ns / 1e9)
         for message, sent_ns in ears.heard
@@ -149,10 +115,9 @@ def _drive(
         messages=tuple(samples),
         clock='simulated',
         publishers=ears.publishers(),
-        seconds=seconds,
+        seconds=max(seconds, (clock.now_ns - start_ns) / 1e9),
         start_sec=start_ns / 1e9,
         step_sec=step_ns / 1e9,
-        look_again=lambda longer: again('', longer),
     )
 
 
@@ -170,21 +135,32 @@ def _find_step(ears: Ears, clock: SimulatedClock, *, step_sec: float) -> tuple[i
 
 
 def _prove(ears: Ears, clock: SimulatedClock, recording: Recording) -> None:
-    """See the same period in finer steps, too. Raises Inconclusive.
+    """See the same period in other steps, too. Raises Inconclusive.
 
     A timer fires once a tick at most. One that is faster than the ticks, and publishes every so
     many calls, shows a period that the steps have made.
     """
-    step_ns = round(recording.step_sec * 1e9 / PROOF_PARTS)
+    step_ns = round(recording.step_sec * 1e9)
+    coarse_ns, fine_ns = step_ns * PROOF_PARTS, round(step_ns / PROOF_PARTS)
+    is_slow = recording.rate_hz * COARSE_STEPS * coarse_ns <= 1e9
+    if is_slow and _keeps_period(ears, clock, recording, coarse_ns, ticks_least=PROOF_STEPS):
+        return
+    ticks_least = PROOF_STEPS * PROOF_PARTS
+    if not _keeps_period(ears, clock, recording, fine_ns, ticks_least=ticks_least):
+        raise Inconclusive("it counts the calls of a timer that is faster than the clock's steps")
+
+
+def _keeps_period(
+    ears: Ears, clock: SimulatedClock, recording: Recording, step_ns: int, *, ticks_least: int
+) -> bool:
     _tick_to_message(ears, clock, step_ns=step_ns)
     ticks = messages = 0
-    while ticks < PROOF_STEPS * PROOF_PARTS:
+    while ticks < ticks_least:
         ticks += _tick_to_message(ears, clock, step_ns=step_ns)
         messages += 1
     recorded_ns = messages * 1e9 / recording.rate_hz
     unsure_ns = step_ns + messages * recording.step_sec * 1e9 / len(recording.messages)
-    if abs(ticks * step_ns - recorded_ns) > 1.5 * unsure_ns:
-        raise Inconclusive("it counts the calls of a timer that is faster than the clock's steps")
+    return abs(ticks * step_ns - recorded_ns) <= 1.5 * unsure_ns
 
 
 def _tick_to_message(ears: Ears, clock: SimulatedClock, *, step_ns: int) -> int:

@@ -2,20 +2,15 @@
 
 import itertools
 import math
-import statistics
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from my_robot_basics.checks import pictures, rates
+from my_robot_basics.checks import pictures, rates, stamps
 from my_robot_basics.checks.errors import CheckFailed, expect, fail, shorten, show
 
 SECOND_LOOK_SEC = 4.0
 LONGEST_LOOK_SEC = 12.0
-STAMP_SEC = {'simulated': 0.5, 'wall': 1.0}
-"""How far a stamp may be from the time of publication, by clock."""
-USUAL_STAMP_SEC = 0.15
-"""How far most of them may be: at 5 Hz, the stamp of the message before is further off."""
 ANGLE_SLACK_RAD = 1e-6
 
 
@@ -79,7 +74,7 @@ class Recording:
         try:
             second = self.look_again(min(max(SECOND_LOOK_SEC, 3.0 / hz), LONGEST_LOOK_SEC))
         except CheckFailed:
-            # the node is gone by now: what was seen of it stands
+            # the node is gone by now, or no time is left: what was seen of it stands
             rates.fail_rate(self, hz)
         second.assert_rate(hz)
 
@@ -126,34 +121,12 @@ class Recording:
 
     def assert_stamps(self) -> None:
         """Every header's stamp is the node's clock at publication: set, advancing, and near."""
-        messages = self._messages_with('header')
-        stamps = [
-            message.header.stamp.sec + message.header.stamp.nanosec * 1e-9 for message in messages
-        ]
-        how = 'set message.header.stamp = self.get_clock().now().to_msg() before each publish'
-        wanted = "stamps of the node's clock at publication"
-        if 0.0 in stamps:
-            fail(expected=wanted, seen='a stamp of 0', hint=how)
-        if any(later <= earlier for earlier, later in itertools.pairwise(stamps)):
-            fail(expected=wanted, seen='a stamp that does not advance', hint=how)
-        pairs = zip(self.messages, stamps, strict=True)
-        offs = [stamp - self._sent_sec(sample) for sample, stamp in pairs]
-        most, usual = STAMP_SEC[self.clock], statistics.median_low(offs)
-        # a late message does not count, one period behind in all of them does
-        late = [off for off in offs if abs(off) > most]
-        wrong = [usual] if abs(usual) > USUAL_STAMP_SEC else late
-        for off in wrong:
-            side = 'ahead of' if off > 0.0 else 'behind'
-            fail(expected=wanted, seen=f'a stamp {abs(off):.1f} s {side} it', hint=how)
+        stamps.check_stamps(self, self._messages_with('header'))
 
     def plot(self, hz: float | None = None) -> None:
         """Show when the messages arrived; with `hz`, beside when they should have."""
         alt = f'Arrivals of {len(self.messages)} messages on {self.topic_name}'
         show(pictures.arrivals(self, hz=hz), alt=alt)
-
-    def _sent_sec(self, sample: Sample) -> float:
-        on_wall = self.clock == 'wall'
-        return sample.source_time_sec if on_wall else self.start_sec + sample.time_sec
 
     def _fail_position(
         self, pose: Sequence[float], low: Sequence[float], high: Sequence[float], *, poses: list

@@ -164,6 +164,9 @@ class Relay:
         gaps = [incompatible(offer.qos_profile, each) for offer in offers for each in asked]
         if is_latched and gaps and all(gaps):
             return leave_out(gaps[0])
+        listeners = graphs.subscription_infos(watcher.node, self.source)
+        if raised := graphs.what_raised(map(graphs.full_name, listeners)):
+            return f'{raised}, so mend that first'
         if has_others:
             return 'publish the very message that your callback is given'
         return 'see that your callback publishes each message, and that it raises nothing'

@@ -16,10 +16,17 @@ def answer(request_text: str) -> str:
     """
     request = wire.loads(request_text)
     op, name, args = request.get('op'), request.get('name'), request.get('args', [])
-    if request.get('protocol') != wire.PROTOCOL or op not in ('call', 'value', 'endpoint'):
+    if request.get('protocol') != wire.PROTOCOL or op not in (
+        'call',
+        'value',
+        'endpoint',
+        'trouble',
+    ):
         raise values.WireError('a request of another protocol')
     if op == 'endpoint':
         return _reply(_has_endpoint(name))
+    if op == 'trouble':
+        return _reply(_trouble(name))
     namespace = vars(sys.modules['__main__'])
     if name not in namespace:
         return wire.dumps({'missing': name})
@@ -47,6 +54,12 @@ def _has_endpoint(topic_name: str) -> bool:
         if not node.get_name().startswith('_')
         for endpoint in (*node.publishers, *node.subscriptions)
     )
+
+
+def _trouble(node_name: str) -> str:
+    """What a callback of a node raised last that live spins, or ''."""
+    troubles = sys.modules.get('my_robot_basics.live.troubles')
+    return troubles.last(node_name) if troubles else ''
 
 
 def _reply(value: object) -> str:

@@ -1,0 +1,49 @@
+"""What is heard on a topic, and when it was sent."""
+
+from typing import Any
+
+from rclpy.qos import QoSProfile
+
+from my_robot_basics.checks import graphs
+from my_robot_basics.checks.watcher import Watcher
+
+
+class Ears:
+    """A subscription that keeps every message with the wall time at which it was sent."""
+
+    def __init__(
+        self, watcher: Watcher, *, topic_name: str, type_: type, qos_profile: QoSProfile
+    ) -> None:
+        self.topic_name = topic_name
+        self.type = type_
+        self.heard: list[tuple[Any, int]] = []
+        self._node = watcher.node
+        self._subscription = self._node.create_subscription(
+            type_, topic_name, self._hear, qos_profile
+        )
+        self._publishers = ()
+
+    def is_connected(self) -> bool:
+        """Whether a publisher has been met."""
+        return self._subscription.get_publisher_count() > 0
+
+    def publishers(self) -> tuple[str, ...]:
+        """Full names of the nodes that publish on the topic, one for each publisher.
+
+        The most that were ever seen: one may have gone when the recording ends.
+        """
+        infos = graphs.publisher_infos(self._node, self.topic_name)
+        now = tuple(sorted(graphs.full_name(info) for info in infos))
+        self._publishers = max(now, self._publishers, key=len)
+        return self._publishers
+
+    def messages(self) -> list[Any]:
+        """The messages heard so far."""
+        return [message for message, _ in self.heard]
+
+    def count_since(self, wall_ns: int) -> int:
+        """How many messages were sent after that wall time."""
+        return sum(sent_ns > wall_ns for _, sent_ns in self.heard)
+
+    def _hear(self, message: Any, info: dict) -> None:
+        self.heard.append((message, info['source_timestamp']))

@@ -1,0 +1,35 @@
+"""How busy the machine is, as Linux tells it: time without a free processor proves nothing."""
+
+import re
+import time
+from pathlib import Path
+
+CPU = Path('/proc/pressure/cpu')
+
+
+def crowded_sec() -> float:
+    """For how long so far some process had to wait for a processor, in seconds.
+
+    Only differences mean anything. 0.0 where Linux does not tell (psi=0).
+    """
+    try:
+        text = CPU.read_text(encoding='ascii')
+    except OSError:
+        return 0.0
+    return int(re.search(r'^some .*total=(\d+)', text)[1]) / 1e6
+
+
+class Stopwatch:
+    """Measures time from when it is made."""
+
+    def __init__(self) -> None:
+        self._began = time.monotonic()
+        self._crowded_sec = crowded_sec()
+
+    def wall_sec(self) -> float:
+        """Seconds of steady wall time."""
+        return time.monotonic() - self._began
+
+    def free_sec(self) -> float:
+        """Seconds of it in which no process had to wait for a processor."""
+        return max(0.0, self.wall_sec() - (crowded_sec() - self._crowded_sec))
