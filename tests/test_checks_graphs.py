@@ -32,7 +32,7 @@ def picture(nodes=('/a',), publishers=None, subscriptions=None):
     ('seen', 'why'),
     [
         (picture(nodes=()), 'the node is not running, so run the cell that starts it'),
-        (picture(subscriptions={'/t/joint_states': ('/a',)}), 'the node is not running'),
+        (picture(subscriptions={'/t/joint_states': ('/a',)}), '/a is at the other end of this'),
         (picture(), '/a runs, so look at the topic name in create_publisher'),
         (
             picture(nodes=('/a', '/b')),

@@ -26,6 +26,15 @@ def test_an_answer_is_an_answer_in_any_layout(node):
         assert log.numbers('INFO') == ()
 
 
+def test_another_level_is_named_as_such():
+    with running('ik_solver'), rosout('ik_solver_node') as log:
+        ask(log, TARGET)
+        with pytest.raises(
+            CheckFailed, match=r'saw no WARN record but .* asks for the level WARN'
+        ):
+            log.expect_warning(timeout_sec=1.0)
+
+
 @pytest.mark.parametrize(
     ('node', 'reason'),
     [
@@ -99,6 +108,33 @@ def test_a_second_warning_is_no_answer_to_the_next_target():
         log.expect_warning()
         ask(log, TARGET)
         log.expect_angles(ANGLES)
+
+
+def test_what_is_repeated_of_the_target_before_is_no_answer_to_the_next():
+    with running('ik_repeats'), rosout('ik_solver_node') as log:
+        ask(log, TOO_FAR)
+        log.expect_warning()
+        ask(log, TARGET)
+        assert log.expect_angles(ANGLES, may_lag=True) is True
+        ask(log, Point(x=0.8, y=1.2))
+        swapped = [90.0 - angle if abs(angle) != abs(ANGLES[1]) else angle for angle in ANGLES]
+        assert log.expect_angles(swapped, may_lag=True) is False
+        ask(log, TOO_FAR)
+        log.expect_warning(no_longer=swapped)
+
+
+def test_a_warning_behind_the_answer_is_not_about_the_target_before():
+    with running('ik_always_warns'), rosout('ik_solver_node') as log:
+        ask(log, TARGET)
+        with pytest.raises(CheckFailed, match="saw 'careful': warn only when"):
+            log.expect_angles(ANGLES, may_lag=True, timeout_sec=1.0)
+
+
+def test_another_name_is_the_cause_where_a_node_runs(monkeypatch):
+    monkeypatch.setattr('my_robot_basics.checks.logs.NODE_SEC', 3.0)
+    words = r"saw /ik_solver_node: .* super\(\)\.__init__\('ik'\)"
+    with running('ik_solver'), pytest.raises(CheckFailed, match=words):
+        rosout('ik').__enter__()
 
 
 def test_angles_for_a_target_out_of_reach_are_a_failure():

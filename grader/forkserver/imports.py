@@ -50,6 +50,7 @@ _ROOMS = {
         'my_robot_basics.checks.relays',
         'my_robot_basics.checks.seeds',
         'my_robot_basics.checks.stage',
+        'my_robot_basics.checks.stamps',
         'my_robot_basics.checks.student',
         'my_robot_basics.checks.topics',
     ),

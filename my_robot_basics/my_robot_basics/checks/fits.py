@@ -42,8 +42,8 @@ def leave_out(policies: Iterable[str]) -> str:
     """What to do about policies that nobody promises."""
     if 'LIVELINESS' in policies:
         return (
-            'nobody promises such a liveliness: leave it out; in place of BEST_AVAILABLE, which asks'
-            ' for the most while no publisher is there, name reliability and durability'
+            'nobody promises such a liveliness: leave it out; in place of BEST_AVAILABLE, which'
+            ' asks for the most while no publisher is there, name reliability and durability'
         )
     named = ' and '.join(sorted(policies)).lower()
     return f'the publisher promises no {named}, so leave that out of the profile'

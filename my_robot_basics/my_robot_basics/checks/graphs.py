@@ -90,6 +90,12 @@ class Graph:
     ) -> str:
         # who is at the other end of the topic is not the one that is missing at this end
         runs = [name for name in self.node_names if name not in others]
+        if not runs and others:
+            # it may be the one that was meant, with its two ends mixed up
+            return (
+                f'{", ".join(others)} is at the other end of this topic, so look which name goes'
+                f' into {maker}(…); if another node is missing, run the cell that starts it'
+            )
         if not runs:
             return 'the node is not running, so run the cell that starts it and read what it says'
         if similar := _similar(topic_name, [name for name in names if name not in _PLUMBING]):

@@ -62,6 +62,7 @@ class Relay:
         with Watcher() as watcher:
             ears = self._listen(watcher, type(make_message()))
             self._expect_transient_local(watcher)
+            self._expect_type(watcher, ears.type)
             for _ in range(times):
                 with said_to_nobody(self.source, make_message) as (message, _):
                     self._expect_out(watcher, ears, message)
@@ -104,6 +105,7 @@ class Relay:
         if watcher.spin_until(is_there, timeout_sec=REFUSED_SEC if refused else 0.0):
             return publisher
         if not refused:
+            self._expect_type(watcher, type_)
             self._fail_absent(watcher, patience_sec=patience_sec)
         asked = {brief(asked) for asked in _requests(watcher.node, self.source)}
         policies = {qos_policy_name_from_kind(kind) for kind in refused}
@@ -170,6 +172,18 @@ class Relay:
         if has_others:
             return 'publish the very message that your callback is given'
         return 'see that your callback publishes each message, and that it raises nothing'
+
+    def _expect_type(self, watcher: Watcher, type_: type) -> None:
+        """Who subscribes to `source` does so with that type: another one never meets it."""
+        wanted = f'{type_.__module__.partition(".")[0]}/msg/{type_.__name__}'
+        infos = graphs.subscription_infos(watcher.node, self.source)
+        found = {info.topic_type for info in infos}
+        expect(
+            not found or wanted in found,
+            expected=f'a subscription on {self.source} for {wanted}',
+            seen=f'one for {" and ".join(sorted(found))}',
+            hint='compare the message type in create_subscription(…)',
+        )
 
     def _fail_absent(self, watcher: Watcher, *, patience_sec: float) -> NoReturn:
         fail(

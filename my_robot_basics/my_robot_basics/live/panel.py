@@ -5,7 +5,7 @@ import threading
 from collections import deque
 from dataclasses import dataclass
 
-from my_robot_basics.live import notebook
+from my_robot_basics.live import notebook, troubles
 from my_robot_basics.live.log_lines import LogRecord
 from my_robot_basics.live.troubles import where_and_what
 
@@ -37,6 +37,7 @@ class Panel:
     def __init__(self, title: str) -> None:
         """Make an empty panel that belongs to the cell that runs now."""
         self._title = title
+        self._name = ''
         self._state = 'starting'
         self._entries: deque[Entry] = deque()
         self._left_out = 0
@@ -45,6 +46,8 @@ class Panel:
 
     def listen(self, name: str) -> None:
         """Show the log lines of the node of that fully qualified name."""
+        self._name = name
+        troubles.forget(name)
         notebook.listen(name.strip('/').replace('/', '.'), self.log)
 
     def adopt_thread(self) -> None:
@@ -64,6 +67,7 @@ class Panel:
 
     def error(self, error: BaseException) -> None:
         """Add an exception that a callback raised; one from the same line is only counted."""
+        troubles.remember(self._name, error)
         where, what = where_and_what(error)
         text = '\n'.join(filter(None, [what, where, f'  {self._title} goes on']))
         self._add(Entry(text, where=f'{type(error).__name__} {where}'))

@@ -5,6 +5,8 @@ from pathlib import Path
 
 import rclpy
 
+_last: dict[str, str] = {}
+"""What a callback of a node raised last, by the node's full name."""
 _NOT_THEIRS = (str(Path(rclpy.__file__).parent), str(Path(__file__).parent))
 
 
@@ -20,6 +22,23 @@ def where_and_what(error: BaseException) -> tuple[str, str]:
         for frame in frames
     )
     return where, ''.join(traceback.format_exception_only(error)).strip()
+
+
+def remember(node_name: str, error: BaseException) -> None:
+    """Note what a callback of the node raised, and where."""
+    where, what = where_and_what(error)
+    place = where.rpartition('\n')[2].strip()
+    _last[node_name] = f'{what} ({place})' if place else what
+
+
+def forget(node_name: str) -> None:
+    """Forget it: a new node of that name begins."""
+    _last.pop(node_name, None)
+
+
+def last(node_name: str) -> str:
+    """Return what a callback of the node raised last, or ''."""
+    return _last.get(node_name, '')
 
 
 def _place(filename: str) -> str:

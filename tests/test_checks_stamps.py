@@ -1,0 +1,51 @@
+"""Stamps of the node's clock and of the computer's are told apart, whichever look was made."""
+
+import pytest
+from my_robot_basics.checks import CheckFailed, topic
+from nodes.running import imported
+
+from my_robot_basics import live
+
+TOPIC = '/kinematics/joint_states'
+COMPUTER = "saw the computer's clock: set message.header.stamp = self.get_clock"
+
+FiveHz = imported('five_hz').FiveHz
+SteadyClock = imported('steady_clock').SteadyClock
+NoParameterServices = imported('no_parameter_services').NoParameterServices
+WallStamp = imported('wall_stamp').WallStamp
+
+
+class SteadyWallStamp(WallStamp, SteadyClock):
+    pass
+
+
+class UnmovableWallStamp(WallStamp, NoParameterServices):
+    pass
+
+
+@pytest.fixture
+def run(patient):
+    yield live.run
+    live.stop()
+
+
+@pytest.mark.parametrize(
+    ('node_class', 'clock'), [(WallStamp, 'simulated'), (SteadyWallStamp, 'wall')]
+)
+def test_the_computers_clock_fails_on_both(run, node_class, clock):
+    run(node_class)
+    recording = topic(TOPIC).record(seconds=10.0)
+    assert recording.clock == clock
+    with pytest.raises(CheckFailed, match=COMPUTER):
+        recording.assert_stamps()
+
+
+@pytest.mark.parametrize('node_class', [SteadyClock, NoParameterServices, UnmovableWallStamp])
+def test_the_nodes_clock_passes_and_so_does_one_that_nobody_can_move(run, node_class):
+    node = run(node_class)
+    recording = topic(TOPIC).record(seconds=10.0)
+    assert recording.clock == 'wall'
+    recording.assert_stamps()
+    # no trace: it is on its own clock again, and alive
+    assert node.get_parameter('use_sim_time').value is False
+    topic(TOPIC).wait_for(timeout_sec=5.0)
