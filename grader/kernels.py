@@ -11,8 +11,8 @@ import psutil
 import zmq.asyncio
 from jupyter_client import AsyncKernelManager
 from jupyter_client.kernelspec import KernelSpec, KernelSpecManager
+from my_robot_basics.checks import pressure
 
-from grader import pressure
 from grader.errors import RoomFailure
 from grader.limits import INTERRUPT_GRACE_SEC, INTERRUPT_MOST_SEC, MAX_MESSAGE_BYTES
 from grader.messages import Messages, OnInput

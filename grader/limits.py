@@ -32,9 +32,16 @@ ROOM_FILES = 8_192
 SUBMISSION_MEMORY_BYTES = 600 * 2**20
 """Set aside for each submission that is in flight; the two kernels of a lesson use half of it."""
 IN_FLIGHT_EACH = 2
-"""How many a worker process grades at a time, memory permitting: most of each is waiting. More
-would be faster on a machine with nothing else to do; but where processors are short, nodes follow
-the robot's clock too slowly, and are judged on the wall clock."""
+"""How many a worker process grades at a time, memory permitting: most of each is waiting."""
+MOST_IN_FLIGHT_EACH = 5
+"""How many where processors stand idle all the same. Where they are short, nodes follow the
+robot's clock too slowly, and are judged on the wall clock."""
+MOST_IN_FLIGHT = 60
+"""No more than so many in all, unless there are that many to begin with: each needs a ROS domain,
+and a machine has 101."""
+IDLE_SHARE, BUSY_SHARE = 0.5, 0.75
+"""The part of the time in which some process had to wait for a processor: below the first there is
+room for more submissions, above the second there are too many."""
 
 PROCESS_LIMITS = {
     resource.RLIMIT_AS: 3 * 2**30,  # of each process, asked for or used; a lesson: under 1 GB

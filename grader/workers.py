@@ -11,9 +11,15 @@ from typing import Self
 
 from grader.errors import TaskFailed
 from grader.isolation import isolated
-from grader.limits import IN_FLIGHT_EACH, SUBMISSION_MEMORY_BYTES
+from grader.limits import (
+    IN_FLIGHT_EACH,
+    MOST_IN_FLIGHT,
+    MOST_IN_FLIGHT_EACH,
+    SUBMISSION_MEMORY_BYTES,
+)
 from grader.memory import available_bytes
 from grader.pool import Pool
+from grader.pressure import Gate
 from grader.task import Result, Task, packed, unpacked
 from grader.worker import BEAT, BEAT_SEC, receive, send
 
@@ -37,11 +43,15 @@ class Workers:
     ) -> None:
         """Use so many processes, by default one for each core, as soon as there is work for them.
 
-        They have no more than `in_flight` submissions together, and no more than memory allows.
+        They have no more than `in_flight` submissions together, by default what the processors
+        can take; and no more than memory allows.
         """
         self._number = number or len(os.sched_getaffinity(0))
-        wanted = in_flight or IN_FLIGHT_EACH * self._number
-        self.room = max(1, min(wanted, available_bytes() // SUBMISSION_MEMORY_BYTES))
+        least = in_flight or IN_FLIGHT_EACH * self._number
+        most = max(least, min(MOST_IN_FLIGHT_EACH * self._number, MOST_IN_FLIGHT))
+        fit = max(1, available_bytes() // SUBMISSION_MEMORY_BYTES)
+        self.room = min(in_flight or most, fit)
+        self._gate = Gate(least=min(least, fit), most=self.room, step=self._number)
         self._command = command or COMMAND
         self._team: list[_Worker] = []
         self._pool = Pool(self.room)
@@ -71,6 +81,10 @@ class Workers:
         return unpacked(await self._tried(packed(task)), task)
 
     async def _tried(self, text: str) -> str:
+        async with self._gate:
+            return await self._answer(text)
+
+    async def _answer(self, text: str) -> str:
         answer = await self._next().grade(text)
         for _ in range(TRIES - 1):
             if answer is None:  # alone, so that nobody else's submission can end it

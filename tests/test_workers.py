@@ -2,10 +2,12 @@ import signal
 import sys
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import psutil
 import pytest
 from course_maker import answered, released_course, submit
+from my_robot_basics.checks import pressure
 
 from grader import workers
 from grader.course import Course
@@ -137,13 +139,36 @@ def test_what_a_worker_starts_inherits_no_way_to_the_run(course):
     assert told.handles == '0 1 2'
 
 
+@pytest.mark.parametrize(('crowded_share', 'allowed'), [(0.0, 3), (1.0, 2)])
+def test_more_are_in_flight_while_processors_stand_idle(
+    course, tmp_path, monkeypatch, crowded_share, allowed
+):
+    watch = SimpleNamespace(wall_sec=lambda: 60.0, free_sec=lambda: 60.0 * (1.0 - crowded_share))
+    monkeypatch.setattr(pressure, 'Stopwatch', lambda: watch)
+    monkeypatch.setattr(pressure, 'crowded_sec', lambda: 1.0)
+    mark = tmp_path / 'go'
+    with Workers(1, command=COMMAND) as crew:
+        crew.submit(task(course)).result()
+        under_way = [crew.submit(task(course, f'# wait {mark}')) for _ in range(8)]
+        (worker,) = crew._team
+        wait_for(lambda: worker.load == allowed == crew._gate.allowed)
+        mark.touch()
+        assert [outcomes(work.result()) for work in under_way] == [['passed', 'passed']] * 8
+
+
+@pytest.mark.parametrize('in_flight', [1, 7])
+def test_no_more_are_in_flight_than_asked_for(in_flight):
+    crew = Workers(2, in_flight=in_flight)
+    assert crew.room == crew._gate.allowed == in_flight
+
+
 def test_memory_bounds_how_many_are_in_flight(monkeypatch):
     rooms = []
     for submissions in (0, 1, 2.5, 1000):
         left = int(submissions * SUBMISSION_MEMORY_BYTES)
         monkeypatch.setattr(workers, 'available_bytes', lambda left=left: left)
         rooms.append(Workers(2).room)
-    assert rooms == [1, 1, 2, 2 * workers.IN_FLIGHT_EACH]
+    assert rooms == [1, 1, 2, 2 * workers.MOST_IN_FLIGHT_EACH]
 
 
 def test_killed_workers_change_no_grade(course, tmp_path):
