@@ -1,8 +1,13 @@
 """Why nothing arrives on a topic, said and drawn in the notebook."""
 
+import html
+
 from my_robot_basics.doctor import looking, names, picture, report
 from my_robot_basics.live import classroom, notebook
 from my_robot_basics.live.errors import LiveError
+
+STYLE = 'margin:0;font-size:13px;word-break:normal'
+"""As large as other outputs, and broken between words: a line of code may be a long one."""
 
 
 class NoTopicName(LiveError):
@@ -21,8 +26,11 @@ def why(topic_name: str, *, domains: bool = False) -> None:
     except ValueError as error:
         raise NoTopicName(str(error)) from None
     diagnosis = looking.diagnose(full_name, domain_id=classroom.enter(), other_domains=domains)
-    print(report.tell(diagnosis))
-    if notebook.in_kernel():
-        text = picture.describe(diagnosis)
-        display = notebook.Display()
-        display.show({'image/png': picture.draw(diagnosis), 'text/plain': text})
+    told = report.tell(diagnosis)
+    if not notebook.in_kernel():
+        print(told)
+        return
+    as_html = f'<pre style="{STYLE}">{html.escape(told)}</pre>'
+    notebook.Display().show({'text/plain': told, 'text/html': as_html})
+    drawn, words = picture.draw(diagnosis), picture.describe(diagnosis)
+    notebook.Display().show({'image/png': drawn, 'text/plain': words})
