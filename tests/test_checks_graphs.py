@@ -41,6 +41,11 @@ def picture(nodes=('/a',), publishers=None, subscriptions=None):
         (picture(publishers={'/t/joint_states': ('/a',)}), '/a has a publisher there and sends'),
         (picture(publishers={'/t/joint_state': ('/a',)}), '/a uses /t/joint_state, so compare'),
         (picture(publishers={'/joint_states': ('/a',)}), '/a uses /joint_states, so compare'),
+        (
+            picture(publishers={'/n/t/joint_states': ('/n/a',)}, nodes=('/n/a',)),
+            '/n/a uses /n/t/joint_states: a name without / in front is put into the namespace',
+        ),
+        (picture(publishers={'/n/t/joint_states': ('/a',)}), '/a uses /n/t/joint_states, so'),
         (picture(publishers={'/rosout': ('/a',)}), '/a runs, so look at the topic name'),
         (picture(publishers={'/Joint_States': ('/a',)}), '/a uses /Joint_States, so compare'),
     ],

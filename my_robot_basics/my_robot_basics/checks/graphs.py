@@ -70,8 +70,8 @@ class Graph:
                 return f'{who} has a publisher there and sends nothing, because {raised}'
             return (
                 f'{who} has a publisher there and sends nothing, so see that it spins, that its '
-                'timer is created (with the name of a method, without parentheses), and that no '
-                'callback raises'
+                'timer is created (with a period in seconds, and the name of a method, without '
+                'parentheses), and that no callback raises'
             )
         others = self.subscriptions(topic_name)
         return self._why_none(topic_name, self.publisher_names, 'create_publisher', others)
@@ -99,7 +99,10 @@ class Graph:
         if not runs:
             return 'the node is not running, so run the cell that starts it and read what it says'
         if similar := _similar(topic_name, [name for name in names if name not in _PLUMBING]):
-            return f'{", ".join(names[similar])} uses {similar}, so compare the spelling'
+            uses = f'{", ".join(names[similar])} uses {similar}'
+            if similar in {name.rpartition('/')[0] + topic_name for name in names[similar]}:
+                return f'{uses}: a name without / in front is put into the namespace of its node'
+            return f'{uses}, so compare the spelling'
         look = f'look at the topic name in {maker}(…) and that the node calls it'
         if len(runs) == 1:
             return f'{runs[0]} runs, so {look}'
@@ -171,6 +174,8 @@ def wait_for_publisher(watcher: Watcher, topic_name: str, *, timeout_sec: float)
 def what_raised(node_names: Iterable[str]) -> str:
     """A clause on the callback of one of the nodes that has raised, or ''."""
     said = next(filter(None, map(student.trouble, sorted(set(node_names)))), '')
+    if said.endswith('object is not callable'):
+        said += ', so give a method by its name, without parentheses'
     return f'its callback raised {said}' if said else ''
 
 

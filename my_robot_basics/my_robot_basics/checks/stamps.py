@@ -32,6 +32,9 @@ PROOF_SEC = 2.0
 PROOF_STEP_SEC = 0.05
 ATTEMPTS = 3
 """How often to try where the clock could not be driven: a busy machine may be slow just now."""
+EXPECTED = "stamps of the node's clock at publication"
+AT_ONCE_SEC = 0.02
+ONCE = 'publish one message each time the timer fires'
 HOW = 'set message.header.stamp = self.get_clock().now().to_msg() before each publish'
 WHY = 'it is another one than that of the computer where a simulation, or this check, drives it'
 
@@ -44,6 +47,8 @@ def check_stamps(recording: 'Recording', messages: Sequence) -> None:
     stamps = [_seconds(message.header.stamp) for message in messages]
     if 0.0 in stamps:
         _fail('a stamp of 0')
+    if _come_in_pairs(recording, stamps):
+        fail(expected=EXPECTED, seen='two messages with one stamp at once', hint=ONCE)
     if any(later <= earlier for earlier, later in itertools.pairwise(stamps)):
         _fail('a stamp that does not advance')
     offs = _offs(recording, stamps)
@@ -102,6 +107,18 @@ def _while_ahead(topic_name: str, type_: type, publishers: Collection[str]) -> l
             return proofs()
 
 
+def _come_in_pairs(recording: 'Recording', stamps: Sequence[float]) -> bool:
+    sent = [sample.time_sec for sample in recording.messages]
+    apart = [
+        later - earlier
+        for (earlier, later), (stamp, after) in zip(
+            itertools.pairwise(sent), itertools.pairwise(stamps), strict=True
+        )
+        if stamp == after
+    ]
+    return bool(apart) and max(apart) < AT_ONCE_SEC
+
+
 def _offs(recording: 'Recording', stamps: Sequence[float]) -> list[float]:
     on_wall = recording.clock == 'wall'
     sent = [
@@ -121,12 +138,8 @@ def _seconds(stamp: object) -> float:
 
 
 def _fail_computer() -> NoReturn:
-    fail(
-        expected="stamps of the node's clock at publication",
-        seen="the computer's clock",
-        hint=f'{HOW}; {WHY}',
-    )
+    fail(expected=EXPECTED, seen="the computer's clock", hint=f'{HOW}; {WHY}')
 
 
 def _fail(seen: str) -> NoReturn:
-    fail(expected="stamps of the node's clock at publication", seen=seen, hint=HOW)
+    fail(expected=EXPECTED, seen=seen, hint=HOW)
