@@ -23,6 +23,7 @@ _TAGS = {'p', 'em', 'strong', 'code', 'pre', 'ul', 'ol', 'li', 'blockquote', 'h4
 _TAGS |= {'thead', 'tbody', 'tr', 'th', 'td'}
 _CODE = HtmlFormatter(style='xcode', nowrap=True)
 _REASON = re.compile(r'expected (?P<expected>.+?), saw (?P<seen>.+): (?P<hint>.+)', re.DOTALL)
+_FIRST_WORD = re.compile(r'\A[a-z]+(?=[ ,:;]|\Z)')
 _BASE64 = re.compile(r'[A-Za-z0-9+/=\s]+')
 
 
@@ -195,12 +196,23 @@ def _words(text: str) -> Markup:
     return Markup(re.sub('`([^`]+)`', r'<code>\1</code>', str(escape(text))))
 
 
+def _sentence(text: str) -> str:
+    """Begin with a capital letter, unless that would misspell a name in the code."""
+    return _FIRST_WORD.sub(lambda word: word[0].capitalize(), text)
+
+
 def _number(value: float) -> str:
     return f'{value:.2f}'.rstrip('0').rstrip('.')
 
 
 _TEMPLATE = template(
     'page.html.j2',
-    filters={'colour': _colour, 'rich': _rich, 'words': _words, 'number': _number},
+    filters={
+        'colour': _colour,
+        'rich': _rich,
+        'words': _words,
+        'sentence': _sentence,
+        'number': _number,
+    },
     values={'code_style': Markup(_CODE.get_style_defs('pre'))},
 )
