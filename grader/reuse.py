@@ -104,7 +104,7 @@ def _checks(notebook: NotebookNode) -> list[NotebookNode]:
 
 def _said(notebook: NotebookNode) -> list:
     """Return what a lesson says and asks; its outputs don't count."""
-    return [(cell.cell_type, cell.source, cell.metadata) for cell in notebook.cells]
+    return [(c.cell_type, c.source, c.get('id'), c.metadata) for c in notebook.cells]
 
 
 def _content(path: Path) -> bytes:

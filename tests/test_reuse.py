@@ -1,4 +1,8 @@
+import shutil
 import sqlite3
+from pathlib import Path
+from types import SimpleNamespace
+from typing import NamedTuple
 
 import nbformat
 import pytest
@@ -6,8 +10,9 @@ from course_maker import TOY, answered, executed, released_course, submit, toy_l
 from nbgrader.api import Gradebook
 from stand_in import Here, stand_in
 
-from grader import reuse
+from grader import limits, reuse, versions
 from grader.__main__ import main
+from grader.course import ROOT
 from grader.execute import Execution
 from grader.grade import grade_all
 from grader.heal import KEY
@@ -100,6 +105,24 @@ def another_lesson(course, monkeypatch):
     write_source(course, lesson)
 
 
+def points(course, monkeypatch):
+    lesson = toy_lesson()
+    lesson.cells[6].metadata['nbgrader']['points'] = 3
+    write_source(course, lesson)
+
+
+def a_tag(course, monkeypatch):
+    lesson = toy_lesson()
+    del lesson.cells[2].metadata['tags']  # a cell that is not run becomes one that is
+    write_source(course, lesson)
+
+
+def a_cells_id(course, monkeypatch):
+    lesson = toy_lesson()
+    lesson.cells[0].id = 'head'  # students' cells are matched by it
+    write_source(course, lesson)
+
+
 def another_stub(course, monkeypatch):
     stub = course.release(TOY)
     stub.cells[4].source += '\n# write here'
@@ -132,6 +155,9 @@ def a_damaged_notebook(course, monkeypatch):
         a_file_beside_it,
         another_time,
         another_lesson,
+        points,
+        a_tag,
+        a_cells_id,
         another_stub,
         other_machinery,
         no_sandbox,
@@ -235,24 +261,105 @@ def test_only_scores_that_changed_are_listed(course):
     assert changes(rows_of(course).values()) == ['bob  00_toy  1 → 3 (+2)']
 
 
-def test_the_hash_of_the_machinery_holds_code_and_versions(tmp_path, monkeypatch):
-    from grader import versions
+class Installed(NamedTuple):
+    """What importlib.metadata tells of a package."""
 
-    seen = {versions.machinery()}
-    (tmp_path / '__pycache__').mkdir()
-    (tmp_path / 'code.py').write_text('1')
-    monkeypatch.setattr(versions.my_robot_basics, '__file__', str(tmp_path / '__init__.py'))
-    for change in (
-        lambda: None,
-        lambda: (tmp_path / 'code.py').write_text('2'),
-        lambda: monkeypatch.setattr(versions, 'distributions', lambda path: []),
-        lambda: monkeypatch.setattr(versions.platform, 'python_version', lambda: '3.99'),
-    ):
-        change()
+    name: str
+    version: str
+
+
+@pytest.fixture
+def machine(tmp_path, monkeypatch):
+    """A machine whose code and packages can be changed; says what its hash is now."""
+    grader, robot = tmp_path / 'grader', tmp_path / 'my_robot_basics'
+    for folder in (grader / 'forkserver', robot / 'checks'):
+        folder.mkdir(parents=True)
+        (folder / 'code.py').write_text('1')
+    shutil.copy(limits.__file__, grader)
+    packages = [Installed('numpy', '2.3.0'), Installed('ros-jazzy-rclpy', '7.1.0')]
+    monkeypatch.setattr(versions, '__file__', str(grader / 'versions.py'))
+    monkeypatch.setattr(versions.my_robot_basics, '__file__', str(robot / '__init__.py'))
+    monkeypatch.setattr(versions, 'distributions', lambda path: packages)
+
+    def now():
         versions.machinery.cache_clear()
-        seen.add(versions.machinery())
-        (tmp_path / '__pycache__' / 'code.pyc').write_text(str(len(seen)))
-        versions.machinery.cache_clear()
-        assert versions.machinery() in seen
+        return versions.machinery()
+
+    yield SimpleNamespace(
+        grader=grader, robot=robot, packages=packages, now=now, patch=monkeypatch
+    )
     versions.machinery.cache_clear()
-    assert len(seen) == 5
+
+
+def grader_code(machine):
+    (machine.grader / 'forkserver' / 'code.py').write_text('2')
+
+
+def a_new_module_of_the_grader(machine):
+    (machine.grader / 'new.py').touch()
+
+
+def a_limit(machine):
+    table = machine.grader / 'limits.py'
+    text = table.read_text()
+    table.write_text(text.replace('TIMEOUT_SEC = 10.0', 'TIMEOUT_SEC = 20.0', 1))
+    assert table.read_text() != text
+
+
+def code_of_the_robot(machine):
+    (machine.robot / 'checks' / 'code.py').write_text('2')
+
+
+def another_version(machine):
+    machine.packages[0] = Installed('numpy', '2.3.1')
+
+
+def one_package_more(machine):
+    machine.packages.append(Installed('new', '1'))
+
+
+def one_package_less(machine):
+    machine.packages.pop()
+
+
+def another_python(machine):
+    machine.patch.setattr(versions.platform, 'python_version', lambda: '3.99')
+
+
+def another_processor(machine):
+    machine.patch.setattr(versions.platform, 'machine', lambda: 'pdp11')
+
+
+@pytest.mark.parametrize(
+    'change',
+    [
+        grader_code,
+        a_new_module_of_the_grader,
+        a_limit,
+        code_of_the_robot,
+        another_version,
+        one_package_more,
+        one_package_less,
+        another_python,
+        another_processor,
+    ],
+)
+def test_the_hash_of_the_machinery_is_another_one_after(machine, change):
+    before = machine.now()
+    assert machine.now() == before
+    change(machine)
+    assert machine.now() != before
+
+
+def test_what_python_writes_beside_code_and_the_order_of_packages_change_no_hash(machine):
+    before = machine.now()
+    (machine.robot / '__pycache__').mkdir()
+    (machine.robot / '__pycache__' / 'code.pyc').write_text('1')
+    machine.packages.reverse()
+    assert machine.now() == before
+
+
+def test_the_hash_holds_this_very_grader_and_robot():
+    folders = {Path(versions.__file__).parent, Path(versions.my_robot_basics.__file__).parent}
+    assert folders == {ROOT / 'grader', ROOT / 'my_robot_basics' / 'my_robot_basics'}
+    assert Path(limits.__file__) in versions._code(ROOT / 'grader')
