@@ -3,39 +3,59 @@
 import os
 import signal
 import sys
+from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from course_maker import executed
 from stand_in import stand_in as stand_in_for_rooms
 
-from grader import reuse
+from grader import grade, gradebook, reuse
 from grader.__main__ import main
 from grader.course import Course
 from grader.execute import Execution
+from grader.saving import SaveGrades
+
+PARTS = ('all', 'storing', 'scores')
+"""Of a run: all of it, the storing of submissions, and of that the writing of their scores."""
 
 
-def run(root: str, gradebook: str, log: str, kill_at: int = 0) -> None:
+def run(root: str, gradebook_at: str, log: str, kill_at: int = 0, part: str = 'all') -> None:
     """Run `./course grade`; be killed at the so manieth call of a function, Python's or C's.
 
-    What is judged goes into `log`, and at the end how many calls there were.
+    Counted are those in a part of the run. What is judged goes into `log`, and at the end the
+    status and how many calls there were in each part.
     """
-    calls = 0
+    calls, within = Counter(), Counter(all=1)
 
     def count(frame: object, event: str, what: object) -> None:
-        nonlocal calls
         if event in ('call', 'c_call'):
-            calls += 1
-            if calls == kill_at:
+            for name in PARTS:
+                calls[name] += within[name] > 0
+            if kill_at and calls[part] == kill_at:
                 os.kill(os.getpid(), signal.SIGKILL)
 
+    def counted(name: str, work: Callable) -> Callable:
+        def wrapper(*args: object) -> object:
+            within[name] += 1
+            try:
+                return work(*args)
+            finally:
+                within[name] -= 1
+
+        return wrapper
+
     stand_in(Path(log))
+    grade.store = counted('storing', grade.store)
+    gradebook._finish = counted('storing', gradebook._finish)
+    SaveGrades.preprocess = counted('scores', SaveGrades.preprocess)
     sys.stdout = sys.stderr = open(os.devnull, 'w')  # noqa: SIM115 - open to the end
     sys.setprofile(count)
-    status = main(['grade'], course=Course(root=Path(root), gradebook=Path(gradebook)))
+    status = main(['grade'], course=Course(root=Path(root), gradebook=Path(gradebook_at)))
     sys.setprofile(None)
     with open(log, 'a', encoding='utf-8') as file:
-        file.write(f'{status} {calls}\n')
+        print(status, *(calls[name] for name in PARTS), file=file)
 
 
 def stand_in(log: Path) -> None:

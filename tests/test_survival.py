@@ -4,6 +4,7 @@ import multiprocessing
 import random
 import shutil
 import sqlite3
+from collections import defaultdict
 from contextlib import closing
 
 import pytest
@@ -15,6 +16,11 @@ from grader.records import records
 
 RIGHT = '# {}\ndef double(x):\n    return 2 * x'
 WRONG = '# {}\ndef double(x):\n    return x + 1'
+GRADES = """
+    SELECT s.student_id, c.name, g.auto_score, g.manual_score, g.needs_manual_grade
+    FROM grade g JOIN base_cell c ON c.id = g.cell_id
+        JOIN submitted_notebook n ON n.id = g.notebook_id
+        JOIN submitted_assignment s ON s.id = n.assignment_id"""
 
 
 @pytest.fixture(scope='module')
@@ -23,9 +29,9 @@ def start():
     context = multiprocessing.get_context('forkserver')
     context.set_forkserver_preload(['grader.__main__'])
 
-    def start_run(course, log, kill_at=0):
+    def start_run(course, log, kill_at=0, part='all'):
         log.write_text('')
-        arguments = (str(course.root), str(course.gradebook), str(log), kill_at)
+        arguments = (str(course.root), str(course.gradebook), str(log), kill_at, part)
         process = context.Process(target=survivor.run, args=arguments)
         process.start()
         process.join()
@@ -55,9 +61,10 @@ def uninterrupted(handed_in, start, tmp_path_factory):
     folder = tmp_path_factory.mktemp('uninterrupted')
     course = fresh(handed_in, folder / 'gradebook')
     code, judged, lines = start(course, folder / 'log')
-    status, calls = lines[-1].split()
+    status, *calls = lines[-1].split()
     assert (code, status, judged) == (0, '0', {'ada', 'bob', 'zoe'})
-    return stored(course), int(calls)
+    parts = dict(zip(survivor.PARTS, map(int, calls), strict=True))
+    return stored(course), in_database(course), parts
 
 
 def fresh(handed_in, gradebook):
@@ -84,40 +91,47 @@ def done(course):
     }
 
 
-def grade_with_kills(handed_in, uninterrupted, start, folder, moments):
-    """Grade, and be killed at such parts of a whole run; each time go on from there."""
-    whole, calls = uninterrupted
-    course = fresh(handed_in, folder / 'gradebook')
-    kills = 0
-    for moment in moments:
-        before = done(course)
-        code, judged, _ = start(course, folder / 'log', kill_at=max(1, int(moment * calls)))
+def in_database(course):
+    """Return each student's scores as any program finds them, were it in the midst of a run."""
+    found = defaultdict(set)
+    if course.database.exists():
+        with closing(sqlite3.connect(course.database)) as database:
+            for student, *grade in database.execute(GRADES):
+                found[student].add(tuple(grade))
+    return found
+
+
+def grade_with_kills(handed_in, uninterrupted, start, folder, *, kills):
+    """Grade, and be killed so many times, at random moments of each part; each time go on."""
+    whole, wanted, calls = uninterrupted
+    course, chance = fresh(handed_in, folder / 'gradebook'), random.Random(5)
+    while kills:
+        part = survivor.PARTS[kills % len(survivor.PARTS)]
+        before, kill_at = done(course), max(1, int(chance.random() * calls[part]))
+        code, judged, _ = start(course, folder / 'log', kill_at=kill_at, part=part)
         assert not judged & before
+        for student, grades in in_database(course).items():
+            assert grades == wanted[student]
         if code == 0:  # so much was done before that this run ended sooner
             assert stored(course) == whole
             course = fresh(handed_in, folder / 'gradebook')
         else:
             assert code == -9
-            kills += 1
+            kills -= 1
     before = done(course)
     code, judged, lines = start(course, folder / 'log')
     assert (code, lines[-1].split()[0]) == (0, '0')
     assert not judged & before
     assert stored(course) == whole
-    return kills
 
 
 def test_a_run_killed_at_any_moment_goes_on_and_ends_as_if_nothing_had_been(
     handed_in, uninterrupted, start, tmp_path
 ):
-    moments = [0.5, 0.7, 0.4, 0.9, 0.8]
-    assert grade_with_kills(handed_in, uninterrupted, start, tmp_path, moments)
+    grade_with_kills(handed_in, uninterrupted, start, tmp_path, kills=5)
 
 
 @pytest.mark.slow
 @pytest.mark.timeout(3600)
 def test_fifty_kills_change_nothing(handed_in, uninterrupted, start, tmp_path):
-    chance, kills = random.Random(5), 0
-    while kills < 50:
-        moments = [chance.random() for _ in range(10)]
-        kills += grade_with_kills(handed_in, uninterrupted, start, tmp_path, moments)
+    grade_with_kills(handed_in, uninterrupted, start, tmp_path, kills=50)
