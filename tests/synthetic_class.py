@@ -27,7 +27,7 @@ from sample_class import EXPECTED, PATHS, assignment_of, rebased
 
 from grader.course import Course
 from grader.heal import grade_id, role
-from grader.records import records
+from grader.records import records, verdicts
 
 HONEST = 0.6
 """The share of a class that answers rightly."""
@@ -112,10 +112,17 @@ def wrong_scores(course: Course, papers: Sequence[Paper]) -> list[str]:
     samples = {(paper.student_id, paper.assignment): paper.sample for paper in papers}
     return [
         f'{" ".join(each)} ({samples[each[:2]]}): expected {wanted.get(each, "nothing")}, '
-        f'the gradebook holds {found.get(each, "nothing")}'
+        f'the gradebook holds {found.get(each, "nothing")}{_comment(course, *each)}'
         for each in sorted(wanted.keys() | found.keys())
         if each not in found or each not in wanted or found[each] != wanted[each]
     ]
+
+
+def _comment(course: Course, student_id: str, assignment: str, name: str) -> str:
+    """Return what a cell's verdict says, if anything."""
+    said = verdicts(course, student_id, assignment).get(name, {})
+    told = [said.get('reason'), *said.get('notes', ())]
+    return ''.join(f'; {" ".join(text.split())}' for text in told if text)
 
 
 def _deck(assignment: str, chosen: Sequence[str], chance: random.Random) -> Iterator[str]:

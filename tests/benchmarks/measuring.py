@@ -28,6 +28,8 @@ from grader import grade
 from grader.__main__ import main
 from grader.course import Course
 
+ROW = r'^student_\d+ '
+"""What `./course grade` prints of each student of a synthetic class."""
 STORED = re.compile(r'^seconds in the database: ([\d.]+)$', re.MULTILINE)
 LOOK_SEC = 0.5
 """So often memory is looked at."""
@@ -97,7 +99,7 @@ def watch(
         text=True,
         errors='replace',
     )
-    with _memory_of(process.pid, watched):
+    with _ended_with_us(process), _memory_of(process.pid, watched):
         for line in process.stdout:
             lines.append(line)
             if re.search(done, line):
@@ -118,8 +120,9 @@ def kill_a_worker(run: psutil.Process) -> None:
 
 @contextmanager
 def busy(loops: int) -> Iterator[None]:
-    """Keep so many cores busy."""
-    started = [subprocess.Popen([sys.executable, '-c', 'while True: pass']) for _ in range(loops)]
+    """Keep so many cores busy, no longer than this process lives."""
+    loop = f'import os\nwhile os.getppid() == {os.getpid()}: pass'
+    started = [subprocess.Popen([sys.executable, '-c', loop]) for _ in range(loops)]
     try:
         yield
     finally:
@@ -140,8 +143,23 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
         print('  '.join([first, *others]).rstrip(), flush=True)
 
 
+def minutes(seconds: float) -> str:
+    """Return a duration as people say it."""
+    return f'{seconds // 60:.0f} min {seconds % 60:.0f} s'
+
+
 def _text(field: object) -> str:
     return f'{field:,.1f}' if isinstance(field, float) else str(field)
+
+
+@contextmanager
+def _ended_with_us(process: subprocess.Popen) -> Iterator[None]:
+    try:
+        yield
+    except BaseException:
+        process.terminate()  # it ends all that it runs
+        process.wait()
+        raise
 
 
 @contextmanager

@@ -1,0 +1,108 @@
+"""The honest class, graded again and again beside two busy loops: does every score stay the same?
+
+A round is one right answer of each lesson; from round to round a lesson's right answers come in
+turn, so that every `-pass-` sample is graded, most of them several times. Each line tells of all
+rounds so far: a run that was cut short has said what it found.
+"""
+
+import os
+import statistics
+import time
+from collections import Counter
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+
+import psutil
+from measuring import ROW, Course, busy, course_command, minutes, new_course, watch
+from sample_class import PATHS, assignment_of
+from synthetic_class import Paper, synthetic_class, wrong_scores, zip_up
+
+from grader.collect import collect
+
+RIGHT = tuple(name for name in PATHS if '-pass-' in name)
+LESSONS = len({assignment_of(PATHS[name]) for name in RIGHT})
+BUSY_LOOPS = 2
+
+
+def honest_rounds(rounds: int) -> list[Paper]:
+    """Return the papers of so many rounds, one round after the other, each by another student."""
+    return synthetic_class(LESSONS * rounds, samples=RIGHT)
+
+
+def steady(rounds: int, options: Sequence[str], folder: Path | None) -> int:
+    """Grade so many rounds under load; return 1 where a score differs or is missing.
+
+    In a `folder` of a run that was ended, only what is missing there is graded.
+    """
+    papers = honest_rounds(rounds)
+    course = Course(gradebook=folder.resolve()) if folder else new_course('steady')
+    print(
+        f'{len(papers)} gradings in {rounds} rounds; go on with --at {course.gradebook}',
+        flush=True,
+    )
+    course.gradebook.mkdir(parents=True, exist_ok=True)
+    archive = course.gradebook.with_name('class.zip')
+    zip_up(papers, archive)
+    list(collect(course, archive))
+    progress = _Progress(course, papers)
+    ends = range(LESSONS, len(papers) + 1, LESSONS)
+    with busy(BUSY_LOOPS):
+        watched = watch(
+            course_command(course, 'grade', *options),
+            done=ROW,
+            meanwhile={end: partial(progress.tell, end) for end in ends},
+        )
+    return progress.conclude(len(watched.done_at), watched.said.count('(unchanged)'))
+
+
+class _Progress:
+    """Counts what differs, round by round, and at the end once more in all that is stored."""
+
+    def __init__(self, course: Course, papers: Sequence[Paper]) -> None:
+        self._course, self._papers = course, papers
+        self._wrong: list[str] = []
+        self._loads: list[float] = []
+        self._began = time.perf_counter()
+
+    def tell(self, end: int, _: psutil.Process) -> None:
+        """Look at the round that ended with so many gradings, and print where it stands."""
+        found = wrong_scores(self._course, self._papers[end - LESSONS : end])
+        self._wrong += found
+        self._loads.append(os.getloadavg()[0])
+        print(
+            f'round {end // LESSONS}: {self._standing(end)}, load {self._loads[-1]:.1f}',
+            flush=True,
+        )
+        _show(found)
+
+    def conclude(self, done: int, from_before: int) -> int:
+        """Compare all that is stored, and print the figure; return 1 where something differs."""
+        graded = self._papers[:done]
+        self._wrong = wrong_scores(self._course, graded)
+        times = Counter(paper.sample for paper in graded)
+        print(f'\n{self._standing(done)}')
+        _show(self._wrong)
+        if times:
+            print(
+                f'{len(times)} of {len(RIGHT)} right samples, each graded {min(times.values())} '
+                f'to {max(times.values())} times; {from_before} in an earlier run'
+            )
+        if self._loads:
+            mean, most = statistics.fmean(self._loads), max(self._loads)
+            print(f'load average {mean:.1f}, at most {most:.1f}, on {os.cpu_count()} processors')
+        if done < len(self._papers):
+            print(f'CUT SHORT: {len(self._papers) - done} were not graded')
+        return int(bool(self._wrong) or done < len(self._papers))
+
+    def _standing(self, done: int) -> str:
+        scores = sum(len(paper.expected) for paper in self._papers[:done])
+        return (
+            f'{done} gradings, {len(self._wrong)} of {scores} scores differ, '
+            f'{minutes(time.perf_counter() - self._began)}'
+        )
+
+
+def _show(wrong: Sequence[str]) -> None:
+    for line in wrong:
+        print(f'  {line}', flush=True)
