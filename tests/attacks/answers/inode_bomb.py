@@ -1,9 +1,8 @@
 """Makes empty files until there is no room for more."""
 
+import contextlib
 import itertools
 
-for number in itertools.count():
-    try:
+with contextlib.suppress(OSError):
+    for number in itertools.count():
         open(f'/tmp/{number}', 'w').close()
-    except OSError:
-        pass
