@@ -100,13 +100,39 @@ def test_lesson_opens_with_its_contract_and_closes_with_points_and_the_next_less
     first, last = lesson.cells[0].source, lesson.cells[-1].source
     assert first.startswith(f'# {int(path.stem[:2])} · ')
     assert 'You will be able to' in first
-    to_a_lesson, to_the_index = r'\]\(\.\./(\w+)/\1\.ipynb\)', r'\]\(\.\./index\.ipynb\)'
-    the_way_on = to_the_index if path.stem == max(CONTRACT) else to_a_lesson
-    assert re.search(the_way_on, last)
+    following = [name for name in sorted(CONTRACT) if name > path.stem]
+    the_way_on = f'../{following[0]}/{following[0]}.ipynb' if following else '../index.ipynb'
+    assert f']({the_way_on})' in last
     for exercise, (_, grade_cells) in CONTRACT[path.stem].items():
         assert f'| `{exercise}` | {sum(grade_cells.values())} |' in first
         for grade_id, points in grade_cells.items():
             assert f'| `{grade_id}` | {points} |' in last
+
+
+def test_the_prompt_of_an_exercise_names_its_points(lesson, path):
+    headings = re.findall(r'^## Exercise: `(\w+)` \((\d+) points', prose(lesson), re.MULTILINE)
+    points = {name: sum(cells.values()) for name, (_, cells) in CONTRACT[path.stem].items()}
+    assert {name: int(number) for name, number in headings} == points
+
+
+def test_most_demonstrations_come_after_a_prediction(lesson):
+    told, predicted = '', []
+    for cell in lesson.cells:
+        if cell.cell_type == 'markdown':
+            told = cell.source
+        elif 'demo' in cell.metadata.get('tags', []):
+            predicted.append(bool(re.search(r'\b(predict|guess)\b', told, re.IGNORECASE)))
+    assert sum(predicted) > len(predicted) / 2
+
+
+def test_links_lead_to_what_is_given_out(lesson, path):
+    folder = ROOT / 'notebooks' / path.stem
+    links = re.findall(r'\]\((?!https://)([^)]+)\)', prose(lesson))
+    assert {link for link in links if not (folder / link).is_file()} == set()
+
+
+def prose(lesson):
+    return '\n'.join(cell.source for cell in lesson.cells if cell.cell_type == 'markdown')
 
 
 def words(markdown):
