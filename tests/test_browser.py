@@ -90,20 +90,24 @@ class Lab:
 class Lesson:
     """One lesson, open in a browser."""
 
-    def __init__(self, page, lab, name):
+    def __init__(self, page, path):
         self.page = page
-        page.set_default_timeout(LONG)
-        path = lab.fresh_copy(name)
-        page.goto(f'{lab.address}/lab/tree/{path}?token={TOKEN}&reset')
+        page.evaluate(  # as at a double click
+            "async path => { await jupyterapp.commands.execute('docmanager:open', {path}) }", path
+        )
         page.wait_for_function(f"""
-            window.jupyterapp?.shell.currentWidget?.context?.path === '{path}'
+            jupyterapp.shell.currentWidget?.context?.path === '{path}'
             && jupyterapp.shell.currentWidget.context.isReady
             && jupyterapp.shell.currentWidget.sessionContext.session?.kernel?.status === 'idle'
         """)
 
     def close(self):
-        self.page.evaluate('jupyterapp.shell.currentWidget.sessionContext.shutdown()')
-        self.page.close()
+        """End the kernel, and close the notebook without being asked whether to save it."""
+        self.page.evaluate("""async () => {
+            const panel = jupyterapp.shell.currentWidget;
+            await panel.sessionContext.shutdown();
+            panel.dispose();
+        }""")
 
     def command(self, name, index=None):
         """Run a command of JupyterLab's menus, with a cell selected, and wait for its end."""
@@ -185,13 +189,23 @@ def chromium():
         yield browser
 
 
+@pytest.fixture(scope='module')
+def page(lab, chromium):
+    """A JupyterLab in the browser, for one lesson after the other: to load one takes long."""
+    page = chromium.new_page(viewport={'width': 1200, 'height': 900})
+    page.set_default_timeout(LONG)
+    page.goto(f'{lab.address}/lab?token={TOKEN}&reset')
+    page.wait_for_function('window.jupyterapp?.restored.then(() => true)')
+    yield page
+    page.close()
+
+
 @pytest.fixture
-def opened(lab, chromium):
+def opened(lab, page):
     lessons = []
 
     def open_lesson(name):
-        page = chromium.new_page(viewport={'width': 1200, 'height': 900})
-        lessons.append(Lesson(page, lab, name))
+        lessons.append(Lesson(page, lab.fresh_copy(name)))
         return lessons[-1]
 
     yield open_lesson
