@@ -33,6 +33,14 @@ def picture(nodes=('/a',), publishers=None, subscriptions=None):
     [
         (picture(nodes=()), 'the node is not running, so run the cell that starts it'),
         (picture(subscriptions={'/t/joint_states': ('/a',)}), '/a is at the other end of this'),
+        (
+            picture(
+                nodes=('/a', '/b'),
+                publishers={'/s/joint_states': ('/a', '/b')},
+                subscriptions={'/t/joint_states': ('/a',)},
+            ),
+            '/a is at the other end of this topic, so look',
+        ),
         (picture(), '/a runs, so look at the topic name in create_publisher'),
         (
             picture(nodes=('/a', '/b')),

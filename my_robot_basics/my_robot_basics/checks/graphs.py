@@ -90,15 +90,16 @@ class Graph:
     ) -> str:
         # who is at the other end of the topic is not the one that is missing at this end
         runs = [name for name in self.node_names if name not in others]
-        if not runs and others:
-            # it may be the one that was meant, with its two ends mixed up
+        similar = _similar(topic_name, [name for name in names if name not in _PLUMBING])
+        # it may be the one that was meant, with its two ends mixed up
+        if mixed := sorted({*names.get(similar, others if not runs else ())} & {*others}):
             return (
-                f'{", ".join(others)} is at the other end of this topic, so look which name goes'
+                f'{", ".join(mixed)} is at the other end of this topic, so look which name goes'
                 f' into {maker}(…); if another node is missing, run the cell that starts it'
             )
         if not runs:
             return 'the node is not running, so run the cell that starts it and read what it says'
-        if similar := _similar(topic_name, [name for name in names if name not in _PLUMBING]):
+        if similar:
             uses = f'{", ".join(names[similar])} uses {similar}'
             if similar in {name.rpartition('/')[0] + topic_name for name in names[similar]}:
                 return f'{uses}: a name without / in front is put into the namespace of its node'
