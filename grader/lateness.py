@@ -31,6 +31,7 @@ from traitlets import Type
 from grader.course import Course
 from grader.database import connected
 from grader.errors import CourseError
+from grader.text import printable
 
 FILE = 'deadlines.toml'
 DAY_SEC = 86_400
@@ -69,6 +70,20 @@ def deadlines(gradebook: Path, assignments: Collection[str] | None = None) -> De
         return _understood(said, assignments)
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, _Wrong) as error:
         raise CourseError(f'{path}: {error}: see the example in grader/lateness.py') from None
+
+
+def extended_for_nobody(course: Course) -> list[str]:
+    """Return a line for each extension of a student who has handed nothing in.
+
+    Their name may be misspelt, and then somebody else pays for it.
+    """
+    found = deadlines(course.gradebook) or Deadlines()
+    return [
+        f'{FILE} extends {assignment} for {printable(student)}, who has handed in nothing: is '
+        'that the name?'
+        for assignment, student in sorted(found.extended)
+        if not course.folder('submitted', student, assignment).is_dir()
+    ]
 
 
 class _Wrong(Exception):

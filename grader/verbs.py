@@ -17,6 +17,7 @@ from grader.grade import grade_all
 from grader.gradebook import register
 from grader.intake import lines
 from grader.isolation import missing, protections, slow
+from grader.lateness import extended_for_nobody
 from grader.release import release
 from grader.replay import RECORDED, replay
 from grader.report import Run, write_report
@@ -89,6 +90,8 @@ def run_grade(course: Course, asked: argparse.Namespace) -> int:
     if changed := changes(rows):
         print(f'{len(changed)} score{"s" * (len(changed) > 1)} changed:')
         print(*(f'  {line}' for line in changed), sep='\n')
+    for line in extended_for_nobody(course):
+        print(line)
     failed = sum(row.stored is None for row in rows)
     waiting = sum(row.stored is not None and row.stored.pending for row in rows)
     print(

@@ -10,7 +10,7 @@ from grader.errors import CourseError
 from grader.grade import grade_all
 from grader.gradebook import store
 from grader.heal import heal
-from grader.lateness import FILE, Deadlines, deadlines
+from grader.lateness import FILE, Deadlines, deadlines, extended_for_nobody
 from grader.pipeline import prepare
 from grader.records import records
 from grader.submission import read_submission
@@ -127,3 +127,15 @@ def test_days_that_have_begun_count():
         None,
         *(2.0, 2.0, 4.0, 10.0),
     ]
+
+
+def test_an_extension_of_somebody_who_has_handed_in_nothing_is_told(course):
+    (course.gradebook / FILE).write_text(RULES)
+    submit(course, 'ada', '')
+    assert extended_for_nobody(course) == [
+        f'{FILE} extends {TOY} for 小明, who has handed in nothing: is that the name?'
+    ]
+    submit(course, '小明', '')
+    assert extended_for_nobody(course) == []
+    (course.gradebook / FILE).unlink()
+    assert extended_for_nobody(course) == []
