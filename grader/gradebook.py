@@ -37,6 +37,8 @@ class Stored:
     """Whether some of it waits for a person."""
     reason: str
     """Why points are missing: the first reason, or ''."""
+    late: float = 0.0
+    """What lateness took off the score."""
 
 
 def register(course: Course, assignment: str) -> bool:
@@ -108,6 +110,7 @@ def store(course: Course, submission: Submission, graded: NotebookNode) -> Store
         former=former[0] if former else None,
         pending=now[2],
         reason=first_reason(saved),
+        late=now[3],
     )
 
 
@@ -189,11 +192,15 @@ def _checksums_in(book: Gradebook, assignment: str) -> dict[str, str] | None:
     return {cell.name: cell.checksum for cell in cells}
 
 
-def _find(course: Course, submission: Submission) -> tuple[float, float, bool] | None:
-    """Return score, most that can be had, and whether a person has to look; None if not graded."""
+def _find(course: Course, submission: Submission) -> tuple[float, float, bool, float] | None:
+    """Return score, most that can be had, whether a person has to look, and the late penalty.
+
+    None if it is not graded.
+    """
     with connected(course.db_url) as book:
         found = submitted_notebook(book, submission.student_id, submission.assignment)
         if found is None:
             return None
         waits = any(waits_for_a_person(grade) for grade in found.grades)
-        return found.score - (found.late_submission_penalty or 0), found.max_score, waits
+        late = found.late_submission_penalty or 0.0
+        return found.score - late, found.max_score, waits, late

@@ -75,6 +75,7 @@ def held(course: Course, submission: Submission, graded: NotebookNode) -> Stored
             former=former,
             pending=any(waits_for_a_person(grade) for grade in found.grades),
             reason=first_reason(graded),
+            late=found.late_submission_penalty or 0.0,
         )
 
 

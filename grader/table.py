@@ -98,6 +98,8 @@ def why(row: Row) -> str:
     stored, text = row.stored, printable(row.reason)
     if stored and stored.pending and not text:
         text = 'the rest is graded by hand'
+    if stored and stored.late:
+        text = f'(late: -{stored.late:g}) {text}'
     if stored and stored.former is not None and stored.former != stored.score:
         text = f'(was {stored.former:g}) {text}'
     elif row.reused:

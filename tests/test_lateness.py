@@ -42,13 +42,15 @@ def course(released, tmp_path):
 
 
 def grade(course, student, handed_in):
-    """Store a submission that earns 3 points; return its score."""
+    """Store a submission that earns 3 points; return its score, which lateness makes less."""
     path = submit(course, student, answered(course, 'def double(x):\n    return 2 * x'))
     if handed_in:
         path.with_name('timestamp.txt').write_text(handed_in)
     submission = read_submission(path.parent, student_id=student, assignment=TOY)
     healed = heal(submission.notebook, course.master(TOY)).notebook
-    return store(course, submission, executed(prepare(course, TOY, healed), {})).score
+    stored = store(course, submission, executed(prepare(course, TOY, healed), {}))
+    assert stored.score + stored.late == pytest.approx(3.0)
+    return stored.score
 
 
 @pytest.mark.parametrize(

@@ -229,6 +229,19 @@ def test_a_persons_score_is_kept_and_not_asked_for_again(course):
     assert rows_of(course, force=True)['ada'].stored.score == 4.5
 
 
+def test_what_lateness_costs_follows_the_file_without_a_run(course, looked):
+    path = submit(course, 'ada', answered(course, RIGHT))
+    path.with_name('timestamp.txt').write_text('2026-01-02 12:00:00 UTC')
+    rows_of(course)
+    due = f'[due]\n{TOY} = 2026-01-02T00:00:00Z\n[late]\nper_day = 0.1\n'
+    (course.gradebook / 'deadlines.toml').write_text(due)
+    row = rows_of(course)['ada']
+    assert row.reused
+    assert (row.stored.former, row.stored.score) == (3.0, pytest.approx(2.7))
+    assert row.stored.late == pytest.approx(0.3)
+    assert len(looked) == 1
+
+
 def test_a_lesson_that_was_released_again_grades_its_submissions_again(course, looked, capsys):
     submit(course, 'ada', answered(course, RIGHT, explained='so'))
     submit(course, 'bob', answered(course, WRONG))

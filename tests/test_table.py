@@ -2,12 +2,13 @@ import io
 import sys
 import threading
 import time
+from dataclasses import replace
 
 from grader import table
 from grader.grade import Row
 from grader.gradebook import Stored
 from grader.submitted import HandedIn
-from grader.table import print_rows
+from grader.table import print_rows, why
 
 SAID = {
     'ada': Stored(score=5.0, max_score=5.0, former=None, pending=False, reason=''),
@@ -66,3 +67,12 @@ def test_a_log_sees_rows_alone(monkeypatch, tmp_path, capsys):
         ['student', 'assignment', 'score', 'reason'],
         ['zoe', '00_toy', '–', 'no', 'room'],
     ]
+
+
+def test_a_row_says_what_lateness_cost_and_that_nothing_is_new():
+    late = replace(SAID['bob'], former=2.0, late=0.3)
+    row = Row('bob', '00_toy', late, 'count again', reused=True)
+    assert why(row) == '(unchanged) (late: -0.3) count again'
+    assert why(replace(row, stored=replace(late, former=2.3))) == (
+        '(was 2.3) (late: -0.3) count again'
+    )
