@@ -1,14 +1,18 @@
 """Asking for values: the same words in the student's kernel and in the test kernel."""
 
 import json
+import re
 import subprocess
 import sys
 
 import numpy as np
 import pytest
 from builtin_interfaces.msg import Time
-from my_robot_basics.checks import CheckFailed, responder, student, values
+from my_robot_basics.checks import CheckFailed, graphs, responder, student, values
+from rclpy.node import Node
 from sensor_msgs.msg import JointState
+
+from my_robot_basics import live
 
 MODES = ['one process', 'test room']
 
@@ -165,3 +169,31 @@ def test_answering_loads_no_check():
         *(f'my_robot_basics.checks.{m}' for m in ['responder', 'values', 'wire']),
     ]
     assert done.stdout.strip() == str(names)
+
+
+class Raises(Node):
+    def __init__(self, name='raises'):
+        super().__init__(name)
+        self.create_timer(0.02, self.tick)
+
+    def tick(self):
+        raise ZeroDivisionError('once more')
+
+
+class Still(Node):
+    def __init__(self):
+        super().__init__('raises')
+
+
+def test_what_a_callback_raised_is_told_until_its_node_begins_anew(monkeypatch):
+    monkeypatch.delenv('MY_ROBOT_BASICS_ROOM', raising=False)
+    assert student.trouble('/raises') == ''
+    live.run(Raises)
+    live.wait_until(lambda: student.trouble('/raises'))
+    said = 'ZeroDivisionError: once more \\(.*line \\d+, in tick: raise ZeroDivisionError'
+    assert re.match(said, student.trouble('/raises'))
+    assert graphs.what_raised(['/other', '/raises']).startswith('its callback raised ZeroDiv')
+    assert graphs.what_raised(['/other']) == ''
+    live.run(Still, key='Raises')
+    assert student.trouble('/raises') == ''
+    live.stop()
