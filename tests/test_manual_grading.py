@@ -125,7 +125,7 @@ def test_nobody_has_to_read_what_nobody_wrote(course):
     row = grade(course, 'bob', '')
     assert (score_of(row), why(row)) == ('3/5', 'there is no answer')
     assert exported(course, 'bob') == ('0.0', 'there is no answer')
-    assert 'there is no answer' in page(course, 'bob')
+    assert 'There is no answer' in page(course, 'bob')
 
 
 def test_the_reason_of_a_check_comes_before_what_waits(course):
