@@ -72,9 +72,11 @@ class Sandbox:
                     line += self._holder.stdout.read(100) or b''
                     await asyncio.sleep(0.002)
         if not line.strip().isdigit():
+            ended = self._holder.poll()
+            silent = 'it did not answer' if ended is None else f'it ended with {ended}, silently'
             self._kill_holder()
             said = self._holder.stderr.read(10_000).decode(errors='replace').strip()
-            raise RoomFailure(f'the sandbox could not be made: {said or "it did not answer"}')
+            raise RoomFailure(f'the sandbox could not be made: {said or silent}')
         self._pid = int(line)
         self._network = os.open(f'/proc/{self._pid}/ns/net', os.O_RDONLY)
         self._watch = asyncio.ensure_future(self._watch_memory())

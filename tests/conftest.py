@@ -79,6 +79,8 @@ def pytest_configure(config: pytest.Config) -> None:
         os.environ[TRUST] = '1'
     # a session in the background ignores Ctrl-C, and so would all that it starts
     signal.signal(signal.SIGINT, signal.default_int_handler)
+    # and one below nohup the end of its terminal
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
     # colcon's builds warn where somebody has set it
     os.environ.pop('PYTHONDONTWRITEBYTECODE', None)
     # once in each xdist worker, too: two workers do not hear each other's nodes

@@ -40,7 +40,10 @@ def test_the_computers_clock_fails_on_both(run, node_class, clock):
         recording.assert_stamps()
 
 
-@pytest.mark.parametrize('node_class', [SteadyClock, NoParameterServices, UnmovableWallStamp])
+@pytest.mark.parametrize(
+    'node_class',
+    [SteadyClock, NoParameterServices, pytest.param(UnmovableWallStamp, marks=pytest.mark.slow)],
+)
 def test_the_nodes_clock_passes_and_so_does_one_that_nobody_can_move(run, node_class):
     node = run(node_class)
     recording = topic(TOPIC).record(seconds=10.0)

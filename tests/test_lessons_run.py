@@ -2,7 +2,6 @@
 
 import re
 from contextlib import contextmanager
-from itertools import filterfalse
 from pathlib import Path
 
 import nbformat
@@ -16,14 +15,23 @@ PROGRAMS = re.compile(r'^(!|%%bash)|\bPopen\(', re.MULTILINE)
 """Found in cells that start programs: they take long, and leave nothing in the kernel."""
 
 
+def all_of(cells):
+    return cells
+
+
+def without_checks(cells):
+    return [cell for cell in cells if not is_grade(cell)]
+
+
+@pytest.mark.parametrize('which', [pytest.param(all_of, marks=pytest.mark.slow), without_checks])
 @pytest.mark.parametrize('name', NAMES)
-def test_a_lesson_runs_again_in_the_same_kernel_whatever_was_run_between(name):
+def test_a_lesson_runs_again_in_the_same_kernel_whatever_was_run_between(name, which):
     lesson = read('solutions', name)
     within = [cell for cell in code_cells(lesson) if not is_left_out(cell)]
     with kernel_for(lesson) as run:
         # nbval sees that each runs in a fresh kernel; here some may fail for want of others, but
         # none may hang or kill the kernel
-        for cell in [*filterfalse(is_grade, within), *reversed(within)]:
+        for cell in [*without_checks(within), *reversed(which(within))]:
             run(cell)
         for cell in code_cells(lesson):
             run(cell)
