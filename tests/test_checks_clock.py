@@ -153,25 +153,40 @@ def test_a_crowded_machine_gives_more_time_to_answer_but_not_without_end(
 
 
 class Counter(Node):
-    """Publishes with every 25th call of a timer that the clock's steps skip calls of."""
+    """Publishes twice a second, with every so manieth call of a timer that steps skip calls of."""
 
-    def __init__(self, **kwargs):
+    def __init__(self, *, calls_each, **kwargs):
         super().__init__('counter', **kwargs)
         self.publisher = self.create_publisher(Empty, '/counted', 10)
-        self.calls = 0
-        self.create_timer(0.02, self.count)
+        self.calls, self.calls_each = 0, calls_each
+        self.create_timer(0.5 / calls_each, self.count)
 
     def count(self):
         self.calls += 1
-        if self.calls % 25 == 0:
+        if self.calls % self.calls_each == 0:
             self.publisher.publish(Empty())
 
 
-def test_coarse_steps_do_not_prove_a_slow_period_that_the_steps_have_made():
-    with spinning(lambda context: Counter(context=context)), Watcher() as watcher:
+def look_at_counter(calls_each):
+    def make(context):
+        return Counter(calls_each=calls_each, context=context)
+
+    with spinning(make), Watcher() as watcher:
         ears = topic('/counted').listen(watcher)
-        why = looks.simulated(watcher, ears, seconds=10.0, step_sec=0.1)
-    assert why == "it counts the calls of a timer that is faster than the clock's steps"
+        return looks.simulated(watcher, ears, seconds=10.0, step_sec=0.1)
+
+
+@pytest.mark.usefixtures('patient')
+def test_steps_prove_no_period_that_they_have_made():
+    assert look_at_counter(100) == looks.COUNTS
+
+
+@pytest.mark.usefixtures('patient')
+def test_who_counts_the_calls_of_a_timer_is_seen_in_steps_as_fine_as_these():
+    recording = look_at_counter(25)
+    assert recording.clock == 'simulated'
+    assert recording.rate_hz == pytest.approx(2.0, abs=0.02)
+    assert len(recording.messages) >= 4
 
 
 def test_coarse_steps_prove_a_slow_period_in_little_time(monkeypatch):

@@ -79,7 +79,8 @@ def graded(tmp_path_factory):
         course, rows = grade_class(assignment_of(PATHS[name]))
         return course, rows[name]
 
-    with Workers() as workers:
+    # other tests run meanwhile
+    with Workers(in_flight=4) as workers:
         crew = Standing(workers)
         yield graded_sample
 

@@ -370,7 +370,7 @@ def test_processes_share_one_limit_of_memory(loop, monkeypatch):
         return said.splitlines()
 
     # one of the three has its place
-    assert loop.run(swell())[-1] == '[9, 9]'
+    assert '[9, 9]' in loop.run(swell())
 
 
 LINGER = """

@@ -11,7 +11,6 @@ import re
 import subprocess
 import sys
 import tempfile
-import threading
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -24,6 +23,8 @@ import psutil
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / 'tests')]
 
+from memory import peak_of
+
 from grader import grade
 from grader.__main__ import main
 from grader.course import Course
@@ -31,8 +32,6 @@ from grader.course import Course
 ROW = r'^student_\d+ '
 """What `./course grade` prints of each student of a synthetic class."""
 STORED = re.compile(r'^seconds in the database: ([\d.]+)$', re.MULTILINE)
-LOOK_SEC = 0.5
-"""So often memory is looked at."""
 
 
 @dataclass
@@ -44,7 +43,7 @@ class Watched:
     done_at: list[float] = field(default_factory=list)
     """When each submission was done, in seconds since the start."""
     peak_bytes: int = 0
-    """Of the command and all below it: what shared pages hold is counted once (PSS)."""
+    """Of the command and all that it has begun: what shared pages hold is counted once (PSS)."""
     said: str = ''
     """On stdout and stderr."""
 
@@ -99,7 +98,7 @@ def watch(
         text=True,
         errors='replace',
     )
-    with _ended_with_us(process), _memory_of(process.pid, watched):
+    with _ended_with_us(process), peak_of(process.pid) as peak:
         for line in process.stdout:
             lines.append(line)
             if re.search(done, line):
@@ -108,6 +107,7 @@ def watch(
                     act(psutil.Process(process.pid))
         watched.status = process.wait()
     watched.seconds = time.perf_counter() - began
+    watched.peak_bytes = peak[0]
     watched.said = ''.join(lines)
     return watched
 
@@ -160,40 +160,6 @@ def _ended_with_us(process: subprocess.Popen) -> Iterator[None]:
         process.terminate()  # it ends all that it runs
         process.wait()
         raise
-
-
-@contextmanager
-def _memory_of(pid: int, watched: Watched) -> Iterator[None]:
-    over = threading.Event()
-
-    def look() -> None:
-        while not over.wait(LOOK_SEC):
-            watched.peak_bytes = max(watched.peak_bytes, _pss_of_tree(pid))
-
-    thread = threading.Thread(target=look, daemon=True)
-    thread.start()
-    try:
-        yield
-    finally:
-        over.set()
-        thread.join()
-
-
-def _pss_of_tree(pid: int) -> int:
-    try:
-        root = psutil.Process(pid)
-        processes = [root, *root.children(recursive=True)]
-    except psutil.NoSuchProcess:
-        return 0
-    return sum(map(_pss, processes))
-
-
-def _pss(process: psutil.Process) -> int:
-    try:
-        rollup = Path(f'/proc/{process.pid}/smaps_rollup').read_text(encoding='ascii')
-    except (FileNotFoundError, ProcessLookupError):
-        return 0  # it has ended since
-    return 1024 * int(re.search(r'^Pss:\s+(\d+) kB', rollup, re.MULTILINE)[1])
 
 
 def _timed(work: Callable, spent: list[float]) -> Callable:
