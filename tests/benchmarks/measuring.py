@@ -21,7 +21,7 @@ from types import MappingProxyType
 import psutil
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT), str(ROOT / 'tests')]
+sys.path[:0] = [str(ROOT), str(ROOT / 'tests'), str(ROOT / 'tests/benchmarks')]
 
 from memory import peak_of
 
