@@ -20,7 +20,7 @@ def test_joints_agree_in_any_order():
 @pytest.mark.parametrize(
     ('wrong', 'seen', 'advice'),
     [
-        (message(0.52, -1.57), {'joint1': 0.52, 'joint2': -1.57}, 'close: '),
+        (message(0.52004, -1.57), {'joint1': 0.52, 'joint2': -1.57}, 'close: '),
         (message(-1.5708, 0.5236), {'joint1': -1.5708, 'joint2': 0.5236}, 'put x beside'),
         (message(30.0, -90.0), {'joint1': 30.0, 'joint2': -90.0}, 'convert both'),
         (message(0.5236, -1.5708, 0.0), '3 positions with 2 names', 'give each message two'),

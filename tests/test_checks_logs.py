@@ -42,6 +42,7 @@ def test_another_level_is_named_as_such():
         ('ik_coarse', 'two decimals or more'),
         ('ik_one_branch', 'log every solution, both angles of both branches: '),
         ('ik_always_warns', "saw 'careful': warn only when"),
+        ('ik_warns_first', "saw 'careful': warn only when"),
     ],
 )
 def test_a_near_miss_is_told_what_is_missing(node, reason):
@@ -121,6 +122,15 @@ def test_what_is_repeated_of_the_target_before_is_no_answer_to_the_next():
         assert log.expect_angles(swapped, may_lag=True) is False
         ask(log, TOO_FAR)
         log.expect_warning(no_longer=swapped)
+
+
+def test_an_answer_behind_the_warning_is_one_too_many_though_it_was_right_before():
+    with running('ik_clings'), rosout('ik_solver_node') as log:
+        ask(log, TARGET)
+        log.expect_angles(ANGLES)
+        ask(log, TOO_FAR)
+        with pytest.raises(CheckFailed, match=r'expected no angles from .* leave the'):
+            log.expect_warning(no_longer=ANGLES)
 
 
 def test_a_warning_behind_the_answer_is_not_about_the_target_before():

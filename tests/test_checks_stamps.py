@@ -1,8 +1,10 @@
 """Stamps of the node's clock and of the computer's are told apart, whichever look was made."""
 
 import pytest
-from my_robot_basics.checks import CheckFailed, topic
+from my_robot_basics.checks import CheckFailed, stamps, topic
+from my_robot_basics.checks.clock import Inconclusive
 from nodes.running import imported
+from sensor_msgs.msg import JointState
 
 from my_robot_basics import live
 
@@ -52,3 +54,34 @@ def test_the_nodes_clock_passes_and_so_does_one_that_nobody_can_move(run, node_c
     # no trace: it is on its own clock again, and alive
     assert node.get_parameter('use_sim_time').value is False
     topic(TOPIC).wait_for(timeout_sec=5.0)
+
+
+@pytest.mark.parametrize(
+    ('looks', 'passes'),
+    [
+        ([[4.9, 4.9]], True),
+        ([[0.1, 4.9]], True),
+        ([[0.1, 0.1]], False),
+        # nothing was published meanwhile
+        ([[]], True),
+        # the clock could not be driven, at first or at all
+        ([None, None, [0.1]], False),
+        ([None, None, None], True),
+    ],
+)
+def test_only_stamps_that_stay_behind_are_held_against_a_node(monkeypatch, looks, passes):
+    left = list(looks)
+
+    def look(*args):
+        ahead = left.pop(0)
+        if ahead is None:
+            raise Inconclusive('a node did not answer in time')
+        return ahead
+
+    monkeypatch.setattr(stamps, '_while_ahead', look)
+    if passes:
+        stamps.expect_to_follow(TOPIC, JointState, ['/a'])
+    else:
+        with pytest.raises(CheckFailed, match=COMPUTER):
+            stamps.expect_to_follow(TOPIC, JointState, ['/a'])
+    assert left == []

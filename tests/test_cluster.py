@@ -12,6 +12,7 @@ from dask_processes import TESTS, start_scheduler, starter, wait_for
 from grader import cluster
 from grader.__main__ import main
 from grader.cluster import Cluster
+from grader.connection import Certificates, connected
 from grader.course import Course
 from grader.errors import ClusterError, TaskFailed
 from grader.grade import grade_all
@@ -139,6 +140,21 @@ def test_a_worker_that_comes_later_is_looked_at_too(course, scheduler, start):
         work = crew.submit(Task(notebook=answered(course, RIGHT), seed='abc'))
         with pytest.raises(ClusterError, match='refuses: no bubblewrap here'):
             work.result()
+
+
+def test_leaving_calls_off_what_is_under_way_and_what_waits(course, scheduler, start, tmp_path):
+    start_worker(start, scheduler.address)
+    task = Task(notebook=answered(course, f'# wait {tmp_path / "go"}\n{RIGHT}'), seed='abc')
+    with connected(scheduler.address, Certificates()) as onlooker:
+
+        def known():
+            return onlooker.run_on_scheduler(lambda dask_scheduler: len(dask_scheduler.tasks))
+
+        with Cluster(scheduler.address) as crew:
+            works = [crew.submit(task) for _ in range(6)]
+            wait_for(lambda: known() == len(works))
+        wait_for(lambda: known() == 0)
+    assert all(isinstance(work.exception(timeout=60), ClusterError) for work in works)
 
 
 @pytest.mark.slow

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import nbformat
 import pytest
 from course_maker import TOY, answered, executed, released_course, submit, toy_lesson, write_source
+from nbformat.v4 import new_markdown_cell
 from nbgrader.api import Gradebook
 from stand_in import Here, stand_in
 
@@ -123,6 +124,13 @@ def a_cells_id(course, monkeypatch):
     write_source(course, lesson)
 
 
+def a_cells_type(course, monkeypatch):
+    lesson = toy_lesson()
+    code = lesson.cells[5]
+    lesson.cells[5] = new_markdown_cell(code.source, id=code.id, metadata=code.metadata)
+    write_source(course, lesson)
+
+
 def another_stub(course, monkeypatch):
     stub = course.release(TOY)
     stub.cells[4].source += '\n# write here'
@@ -158,6 +166,7 @@ def a_damaged_notebook(course, monkeypatch):
         points,
         a_tag,
         a_cells_id,
+        a_cells_type,
         another_stub,
         other_machinery,
         no_sandbox,
@@ -168,11 +177,31 @@ def a_damaged_notebook(course, monkeypatch):
 def test_whatever_a_result_depends_on_makes_it_new(course, looked, monkeypatch, change):
     monkeypatch.setattr(Here, 'isolated', lambda self, trust_students: True)
     submit(course, 'ada', answered(course, RIGHT))
-    rows_of(course)
-    assert rows_of(course)['ada'].reused
+    # the assignment's own seed is another one for other cells, which would hide what else counts
+    rows_of(course, seed='abc')
+    assert rows_of(course, seed='abc')['ada'].reused
     change(course, monkeypatch)
+    assert not rows_of(course, seed='abc')['ada'].reused
+    assert len(looked) == 2
+
+
+def test_another_name_of_a_file_makes_it_new(course, looked):
+    helper = submit(course, 'ada', answered(course, RIGHT)).with_name('helper.py')
+    helper.write_text('x = 1')
+    rows_of(course)
+    helper.rename(helper.with_name('other.py'))
     assert not rows_of(course)['ada'].reused
     assert len(looked) == 2
+
+
+def test_another_reason_why_a_notebook_cannot_be_read_is_told(course):
+    submit(course, 'eve', b'')
+    before = rows_of(course)['eve']
+    submit(course, 'eve', b'{}')
+    row = rows_of(course)['eve']
+    assert not row.reused
+    assert before.reason != row.reason
+    assert 'JSON but not a notebook' in row.reason
 
 
 def test_another_seed_makes_it_new(course, looked):
@@ -323,6 +352,11 @@ def code_of_the_robot(machine):
     (machine.robot / 'checks' / 'code.py').write_text('2')
 
 
+def another_name_of_a_module(machine):
+    code = machine.robot / 'checks' / 'code.py'
+    code.rename(code.with_name('other.py'))
+
+
 def another_version(machine):
     machine.packages[0] = Installed('numpy', '2.3.1')
 
@@ -350,6 +384,7 @@ def another_processor(machine):
         a_new_module_of_the_grader,
         a_limit,
         code_of_the_robot,
+        another_name_of_a_module,
         another_version,
         one_package_more,
         one_package_less,

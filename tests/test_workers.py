@@ -167,8 +167,14 @@ def test_memory_bounds_how_many_are_in_flight(monkeypatch):
     for submissions in (0, 1, 2.5, 1000):
         left = int(submissions * SUBMISSION_MEMORY_BYTES)
         monkeypatch.setattr(workers, 'available_bytes', lambda left=left: left)
-        rooms.append(Workers(2).room)
-    assert rooms == [1, 1, 2, 2 * workers.MOST_IN_FLIGHT_EACH]
+        crew = Workers(2)
+        rooms.append((crew._gate.allowed, crew.room))
+    assert rooms == [
+        (1, 1),
+        (1, 1),
+        (2, 2),
+        (2 * workers.IN_FLIGHT_EACH, 2 * workers.MOST_IN_FLIGHT_EACH),
+    ]
 
 
 def test_killed_workers_change_no_grade(course, tmp_path):
