@@ -117,7 +117,7 @@ class Cluster:
         while not self._left.wait(LOOK_SEC):
             try:
                 workers = self._client.scheduler_info()['workers']
-            except (OSError, ValueError):  # the scheduler is gone, which its futures tell
+            except (OSError, ValueError, KeyError):  # no scheduler any more, as its futures tell
                 return
             if not workers and not told:
                 print(f'waiting: {self._address} has lost all workers', file=sys.stderr)
