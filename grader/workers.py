@@ -52,6 +52,7 @@ class Workers:
         fit = max(1, available_bytes() // SUBMISSION_MEMORY_BYTES)
         self.room = min(in_flight or most, fit)
         self._gate = Gate(least=min(least, fit), most=self.room, step=self._number)
+        self._each = -(-least // self._number)
         self._command = command or COMMAND
         self._team: list[_Worker] = []
         self._pool = Pool(self.room)
@@ -98,10 +99,13 @@ class Workers:
         return answer
 
     def _next(self) -> '_Worker':
-        """Return the worker that has least to do; a new one where all have something to do."""
+        """Return the worker that has least to do; a new one where all have enough to do.
+
+        One takes some seconds to begin: for two submissions it is not worth while.
+        """
         self._team = [worker for worker in self._team if not worker.ended]
         idlest = min(self._team, key=lambda worker: worker.load, default=None)
-        if idlest is None or (idlest.load and len(self._team) < self._number):
+        if idlest is None or (idlest.load >= self._each and len(self._team) < self._number):
             idlest = _Worker(self._command)
             self._team.append(idlest)
         return idlest

@@ -79,6 +79,19 @@ def test_as_many_processes_grade_as_asked_for_and_end_with_the_run(course, tmp_p
     assert not any(process.is_running() for process in processes)
 
 
+def test_one_process_grades_as_many_as_it_takes_at_a_time_before_another_is_begun(
+    course, tmp_path
+):
+    mark, loads = tmp_path / 'go', []
+    with Workers(2, command=COMMAND) as crew:
+        for number in (1, 2, 3):
+            crew.submit(task(course, f'# wait {mark}'))
+            wait_for(lambda number=number: sum(w.load for w in crew._team) == number)
+            loads.append([worker.load for worker in crew._team])
+        mark.touch()
+    assert loads == [[1], [2], [2, 1]]
+
+
 def test_no_process_is_started_where_there_is_nothing_to_do():
     with Workers(2, command=COMMAND):
         assert team() == []
