@@ -4,8 +4,10 @@ import ast
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import cache
 
 import bleach
+from jinja2 import Template
 from markupsafe import Markup, escape
 from nbconvert.filters import markdown2html, strip_ansi
 from nbformat import NotebookNode
@@ -78,7 +80,7 @@ def page(notebook: NotebookNode, about: dict) -> str:
     parts, others = _parts(notebook)
     ours = notebook.metadata.get(KEY, {})
     problem = ours.get('problem', '')
-    return _TEMPLATE.render(
+    return _template().render(
         about=about,
         parts=[] if problem else [part for part in parts if part.checks or part.answer],
         checks=[check for part in parts for check in part.checks],
@@ -205,14 +207,16 @@ def _number(value: float) -> str:
     return f'{value:.2f}'.rstrip('0').rstrip('.')
 
 
-_TEMPLATE = template(
-    'page.html.j2',
-    filters={
-        'colour': _colour,
-        'rich': _rich,
-        'words': _words,
-        'sentence': _sentence,
-        'number': _number,
-    },
-    values={'code_style': Markup(_CODE.get_style_defs('pre'))},
-)
+@cache
+def _template() -> Template:
+    return template(
+        'page.html.j2',
+        filters={
+            'colour': _colour,
+            'rich': _rich,
+            'words': _words,
+            'sentence': _sentence,
+            'number': _number,
+        },
+        values={'code_style': Markup(_CODE.get_style_defs('pre'))},
+    )

@@ -4,7 +4,10 @@ import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from datetime import datetime
+from functools import cache
 from pathlib import Path
+
+from jinja2 import Template
 
 from grader.charts import distribution, share
 from grader.course import Course
@@ -42,7 +45,7 @@ def write_report(course: Course, run: Run, rows: Sequence[Row]) -> Path:
     folder = _new_folder(course.gradebook / 'runs', run.began)
     write_whole(folder / 'report.json', json.dumps(facts, indent=2, ensure_ascii=False) + '\n')
     page = folder / 'report.html'
-    write_whole(page, _TEMPLATE.render(facts, tally=counted, most=MOST_SHOWN, hardest=HARDEST))
+    write_whole(page, _template().render(facts, tally=counted, most=MOST_SHOWN, hardest=HARDEST))
     return page
 
 
@@ -116,4 +119,6 @@ def _new_folder(runs: Path, began: datetime) -> Path:
             return folder
 
 
-_TEMPLATE = template('report.html.j2', values={'distribution': distribution, 'share': share})
+@cache
+def _template() -> Template:
+    return template('report.html.j2', values={'distribution': distribution, 'share': share})
