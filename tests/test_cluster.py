@@ -159,7 +159,6 @@ def test_leaving_calls_off_what_is_under_way_and_what_waits(course, scheduler, s
     assert all(isinstance(work.exception(timeout=60), ClusterError) for work in works)
 
 
-@pytest.mark.slow
 def test_a_client_that_has_given_its_scheduler_up_is_looked_after_no_more(monkeypatch):
     monkeypatch.setattr(cluster, 'LOOK_SEC', 0.0)
     its = SimpleNamespace(_left=Event(), _address='', _client=SimpleNamespace(scheduler_info=dict))
@@ -167,6 +166,7 @@ def test_a_client_that_has_given_its_scheduler_up_is_looked_after_no_more(monkey
     assert not its._left.is_set()
 
 
+@pytest.mark.slow
 def test_with_certificates_it_speaks_tls_and_to_nobody_without_them(course, start, tmp_path):
     cert, key = str(tmp_path / 'cert.pem'), str(tmp_path / 'key.pem')
     own = ['openssl', 'req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1']
