@@ -8,6 +8,7 @@ The files are the released lessons 2, 3, 4 and 7 with ordinary answers, right an
 in, demonstrations included; stock is `nbgrader autograde`, an assignment after the other, with
 none of this course's configuration but its folders. Both have an empty gradebook each time.
 `cold` counts a command from its start to its end, `warm` what comes between its submissions.
+N workers of ours get N cores, so that twice as many have twice as much; stock has all cores.
 `--sizes` asks whether one submission costs the same in a small class and in a large one.
 `--hostile` takes the other samples of these lessons, those that hang, die, cheat or are damaged.
 Nothing is asserted: look at the ratios, a minute is this machine's.
@@ -18,7 +19,8 @@ import os
 import shutil
 import statistics
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
 from itertools import pairwise
@@ -85,7 +87,7 @@ def _compare(papers: Sequence[Paper], *, workers: Sequence[int], runs: int) -> N
     ways = {
         'stock': partial(_stock, papers),
         'stock, no demonstrations': partial(_stock, shorter),
-        **{f'ours, --workers {number}': partial(_ours, papers, number) for number in workers},
+        **{_name(number): partial(_ours, papers, number) for number in workers},
     }
     found: dict[str, list[dict]] = {name: [] for name in ways}
     for run in range(runs):
@@ -111,6 +113,9 @@ def _compare(papers: Sequence[Paper], *, workers: Sequence[int], runs: int) -> N
         ],
     )
     print(f'of {sum(len(paper.expected) for paper in papers)} scores')
+    for few, many in pairwise(workers):
+        scaled = _median(found[_name(many)], 'warm') / _median(found[_name(few)], 'warm')
+        print(f'{few} to {many} workers, warm: {scaled:.2f} times; linear is {many / few:.2f}')
     for line in found['stock'][-1]['which']:
         print(f'  stock: {line}')
     for name, each in found.items():
@@ -122,11 +127,27 @@ def _median(runs: Sequence[dict], kind: str) -> float:
     return statistics.median(run[kind] for run in runs)
 
 
-def _ours(papers: Sequence[Paper], workers: int | None) -> dict:
+def _name(workers: int) -> str:
+    return f'ours, --workers {workers}'
+
+
+def _ours(papers: Sequence[Paper], workers: int) -> dict:
     course = new_course('ours')
     hand_in(course, papers)
-    options = ['--workers', workers] if workers else []
-    return _found(course, papers, [watch(course_command(course, 'grade', *options), done=ROW)])
+    command = course_command(course, 'grade', '--workers', workers)
+    with _cores(workers):
+        return _found(course, papers, [watch(command, done=ROW)])
+
+
+@contextmanager
+def _cores(number: int) -> Iterator[None]:
+    """Have no more than so many cores, with all that is started meanwhile."""
+    before = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, sorted(before)[:number])
+    try:
+        yield
+    finally:
+        os.sched_setaffinity(0, before)
 
 
 def _stock(papers: Sequence[Paper]) -> dict:
