@@ -14,7 +14,7 @@ Its modules, in the order in which things happen:
 - Where a student's code runs: `isolation` says whether it can be kept in. `rooms`, `sandbox`,
   `bubblewrap`, `sights`, `seccomp`, `limits`, `memory`, `places` and `leftovers` keep it in.
   `provisioner`, `warm`, `servers`, `forked` and the program `forkserver` begin a kernel there;
-  `kernels`, `messages`, `outputs` and `pool` run its cells.
+  `kernels`, `messages`, `outputs`, `patience` and `pool` run its cells.
 - What is kept: `gradebook`, `saving`, `lateness`, `turn`, `database`, `backups`, `records`.
 - What is told: `feedback` and `page` to students; `table`, `report`, `tally`, `reasons`, `charts`,
   `scores` and `formgrader` to teachers; `templates` for both.

@@ -11,18 +11,17 @@ import psutil
 import zmq.asyncio
 from jupyter_client import AsyncKernelManager
 from jupyter_client.kernelspec import KernelSpec, KernelSpecManager
-from my_robot_basics.checks import pressure
 
 from grader.errors import RoomFailure
-from grader.limits import INTERRUPT_GRACE_SEC, INTERRUPT_MOST_SEC, MAX_MESSAGE_BYTES
+from grader.limits import MAX_MESSAGE_BYTES
 from grader.messages import Messages, OnInput
 from grader.outputs import CellRun
+from grader.patience import finished, finished_in_grace
 from grader.places import Place, environment_of, open_place
 from grader.provisioner import NAME
 
 START_TIMEOUT_SEC = 60.0
 STOP_GRACE_SEC = 2.0
-LOOK_EVERY_SEC = 0.2
 
 
 class _OurKernelSpec(KernelSpecManager):
@@ -115,10 +114,10 @@ class Kernel:
         )
         done = asyncio.ensure_future(self._messages.follow(request, result, on_input))
         try:
-            result.timed_out = not await self._finished(done, timeout_sec)
+            result.timed_out = not await finished(done, timeout_sec, self._is_alive)
             if result.timed_out and self.alive:
                 await self._manager.interrupt_kernel()
-                if not await self._finished_in_grace(done):
+                if not await finished_in_grace(done, self._is_alive):
                     await self._kill()
         finally:
             done.cancel()
@@ -208,32 +207,6 @@ class Kernel:
         while await self._manager.is_alive():
             await asyncio.sleep(0.01)
 
-    async def _finished_in_grace(self, done: asyncio.Future) -> bool:
-        """Wait for the end of a cell that was interrupted."""
-        began, crowded = time.monotonic(), pressure.crowded_sec()
-        while not (finished := await self._finished(done, LOOK_EVERY_SEC)):
-            waited = time.monotonic() - began
-            free = waited - (pressure.crowded_sec() - crowded)
-            if free >= INTERRUPT_GRACE_SEC or waited >= INTERRUPT_MOST_SEC:
-                break
-        return finished
-
-    async def _finished(self, done: asyncio.Future, timeout_sec: float) -> bool:
-        """Wait for a cell's end, its time limit, or the kernel's death.
-
-        What counts is time in which we could look: a grader that stood still for seconds, on a
-        machine that was too busy, has not seen the cell take them.
-        """
-        left_sec = timeout_sec
-        while not done.done():
-            if left_sec <= 0:
-                return False
-            tick_sec = min(LOOK_EVERY_SEC, left_sec)
-            await asyncio.wait([done], timeout=tick_sec)
-            left_sec -= tick_sec
-            if not done.done() and not await self._manager.is_alive():
-                await asyncio.wait([done], timeout=0.2)  # what it said last may be under way
-                self.alive = False
-                return True
-        await done
-        return True
+    async def _is_alive(self) -> bool:
+        self.alive = await self._manager.is_alive()
+        return self.alive
