@@ -1,11 +1,14 @@
 """The lessons run: twice in one kernel, and, unanswered, up to a check that helps."""
 
+import ast
+import dis
 import re
 from contextlib import contextmanager
 from pathlib import Path
 
 import nbformat
 import pytest
+from IPython.core.inputtransformer2 import TransformerManager
 from nbclient import NotebookClient
 
 ROOT = Path(__file__).parents[1]
@@ -15,25 +18,24 @@ PROGRAMS = re.compile(r'^(!|%%bash)|\bPopen\(', re.MULTILINE)
 """Found in cells that start programs: they take long, and leave nothing in the kernel."""
 
 
-def all_of(cells):
-    return cells
-
-
-def without_checks(cells):
-    return [cell for cell in cells if not is_grade(cell)]
-
-
-@pytest.mark.parametrize('which', [pytest.param(all_of, marks=pytest.mark.slow), without_checks])
+@pytest.mark.parametrize('all_cells', [False, pytest.param(True, marks=pytest.mark.slow)])
 @pytest.mark.parametrize('name', NAMES)
-def test_a_lesson_runs_again_in_the_same_kernel_whatever_was_run_between(name, which):
+def test_a_lesson_runs_again_in_the_same_kernel_whatever_was_run_between(name, all_cells):
     lesson = read('solutions', name)
-    within = [cell for cell in code_cells(lesson) if not is_left_out(cell)]
+    everything = code_cells(lesson)
+    within = [cell for cell in everything if not is_left_out(cell)]
+    unchecked = [cell for cell in within if not is_grade(cell)]
+    # nbval sees that each runs in a fresh kernel; here some may fail for want of others, but none
+    # may hang or kill the kernel
+    first = [*unchecked, *reversed(within)]
+    last = everything
+    if not all_cells:
+        first = [*needed(unchecked), *reversed(unchecked)]
+        last = within
     with kernel_for(lesson) as run:
-        # nbval sees that each runs in a fresh kernel; here some may fail for want of others, but
-        # none may hang or kill the kernel
-        for cell in [*without_checks(within), *reversed(which(within))]:
+        for cell in first:
             run(cell)
-        for cell in code_cells(lesson):
+        for cell in last:
             run(cell)
             assert errors(cell) == [], cell.id
             assert 'stderr' not in [output.get('name') for output in cell.outputs], cell.id
@@ -73,6 +75,24 @@ def code_cells(lesson):
 
 def is_left_out(cell):
     return PROGRAMS.search(cell.source) and 'stop()' not in cell.source
+
+
+def needed(cells):
+    """Return those cells that leave a name to others, and do not only show something."""
+    binds, uses = zip(*map(names_in, cells), strict=True)
+    asked = [set().union(*uses[:at], *uses[at + 1 :]) for at in range(len(cells))]
+    return [
+        cell for cell, *both in zip(cells, binds, asked, strict=True) if set.intersection(*both)
+    ]
+
+
+def names_in(cell):
+    """Return the names that a cell binds, and those that it takes from others."""
+    source = TransformerManager().transform_cell(cell.source)
+    steps = dis.get_instructions(compile(source, cell.id, 'exec'))
+    binds = {step.argval for step in steps if step.opname == 'STORE_NAME'}
+    nodes = ast.walk(ast.parse(source))
+    return binds, {node.id for node in nodes if isinstance(node, ast.Name)} - binds
 
 
 def is_grade(cell):
