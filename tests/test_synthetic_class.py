@@ -6,11 +6,15 @@ from dataclasses import replace
 
 import nbformat
 import pytest
-from sample_class import PATHS, assignment_of
+from course_maker import executed
+from sample_class import EXPECTED, PATHS, assignment_of
+from stand_in import stand_in
 from synthetic_class import hand_in, synthetic_class, wrong_scores, zip_up
 
+from grader import reuse
 from grader.collect import NEW, collect
 from grader.course import Course
+from grader.execute import Execution
 from grader.grade import grade_all
 from grader.heal import heal, role
 from grader.submitted import find_submissions
@@ -97,8 +101,17 @@ def test_every_paper_is_collected_from_the_archive(papers, tmp_path):
     ]
 
 
-def test_a_wrong_score_is_found(tmp_path):
+def test_a_wrong_score_is_found(tmp_path, monkeypatch):
     names = ('00_two_link_arm-fail-no_inner_border', '00_two_link_arm-pass-numpy_bool')
+    wrong = dict.fromkeys(EXPECTED[names[0]], 'expected False, saw True: mind the border')
+
+    async def look(notebook, *, extra_files=(), seed='', trust_students=False):
+        [answer] = [cell.source for cell in notebook.cells if role(cell) == 'answer']
+        reasons = {} if 'np.abs(l1 - l2)' in answer else wrong
+        return Execution(notebook=executed(notebook, reasons), verdicts=(), notes=())
+
+    stand_in(look, monkeypatch)
+    monkeypatch.setattr(reuse, 'machinery', lambda: 'the same code')  # hashing it takes long
     papers = synthetic_class(2, samples=names, seed=2)
     assert {paper.sample for paper in papers} == set(names)
     course = Course(gradebook=tmp_path)
