@@ -14,6 +14,7 @@ from grader.__main__ import main
 from grader.course import Course
 from grader.gradebook import register
 from grader.records import records
+from grader.release import release
 
 ANSWERS = {
     'right': 'def double(x):\n    return 2 * x',
@@ -28,7 +29,11 @@ def courses(tmp_path_factory):
     theirs = make_course(tmp_path_factory.mktemp('course'))
     ours = Course(root=theirs.root, gradebook=tmp_path_factory.mktemp('ours'))
     nbgrader(theirs, 'generate_assignment', TOY)
-    assert not register(theirs, TOY)  # nbgrader registered just what we would
+    # nbgrader has released and registered just what we would
+    released = theirs.release_path(TOY).read_bytes()
+    release(theirs, TOY)
+    assert theirs.release_path(TOY).read_bytes() == released
+    assert not register(theirs, TOY)
     for course in (ours, theirs):
         for student, answer in ANSWERS.items():
             submit(course, student, answered(course, answer, explained='so'))
