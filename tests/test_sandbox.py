@@ -313,7 +313,7 @@ BOMBS = {
     ),
     'a huge file': (
         'import signal; signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n'
-        "try: open('/tmp/x', 'wb').truncate(10**10)\nexcept OSError as e: print(e.strerror)",
+        "try: open('/room/home/x', 'wb').truncate(10**10)\nexcept OSError as e: print(e.strerror)",
         'File too large',
     ),
     'descriptors': (
@@ -336,7 +336,10 @@ BOMBS = {
 def test_a_room_can_use_up_only_its_share(sandbox, code, said):
     assert run(sandbox, code) == said
     # the other room has all of its own
-    fine = "open('/tmp/x', 'wb').write(bytes(30 * 10**6)); import os; os.fork() or print('fine')"
+    fine = (
+        "open('/room/home/x', 'wb').write(bytes(30 * 10**6))\n"
+        "import os; os.fork() or print('fine')"
+    )
     assert run(sandbox, fine, room='test') == 'fine'
 
 
