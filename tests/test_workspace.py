@@ -159,16 +159,29 @@ def test_the_command_refreshes_too(package, capsys):
 # --- what a terminal does in it ------------------------------------------------------------------
 
 
-@pytest.fixture
-def built(package):
-    shell(BUILD)
-    return package
-
-
-def test_the_build_says_what_it_says_on_a_robot(package):
+@pytest.fixture(scope='module')
+def first_build(tmp_path_factory):
+    """A workspace with what was built in it, to look at, and what the build said."""
+    folder = tmp_path_factory.mktemp('built') / 'ros ws'
     # set, this variable lets setuptools warn
     build = 'env -u PYTHONDONTWRITEBYTECODE colcon build --packages-select my_robot_basics'
-    said = shell(f'{build} >log.txt 2>&1; cat log.txt')
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv('MY_ROBOT_BASICS_WORKSPACE', str(folder))
+        make_workspace()
+        said = shell(f'{build} >log.txt 2>&1; cat log.txt')
+    return folder, said
+
+
+@pytest.fixture
+def built(first_build, monkeypatch):
+    """The student's copy, built; the tests of a workspace share it, and change nothing."""
+    folder, _ = first_build
+    monkeypatch.setenv('MY_ROBOT_BASICS_WORKSPACE', str(folder))
+    return folder / 'src/my_robot_basics'
+
+
+def test_the_build_says_what_it_says_on_a_robot(first_build):
+    _, said = first_build
     seconds = r'\[[\d.]+s\]'
     assert re.search(
         rf'^Starting >>> my_robot_basics\nFinished <<< my_robot_basics {seconds}\n\n'
@@ -210,20 +223,21 @@ def main(args=None):
 """
 
 
-def test_a_new_node_and_its_line_are_found_after_the_next_build(built):
+def test_a_new_node_and_its_line_are_found_after_the_next_build(package):
+    shell(BUILD)
     run = SOURCE + ros2_run('my_node', until='new')
-    (built / 'my_robot_basics/my_node.py').write_text(textwrap.dedent(NODE))
-    setup = (built / 'setup.py').read_text()
+    (package / 'my_robot_basics/my_node.py').write_text(textwrap.dedent(NODE))
+    setup = (package / 'setup.py').read_text()
     line = "            'hello_node = my_robot_basics.hello_node:main',\n"
     assert line in setup
-    (built / 'setup.py').write_text(setup.replace(line, line + line.replace('hello', 'my')))
+    (package / 'setup.py').write_text(setup.replace(line, line + line.replace('hello', 'my')))
     assert shell(run) == 'No executable found\n'
     assert '[my_node]: I am new' in shell(BUILD + run)
 
 
-def test_the_tools_are_never_those_of_the_copy(built):
+def test_the_tools_are_never_those_of_the_copy(package):
     for name in ('__init__', 'two_link_kinematics'):
-        (built / f'my_robot_basics/{name}.py').write_text('raise SystemExit("the copy")\n')
+        (package / f'my_robot_basics/{name}.py').write_text('raise SystemExit("the copy")\n')
     said = shell(
         f'{BUILD} {SOURCE} python -c "import my_robot_basics" 2>&1;'
         'ros2 pkg list | grep my_; topic_doctor --help | head -1'
