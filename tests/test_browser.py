@@ -89,6 +89,15 @@ class Lab:
             self.server.wait()
 
 
+def wait_until_open(page, path):
+    """Wait until a notebook is the one in front, and its kernel is up."""
+    page.wait_for_function(f"""
+        jupyterapp.shell.currentWidget?.context?.path === '{path}'
+        && jupyterapp.shell.currentWidget.context.isReady
+        && jupyterapp.shell.currentWidget.sessionContext.session?.kernel?.status === 'idle'
+    """)
+
+
 class Lesson:
     """One lesson, open in a browser."""
 
@@ -97,11 +106,7 @@ class Lesson:
         page.evaluate(  # as at a double click
             "async path => { await jupyterapp.commands.execute('docmanager:open', {path}) }", path
         )
-        page.wait_for_function(f"""
-            jupyterapp.shell.currentWidget?.context?.path === '{path}'
-            && jupyterapp.shell.currentWidget.context.isReady
-            && jupyterapp.shell.currentWidget.sessionContext.session?.kernel?.status === 'idle'
-        """)
+        wait_until_open(page, path)
 
     def command(self, name, index=None):
         """Run a command of JupyterLab's menus, with a cell selected, and wait for its end."""
@@ -192,6 +197,7 @@ def page(lab, chromium):
     page.set_default_timeout(LONG)
     page.goto(f'{lab.address}/?token={TOKEN}')
     page.wait_for_function('window.jupyterapp?.restored.then(() => true)')
+    wait_until_open(page, 'index.ipynb')
     yield page
     page.close()
 
