@@ -1,6 +1,7 @@
 """The sample class: of each notebook comes what should, in the grader and in Validate."""
 
 import re
+from collections import defaultdict
 from functools import cache
 
 import nbformat
@@ -46,11 +47,36 @@ def one_of_each_outcome():
     return set(outcomes.values())
 
 
+def most_telling(number=4):
+    """For each check so many samples that fail it, and so many right ones of each lesson."""
+    telling = defaultdict(list)
+    for name, cells in EXPECTED.items():
+        assignment = assignment_of(PATHS[name])
+        failed = [grade_id for grade_id, (_, *words) in cells.items() if words]
+        for what in ['right'] if '-pass-' in name else failed:
+            telling[assignment, what].append(name)
+    return {name for names in telling.values() for name in names[:number]}
+
+
+BROKEN = {
+    '03_publisher-fail-raises_so_nothing_defined': 'your cell `five_hz` stopped with Zero',
+    '03_publisher-fail-imported_class': 'your cell `five_hz-run` stopped with NotRunnable',
+    '03_publisher-zero-another_assignment': 'the notebook holds none of the answer cells',
+}
+"""Samples with a cell that can't run, and how their rows begin."""
 SPECIAL = {*NO_VERDICT, *CHANGED, *ABSENT, *TRUSTS, *OUT_OF_ORDER}
 WITH_DEMOS = {'02_joint_state-pass-numpy', '03_publisher-pass-sleep_loop'}
 """Those that it runs whole: for the others, what the lesson shows would be run once more each."""
 AT_ONCE = SPECIAL | WITH_DEMOS | one_of_each_outcome()
 """Samples that go through Validate in an ordinary run; `./course test --slow` takes all."""
+ORDINARY = AT_ONCE | set(BROKEN) | most_telling()
+"""Those that it grades."""
+
+
+def sooner(names, these):
+    """Mark all names but these as slow."""
+    slow = pytest.mark.slow
+    return [pytest.param(name, marks=[] if name in these else [slow], id=name) for name in names]
 
 
 class Standing:
@@ -71,12 +97,13 @@ def graded(tmp_path_factory):
     """Gives, for a sample, the gradebook of its assignment's class, and the row that it got."""
 
     @cache
-    def grade_class(assignment):
+    def grade_class(assignment, ordinary):
+        names = [name for name in of_assignment(assignment) if (name in ORDINARY) == ordinary]
         course = Course(gradebook=tmp_path_factory.mktemp('gradebook'))
-        return course, grade(course, of_assignment(assignment), crew=crew)
+        return course, grade(course, names, crew=crew)
 
     def graded_sample(name):
-        course, rows = grade_class(assignment_of(PATHS[name]))
+        course, rows = grade_class(assignment_of(PATHS[name]), name in ORDINARY)
         return course, rows[name]
 
     # other tests run meanwhile
@@ -115,8 +142,18 @@ def test_a_sample_stands_on_the_present_release(name):
     assert PATHS[name].read_text(encoding='utf-8') == rebased(PATHS[name])
 
 
-@pytest.mark.parametrize(('name', 'cells'), EXPECTED.items(), ids=EXPECTED)
-def test_a_sample_earns_what_it_should_for_the_reason_that_it_should(graded, name, cells):
+def test_an_ordinary_run_grades_samples_that_fail_each_check_and_right_ones_of_each_lesson():
+    graded = {name: EXPECTED[name] for name in ORDINARY}
+    checks = {grade_id for cells in EXPECTED.values() for grade_id, _ in cells.items()}
+    points = [(cell, score) for cells in graded.values() for cell, (score, *_) in cells.items()]
+    for cell in checks - {'explain_counts'}:
+        assert points.count((cell, 0.0)) >= 3, cell
+        assert len({score for each, score in points if each == cell}) > 1, cell
+
+
+@pytest.mark.parametrize('name', sooner(EXPECTED, ORDINARY))
+def test_a_sample_earns_what_it_should_for_the_reason_that_it_should(graded, name):
+    cells = EXPECTED[name]
     course, row = graded(name)
     found = verdicts(course, name, assignment_of(PATHS[name]))
     points = 0.0
@@ -134,21 +171,12 @@ def test_a_sample_earns_what_it_should_for_the_reason_that_it_should(graded, nam
 
 
 def test_the_row_of_a_broken_cell_names_the_cause_first(graded):
-    for name, cause in {
-        '03_publisher-fail-raises_so_nothing_defined': 'your cell `five_hz` stopped with Zero',
-        '03_publisher-fail-imported_class': 'your cell `five_hz-run` stopped with NotRunnable',
-        '03_publisher-zero-another_assignment': 'the notebook holds none of the answer cells',
-    }.items():
+    for name, cause in BROKEN.items():
         assert graded(name)[1].reason.startswith(cause)
 
 
 @pytest.mark.parametrize(
-    'name',
-    [
-        pytest.param(name, marks=[] if name in AT_ONCE else [pytest.mark.slow])
-        for name in PATHS
-        if name not in (*NO_VERDICT, *CHANGED)
-    ],
+    'name', sooner([name for name in PATHS if name not in (*NO_VERDICT, *CHANGED)], AT_ONCE)
 )
 def test_validate_says_the_same_of_each_visible_cell(graded, validated, name):
     course, _ = graded(name)
