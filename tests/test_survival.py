@@ -102,7 +102,7 @@ def in_database(course):
 
 
 def grade_with_kills(handed_in, uninterrupted, start, folder, *, kills):
-    """Grade, and be killed so many times, each time in another part, and go on."""
+    """Grade, and be killed so many times, at random moments of each part; each time go on."""
     whole, wanted, calls = uninterrupted
     course, chance = fresh(handed_in, folder / 'gradebook'), random.Random(5)
     while kills:
@@ -128,7 +128,7 @@ def grade_with_kills(handed_in, uninterrupted, start, folder, *, kills):
 def test_a_run_killed_at_any_moment_goes_on_and_ends_as_if_nothing_had_been(
     handed_in, uninterrupted, start, tmp_path
 ):
-    grade_with_kills(handed_in, uninterrupted, start, tmp_path, kills=3)
+    grade_with_kills(handed_in, uninterrupted, start, tmp_path, kills=5)
 
 
 @pytest.mark.slow
