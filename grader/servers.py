@@ -15,8 +15,6 @@ import threading
 from pathlib import Path
 from typing import IO
 
-import matplotlib
-
 from grader.bubblewrap import ENVIRONMENT
 from grader.places import passed_on
 
@@ -152,4 +150,6 @@ def _sealed_copy(path: Path) -> IO[bytes]:
 
 def _environment() -> dict[str, str]:
     """Return what a server is told: what its kernels are, but for what is only in their rooms."""
+    import matplotlib  # not before: it takes long, and most commands run no student code
+
     return passed_on() | ENVIRONMENT | {'MPLCONFIGDIR': matplotlib.get_cachedir()}

@@ -6,8 +6,6 @@ import sys
 from functools import cache
 from pathlib import Path
 
-import matplotlib
-
 import my_robot_basics
 from grader.course import ROOT
 
@@ -66,6 +64,8 @@ def _links(base: Path) -> list[str]:
 
 def _font_list() -> list[Path]:
     """Return matplotlib's list of fonts, that a room need not make its own for seconds."""
+    import matplotlib  # not before: it takes long, and most commands run no student code
+
     folder = Path(matplotlib.get_cachedir())
     if not any(folder.glob(_FONTS)):
         command = [sys.executable, '-c', 'import matplotlib.font_manager']

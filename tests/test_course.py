@@ -465,7 +465,7 @@ def test_a_read_only_folder_says_so(machine):
 # --- what it starts ------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize('installer', ['uv', 'pip'])
+@pytest.mark.parametrize('installer', ['uv', pytest.param('pip', marks=pytest.mark.slow)])
 def test_really_sets_up(real, installer):
     if installer == 'pip':
         (real.programs / 'uv').unlink()

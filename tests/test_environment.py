@@ -132,14 +132,8 @@ def test_this_python_is_a_supported_one(found):
     assert THIS in found.keys() & set(PYTHONS)
 
 
-@pytest.mark.parametrize(
-    'version',
-    [
-        # for those that a session does not run on, the resolver has to do
-        pytest.param(version, marks=[] if version == THIS else [pytest.mark.slow])
-        for version in PYTHONS
-    ],
-)
+@pytest.mark.slow  # a session runs in what was installed; for the others, the resolver has to do
+@pytest.mark.parametrize('version', PYTHONS)
 def test_installs_on_each_python_that_is_here(version, found, venv):
     if version not in found:
         pytest.skip(f'this machine has no Python {version} to install on')

@@ -99,7 +99,11 @@ def alive(processes):
 
 @pytest.mark.parametrize(
     'number',
-    [signal.SIGINT, signal.SIGTERM, pytest.param(signal.SIGHUP, marks=pytest.mark.slow)],
+    [
+        signal.SIGINT,
+        pytest.param(signal.SIGTERM, marks=pytest.mark.slow),
+        pytest.param(signal.SIGHUP, marks=pytest.mark.slow),
+    ],
 )
 def test_a_run_that_is_stopped_leaves_nothing_running_and_says_how_to_go_on(course, run, number):
     assert any(line.startswith('ada') for line in iter(run.stdout.readline, ''))

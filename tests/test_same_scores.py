@@ -15,7 +15,6 @@ from grader.records import records, verdicts
 
 UNREADABLE = '03_publisher-zero-not_json'
 """What nbgrader stops at: it stores nothing, where `./course grade` gives zero and a reason."""
-BY_FORMGRADER = ('02_joint_state-fail-returns_none',)
 BY_COMMAND = (
     '03_publisher-fail-os_exit',
     '03_publisher-pass-deleted_grade_cells',
@@ -65,16 +64,10 @@ def test_nbgrader_autograde_gives_the_same_scores(course, names):
     assert wrong(course, names) == []
 
 
-@pytest.mark.parametrize(
-    'names',
-    [
-        BY_FORMGRADER,
-        pytest.param(tuple(PATHS), marks=[pytest.mark.slow, pytest.mark.timeout(1800)]),
-    ],
-    ids=['some', 'all'],
-)
-def test_the_formgraders_call_gives_the_same_scores(course, names):
-    names = [name for name in names if name != UNREADABLE]
+@pytest.mark.slow  # test_nbgrader_commands.py does so with a small lesson
+@pytest.mark.timeout(1800)
+def test_the_formgraders_call_gives_the_same_scores(course):
+    names = [name for name in PATHS if name != UNREADABLE]
     hand_in(course, names)
     for assignment, students in by_assignment(names).items():
         run = python(course, '-c', FORMGRADER, assignment, *students)
