@@ -100,7 +100,10 @@ class Kernel:
         on_input: OnInput | None = None,
         expressions: dict[str, str] | None = None,
     ) -> CellRun:
-        """Run one cell; interrupt it after `timeout_sec`, kill the kernel if that does nothing."""
+        """Run one cell; interrupt it after `timeout_sec`, kill the kernel if that does nothing.
+
+        A cell that floods its outputs counts as timed out at once.
+        """
         result = CellRun()
         if not self.alive:
             result.died = True
@@ -114,7 +117,9 @@ class Kernel:
         )
         done = asyncio.ensure_future(self._messages.follow(request, result, on_input))
         try:
-            result.timed_out = not await finished(done, timeout_sec, self._is_alive)
+            result.timed_out = not await finished(
+                done, timeout_sec, self._is_alive, lambda: result.flooded
+            )
             if result.timed_out and self.alive:
                 await self._manager.interrupt_kernel()
                 if not await finished_in_grace(done, self._is_alive):

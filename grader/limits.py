@@ -19,6 +19,9 @@ INTERRUPT_MOST_SEC = 10.0
 """… within this: a crowded machine may take seconds to end a node."""
 MAX_MESSAGE_BYTES = 32_000_000
 """A kernel that sends more at once is cut off; the message is lost. Pictures are far smaller."""
+FLOOD_CHARACTERS = 10_000_000
+"""A cell that puts out more is stopped as one that never ends: reading on would cost the class a
+processor. An answer puts out some lines, a picture is a tenth of a million."""
 MAX_REPLY = 2 * 65_536
 """Characters of a reply as a Python literal: 64 kB, and a backslash takes two."""
 

@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 import nbformat
 from nbformat import NotebookNode
 
+from grader.limits import FLOOD_CHARACTERS
+
 MAX_OUTPUT_CHARACTERS = 200_000
 """What is kept of one cell's output; the rest is drained and counted."""
 MAX_ALT_CHARACTERS = 500
@@ -39,6 +41,11 @@ class CellRun:
     def ran_to_end(self) -> bool:
         """Whether the kernel itself reported that the cell was done, without an error."""
         return self.status == 'ok' and not (self.timed_out or self.died or self.error)
+
+    @property
+    def flooded(self) -> bool:
+        """Whether it put out more than anybody wants to read."""
+        return self._dropped > FLOOD_CHARACTERS
 
     def keep(self, kind: str, content: dict) -> NotebookNode | None:
         """Keep an output while there is room; return it if it can be updated later."""

@@ -14,15 +14,20 @@ IsAlive = Callable[[], Awaitable[bool]]
 """Whether the kernel lives."""
 
 
-async def finished(done: asyncio.Future, timeout_sec: float, is_alive: IsAlive) -> bool:
-    """Wait for a cell's end, or its kernel's; False where its time limit came first.
+async def finished(
+    done: asyncio.Future,
+    timeout_sec: float,
+    is_alive: IsAlive,
+    is_enough: Callable[[], bool] = lambda: False,
+) -> bool:
+    """Wait for a cell's end, or its kernel's; False where its time limit came first, or enough.
 
     What counts is time in which we could look: a grader that stood still for seconds, on a
     machine that was too busy, has not seen the cell take them.
     """
     left_sec = timeout_sec
     while not done.done():
-        if left_sec <= 0:
+        if left_sec <= 0 or is_enough():
             return False
         tick_sec = min(LOOK_EVERY_SEC, left_sec)
         await asyncio.wait([done], timeout=tick_sec)

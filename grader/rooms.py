@@ -14,7 +14,7 @@ from my_robot_basics.live.errors import LiveError
 
 from grader.errors import RoomFailure
 from grader.kernels import Kernel
-from grader.limits import CHECK_TIMEOUT_SEC, MAX_REPLY, REPLY_TIMEOUT_SEC
+from grader.limits import CHECK_TIMEOUT_SEC, FLOOD_CHARACTERS, MAX_REPLY, REPLY_TIMEOUT_SEC
 from grader.outputs import CellRun
 from grader.sandbox import Sandbox
 
@@ -101,6 +101,8 @@ class Rooms:
         run = await self._student.run(
             '', timeout_sec=REPLY_TIMEOUT_SEC, expressions={'reply': _responder(request)}
         )
+        if run.flooded:
+            return _failed(f'no answer in {FLOOD_CHARACTERS:,} characters of output')
         if run.timed_out:
             return _failed(f'no answer within {REPLY_TIMEOUT_SEC:.0f} s')
         if run.died:

@@ -10,6 +10,7 @@ from nbformat import NotebookNode
 
 from grader.errors import RoomFailure
 from grader.heal import KEY, grade_id, role
+from grader.limits import FLOOD_CHARACTERS
 from grader.outputs import CellRun
 from grader.text import printable, shorten
 
@@ -116,10 +117,10 @@ def _notes(run: CellRun) -> Iterable[str]:
 
 def _trouble(name: str, run: CellRun) -> str | None:
     """Say what went wrong in one of the student's cells."""
-    if run.timed_out and run.died:
-        return f'your cell `{name}` did not end and could not be interrupted'
     if run.timed_out:
-        return f'your cell `{name}` did not end and was interrupted'
+        what = f'put out over {FLOOD_CHARACTERS:,} characters' if run.flooded else 'did not end'
+        how = 'could not be' if run.died else 'was'
+        return f'your cell `{name}` {what} and {how} interrupted'
     if run.died:
         return f'your cell `{name}` ended the kernel'
     if run.error is not None:

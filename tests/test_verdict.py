@@ -98,12 +98,14 @@ def test_a_failure_tells_what_happened_in_the_students_own_cells(cell):
         ('five_hz', failing('SyntaxError', "'(' was\n never closed \x1b[31m\u202e" + 'x' * 5_000)),
         ('five_hz-run', ended(timed_out=True)),
         ('fine', ended()),
+        ('prints', ended(timed_out=True, _dropped=10_000_001)),
     ]
-    first, second = judge(cell, failing(), own).notes
+    first, second, third = judge(cell, failing(), own).notes
     assert first.startswith("your cell `five_hz` stopped with SyntaxError: '(' was never closed")
     assert first.isprintable()
     assert len(first) < 400
     assert second == 'your cell `five_hz-run` did not end and was interrupted'
+    assert third == 'your cell `prints` put out over 10,000,000 characters and was interrupted'
     assert judge(cell, ended(), own).notes == ()
 
 
