@@ -24,8 +24,8 @@ UNTESTED = pytest.StashKey[list]()
 """The tests that a machine without a sandbox leaves out."""
 
 LONG = (
-    *('sample_class', 'lessons_run', 'checks_looks', 'doctor_faults'),
-    *('browser', 'checks_topics', 'interrupt', 'checks_logs', 'attacks', 'survival'),
+    *('sample_class', 'lessons_run', 'checks_looks', 'browser'),
+    *('doctor_faults', 'checks_topics', 'interrupt', 'checks_logs', 'attacks', 'survival'),
     *('nbgrader_commands', 'checks_clock', 'hidden', 'checks_stamps', 'workers', 'full_disk'),
     *('accessibility', 'kernels', 'cluster', 'doctor_healthy', 'same_scores', 'workspace'),
     *('formgrader', 'ros2_streams', 'browser_hostile', 'release', 'live_kernel', 'environment'),

@@ -1,4 +1,4 @@
-"""What the programs of `forked.py` find loaded: this starts no thread and makes no node."""
+"""What the programs of `forked.py` find loaded: no thread of Python's is started, no node made."""
 
 import argcomplete  # noqa: F401
 import numpy  # noqa: F401

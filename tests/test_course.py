@@ -408,6 +408,10 @@ def real(bare):
     return bare
 
 
+# an ordinary run has set itself up by one of them, and `--slow` tests the other, too
+INSTALLERS = ['uv', pytest.param('pip', marks=pytest.mark.slow)]
+
+
 def in_a_namespace(*flags):
     command = [*IN_A_NAMESPACE, *flags]
     probe = subprocess.run([*command, 'true'], capture_output=True, text=True)
@@ -416,7 +420,7 @@ def in_a_namespace(*flags):
     return command
 
 
-@pytest.mark.parametrize('installer', ['uv', 'pip'])
+@pytest.mark.parametrize('installer', INSTALLERS)
 def test_without_a_network_says_so(real, installer, tmp_path):
     if installer == 'pip':
         (real.programs / 'uv').unlink()
@@ -429,7 +433,7 @@ def test_without_a_network_says_so(real, installer, tmp_path):
     assert not (real.root / '.venv/made_environment').exists()
 
 
-@pytest.mark.parametrize('installer', ['uv', 'pip'])
+@pytest.mark.parametrize('installer', INSTALLERS)
 def test_a_full_disk_says_so(real, installer, tmp_path):
     if installer == 'pip':
         (real.programs / 'uv').unlink()
@@ -465,7 +469,7 @@ def test_a_read_only_folder_says_so(machine):
 # --- what it starts ------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize('installer', ['uv', pytest.param('pip', marks=pytest.mark.slow)])
+@pytest.mark.parametrize('installer', INSTALLERS)
 def test_really_sets_up(real, installer):
     if installer == 'pip':
         (real.programs / 'uv').unlink()

@@ -56,7 +56,13 @@ def home():
         yield Path(folder)
 
 
-@pytest.mark.parametrize('user', [0, ORDINARY], ids=['as root', 'as an ordinary user'])
+@pytest.mark.parametrize(
+    'user',
+    [
+        pytest.param(0, id='as root', marks=pytest.mark.slow),
+        pytest.param(ORDINARY, id='as an ordinary user'),
+    ],
+)
 def test_a_checkout_deep_below_a_closed_home_is_graded(home, user):
     if os.geteuid() != 0 and user == 0:
         pytest.skip('we are no root')
