@@ -5,24 +5,34 @@ import os
 import subprocess
 import sys
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
-import forked
-import my_robot_basics.ros2.start
 from my_robot_basics.live import domain
 
 SCRIPT = Path(sys.executable).with_name('ros2')
-START = my_robot_basics.ros2.start.__file__
-"""What the script runs."""
 NODES = Path(__file__).parent / 'nodes'
 PATIENCE_SEC = 30
 
 
-def ros2(*words: str, stdin: str = '', **environment: str) -> forked.Ended:
+@dataclass(frozen=True)
+class Result:
+    status: int
+    out: str
+    err: str
+
+
+def ros2(*words: str, stdin: str = '', **environment: str) -> Result:
     """Run the command to its end."""
-    return forked.run(
-        *(START, 'ros2.main', *words), stdin=stdin, patience_sec=PATIENCE_SEC, **environment
+    done = subprocess.run(
+        [SCRIPT, *words],
+        input=stdin,
+        capture_output=True,
+        encoding='utf-8',
+        timeout=PATIENCE_SEC,
+        env={**os.environ, **environment},
     )
+    return Result(done.returncode, done.stdout, done.stderr)
 
 
 @contextlib.contextmanager
@@ -44,18 +54,17 @@ def started(*words: str | Path, **options: object) -> Iterator[subprocess.Popen]
 @contextlib.contextmanager
 def on_the_graph(*names: str, topics: tuple[str, ...] = ()) -> Iterator[None]:
     """Nodes of `tests/nodes/`, once their topics are on the graph."""
-    nodes = [forked.start(NODES / f'{name}.py') for name in names]
-    try:
+    quiet = {'stdout': subprocess.DEVNULL, 'stderr': subprocess.DEVNULL}
+    with contextlib.ExitStack() as stack:
+        paths = [NODES / f'{name}.py' for name in names]
+        nodes = [stack.enter_context(started(sys.executable, path, **quiet)) for path in paths]
         shown: list[str] = []
         while not set(topics) <= set(shown):
-            assert all(node.is_alive() for node in nodes), 'a node has died'
+            assert all(node.poll() is None for node in nodes), 'a node has died'
             shown = ros2(
                 'topic', 'list', '--no-daemon', '--include-hidden-topics'
             ).out.splitlines()
         yield
-    finally:
-        for node in nodes:
-            forked.stop(node)
 
 
 @contextlib.contextmanager

@@ -1,0 +1,12 @@
+"""A worker process that waits for a cell half as long: many an attack takes all that it gets."""
+
+import sys
+
+from grader import limits
+
+limits.STUDENT_CELL_TIMEOUT_SEC /= 2
+limits.REPLY_TIMEOUT_SEC /= 2
+
+from grader.worker import main  # noqa: E402 - what it imports takes over the limits
+
+main(sys.argv[1])
