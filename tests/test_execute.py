@@ -70,7 +70,8 @@ def cells_of(execution):
 GOOD = 'def double(x): return 2 * x'
 
 
-def test_each_exercise_costs_only_itself():
+def test_each_exercise_costs_only_itself(monkeypatch):
+    monkeypatch.setattr(module, 'STUDENT_CELL_TIMEOUT_SEC', 4.0)
     answers = {
         'good': GOOD,
         'raises': '1 / 0',

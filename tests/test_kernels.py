@@ -242,13 +242,9 @@ def test_an_endless_flood_does_not_keep_the_time_limit_waiting(own, run, code):
     assert size_of(result) < 1.1 * MAX_OUTPUT_CHARACTERS
 
 
-@pytest.mark.parametrize(
-    'code',
-    ["while True: print('x' * 10_000)", "while True: display(HTML('<b>' * 10_000))"],
-    ids=['prints', 'displays'],
-)
-def test_an_endless_flood_ends_long_before_the_time_limit(own, run, code):
-    result = run(own, f'from IPython.display import HTML, display\n{code}', timeout_sec=600.0)
+def test_an_endless_flood_ends_long_before_the_time_limit(own, run):
+    code = "from IPython.display import HTML\nwhile True: display(HTML('<b>' * 10_000))"
+    result = run(own, code, timeout_sec=600.0)
     assert result.timed_out
     assert result.flooded
 

@@ -49,11 +49,9 @@ def course(tmp_path):
     return Course.at(tmp_path)
 
 
-@pytest.mark.parametrize(
-    'names',
-    [BY_COMMAND, pytest.param(tuple(PATHS), marks=[pytest.mark.slow, pytest.mark.timeout(1800)])],
-    ids=['some', 'all'],
-)
+@pytest.mark.slow  # test_nbgrader_commands.py does so with a small lesson
+@pytest.mark.timeout(1800)
+@pytest.mark.parametrize('names', [BY_COMMAND, tuple(PATHS)], ids=['some', 'all'])
 def test_nbgrader_autograde_gives_the_same_scores(course, names):
     hand_in(course, names)
     for assignment in by_assignment(names):
@@ -64,7 +62,7 @@ def test_nbgrader_autograde_gives_the_same_scores(course, names):
     assert wrong(course, names) == []
 
 
-@pytest.mark.slow  # test_nbgrader_commands.py does so with a small lesson
+@pytest.mark.slow
 @pytest.mark.timeout(1800)
 def test_the_formgraders_call_gives_the_same_scores(course):
     names = [name for name in PATHS if name != UNREADABLE]
