@@ -19,8 +19,6 @@ from playwright.sync_api import expect
 
 ROOT = Path(__file__).parents[1]
 LESSONS = sorted(path.stem for path in ROOT.glob('notebooks/*/*.ipynb'))
-TELLING = ('00_two_link_arm', '06_qos')
-"""With stored pictures before and behind an error's place; `./course test --slow` takes all."""
 TOKEN = 'a-token-of-this-test'
 
 pytestmark = drives_chromium
@@ -230,10 +228,7 @@ def test_the_lab_opens_on_the_contents_and_shows_the_terms_to_readers(page):
     expect(page.locator('.jp-MarkdownViewer table').first).to_be_visible()
 
 
-@pytest.mark.parametrize(
-    'name',
-    [pytest.param(n, marks=[] if n in TELLING else [pytest.mark.slow]) for n in LESSONS],
-)
+@pytest.mark.parametrize('name', LESSONS)
 def test_a_lesson_runs_to_its_exercise(opened, name):
     lesson = opened(name)
     released = lesson.cells

@@ -99,7 +99,7 @@ def _ask(question: str, shown: str) -> tuple[str, Any]:
             'return plain values (numbers, text, lists, dicts) or a ROS message'
         ) from None
     if kind == 'failed':
-        hint = 'look for an endless loop, a result that is too large, or a kernel that died'
+        hint = 'look for a loop or a print without end, a large result, or a kernel that died'
         fail(expected=f'an answer from `{shorten(shown)}`', seen=shorten(body), hint=hint)
     return kind, body
 
