@@ -107,6 +107,31 @@ def nobody_stays() -> Iterator[None]:
     assert not left, f'the tests of this file left nodes behind: {", ".join(left)}'
 
 
+def _answers() -> dict[signal.Signals, object]:
+    stopping = signal.SIGINT, signal.SIGTERM, signal.SIGHUP
+    return {number: signal.getsignal(number) for number in stopping}
+
+
+@pytest.fixture(scope='module', autouse=True)
+def as_the_file_before() -> Iterator[None]:
+    """See that a file of tests answers no signal for the files behind it."""
+    former = _answers()
+    yield
+    left = _answers()
+    for number, answer in former.items():
+        signal.signal(number, answer)
+    assert left == former, 'the tests of this file left other answers to signals'
+
+
+@pytest.fixture
+def signals() -> Iterator[None]:
+    """Put back what nbclient answers Ctrl-C with, and leaves where a kernel does not start."""
+    former = _answers()
+    yield
+    for number, answer in former.items():
+        signal.signal(number, answer)
+
+
 # ipykernel leaves the logs of C code alone where it finds PYTEST_CURRENT_TEST, and every kernel
 # that a test starts would inherit it: notebooks would behave otherwise than for a student. A hook
 # cannot delete it: pytest sets it in the same step that runs the test.

@@ -72,6 +72,7 @@ def test_nothing_runs_unasked(tmp_path, path, way):
     assert not mark.exists()
 
 
+@pytest.mark.usefixtures('signals')
 def test_the_kernel_of_the_sandbox_is_none_without_it(tmp_path, monkeypatch):
     monkeypatch.setattr('grader.bubblewrap._HOLD', 'echo no mounts >&2; exit 1')
     mark = tmp_path / 'it_ran'

@@ -3,7 +3,6 @@
 import asyncio
 import json
 import os
-import signal
 import subprocess
 import sys
 from importlib.metadata import entry_points
@@ -22,7 +21,7 @@ from grader.course import ROOT
 from grader.errors import RoomFailure
 from grader.provisioner import NAME, SandboxProvisioner
 
-pytestmark = pytest.mark.isolation
+pytestmark = [pytest.mark.isolation, pytest.mark.usefixtures('signals')]
 
 SPEC = Path(sys.prefix, 'share', 'jupyter', 'kernels', NAME, 'kernel.json')
 
@@ -31,15 +30,6 @@ SPEC = Path(sys.prefix, 'share', 'jupyter', 'kernels', NAME, 'kernel.json')
 def no_server_before():
     """So that what a test leaves can be counted."""
     servers.close_servers()
-
-
-@pytest.fixture(autouse=True)
-def signals():
-    """Put back what nbclient answers Ctrl-C with, and leaves where a kernel does not start."""
-    former = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
-    yield
-    for number, handler in former.items():
-        signal.signal(number, handler)
 
 
 def notebook(*sources):

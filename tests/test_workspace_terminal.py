@@ -9,6 +9,7 @@ import subprocess
 import time
 from pathlib import Path
 
+import nbformat
 import pytest
 from my_robot_basics.live.workspace import BUILD, make_workspace
 from ros2_command import PATIENCE_SEC
@@ -80,6 +81,26 @@ async def _type(address, dialogue):
         terminal.close()
 
 
+TOPIC = '/kinematics/joint_states'
+POSE = '"{name: [joint1, joint2], position: [0.5, -1.2]}"'
+NODES = 'ros2 run my_robot_basics'
+COMMANDS = (
+    (f'{NODES} kinematics_subscriber &', 'waiting for poses on'),
+    (f'{NODES} kinematics_publisher &', 'IK finds it as'),
+    (f'{NODES} kinematics_publisher --ros-args -r {TOPIC}:=/shown &', 'random pose on /shown'),
+    ('ros2 node list', r'\n/kinematics_subscriber\b'),
+    ('ros2 topic list', r'\n/shown\b'),
+    (f'ros2 topic info {TOPIC}', 'Publisher count: 1'),
+    (f'ros2 topic info --verbose {TOPIC}', 'Node name: kinematics_subscriber'),
+    (f'ros2 topic echo --once {TOPIC} --field name', r"\['joint1', 'joint2'\]"),
+    (f'timeout -s INT 60 ros2 topic hz {TOPIC} | head -n 1', r'average rate: [01]\.\d'),
+    ('ros2 interface show sensor_msgs/msg/JointState', r'float64\[\] effort'),
+    (f'ros2 topic pub --once {TOPIC} sensor_msgs/msg/JointState {POSE}', 'publishing #1'),
+    (f'topic_doctor --seconds 3 {TOPIC}', f'All is well on {TOPIC}'),
+)
+"""What is typed, and what must be seen before the next line: in a line without it."""
+
+
 def test_the_commands_of_the_lessons_work_in_jupyterlabs_terminal(lab):
     install = r'ros ws/install/my_robot_basics/lib/my_robot_basics/kinematics_publisher'
     dialogue = [
@@ -88,14 +109,28 @@ def test_the_commands_of_the_lessons_work_in_jupyterlabs_terminal(lab):
         ('ros2 pkg executables my_robot_basics --full-path | cat', install),
         # a domain that is named: other tests' lessons start and end meanwhile
         (f'export ROS_DOMAIN_ID={os.environ["ROS_DOMAIN_ID"]}', ''),
-        (
-            'ros2 run my_robot_basics kinematics_publisher & sleep 1; echo',
-            'publishing a random pose',
-        ),
-        (
-            'ros2 topic echo --once /kinematics/joint_states --field name',
-            r"\['joint1', 'joint2'\]",
-        ),
-        ('kill %1; wait; echo do""ne', 'done'),
+        *COMMANDS,
+        ('kill %1 %2 %3; wait; echo do""ne', 'done'),
     ]
     asyncio.run(_type(lab, dialogue))
+
+
+PROGRAMS = r'(?:ros2|topic_doctor|colcon|source|timeout)\b'
+
+
+def test_every_command_that_a_text_names_is_typed_here_or_run_in_a_lesson():
+    notebooks = [nbformat.read(path, as_version=4) for path in ROOT.glob('solutions/*/*.ipynb')]
+    cells = [cell for notebook in notebooks for cell in notebook.cells]
+    run = [line for c in cells if c.cell_type == 'code' for line in c.source.splitlines()]
+    run += [BUILD, *(line for line, _ in COMMANDS)]
+    page = ROOT / 'solutions' / '07_common_errors' / 'checklist.html'
+    texts = [page.read_text(), (ROOT / 'solutions' / 'terms.md').read_text()]
+    texts += [cell.source for cell in cells if cell.cell_type == 'markdown']
+    named = {
+        command
+        for text in texts
+        for command in re.findall(rf'(?:`|<code>|terminal \d: +)({PROGRAMS}[^`<\n]*)', text)
+    }
+    assert len(named) > 10
+    known = [set(line.replace('!', '').split()) for line in run]
+    assert [c for c in named if not any(set(c.split()) <= words for words in known)] == []
