@@ -70,13 +70,13 @@ async def _type(address, dialogue):
         for line, answer in dialogue:
             await terminal.write_message(json.dumps(['stdin', f'{line}\r']))
             seen = ''
-            while not re.search(answer, seen):
-                try:
-                    message = await asyncio.wait_for(terminal.read_message(), PATIENCE_SEC)
-                except TimeoutError:
-                    pytest.fail(f'no {answer!r} after {line!r}, but {seen!r}')
-                kind, *text = json.loads(message)
-                seen += text[0] if kind == 'stdout' else ''
+            try:
+                async with asyncio.timeout(PATIENCE_SEC):  # nodes go on speaking meanwhile
+                    while not re.search(answer, seen):
+                        kind, *text = json.loads(await terminal.read_message())
+                        seen += text[0] if kind == 'stdout' else ''
+            except TimeoutError:
+                pytest.fail(f'no {answer!r} after {line!r}, but {seen!r}')
     finally:
         terminal.close()
 
@@ -87,7 +87,7 @@ NODES = 'ros2 run my_robot_basics'
 COMMANDS = (
     (f'{NODES} kinematics_subscriber &', 'waiting for poses on'),
     (f'{NODES} kinematics_publisher &', 'IK finds it as'),
-    (f'{NODES} kinematics_publisher --ros-args -r {TOPIC}:=/shown &', 'random pose on /shown'),
+    (f'{NODES} kinematics_publisher --ros-args -r {TOPIC}:=/shown &', 'publishing a random pose'),
     ('ros2 node list', r'\n/kinematics_subscriber\b'),
     ('ros2 topic list', r'\n/shown\b'),
     (f'ros2 topic info {TOPIC}', 'Publisher count: 1'),
