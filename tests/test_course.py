@@ -1,3 +1,4 @@
+import json
 import os
 import re
 import shlex
@@ -598,6 +599,28 @@ def test_test_passes_arguments_on(machine):
     _, [call] = checks(machine, '--slow', '-k', 'a name')
     assert call.endswith(' -m  -k a name')
     assert '--slow' not in call
+
+
+@pytest.mark.parametrize('again', [0, 1, 5])
+def test_a_lesson_that_differed_beside_others_is_judged_alone_and_whole(machine, again):
+    for name in ('00_lesson', '01_lesson'):
+        lesson = machine.root / f'solutions/{name}/{name}.ipynb'
+        lesson.parent.mkdir(parents=True)
+        lesson.touch()
+    remembered = machine.root / '.pytest_cache/v/cache/lastfailed'
+    remembered.parent.mkdir(parents=True)
+    cells = [f'solutions/01_lesson/01_lesson.ipynb::Cell {n}' for n in (3, 5)]
+    failed = dict.fromkeys(['tests/test_x.py::test_y', *cells], True)
+    remembered.write_text(json.dumps(failed, indent=2))
+    machine.course('scores')
+    (machine.root / '.venv/bin/ruff').write_text('#!/bin/sh\n')
+    (machine.root / '.venv/bin/ruff').chmod(0o755)
+    ends = f'*--nbval*-n\\ 0*) exit {again} ;; *--nbval*) exit 1 ;;'
+    python = machine.root / '.venv/bin/python'
+    python.write_text(f'#!/bin/sh\n{PYTHON}\ncase $* in {ends} esac\n')
+    run = machine.course('test')
+    assert run.returncode == again
+    assert machine.calls('python')[-1].endswith(' -v -n 0 solutions/01_lesson/01_lesson.ipynb')
 
 
 def test_test_replays_the_lessons_when_it_checks_everything(machine):
