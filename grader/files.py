@@ -1,6 +1,7 @@
 """Files that are there whole or not at all, whatever happens while they are written."""
 
 import os
+from datetime import datetime
 from pathlib import Path
 
 
@@ -20,3 +21,17 @@ def write_whole(path: Path, content: str | bytes) -> None:
     except OSError:
         aside.unlink(missing_ok=True)
         raise
+
+
+def make_folder_for(time: datetime, parent: Path) -> Path:
+    """Make a folder named by a time; with a number behind it where there is one already."""
+    parent.mkdir(parents=True, exist_ok=True)
+    name, number = time.strftime('%Y-%m-%d_%H-%M-%S'), 1
+    while True:
+        folder = parent / (name if number == 1 else f'{name}_{number}')
+        try:
+            folder.mkdir()
+        except FileExistsError:
+            number += 1
+        else:
+            return folder

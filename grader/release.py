@@ -13,6 +13,7 @@ import re
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import nbformat
@@ -25,6 +26,7 @@ from grader.files import write_whole
 from grader.index import write_pages
 from grader.leaks import BROKEN, files_in, leaks_of
 from grader.outputs import WIDGET_VIEW
+from grader.replaced import keep_work
 
 PASSES = (
     'grader.release.TidyMetadata',
@@ -118,18 +120,24 @@ class KeepDemoOutputs(Preprocessor):
         return cell, resources
 
 
-def release(course: Course, assignment: str = '*') -> list[str]:
+def release(
+    course: Course, assignment: str = '*', *, say: Callable[[str], None] = lambda line: None
+) -> list[str]:
     """Release an assignment, or all of them; return the names of the files that changed.
 
     The index of all lessons is made anew in any case, and the page of terms copied. Everything is
     built aside first and then put in place file by file: whatever fails, notebooks/ holds whole
-    files, and nothing is taken away. Raises CourseError when a source can't be released.
+    files, and nothing is taken away. A notebook that somebody has worked in is copied to
+    gradebook/replaced/ before, and `say` gets a line for it. Raises CourseError when a source
+    can't be released.
     """
     with tempfile.TemporaryDirectory() as folder:
         built = _build(course, assignment, Path(folder))
         if leaks := [leak for name in _names(built) for leak in leaks_of(course, name, built)]:
             raise CourseError('nothing was released: ' + '; '.join(leaks))
         changed = [path for path in files_in(built) if _differs(built, course, path)]
+        for line in _keep_work(course, changed):
+            say(line)
         for path in changed:
             place = course.root / 'notebooks' / path
             place.parent.mkdir(parents=True, exist_ok=True)
@@ -177,6 +185,16 @@ def _build(course: Course, assignment: str, folder: Path) -> Path:
         )
     write_pages(course, folder, metadata=METADATA)
     return folder
+
+
+def _keep_work(course: Course, changed: Sequence[Path]) -> Iterator[str]:
+    """Copy the notebooks that are about to be replaced and hold somebody's work; tell of each."""
+    released = {
+        str(path): course.root / 'notebooks' / path for path in changed if path.suffix == '.ipynb'
+    }
+    copies = keep_work(released, course.gradebook / 'replaced', metadata=METADATA)
+    for name, copy in copies.items():
+        yield f'notebooks/{name} had been worked in: it is kept as {copy}'
 
 
 def _names(built: Path) -> list[str]:

@@ -11,7 +11,7 @@ from jinja2 import Template
 
 from grader.charts import distribution, share
 from grader.course import Course
-from grader.files import write_whole
+from grader.files import make_folder_for, write_whole
 from grader.grade import Row
 from grader.isolation import isolated
 from grader.reasons import Reason
@@ -42,7 +42,7 @@ def write_report(course: Course, run: Run, rows: Sequence[Row]) -> Path:
     """Write report.html and report.json into gradebook/runs/<time>/; return the page's path."""
     counted = tally(course, rows)
     facts = _facts(run, rows, counted)
-    folder = _new_folder(course.gradebook / 'runs', run.began)
+    folder = make_folder_for(run.began, course.gradebook / 'runs')
     write_whole(folder / 'report.json', json.dumps(facts, indent=2, ensure_ascii=False) + '\n')
     page = folder / 'report.html'
     write_whole(page, _template().render(facts, tally=counted, most=MOST_SHOWN, hardest=HARDEST))
@@ -103,20 +103,6 @@ def _submission(row: Row) -> dict:
         'seconds': None if row.seconds is None else round(row.seconds, 2),
         'reason': printable(row.reason),
     }
-
-
-def _new_folder(runs: Path, began: datetime) -> Path:
-    """Make a folder named by a time; with a number behind it where there is one already."""
-    runs.mkdir(parents=True, exist_ok=True)
-    name, number = began.strftime('%Y-%m-%d_%H-%M-%S'), 1
-    while True:
-        folder = runs / (name if number == 1 else f'{name}_{number}')
-        try:
-            folder.mkdir()
-        except FileExistsError:
-            number += 1
-        else:
-            return folder
 
 
 @cache

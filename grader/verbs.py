@@ -34,7 +34,7 @@ def run_release(course: Course, asked: argparse.Namespace) -> int:
     if course.database.exists():
         for assignment in wanted:
             register(course, assignment)  # refuses what graded submissions can't follow
-    changed = release(course, asked.assignment or '*')
+    changed = release(course, asked.assignment or '*', say=print)
     for path in changed:
         print(f'notebooks/{path}')
     print(f'{len(changed)} files changed.' if changed else 'Nothing has changed.')

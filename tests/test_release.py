@@ -1,5 +1,7 @@
 import json
+from pathlib import Path
 
+import nbformat
 import pytest
 from course_maker import PIXEL, TOY, make_course, toy_lesson, write_source
 from nbgrader.utils import compute_checksum
@@ -111,6 +113,55 @@ def test_a_failure_leaves_the_former_release_as_it_was(course):
         release(course)
     assert course.release_path(TOY).read_bytes() == before
     write_source(course, toy_lesson())
+
+
+def answer(notebook):
+    notebook.cells[4].source = 'def double(x):\n    return 2 * x'
+
+
+def run_a_cell(notebook):
+    notebook.cells[5].execution_count = 1
+
+
+def save_in_jupyterlab(notebook):
+    notebook.metadata.language_info.version = '3.11.7'
+
+
+@pytest.mark.parametrize('work', [answer, run_a_cell, save_in_jupyterlab])
+def test_what_somebody_typed_into_a_release_is_kept_before_it_is_replaced(course, work):
+    path = course.release_path(TOY)
+    before = path.read_bytes()
+    notebook = course.release(TOY)
+    work(notebook)
+    nbformat.write(notebook, path)
+    worked_in = path.read_bytes()
+    said = []
+    assert release(course, TOY, say=said.append) == [f'{TOY}/{TOY}.ipynb']
+    (line,) = said
+    assert f'notebooks/{TOY}/{TOY}.ipynb had been worked in' in line
+    copy = Path(line.partition('kept as ')[2])
+    assert course.gradebook / 'replaced' in copy.parents
+    assert copy.read_bytes() == worked_in
+    assert path.read_bytes() == before
+
+
+def test_a_file_that_is_no_notebook_any_more_is_kept_too(course):
+    path = course.release_path(TOY)
+    path.write_text('{')
+    said = []
+    release(course, TOY, say=said.append)
+    assert Path(said[0].partition('kept as ')[2]).read_text() == '{'
+
+
+def test_a_release_that_nobody_touched_is_replaced_without_a_copy(course):
+    lesson = toy_lesson()
+    lesson.cells[0].source = '# Another toy'
+    write_source(course, lesson)
+    said = []
+    assert f'{TOY}/{TOY}.ipynb' in release(course, say=said.append)
+    write_source(course, toy_lesson())
+    release(course, say=said.append)
+    assert said == []
 
 
 def test_an_unknown_assignment_is_named_with_those_there_are(course):
