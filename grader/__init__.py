@@ -9,12 +9,12 @@ Its modules, in the order in which things happen:
 - A run, from what was handed in to what is stored: `submitted`, `grade`, `reuse`, `replay`. The
   work is a `task`, and a `crew` does it: `workers` with `worker`, so many at a time as `pressure`
   says; or `cluster`, `connection` and `remote`.
-- One submission: `submission`, `heal`, `pipeline`, `passes`. One exercise of it: `exercises`,
-  `names`, `execute`, `verdict`.
+- One submission: `submission`, `heal`, `pipeline`, `passes`. One exercise of it: `execute`, with
+  the exercises, plans and verdicts of my_robot_basics.validate, which students have, too.
 - Where a student's code runs: `isolation` says whether it can be kept in. `rooms`, `sandbox`,
   `bubblewrap`, `sights`, `seccomp`, `limits`, `memory`, `places` and `leftovers` keep it in.
   `provisioner`, `warm`, `servers`, `forked` and the program `forkserver` begin a kernel there;
-  `kernels`, `messages`, `outputs`, `patience` and `pool` run its cells.
+  `kernels` and `pool` run its cells.
 - What is kept: `gradebook`, `saving`, `lateness`, `turn`, `database`, `backups`, `records`.
 - What is told: `feedback` and `page` to students; `table`, `report`, `tally`, `reasons`, `charts`,
   `scores` and `formgrader` to teachers; `templates` for both.

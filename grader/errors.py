@@ -1,8 +1,7 @@
 """What can go wrong while grading, in sentences for the instructor."""
 
-
-class CourseError(Exception):
-    """Say what happened, what was expected and what to do next; shown without a traceback."""
+from my_robot_basics.validate.errors import CourseError as CourseError
+from my_robot_basics.validate.errors import RoomFailure as RoomFailure
 
 
 class GradebookError(CourseError):
@@ -11,10 +10,6 @@ class GradebookError(CourseError):
 
 class UnreadableSubmission(CourseError):
     """The submitted file can't be graded: it gets zero, and this text as the reason."""
-
-
-class RoomFailure(CourseError):
-    """The grader itself failed: never the student's fault, never a zero."""
 
 
 class TaskFailed(CourseError):

@@ -7,17 +7,17 @@ from pathlib import Path
 from typing import Any
 
 import nbformat
+from my_robot_basics.validate.cells import KEY, grade_id, role
+from my_robot_basics.validate.exercises import Exercise, Plan, find_exercises, plans
+from my_robot_basics.validate.limits import STUDENT_CELL_TIMEOUT_SEC, STUDENT_CELLS_BUDGET_SEC
+from my_robot_basics.validate.outputs import CellRun
+from my_robot_basics.validate.verdict import Verdict, judge, refuse, ungraded, write_verdict
 from nbformat import NotebookNode
 
 from grader.errors import RoomFailure
-from grader.exercises import Exercise, Plan, find_exercises, plans
-from grader.heal import KEY, grade_id, role
 from grader.isolation import TRUSTED, isolated
-from grader.limits import STUDENT_CELL_TIMEOUT_SEC, STUDENT_CELLS_BUDGET_SEC
-from grader.outputs import CellRun
 from grader.pool import Pool
 from grader.rooms import Rooms
-from grader.verdict import Verdict, judge, refuse, ungraded, write_verdict
 
 
 @dataclass(frozen=True)

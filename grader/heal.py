@@ -5,10 +5,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import nbformat
+from my_robot_basics.validate.cells import KEY, grade_id, is_reset, role
 from nbformat import NotebookNode
 
-KEY = 'my_robot_basics'
-"""Our one key in a cell's metadata: {'role': ...}, and after grading the verdict."""
 NO_ANSWERS = 'the notebook holds none of the answer cells of this assignment'
 
 
@@ -37,32 +36,6 @@ class _Found:
     parts: list[NotebookNode] = field(default_factory=list)
     after: list[NotebookNode] = field(default_factory=list)
     """The student's own cells that follow it."""
-
-
-def grade_id(cell: NotebookNode) -> str | None:
-    """Return the cell's nbgrader id, if it has one."""
-    return cell.metadata.get('nbgrader', {}).get('grade_id')
-
-
-def role(cell: NotebookNode) -> str:
-    """Return what a cell is for: answer, grade, locked, setup, demo, free or text."""
-    if recorded := cell.metadata.get(KEY, {}).get('role'):
-        return recorded
-    marks = cell.metadata.get('nbgrader', {})
-    if marks.get('solution'):
-        return 'answer'
-    if marks.get('grade'):
-        return 'grade'
-    if cell.cell_type != 'code':
-        return 'text'
-    if marks.get('locked'):
-        return 'locked'
-    return 'demo' if 'demo' in cell.metadata.get('tags', ()) else 'setup'
-
-
-def is_reset(cell: NotebookNode) -> bool:
-    """Whether the cell begins an exercise: it forgets what earlier cells made."""
-    return (grade_id(cell) or '').endswith('-reset')
 
 
 def make_master(source: NotebookNode, release: NotebookNode) -> Master:

@@ -11,12 +11,12 @@ import psutil
 import zmq.asyncio
 from jupyter_client import AsyncKernelManager
 from jupyter_client.kernelspec import KernelSpec, KernelSpecManager
+from my_robot_basics.validate.limits import MAX_MESSAGE_BYTES
+from my_robot_basics.validate.messages import Messages, OnInput
+from my_robot_basics.validate.outputs import CellRun
+from my_robot_basics.validate.patience import finished, finished_in_grace
 
 from grader.errors import RoomFailure
-from grader.limits import MAX_MESSAGE_BYTES
-from grader.messages import Messages, OnInput
-from grader.outputs import CellRun
-from grader.patience import finished, finished_in_grace
 from grader.places import Place, environment_of, open_place
 from grader.provisioner import NAME
 

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import nbformat
+from my_robot_basics.validate.verdict import refuse
 from nbconvert.exporters import Exporter
 from nbformat import NotebookNode
 from traitlets.config import Config
@@ -11,7 +12,6 @@ from traitlets.config import Config
 from grader.course import Course
 from grader.heal import KEY, NO_ANSWERS, Master, heal
 from grader.release import CODE_STUB
-from grader.verdict import refuse
 
 SANITIZE_PASSES = (
     'grader.passes.HealSubmission',

@@ -17,6 +17,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import nbformat
+from my_robot_basics.validate.outputs import WIDGET_VIEW
 from nbconvert.preprocessors import Preprocessor
 from nbformat import NotebookNode
 
@@ -25,7 +26,6 @@ from grader.errors import CourseError
 from grader.files import write_whole
 from grader.index import write_pages
 from grader.leaks import BROKEN, files_in, leaks_of
-from grader.outputs import WIDGET_VIEW
 from grader.replaced import keep_work
 
 PASSES = (

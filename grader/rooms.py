@@ -11,11 +11,16 @@ from pathlib import Path
 
 from my_robot_basics.live.domain import Claim, claim
 from my_robot_basics.live.errors import LiveError
+from my_robot_basics.validate.limits import (
+    CHECK_TIMEOUT_SEC,
+    FLOOD_CHARACTERS,
+    MAX_REPLY,
+    REPLY_TIMEOUT_SEC,
+)
+from my_robot_basics.validate.outputs import CellRun
 
 from grader.errors import RoomFailure
 from grader.kernels import Kernel
-from grader.limits import CHECK_TIMEOUT_SEC, FLOOD_CHARACTERS, MAX_REPLY, REPLY_TIMEOUT_SEC
-from grader.outputs import CellRun
 from grader.sandbox import Sandbox
 
 SETUP_TIMEOUT_SEC = 60.0

@@ -13,6 +13,7 @@ from urllib.parse import quote
 import pytest
 from chromium import drives_chromium, launched
 from course_maker import TOY, answered, executed, make_course, submit, toy_lesson, write_source
+from my_robot_basics.validate.outputs import CellRun
 from nbformat.v4 import new_output
 from nbgrader.api import Gradebook
 
@@ -20,7 +21,6 @@ from grader.feedback import write_feedback
 from grader.grade import Row
 from grader.gradebook import register, store
 from grader.heal import heal
-from grader.outputs import CellRun
 from grader.pipeline import prepare
 from grader.release import release
 from grader.report import Run, write_report

@@ -8,6 +8,7 @@ import time
 
 import nbformat
 import pytest
+from my_robot_basics.validate.outputs import CellRun
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 from nbgrader.utils import determine_grade
 
@@ -16,7 +17,6 @@ from grader import rooms as rooms_module
 from grader.errors import RoomFailure
 from grader.execute import execute
 from grader.heal import KEY, grade_id, heal, make_master
-from grader.outputs import CellRun
 
 CANARY = 'hidden canary'
 CHECK = f"""

@@ -2,9 +2,9 @@
 
 import nbformat
 import pytest
+from my_robot_basics.validate.exercises import find_exercises, plans
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
-from grader.exercises import find_exercises, plans
 from grader.heal import heal, make_master
 
 

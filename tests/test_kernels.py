@@ -9,13 +9,14 @@ from pathlib import Path
 
 import psutil
 import pytest
+from my_robot_basics.validate import patience
+from my_robot_basics.validate.limits import FLOOD_CHARACTERS
+from my_robot_basics.validate.messages import next_message
+from my_robot_basics.validate.outputs import MAX_OUTPUT_CHARACTERS
 
-from grader import kernels, patience
+from grader import kernels
 from grader.errors import RoomFailure
 from grader.kernels import Kernel
-from grader.limits import FLOOD_CHARACTERS
-from grader.messages import next_message
-from grader.outputs import MAX_OUTPUT_CHARACTERS
 
 DOMAIN = 0
 """No kernel of this module makes a node."""

@@ -1,8 +1,7 @@
 """Which names a cell binds and needs, read from its text."""
 
 import pytest
-
-from grader.names import MAX_SOURCE_CHARACTERS, Names, names_of, string_arguments
+from my_robot_basics.validate.names import MAX_SOURCE_CHARACTERS, Names, names_of, string_arguments
 
 CELLS = {
     'nothing': ('', '', ''),

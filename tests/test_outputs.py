@@ -2,8 +2,12 @@
 
 import nbformat
 import pytest
-
-from grader.outputs import MAX_ERROR_CHARACTERS, MAX_OUTPUT_CHARACTERS, CellRun, Displays
+from my_robot_basics.validate.outputs import (
+    MAX_ERROR_CHARACTERS,
+    MAX_OUTPUT_CHARACTERS,
+    CellRun,
+    Displays,
+)
 
 
 def stream(text, name='stdout'):

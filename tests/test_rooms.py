@@ -10,11 +10,11 @@ import psutil
 import pytest
 from my_robot_basics.live import domain
 from my_robot_basics.live.errors import NoFreeDomain
+from my_robot_basics.validate.outputs import CellRun
 
 from grader import rooms as module
 from grader.errors import RoomFailure
 from grader.isolation import isolated
-from grader.outputs import CellRun
 from grader.rooms import Rooms
 
 IMPORT = 'from my_robot_basics.checks import student\n'

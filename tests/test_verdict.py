@@ -2,13 +2,13 @@
 
 import nbformat
 import pytest
+from my_robot_basics.validate.outputs import CellRun
+from my_robot_basics.validate.verdict import Verdict, judge, ungraded, write_verdict
 from nbformat.v4 import new_code_cell, new_output
 from nbgrader.utils import determine_grade
 
 from grader.errors import RoomFailure
 from grader.heal import KEY
-from grader.outputs import CellRun
-from grader.verdict import Verdict, judge, ungraded, write_verdict
 
 SECRET = 'assert hidden == 42'
 

@@ -8,11 +8,11 @@ from typing import Literal
 import nbformat
 from nbformat import NotebookNode
 
-from grader.errors import RoomFailure
-from grader.heal import KEY, grade_id, role
-from grader.limits import FLOOD_CHARACTERS
-from grader.outputs import CellRun
-from grader.text import printable, shorten
+from my_robot_basics.validate.cells import KEY, grade_id, role
+from my_robot_basics.validate.errors import RoomFailure
+from my_robot_basics.validate.limits import FLOOD_CHARACTERS
+from my_robot_basics.validate.outputs import CellRun
+from my_robot_basics.validate.text import printable, shorten
 
 Outcome = Literal['passed', 'failed', 'ungraded', 'manual']
 

@@ -5,8 +5,7 @@ import time
 from collections.abc import Awaitable, Callable
 
 from my_robot_basics.checks import pressure
-
-from grader.limits import INTERRUPT_GRACE_SEC, INTERRUPT_MOST_SEC
+from my_robot_basics.validate.limits import INTERRUPT_GRACE_SEC, INTERRUPT_MOST_SEC
 
 LOOK_EVERY_SEC = 0.2
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import nbformat
 from nbformat import NotebookNode
 
-from grader.limits import FLOOD_CHARACTERS
+from my_robot_basics.validate.limits import FLOOD_CHARACTERS
 
 MAX_OUTPUT_CHARACTERS = 200_000
 """What is kept of one cell's output; the rest is drained and counted."""

@@ -6,7 +6,7 @@ from collections.abc import Awaitable, Callable
 import zmq
 from jupyter_client import AsyncKernelClient
 
-from grader.outputs import CellRun, Displays
+from my_robot_basics.validate.outputs import CellRun, Displays
 
 OUTPUT_GRACE_SEC = 2.0
 """How long a cell's last outputs may come after its reply."""

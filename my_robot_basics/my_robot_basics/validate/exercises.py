@@ -6,8 +6,8 @@ from itertools import pairwise
 
 from nbformat import NotebookNode
 
-from grader.heal import grade_id, is_reset, role
-from grader.names import names_of, string_arguments
+from my_robot_basics.validate.cells import grade_id, is_reset, role
+from my_robot_basics.validate.names import names_of, string_arguments
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,32 @@
+"""What a cell of a lesson is for, as its metadata says."""
+
+from nbformat import NotebookNode
+
+KEY = 'my_robot_basics'
+"""Our one key in a cell's metadata: {'role': ...}, and after grading the verdict."""
+
+
+def grade_id(cell: NotebookNode) -> str | None:
+    """Return the cell's nbgrader id, if it has one."""
+    return cell.metadata.get('nbgrader', {}).get('grade_id')
+
+
+def role(cell: NotebookNode) -> str:
+    """Return what a cell is for: answer, grade, locked, setup, demo, free or text."""
+    if recorded := cell.metadata.get(KEY, {}).get('role'):
+        return recorded
+    marks = cell.metadata.get('nbgrader', {})
+    if marks.get('solution'):
+        return 'answer'
+    if marks.get('grade'):
+        return 'grade'
+    if cell.cell_type != 'code':
+        return 'text'
+    if marks.get('locked'):
+        return 'locked'
+    return 'demo' if 'demo' in cell.metadata.get('tags', ()) else 'setup'
+
+
+def is_reset(cell: NotebookNode) -> bool:
+    """Whether the cell begins an exercise: it forgets what earlier cells made."""
+    return (grade_id(cell) or '').endswith('-reset')

@@ -1,0 +1,22 @@
+"""How long a student's cell may take and how much it may put out, and why so much."""
+
+STUDENT_CELL_TIMEOUT_SEC = 10.0
+"""No answer of the course takes a second; a loop that waits for messages takes a few."""
+STUDENT_CELLS_BUDGET_SEC = 120.0
+"""The most that all student cells of a notebook may take together: a class has to end."""
+REPLY_TIMEOUT_SEC = 10.0
+"""How long the student's kernel may take to answer one question of a check: as for a cell."""
+CHECK_TIMEOUT_SEC = 90.0
+"""A check has time limits of its own; this one ends a check that lost them."""
+INTERRUPT_GRACE_SEC = 2.0
+"""A kernel that ignores an interrupt so long is killed. Time in which processes had to wait for a
+processor does not count, …"""
+INTERRUPT_MOST_SEC = 10.0
+"""… within this: a crowded machine may take seconds to end a node."""
+FLOOD_CHARACTERS = 10_000_000
+"""A cell that puts out more is stopped as one that never ends: reading on would cost the class a
+processor. An answer puts out some lines, a picture is a tenth of a million."""
+MAX_MESSAGE_BYTES = 32_000_000
+"""A kernel that sends more at once is cut off; the message is lost. Pictures are far smaller."""
+MAX_REPLY = 2 * 65_536
+"""Characters of a reply as a Python literal: 64 kB, and a backslash takes two."""
