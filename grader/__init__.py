@@ -17,6 +17,6 @@ Its modules, in the order in which things happen:
   `kernels` and `pool` run its cells.
 - What is kept: `gradebook`, `saving`, `lateness`, `turn`, `database`, `backups`, `records`.
 - What is told: `feedback` and `page` to students; `table`, `report`, `tally`, `reasons`, `charts`,
-  `scores` and `formgrader` to teachers; `templates` for both.
+  `scores`, `totals` and `formgrader` to teachers; `templates` for both.
 - For all of them: `course`, `errors`, `files`, `text`, `versions`.
 """

@@ -71,8 +71,15 @@ def make_parser() -> argparse.ArgumentParser:
     )
     verb.set_defaults(run=verbs.run_grade)
 
+    verb = subparsers.add_parser('scores', help='write gradebook/scores.csv')
+    verb.add_argument(
+        '--totals',
+        action='store_true',
+        help='write gradebook/totals.csv: a row for each student, a column for each assignment',
+    )
+    verb.set_defaults(run=verbs.run_scores)
+
     for name, run, text in (
-        ('scores', verbs.run_scores, 'write gradebook/scores.csv'),
         ('feedback', verbs.run_feedback, 'write a page of feedback for each submission'),
         ('demo', verbs.run_demo, 'grade a sample class, to see all of it in about a minute'),
         ('doctor', verbs.run_doctor, 'say what keeps student code in here, and what is missing'),

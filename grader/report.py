@@ -15,10 +15,12 @@ from grader.files import make_folder_for, write_whole
 from grader.grade import Row
 from grader.isolation import isolated
 from grader.reasons import Reason
+from grader.records import records
 from grader.table import changes, score_of
 from grader.tally import Tally, tally
 from grader.templates import template
 from grader.text import printable
+from grader.totals import Totals, add_up
 from grader.versions import versions
 
 SLOWEST = 10
@@ -41,7 +43,7 @@ class Run:
 def write_report(course: Course, run: Run, rows: Sequence[Row]) -> Path:
     """Write report.html and report.json into gradebook/runs/<time>/; return the page's path."""
     counted = tally(course, rows)
-    facts = _facts(run, rows, counted)
+    facts = _facts(run, rows, counted) | {'totals': _totals(add_up(records(course)))}
     folder = make_folder_for(run.began, course.gradebook / 'runs')
     write_whole(folder / 'report.json', json.dumps(facts, indent=2, ensure_ascii=False) + '\n')
     page = folder / 'report.html'
@@ -84,6 +86,22 @@ def _facts(run: Run, rows: Sequence[Row], counted: Tally) -> dict:
             else "the assignments' own",
         },
         'submissions': [_submission(row) for row in rows],
+    }
+
+
+def _totals(totals: Totals) -> dict:
+    return {
+        'max_scores': dict(zip(totals.assignments, totals.max_scores, strict=True)),
+        'max_score': totals.max_score,
+        'students': [
+            {
+                'student_id': printable(each.student_id),
+                'scores': each.scores,
+                'total': each.total,
+                'waiting': each.waiting,
+            }
+            for each in totals.students
+        ],
     }
 
 

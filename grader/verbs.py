@@ -25,6 +25,7 @@ from grader.scores import write_scores
 from grader.submitted import HandedIn, find_submissions
 from grader.table import changes, print_rows
 from grader.text import printable
+from grader.totals import write_totals
 from grader.workers import Workers
 
 
@@ -135,9 +136,9 @@ def _replay(
 
 
 def run_scores(course: Course, asked: argparse.Namespace) -> int:
-    """Write the table of scores, and say where it lies."""
+    """Write a table of scores, and say where it lies."""
     _wait_for_database(course)
-    print(write_scores(course))
+    print(write_totals(course) if asked.totals else write_scores(course))
     _say_what_comes_first(course)
     return 0
 

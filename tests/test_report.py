@@ -209,6 +209,16 @@ def test_nothing_that_a_student_wrote_gets_into_the_page_as_it_is(course):
     assert not re.search(r'(?i)<script|\son\w+=|javascript:|https?://', html)
 
 
+def test_every_student_has_a_row_of_scores_whatever_was_graded_in_this_run(course):
+    rows = [graded(course, 'ada'), graded(course, 'bob', {'double-hidden': 'wrong'}, explained='')]
+    facts, page = reported(course, rows[:1])
+    assert facts['totals']['max_scores'] == {TOY: 5.0}
+    students = [(s['student_id'], *s['scores'], s['waiting']) for s in facts['totals']['students']]
+    assert students == [('ada', 3.0, 1), ('bob', 1.0, 0)]
+    assert re.search(r'<th scope="row">bob</th><td class="number">1</td>', page)
+    assert re.search(r'<th scope="row">ada</th>.*<td class="number">3 …</td>', page)
+
+
 def test_a_name_that_is_no_text_is_reported_too(course):
     facts, _ = reported(course, [Row('\udcff', '', None, 'not UTF-8')])
     assert facts['looks'][0]['students'] == ['\\udcff']

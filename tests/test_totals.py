@@ -1,0 +1,68 @@
+import csv
+
+import pytest
+from course_maker import TOY, answered, executed, released_course, submit
+
+from grader.__main__ import main
+from grader.gradebook import store
+from grader.heal import heal
+from grader.pipeline import prepare
+from grader.records import Record
+from grader.submission import read_submission
+from grader.totals import add_up, as_csv, write_totals
+
+
+def cell(student, assignment, score, most, *, submitted=True, name='check'):
+    return Record(student, assignment, name, score, most, submitted=submitted)
+
+
+CLASS = [
+    cell('ada', '00_arm', 1.0, 1.0),
+    cell('ada', '00_arm', 1.5, 2.0, name='other'),
+    cell('ada', '01_topics', None, 2.0),
+    cell('ada', '00_arm', -0.5, 0.0, name='late_penalty'),
+    cell('=bob', '00_arm', None, 1.0, submitted=False),
+    cell('=bob', '00_arm', None, 2.0, submitted=False, name='other'),
+    cell('=bob', '01_topics', 0.0, 2.0),
+]
+
+
+def test_each_student_has_a_score_for_each_assignment_and_a_total():
+    totals = add_up(CLASS)
+    assert totals.assignments == ('00_arm', '01_topics')
+    assert (totals.max_scores, totals.max_score) == ((3.0, 2.0), 5.0)
+    bob, ada = totals.students
+    assert (ada.scores, ada.total, ada.waiting) == ((2.0, 0.0), 2.0, 1)
+    assert (bob.scores, bob.total, bob.waiting) == ((None, 0.0), 0.0, 0)
+
+
+def test_the_table_tells_nothing_handed_in_from_nothing_earned_and_starts_no_formula():
+    rows = list(csv.reader(as_csv(add_up(CLASS)).lstrip('\ufeff').splitlines()))
+    assert rows == [
+        ['student_id', '00_arm (of 3)', '01_topics (of 2)', 'total (of 5)', 'waiting'],
+        ["'=bob", '', '0.0', '0.0', '0'],
+        ['ada', '2.0', '0.0', '2.0', '1'],
+    ]
+
+
+@pytest.fixture
+def course(tmp_path):
+    return released_course(tmp_path)
+
+
+def test_the_totals_are_those_of_the_gradebook(course, capsys):
+    submit(course, 'ada', answered(course, 'def double(x):\n    return x + x'))
+    folder = course.folder('submitted', 'ada', TOY)
+    submission = read_submission(folder, student_id='ada', assignment=TOY)
+    healed = heal(submission.notebook, course.master(TOY)).notebook
+    stored = store(course, submission, executed(prepare(course, TOY, healed), {}))
+    assert main(['scores', '--totals'], course=course) == 0
+    path = write_totals(course)
+    assert str(path) in capsys.readouterr().out
+    rows = list(csv.reader(path.read_text(encoding='utf-8-sig').splitlines()))
+    assert rows[0] == ['student_id', f'{TOY} (of 5)', 'total (of 5)', 'waiting']
+    assert rows[1] == ['ada', str(stored.score), str(stored.score), '0']
+
+
+def test_a_gradebook_without_students_gives_an_empty_table(course):
+    assert len(write_totals(course).read_text(encoding='utf-8-sig').splitlines()) == 1
