@@ -15,7 +15,7 @@ Its modules, in the order in which things happen:
   `bubblewrap`, `sights`, `seccomp`, `limits`, `memory`, `places` and `leftovers` keep it in.
   `provisioner`, `warm`, `servers`, `forked` and the program `forkserver` begin a kernel there;
   `kernels` and `pool` run its cells.
-- What is kept: `gradebook`, `saving`, `lateness`, `turn`, `database`, `backups`, `records`.
+- What is kept: `gradebook`, `saving`, `lateness`, `due`, `turn`, `database`, `backups`, `records`.
 - What is told: `feedback` and `page` to students; `table`, `report`, `tally`, `reasons`, `charts`,
   `scores`, `totals` and `formgrader` to teachers; `templates` for both.
 - For all of them: `course`, `errors`, `files`, `text`, `versions`.

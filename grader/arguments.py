@@ -1,9 +1,11 @@
 """What may stand behind `./course`: verbs, their arguments, and what `--help` says of them."""
 
 import argparse
+from datetime import datetime
 from pathlib import Path
 
 from grader import verbs
+from grader.due import local_time
 from grader.replay import RECORDED
 
 
@@ -36,6 +38,18 @@ def make_parser() -> argparse.ArgumentParser:
         help="take a file's own time for the time it was handed in, where nothing else tells",
     )
     verb.set_defaults(run=verbs.run_collect)
+
+    verb = subparsers.add_parser('due', help='list due dates, or set one')
+    verb.add_argument('assignment', nargs='?', metavar='ASSIGNMENT', help='whose date to set')
+    verb.add_argument(
+        'when',
+        nargs='?',
+        type=date,
+        metavar='DATE|none',
+        help="2026-11-30 (its end), '2026-11-30 18:00', with a zone or in this machine's",
+    )
+    verb.add_argument('--student', metavar='ID', help='extend it for this student alone')
+    verb.set_defaults(run=verbs.run_due)
 
     verb = subparsers.add_parser('grade', help='grade what lies in gradebook/submitted/')
     verb.add_argument('assignment', nargs='?', metavar='ASSIGNMENT', help='only this one')
@@ -93,6 +107,11 @@ def hexadecimal(text: str) -> str:
     if text != RECORDED:
         int(text, 16)
     return text
+
+
+def date(text: str) -> datetime | str:
+    """Check an argument; argparse names this function when it is wrong."""
+    return text if text == verbs.NO_DATE else local_time(text)
 
 
 def at_least_one(text: str) -> int:

@@ -1,6 +1,7 @@
 """Late submissions: due dates, extensions and what lateness costs, all from one file.
 
-gradebook/deadlines.toml is optional, and so is each part of it:
+gradebook/deadlines.toml is optional, and so is each part of it. `./course due` writes the first
+two, or an editor does:
 
     [due]
     03_publisher = 2026-11-30T23:59:00+01:00
@@ -65,9 +66,18 @@ def deadlines(gradebook: Path, assignments: Collection[str] | None = None) -> De
     path = gradebook / FILE
     if not path.exists():
         return None
+    return read_deadlines(path.read_bytes(), path, assignments)
+
+
+def read_deadlines(
+    content: bytes, path: Path, assignments: Collection[str] | None = None
+) -> Deadlines:
+    """Read what stands, or is going to stand, in the file at `path`.
+
+    Raises CourseError on what is wrong in it, and on names that are not among the `assignments`.
+    """
     try:
-        said = tomllib.loads(path.read_text(encoding='utf-8'))
-        return _understood(said, assignments)
+        return _understood(tomllib.loads(content.decode()), assignments)
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, _Wrong) as error:
         raise CourseError(f'{path}: {error}: see the example in grader/lateness.py') from None
 

@@ -11,6 +11,7 @@ from grader.course import Course
 from grader.crew import Crew
 from grader.database import wait_until_free
 from grader.demo import demo
+from grader.due import describe_deadlines, set_due
 from grader.errors import CourseError
 from grader.feedback import write_feedback
 from grader.grade import grade_all
@@ -27,6 +28,9 @@ from grader.table import changes, print_rows
 from grader.text import printable
 from grader.totals import write_totals
 from grader.workers import Workers
+
+NO_DATE = 'none'
+"""Stands for a due date that is taken back."""
 
 
 def run_release(course: Course, asked: argparse.Namespace) -> int:
@@ -60,6 +64,20 @@ def run_collect(course: Course, asked: argparse.Namespace) -> int:
     if taken:
         print('Next: ./course grade')
     return 0 if taken and not any(row.outcome == LEFT for row in rows) else 1
+
+
+def run_due(course: Course, asked: argparse.Namespace) -> int:
+    """Set a due date or an extension where one is given, and list all of them."""
+    if asked.assignment:
+        if asked.when is None:
+            raise CourseError(
+                f'say until when: ./course due {asked.assignment} 2026-11-30, or none for no date'
+            )
+        when = None if asked.when == NO_DATE else asked.when
+        set_due(course, asked.assignment, when, student_id=asked.student)
+    for line in (*describe_deadlines(course), *extended_for_nobody(course)):
+        print(line)
+    return 0
 
 
 def run_grade(course: Course, asked: argparse.Namespace) -> int:
