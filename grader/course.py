@@ -6,6 +6,7 @@ import hmac
 import json
 import os
 import secrets
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -85,14 +86,24 @@ class Course:
         """Return what submissions of an assignment are healed from."""
         return make_master(self.source(assignment), self.release(assignment))
 
-    def seed(self, assignment: str) -> str:
-        """Return the hexadecimal seed of an assignment's inputs.
+    def seed(self, assignment: str, student_id: str) -> str:
+        """Return the hexadecimal seed of the inputs that an assignment's hidden tests choose.
 
-        It is the same for the whole class and at each re-grading, and another one once the
-        lesson's text changes; nobody without the course's secret can tell it.
+        It is a student's own, the same at each hand-in and each re-grading, and another one once
+        the lesson's text changes; nobody without the course's secret can tell it.
         """
-        text = f'{assignment}:{self.version(assignment)}'
-        return hmac.new(self._secret(), text.encode(), hashlib.sha256).hexdigest()
+        return self.seeds(assignment)(student_id)
+
+    def seeds(self, assignment: str) -> Callable[[str], str]:
+        """Return what gives each student's seed of an assignment: the lesson is read only once."""
+        version, secret = self.version(assignment), self._secret()
+
+        def seed(student_id: str) -> str:
+            # as JSON, for no name can then be taken for a part of another one
+            text = json.dumps([assignment, version, student_id])
+            return hmac.new(secret, text.encode('ascii'), hashlib.sha256).hexdigest()
+
+        return seed
 
     def version(self, assignment: str) -> str:
         """Return a hash of what the lesson says: outputs and layout don't count."""

@@ -2,7 +2,7 @@
 
 import logging
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass
 
@@ -45,7 +45,8 @@ class _Way:
 
     masters: dict[str, Master]
     """By assignment; so are the next two."""
-    seeds: dict[str, str]
+    seeds: dict[str, Callable[[str], str]]
+    """Gives each student's seed."""
     given: dict[str, str]
     """What else a result depends on, as a hash."""
     trust_students: bool
@@ -80,8 +81,8 @@ def grade_all(
     """Let a crew grade submissions, and store them in their order, one after the other.
 
     Each gets its row, whatever becomes of it. The crew is this machine's worker processes unless
-    another is given. `seed` replays inputs that hidden tests choose; by default they are the
-    assignment's own. Doing it again gives the same; where nothing has changed the stored result
+    another is given. `seed` replays inputs that hidden tests choose; by default they are each
+    student's own. Doing it again gives the same; where nothing has changed the stored result
     holds, unless told to `force` a new one. Raises CourseError, and runs nothing, where there is
     no sandbox, unless told to `trust_students`.
     """
@@ -97,10 +98,8 @@ def grade_all(
             ):
                 register(course, assignment)
                 way.masters[assignment] = prepared_master(course, assignment)
-                way.seeds[assignment] = the = seed or course.seed(assignment)
-                way.given[assignment] = conditions(
-                    course, assignment, seed=the, isolated=in_sandbox
-                )
+                way.seeds[assignment] = (lambda _: seed) if seed else course.seeds(assignment)
+                way.given[assignment] = conditions(course, assignment, isolated=in_sandbox)
         with one_engine(course.db_url):
             under_way: deque[tuple[HandedIn, Future[Graded]]] = deque()
             for found in submissions:
@@ -123,7 +122,8 @@ def _begun(course: Course, found: HandedIn, way: _Way, crew: Crew) -> 'Future[Gr
         submission = read_submission(
             found.folder, student_id=found.student_id, assignment=assignment
         )
-        key = key_of(submission, way.given[assignment])
+        its_seed = way.seeds[assignment](submission.student_id)
+        key = key_of(submission, way.given[assignment], seed=its_seed)
         if not way.force and (before := kept(course, submission, key)):
             graded.set_result(Graded(submission, before))
             return graded
@@ -131,7 +131,7 @@ def _begun(course: Course, found: HandedIn, way: _Way, crew: Crew) -> 'Future[Gr
             submission,
             way.masters[assignment],
             crew=crew,
-            seed=way.seeds[assignment],
+            seed=its_seed,
             trust_students=way.trust_students,
         )
     except Exception as error:  # it is told in its turn

@@ -51,11 +51,11 @@ class ExecuteRooms(Preprocessor):
 
     def preprocess(self, nb: NotebookNode, resources: dict) -> tuple[NotebookNode, dict]:
         """Return the executed notebook with a verdict in each grade cell."""
-        folder = Path(resources['metadata']['path'])
+        at, folder = resources['nbgrader'], Path(resources['metadata']['path'])
         execution = execute(
             nb,
             extra_files=extra_python_files(folder),
-            seed=Course.of_nbgrader(resources).seed(resources['nbgrader']['assignment']),
+            seed=Course.of_nbgrader(resources).seed(at['assignment'], at['student']),
             trust_students=self.trust_students,
         )
         return execution.notebook, resources

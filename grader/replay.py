@@ -48,8 +48,8 @@ def replay(
         ]
         for each, its, result in zip(found, seeds, work, strict=True):
             yield f'{printable(each.student_id)}  {each.assignment}  seed {its}', True
-            if its != course.seed(each.assignment):
-                yield '  (the course now uses another seed: the lesson was changed since)', True
+            if its != course.seed(each.assignment, each.student_id):
+                yield '  (grading now uses another seed: the lesson was changed since)', True
             stored = verdicts(course, each.student_id, each.assignment)
             for cell in result.result().notebook.cells:
                 if role(cell) == 'grade' and cell.cell_type == 'code':
@@ -60,7 +60,8 @@ def recorded_seed(course: Course, found: HandedIn) -> str:
     """Return the seed of a submission's stored result. Raises CourseError where there is none."""
     graded = graded_notebook(course, found.student_id, found.assignment)
     about = graded.metadata.get(KEY, {})
-    seed = course.seed(found.assignment) if 'problem' in about else about.get('seed')
+    its_own = course.seed(found.assignment, found.student_id)
+    seed = its_own if 'problem' in about else about.get('seed')
     if not seed:
         raise CourseError(
             f'no seed is recorded for {found.assignment} of {found.student_id}: it was not '

@@ -37,7 +37,7 @@ class Run:
     began: datetime
     """With its time zone."""
     seed: str = ''
-    """The seed that was replayed; '' for the assignments' own."""
+    """The seed that was replayed; '' for each student's own."""
 
 
 def write_report(course: Course, run: Run, rows: Sequence[Row]) -> Path:
@@ -83,7 +83,7 @@ def _facts(run: Run, rows: Sequence[Row], counted: Tally) -> dict:
             else 'none: --trust-students',
             'inputs of hidden tests': f'replayed from seed {run.seed}'
             if run.seed
-            else "the assignments' own",
+            else "each student's own",
         },
         'submissions': [_submission(row) for row in rows],
     }

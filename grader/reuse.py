@@ -21,18 +21,18 @@ LATE = ('grader.lateness.LatePenalties',)
 _UNDER = 'graded_under'
 
 
-def conditions(course: Course, assignment: str, *, seed: str, isolated: bool) -> str:
-    """Return a hash of everything but the submission that a result depends on."""
+def conditions(course: Course, assignment: str, *, isolated: bool) -> str:
+    """Return a hash of all that the results of an assignment depend on, whoever has handed in."""
     lesson = [_said(course.source(assignment)), _said(course.release(assignment))]
-    return _digest(json.dumps([lesson, seed, isolated, machinery()], sort_keys=True).encode())
+    return _digest(json.dumps([lesson, isolated, machinery()], sort_keys=True).encode())
 
 
-def key_of(submission: Submission, given: str) -> str:
-    """Return a hash of a submission's files and of the conditions under which it is graded."""
+def key_of(submission: Submission, given: str, *, seed: str) -> str:
+    """Return a hash of a submission's files, its seed, and the conditions of its assignment."""
     files = [submission.path.with_name(TIMESTAMP), *submission.extra_files]
     if submission.problem is None:
         files.append(submission.path)
-    parts = [given, submission.assignment, submission.problem or '']
+    parts = [given, seed, submission.assignment, submission.problem or '']
     parts += [f'{path.name} {_digest(_content(path))}' for path in files]
     return _digest(json.dumps(parts).encode())
 

@@ -135,7 +135,7 @@ def test_an_attack_brings_nothing_hidden_back(graded, name):
     cells = nbformat.read(path, as_version=4).cells
     told = str([(c.get('outputs'), c.metadata.get(KEY), c.get('attachments')) for c in cells])
     assert CANARY not in told
-    assert graded.course.seed(TOY) not in told + graded.pages[name]
+    assert graded.course.seed(TOY, name) not in told + graded.pages[name]
 
 
 def test_the_honest_get_what_is_theirs(graded):

@@ -22,7 +22,7 @@ ROOM_BYTES = (0, 4_096, 150_000, 230_000, 250_000, 270_000, 290_000, 310_000)
 @pytest.mark.isolation
 def test_a_full_disk_stops_with_a_word_and_without_half_a_file(tmp_path):
     course = released_course(tmp_path)
-    course.seed(TOY)
+    course.seed(TOY, 'ada')
     for student in ('ada', 'bob', 'zoe'):
         submit(course, student, answered(course, f'# {student}\ndef double(x):\n    return 2 * x'))
     disk = tmp_path / 'disk'

@@ -10,7 +10,8 @@ from grader.demo import demo
 from grader.errors import CourseError
 from grader.execute import Execution
 from grader.grade import grade_all
-from grader.records import records
+from grader.heal import KEY
+from grader.records import graded_notebook, records
 from grader.submitted import find_submissions
 from grader.table import print_rows
 
@@ -34,6 +35,7 @@ def course(released, tmp_path, monkeypatch):
             raise OSError('no room')
         reason = '' if '2 * x' in answer else 'expected 2, saw 3: add it to itself'
         notebook = executed(notebook, {'double-check': reason, 'double-hidden': reason})
+        notebook.metadata[KEY]['seed'] = seed
         return Execution(notebook=notebook, verdicts=(), notes=())
 
     stand_in(look, monkeypatch)
@@ -137,6 +139,24 @@ def test_an_empty_gradebook_is_told_where_submissions_go(tmp_path, released):
     empty = Course(root=released.root, gradebook=tmp_path / 'none')
     with pytest.raises(CourseError, match='STUDENT/ASSIGNMENT'):
         find_submissions(empty)
+
+
+def test_each_student_has_a_seed_and_keeps_it(course):
+    def seeds():
+        list(grade_all(course, find_submissions(course)))
+        return {
+            student: graded_notebook(course, student, TOY).metadata[KEY]['seed']
+            for student in ('ada', 'bob')
+        }
+
+    submit(course, 'ada', answered(course, RIGHT))
+    submit(course, 'bob', answered(course, RIGHT))
+    first = seeds()
+    assert first == {student: course.seed(TOY, student) for student in first}
+    assert len({*first.values()}) == 2
+    submit(course, 'ada', answered(course, WRONG))
+    submit(course, 'bob', answered(course, WRONG))
+    assert seeds() == first
 
 
 def test_a_seed_can_be_given(course):

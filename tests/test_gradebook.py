@@ -277,26 +277,31 @@ def test_scores_are_a_table_that_no_spreadsheet_runs(course):
     assert {r['assignment'] for r in rows} == {TOY}
 
 
-def test_the_seed_is_the_courses_own_and_follows_the_lessons_text(course, released, tmp_path):
-    seed = course.seed(TOY)
+def test_a_seed_is_a_students_own_and_follows_the_lessons_text(course, released, tmp_path):
+    seed = course.seed(TOY, 'ada')
     assert int(seed, 16)
-    assert seed == course.seed(TOY)
+    assert seed == course.seed(TOY, 'ada') == course.seeds(TOY)('ada')
+    assert (
+        len({seed, course.seed(TOY, 'bob'), course.seed(TOY, 'ada"'), course.seed(TOY, '')}) == 4
+    )
     assert os.stat(course.gradebook / 'course_secret').st_mode & 0o777 == 0o600
     other = Course(root=course.root, gradebook=tmp_path / 'other')
-    assert other.seed(TOY) != seed
+    assert other.seed(TOY, 'ada') != seed
     lesson = toy_lesson()
     lesson.cells[2].outputs = []
     write_source(course, lesson)
-    assert course.seed(TOY) == seed
+    assert course.seed(TOY, 'ada') == seed
     lesson.cells[7].source += '\n'
     write_source(course, lesson)
-    assert course.seed(TOY) != seed
+    assert course.seed(TOY, 'ada') != seed
     write_source(course, toy_lesson())
 
 
 def test_two_that_begin_at_once_agree_on_one_secret(course):
     seeds = []
-    threads = [threading.Thread(target=lambda: seeds.append(course.seed(TOY))) for _ in range(8)]
+    threads = [
+        threading.Thread(target=lambda: seeds.append(course.seed(TOY, 'ada'))) for _ in range(8)
+    ]
     for thread in threads:
         thread.start()
     for thread in threads:

@@ -156,4 +156,4 @@ def test_the_sample_class_is_what_demo_grades():
 
 def test_the_seed_of_an_unknown_assignment_is_refused(tmp_path):
     with pytest.raises(CourseError, match='there are: none'):
-        Course.at(tmp_path).seed('99')
+        Course.at(tmp_path).seed('99', 'ada')

@@ -110,7 +110,7 @@ def executed_with(monkeypatch):
 
 
 @pytest.mark.parametrize('in_a_loop', [False, True], ids=['command', 'formgrader'])
-def test_running_takes_the_courses_seed_and_the_students_files(course, executed_with, in_a_loop):
+def test_running_takes_the_students_seed_and_the_students_files(course, executed_with, in_a_loop):
     folder = course.folder('autograded', 'ada', TOY)
     folder.mkdir(parents=True, exist_ok=True)
     (folder / 'helper.py').write_text('')
@@ -125,7 +125,7 @@ def test_running_takes_the_courses_seed_and_the_students_files(course, executed_
     assert result[0] is notebook
     assert executed_with == {
         'extra_files': [folder / 'helper.py'],
-        'seed': course.seed(TOY),
+        'seed': course.seed(TOY, 'ada'),
         'trust_students': False,
     }
 

@@ -44,7 +44,7 @@ def replayed(course, capsys, *options):
 
 def test_a_recorded_grade_is_replayed_and_compared_and_nothing_is_written(graded, capsys):
     status, lines = replayed(graded, capsys, '--student', 'ada', '--seed', 'recorded')
-    assert lines[0] == f'ada  {TOY}  seed {graded.seed(TOY)}'
+    assert lines[0] == f'ada  {TOY}  seed {graded.seed(TOY, "ada")}'
     assert lines[1] == '  double-check  passed  as stored'
     assert lines[-2:] == [
         'The same as in the gradebook.',
@@ -54,10 +54,10 @@ def test_a_recorded_grade_is_replayed_and_compared_and_nothing_is_written(graded
 
 
 def test_other_inputs_are_told_apart(graded, capsys):
-    other = f'{int(graded.seed(TOY), 16) ^ 1:x}'
+    other = f'{int(graded.seed(TOY, "ada"), 16) ^ 1:x}'
     status, lines = replayed(graded, capsys, '--student', 'ada', '--seed', other)
     assert lines[0].endswith(f'seed {other}')
-    assert 'the course now uses another seed' in lines[1]
+    assert 'grading now uses another seed' in lines[1]
     assert lines[2] == '  double-check  passed  as stored'
     assert 'expected 42, saw 41' in lines[3]
     assert '  STORED: ' in lines[3]
@@ -72,12 +72,12 @@ def test_what_cannot_be_read_is_replayed_too(graded, capsys):
 
 
 def test_the_recorded_seed_outlives_a_change_of_the_lesson(graded, capsys):
-    former = graded.seed(TOY)
+    former = graded.seed(TOY, 'ada')
     lesson = toy_lesson()
     lesson.cells[0].source += ' '
     write_source(graded, lesson)
     try:
-        assert graded.seed(TOY) != former
+        assert graded.seed(TOY, 'ada') != former
         _, lines = replayed(graded, capsys, '--student', 'ada', '--seed', 'recorded')
     finally:
         write_source(graded, toy_lesson())
@@ -97,7 +97,7 @@ def test_only_what_was_graded_has_a_seed(graded, capsys):
 
 
 def test_asked_to_it_stores(graded, capsys):
-    other = f'{int(graded.seed(TOY), 16) ^ 1:x}'
+    other = f'{int(graded.seed(TOY, "ada"), 16) ^ 1:x}'
     before = everything(graded)
     assert main(['grade', '--student', 'ada', '--seed', other, '--store'], course=graded) == 0
     assert everything(graded) != before
@@ -112,7 +112,7 @@ def test_no_page_tells_the_seed(graded):
     kept = graded.folder('autograded', 'ada', TOY) / f'{TOY}.ipynb'
     assert '"seed": ' in kept.read_text()
     told = [*graded.folder('feedback', '', '').rglob('*.html'), graded.gradebook / 'scores.csv']
-    seed = graded.seed(TOY)
+    seed = graded.seed(TOY, 'ada')
     assert len(told) == 3
     assert not [path for path in told if seed[:-1] in path.read_text()]
 

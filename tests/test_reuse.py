@@ -177,7 +177,7 @@ def a_damaged_notebook(course, monkeypatch):
 def test_whatever_a_result_depends_on_makes_it_new(course, looked, monkeypatch, change):
     monkeypatch.setattr(Here, 'isolated', lambda self, trust_students: True)
     submit(course, 'ada', answered(course, RIGHT))
-    # the assignment's own seed is another one for other cells, which would hide what else counts
+    # a student's own seed is another one for other cells, which would hide what else counts
     rows_of(course, seed='abc')
     assert rows_of(course, seed='abc')['ada'].reused
     change(course, monkeypatch)

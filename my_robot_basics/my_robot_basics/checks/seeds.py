@@ -7,8 +7,8 @@ import random
 def inputs(label: str) -> random.Random:
     """A source of random inputs for the check of that label.
 
-    It depends on MY_ROBOT_BASICS_SEED (the grader's, the same for a whole class) and the label
-    alone; without a seed, as in a student's own kernel, it differs each time.
+    It depends on MY_ROBOT_BASICS_SEED (the grader's, one for each student) and the label alone;
+    without a seed, as in a student's own kernel, it differs each time.
     """
     seed = os.environ.get('MY_ROBOT_BASICS_SEED')
     return random.Random(f'{seed}:{label}') if seed else random.Random()
