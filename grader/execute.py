@@ -129,7 +129,7 @@ async def _try_plans(task: _Task, exercise: Exercise) -> list[Verdict]:
     for number, plan in enumerate(todo, start=1):
         async with task.rooms() as rooms:
             runs = await _run_student_cells(task, rooms, plan)
-            if number < len(todo) and _lacks_a_name(runs, exercise):
+            if number < len(todo) and _lacks_a_name(runs, exercise, plan):
                 continue
             for index, run in runs.items():
                 task.notebook.cells[index].outputs = run.outputs
@@ -154,8 +154,10 @@ async def _judge_cell(
     return task.write(index, judge(cell, run, own), run.outputs if run else [])
 
 
-def _lacks_a_name(runs: dict[int, CellRun], exercise: Exercise) -> bool:
-    """Whether the answer, or starting it, stopped for want of a name."""
+def _lacks_a_name(runs: dict[int, CellRun], exercise: Exercise, plan: Plan) -> bool:
+    """Whether the answer, or starting it, stopped for want of a name, or may when it is called."""
+    if not all(runs[i].ran_to_end for i in plan.borrowed):
+        return True  # what the lesson shows may need more than names
     return any(
         runs[i].error is not None and runs[i].error.ename == 'NameError'
         for i in (exercise.answer, *exercise.run)

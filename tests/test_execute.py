@@ -147,6 +147,22 @@ def test_strange_ways_to_answer(monkeypatch, own, outcome):
     assert outcomes(execution)['a-check'] == outcome
 
 
+SHOWN = {
+    'a name in a function': (['two = 2'], 'def double(x): return two * x'),
+    'what that needs': (['one = 1', 'two = one + one'], 'def double(x): return two * x'),
+    'more than names': (
+        ['import sys', 'sys.two = 2', 'two = sys.two'], 'def double(x): return two * x',
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(('demos', 'answer'), SHOWN.values(), ids=SHOWN)
+def test_a_function_may_use_names_that_the_lesson_has_shown(demos, answer):
+    source = lesson('a')
+    source.cells[1:1] = [new_code_cell(demo, metadata={'tags': ['demo']}) for demo in demos]
+    assert outcomes(execute(handed_in(source, a=answer)))['a-check'] == 'passed'
+
+
 def test_the_seed_reaches_the_checks_and_not_the_student():
     check = "import os; print('note: ' + os.environ['MY_ROBOT_BASICS_SEED'])"
     source = lesson('a', check=check)

@@ -103,9 +103,13 @@ PLANS = {
         {'area': 'h = 1\narea = h', 'at_start': 'h = 2'},
         [ALONE, LENT, WHOLE],
     ),
-    'a star import may bring anything': (
-        {'area': 'from math import *\narea = h', 'at_start': 'h = 2'},
-        [ALONE, LENT, WHOLE],
+    'a name that a star import may bring': (
+        {'area': 'from math import *\ndef area(r): return h', 'at_start': 'h = 2'},
+        [LENT, WHOLE],
+    ),
+    'a star import in another cell may bring it': (
+        {'area': 'def area(r): return sqrt(r)', 'at_start': 'from math import *'},
+        [LENT, WHOLE],
     ),
     'a syntax error in the answer': ({'area': 'def area(:'}, [ALONE, LENT, WHOLE]),
     'a syntax error in the helper': (
@@ -138,6 +142,60 @@ def test_every_plan_is_in_order_and_holds_what_its_exercise_needs(own):
             assert list(plan.cells) == sorted(set(plan.cells))
             assert {exercise.reset, exercise.answer, *exercise.run} <= set(plan.cells)
             assert not {notebook.cells[i].source for i in plan.cells} & {'check()', '# A lesson'}
+
+
+SHOWN = new_notebook(
+    cells=[
+        new_code_cell('import math'),
+        *(
+            new_code_cell(source, metadata={'tags': ['demo']})
+            for source in (
+                'np = 1', 'joints = 0', 'joints = np', 'listener = run(joints)', 'unused = 2'
+            )
+        ),
+        marked('area-reset', "reset('area')"),
+        answer('area'),
+        new_code_cell('# try it'),
+        grade('area-visible'),
+        new_code_cell('late = np', metadata={'tags': ['demo']}),
+    ]
+)  # fmt: skip
+BORROWED = {
+    'a name in a function': ('def area(r): return np', ['np = 1']),
+    'in a method': ('class area:\n    def go(self): return np', ['np = 1']),
+    'the last of several before it, and what that needs': (
+        'area = lambda r: joints', ['np = 1', 'joints = np'],
+    ),
+    'all that they need': (
+        'def area(r): return listener', ['np = 1', 'joints = np', 'listener = run(joints)'],
+    ),
+    'one that is shown below': ('def area(r): return late', ['np = 1', 'late = np']),
+    'beside a star import': ('from math import *\ndef area(r): return np', ['np = 1']),
+    'a name of its own': ('np = 3\ndef area(r): return np', []),
+    'nothing': ('def area(r): return math.pi', []),
+    'a name that nobody binds': ('def area(r): return tau', []),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(('area', 'expected'), BORROWED.values(), ids=BORROWED)
+def test_what_the_lesson_shows_is_run_for_the_names_that_an_answer_needs(area, expected):
+    master = make_master(nbformat.from_dict(SHOWN), nbformat.from_dict(SHOWN))
+    submitted = nbformat.from_dict(SHOWN)
+    next(
+        c for c in submitted.cells if c.metadata.get('nbgrader', {}).get('solution')
+    ).source = area
+    notebook = heal(submitted, master).notebook
+    first = next(plans(notebook, find_exercises(notebook)[0]))
+    assert [notebook.cells[i].source for i in first.borrowed] == expected
+    own = ["reset('area')", area]
+    assert sorted(sources(notebook, first)) == sorted(['import math', *expected, *own])
+
+
+def test_a_helper_that_is_lent_brings_what_it_needs_along():
+    notebook = lesson(area='def area(r): return h(r)', at_start='def h(r): return shown')
+    first = next(plans(notebook, find_exercises(notebook)[0]))
+    assert first.why == LENT
+    assert [notebook.cells[i].source for i in first.borrowed] == ['shown = 1']
 
 
 def sources(notebook, plan):

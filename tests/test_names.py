@@ -28,7 +28,7 @@ CELLS = {
     'augmented': ('x += 1', 'x', ''),
     'deleted': ('del x', 'x', ''),
     'builtins and IPython': ('display(len(In), get_ipython(), _)', '', ''),
-    'a star import hides what is needed': ('from math import *\ny = sin(x)', 'y', ''),
+    'a star import may bring some': ('from math import *\ny = sin(x)', 'y', 'sin x'),
     'a line magic': ('%matplotlib inline\nx = y', 'x', 'y'),
     'a shell line': ('out = !ls {d}\nx = 1', 'out x', ''),
     'a cell magic': ('%%bash\necho $x', '', ''),
@@ -49,6 +49,11 @@ CELLS = {
 def test_names_of_a_cell(source, bound, needed):
     names = names_of(source)
     assert (names.bound, names.needed) == (set(bound.split()), set(needed.split()))
+
+
+def test_a_star_import_binds_more_than_is_told():
+    assert names_of('from math import *').binds_more
+    assert not names_of('from math import sin\nimport cmath').binds_more
 
 
 def test_reading_a_cell_runs_none_of_it(capfd):

@@ -1,6 +1,6 @@
 """Find the exercises of a healed notebook, and plan which of its cells to run for each."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -31,6 +31,8 @@ class Plan:
 
     cells: tuple[int, ...]
     why: str
+    borrowed: tuple[int, ...] = ()
+    """Those of them that the lesson shows, run for the names that they bind."""
 
 
 def find_exercises(notebook: NotebookNode) -> tuple[Exercise, ...]:
@@ -44,7 +46,8 @@ def plans(notebook: NotebookNode, exercise: Exercise) -> Iterator[Plan]:
     """Yield what to run, least first: the answer alone, with what it lacks, the whole lesson.
 
     The first plan is left out where the text shows already that the answer needs a name that
-    only another of the student's cells binds.
+    only another of the student's cells binds. Demonstrations come with the names that they bind:
+    a function asks for a name only when it is called, and then it is too late to run more.
     """
     cells = notebook.cells
     own = (exercise.reset, exercise.answer, *exercise.run)
@@ -57,10 +60,11 @@ def plans(notebook: NotebookNode, exercise: Exercise) -> Iterator[Plan]:
         and _is_students(cell)
         and (i < _end(exercise) or names_of(cell.source).bound & lacks)
     ]
-    if not lent or not lacks & _bound(cells, lent):
-        yield Plan(cells=(*setup, *own), why='the answer alone')
+    alone = {*setup, *own}
+    if not lent or not _lends(cells, lent, lacks):
+        yield _with_what_is_shown(cells, exercise, alone, why='the answer alone')
     if lent:
-        yield Plan(cells=tuple(sorted({*setup, *own, *lent})), why='with your other cells')
+        yield _with_what_is_shown(cells, exercise, alone | {*lent}, why='with your other cells')
     whole = [i for i, cell in enumerate(cells) if _is_code(cell)]
     yield Plan(
         cells=tuple(i for i in whole if role(cells[i]) not in ('grade', 'locked') or i in own),
@@ -91,7 +95,31 @@ def _lacks(cells: list[NotebookNode], exercise: Exercise, setup: list[int]) -> s
     return (answer.needed | set(exercise.defines)) - answer.bound - _bound(cells, setup)
 
 
-def _bound(cells: list[NotebookNode], indexes: list[int]) -> set[str]:
+def _lends(cells: list[NotebookNode], lent: list[int], lacks: set[str]) -> bool:
+    """Whether one of these cells binds a name that is lacking, as far as its text tells."""
+    names = [names_of(cells[i].source) for i in lent]
+    return bool(lacks) and any(each.binds_more or each.bound & lacks for each in names)
+
+
+def _with_what_is_shown(
+    cells: list[NotebookNode], exercise: Exercise, chosen: set[int], *, why: str
+) -> Plan:
+    """Plan the chosen cells, and what the lesson shows that binds a name which they need."""
+    shown = [i for i, c in enumerate(cells) if _is_code(c) and role(c) in ('demo', 'setup')]
+    borrowed: set[int] = set()
+    todo = [(exercise.answer, names_of(cells[i].source).needed) for i in chosen]
+    while todo:
+        place, needed = todo.pop()
+        for name in needed - _bound(cells, chosen | borrowed):
+            binding = [i for i in shown if name in names_of(cells[i].source).bound]
+            # of several, the one that ran last when the lesson was read from top to bottom
+            nearest = [i for i in binding if i < place][-1:] or binding[:1]
+            borrowed.update(nearest)
+            todo += [(i, names_of(cells[i].source).needed) for i in nearest]
+    return Plan(tuple(sorted(chosen | borrowed)), why, tuple(sorted(borrowed)))
+
+
+def _bound(cells: list[NotebookNode], indexes: Iterable[int]) -> set[str]:
     return set().union(*(names_of(cells[i].source).bound for i in indexes))
 
 

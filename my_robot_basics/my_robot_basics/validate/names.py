@@ -21,7 +21,9 @@ class Names:
 
     bound: frozenset[str] = frozenset()
     needed: frozenset[str] = frozenset()
-    """Read somewhere in the cell, bound nowhere in it, and no builtin."""
+    """Read somewhere in the cell, in its functions too, bound nowhere in it, and no builtin."""
+    binds_more: bool = False
+    """Whether a star import binds names that its text does not tell."""
 
 
 @lru_cache(maxsize=1_000)
@@ -37,12 +39,11 @@ def names_of(source: str) -> Names:
         return Names()
     bound, read = set(), set()
     _collect(table, bound, read)
-    if any(isinstance(n, ast.ImportFrom) and any(a.name == '*' for a in n.names) for n in nodes):
-        read = set()  # what it needs can't be told
     loop_names = _names_of_comprehensions_alone(nodes)
     return Names(
         bound=frozenset(bound - loop_names),
         needed=frozenset(read - bound - vars(builtins).keys() - _IPYTHON),
+        binds_more=any(isinstance(n, ast.ImportFrom) and n.names[0].name == '*' for n in nodes),
     )
 
 
