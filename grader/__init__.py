@@ -7,8 +7,8 @@ Its modules, in the order in which things happen:
 - Submissions come in: `collect`, `intake`, `owners`, `naming`, `students`, `incoming`, `archives`,
   `entries`.
 - A run, from what was handed in to what is stored: `submitted`, `grade`, `reuse`, `replay`. The
-  work is a `task`, and a `crew` does it: `workers` with `worker`, so many at a time as `pressure`
-  says; or `cluster`, `connection` and `remote`.
+  work is a `task`, what comes of it is checked by `results`, and a `crew` does it: `workers` with
+  `worker`, so many at a time as `pressure` says; or `cluster`, `connection` and `remote`.
 - One submission: `submission`, `heal`, `pipeline`, `passes`. One exercise of it: `execute`, with
   the exercises, plans and verdicts of my_robot_basics.validate, which students have, too.
 - Where a student's code runs: `isolation` says whether it can be kept in. `rooms`, `sandbox`,

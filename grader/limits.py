@@ -5,6 +5,15 @@ import resource
 SUBMISSION_TIMEOUT_SEC = 1_800.0
 """Each part of a submission has a limit of its own; this one bounds all of it."""
 
+MAX_REASON_CHARACTERS = 20_000
+"""Of one reason; a check's own are a line or two, and an error's text is cut at half of that."""
+MAX_NOTES, MAX_NOTE_CHARACTERS = 1_000, 2_000
+"""What is told of one check, or of how a notebook was healed."""
+MAX_TASK_BYTES = 100_000_000
+"""A notebook that is to be graded as JSON, with its pasted pictures and files."""
+MAX_RESULT_BYTES = 100_000_000
+"""A graded notebook as JSON: its text, pasted pictures, and outputs within their own limits."""
+
 ROOM_MEMORY_BYTES = 2 * 2**30
 """All processes of a room together; the kernel of a lesson uses 0.15 GB."""
 ROOM_DISK_BYTES = 64 * 2**20

@@ -9,6 +9,7 @@ import socket
 import struct
 import sys
 
+from grader.limits import MAX_TASK_BYTES
 from grader.task import graded
 
 BEAT_SEC = 5.0
@@ -19,10 +20,15 @@ BEAT = 0
 """Stands for the number of a task: nothing follows."""
 
 
-async def receive(reader: asyncio.StreamReader) -> tuple[int, str] | None:
-    """Wait for a numbered text; None where the other end is gone."""
+async def receive(reader: asyncio.StreamReader, *, most: int) -> tuple[int, str] | None:
+    """Wait for a numbered text of at most `most` bytes.
+
+    None where the other end is gone, or claims to have more to say.
+    """
     try:
         number, size = _HEAD.unpack(await reader.readexactly(_HEAD.size))
+        if size > most:
+            return None
         return number, (await reader.readexactly(size)).decode('ascii')
     except (asyncio.IncompleteReadError, ConnectionError):
         return None
@@ -39,7 +45,7 @@ async def serve(connection: socket.socket) -> None:
     reader, writer = await asyncio.open_connection(sock=connection)
     under_way = {asyncio.create_task(_beat(writer))}
     try:
-        while asked := await receive(reader):
+        while asked := await receive(reader, most=MAX_TASK_BYTES):
             task = asyncio.create_task(_answer(writer, *asked))
             under_way.add(task)
             task.add_done_callback(under_way.discard)

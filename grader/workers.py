@@ -13,6 +13,7 @@ from grader.errors import TaskFailed
 from grader.isolation import isolated
 from grader.limits import (
     IN_FLIGHT_EACH,
+    MAX_RESULT_BYTES,
     MOST_IN_FLIGHT,
     MOST_IN_FLIGHT_EACH,
     SUBMISSION_MEMORY_BYTES,
@@ -163,7 +164,7 @@ class _Worker:
         try:
             reader, self._writer = await asyncio.open_connection(sock=ours)
             self._connected.set()
-            while found := await receive(reader):
+            while found := await receive(reader, most=MAX_RESULT_BYTES):
                 self._missed = 0
                 answer = self._asked.get(found[0])
                 if answer is not None and not answer.done():

@@ -138,7 +138,8 @@ def executed(notebook: NotebookNode, reasons: dict[str, str | None]) -> Notebook
         if marks.get('grade') and cell.cell_type == 'code':
             reason = reasons.get(marks['grade_id'])
             outcome = 'ungraded' if reason == '?' else 'failed' if reason else 'passed'
-            cell.metadata[KEY] = {'outcome': outcome, 'reason': reason or '', 'notes': []}
+            verdict = {'outcome': outcome, 'reason': reason or '', 'notes': []}
+            cell.metadata[KEY] = {'role': 'grade'} | verdict
             cell.outputs = [new_output('stream', text='looked at it\n')]
             if outcome == 'failed':
                 cell.outputs.append(

@@ -1,11 +1,14 @@
 """A crew without rooms: what a function says of a notebook stands in for running it."""
 
 from collections.abc import Awaitable, Callable
+from typing import Any
 
 import pytest
+from nbformat import NotebookNode
 
 from grader import grade, replay, task
 from grader.execute import Execution
+from grader.heal import KEY
 from grader.isolation import isolated
 from grader.pool import Pool
 
@@ -34,6 +37,13 @@ class Here:
 
 def stand_in(look: Callable[..., Awaitable[Execution]], patch: pytest.MonkeyPatch) -> None:
     """Let `look` stand in for `grader.execute.executed`, in this process."""
-    patch.setattr(task, 'executed', look)
+
+    async def looked(notebook: NotebookNode, **options: Any) -> Execution:
+        execution = await look(notebook, **options)
+        ours = execution.notebook.metadata.setdefault(KEY, NotebookNode(notes=[]))
+        ours.setdefault('seed', options.get('seed', ''))
+        return execution
+
+    patch.setattr(task, 'executed', looked)
     patch.setattr(grade, 'Workers', Here)
     patch.setattr(replay, 'Workers', Here)

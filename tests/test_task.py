@@ -9,6 +9,7 @@ from course_maker import toy_lesson
 from grader import task
 from grader.errors import TaskFailed
 from grader.execute import Execution
+from grader.heal import KEY
 from grader.task import Task, graded, packed, unpacked
 
 ODD = 'lone \udcff, nul \0, ideographs 小明, escapes \x1b[31m, </script>'
@@ -28,6 +29,7 @@ def looked(monkeypatch):
         seen.update(files={p.name: p.read_bytes() for p in extra_files}, seed=seed)
         seen.update(folder=extra_files[0].parent, trusted=trust_students)
         notebook = judged(notebook, {'double-check': ODD})
+        notebook.metadata[KEY] = {'notes': [], 'seed': seed}
         return Execution(notebook=notebook, verdicts=(), notes=())
 
     monkeypatch.setattr(task, 'executed', look)
@@ -44,7 +46,7 @@ def test_it_goes_as_text_and_comes_back_the_same(work, looked):
     answer = do(text)
     assert answer.isascii()
     result = unpacked(answer, work)
-    assert result.notebook == judged(toy_lesson_like(work), {'double-check': ODD})
+    assert result.notebook == graded_lesson(work, {'double-check': ODD})
     assert isinstance(result.notebook.cells[0].metadata, nbformat.NotebookNode)
     assert result.seconds >= 0
     assert looked['files'] == work.files
@@ -54,6 +56,12 @@ def test_it_goes_as_text_and_comes_back_the_same(work, looked):
 
 def toy_lesson_like(work):
     return nbformat.from_dict(json.loads(json.dumps(work.notebook)))
+
+
+def graded_lesson(work, reasons):
+    notebook = judged(toy_lesson_like(work), reasons)
+    notebook.metadata[KEY] = nbformat.from_dict({'notes': [], 'seed': work.seed})
+    return notebook
 
 
 def test_doing_it_does_not_change_it(work, looked):
@@ -86,23 +94,23 @@ def test_whatever_fails_is_an_answer_too(work):
 
 
 def result(work, **changes):
-    return {'notebook': work.notebook, 'seconds': 1.0} | changes
+    return {'notebook': graded_lesson(work, {}), 'seconds': 1.0} | changes
 
 
 def another_text(work):
-    notebook = toy_lesson_like(work)
+    notebook = graded_lesson(work, {})
     notebook.cells[4].source += ' '
     return result(work, notebook=notebook)
 
 
 def other_points(work):
-    notebook = toy_lesson_like(work)
+    notebook = graded_lesson(work, {})
     notebook.cells[6].metadata.nbgrader.points = 99
     return result(work, notebook=notebook)
 
 
 def fewer_cells(work):
-    notebook = toy_lesson_like(work)
+    notebook = graded_lesson(work, {})
     notebook.cells.pop()
     return result(work, notebook=notebook)
 

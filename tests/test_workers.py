@@ -34,9 +34,13 @@ def task(course, first_line=''):
 
 
 def pid_of(result):
-    seed, pid = result.notebook.metadata.my_robot_basics.seed.split()
-    assert seed == 'abc'
-    return int(pid)
+    assert result.notebook.metadata.my_robot_basics.seed == 'abc'
+    return int(told(result)[0])
+
+
+def told(result):
+    lines = result.notebook.cells[-2].outputs[0].text.splitlines()
+    return [line.removeprefix('note: ') for line in lines if line.startswith('note: ')]
 
 
 def outcomes(result):
@@ -148,8 +152,15 @@ def test_a_worker_that_hangs_is_replaced(course, tmp_path, monkeypatch):
 
 def test_what_a_worker_starts_inherits_no_way_to_the_run(course):
     with Workers(1, command=COMMAND) as crew:
-        told = crew.submit(task(course, '# child')).result().notebook.metadata.my_robot_basics
-    assert told.handles == '0 1 2'
+        result = crew.submit(task(course, '# child')).result()
+    assert told(result)[1] == '0 1 2'
+
+
+def test_a_worker_that_says_it_has_more_to_say_than_any_result_is_given_up(course):
+    with Workers(1, command=COMMAND) as crew:
+        with pytest.raises(TaskFailed, match='ended before it was done, 3 times'):
+            crew.submit(task(course, '# endless')).result()
+        assert outcomes(crew.submit(task(course)).result()) == ['passed', 'passed']
 
 
 @pytest.mark.parametrize(('crowded_share', 'allowed'), [(0.0, 3), (1.0, 2)])

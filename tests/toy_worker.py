@@ -2,12 +2,13 @@
 
 `# die`: is killed; `# die once FILE`: is killed unless the file exists, and makes it first;
 `# stop FILE`: is stopped, once, too; `# wait FILE`: waits for the file; `# fail`: raises;
-`# child`: tells what a process that it starts has open.
+`# child`: tells what a process that it starts has open; `# endless`: claims a result of 1 TB.
 """
 
 import asyncio
 import os
 import signal
+import struct
 import subprocess
 import sys
 from pathlib import Path
@@ -35,6 +36,8 @@ async def look(notebook, *, extra_files=(), seed='', trust_students=False):
                 await asyncio.sleep(0.02)
         case ['#', 'fail']:
             raise OSError('no room')
+        case ['#', 'endless']:
+            endless.append(True)
         case ['#', 'child']:
             look = 'import os; print(*sorted(map(int, os.listdir("/proc/self/fd")))[:-1])'
             child = subprocess.run(
@@ -43,9 +46,23 @@ async def look(notebook, *, extra_files=(), seed='', trust_students=False):
             handles = child.stdout.strip()
     reason = '' if '2 * x' in answer else 'expected 2, saw 3: add it to itself'
     notebook = executed(notebook, {'double-check': reason, 'double-hidden': reason})
-    notebook.metadata.setdefault('my_robot_basics', {})['seed'] = f'{seed} {os.getpid()}'
-    notebook.metadata['my_robot_basics']['handles'] = handles
+    notebook.metadata.setdefault('my_robot_basics', {'notes': []})['seed'] = seed
+    told = f'note: {os.getpid()}\nnote: {handles}\n'
+    notebook.cells[-2].outputs[0].text += told  # a check may say anything
     return Execution(notebook=notebook, verdicts=(), notes=())
+
+
+send, endless = worker.send, []
+
+
+async def claim(writer, number, text=''):
+    if not (text and endless):
+        await send(writer, number, text)
+        return
+    writer.write(struct.pack('>QQ', number, 10**12) + b'{"failed": "')
+    while True:
+        writer.write(b' ' * 1_000_000)
+        await writer.drain()
 
 
 def _first(mark):
@@ -57,5 +74,5 @@ def _first(mark):
 
 
 if __name__ == '__main__':
-    task.executed = look
+    task.executed, worker.send = look, claim
     worker.main(sys.argv[1])
