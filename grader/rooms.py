@@ -1,48 +1,27 @@
 """Two kernels that share nothing but a ROS domain: the student's and the test's."""
 
-import ast
 import asyncio
-import contextlib
-import json
-import re
 import shutil
 from collections.abc import Awaitable, Sequence
 from pathlib import Path
 
 from my_robot_basics.live.domain import Claim, claim
 from my_robot_basics.live.errors import LiveError
-from my_robot_basics.validate.limits import (
-    CHECK_TIMEOUT_SEC,
-    FLOOD_CHARACTERS,
-    MAX_REPLY,
-    REPLY_TIMEOUT_SEC,
-)
+from my_robot_basics.validate.limits import CHECK_TIMEOUT_SEC, REPLY_TIMEOUT_SEC
 from my_robot_basics.validate.outputs import CellRun
+from my_robot_basics.validate.questions import (
+    STUDENT_COMES,
+    STUDENT_GOES,
+    TEST_HEARS,
+    as_expression,
+    reply_of,
+)
 
 from grader.errors import RoomFailure
 from grader.kernels import Kernel
 from grader.sandbox import Sandbox
 
 SETUP_TIMEOUT_SEC = 60.0
-
-_RESPONDER = (
-    "__import__('my_robot_basics.checks.responder', fromlist=['answer']).answer({request!r})"
-)
-_ESCAPE = r"""\\(?:[\\'"nrt]|[xuU][0-9a-f]+)"""
-_STRING = re.compile(rf"""'(?:[^'\\\n]|{_ESCAPE})*'|"(?:[^"\\\n]|{_ESCAPE})*\"""")
-"""The literal of one string as Python writes it, and no other Python."""
-
-_STUDENT_COMES = """
-from my_robot_basics.checks import probe
-probe.announce()
-"""
-_TEST_HEARS = """
-from my_robot_basics.checks import probe
-probe.hear()
-"""
-_STUDENT_GOES = 'import sys; probe.silence(); sys.path.append({files!r}); del probe, sys'
-"""Modules of the student's come last, and after the probe: libraries look for some that they may
-do without. Nothing of ours stays among the names of the notebook."""
 
 
 class Rooms:
@@ -68,7 +47,7 @@ class Rooms:
             await self._open()
             await _together(self._prepare_student(), self._prepare_test())
             files = str(self._student.place.inside / 'given' / 'files')
-            await self._prepare(self._student, _STUDENT_GOES.format(files=files))
+            await self._prepare(self._student, STUDENT_GOES.format(files=files))
         except BaseException as error:
             await self.__aexit__()
             if isinstance(error, OSError | LiveError):
@@ -104,22 +83,9 @@ class Rooms:
     async def _ask_student(self, request: str) -> str:
         """Take one question of a check over, and text of a bounded size back."""
         run = await self._student.run(
-            '', timeout_sec=REPLY_TIMEOUT_SEC, expressions={'reply': _responder(request)}
+            '', timeout_sec=REPLY_TIMEOUT_SEC, expressions=as_expression(request)
         )
-        if run.flooded:
-            return _failed(f'no answer in {FLOOD_CHARACTERS:,} characters of output')
-        if run.timed_out:
-            return _failed(f'no answer within {REPLY_TIMEOUT_SEC:.0f} s')
-        if run.died:
-            return _failed('the kernel of your notebook has ended')
-        match run.expressions:
-            case {'reply': {'data': {'text/plain': str(text)}}} if len(text) > MAX_REPLY:
-                return _failed(f'an answer of {len(text):,} characters')
-            case {'reply': {'data': {'text/plain': str(text)}}} if _STRING.fullmatch(text):
-                # \x of no digits, or half a character: no text for the test's kernel
-                with contextlib.suppress(SyntaxError, ValueError):
-                    return ast.literal_eval(text).encode().decode()
-        return _failed('no usable answer')
+        return reply_of(run, within_sec=REPLY_TIMEOUT_SEC)
 
     async def _open(self) -> None:
         self._claim = claim()
@@ -148,25 +114,17 @@ class Rooms:
         for file in self._extra_files:
             shutil.copyfile(file, place.files / file.name)
         await self._student.start()
-        await self._prepare(self._student, _STUDENT_COMES)
+        await self._prepare(self._student, STUDENT_COMES)
 
     async def _prepare_test(self) -> None:
         await self._test.start()
-        await self._prepare(self._test, _TEST_HEARS)
+        await self._prepare(self._test, TEST_HEARS)
 
     async def _prepare(self, kernel: Kernel, code: str) -> None:
         run = await kernel.run(code, timeout_sec=SETUP_TIMEOUT_SEC)
         if not run.ran_to_end:
             seen = run.error.evalue if run.error else 'it did not end'
             raise RoomFailure(f'the {kernel.room} room could not be made ready: {seen}')
-
-
-def _responder(request: str) -> str:
-    return _RESPONDER.format(request=request)
-
-
-def _failed(sentence: str) -> str:
-    return json.dumps({'failed': sentence})
 
 
 async def _together(*work: Awaitable[None]) -> None:

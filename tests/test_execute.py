@@ -8,6 +8,7 @@ import time
 
 import nbformat
 import pytest
+from my_robot_basics.validate import judging
 from my_robot_basics.validate.outputs import CellRun
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 from nbgrader.utils import determine_grade
@@ -71,7 +72,7 @@ GOOD = 'def double(x): return 2 * x'
 
 
 def test_each_exercise_costs_only_itself(monkeypatch):
-    monkeypatch.setattr(module, 'STUDENT_CELL_TIMEOUT_SEC', 4.0)
+    monkeypatch.setattr(judging, 'STUDENT_CELL_TIMEOUT_SEC', 4.0)
     answers = {
         'good': GOOD,
         'raises': '1 / 0',
@@ -142,7 +143,7 @@ STRANGE = {
 
 @pytest.mark.parametrize(('own', 'outcome'), STRANGE.values(), ids=STRANGE)
 def test_strange_ways_to_answer(monkeypatch, own, outcome):
-    monkeypatch.setattr(module, 'STUDENT_CELL_TIMEOUT_SEC', 4.0)
+    monkeypatch.setattr(judging, 'STUDENT_CELL_TIMEOUT_SEC', 4.0)
     execution = execute(handed_in(lesson('a'), **own))
     assert outcomes(execution)['a-check'] == outcome
 
@@ -280,15 +281,11 @@ def test_student_cells_share_one_budget(monkeypatch):
             return CellRun(status='ok')
 
     monkeypatch.setattr(module, 'Rooms', Slow)
-    monkeypatch.setattr(module, 'STUDENT_CELLS_BUDGET_SEC', 0.5)
-    monkeypatch.setattr(module, '_Budget', lambda: module_budget(0.5))
+    monkeypatch.setattr(module, 'Budget', lambda: judging.Budget(0.5))
     execute(handed_in(lesson('a', 'b', 'c'), a='loop', b='loop', c='loop'))
     assert given == sorted(given, reverse=True)
     assert max(given) <= 0.5
     assert min(given) >= 0.1  # a cell is never given no time at all
-
-
-module_budget = module._Budget
 
 
 def test_it_works_inside_a_running_event_loop(monkeypatch):

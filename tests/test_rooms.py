@@ -355,10 +355,10 @@ NOT_READY = {
 @pytest.mark.timeout(60)
 @pytest.mark.parametrize(('code', 'why'), NOT_READY.values(), ids=NOT_READY)
 def test_a_room_that_is_not_made_ready_closes_both(loop, monkeypatch, left, code, why):
-    monkeypatch.setattr(module, '_STUDENT_COMES', code)
+    monkeypatch.setattr(module, 'STUDENT_COMES', code)
     patience = 0.5 if code == PROBE else 3600  # what can't come any more is not waited for
-    hears = module._TEST_HEARS.replace('hear()', f'hear({patience})')
-    monkeypatch.setattr(module, '_TEST_HEARS', hears)
+    hears = module.TEST_HEARS.replace('hear()', f'hear({patience})')
+    monkeypatch.setattr(module, 'TEST_HEARS', hears)
     monkeypatch.setattr(module, 'SETUP_TIMEOUT_SEC', 3600.0)
     with pytest.raises(RoomFailure, match=why):
         loop.run(Rooms(isolated=isolated()).__aenter__())

@@ -2,7 +2,7 @@
 
 - A notebook: `cells` says what each cell is for, `exercises` what to run of it, `names` which
   names a cell needs.
-- What came of its cells: `messages` and `outputs` gather it, `patience` waits for it, `verdict`
-  judges it.
+- What came of its cells: `messages` and `outputs` gather it, `patience` waits for it, `questions`
+  are a check's to the student's kernel, `verdict` judges one check and `judging` an exercise.
 - For all of them: `errors`, `limits`, `text`.
 """

@@ -1,0 +1,59 @@
+"""What two kernels need to meet: a message that crosses, and a check's questions to the student.
+
+The rooms have no path to each other but DDS: who holds both kernels takes questions over as text,
+and text of a bounded size back.
+"""
+
+import ast
+import contextlib
+import json
+import re
+
+from my_robot_basics.validate.limits import FLOOD_CHARACTERS, MAX_REPLY
+from my_robot_basics.validate.outputs import CellRun
+
+STUDENT_COMES = """
+from my_robot_basics.checks import probe
+probe.announce()
+"""
+TEST_HEARS = """
+from my_robot_basics.checks import probe
+probe.hear()
+"""
+STUDENT_GOES = 'import sys; probe.silence(); sys.path.append({files!r}); del probe, sys'
+"""Modules of the student's come last, and after the probe: libraries look for some that they may
+do without. Nothing of ours stays among the names of the notebook."""
+
+_RESPONDER = (
+    "__import__('my_robot_basics.checks.responder', fromlist=['answer']).answer({request!r})"
+)
+_ESCAPE = r"""\\(?:[\\'"nrt]|[xuU][0-9a-f]+)"""
+_STRING = re.compile(rf"""'(?:[^'\\\n]|{_ESCAPE})*'|"(?:[^"\\\n]|{_ESCAPE})*\"""")
+"""The literal of one string as Python writes it, and no other Python."""
+
+
+def as_expression(request: str) -> dict[str, str]:
+    """Return the user expression that answers a check's question in the student's kernel."""
+    return {'reply': _RESPONDER.format(request=request)}
+
+
+def reply_of(run: CellRun, *, within_sec: float) -> str:
+    """Return what came of it in so long as text for the check: a reply, or why there is none."""
+    if run.flooded:
+        return _failed(f'no answer in {FLOOD_CHARACTERS:,} characters of output')
+    if run.timed_out:
+        return _failed(f'no answer within {within_sec:.0f} s')
+    if run.died:
+        return _failed('the kernel of your notebook has ended')
+    match run.expressions:
+        case {'reply': {'data': {'text/plain': str(text)}}} if len(text) > MAX_REPLY:
+            return _failed(f'an answer of {len(text):,} characters')
+        case {'reply': {'data': {'text/plain': str(text)}}} if _STRING.fullmatch(text):
+            # \x of no digits, or half a character: no text for the test's kernel
+            with contextlib.suppress(SyntaxError, ValueError):
+                return ast.literal_eval(text).encode().decode()
+    return _failed('no usable answer')
+
+
+def _failed(sentence: str) -> str:
+    return json.dumps({'failed': sentence})
