@@ -5,6 +5,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cache
+from html import unescape
 
 import bleach
 from jinja2 import Template
@@ -17,6 +18,7 @@ from pygments.lexers import PythonLexer
 
 from grader.heal import KEY, grade_id, role
 from grader.templates import template
+from grader.text import visible
 
 MAX_TEXT_CHARACTERS = 5_000
 """What is shown of one output."""
@@ -26,6 +28,7 @@ _TAGS |= {'thead', 'tbody', 'tr', 'th', 'td'}
 _CODE = HtmlFormatter(style='xcode', nowrap=True)
 _REASON = re.compile(r'expected (?P<expected>.+?), saw (?P<seen>.+): (?P<hint>.+)', re.DOTALL)
 _FIRST_WORD = re.compile(r'\A[a-z]+(?=[ ,:;]|\Z)')
+_ENTITY = re.compile(r'&(#\d+|#x[0-9a-f]+|\w+);?', re.IGNORECASE)
 _BASE64 = re.compile(r'[A-Za-z0-9+/=\s]+')
 
 
@@ -181,7 +184,7 @@ def _text_piece(kind: str, text: str) -> Piece:
     text = strip_ansi(text).rstrip('\n')
     if (more := len(text) - MAX_TEXT_CHARACTERS) > 0:
         text = f'{text[:MAX_TEXT_CHARACTERS]}\n[{more:,} more characters]'
-    return Piece(kind, ''.join(c if c.isprintable() or c in '\n\t' else '�' for c in text))
+    return Piece(kind, visible(text))
 
 
 def _colour(source: str) -> Markup:
@@ -190,7 +193,13 @@ def _colour(source: str) -> Markup:
 
 def _rich(text: str) -> Markup:
     """Turn markdown into the harmless part of its HTML."""
-    return Markup(bleach.clean(markdown2html(text), tags=_TAGS, attributes={}, strip=True))
+    html = bleach.clean(markdown2html(text), tags=_TAGS, attributes={}, strip=True)
+    return Markup(_ENTITY.sub(lambda entity: _visible_entity(entity[0]), html))
+
+
+def _visible_entity(entity: str) -> str:
+    meant = unescape(entity)
+    return entity if visible(meant) == meant else visible(meant)
 
 
 def _words(text: str) -> Markup:

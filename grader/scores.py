@@ -1,14 +1,12 @@
 """Export the gradebook as a table for spreadsheets and other systems."""
 
-import csv
-import io
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from grader.course import Course
 from grader.files import write_whole
 from grader.records import Record, records, verdicts
-from grader.text import spreadsheet_safe
+from grader.text import spreadsheet_table
 
 COLUMNS = ('student_id', 'assignment', 'grade_id', 'score', 'max_score', 'comment')
 
@@ -25,25 +23,23 @@ def write_scores(course: Course) -> Path:
 
 def as_csv(course: Course, found: Iterable[Record]) -> str:
     """Return the table of some graded cells, with what the checks said of them."""
-    text = io.StringIO(newline='')
-    table = csv.writer(text)
-    table.writerow(COLUMNS)
+    return spreadsheet_table([COLUMNS, *_rows(course, found)])
+
+
+def _rows(course: Course, found: Iterable[Record]) -> Iterator[tuple]:
     said: dict[str, dict] = {}
     whose = None
     for record in found:
         if whose != (whose := (record.student_id, record.assignment)):
             said = verdicts(course, *whose)
-        table.writerow(
-            (
-                spreadsheet_safe(record.student_id),
-                spreadsheet_safe(record.assignment),
-                record.grade_id,
-                '' if record.score is None else record.score,
-                record.max_score,
-                spreadsheet_safe(_comment(record, said.get(record.grade_id, {}))),
-            )
+        yield (
+            record.student_id,
+            record.assignment,
+            record.grade_id,
+            '' if record.score is None else record.score,
+            record.max_score,
+            _comment(record, said.get(record.grade_id, {})),
         )
-    return text.getvalue()
 
 
 def _comment(record: Record, verdict: dict) -> str:

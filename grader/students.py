@@ -3,12 +3,12 @@
 import re
 import unicodedata
 
+from my_robot_basics.validate.text import visible
+
 MAX_ID_CHARACTERS, MAX_ID_BYTES = 128, 200
 """What nbgrader's database keeps of a name, and what a folder's name may be long, with a rest."""
 HTML = frozenset('<>"')
 """The formgrader's tables show names as they are, in text and in attributes."""
-JOINERS = '\u200c\u200d'
-"""Not printable, and part of some alphabets' spelling."""
 
 # what course management systems put around a name: Moodle's, and Canvas's
 _MOODLE = re.compile(r'(?P<who>.+?)_\d+_assignsubmission_(file|onlinetext)_?.*')
@@ -32,12 +32,11 @@ def student_in(name: str) -> str:
 
 def problem_of_id(student_id: str) -> str:
     """Say why a text can't be the name of a student's folder, if it can't."""
-    plain = student_id.translate(dict.fromkeys(map(ord, JOINERS)))
-    if not plain or student_id.startswith('.'):
+    if not student_id or student_id.startswith('.'):
         return 'there is no name of a student in it'
-    if not plain.isprintable() or '/' in plain:
+    if visible(student_id) != student_id or any(mark in student_id for mark in '/\n\t'):
         return "the student's name holds characters that can't be shown: rename it"
-    if HTML.intersection(plain):
+    if HTML.intersection(student_id):
         return 'the student\'s name holds one of < > ": the formgrader would take it for HTML'
     if len(student_id) > MAX_ID_CHARACTERS or len(student_id.encode()) > MAX_ID_BYTES:
         return f"the student's name is too long: at most {MAX_ID_CHARACTERS} characters are kept"

@@ -1,9 +1,11 @@
-"""Jinja templates of the pages that the grader writes: whatever they are given is escaped."""
+"""Jinja templates of the grader's pages: whatever they are given is escaped, and visible."""
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader, Template
+from markupsafe import Markup
+from my_robot_basics.validate.text import visible
 
 
 def template(
@@ -18,7 +20,15 @@ def template(
         autoescape=True,
         trim_blocks=True,
         lstrip_blocks=True,
+        finalize=_visible,
     )
     environment.filters |= filters or {}
     environment.globals |= values or {}
     return environment.get_template(name)
+
+
+def _visible(value: object) -> object:
+    """Spell out what nobody can see, in text and in HTML that is made of text."""
+    if isinstance(value, Markup):
+        return Markup(visible(value))
+    return visible(value) if isinstance(value, str) else value

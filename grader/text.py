@@ -1,8 +1,16 @@
 """Make text that students wrote safe to print, to tabulate and to open in a spreadsheet."""
 
+import csv
+import io
+import re
+from collections.abc import Iterable, Sequence
+
 from my_robot_basics.validate.text import columns as columns
 from my_robot_basics.validate.text import printable as printable
 from my_robot_basics.validate.text import shorten as shorten
+from my_robot_basics.validate.text import visible as visible
+
+BYTE_ORDER_MARK = '\ufeff'
 
 
 def pad(text: str, width: int) -> str:
@@ -10,7 +18,32 @@ def pad(text: str, width: int) -> str:
     return text + ' ' * (width - columns(text))
 
 
+# ';' and tabs separate fields, too, where a comma is part of numbers; quotes begin a field
+_FORMULA = re.compile(r'(^|[,;|])(["\s]*)(?=[=+\-@＝＋－＠])')
+_NUMBER = re.compile(r'["\s]*[-+]?\d+(\.\d+)?(e[-+]?\d+)?["\s]*([,;|)\]}]|$)')
+
+
 def spreadsheet_safe(text: object) -> str:
-    """Return a CSV field that no spreadsheet takes for a formula."""
+    """Return a CSV field that no spreadsheet takes for a formula, wherever it splits a line."""
     line = printable(text)
-    return f"'{line}" if line.startswith(('=', '+', '-', '@')) else line
+
+    def quoted(found: re.Match) -> str:
+        if found[1] and _NUMBER.match(line, found.end(1)):  # behind a comma, it is no formula
+            return found[0]
+        return f"{found[0]}'"
+
+    return _FORMULA.sub(quoted, line)
+
+
+def spreadsheet_table(rows: Iterable[Sequence[object]]) -> str:
+    """Return rows as CSV for a spreadsheet; numbers stay, and all other fields become safe.
+
+    It begins with a byte-order mark: without one, Excel takes it for another encoding than UTF-8.
+    """
+    text = io.StringIO(newline='')
+    table = csv.writer(text)
+    for row in rows:
+        table.writerow(
+            [field if isinstance(field, int | float) else spreadsheet_safe(field) for field in row]
+        )
+    return BYTE_ORDER_MARK + text.getvalue()

@@ -1,7 +1,5 @@
 """The whole course in one table: a row for each student, a column for each assignment."""
 
-import csv
-import io
 from collections import defaultdict
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -10,7 +8,7 @@ from pathlib import Path
 from grader.course import Course
 from grader.files import write_whole
 from grader.records import Record, records
-from grader.text import spreadsheet_safe
+from grader.text import spreadsheet_table
 
 
 @dataclass(frozen=True)
@@ -81,15 +79,13 @@ def write_totals(course: Course) -> Path:
 
 def as_csv(totals: Totals) -> str:
     """Return the table for a spreadsheet."""
-    text = io.StringIO(newline='')
-    table = csv.writer(text)
     most = zip(totals.assignments, totals.max_scores, strict=True)
-    heads = [f'{spreadsheet_safe(assignment)} (of {points:g})' for assignment, points in most]
-    table.writerow(['student_id', *heads, f'total (of {totals.max_score:g})', 'waiting'])
+    heads = [f'{assignment} (of {points:g})' for assignment, points in most]
+    rows = [['student_id', *heads, f'total (of {totals.max_score:g})', 'waiting']]
     for each in totals.students:
         scores = ['' if score is None else score for score in each.scores]
-        table.writerow([spreadsheet_safe(each.student_id), *scores, each.total, each.waiting])
-    return text.getvalue()
+        rows.append([each.student_id, *scores, each.total, each.waiting])
+    return spreadsheet_table(rows)
 
 
 def _score(cells: list[Record]) -> float | None:

@@ -84,7 +84,7 @@ def grade_class(root, names, crew):
         rows = {row.student_id: row for row in grade_all(course, submissions, crew=crew)}
         knocks = sum(knocked(each) for each in (server, local))
     pages = {page.parts[-3]: page.read_text(encoding='utf-8') for page in write_feedback(course)}
-    return Class(rows, course, pages, write_scores(course).read_text(encoding='utf-8'), knocks)
+    return Class(rows, course, pages, write_scores(course).read_text(encoding='utf-8-sig'), knocks)
 
 
 def knocked(server):

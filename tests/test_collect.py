@@ -177,7 +177,10 @@ def test_the_earlier_one_keeps_its_grade(course, source):
         'scores.csv',
         'submitted',
     ]
-    table = {row['grade_id']: row for row in csv.DictReader((kept / 'scores.csv').open())}
+    table = {
+        row['grade_id']: row
+        for row in csv.DictReader((kept / 'scores.csv').open(encoding='utf-8-sig'))
+    }
     assert (table['double-check']['score'], table['double-hidden']['score']) == ('0.0', '2.0')
     assert table['double-check']['comment'] == 'expected 2, saw 1'
     assert WRONG.splitlines()[1].strip() in (kept / 'autograded' / NOTEBOOK).read_text()

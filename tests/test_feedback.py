@@ -1,4 +1,6 @@
 import base64
+import re
+from html import unescape
 
 import pytest
 from course_maker import PIXEL, TOY, answered, executed, released_course, submit
@@ -104,6 +106,29 @@ def test_nothing_that_a_student_wrote_runs(course):
     assert '<script' not in html
     assert 'href="javascript' not in html
     assert "default-src 'none'" in html
+
+
+def test_nothing_on_a_page_is_unseen_or_turns_text_around(course):
+    hidden = '\u202egnorw\u2066\u200b\x1b'
+    notebook = answered(
+        course,
+        f'# {hidden} 王小明 محمد\n{RIGHT}',
+        explained=f'{hidden} &#x202e; &#8238; &rlm; &amp; é 👩\u200d🔬 محمد',
+    )
+    html = feedback(
+        course,
+        'unseen',
+        notebook,
+        reasons={'double-check': f'expected 2, saw {hidden}: try {hidden}'},
+        outputs={'double': [new_output('stream', text=f'printed {hidden}')]},
+        notes=[f'noted {hidden}'],
+    )
+    page = unescape(html)
+    assert not re.search('[\u200b\u200f\u202a-\u202e\u2066-\u2069\x1b]', page)
+    assert page.count('\\u202egnorw\\u2066\\u200b') >= 6
+    assert page.count('محمد') == 2
+    assert '王小明' in page
+    assert '& é 👩\u200d🔬 محمد' in page
 
 
 def test_pictures_are_shown_and_described(course):

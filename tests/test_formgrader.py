@@ -100,7 +100,7 @@ def told(capsys, course, *arguments):
 def exported(capsys, course):
     """Score and comment of the written answer in the table of scores."""
     told(capsys, course, 'scores')
-    with (course.gradebook / 'scores.csv').open(encoding='utf-8', newline='') as file:
+    with (course.gradebook / 'scores.csv').open(encoding='utf-8-sig', newline='') as file:
         [row] = [row for row in csv.DictReader(file) if row['grade_id'] == ANSWER]
     return row['score'], row['comment']
 

@@ -257,7 +257,7 @@ def test_scores_are_a_table_that_no_spreadsheet_runs(course):
     path = write_scores(course)
     first = path.read_bytes()
     assert write_scores(course).read_bytes() == first
-    rows = list(csv.DictReader(path.read_text().splitlines()))
+    rows = list(csv.DictReader(path.read_text('utf-8-sig').splitlines()))
     assert tuple(rows[0]) == COLUMNS
     assert [(r['student_id'], r['grade_id'], r['score'], r['max_score']) for r in rows] == [
         ("'=cmd()", 'double-check', '0.0', '1.0'),
@@ -273,6 +273,7 @@ def test_scores_are_a_table_that_no_spreadsheet_runs(course):
     assert rows[0]['comment'] == '\'=HYPERLINK("x")'
     assert rows[1]['comment'] == 'to be graded by hand; ?'
     assert rows[3]['comment'] == 'expected "a", saw \\x1b[31mb'
+    assert first.startswith(b'\xef\xbb\xbf')  # else a spreadsheet shows other letters
     assert rows[6]['comment'] == 'not submitted'
     assert {r['assignment'] for r in rows} == {TOY}
 

@@ -103,7 +103,7 @@ def said(capsys, course, *arguments):
 def scores(course):
     """Score and comment by student and graded cell of the first lesson, as exported."""
     assert main(['scores'], course=course) == 0
-    with (course.gradebook / 'scores.csv').open(encoding='utf-8', newline='') as file:
+    with (course.gradebook / 'scores.csv').open(encoding='utf-8-sig', newline='') as file:
         rows = [row for row in csv.DictReader(file) if row['assignment'] == TOY]
     return {(row['student_id'], row['grade_id']): (row['score'], row['comment']) for row in rows}
 

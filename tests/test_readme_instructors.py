@@ -89,7 +89,7 @@ class Walk:
     def after_scores(self, out):
         path = Path(out.strip())
         assert path == self.clone / 'gradebook/scores.csv'
-        with path.open(encoding='utf-8', newline='') as file:
+        with path.open(encoding='utf-8-sig', newline='') as file:
             rows = list(csv.DictReader(file))
         found = {student: {} for student in STUDENTS}
         for row in rows:

@@ -34,7 +34,23 @@ def test_an_id_that_can_be_a_folder_has_no_problem(student):
     assert Path(student).name == student
 
 
-NO_IDS = ['', '.', '..', '.git', 'a/b', 'a\0b', '\u200c', '小' * 70, '<b>a', 'a" onclick="b']
+NO_IDS = [
+    'a\u200db',
+    'ada\u3164',
+    'ada\u202e',
+    'a\nb',
+    'a\tb',
+    '',
+    '.',
+    '..',
+    '.git',
+    'a/b',
+    'a\0b',
+    '\u200c',
+    '小' * 70,
+    '<b>a',
+    'a" onclick="b',
+]
 
 
 @pytest.mark.parametrize('student', NO_IDS)

@@ -1,6 +1,18 @@
+import csv
+import io
+import re
+
 import pytest
 
-from grader.text import columns, pad, printable, shorten, spreadsheet_safe
+from grader.text import (
+    columns,
+    pad,
+    printable,
+    shorten,
+    spreadsheet_safe,
+    spreadsheet_table,
+    visible,
+)
 
 
 @pytest.mark.parametrize(
@@ -28,10 +40,76 @@ def test_lines_are_cut_by_columns(text, width, shown):
     assert columns(pad(shown, 10)) == 10
 
 
-@pytest.mark.parametrize('formula', ['=1+1', '+1', '-1', '@SUM(A1)', '\t=1', '\r=1'])
+HONEST = [
+    '王小明', 'Ångström', 'محمد علي', 'دانش‌آموز', 'नमस्ते', 'क्‍ष', 'Zoë',
+    '葛\U000e0100飾', '🤖', '👩\u200d🔬', '👍🏽', '❤\ufe0f', '3\ufe0f\u20e3', 'θ1 = 23.4°', 'ﷺ',
+]  # fmt: skip
+
+
+@pytest.mark.parametrize('text', HONEST)
+def test_words_of_any_language_and_emoji_stay(text):
+    assert visible(text) == text
+    assert printable(f'saw {text}') == f'saw {text}'
+
+
+UNSEEN = [
+    '\u202a', '\u202b', '\u202c', '\u202d', '\u202e', '\u2066', '\u2067', '\u2068', '\u2069',
+    '\u200e', '\u200f', '\u061c', '\u200b', '\u2060', '\ufeff', '\u00ad', '\u180e', '\u3164',
+    '\u115f', '\uffa0', '\u034f', '\u2028', '\u0085', '\u00a0', '\x1b', '\x07', '\x7f',
+    '\U000e0041', '\ue000', '\ufff9',
+]  # fmt: skip
+
+
+@pytest.mark.parametrize('character', UNSEEN)
+@pytest.mark.parametrize('around', ['x', '明', 'م'])
+def test_what_shows_nothing_is_spelled_out(character, around):
+    spelled = character.encode('unicode_escape').decode()
+    assert visible(f'{around}{character}{around}') == f'{around}{spelled}{around}'
+
+
+@pytest.mark.parametrize('text', ['a\u200db', 'a\u200c', '\u200d🔬', 'a\ufe0f', '❤\ufe0f\ufe0e'])
+def test_joiners_and_selectors_stay_only_where_they_change_a_look(text):
+    assert visible(text).count('\\u') == 1
+
+
+def test_lines_and_tabs_stay_in_text_of_several_lines():
+    assert visible('a\n\tb\r') == 'a\n\tb\\r'
+
+
+@pytest.mark.parametrize('formula', ['=1+1', '+1', '-1', '@SUM(A1)', '\t=1', '\r=1', '＝1'])
 def test_no_field_is_a_formula(formula):
     assert spreadsheet_safe(formula)[0] == "'"
 
 
 def test_other_fields_stay_as_they_are():
     assert spreadsheet_safe('expected 5, saw = 4') == 'expected 5, saw = 4'
+
+
+@pytest.mark.parametrize('mark', ['=', '+', '-', '@', '＝', '＋', '－', '＠'])
+@pytest.mark.parametrize('between', [';', ',', '|', '\t', '\r', '\n', '; ', ';"', ';""', ', " '])
+def test_no_part_of_a_field_is_a_formula_where_a_spreadsheet_may_split_it(mark, between):
+    """In much of Europe a spreadsheet splits at semicolons, and quotes only count at a start."""
+    said = f'saw x{between}{mark}HYPERLINK("http://example.org")'
+    safe = spreadsheet_safe(said)
+    for cell in re.split(r'[;,|\t\r\n]', safe):
+        assert not re.match(r'["\s]*[-=+@＝＋－＠]', cell)
+    assert safe.replace("'", '') == printable(said)
+
+
+@pytest.mark.parametrize(
+    'text', ['expected 5, saw = 4', 'saw [1.5, -2.5e-3, +3]', "it's a-b; c=d", 'x, -4', '(0, -1)']
+)
+def test_sentences_and_lists_of_numbers_stay_as_they_are(text):
+    assert spreadsheet_safe(text) == text
+
+
+def test_a_number_that_goes_on_is_a_formula():
+    assert spreadsheet_safe('saw x, -2+cmd()') == "saw x, '-2+cmd()"
+
+
+def test_a_spreadsheet_takes_a_table_for_what_it_is():
+    rows = [['name', 'score'], ['王小明', 1.5], ['=1', -2], ['a;=1', '']]
+    table = spreadsheet_table(rows).encode()
+    assert table.startswith(b'\xef\xbb\xbf')
+    found = list(csv.reader(io.StringIO(table.decode('utf-8-sig'))))
+    assert found == [['name', 'score'], ['王小明', '1.5'], ["'=1", '-2'], ["a;'=1", '']]

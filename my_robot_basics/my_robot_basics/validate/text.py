@@ -1,14 +1,53 @@
-"""Make text that students wrote safe to print, and cut it to a width."""
+"""Make text that students wrote safe to print and to show, and cut it to a width."""
 
+import re
 import unicodedata
+
+_JOINERS = '\u200c\u200d'
+"""Not printable, and part of how some alphabets and some emoji are spelled."""
+_SELECTORS = '\u180b-\u180d\u180f\ufe00-\ufe0f\U000e0100-\U000e01ef'
+"""Choose another look of the character before them."""
+_BLANK = re.compile('[\u034f\u115f\u1160\u17b4\u17b5\u2800\u3164\uffa0]')
+"""Letters and marks to Unicode, and nothing to the eye."""
+_DOUBTFUL = re.compile(f'[^\n\t -~\u00a1-\u00ac\u00ae-\u02ff\u4e00-\u9fff]|[{_SELECTORS}]')
+"""What takes a second look; most text has none of it."""
+_SELECTOR = re.compile(f'[{_SELECTORS}]')
 
 
 def printable(text: object) -> str:
     """Return one line in which escapes, controls and direction marks are spelled out."""
-    line = ' '.join(str(text).split())
-    return ''.join(
-        c if c.isprintable() else c.encode('unicode_escape', 'replace').decode() for c in line
-    )
+    return visible(' '.join(str(text).split()))
+
+
+def visible(text: str) -> str:
+    """Return text in which every character can be seen; its lines and tabs stay.
+
+    Escapes, controls of the direction of text and other characters that show nothing are spelled
+    out, so that what is read is what is there. Words of any language and emoji stay as they are.
+    """
+    return _DOUBTFUL.sub(lambda found: _spelled(text, found.start()), text)
+
+
+def _spelled(text: str, place: int) -> str:
+    character = text[place]
+    if _shows(character, before=text[place - 1 : place], after=text[place + 1 : place + 2]):
+        return character
+    return character.encode('unicode_escape', 'replace').decode()
+
+
+def _shows(character: str, *, before: str, after: str) -> bool:
+    """Whether a character can be seen where it stands."""
+    if character in _JOINERS:
+        return _joins(before) and _joins(after)
+    if _SELECTOR.match(character):
+        return before in tuple('0123456789#*') or (_joins(before) and not _SELECTOR.match(before))
+    return character.isprintable() and not _BLANK.match(character)
+
+
+def _joins(character: str) -> bool:
+    """Whether a character's look can depend on an invisible one beside it."""
+    kind = unicodedata.category(character) if character else ''
+    return not character.isascii() and (kind[:1] in ('L', 'M') or kind in ('So', 'Sk', 'Sm', 'Po'))
 
 
 def shorten(text: str, width: int) -> str:
