@@ -12,6 +12,7 @@ from functools import cache
 from pathlib import Path
 
 from grader.errors import CourseError
+from grader.hierarchies import scoped
 from grader.pool import Pool
 from grader.sandbox import Sandbox
 from grader.servers import NoWarmKernel
@@ -39,6 +40,11 @@ _TRIED = {
         *_ROOM, '--disable-userns', 'true',
     ],
 }  # fmt: skip
+_CGROUPS = (
+    'Memory is counted twice a second instead, without what the kernel keeps for a submission. A '
+    'cgroup can be had by root, of systemd (in a session of your own, with cgroups of version 2), '
+    'and in a container whose /sys/fs/cgroup can be written to'
+)
 _WHOLE = 'all of it together, with limits and a filter of system calls'
 
 
@@ -87,6 +93,16 @@ def isolated(*, trust_students: bool = False) -> bool:
             'account: ./course grade --trust-students. It will stand in each feedback.'
         )
     return not problem
+
+
+def accounting() -> Protection:
+    """Return who counts what rooms use, as the processes that grade find it."""
+    command = scoped((sys.executable, '-P', '-m', 'grader.hierarchies'))
+    told = subprocess.run(command, capture_output=True, text=True)
+    if told.returncode == 0:
+        return Protection(f'a cgroup for each room ({told.stdout.strip()})')
+    why = told.stderr.strip().rpartition('\n')[2]
+    return Protection('a cgroup for each room', why, _CGROUPS)
 
 
 def slow() -> str:

@@ -1,4 +1,7 @@
-"""The temporary folder of this process, and those of graders that were killed."""
+"""What this process has on the machine beside processes, and what graders that were killed left.
+
+That is a temporary folder, and the cgroups that are written down in it.
+"""
 
 import atexit
 import contextlib
@@ -6,13 +9,19 @@ import fcntl
 import os
 import shutil
 import tempfile
-from collections.abc import Iterator
+import time
+from collections.abc import Iterable, Iterator
 from functools import cache
 from pathlib import Path
+
+from grader.cgroups import remove_cgroup
 
 PREFIX = 'mrb-rooms-'
 MAX_PARENT = 50
 """A Unix socket's path holds 107 characters at most."""
+_CGROUPS = 'cgroups'
+_END_SEC = 5.0
+"""What killed processes may take to leave their cgroup."""
 
 
 def own_folder() -> Path:
@@ -24,6 +33,12 @@ def own_folder() -> Path:
     return _own_folder(Path('/tmp' if len(parent) > MAX_PARENT else parent), os.getpid())
 
 
+def note_cgroups(folders: Iterable[Path]) -> None:
+    """Write down cgroups, before they are made: they go with the folder of this process."""
+    with (own_folder() / _CGROUPS).open('a', encoding='utf-8') as notes:
+        notes.writelines(f'{folder}\n' for folder in folders)
+
+
 def sweep(parent: Path) -> list[Path]:
     """Remove and return the folders of this user in which nobody lives any more."""
     removed = []
@@ -31,8 +46,9 @@ def sweep(parent: Path) -> list[Path]:
         with contextlib.suppress(OSError), _opened(folder) as lock:  # a link; another's; gone
             if os.fstat(lock).st_uid == os.geteuid():
                 fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                shutil.rmtree(folder)
-                removed.append(folder)
+                if _remove_cgroups(folder):  # else the next one tries again
+                    shutil.rmtree(folder)
+                    removed.append(folder)
     return removed
 
 
@@ -53,7 +69,23 @@ def _own_folder(parent: Path, process: int) -> Path:
 
 def _remove(folder: Path, process: int) -> None:
     if os.getpid() == process:  # not a copy of it
+        _remove_cgroups(folder)
         shutil.rmtree(folder, ignore_errors=True)
+
+
+def _remove_cgroups(folder: Path) -> bool:
+    """Remove the cgroups that are written down in a folder; return whether they are gone."""
+    try:
+        noted = (folder / _CGROUPS).read_text(encoding='utf-8').splitlines()
+    except FileNotFoundError:
+        return True
+    left = [Path(line) for line in noted]
+    deadline = time.monotonic() + _END_SEC
+    while left := [path for path in left if not remove_cgroup(path)]:
+        if time.monotonic() > deadline:
+            return False
+        time.sleep(0.01)
+    return True
 
 
 @contextlib.contextmanager

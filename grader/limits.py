@@ -16,6 +16,13 @@ MAX_RESULT_BYTES = 100_000_000
 
 ROOM_MEMORY_BYTES = 2 * 2**30
 """All processes of a room together; the kernel of a lesson uses 0.15 GB."""
+ROOM_SOCKET_BYTES = 256 * 2**20
+"""What waits in a room's sockets, where Linux counts that aside; a lesson: under 1 MB."""
+ROOM_PROCESSES = 256
+"""Processes and threads of a room together; a lesson: some 60."""
+CPU_WEIGHT = 100
+"""What each room may have of the processor beside the other one, and a sandbox twice that beside
+others: however many processes a student starts, the test's kernel has its half."""
 ROOM_DISK_BYTES = 64 * 2**20
 """All that a room can write, on a file system in memory: logs, caches and plots take 2 MB."""
 ROOM_FILES = 8_192
@@ -37,7 +44,7 @@ room for more submissions, above the second there are too many."""
 
 PROCESS_LIMITS = {
     resource.RLIMIT_AS: 3 * 2**30,  # of each process, asked for or used; a lesson: under 1 GB
-    resource.RLIMIT_NPROC: 256,  # processes and threads of a room together; a lesson: some 60
+    resource.RLIMIT_NPROC: ROOM_PROCESSES,
     resource.RLIMIT_CPU: 300,  # seconds of each process; nothing outlives its submission anyway
     resource.RLIMIT_FSIZE: ROOM_DISK_BYTES,  # no file can be larger than the disk
     resource.RLIMIT_NOFILE: 1_024,  # what a login has; 30 nodes take 400

@@ -31,6 +31,8 @@ class Keeper:
     """The file descriptor where bubblewrap tells about it."""
     user: int | None
     """Whom root becomes before it joins."""
+    entrances: tuple[Path, ...] = ()
+    """Where it joins the room's cgroup, before all else."""
 
 
 @dataclass(frozen=True)

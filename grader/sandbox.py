@@ -6,12 +6,11 @@ each room beside it, and everything in a room dies with its first process.
 
 import asyncio
 import contextlib
+import itertools
 import os
-import re
 import shutil
 import signal
 import subprocess
-from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -26,16 +25,17 @@ from grader.bubblewrap import (
     room_command,
     slot_user,
 )
+from grader.cgroups import RoomCgroup, SandboxCgroups, joining
 from grader.errors import RoomFailure
-from grader.limits import ROOM_MEMORY_BYTES
+from grader.hierarchies import NoCgroups
+from grader.leftovers import note_cgroups, own_folder
+from grader.memory_watch import watch_memory
 from grader.places import Keeper, Place, make_folder
 from grader.seccomp import seccomp_filter
 
-_OWN = re.compile(r'^Rss(?:Anon|Shmem):\s+(\d+) kB$', re.MULTILINE)
-
 OPEN_TIMEOUT_SEC = 30.0
 CLOSE_TIMEOUT_SEC = 10.0
-WATCH_EVERY_SEC = 0.5
+_numbers = itertools.count(1)
 
 
 class Sandbox:
@@ -48,13 +48,15 @@ class Sandbox:
         self._network = -1
         self._watch: asyncio.Future | None = None
         self._files: list[int] = []
+        self._cgroups = _sandbox_cgroups()
         self._folders = {room: make_folder(room) for room in ROOMS}
         for folder in self._folders.values():
             for name, text in ACCOUNTS.items():
                 (folder / 'given' / name).write_text(text)
 
     async def open(self) -> None:
-        """Make the network and the disks. Raises RoomFailure."""
+        """Make the cgroups, the network and the disks. Raises RoomFailure."""
+        self._make_cgroups()
         self._holder = subprocess.Popen(
             holder_command(self._user, {r: f / 'given' for r, f in self._folders.items()}),
             bufsize=0,
@@ -79,12 +81,17 @@ class Sandbox:
             raise RoomFailure(f'the sandbox could not be made: {said or silent}')
         self._pid = int(line)
         self._network = os.open(f'/proc/{self._pid}/ns/net', os.O_RDONLY)
-        self._watch = asyncio.ensure_future(self._watch_memory())
+        if self._cgroups is None:
+            self._watch = asyncio.ensure_future(watch_memory(self._inhabitants))
+
+    def cgroup(self, room: str) -> RoomCgroup | None:
+        """Return the cgroup of a room; None where this machine gives us none."""
+        return self._cgroups and self._cgroups.rooms[room]
 
     def place(self, room: str) -> Place:
         """Return the place of the 'student' or the 'test' kernel, for one command."""
         seccomp = self._filter()
-        prefix = room_command(self._user, holder=self._pid, room=room, seccomp=seccomp)
+        prefix = self._room_command(room, seccomp)
         return Place(
             self._folders[room],
             self._folders[room],
@@ -100,8 +107,28 @@ class Sandbox:
         seccomp = self._filter()
         told, tell = os.pipe()
         self._files += [told, tell]
-        begin = room_command(self._user, holder=self._pid, room=room, seccomp=seccomp, told=tell)
-        return Keeper((*begin, *KEEPER), (seccomp, tell), told=told, user=self._user)
+        cgroup = self.cgroup(room)
+        return Keeper(
+            (*self._room_command(room, seccomp, told=tell), *KEEPER),
+            (seccomp, tell),
+            told=told,
+            user=self._user,
+            entrances=cgroup.entrances if cgroup else (),
+        )
+
+    def _room_command(self, room: str, seccomp: int, told: int | None = None) -> list[str]:
+        command = room_command(self._user, holder=self._pid, room=room, seccomp=seccomp, told=told)
+        return [*joining(self.cgroup(room)), *command]
+
+    def _make_cgroups(self) -> None:
+        if self._cgroups is not None:
+            note_cgroups(self._cgroups.folders)
+            try:
+                self._cgroups.make()
+            except OSError as problem:
+                raise RoomFailure(
+                    f'the cgroups of a sandbox could not be made: {problem}'
+                ) from problem
 
     def _filter(self) -> int:
         """Return a file with the filter of system calls: bubblewrap reads it up."""
@@ -114,9 +141,11 @@ class Sandbox:
     async def close(self) -> None:
         """End whatever still runs in it, and wait until it has gone."""
         try:
-            if self._holder is not None:
-                async with asyncio.timeout(CLOSE_TIMEOUT_SEC):
+            async with asyncio.timeout(CLOSE_TIMEOUT_SEC):
+                if self._holder is not None:
                     await self._end()
+                while self._cgroups is not None and not self._cgroups.remove():
+                    await asyncio.sleep(0.005)
         except TimeoutError:
             raise RoomFailure('processes of a sandbox could not be ended') from None
         finally:
@@ -126,21 +155,6 @@ class Sandbox:
             self._files, self._network, self._holder = [], -1, None
             for folder in self._folders.values():
                 shutil.rmtree(folder, ignore_errors=True)
-
-    async def _watch_memory(self) -> None:
-        """Keep all processes of a room within its memory: the largest ends first."""
-        while True:
-            await asyncio.sleep(WATCH_EVERY_SEC)
-            rooms: dict[int, dict[int, int]] = defaultdict(dict)
-            for pid in self._inhabitants():
-                with contextlib.suppress(OSError):  # it has ended meanwhile
-                    rooms[os.stat(f'/proc/{pid}/ns/pid').st_ino][pid] = _own_memory(pid)
-            for used in rooms.values():
-                while sum(used.values()) > ROOM_MEMORY_BYTES:
-                    largest = max(used, key=used.get)
-                    del used[largest]
-                    with contextlib.suppress(ProcessLookupError):
-                        os.kill(largest, signal.SIGKILL)
 
     async def _end(self) -> None:
         if self._watch is not None:
@@ -173,7 +187,8 @@ class Sandbox:
                         yield int(name)
 
 
-def _own_memory(pid: int) -> int:
-    """Return the bytes that a process shares with no file; with other processes, perhaps."""
-    status = Path(f'/proc/{pid}/status').read_text(encoding='utf-8', errors='replace')
-    return 1_024 * sum(map(int, _OWN.findall(status)))
+def _sandbox_cgroups() -> SandboxCgroups | None:
+    try:
+        return SandboxCgroups(f'{own_folder().name}-{next(_numbers)}', ROOMS)
+    except NoCgroups:
+        return None

@@ -17,7 +17,7 @@ from grader.feedback import write_feedback
 from grader.grade import grade_all
 from grader.gradebook import register
 from grader.intake import lines
-from grader.isolation import missing, protections, slow
+from grader.isolation import accounting, missing, protections, slow
 from grader.lateness import extended_for_nobody
 from grader.release import release
 from grader.replay import RECORDED, replay
@@ -188,12 +188,18 @@ def run_demo(course: Course, asked: argparse.Namespace) -> int:
 def run_doctor(course: Course, asked: argparse.Namespace) -> int:
     """Say what keeps student code in on this machine. 1 where something is missing."""
     print('What keeps student code in while it is graded:')
-    for protection in protections():
-        print(f'  {"MISSING" if protection.problem else "ok     "}  {protection.name}')
+    counted = accounting()
+    for protection in (*protections(), counted):
+        lacks = 'without' if protection is counted else 'MISSING'
+        print(f'  {lacks if protection.problem else "ok     "}  {protection.name}')
     if problem := missing():
         print(f'\n{problem[0].upper()}{problem[1:]}.')
         return 1
     print('Nothing is missing: ./course grade runs each submission in a sandbox.')
+    if counted.problem:
+        print(
+            f'Its limits are less strict than they could be: {counted.problem}. {counted.remedy}.'
+        )
     if problem := slow():
         print(f'It is slower than it could be: no kernel can be forked here, for {problem}.')
     return 0

@@ -4,6 +4,7 @@ The order goes, as an errand, through a server of `servers` to a process that th
 """
 
 import asyncio
+import contextlib
 import json
 import os
 import socket
@@ -63,13 +64,15 @@ async def _forked(place: Place, room: str, environment: dict[str, str], first: i
     ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     with ours:
         ours.setblocking(False)
-        pidfd = os.pidfd_open(first)
-        try:
-            socket.send_fds(ours, [order], [pidfd])
+        with contextlib.ExitStack() as opened:
+            files = [os.pidfd_open(first)]
+            opened.callback(os.close, files[0])
+            for path in place.keeper.entrances:
+                files.append(os.open(path, os.O_WRONLY))
+                opened.callback(os.close, files[-1])
+            socket.send_fds(ours, [order], files)
             with theirs:
                 server = await asyncio.to_thread(send, theirs, room=room)
-        finally:
-            os.close(pidfd)
         return await _answer(ours, server)
 
 

@@ -10,6 +10,7 @@ from concurrent.futures import Future
 from typing import Self
 
 from grader.errors import TaskFailed
+from grader.hierarchies import scoped
 from grader.isolation import isolated
 from grader.limits import (
     IN_FLIGHT_EACH,
@@ -54,7 +55,7 @@ class Workers:
         self.room = min(in_flight or most, fit)
         self._gate = Gate(least=min(least, fit), most=self.room, step=self._number)
         self._each = -(-least // self._number)
-        self._command = command or COMMAND
+        self._command = command or scoped(COMMAND)
         self._team: list[_Worker] = []
         self._pool = Pool(self.room)
 

@@ -14,7 +14,7 @@ from pathlib import Path
 import psutil
 import pytest
 
-from grader import bubblewrap
+from grader import bubblewrap, cgroups, memory_watch
 from grader import sandbox as module
 from grader.bubblewrap import FIRST_USER, slot_user
 from grader.course import ROOT
@@ -357,8 +357,12 @@ print(sorted(os.wait()[1] for _ in range(2)), flush=True)
 SMALL = "kept = b'x' * 150_000_000; import time; time.sleep(1000)"
 
 
-def test_processes_share_one_limit_of_memory(loop, monkeypatch):
-    monkeypatch.setattr(module, 'ROOM_MEMORY_BYTES', 200_000_000)
+@pytest.mark.parametrize('counted', ['by a cgroup', 'by looking'])
+def test_processes_share_one_limit_of_memory(loop, monkeypatch, counted):
+    for each in (cgroups, memory_watch):
+        monkeypatch.setattr(each, 'ROOM_MEMORY_BYTES', 200_000_000)
+    if counted == 'by looking':
+        monkeypatch.setattr(module, '_sandbox_cgroups', lambda: None)
     sandbox = Sandbox(slot=next(SLOTS))
 
     async def swell():

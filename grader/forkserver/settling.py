@@ -1,4 +1,4 @@
-"""What a forked process does to become a kernel: enter its room, and give up all rights."""
+"""What a forked process does to become a kernel: join its room, and give up all rights."""
 
 import ctypes
 import json
@@ -15,6 +15,8 @@ from pathlib import Path
 from libc import call
 
 _MAX_ORDER = 1_000_000
+_MAX_FILES = 8
+"""The room, and where its cgroup is joined in each hierarchy."""
 _NAMESPACES = {
     'user': 0x10000000, 'mnt': 0x00020000, 'net': 0x40000000, 'pid': 0x20000000,
     'ipc': 0x08000000, 'uts': 0x04000000, 'cgroup': 0x02000000,
@@ -32,7 +34,9 @@ def become_a_kernel(errand: socket.socket, made: dict[str, str]) -> None:
     """
     try:
         signal.signal(signal.SIGCHLD, signal.SIG_DFL)
-        text, (room,), _, _ = socket.recv_fds(errand, _MAX_ORDER, 1)
+        text, (room, *cgroups), _, _ = socket.recv_fds(errand, _MAX_ORDER, _MAX_FILES)
+        for entrance in cgroups:
+            os.write(entrance, b'0')  # this process joins, and what it forks is born there
         order = json.loads(text)
         order['environment'] |= made
         _enter(room, order)

@@ -1,0 +1,204 @@
+"""Where this process may make cgroups: in version 2 of them, or in version 1 where that is used.
+
+In version 2 a cgroup that has others in it holds no processes. So graders move into one of their
+own, GRADERS, beside those that they make. That is done only where the tree is given to us: by
+systemd's delegation (`scoped` asks for it), in a container, or to root where no systemd rules.
+"""
+
+import contextlib
+import os
+import shutil
+import subprocess
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+GRADERS = 'mrb-graders'
+"""The cgroup that graders move into."""
+NEEDED, WANTED = ('memory', 'pids'), ('memory', 'pids', 'cpu')
+"""The controllers without which a cgroup is of no use, and those that we use."""
+GRADERS_WEIGHT = 1_000
+"""Of the processor, beside 200 of a sandbox: who grades must answer however many run."""
+
+_SYSTEMD = Path('/run/systemd/system')
+_TRY_SEC = 10.0
+_MOVES = 10
+
+
+class NoCgroups(Exception):
+    """Why no cgroup can be made here, in a sentence."""
+
+
+@dataclass(frozen=True)
+class Hierarchies:
+    """Where cgroups can be made: the folder for each controller; in version 2 it is the same."""
+
+    version: int
+    folders: dict[str, Path]
+
+    def __str__(self) -> str:
+        """Return what the doctor says of it."""
+        controllers = ', '.join(self.folders)
+        return f'version {self.version}: {controllers}; in {self.folders["memory"]}'
+
+
+def hierarchies() -> Hierarchies:
+    """Return where this process may make cgroups. Raises NoCgroups."""
+    found = _found(Path('/proc/self'))
+    if isinstance(found, NoCgroups):
+        raise found
+    return found
+
+
+def scoped(command: tuple[str, ...]) -> tuple[str, ...]:
+    """Return a command that runs where cgroups can be made, if systemd can give such a place.
+
+    That is a scope: it is begun by `systemd-run`, as the user's own, and ends with the command.
+    """
+    found = _found(Path('/proc/self'))
+    return (*_scope(), *command) if isinstance(found, NoCgroups) else command
+
+
+@cache
+def _scope() -> tuple[str, ...]:
+    """Return how a command begins that runs in a scope; () where there is none to be had."""
+    tool = shutil.which('systemd-run')
+    if tool is None or not _SYSTEMD.is_dir() or 'memory' in _own_paths(Path('/proc/self')):
+        return ()
+    whose = ['--user'] if os.geteuid() else []
+    scope = (tool, *whose, '--scope', '--quiet', '--collect', '--property=Delegate=yes', '--')
+    try:
+        tried = subprocess.run(
+            [*scope, 'true'], stdin=subprocess.DEVNULL, capture_output=True, timeout=_TRY_SEC
+        )
+    except subprocess.TimeoutExpired:
+        return ()
+    return () if tried.returncode else scope
+
+
+@cache
+def _found(proc: Path) -> Hierarchies | NoCgroups:
+    try:
+        paths = _own_paths(proc)
+        if 'memory' in paths:
+            folders = {name: _folder(proc, paths[name], name) for name in WANTED if name in paths}
+            return Hierarchies(1, _writable(folders))
+        if '' not in paths:
+            raise NoCgroups('this Linux has none')
+        top = _folder(proc, '/', '') if _holds(proc, '/', '') else None
+        folder = _version_2(_folder(proc, paths[''], ''), top)
+        controllers = _words(folder / 'cgroup.subtree_control')
+        return Hierarchies(2, {name: folder for name in WANTED if name in controllers})
+    except NoCgroups as problem:
+        return problem
+    except OSError as problem:
+        return NoCgroups(f'{problem.strerror}: {problem.filename}')
+
+
+def _own_paths(proc: Path) -> dict[str, str]:
+    """Return the cgroup of this process by controller; that of version 2 by ''."""
+    lines = (proc / 'cgroup').read_text(encoding='utf-8').splitlines()
+    whole = [line.split(':', 2) for line in lines]
+    return {name: path for _, names, path in whole for name in names.split(',')}
+
+
+def _mounts(proc: Path, controller: str) -> Iterator[tuple[str, str]]:
+    """Yield which part of a controller's hierarchy is mounted, and where."""
+    for line in (proc / 'mountinfo').read_text(encoding='utf-8').splitlines():
+        own, _, general = line.partition(' - ')
+        kind, _, options = general.split(maxsplit=2)
+        if (kind, controller) == ('cgroup2', '') or (
+            kind == 'cgroup' and controller in options.split(',')
+        ):
+            root, where = own.split()[3:5]
+            yield root, where.replace(r'\040', ' ')
+
+
+def _holds(proc: Path, path: str, controller: str) -> list[Path]:
+    inside = [(os.path.relpath(path, root), where) for root, where in _mounts(proc, controller)]
+    return [Path(where, below) for below, where in inside if not below.startswith('..')]
+
+
+def _folder(proc: Path, path: str, controller: str) -> Path:
+    """Return the folder of a cgroup. Raises NoCgroups where it is not mounted here."""
+    for folder in _holds(proc, path, controller):
+        return folder
+    raise NoCgroups(f'the cgroup {path} is not mounted here')
+
+
+def _writable(folders: dict[str, Path]) -> dict[str, Path]:
+    found = {name: path for name, path in folders.items() if os.access(path, os.W_OK | os.X_OK)}
+    for name in NEEDED:
+        if name not in found:
+            raise NoCgroups(f'{folders.get(name, f"the controller {name}")} is not ours to use')
+    return found
+
+
+def _version_2(own: Path, top: Path | None) -> Path:
+    """Return the folder beside whose processes ours can have cgroups, with its controllers on."""
+    if own.name == GRADERS:
+        folder = own.parent
+    elif own == top or _delegated(own):
+        folder = own
+    elif os.geteuid() == 0 and top is not None and not _SYSTEMD.is_dir():
+        folder = top
+    else:
+        raise NoCgroups(f'{own} is not ours to use: systemd has not delegated it')
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise NoCgroups(f'{folder} is not ours to use')
+    if folder == own and (folder / 'cgroup.type').exists():  # the root itself may hold processes
+        _move_to_graders(folder)
+    _switch_on(folder)
+    return folder
+
+
+def _delegated(folder: Path) -> bool:
+    for name in ('user.delegate', 'trusted.delegate'):
+        with contextlib.suppress(OSError):
+            if os.getxattr(folder, name) == b'1':
+                return True
+    return False
+
+
+def _move_to_graders(folder: Path) -> None:
+    graders = folder / GRADERS
+    graders.mkdir(exist_ok=True)
+    for _ in range(_MOVES):  # what is begun meanwhile is in the old one
+        processes = _words(folder / 'cgroup.procs')
+        if not processes:
+            return
+        for process in processes:
+            with contextlib.suppress(ProcessLookupError):
+                (graders / 'cgroup.procs').write_text(process, encoding='ascii')
+    raise NoCgroups(f'{folder} always has new processes in it')
+
+
+def _switch_on(folder: Path) -> None:
+    """Let cgroups in a folder have controllers. Raises NoCgroups, OSError."""
+    there = _words(folder / 'cgroup.controllers')
+    if lacking := [name for name in NEEDED if name not in there]:
+        raise NoCgroups(f'{folder} has no controller for {" and ".join(lacking)}')
+    for name in WANTED:
+        with contextlib.suppress(*([] if name in NEEDED else [OSError])):
+            if name not in _words(folder / 'cgroup.subtree_control'):
+                (folder / 'cgroup.subtree_control').write_text(f'+{name}', encoding='ascii')
+    weight = folder / GRADERS / 'cpu.weight'
+    if weight.exists():
+        weight.write_text(str(GRADERS_WEIGHT), encoding='ascii')
+
+
+def _words(path: Path) -> list[str]:
+    return path.read_text(encoding='ascii').split()
+
+
+def main() -> None:
+    """Print where cgroups can be made; exit with why, where they can't."""
+    try:
+        print(hierarchies())
+    except NoCgroups as problem:
+        raise SystemExit(str(problem)) from None
+
+
+if __name__ == '__main__':
+    main()
