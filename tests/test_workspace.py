@@ -208,8 +208,8 @@ def test_what_was_built_is_what_runs(built):
 
 
 NODE = """
+import rclpy
 from rclpy.node import Node
-from my_robot_basics.spinning import spin_until_stopped
 
 
 class MyNode(Node):
@@ -219,7 +219,8 @@ class MyNode(Node):
 
 
 def main(args=None):
-    spin_until_stopped(MyNode, args=args)
+    rclpy.init(args=args)
+    rclpy.spin(MyNode())
 """
 
 

@@ -1,8 +1,10 @@
 """The smallest node: says hello once. Run it with `ros2 run my_robot_basics hello_node`."""
 
-from rclpy.node import Node
+import signal
 
-from my_robot_basics.spinning import spin_until_stopped
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
 
 
 class HelloNode(Node):
@@ -15,7 +17,15 @@ class HelloNode(Node):
 
 def main(args: list[str] | None = None) -> None:
     """Run the node until Ctrl-C or SIGTERM."""
-    spin_until_stopped(HelloNode, args=args)
+    # SIGTERM ends the node as Ctrl-C does: rclpy.spin alone sometimes misses it
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        rclpy.init(args=args)
+        rclpy.spin(HelloNode())
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass  # the normal end
+    finally:
+        rclpy.try_shutdown()
 
 
 if __name__ == '__main__':

@@ -3,9 +3,12 @@
 The result goes to the log alone, where no other node can use it: that is what topics are for.
 """
 
+import signal
+
+import rclpy
+from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 
-from my_robot_basics.spinning import spin_until_stopped
 from my_robot_basics.two_link_kinematics import forward_kinematics, inverse_kinematics
 
 
@@ -27,7 +30,15 @@ class KinematicsNode(Node):
 
 def main(args: list[str] | None = None) -> None:
     """Run the node until Ctrl-C or SIGTERM."""
-    spin_until_stopped(KinematicsNode, args=args)
+    # SIGTERM ends the node as Ctrl-C does: rclpy.spin alone sometimes misses it
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        rclpy.init(args=args)
+        rclpy.spin(KinematicsNode())
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass  # the normal end
+    finally:
+        rclpy.try_shutdown()
 
 
 if __name__ == '__main__':

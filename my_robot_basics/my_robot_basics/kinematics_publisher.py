@@ -5,11 +5,13 @@ Run it with `ros2 run my_robot_basics kinematics_publisher`.
 
 import math
 import random
+import signal
 
+import rclpy
+from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 
-from my_robot_basics.spinning import spin_until_stopped
 from my_robot_basics.two_link_kinematics import forward_kinematics
 
 
@@ -48,7 +50,15 @@ class KinematicsPublisher(Node):
 
 def main(args: list[str] | None = None) -> None:
     """Run the node until Ctrl-C or SIGTERM."""
-    spin_until_stopped(KinematicsPublisher, args=args)
+    # SIGTERM ends the node as Ctrl-C does: rclpy.spin alone sometimes misses it
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        rclpy.init(args=args)
+        rclpy.spin(KinematicsPublisher())
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass  # the normal end
+    finally:
+        rclpy.try_shutdown()
 
 
 if __name__ == '__main__':

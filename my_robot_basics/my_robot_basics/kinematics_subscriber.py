@@ -4,11 +4,13 @@ Run it with `ros2 run my_robot_basics kinematics_subscriber`.
 """
 
 import math
+import signal
 
+import rclpy
+from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 
-from my_robot_basics.spinning import spin_until_stopped
 from my_robot_basics.two_link_kinematics import forward_kinematics, inverse_kinematics
 
 JOINTS = ('joint1', 'joint2')
@@ -79,7 +81,15 @@ def same_pose(pose: tuple[float, float], other: tuple[float, float]) -> bool:
 
 def main(args: list[str] | None = None) -> None:
     """Run the node until Ctrl-C or SIGTERM."""
-    spin_until_stopped(KinematicsSubscriber, args=args)
+    # SIGTERM ends the node as Ctrl-C does: rclpy.spin alone sometimes misses it
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        rclpy.init(args=args)
+        rclpy.spin(KinematicsSubscriber())
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass  # the normal end
+    finally:
+        rclpy.try_shutdown()
 
 
 if __name__ == '__main__':

@@ -1,5 +1,7 @@
 """The nodes as processes: how they start, and how they end."""
 
+import importlib
+import inspect
 import signal
 import subprocess
 import sys
@@ -34,10 +36,13 @@ def output(process):
 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize('executable', EXECUTABLES)
-def test_a_signal_ends_an_executable_cleanly(start, executable, number):
+def test_a_signal_ends_a_spinning_executable_cleanly(start, executable, number):
     process = start(BIN / executable)
-    first_line = process.stdout.readline()
-    assert f'[{executable}]: ' in first_line
+    assert f'[{executable}]: ' in process.stdout.readline()
+    # only a node that spins answers, once it has been discovered
+    ask = (BIN / 'ros2', 'param', 'get', f'/{executable}', 'use_sim_time')
+    answers = (output(start(*ask)) for _ in range(30))
+    assert any('False' in answer for answer in answers)
     process.send_signal(number)
     rest = output(process)
     assert process.returncode == 0
@@ -48,7 +53,7 @@ START_UP = """
 import os, signal, sys
 import rclpy
 from rclpy.node import Node
-from my_robot_basics.spinning import spin_until_stopped
+from my_robot_basics import hello_node
 
 moment, number = sys.argv[1], getattr(signal, sys.argv[2])
 
@@ -70,8 +75,8 @@ def observed_init(**arguments):
     at('after init')
 rclpy.init = observed_init
 
-spin_until_stopped(SlowNode)
-print('returned; context up:', rclpy.ok())
+hello_node.HelloNode = SlowNode
+hello_node.main()
 """
 
 
@@ -79,16 +84,44 @@ print('returned; context up:', rclpy.ok())
 @pytest.mark.parametrize(
     'moment', ['before init', 'after init', 'before the node', 'in the node', 'in a callback']
 )
-def test_a_signal_at_any_moment_ends_a_node_cleanly(start, moment, number):
+def test_a_signal_at_any_moment_ends_a_node(start, moment, number):
+    """Soon; what it prints in the few milliseconds of its start is rclpy's own affair.
+
+    rclpy's handlers shut the context down in another thread, whatever the node is just making.
+    """
     process = start(sys.executable, '-c', START_UP, moment, number)
-    assert output(process) == 'returned; context up: False\n'
-    assert process.returncode == 0
+    output(process)
+    assert process.returncode in (0, 1)
+
+
+PROGRAM = """
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        rclpy.init(args=args)
+        rclpy.spin({node_class}())
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass  # the normal end
+    finally:
+        rclpy.try_shutdown()
+"""
+
+
+@pytest.mark.parametrize('executable', EXECUTABLES)
+def test_each_node_is_a_whole_ros_program_in_plain_sight(executable):
+    """Students copy these files: no helper of the course stands between them and rclpy."""
+    module = importlib.import_module(f'my_robot_basics.{executable}')
+    node_class = next(
+        name
+        for name, value in vars(module).items()
+        if isinstance(value, type) and value.__module__ == module.__name__
+    )
+    assert inspect.getsource(module.main).endswith(PROGRAM.format(node_class=node_class))
 
 
 MAIN = """
 import rclpy
 from rclpy.node import Node
-from my_robot_basics.spinning import spin_until_stopped
+from my_robot_basics import hello_node
 
 class SomeNode(Node):
     def __init__(self):
@@ -98,7 +131,8 @@ class SomeNode(Node):
     def callback(self):
         {callback}
 
-spin_until_stopped(SomeNode)
+hello_node.HelloNode = SomeNode
+hello_node.main()
 """
 
 
