@@ -5,8 +5,6 @@ from collections.abc import Sequence
 
 from markupsafe import Markup
 
-BLUE = '#0072b2'
-INK = '#1c2733'
 MOST_BARS = 12
 _BAR, _HEIGHT, _TOP, _BOTTOM = 56, 120, 22, 40
 """Pixels: a bar's width, the tallest one's height, and the room above and below for text."""
@@ -25,7 +23,7 @@ def distribution(scores: Sequence[float], max_score: float, *, title: str) -> Ma
         tall = round(_HEIGHT * count / tallest)
         left, middle = place * _BAR, place * _BAR + _BAR // 2
         svg += Markup(
-            '<rect x="{x}" y="{y}" width="{w}" height="{tall}" fill="{blue}"/>'
+            '<rect x="{x}" y="{y}" width="{w}" height="{tall}" class="bar"/>'
             '<text x="{middle}" y="{above}" {style}>{count}</text>'
             '<text x="{middle}" y="{below}" {style}>{label}</text>'
         ).format(
@@ -33,19 +31,18 @@ def distribution(scores: Sequence[float], max_score: float, *, title: str) -> Ma
             y=_TOP + _HEIGHT - tall,
             w=_BAR - 8,
             tall=tall,
-            blue=BLUE,
             middle=middle,
             above=_TOP + _HEIGHT - tall - 6,
             below=_TOP + _HEIGHT + 16,
-            style=Markup(f'text-anchor="middle" font-size="13" fill="{INK}"'),
+            style=Markup('text-anchor="middle" font-size="13"'),
             count=count,
             label=label,
         )
     svg += Markup(
-        '<line x1="0" x2="{w}" y1="{y}" y2="{y}" stroke="{ink}"/>'
-        '<text x="{middle}" y="{below}" text-anchor="middle" font-size="13" fill="{ink}">'
+        '<line x1="0" x2="{w}" y1="{y}" y2="{y}"/>'
+        '<text x="{middle}" y="{below}" text-anchor="middle" font-size="13">'
         'points</text></svg>'
-    ).format(w=width, y=_TOP + _HEIGHT, ink=INK, middle=width // 2, below=height - 6)
+    ).format(w=width, y=_TOP + _HEIGHT, middle=width // 2, below=height - 6)
     return svg
 
 
@@ -66,6 +63,6 @@ def share(part: float, *, label: str) -> Markup:
     """Return a bar that is filled to `part`, 0 to 1."""
     return Markup(
         '<svg role="img" viewBox="0 0 100 12" width="100" height="12" aria-label="{label}">'
-        '<rect width="100" height="12" fill="#d9e0e6"/>'
-        '<rect width="{filled:.0f}" height="12" fill="{blue}"/></svg>'
-    ).format(label=label, filled=100 * part, blue=BLUE)
+        '<rect width="100" height="12" class="track"/>'
+        '<rect width="{filled:.0f}" height="12" class="bar"/></svg>'
+    ).format(label=label, filled=100 * part)

@@ -1,7 +1,7 @@
 """Student cells run in the one kernel, grade cells in the other; each exercise is judged alone."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import nbformat
@@ -11,7 +11,8 @@ from my_robot_basics.validate.judging import Budget, judge_exercise
 from my_robot_basics.validate.verdict import Verdict, refuse, write_verdict
 from nbformat import NotebookNode
 
-from grader.isolation import TRUSTED, isolated
+from grader.isolation import isolated
+from grader.local_paths import hide_local_paths
 from grader.pool import Pool
 from grader.rooms import Rooms
 
@@ -41,8 +42,6 @@ class _Task:
         return Rooms(extra_files=self.files, seed=self.seed, isolated=self.isolated)
 
     def write(self, index: int, verdict: Verdict, outputs: Sequence[NotebookNode]) -> Verdict:
-        if not self.isolated:
-            verdict = replace(verdict, notes=(*verdict.notes, TRUSTED))
         write_verdict(self.notebook.cells[index], verdict, outputs)
         return verdict
 
@@ -79,7 +78,9 @@ async def executed(
         verdicts = refuse(graded, problem)
     else:
         in_sandbox = isolated(trust_students=trust_students)
+        graded.metadata[KEY].in_sandbox = in_sandbox
         verdicts = await _execute(_Task(graded, tuple(extra_files), seed, in_sandbox, Budget()))
+    hide_local_paths(graded)
     by_hand = [_by_hand(c) for c in graded.cells if role(c) == 'answer' and _points(c)]
     return Execution(
         notebook=graded,

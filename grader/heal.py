@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import nbformat
-from my_robot_basics.validate.cells import KEY, grade_id, is_reset, role
+from my_robot_basics.validate.cells import KEY, grade_id, is_reset, role, title_of
 from nbformat import NotebookNode
 
 NO_ANSWERS = 'the notebook holds none of the answer cells of this assignment'
@@ -75,7 +75,7 @@ def heal(submitted: NotebookNode, master: Master) -> Healed:
         notes = [NO_ANSWERS, *notes]
     healed = nbformat.v4.new_notebook(cells=cells)
     healed.metadata = nbformat.from_dict(master.notebook.metadata)
-    healed.metadata[KEY] = {'notes': notes}
+    healed.metadata[KEY] = {'notes': notes, 'title': title_of(master.notebook)}
     return Healed(notebook=healed, notes=tuple(notes))
 
 

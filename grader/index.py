@@ -4,6 +4,7 @@ import re
 import shutil
 from pathlib import Path
 
+from my_robot_basics.validate.cells import title_of
 from nbformat import NotebookNode, v4, write
 
 from grader.course import Course
@@ -59,7 +60,7 @@ def make_index(course: Course, *, has_terms: bool) -> NotebookNode:
 
 def _row(name: str, lesson: NotebookNode) -> str:
     opening = lesson.cells[0].source
-    title = opening.splitlines()[0].removeprefix('# ')
+    title = title_of(lesson)
     marks = [cell.metadata.get('nbgrader', {}) for cell in lesson.cells]
     exercises = ', '.join(f'`{mark["grade_id"]}`' for mark in marks if mark.get('solution'))
     link = f'[{title}]({name}/{name}.ipynb)'

@@ -20,8 +20,8 @@ from grader.warm import fork_into
 
 TRUST = 'MY_ROBOT_BASICS_TRUST_STUDENTS'
 """Set to 1, it says to nbgrader's own commands what `--trust-students` says to `./course`."""
-TRUSTED = 'graded without a sandbox: this machine has none, and whoever graded said to trust you'
-"""Stands in the feedback and the scores of whatever was graded so."""
+NO_SANDBOX = 'graded without a sandbox: this machine has none'
+"""Stands once in each feedback, in the scores and above the table of what was graded so."""
 OLDEST_BWRAP = (0, 8)
 
 _TOOLS = {

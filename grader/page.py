@@ -17,6 +17,7 @@ from pygments.formatters import HtmlFormatter
 from pygments.lexers import PythonLexer
 
 from grader.heal import KEY, grade_id, role
+from grader.isolation import NO_SANDBOX
 from grader.templates import template
 from grader.text import visible
 
@@ -26,6 +27,7 @@ MAX_TEXT_CHARACTERS = 5_000
 _TAGS = {'p', 'em', 'strong', 'code', 'pre', 'ul', 'ol', 'li', 'blockquote', 'h4', 'br', 'table'}
 _TAGS |= {'thead', 'tbody', 'tr', 'th', 'td'}
 _CODE = HtmlFormatter(style='xcode', nowrap=True)
+_CODE_IN_THE_DARK = HtmlFormatter(style='github-dark', nowrap=True)
 _REASON = re.compile(r'expected (?P<expected>.+?), saw (?P<seen>.+): (?P<hint>.+)', re.DOTALL)
 _FIRST_WORD = re.compile(r'\A[a-z]+(?=[ ,:;]|\Z)')
 _ENTITY = re.compile(r'&(#\d+|#x[0-9a-f]+|\w+);?', re.IGNORECASE)
@@ -40,6 +42,8 @@ class Piece:
     """'text', 'error', 'image/png' or 'image/jpeg'."""
     content: str
     alt: str = ''
+    is_drawn: bool = False
+    """Whether code drew it: a dark page then shows it dark."""
 
 
 @dataclass(frozen=True)
@@ -89,6 +93,8 @@ def page(notebook: NotebookNode, about: dict) -> str:
         checks=[check for part in parts for check in part.checks],
         others=others,
         problem=problem,
+        title=ours.get('title', ''),
+        no_sandbox='' if ours.get('in_sandbox', True) else NO_SANDBOX,
         notes=[note for note in ours.get('notes', ()) if note != problem],
     )
 
@@ -165,16 +171,16 @@ def _pieces(cell: NotebookNode, *, about: str = '', with_errors: bool = True) ->
         else:
             yield from _shown(output.data, about)
     for name, picture in cell.get('attachments', {}).items():
-        yield from _shown({**picture, 'text/plain': name}, about)
+        yield from _shown({**picture, 'text/plain': name}, about, is_drawn=False)
 
 
-def _shown(data: dict, about: str) -> Iterator[Piece]:
+def _shown(data: dict, about: str, *, is_drawn: bool = True) -> Iterator[Piece]:
     described = str(data.get('text/plain', ''))
     for kind in ('image/png', 'image/jpeg'):
         if isinstance(data.get(kind), str) and _BASE64.fullmatch(data[kind]):
             described = '' if described.startswith('<') else described  # "<Figure size 640x480 …>"
             alt = described or (f'Picture of: {about}' if about else 'Picture that this cell drew')
-            yield Piece(kind, ''.join(data[kind].split()), alt)
+            yield Piece(kind, ''.join(data[kind].split()), alt, is_drawn)
             return
     if described:
         yield _text_piece('text', described)
@@ -227,5 +233,8 @@ def _template() -> Template:
             'sentence': _sentence,
             'number': _number,
         },
-        values={'code_style': Markup(_CODE.get_style_defs('pre'))},
+        values={
+            'code_style': Markup(_CODE.get_style_defs('pre')),
+            'dark_code_style': Markup(_CODE_IN_THE_DARK.get_style_defs('pre')),
+        },
     )

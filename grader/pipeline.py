@@ -89,7 +89,7 @@ def unanswered(master: Master, reason: str) -> NotebookNode:
     The master is a prepared one.
     """
     notebook = heal(nbformat.v4.new_notebook(), master).notebook
-    notebook.metadata[KEY] = {'notes': [reason], 'problem': reason}
+    notebook.metadata[KEY] |= {'notes': [reason], 'problem': reason}
     refuse(notebook, reason)
     return notebook
 

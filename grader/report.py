@@ -8,6 +8,7 @@ from functools import cache
 from pathlib import Path
 
 from jinja2 import Template
+from my_robot_basics.validate.cells import title_of
 
 from grader.charts import distribution, share
 from grader.course import Course
@@ -47,7 +48,12 @@ def write_report(course: Course, run: Run, rows: Sequence[Row]) -> Path:
     folder = make_folder_for(run.began, course.gradebook / 'runs')
     write_whole(folder / 'report.json', json.dumps(facts, indent=2, ensure_ascii=False) + '\n')
     page = folder / 'report.html'
-    write_whole(page, _template().render(facts, tally=counted, most=MOST_SHOWN, hardest=HARDEST))
+    write_whole(
+        page,
+        _template().render(
+            facts, titles=_titles(course, counted), tally=counted, most=MOST_SHOWN, hardest=HARDEST
+        ),
+    )
     return page
 
 
@@ -87,6 +93,10 @@ def _facts(run: Run, rows: Sequence[Row], counted: Tally) -> dict:
         },
         'submissions': [_submission(row) for row in rows],
     }
+
+
+def _titles(course: Course, counted: Tally) -> dict[str, str]:
+    return {each.name: title_of(course.source(each.name)) for each in counted.assignments}
 
 
 def _totals(totals: Totals) -> dict:

@@ -103,6 +103,8 @@ def read_result(text: str, asked: NotebookNode, *, seed: str) -> tuple[NotebookN
 def _problems(notebook: NotebookNode, asked: NotebookNode, seed: str) -> Iterator[str]:
     """Yield what is wrong with what a run has written into a notebook."""
     ours, given = (dict(each.metadata.get(KEY, {})) for each in (notebook, asked))
+    if not isinstance(ours.pop('in_sandbox', True), bool):
+        yield 'whether it had a sandbox is no yes or no'
     if ours != {'notes': []} | given | {'seed': seed}:
         yield 'it tells of another healing, or of another seed'
     for cell, before in zip(notebook.cells, asked.cells, strict=True):

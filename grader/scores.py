@@ -3,9 +3,12 @@
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+from my_robot_basics.validate.cells import KEY
+
 from grader.course import Course
 from grader.files import write_whole
-from grader.records import Record, records, verdicts
+from grader.isolation import NO_SANDBOX
+from grader.records import Record, graded_notebook, records, verdicts_in
 from grader.text import spreadsheet_table
 
 COLUMNS = ('student_id', 'assignment', 'grade_id', 'score', 'max_score', 'comment')
@@ -28,21 +31,23 @@ def as_csv(course: Course, found: Iterable[Record]) -> str:
 
 def _rows(course: Course, found: Iterable[Record]) -> Iterator[tuple]:
     said: dict[str, dict] = {}
-    whose = None
+    whose, remark = None, ''
     for record in found:
         if whose != (whose := (record.student_id, record.assignment)):
-            said = verdicts(course, *whose)
+            graded = graded_notebook(course, *whose)
+            said = verdicts_in(graded)
+            remark = '' if graded.metadata.get(KEY, {}).get('in_sandbox', True) else NO_SANDBOX
         yield (
             record.student_id,
             record.assignment,
             record.grade_id,
             '' if record.score is None else record.score,
             record.max_score,
-            _comment(record, said.get(record.grade_id, {})),
+            _comment(record, said.get(record.grade_id, {}), remark),
         )
 
 
-def _comment(record: Record, verdict: dict) -> str:
+def _comment(record: Record, verdict: dict, remark: str) -> str:
     """Put into words why a cell has its score."""
     if not record.submitted:
         return 'not submitted'
@@ -52,5 +57,6 @@ def _comment(record: Record, verdict: dict) -> str:
         record.comment,
         verdict.get('reason'),
         *verdict.get('notes', ()),
+        remark,
     ]
     return '; '.join(part for part in parts if part)

@@ -25,9 +25,21 @@ pytestmark = drives_chromium
 
 
 @pytest.fixture(scope='module')
-def page():
+def browser():
     with launched() as browser:
-        yield browser.new_page(bypass_csp=True)
+        yield browser
+
+
+@pytest.fixture(scope='module')
+def page(browser):
+    return browser.new_page(bypass_csp=True)
+
+
+@pytest.fixture(scope='module')
+def dark_phone(browser):
+    return browser.new_page(
+        bypass_csp=True, color_scheme='dark', viewport={'width': 400, 'height': 800}
+    )
 
 
 def serious(page, html):
@@ -50,6 +62,15 @@ def serious(page, html):
     ]
 
 
+def cut_off(page):
+    """The cells of tables, and paragraphs, of which a part lies right of the screen."""
+    return page.evaluate(
+        """Array.from(document.querySelectorAll('tbody th, tbody td, p, dd'))
+        .filter(each => each.getBoundingClientRect().right > window.innerWidth)
+        .map(each => each.textContent)"""
+    )
+
+
 def test_axe_finds_what_is_wrong(page):
     # or the tests below would find nothing in anything
     html = '<html lang="en"><title>Arm</title><main><h1>Arm</h1><img src="arm.png"></main></html>'
@@ -64,7 +85,7 @@ def test_a_released_lesson(page, path):
 
 
 @pytest.mark.parametrize('name', ['03_publisher-fail-1hz', '03_publisher-zero-not_json'])
-def test_a_page_of_feedback_and_the_report_of_a_run(page, tmp_path, name):
+def test_a_page_of_feedback_and_the_report_of_a_run(page, dark_phone, tmp_path, name):
     course = Course(gradebook=tmp_path)
     rows = grade(course, [name])
     write_feedback(course)
@@ -72,5 +93,10 @@ def test_a_page_of_feedback_and_the_report_of_a_run(page, tmp_path, name):
     html = (course.folder('feedback', name, assignment) / f'{assignment}.html').read_text()
     assert ('<img' in html) == ('fail' in name)
     assert serious(page, html) == []
+    assert serious(dark_phone, html) == []
+    assert cut_off(dark_phone) == []
+    background = "getComputedStyle(document.querySelector('section')).backgroundColor"
+    assert dark_phone.evaluate(background) != page.evaluate(background)
     report = write_report(course, Run(datetime.now().astimezone()), list(rows.values()))
     assert serious(page, report.read_text(encoding='utf-8')) == []
+    assert serious(dark_phone, report.read_text(encoding='utf-8')) == []

@@ -159,7 +159,7 @@ def test_locked_and_grade_cells_are_the_originals_whatever_became_of_them(
     healed = heal(submitted, master)
     assert_whole(healed, master)
     assert healed.notes == (f'the cell `{name}` {HOW[how]}',)
-    assert healed.notebook.metadata[KEY] == {'notes': list(healed.notes)}
+    assert healed.notebook.metadata[KEY].notes == list(healed.notes)
     assert by_grade_id(healed.notebook)['double'].source == ANSWER
 
 

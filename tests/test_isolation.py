@@ -5,15 +5,17 @@ import subprocess
 from pathlib import Path
 from types import SimpleNamespace
 
+import nbformat
 import pytest
-from course_maker import answered, released_course, submit
+from course_maker import TOY, answered, released_course, submit
 
 from grader import isolation as module
 from grader import servers
 from grader.__main__ import main
+from grader.demo import demo
 from grader.errors import CourseError
 from grader.feedback import write_feedback
-from grader.isolation import TRUST, TRUSTED, isolated, missing, protections
+from grader.isolation import NO_SANDBOX, TRUST, isolated, missing, protections
 from grader.passes import ExecuteRooms
 from grader.scores import write_scores
 
@@ -156,15 +158,32 @@ def test_nothing_runs_where_there_is_no_sandbox(course, nowhere, capsys):
         isolated()
 
 
-def test_trust_is_told_to_whoever_reads_the_grade(course, nowhere, capsys):
-    submit(course, 'ada', answered(course, RIGHT))
+def test_trust_is_told_once_to_whoever_reads_the_grade(course, nowhere, capsys):
+    submit(course, 'ada', answered(course, 'def double(x):\n    return 2 * x + x // 7'))
     assert main(['grade', '--trust-students', '--student', 'ada'], course=course) == 0
+    first, head, row, *_ = capsys.readouterr().out.splitlines()
+    assert first.startswith(NO_SANDBOX.capitalize())
+    assert head.startswith('student')
+    assert 'expected' in row or 'count again' in row
+    assert NO_SANDBOX not in row
     (page,) = write_feedback(course)
-    assert TRUSTED in page.read_text(encoding='utf-8')
+    html = page.read_text(encoding='utf-8')
+    assert html.count(NO_SANDBOX.capitalize()) == 1
+    assert html.index(NO_SANDBOX.capitalize()) < html.index('<table')
     rows = write_scores(course).read_text(encoding='utf-8').splitlines()
     graded = [row for row in rows if row.startswith('ada') and ',double-' in row]
     assert graded
-    assert all(TRUSTED in row for row in graded)
+    assert all(NO_SANDBOX in row for row in graded)
+
+
+def test_the_demo_says_that_its_samples_had_no_sandbox(course, nowhere, capsys, tmp_path):
+    samples = tmp_path / 'samples'
+    samples.mkdir()
+    nbformat.write(answered(course, RIGHT), samples / f'{TOY}-pass-right.ipynb')
+    demo(samples, root=course.root)
+    first, *others = capsys.readouterr().out.splitlines()
+    assert NO_SANDBOX in first
+    assert not any(NO_SANDBOX in line for line in others)
 
 
 @pytest.mark.isolation
@@ -173,7 +192,7 @@ def test_trust_changes_nothing_where_there_is_a_sandbox(course):
     submit(course, 'bob', answered(course, RIGHT))
     assert main(['grade', '--trust-students', '--student', 'bob'], course=course) == 0
     rows = write_scores(course).read_text(encoding='utf-8').splitlines()
-    assert not [row for row in rows if row.startswith('bob') and TRUSTED in row]
+    assert not [row for row in rows if row.startswith('bob') and NO_SANDBOX in row]
 
 
 def test_nbgraders_own_commands_can_be_told_to_trust(nowhere, monkeypatch):

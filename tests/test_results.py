@@ -194,6 +194,7 @@ def test_nothing_but_verdicts_and_outputs_is_new_in_it(asked, answer, spoil):
     ('place', 'changes'),
     [
         (None, {'seed': 'another'}),
+        (None, {'in_sandbox': 'so it was'}),
         (None, {'notes': []}),
         (None, {'problem': 'not submitted'}),
         (4, {'outcome': 'passed'}),

@@ -30,3 +30,10 @@ def role(cell: NotebookNode) -> str:
 def is_reset(cell: NotebookNode) -> bool:
     """Whether the cell begins an exercise: it forgets what earlier cells made."""
     return (grade_id(cell) or '').endswith('-reset')
+
+
+def title_of(notebook: NotebookNode) -> str:
+    """Return a lesson's title in words: its first heading, or '' where it has none."""
+    texts = (cell.source for cell in notebook.cells if cell.cell_type == 'markdown')
+    heads = (line for text in texts for line in text.splitlines() if line.startswith('# '))
+    return next(heads, '').removeprefix('# ').strip()
