@@ -41,6 +41,8 @@ CELLS = {
     'nested too deep': ('-' * 50_000 + 'x', '', ''),
     'a sum too long': ('1+' * 50_000 + 'x', '', ''),
     'brackets too deep': ('(' * 5_000 + 'x' + ')' * 5_000, '', ''),
+    'functions in functions': ('lambda:' * 2_700 + 'x', '', 'x'),
+    'functions in functions, and nothing': ('lambda:' * 2_700, '', ''),
     'too long': ('x = 1\n' + '#' * MAX_SOURCE_CHARACTERS, '', ''),
 }  # fmt: skip
 

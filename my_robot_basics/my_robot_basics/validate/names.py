@@ -74,16 +74,18 @@ def _python(source: str) -> tuple[str, ast.Module]:
     return code, ast.parse(code)
 
 
-def _collect(table: symtable.SymbolTable, bound: set[str], read: set[str]) -> None:
-    is_module = table.get_type() == 'module'
-    for symbol in table.get_symbols():
-        is_global = is_module or symbol.is_global()
-        if is_global and (symbol.is_assigned() or symbol.is_imported()):
-            bound.add(symbol.get_name())
-        if is_global and symbol.is_referenced():
-            read.add(symbol.get_name())
-    for child in table.get_children():
-        _collect(child, bound, read)
+def _collect(outermost: symtable.SymbolTable, bound: set[str], read: set[str]) -> None:
+    tables = [outermost]
+    while tables:  # not by recursion: a table lies in a table for each `lambda:` of a thousand
+        table = tables.pop()
+        is_module = table.get_type() == 'module'
+        for symbol in table.get_symbols():
+            is_global = is_module or symbol.is_global()
+            if is_global and (symbol.is_assigned() or symbol.is_imported()):
+                bound.add(symbol.get_name())
+            if is_global and symbol.is_referenced():
+                read.add(symbol.get_name())
+        tables.extend(table.get_children())
 
 
 def _names_of_comprehensions_alone(nodes: list[ast.AST]) -> set[str]:
