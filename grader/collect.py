@@ -14,13 +14,16 @@ from functools import cache
 from pathlib import Path
 
 from grader.course import Course
+from grader.dates import date_of
 from grader.errors import CourseError
 from grader.files import write_whole
 from grader.incoming import look_into
-from grader.owners import HandIn, date_of, match
+from grader.owners import HandIn, match
+from grader.platforms import Numbers
 from grader.records import Record, records
 from grader.scores import as_csv
 from grader.submission import TIMESTAMP
+from grader.submitted import known_students
 from grader.turn import Turn
 
 NEW, AGAIN, EARLIER, KNOWN = 'new', 'again', 'earlier', 'known'
@@ -54,9 +57,15 @@ def collect(course: Course, source: Path, *, file_times: bool = False) -> Iterat
         try:
             found = list(look_into(source, Path(aside)))
             visible = [each for each in found if not each.litter]
-            hand_ins, rest = match(visible, course.assignments(), file_times=file_times)
-            for each in hand_ins:
-                yield _row(course, each, grades)
+            hand_ins, rest = match(
+                visible,
+                course.assignments(),
+                students=known_students(course),
+                file_times=file_times,
+            )
+            problems = Numbers(course).take(hand_ins)
+            for each, problem in zip(hand_ins, problems, strict=True):
+                yield _row(course, each, problem, grades)
         except OSError as error:
             if error.errno not in (errno.ENOSPC, errno.EDQUOT):
                 raise
@@ -71,9 +80,11 @@ def collect(course: Course, source: Path, *, file_times: bool = False) -> Iterat
                 yield Row(each.path, UNUSED, 'hidden, or left behind by a program')
 
 
-def _row(course: Course, each: HandIn, grades: Callable[[], list[Record]]) -> Row:
+def _row(course: Course, each: HandIn, problem: str, grades: Callable[[], list[Record]]) -> Row:
     try:
-        outcome, reason = _take(course, each, grades)
+        outcome, reason = (LEFT, problem) if problem else _take(course, each, grades)
+        if not problem and each.remark:
+            reason = f'{reason}; {each.remark}' if reason else each.remark
     except (FileExistsError, NotADirectoryError, PermissionError) as error:
         outcome, reason = LEFT, f'{error.strerror}: {error.filename}'
     whose = (each.student_id, each.assignment)

@@ -1,23 +1,23 @@
-"""What names of files and folders tell of a notebook: its student, its assignment and its time."""
+"""What names of files and folders tell of a notebook: its student, its assignment and its time.
+
+The outermost folder, archive or file that a person or a course management system named decides.
+What lies in it was named by the student: that may agree, and never makes it somebody else's.
+"""
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from datetime import UTC, datetime
+from datetime import datetime
 
-from dateutil.parser import parse
-from nbgrader.utils import parse_utc
-
+from grader.dates import date_in
 from grader.entries import ARCHIVE
 from grader.incoming import Incoming
-from grader.students import Unclear, student_in
+from grader.students import Label, Unclear, is_nobody, label_in, same_person, student_in
 
 EXPECTED = (
     'expected STUDENT_ASSIGNMENT.ipynb, STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb or an archive named '
     'after the student'
 )
-COLLECTIONS = {'notebooks', 'submitted', 'submissions', 'inbound'}
-"""Folders that are named after no student."""
 
 
 @dataclass(frozen=True)
@@ -30,68 +30,190 @@ class Owner:
     """Whether all that lies in its folder is theirs."""
     handed_in: datetime | None = None
     """In UTC; None where its name tells no time."""
+    label: Label | None = None
+    """What Moodle or Canvas said of the student."""
+    above: tuple[str, ...] = ()
+    """What the folder, archive or file that decided lies in."""
+    inside: tuple[str, ...] = ()
+    """The folders and archives in that one, down to the notebook."""
+
+
+@dataclass(frozen=True)
+class _Exchanged:
+    """A folder of nbgrader's exchange."""
+
+    who: str
+    what: str
+    when: str
 
 
 class Naming:
     """How the files and folders of what came in are named."""
 
-    def __init__(self, found: Sequence[Incoming], assignments: Iterable[str]) -> None:
+    def __init__(
+        self,
+        found: Sequence[Incoming],
+        assignments: Iterable[str],
+        students: Iterable[str] = (),
+    ) -> None:
+        """Look at all that came in; `students` are those who are known from before."""
         self._known = sorted(assignments, key=len, reverse=True)
         one_of = '|'.join(map(re.escape, self._known)) or '(?!)'
         self._named = re.compile(rf'(?P<who>.+?)[_+\- .]+(?P<what>{one_of})(-\d+)?')
         self._exchange = re.compile(
             rf'(?P<who>.+)\+(?P<what>{one_of})\+(?P<when>\d{{4}}-[^+]+)(\+[\w=-]+)?'
         )
-        folders = [each.parts[:-1] for each in found if not each.litter]
-        self._shared = len(_shared(folders))
+        notebooks = [each for each in found if is_notebook(each)]
+        self._by_platform = self._all_by_platform(notebooks, list(students))
+        self._shared = len(_shared([each.parts[:-1] for each in notebooks]))
+        named = (self._named.fullmatch(_stem(each.parts[-1])) for each in notebooks)
+        self._several = len({name['who'] for name in named if name}) > 1
 
     def owner(self, each: Incoming) -> Owner:
         """Return whose notebook it is. Raises Unclear."""
+        at = self._decides(each)
+        if at is None:
+            return self._owner_by_file_name(each)
+        name, above, inside = each.parts[at], each.parts[:at], each.parts[at + 1 : -1]
+        label = label_in(name)
+        stem = _stem(each.parts[-1])
+        if at == len(each.parts) - 1:  # no folder, and the file's name begins with the label
+            stem = _stem(label.rest)
+        if label and label.platform == 'canvas':
+            stem = re.sub(r'-\d+$', '', stem)  # handed in again
+        if exchanged := self._exchanged(name):
+            if stem != exchanged.what or inside:
+                raise Unclear(f'in the exchange, {exchanged.what}.ipynb was expected here')
+            when = date_in(re.sub(r'(\d\d)_(\d\d)_(\d\d)', r'\1:\2:\3', exchanged.when))
+            return Owner(student_in(exchanged.who), stem, True, when, above=above)
+        assignment = self._assignment(stem, each.parts[:-1])
+        student = student_in(self._who(name))
+        if (named := self._named.fullmatch(stem)) and not same_person(named['who'], student):
+            where = f'in the archive of {student}' if each.archive else f'in a folder {student}'
+            raise Unclear(
+                f'it is named after {named["who"]}, and {where}: collect that folder by itself, '
+                'or rename it'
+            )
+        return Owner(
+            student,
+            assignment,
+            by_folder=at < len(each.parts) - 1,
+            label=label,
+            above=above,
+            inside=inside,
+        )
+
+    def claims(self, owner: Owner) -> Iterator[tuple[str, bool]]:
+        """Yield whom else the names inside an upload may name, and whether that is their form."""
+        for name in owner.inside:
+            who = self._who(name)
+            ours = who in self._known or is_nobody(who) or same_person(who, owner.student_id)
+            if not ours:
+                yield who, who != _bare(name)
+
+    def _decides(self, each: Incoming) -> int | None:
+        """Return which part of its path says whose it is; None where only the file's name does.
+
+        Raises Unclear where there may be several.
+        """
+        if self._by_platform:
+            return self._first_by_platform(each)
         folders = each.parts[: each.archive] or each.parts[:-1]
-        stem = re.sub(r' \(\d+\)$', '', each.parts[-1][: -len('.ipynb')])  # a browser's second one
-        for folder in folders:
-            if exchanged := self._exchange.fullmatch(folder):
-                if stem != exchanged['what'] or each.parts[-2] != folder:
-                    raise Unclear(f'in the exchange, {exchanged["what"]}.ipynb was expected here')
-                when = date_in(re.sub(r'(\d\d)_(\d\d)_(\d\d)', r'\1:\2:\3', exchanged['when']))
-                return Owner(student_in(exchanged['who']), stem, by_folder=True, handed_in=when)
-        if stem in self._known:
-            return Owner(self._student_of(folders, stem), stem, by_folder=True)
-        if named := self._named.fullmatch(stem):
-            student, assignment = student_in(named['who']), named['what']
+        candidates = self._candidates(folders, self._shared)
+        if not candidates and not (self._several and not each.archive):
+            candidates = self._candidates(folders, 0)  # all that came in may be one student's
+        if not candidates:
             if each.archive:
-                holder = self._student_of(folders, assignment)
-                if student != holder:
-                    raise Unclear(f'it is named after {student}, and in the archive of {holder}')
-            elif strange := self._other_student(folders, student):
-                raise Unclear(
-                    f'it is named after {student}, and in a folder {strange}: collect that '
-                    'folder by itself, or rename it'
-                )
-            return Owner(student, assignment, by_folder=False)
-        known = ', '.join(sorted(self._known))
-        raise Unclear(f'named after no assignment: {EXPECTED}, with {known}')
+                raise Unclear(f'nothing says whose it is: {EXPECTED}')
+            return len(folders) if label_in(each.parts[-1]) else None
+        first, *others = candidates
+        if label_in(folders[first]) or self._exchanged(folders[first]):
+            return first
+        names = [self._who(folders[at]) for at in (first, *others)]
+        if not all(same_person(name, names[0]) for name in names):
+            raise Unclear(
+                f'it may be of {" or of ".join(names)}: collect the folder by itself in which the '
+                "students' folders lie, or rename it"
+            )
+        return first
 
-    def _student_of(self, folders: Sequence[str], assignment: str) -> str:
-        """Return the student after whom the nearest folder is named."""
+    def _candidates(self, folders: Sequence[str], start: int) -> list[int]:
+        """Return which folders may be named after a student, from one of them on."""
+        names = [(at, _bare(folder)) for at, folder in enumerate(folders) if at >= start]
+        return [at for at, name in names if name not in self._known and not is_nobody(name)]
+
+    def _owner_by_file_name(self, each: Incoming) -> Owner:
+        stem = _stem(each.parts[-1])
+        assignment = self._assignment(stem, each.parts[:-1])
+        if stem in self._known:
+            raise Unclear(f'nothing says whose it is: {EXPECTED}')
+        student = student_in(self._named.fullmatch(stem)['who'])
+        return Owner(student, assignment, by_folder=False, above=each.parts[:-1])
+
+    def _assignment(self, stem: str, folders: Sequence[str]) -> str:
+        """Return the assignment that a file is named after. Raises Unclear."""
+        named = self._named.fullmatch(stem)
+        if stem not in self._known and not named:
+            known = ', '.join(sorted(self._known))
+            raise Unclear(f'named after no assignment: {EXPECTED}, with {known}')
+        assignment = named['what'] if named else stem
         for folder in reversed(folders):
-            name = ARCHIVE.sub('', folder)
-            if name == assignment or name in COLLECTIONS:
-                continue
-            if name in self._known:
-                raise Unclear(f'it lies in a folder of another assignment, {name}')
-            named = self._named.fullmatch(name)
-            if named and named['what'] != assignment:
-                raise Unclear(f'it lies in a folder of another assignment, {named["what"]}')
-            return student_in(named['who'] if named else name)
-        raise Unclear(f'nothing says whose it is: {EXPECTED}')
+            name = _bare(folder)
+            of = self._named.fullmatch(name)
+            other = name if name in self._known else of['what'] if of else assignment
+            if other != assignment:
+                raise Unclear(f'it lies in a folder of another assignment, {other}')
+        return assignment
 
-    def _other_student(self, folders: Sequence[str], student: str) -> str:
-        """Return a folder that may be another student's: what they put there is named by them."""
-        for folder in folders[self._shared :]:
-            if folder not in (*self._known, *COLLECTIONS) and student_in(folder) != student:
-                return folder
-        return ''
+    def _who(self, name: str) -> str:
+        """Return whom a folder or an archive may be named after."""
+        if found := label_in(name) or self._exchanged(name):
+            return found.who
+        named = self._named.fullmatch(_bare(name))
+        return named['who'] if named else _bare(name)
+
+    def _all_by_platform(self, notebooks: Sequence[Incoming], students: Sequence[str]) -> bool:
+        """Whether Moodle, Canvas or the exchange made all of it, in folders of the teacher's.
+
+        Folders of students, in which they may imitate that, would lie beside others' or be known.
+        """
+        decides = [self._first_by_platform(each) for each in notebooks]
+        if None in decides:
+            return False
+        above = {each.parts[:at] for each, at in zip(notebooks, decides, strict=True)}
+        names = {name for folders in above for name in folders if not is_nobody(name)}
+        return not (
+            any(folders[:n] in above for folders in above for n in range(len(folders)))
+            or any(same_person(name, student) for name in names for student in students)
+        )
+
+    def _first_by_platform(self, each: Incoming) -> int | None:
+        """Return which part Moodle, Canvas or nbgrader's exchange named, the outermost one."""
+        for at, part in enumerate(each.parts[: each.archive] or each.parts):
+            if label_in(part) or (at < len(each.parts) - 1 and self._exchanged(part)):
+                return at
+        return None
+
+    def _exchanged(self, name: str) -> _Exchanged | None:
+        found = self._exchange.fullmatch(name)
+        return _Exchanged(found['who'], found['what'], found['when']) if found else None
+
+
+def is_notebook(each: Incoming) -> bool:
+    """Whether a file is a notebook that can be read."""
+    return not each.problem and each.parts[-1].lower().endswith('.ipynb')
+
+
+def _stem(name: str) -> str:
+    """Return a notebook's name without its ending, and what a browser put before that."""
+    return re.sub(r' \(\d+\)$', '', name[: -len('.ipynb')])
+
+
+def _bare(name: str) -> str:
+    """Return a folder's or an archive's name without what a program put behind it."""
+    if not ARCHIVE.search(name):
+        return name
+    return re.sub(r' \(\d+\)$', '', ARCHIVE.sub('', name))
 
 
 def _shared(folders: Sequence[tuple[str, ...]]) -> tuple[str, ...]:
@@ -101,14 +223,3 @@ def _shared(folders: Sequence[tuple[str, ...]]) -> tuple[str, ...]:
     low, high = min(folders), max(folders)
     alike = [a == b for a, b in zip(low, high, strict=False)]
     return low[: alike.index(False) if False in alike else len(alike)]
-
-
-def date_in(text: str) -> datetime | None:
-    """Read a time as nbgrader writes it; None where it is none."""
-    text = text.strip()
-    try:
-        # nbgrader takes +0200 for 200 seconds
-        offset = re.search(r'[+-]\d\d:?\d\d$', text)
-        return parse(text).astimezone(UTC) if offset else parse_utc(text).replace(tzinfo=UTC)
-    except (ValueError, OverflowError):
-        return None

@@ -6,9 +6,10 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from pathlib import Path
 
+from grader.dates import date_of
 from grader.incoming import Incoming, wanted
-from grader.naming import Naming, Owner, date_in
-from grader.students import Unclear, problem_of_id
+from grader.naming import Naming, Owner, is_notebook
+from grader.students import Label, Unclear, problem_of_id, same_person
 from grader.submission import TIMESTAMP
 
 
@@ -23,6 +24,10 @@ class HandIn:
     """The student's Python files beside it, by name."""
     handed_in: datetime | None = None
     """In UTC; None where nothing tells."""
+    label: Label | None = None
+    """What Moodle or Canvas said of the student."""
+    remark: str = ''
+    """What a person may want to look at, although it was taken."""
 
 
 @dataclass(frozen=True)
@@ -36,30 +41,30 @@ class Left:
 
 
 def match(
-    found: Sequence[Incoming], assignments: Iterable[str], *, file_times: bool = False
+    found: Sequence[Incoming],
+    assignments: Iterable[str],
+    *,
+    students: Iterable[str] = (),
+    file_times: bool = False,
 ) -> tuple[list[HandIn], list[Left]]:
     """Sort what came in: submissions, each student's in their order, and the rest with reasons.
 
-    `file_times` takes the time of a file for the time it was handed in, where nothing else tells.
+    `students` are those who are known from before. `file_times` takes the time of a file for the
+    time it was handed in, where nothing else tells.
     """
-    naming = Naming(found, assignments)
-    owners: dict[Incoming, Owner] = {}
     rest = [Left(each, each.problem) for each in found if each.problem]
     beside: dict[tuple[str, ...], dict[str, Incoming]] = defaultdict(dict)
-    for each in (each for each in found if not each.problem):
-        if each.parts[-1].lower().endswith('.ipynb'):
-            try:
-                owners[each] = naming.owner(each)
-            except Unclear as unclear:
-                rest.append(Left(each, str(unclear)))
-        elif wanted(each.parts[-1]):
+    for each in (each for each in found if not each.problem and not is_notebook(each)):
+        if wanted(each.parts[-1]):
             beside[each.parts[:-1]][each.parts[-1]] = each
         else:
             rest.append(Left(each, 'neither a notebook nor Python', matters=False))
+    owners, remarks, unclear = _owners(found, assignments, students)
+    rest += unclear
     hand_ins, used = [], set()
     for notebook, owner in owners.items():
         files = beside[notebook.parts[:-1]] if owner.by_folder or notebook.archive else {}
-        stamp = files.get(TIMESTAMP) if not notebook.archive else None
+        stamp = files.get(TIMESTAMP) if not (notebook.archive or owner.label) else None
         when = owner.handed_in or (date_of(stamp.file) if stamp else None)
         if when is None and file_times:
             when = notebook.modified
@@ -68,29 +73,91 @@ def match(
             for name, each in files.items()
             if name.endswith('.py') and not problem_of_id(name)
         }
-        hand_ins.append(HandIn(owner.student_id, owner.assignment, notebook, extra, when))
+        hand_ins.append(
+            HandIn(
+                owner.student_id,
+                owner.assignment,
+                notebook,
+                extra,
+                when,
+                owner.label,
+                remarks[notebook],
+            )
+        )
         used |= {files[name] for name in extra}
         used |= {stamp} if stamp and date_of(stamp.file) else set()
-    for each in (each for files in beside.values() for each in files.values()):
-        if each not in used:
-            rest.append(_not_taken(each))
+    uploads = {notebook.parts[:-1] for notebook, owner in owners.items() if owner.label}
+    for folder, files in beside.items():
+        left = (each for each in files.values() if each not in used)
+        rest += [_not_taken(each, in_upload=folder in uploads) for each in left]
     return _in_order(hand_ins, rest), rest
 
 
-def date_of(stamp: Path) -> datetime | None:
-    """Read nbgrader's timestamp.txt; None where there is no such file, or no date in it."""
-    if not stamp.is_file() or stamp.is_symlink():
-        return None
-    with stamp.open('rb') as file:
-        return date_in(file.read(200).decode(errors='replace'))
+def _owners(
+    found: Sequence[Incoming], assignments: Iterable[str], students: Iterable[str]
+) -> tuple[dict[Incoming, Owner], dict[Incoming, str], list[Left]]:
+    """Return whose each notebook is, what is strange about it, and those that are nobody's."""
+    owners: dict[Incoming, Owner] = {}
+    left, students = [], list(students)
+    naming = Naming(found, assignments, students)
+    for each in filter(is_notebook, found):
+        try:
+            owners[each] = naming.owner(each)
+        except Unclear as unclear:
+            left.append(Left(each, str(unclear)))
+    numbers = defaultdict(set)
+    for owner in owners.values():
+        numbers[_namesakes(owner)].add(owner.label and owner.label.number)
+    known = {*students, *(owner.student_id for owner in owners.values())}
+    remarks, problems = {}, {}
+    for each, owner in owners.items():
+        remarks[each], problem = _claims(owner, naming, known)
+        if len(numbers[_namesakes(owner)]) > 1:
+            problem = _of_several(owner)
+        if problem:
+            problems[each] = problem
+    left += [Left(each, problem) for each, problem in problems.items()]
+    return {e: owner for e, owner in owners.items() if e not in problems}, remarks, left
 
 
-def _not_taken(each: Incoming) -> Left:
+def _namesakes(owner: Owner) -> tuple:
+    """Return what two owners have in common who may be two persons of one name.
+
+    In one download Moodle numbers each of them; Canvas's number is the same in each download.
+    """
+    if owner.label is None:
+        return (owner.student_id, owner.above, owner.assignment, None)
+    platform = owner.label.platform
+    return (owner.student_id, owner.above if platform == 'moodle' else (), platform)
+
+
+def _of_several(owner: Owner) -> str:
+    return (
+        f'there are several {owner.student_id} with different numbers, this one is '
+        f'{owner.label.number}: rename the folders so that each has a name of its own'
+    )
+
+
+def _claims(owner: Owner, naming: Naming, known: Iterable[str]) -> tuple[str, str]:
+    """Compare the names inside an upload with its owner's; return a remark, and a problem."""
+    whose, remark = owner.student_id, ''
+    for who, surely in naming.claims(owner):
+        if surely or any(same_person(who, other) for other in known if other != whose):
+            return '', (
+                f"it lies in what {whose} handed in, under the name of {who}: if it is {whose}'s, "
+                'rename that; if others packed it, collect what they packed by itself'
+            )
+        remark = remark or f"in {who!r} of {whose}'s own"
+    return remark, ''
+
+
+def _not_taken(each: Incoming, *, in_upload: bool) -> Left:
     """Say why a file that lies beside notebooks goes with none of them."""
     if each.parts[-1] != TIMESTAMP:
         return Left(each, "it lies beside no notebook, or beside several students'", matters=False)
-    if each.archive:
-        return Left(each, "a time in a student's own archive is not believed")
+    if each.archive or in_upload:
+        where = 'archive' if each.archive else 'upload'
+        return Left(each, f"a time in a student's own {where} is not believed")
     if date_of(each.file) is None:
         return Left(each, 'it holds no date')
     return Left(each, 'it lies beside no notebook of one student')

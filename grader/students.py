@@ -2,6 +2,9 @@
 
 import re
 import unicodedata
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import permutations
 
 from my_robot_basics.validate.text import visible
 
@@ -9,25 +12,94 @@ MAX_ID_CHARACTERS, MAX_ID_BYTES = 128, 200
 """What nbgrader's database keeps of a name, and what a folder's name may be long, with a rest."""
 HTML = frozenset('<>"')
 """The formgrader's tables show names as they are, in text and in attributes."""
+MOST_WORDS = 4
+"""The words of a name are tried in each order where they are written as one; more are not."""
 
-# what course management systems put around a name: Moodle's, and Canvas's
-_MOODLE = re.compile(r'(?P<who>.+?)_\d+_assignsubmission_(file|onlinetext)_?.*')
-_CANVAS = re.compile(r'(?P<who>[^_]+)(_LATE)?_\d{3,}_\d{3,}(_.*)?')
+# What course management systems put around a name. Neither leaves an underscore in the name, and
+# what stands behind it is the name that the student gave the file.
+_MOODLE = re.compile(
+    r'(?P<who>.+?)_(?P<number>\d+)_assignsubmission_(file|onlinetext)_?(?P<rest>.*)'
+)
+_CANVAS = re.compile(r'(?P<who>[^_]+)(_LATE)?_(?P<number>\d{3,})_\d{3,}(_(?P<rest>.*))?', re.I)
+_ANONYMOUS = {'Participant', 'Teilnehmer', 'Teilnehmerin'}
+"""What Moodle calls everybody where teachers must not know who it was."""
+_UPLOADS = """
+    notebooks submitted submissions submission inbound assignment assignments homework hw task
+    tasks exercise exercises solution solutions answer answers lab labs lesson lessons project
+    upload uploads download downloads files folder archive zip week term semester class course
+    students abgabe abgaben aufgabe aufgaben hausaufgabe hausaufgaben übung übungen lösung
+    lösungen woche kurs devoir devoirs exercice exercices travail rendu semaine tarea tareas
+    ejercicio ejercicios entrega semana trabajo compito compiti esercizio esercizi 作业 作業
+    """
+_WORDS_OF_NOBODY = frozenset(_UPLOADS.split())
+_BESIDE_THEM = frozenset(
+    {'my', 'the', 'final', 'of', 'for', 'ros', 'jupyter', 'meine', 'mes', 'mis'}
+)
 
 
 class Unclear(Exception):
     """Says in a sentence why a file is nobody's."""
 
 
+@dataclass(frozen=True)
+class Label:
+    """What a course management system wrote before the name of a file, or as a folder's name."""
+
+    platform: str
+    """'moodle' or 'canvas'."""
+    number: str
+    """Moodle's of a student in one assignment, Canvas's of a student."""
+    who: str
+    rest: str
+    """What the student called the file; '' in a folder's name."""
+
+
+def label_in(name: str) -> Label | None:
+    """Return what Moodle or Canvas says in a name, if one of them wrote it."""
+    for platform, form in (('moodle', _MOODLE), ('canvas', _CANVAS)):
+        if found := form.fullmatch(name):
+            who, number = found['who'], found['number']
+            who = f'{who} {number}' if who in _ANONYMOUS else who
+            return Label(platform, number, who, found['rest'] or '')
+    return None
+
+
 def student_in(name: str) -> str:
     """Return the student's name in a name. Raises Unclear."""
     name = unicodedata.normalize('NFC', name)
-    if decorated := _MOODLE.fullmatch(name) or _CANVAS.fullmatch(name):
-        name = decorated['who']
+    if label := label_in(name):
+        name = label.who
     name = name.strip(' ')
     if problem := problem_of_id(name):
         raise Unclear(problem)
     return name
+
+
+def same_person(one: str, other: str) -> bool:
+    """Whether two names may be one: case, accents, the words' order and what parts them apart."""
+    words, others = _words(one), _words(other)
+    if not words or not others:
+        return one == other
+    if sorted(words) == sorted(others):
+        return True
+    if len(words) > len(others):
+        words, others = others, words
+    if len(words) > 1 or len(others) > MOST_WORDS:
+        return False
+    return any(''.join(order) == words[0] for order in permutations(others))
+
+
+def is_nobody(name: str) -> bool:
+    """Whether a folder or an archive is named after work or a term, and after no student."""
+    words = set(re.findall(r'[^\W\d_]+', unicodedata.normalize('NFC', name).lower()))
+    return bool(words & _WORDS_OF_NOBODY) and words <= _WORDS_OF_NOBODY | _BESIDE_THEM
+
+
+@lru_cache(maxsize=10_000)
+def _words(name: str) -> list[str]:
+    plain = unicodedata.normalize('NFKD', name).casefold()
+    plain = ''.join(c for c in plain if not unicodedata.combining(c))
+    return re.findall(r'[^\W_]+', plain)
 
 
 def problem_of_id(student_id: str) -> str:

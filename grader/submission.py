@@ -10,8 +10,8 @@ from pathlib import Path
 
 import nbformat
 from nbformat import NotebookNode
-from nbgrader.utils import parse_utc
 
+from grader.dates import date_of
 from grader.errors import UnreadableSubmission
 
 MAX_NOTEBOOK_BYTES = 20_000_000
@@ -69,13 +69,12 @@ def timestamps(submission: Submission) -> list[Path]:
 
 
 def handed_in(submission: Submission) -> tuple[datetime | None, list[str]]:
-    """Read when it was handed in (UTC) and what is wrong with that file."""
+    """Read when it was handed in (UTC, without a zone) and what is wrong with that file."""
     if not (found := timestamps(submission)):
         return None, []
-    try:
-        return parse_utc(found[0].read_text(encoding='utf-8').strip() or None), []
-    except (ValueError, OverflowError):
-        return None, [f'{TIMESTAMP} holds no date: counted as handed in on time']
+    if when := date_of(found[0]):
+        return when.replace(tzinfo=None), []
+    return None, [f'{TIMESTAMP} holds no date: counted as handed in on time']
 
 
 def read_notebook(path: Path) -> NotebookNode:

@@ -20,6 +20,11 @@ class HandedIn:
     """Why it can't be a submission of anything."""
 
 
+def known_students(course: Course) -> list[str]:
+    """Return the students of whom something was handed in."""
+    return [folder.name for folder in _visible(course.folder('submitted', '', ''))]
+
+
 def find_submissions(
     course: Course, *, assignment: str | None = None, student_id: str | None = None
 ) -> list[HandedIn]:

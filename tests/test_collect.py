@@ -1,4 +1,5 @@
 import csv
+import json
 import os
 import zipfile
 from datetime import datetime
@@ -251,6 +252,94 @@ def test_a_full_disk_is_said_in_a_sentence(course, source, monkeypatch):
     monkeypatch.setattr(module, '_put', full)
     with pytest.raises(CourseError, match='the disk is full: what was collected is kept whole'):
         rows(course, source)
+
+
+# --- whose it is ---------------------------------------------------------------------------------
+
+
+def uploaded(source, who, number, content, inside=''):
+    write(source / f'{who}_{number}_assignsubmission_file_{inside}/{NOTEBOOK}', content)
+
+
+def numbers(course):
+    return json.loads((course.gradebook / 'numbers.json').read_text())
+
+
+def test_nobody_s_work_is_replaced_by_what_another_named_after_them(course, source):
+    uploaded(source, 'Ada Lovelace', 1815, 'hers')
+    rows(course, source)
+    uploaded(source, 'Mallory Evil', 666, 'forged', '/Ada Lovelace')
+    write(source / f'Mallory Evil_666_assignsubmission_file_/Ada Lovelace_{TOY}.ipynb', 'forged')
+    with zipfile.ZipFile(source / 'Mallory Evil_666_assignsubmission_file_/a.zip', 'w') as box:
+        box.writestr(f'Lovelace, Ada/{NOTEBOOK}', 'forged')
+    assert sorted(rows(course, source).values()) == [KNOWN, LEFT, LEFT, LEFT]
+    assert submitted(course, 'Ada Lovelace') == {NOTEBOOK: 'hers'}
+    assert [path.name for path in (course.gradebook / 'submitted').iterdir()] == ['Ada Lovelace']
+
+
+def test_moodle_s_number_is_kept_and_a_namesake_is_left_to_a_person(course, source, tmp_path):
+    uploaded(source, 'Ada Lovelace', 1815, 'hers')
+    uploaded(source, '王小明', 7, 'his')
+    assert set(rows(course, source).values()) == {NEW}
+    kept = {
+        'Ada Lovelace': {TOY: {'moodle': '1815'}},
+        '王小明': {TOY: {'moodle': '7'}},
+    }
+    assert numbers(course) == kept
+    uploaded(tmp_path / 'later', 'Ada Lovelace', 1906, 'another’s')
+    (row,) = collect(course, tmp_path / 'later')
+    assert row.outcome == LEFT
+    assert "the name Ada Lovelace has Moodle's number 1906 here and 1815 elsewhere" in row.reason
+    assert submitted(course, 'Ada Lovelace') == {NOTEBOOK: 'hers'}
+    (tmp_path / 'later/Ada Lovelace_1906_assignsubmission_file_').rename(
+        tmp_path / 'later/Ada Lovelace'
+    )
+    assert set(rows(course, tmp_path / 'later').values()) == {AGAIN}
+    assert numbers(course) == kept
+
+
+def test_two_downloads_that_disagree_on_a_number_are_both_left(course, source):
+    for number, folder in ((1, 'monday'), (2, 'tuesday')):
+        uploaded(source / folder, 'Ada Lovelace', number, folder)
+    assert set(rows(course, source).values()) == {LEFT}
+    assert not (course.gradebook / 'numbers.json').exists()
+
+
+def test_canvas_numbers_a_student_once(course, source):
+    write(source / f'lovelaceada_18151_21012_{TOY}.ipynb', 'one')
+    assert set(rows(course, source).values()) == {NEW}
+    (source / f'lovelaceada_18151_21012_{TOY}.ipynb').unlink()
+    write(source / f'lovelaceada_LATE_18151_21999_{TOY}-1.ipynb', 'two')
+    assert set(rows(course, source).values()) == {AGAIN}
+    write(source / f'lovelaceada_19061_22000_{TOY}.ipynb', 'another’s')
+    assert set(rows(course, source).values()) == {LEFT}
+    assert numbers(course) == {'lovelaceada': {TOY: {'canvas': '18151'}}}
+
+
+@pytest.mark.parametrize('damage', ['{', '[]', '{"ada": 1}', '{"ada": {"x": {"moodle": 1}}}'])
+def test_damaged_numbers_are_said_in_a_sentence(damage, course, source):
+    write(course.gradebook / 'numbers.json', damage)
+    uploaded(source, 'Ada', 1, '')
+    with pytest.raises(CourseError, match='is damaged: put a copy of it back, or remove it'):
+        rows(course, source)
+
+
+def test_a_hostile_time_costs_only_itself(course, source):
+    write(source / f'ada/{TOY}/{NOTEBOOK}', 'ada’s')
+    write(source / f'ada/{TOY}/timestamp.txt', '1:99999999999999999999999999999.5')
+    write(source / f'bob/{TOY}/{NOTEBOOK}', 'bob’s')
+    found = {row.path: (row.outcome, row.reason) for row in collect(course, source)}
+    assert found == {
+        f'ada/{TOY}/{NOTEBOOK}': (NEW, ''),
+        f'ada/{TOY}/timestamp.txt': (LEFT, 'it holds no date'),
+        f'bob/{TOY}/{NOTEBOOK}': (NEW, ''),
+    }
+
+
+def test_a_folder_of_their_own_is_told_beside_what_was_taken(course, source):
+    uploaded(source, 'Ada', 1, '', '/turtles')
+    (row,) = collect(course, source)
+    assert (row.outcome, row.reason) == (NEW, "in 'turtles' of Ada's own")
 
 
 # --- the command ---------------------------------------------------------------------------------

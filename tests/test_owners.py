@@ -205,3 +205,196 @@ def test_what_can_t_be_read_and_what_nobody_grades_is_told_apart(at):
         ('broken', True),
         ('neither a notebook nor Python', False),
     ]
+
+
+# --- whose work it is: the platform decides, not the student -------------------------------------
+
+MALLORY = 'Mallory Evil_666_assignsubmission_file_'
+ADA = 'Ada Lovelace_1815_assignsubmission_file_'
+HERS = f'{ADA}/03_publisher.ipynb'
+FORGED = [
+    f'{MALLORY}/Ada Lovelace.zip/03_publisher.ipynb',
+    f'{MALLORY}/Ada Lovelace/03_publisher.ipynb',
+    f'{MALLORY}/Ada Lovelace_03_publisher.ipynb',
+    f'{MALLORY}/ada_lovelace/notebooks/03_publisher/03_publisher.ipynb',
+    f'{MALLORY}/LovelaceAda/03_publisher.ipynb',
+    f'{MALLORY}/Lovelace, Ada.zip/03_publisher.ipynb',
+    f'{MALLORY}/homework.zip/Ada Lovelace/03_publisher.ipynb',
+    f'{MALLORY}/homework.zip/Ada Lovelace.zip/03_publisher.ipynb',
+    f'{MALLORY}/homework.zip/Ada Lovelace_03_publisher.ipynb',
+    f'{MALLORY}/{ADA}/03_publisher.ipynb',
+    f'{MALLORY}/{ADA}03_publisher.ipynb',
+    f'{MALLORY}/work.zip/{ADA}/03_publisher.ipynb',
+    f'{MALLORY}/Ada Lovelace_03_publisher/03_publisher.ipynb',
+    f'{MALLORY}/Ada Lovelace+03_publisher+2020-01-01 00:00:00 UTC/03_publisher.ipynb',
+    f'{MALLORY}/lovelaceada_18151_21012_03_publisher.ipynb',
+    f'{MALLORY}Ada Lovelace_03_publisher.ipynb',
+    f'{MALLORY}Ada Lovelace_1_assignsubmission_file_03_publisher.ipynb',
+    f'{MALLORY}work.zip/Ada Lovelace/03_publisher.ipynb',
+    'evilmallory_66666_77777_Ada Lovelace_03_publisher.ipynb',
+    'evilmallory_66666_77777_homework.zip/Ada Lovelace/03_publisher.ipynb',
+    'evilmallory_LATE_66666_77777_lovelaceada_18151_21012_03_publisher.ipynb',
+    'Mallory Evil/Ada Lovelace/03_publisher.ipynb',
+    'Mallory Evil/Ada Lovelace.zip/03_publisher.ipynb',
+    'Mallory Evil/Ada Lovelace_03_publisher.ipynb',
+    f'Mallory Evil/{ADA}/03_publisher.ipynb',
+    'Mallory Evil.zip/Ada Lovelace/03_publisher.ipynb',
+    f'Mallory Evil.zip/{ADA}/03_publisher.ipynb',
+    'mallory+03_publisher+2026-01-01 10:00:00 UTC/Ada Lovelace/03_publisher.ipynb',
+    'mallory+03_publisher+2026-01-01 10:00:00 UTC/Ada Lovelace_03_publisher.ipynb',
+]
+
+
+@pytest.mark.parametrize('path', FORGED)
+def test_what_a_student_named_is_listed_and_replaces_nobodys_work(path, at):
+    hers, forged = at(HERS), at(path)
+    taken, [(left, why)] = owners(hers, forged)
+    assert taken == [('Ada Lovelace', '03_publisher')]
+    assert left == path
+    assert 'nothing tells' not in why
+
+
+@pytest.mark.parametrize('path', FORGED)
+def test_nor_does_it_where_ada_has_handed_in_before(path, at):
+    taken, left = owners(at(path), students=['Ada Lovelace', 'Mallory Evil'])
+    assert 'Ada Lovelace' not in {student for student, _ in taken}
+    assert len(taken) + len(left) == 1
+
+
+@pytest.mark.parametrize('path', FORGED)
+@pytest.mark.parametrize('above', ['', 'ROS 2-Lab 3-4711/'])
+def test_nor_alone_in_a_download(above, path, at):
+    if path == f'Mallory Evil/{ADA}/03_publisher.ipynb':
+        path = f'Mallory Evil.zip/{ADA}/03_publisher.ipynb'  # a folder may be the teacher's
+    taken, left = owners(at(above + path))
+    assert {student for student, _ in taken}.isdisjoint({'Ada Lovelace', 'lovelaceada'})
+    assert len(taken) + len(left) == 1
+
+
+@pytest.mark.parametrize(
+    'path',
+    [
+        f'{ADA}/Ada Lovelace.zip/03_publisher.ipynb',
+        f'{ADA}/ada lovelace/03_publisher.ipynb',
+        f'{ADA}/Lovelace Ada_03_publisher.ipynb',
+        f'{ADA}/LOVELACE_ADA.zip/notebooks/03_publisher/03_publisher.ipynb',
+        f'{ADA}/lovelaceada/03_publisher.ipynb',
+        f'{ADA}/homework.zip/homework/03_publisher.ipynb',
+        f'{ADA}/my homework (2).zip/03_publisher.ipynb',
+        f'{ADA}03_publisher.ipynb',
+        f'{ADA}ada_lovelace_03_publisher.ipynb',
+        f'{ADA}homework.zip/03_publisher.ipynb',
+        f'Lab 3/{ADA}/03_publisher.ipynb',
+        f'ROS 2-Lab 3-4711/{ADA}/03_publisher.ipynb',
+        'Ada Lovelace_1815_assignsubmission_file/03_publisher.ipynb',
+        'Ada Lovelace.zip/lovelace_ada/03_publisher.ipynb',
+        'Ada Lovelace/Ada Lovelace/03_publisher.ipynb',
+        'Ada Lovelace (1).zip/03_publisher.ipynb',
+    ],
+)
+def test_a_student_s_own_name_in_any_spelling_is_fine(path, at):
+    (hand_in,), left = match([at(path)], ASSIGNMENTS)
+    assert (hand_in.student_id, hand_in.assignment) == ('Ada Lovelace', '03_publisher')
+    assert (hand_in.remark, left) == ('', [])
+
+
+@pytest.mark.parametrize(
+    ('path', 'student'),
+    [
+        ('王小明_7_assignsubmission_file_/小明王.zip/03_publisher.ipynb', '王小明'),
+        ('Jörg Müller_7_assignsubmission_file_/jorg_muller/03_publisher.ipynb', 'Jörg Müller'),
+        ('müllerjörg_LATE_71717_81818_Jörg Müller_03_publisher-3.ipynb', 'müllerjörg'),
+        ('müllerjörg_71717_81818_homework-1.zip/03_publisher.ipynb', 'müllerjörg'),
+        ('Participant_123_assignsubmission_file_/03_publisher.ipynb', 'Participant 123'),
+    ],
+)
+def test_names_of_every_alphabet_on_every_platform(path, student, at):
+    (hand_in,), left = match([at(path)], ASSIGNMENTS)
+    assert (hand_in.student_id, left) == (student, [])
+    assert hand_in.label.number in path
+
+
+def test_a_folder_named_after_nobody_known_is_taken_and_told(at):
+    (hand_in,), left = match([at(f'{ADA}/turtle-bot/03_publisher.ipynb')], ASSIGNMENTS)
+    assert (hand_in.student_id, left) == ('Ada Lovelace', [])
+    assert hand_in.remark == "in 'turtle-bot' of Ada Lovelace's own"
+
+
+@pytest.mark.parametrize('wrapper', ['', 'download/'])
+def test_equal_names_with_different_numbers_are_left_to_a_person(wrapper, at):
+    path = wrapper + 'Ada Lovelace_{}_assignsubmission_file_/{}.ipynb'
+    two = at(path.format(1, '02_joint_state')), at(path.format(2, '03_publisher'))
+    bob = at(wrapper + 'Bob_3_assignsubmission_file_/03_publisher.ipynb')
+    taken, left = owners(*two, bob)
+    assert taken == [('Bob', '03_publisher')]
+    assert [path for path, _ in left] == [each.path for each in two]
+    assert all('several Ada Lovelace with different numbers' in why for _, why in left)
+
+
+def test_a_student_has_another_number_in_each_of_moodle_s_assignments(at):
+    path = 'Lab {0}/Ada Lovelace_10{0}_assignsubmission_file_/{1}.ipynb'
+    taken, left = owners(at(path.format(2, '02_joint_state')), at(path.format(3, '03_publisher')))
+    assert taken == [('Ada Lovelace', '02_joint_state'), ('Ada Lovelace', '03_publisher')]
+    assert left == []
+
+
+def test_two_homeworks_are_not_one_student(at):
+    taken, left = owners(
+        at('Ada_1_assignsubmission_file_/homework.zip/03_publisher.ipynb'),
+        at('Bob_2_assignsubmission_file_/homework.zip/03_publisher.ipynb'),
+    )
+    assert (taken, left) == ([('Ada', '03_publisher'), ('Bob', '03_publisher')], [])
+    for name in ('homework.zip', 'homework (1).zip', 'HW3.zip', 'Hausaufgabe 2.zip', '作业.zip'):
+        taken, [(_, why)] = owners(at(f'{name}/03_publisher.ipynb'))
+        assert taken == []
+        assert 'nothing says whose it is' in why
+    taken, [(_, why)] = owners(at('homework.zip/ada_03_publisher.ipynb'))
+    assert taken == []
+    assert 'nothing says whose it is' in why
+
+
+def test_a_class_beside_other_files_is_read_as_before(at):
+    assert owners(
+        at('week 3/ada/03_publisher.ipynb'),
+        at('week 3/bob/03_publisher.ipynb'),
+        at('week 2/ada/02_joint_state.ipynb'),
+        at('zoe_03_publisher.ipynb'),
+    ) == (
+        [
+            ('ada', '02_joint_state'),
+            ('ada', '03_publisher'),
+            ('bob', '03_publisher'),
+            ('zoe', '03_publisher'),
+        ],
+        [],
+    )
+
+
+def test_where_two_folders_may_be_the_student_s_a_person_decides(at):
+    paths = 'CS101/ada/03_publisher.ipynb', 'CS102/bob/03_publisher.ipynb'
+    taken, left = owners(*map(at, paths))
+    assert taken == []
+    assert [why[:27] for _, why in left] == [
+        'it may be of CS101 or of ad',
+        'it may be of CS102 or of bo',
+    ]
+
+
+@pytest.mark.parametrize(
+    'upload', [ADA, 'lovelaceada_18151_21012_homework.zip', f'{ADA}/homework.zip']
+)
+@pytest.mark.parametrize('inside', ['', '/ada lovelace'])
+def test_a_time_that_a_student_uploaded_is_not_believed(upload, inside, at):
+    notebook = at(f'{upload}{inside}/03_publisher.ipynb')
+    stamp = at(f'{upload}{inside}/timestamp.txt', '2020-01-01 00:00:00 UTC')
+    when, [why] = time_of(notebook, stamp)
+    assert when is None
+    assert 'is not believed' in why
+    assert time_of(notebook, stamp, file_times=True)[0] == '01-01 12:00:00'
+
+
+@pytest.mark.parametrize('upload', [ADA, 'ada lovelace.zip', f'{ADA}/homework.zip'])
+def test_nor_one_in_the_name_of_a_folder_in_the_exchange_s_form(upload, at):
+    folder = f'{upload}/Ada Lovelace+03_publisher+2020-01-01 00:00:00 UTC'
+    for options, when in (({}, None), ({'file_times': True}, '01-01 12:00:00')):
+        assert time_of(at(f'{folder}/03_publisher.ipynb'), **options) == (when, [])

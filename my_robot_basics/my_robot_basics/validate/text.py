@@ -54,12 +54,12 @@ def shorten(text: str, width: int) -> str:
     """Return at most `width` columns of a line, an ellipsis where something was cut."""
     if columns(text) <= width:
         return text
-    kept = ''
-    for character in text:
-        if columns(kept + character) >= width:
-            break
-        kept += character
-    return kept + '…'
+    taken = 0
+    for index, character in enumerate(text):
+        taken += columns(character)
+        if taken >= width:
+            return text[:index] + '…'
+    raise AssertionError('a line that is too wide is wider than that somewhere')
 
 
 def columns(text: str) -> int:

@@ -1,0 +1,52 @@
+"""Read a time as nbgrader writes it, and in no other form: strangers wrote the text."""
+
+import re
+from datetime import UTC, datetime, timedelta, timezone, tzinfo
+from pathlib import Path
+from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
+
+MAX_BYTES = 200
+"""Of a file that holds a time."""
+_FORM = re.compile(
+    r'(?P<day>\d{4}-\d\d-\d\d)([ T](?P<clock>\d\d:\d\d(:\d\d)?)(\.(?P<fraction>\d{1,9}))?)?'
+    r' ?((?P<offset>[+-]\d\d:?\d\d)|(?P<zone>[A-Za-z][A-Za-z0-9_/]{0,40}))?',
+    re.ASCII,
+)
+_HOURS = {'WEST': 1, 'BST': 1, 'CEST': 2, 'EEST': 3, 'JST': 9, 'AEST': 10, 'AEDT': 11, 'NZDT': 13}
+_HOURS |= {'EDT': -4, 'CDT': -5, 'CST': -6, 'MDT': -6, 'PDT': -7, 'PST': -8}
+"""Names that clocks show and the time zone database does not have, with their hours from UTC."""
+
+
+def date_in(text: str) -> datetime | None:
+    """Return the time in UTC, without a zone taken for UTC; None where there is no such time."""
+    found = _FORM.fullmatch(text.strip())
+    if found is None:
+        return None
+    clock = found['clock'] or '00:00'
+    fraction = (found['fraction'] or '0')[:6].ljust(6, '0')
+    try:
+        when = datetime.fromisoformat(f'{found["day"]} {clock}')
+        zone = _zone(found['offset'] or '', found['zone'] or 'UTC')
+        return when.replace(microsecond=int(fraction), tzinfo=zone).astimezone(UTC)
+    except (ValueError, OverflowError, ZoneInfoNotFoundError, OSError):
+        return None
+
+
+def date_of(path: Path) -> datetime | None:
+    """Read a file that holds a time; None where there is none, or no such file."""
+    if not path.is_file() or path.is_symlink():
+        return None
+    with path.open('rb') as file:
+        return date_in(file.read(MAX_BYTES).decode(errors='replace'))
+
+
+def _zone(offset: str, name: str) -> tzinfo:
+    """Raises ValueError, ZoneInfoNotFoundError or OSError where there is no such zone."""
+    if offset:
+        minutes = int(offset[1:3]) * 60 + int(offset[-2:])
+        return timezone(timedelta(minutes=-minutes if offset[0] == '-' else minutes))
+    if name in ('UTC', 'Z', 'GMT'):
+        return UTC
+    if name in _HOURS:
+        return timezone(timedelta(hours=_HOURS[name]))
+    return ZoneInfo(name)

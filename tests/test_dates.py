@@ -1,0 +1,70 @@
+import pytest
+from dateutil.parser import parse
+
+from grader.dates import date_in, date_of
+
+
+@pytest.mark.parametrize(
+    ('text', 'utc'),
+    [
+        ('2026-01-02 03:04:05.678900 UTC', '2026-01-02T03:04:05.678900+00:00'),
+        ('2026-01-02 03:04:05.6789 UTC\r\n', '2026-01-02T03:04:05.678900+00:00'),
+        ('2026-01-02 03:04:05', '2026-01-02T03:04:05+00:00'),
+        ('2026-01-02T03:04:05Z', '2026-01-02T03:04:05+00:00'),
+        ('2026-01-02 03:04', '2026-01-02T03:04:00+00:00'),
+        ('2026-01-02', '2026-01-02T00:00:00+00:00'),
+        ('2026-01-02 12:00:00 +0200', '2026-01-02T10:00:00+00:00'),
+        ('2026-01-02 12:00:00 -05:30', '2026-01-02T17:30:00+00:00'),
+        ('2026-01-02 12:00:00 CET', '2026-01-02T11:00:00+00:00'),
+        ('2026-07-02 12:00:00 CEST', '2026-07-02T10:00:00+00:00'),
+        ('2026-07-02 12:00:00 EDT', '2026-07-02T16:00:00+00:00'),
+        ('2026-07-02 12:00:00 Europe/Berlin', '2026-07-02T10:00:00+00:00'),
+    ],
+)
+def test_a_time_as_nbgrader_writes_it_is_read(text, utc):
+    assert date_in(text).isoformat() == utc
+
+
+STOPS_DATEUTIL = '1:99999999999999999999999999999.5'
+
+
+@pytest.mark.parametrize(
+    'text',
+    [
+        '',
+        'soon',
+        STOPS_DATEUTIL,
+        '2026-13-45 10:00:00 UTC',
+        '2026-01-02 25:00:00 UTC',
+        '2026-01-02 10:00:00 Nowhere/Land',
+        '2026-01-02 10:00:00 Europe',
+        '2026-01-02 10:00:00 ../../etc/passwd',
+        '2026-01-02 10:00:00 +9999',
+        '0001-01-01 00:00:00 +2300',
+        '٢٠٢٦-01-02 10:00:00 UTC',
+        '2 January 2026',
+        'today at 10',
+        '1' * 100_000,
+        '2026-01-02 10:00:00 ' + 'a' * 100_000,
+    ],
+)
+def test_any_other_text_is_no_time(text):
+    assert date_in(text) is None
+
+
+def test_dateutil_is_stopped_by_one_still():
+    """Else the example of a hostile time has lost its sting."""
+    with pytest.raises(ArithmeticError):
+        parse(STOPS_DATEUTIL)
+
+
+def test_a_file_is_read_as_far_as_a_time_goes(tmp_path):
+    path = tmp_path / 'timestamp.txt'
+    assert date_of(path) is None
+    path.write_bytes(b'\xff\xfe\x00')
+    assert date_of(path) is None
+    path.write_text('2026-01-02 03:04:05 UTC' + ' ' * 1_000_000)
+    assert date_of(path).day == 2
+    link = tmp_path / 'link'
+    link.symlink_to(path)
+    assert date_of(link) is None
