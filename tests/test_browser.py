@@ -15,6 +15,7 @@ from pathlib import Path
 import nbformat
 import pytest
 from chromium import LONG, drives_chromium, launched
+from my_robot_basics.live.workspace import make_workspace
 from playwright.sync_api import expect
 
 ROOT = Path(__file__).parents[1]
@@ -226,6 +227,25 @@ def test_the_lab_opens_on_the_contents_and_shows_the_terms_to_readers(page):
     # a link would show it without our settings, too
     page.locator('.jp-DirListing-item', has_text='terms.md').dblclick()
     expect(page.locator('.jp-MarkdownViewer table').first).to_be_visible()
+
+
+def test_the_workspace_opens_in_the_file_browser(lab, page, monkeypatch):
+    workspace = lab.folder.parent / 'ros_ws'
+    monkeypatch.setenv('MY_ROBOT_BASICS_WORKSPACE', str(workspace))
+    make_workspace()
+    (lab.folder / 'ros_ws').symlink_to('../ros_ws')  # as make_workspace does in the course
+    page.evaluate("jupyterapp.commands.execute('filebrowser:refresh')")
+    try:
+        for name in ('ros_ws', 'src', 'my_robot_basics', 'setup.py'):
+            page.locator('.jp-DirListing-item', has=page.get_by_text(name, exact=True)).dblclick()
+        expect(page.locator('.jp-FileEditor')).to_contain_text('kinematics_publisher:main')
+        page.locator('.jp-FileEditor .cm-content').click()
+        page.keyboard.insert_text('# mine\n')
+        page.evaluate("jupyterapp.commands.execute('docmanager:save')")
+        assert '# mine' in (workspace / 'src/my_robot_basics/setup.py').read_text()
+    finally:
+        page.evaluate("jupyterapp.commands.execute('filebrowser:go-to-path', {path: '/'})")
+        close_all(page)
 
 
 @pytest.mark.parametrize('name', LESSONS)

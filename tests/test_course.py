@@ -535,6 +535,21 @@ def test_lab_serves_the_lessons_alone(machine):
     assert folder == f'{machine.root}/notebooks'
 
 
+def test_lab_shows_a_workspace_that_is_there_in_its_file_browser(machine):
+    link = machine.root / 'notebooks/ros_ws'
+    assert machine.course('lab').returncode == 0
+    assert not link.is_symlink()
+    (machine.root / 'ros_ws/src').mkdir(parents=True)
+    for _ in range(2):
+        assert machine.course('lab').returncode == 0
+        assert link.readlink() == Path('../ros_ws')
+        assert (link / 'src').is_dir()
+    link.unlink()
+    link.write_text('mine')
+    assert machine.course('lab').returncode == 0
+    assert link.read_text() == 'mine'
+
+
 def test_what_lab_starts_is_on_this_machine_alone(machine):
     run = machine.course('lab', PRINT_ENVIRONMENT='yes')
     assert 'ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST' in run.stdout.splitlines()

@@ -156,6 +156,30 @@ def test_the_command_refreshes_too(package, capsys):
     assert 'moved ' in capsys.readouterr().out
 
 
+def test_the_courses_own_is_shown_in_the_file_browser(tmp_path, monkeypatch):
+    monkeypatch.setattr(workspace, 'LESSONS', tmp_path / 'notebooks')
+    link = tmp_path / 'notebooks/ros_ws'
+    link.parent.mkdir()
+    for elsewhere in ('another place', 'another place/ros_ws'):
+        monkeypatch.setenv('MY_ROBOT_BASICS_WORKSPACE', str(tmp_path / elsewhere))
+        make_workspace()
+        assert not link.is_symlink()
+    monkeypatch.setenv('MY_ROBOT_BASICS_WORKSPACE', str(tmp_path / 'ros_ws'))
+    for _ in range(2):
+        make_workspace()
+        assert link.readlink() == Path('../ros_ws')
+        assert (link / 'src/my_robot_basics/setup.py').is_file()
+    link.unlink()
+    link.mkdir()
+    make_workspace()
+    assert not link.is_symlink()
+
+
+def test_the_link_to_it_is_no_part_of_the_lessons():
+    ignored = subprocess.run(['git', 'check-ignore', '-q', 'notebooks/ros_ws'], cwd=ROOT)
+    assert ignored.returncode == 0
+
+
 # --- what a terminal does in it ------------------------------------------------------------------
 
 

@@ -22,6 +22,8 @@ REFERENCE = (
 )
 """What students copy from, to catch up or to begin a file anew."""
 BUILD = f'cd "$ROS_WS" && colcon build --packages-select {NAME} && source install/setup.bash'
+LESSONS = PACKAGE.parent / 'notebooks'
+"""The root of JupyterLab's file browser."""
 _LEFTOVERS = ('.', '__pycache__', 'build', 'install', 'log')
 """How folders begin that programs leave behind."""
 
@@ -58,7 +60,17 @@ def make_workspace(*, refresh: bool = False) -> None:
     else:
         print(f'kept     {_shown(copy)}: the package, as the course has it')
     print(f'written  {_shown(workspace / "reference")}: files to copy from')
+    _show_in_file_browser(workspace)
     print(f"build it in JupyterLab's terminal or in ./course ros-shell:\n           {BUILD}")
+
+
+def _show_in_file_browser(workspace: Path) -> None:
+    """Link to the course's own workspace from the folder that JupyterLab serves."""
+    link = LESSONS / workspace.name
+    if workspace != LESSONS.parent / workspace.name or not LESSONS.is_dir():
+        return
+    if not link.exists() and not link.is_symlink():
+        link.symlink_to(Path('..', workspace.name))
 
 
 def _write_reference(reference: Path) -> None:
