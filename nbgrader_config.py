@@ -33,6 +33,8 @@ c.CourseDirectory.db_url = course.db_url
 
 c.GenerateAssignment.preprocessors = list(PASSES)
 c.ClearSolutions.code_stub = CODE_STUB
+# a mark scheme stands in the text before an answer: the grader puts that back from the source
+c.ClearMarkScheme.enforce_metadata = False
 c.Autograde.sanitize_preprocessors = list(SANITIZE_PASSES)
 c.Autograde.autograde_preprocessors = list(AUTOGRADE_PASSES)
 c.Autograde.pre_convert_hook = 'grader.gradebook.register_before_autograde'

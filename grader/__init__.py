@@ -19,6 +19,7 @@ Its modules, in the order in which things happen:
   `kernels` and `pool` run its cells.
 - What is kept: `gradebook`, `saving`, `lateness`, `due`, `turn`, `database`, `backups`, `records`.
 - What is told: `feedback` and `page` to students; `table`, `report`, `tally`, `reasons`, `charts`,
-  `scores`, `totals` and `formgrader` to teachers; `templates` for both.
+  `scores`, `totals` and `formgrader` to teachers; `templates` for both. After the deadline:
+  `sample_solutions`.
 - For all of them: `course`, `errors`, `files`, `text`, `versions`.
 """

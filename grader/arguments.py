@@ -93,6 +93,13 @@ def make_parser() -> argparse.ArgumentParser:
     )
     verb.set_defaults(run=verbs.run_scores)
 
+    verb = subparsers.add_parser('solutions', help='write the answers, for after the deadline')
+    verb.add_argument('assignment', nargs='?', metavar='ASSIGNMENT', help='only this one')
+    verb.add_argument(
+        '--early', action='store_true', help='even if somebody may still hand in (./course due)'
+    )
+    verb.set_defaults(run=verbs.run_solutions)
+
     for name, run, text in (
         ('feedback', verbs.run_feedback, 'write a page of feedback for each submission'),
         ('demo', verbs.run_demo, 'grade a sample class, to see all of it in about a minute'),

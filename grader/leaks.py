@@ -12,6 +12,7 @@ BROKEN = '### BROKEN: '
 """Begins a line of code that is released broken, for students to mend (see release.py)."""
 MARKS = (
     *('BEGIN SOLUTION', 'END SOLUTION', 'BEGIN HIDDEN TESTS', 'END HIDDEN TESTS'),
+    *('BEGIN MARK SCHEME', 'END MARK SCHEME'),
     BROKEN.strip(),
 )
 COMMON_PHRASE = 25

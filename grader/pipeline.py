@@ -40,6 +40,7 @@ def apply(passes: Sequence[str], notebook: NotebookNode, resources: dict) -> Not
             {
                 'Exporter': {'default_preprocessors': []},
                 'ClearSolutions': {'code_stub': CODE_STUB},
+                'ClearMarkScheme': {'enforce_metadata': False},
             }
         )
     )

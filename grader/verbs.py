@@ -22,6 +22,7 @@ from grader.lateness import extended_for_nobody
 from grader.release import release
 from grader.replay import RECORDED, replay
 from grader.report import Run, write_report
+from grader.sample_solutions import write_solutions
 from grader.scores import write_scores
 from grader.submitted import HandedIn, find_submissions
 from grader.table import changes, print_rows
@@ -160,6 +161,14 @@ def run_scores(course: Course, asked: argparse.Namespace) -> int:
     _wait_for_database(course)
     print(write_totals(course) if asked.totals else write_scores(course))
     _say_what_comes_first(course)
+    return 0
+
+
+def run_solutions(course: Course, asked: argparse.Namespace) -> int:
+    """Write notebooks with the answers, to give out after the deadline."""
+    wanted = [asked.assignment] if asked.assignment else ()
+    for path in write_solutions(course, wanted, early=asked.early):
+        print(path)
     return 0
 
 

@@ -11,7 +11,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 VERBS = ['lab', 'workspace', 'ros-shell', 'test', 'release', 'bundle', 'collect']
-VERBS += ['due', 'grade', 'scores', 'feedback', 'demo', 'doctor']
+VERBS += ['due', 'grade', 'scores', 'feedback', 'solutions', 'demo', 'doctor']
 TOOLS = [
     'sh',
     'cat',

@@ -99,7 +99,7 @@ def grade(course, student, explained):
 
 def exported(course, student):
     """Score and comment of the text in the exported table."""
-    with write_scores(course).open(encoding='utf-8', newline='') as file:
+    with write_scores(course).open(encoding='utf-8-sig', newline='') as file:
         [row] = [
             row
             for row in csv.DictReader(file)

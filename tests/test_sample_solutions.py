@@ -1,0 +1,75 @@
+from datetime import datetime, timedelta
+
+import nbformat
+import pytest
+from course_maker import TOY, make_course, toy_lesson, write_source
+
+from grader.__main__ import main
+from grader.course import Course
+from grader.due import set_due
+from grader.leaks import MARKS
+from grader.release import release
+from grader.sample_solutions import write_solutions
+
+MARK_SCHEME = '## Explain\n### BEGIN MARK SCHEME\nHalf a point for a try.\n### END MARK SCHEME'
+
+
+@pytest.fixture
+def course(tmp_path):
+    course = make_course(tmp_path)
+    lesson = toy_lesson()
+    lesson.cells[4].source += '\n    ### BROKEN: return x - x'
+    lesson.cells.insert(-1, nbformat.v4.new_markdown_cell(MARK_SCHEME, id='explain-text'))
+    write_source(course, lesson)
+    return course
+
+
+def in_days(days):
+    return datetime.now().astimezone() + timedelta(days=days)
+
+
+def test_solutions_have_the_answers_and_nothing_that_is_hidden(course):
+    (path,) = write_solutions(course)
+    cells = {cell.id: cell for cell in nbformat.read(path, as_version=4).cells}
+    assert cells['double'].source == (
+        'def double(x):\n    """Return twice x."""\n    return x + x  # the secret answer'
+    )
+    assert cells['explain'].source == 'Because it is added to itself.'
+    assert cells['explain-text'].source == '## Explain'
+    assert cells['shown'].outputs
+    text = path.read_text(encoding='utf-8')
+    assert 'canary' not in text
+    assert not [mark for mark in MARKS if mark in text]
+
+
+def test_each_lesson_has_a_solution_that_runs_as_python(tmp_path):
+    paths = write_solutions(Course(gradebook=tmp_path))
+    assert len(paths) == len(Course().assignments()) >= 8
+    for path in paths:
+        text = path.read_text(encoding='utf-8')
+        assert not [mark for mark in MARKS if mark in text]
+        notebook = nbformat.read(path, as_version=4)
+        answers = [c for c in notebook.cells if c.metadata.get('nbgrader', {}).get('solution')]
+        assert answers
+        for cell in answers:
+            if cell.cell_type == 'code':
+                compile(cell.source, path.name, 'exec')
+
+
+def test_nothing_is_written_while_somebody_may_still_hand_in(course, capsys):
+    set_due(course, TOY, in_days(-2))
+    set_due(course, TOY, in_days(1), student_id='ada')
+    assert main(['solutions'], course=course) == 1
+    assert f'{TOY} can be handed in until' in capsys.readouterr().err
+    assert not (course.gradebook / 'solutions').exists()
+    assert main(['solutions', TOY, '--early'], course=course) == 0
+    set_due(course, TOY, None, student_id='ada')
+    assert main(['solutions', TOY], course=course) == 0
+
+
+def test_a_mark_scheme_is_for_teachers_alone(course):
+    release(course)
+    cells = {cell.id: cell.source for cell in course.release(TOY).cells}
+    assert cells['explain-text'] == '## Explain'
+    master = {cell.id: cell.source for cell in course.master(TOY).notebook.cells}
+    assert master['explain-text'] == MARK_SCHEME
