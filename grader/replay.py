@@ -79,4 +79,5 @@ def _compared(name: str, now: Mapping, stored: Mapping[str, Mapping]) -> tuple[s
 
 def _told(verdict: Mapping) -> str:
     said = verdict.get('outcome') or 'nothing'
-    return printable(f'{said}: {verdict["reason"]}' if verdict.get('reason') else said)
+    reason = verdict.get('details') or verdict.get('reason')
+    return printable(f'{said}: {reason}' if reason else said)

@@ -58,6 +58,7 @@ _VERDICT = jsonschema.Draft202012Validator(
             'outcome': {'enum': ['passed', 'failed', 'ungraded']},
             'reason': {'type': 'string', 'maxLength': MAX_REASON_CHARACTERS},
             'notes': _NOTES,
+            'details': {'type': 'string', 'maxLength': MAX_REASON_CHARACTERS},
         },
         'required': ['role', 'outcome', 'reason', 'notes'],
         'additionalProperties': False,

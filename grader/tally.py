@@ -151,7 +151,7 @@ def _failures(notebooks: dict[tuple[str, str], NotebookNode]) -> Iterable[Said]:
     for whose, notebook in notebooks.items():
         for name, verdict in verdicts_in(notebook).items():
             if verdict.get('outcome') == 'failed':
-                yield Said(*whose, name, verdict.get('reason', ''))
+                yield Said(*whose, name, verdict.get('details') or verdict.get('reason', ''))
 
 
 def _looks(

@@ -162,6 +162,7 @@ def test_a_failure_is_written_as_one_error_without_the_test(cell):
         'outcome': 'failed',
         'reason': 'too slow',
         'notes': ['n'],
+        'details': '',
     }
 
 

@@ -40,6 +40,7 @@ _ROOMS = {
         'my_robot_basics.checks',
         'my_robot_basics.checks.clock',
         'my_robot_basics.checks.graphs',
+        'my_robot_basics.checks.hidden',
         'my_robot_basics.checks.latched',
         'my_robot_basics.checks.logs',
         'my_robot_basics.checks.looks',

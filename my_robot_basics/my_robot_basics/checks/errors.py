@@ -5,6 +5,7 @@ from typing import NoReturn
 
 import numpy as np
 
+from my_robot_basics.checks import hidden
 from my_robot_basics.live.described import described
 from my_robot_basics.live.errors import in_lines
 
@@ -19,22 +20,38 @@ class CheckFailed(AssertionError):
         return in_lines(str(self))
 
 
-def expect(condition: bool, *, expected: object, seen: object, hint: str) -> None:
-    """Raise CheckFailed('expected …, saw …: hint') unless the condition holds.
+def expect(condition: bool, *, expected: object, seen: object, hint: str, cause: str = '') -> None:
+    """Raise CheckFailed('expected …, saw …: hint') unless the condition holds; see `fail`.
 
     The condition is a bool; anything else is a mistake in the check and raises TypeError.
     """
     if not isinstance(condition, bool | np.bool_):
         raise TypeError(f'expect() takes a bool as its condition, not {condition!r}')
     if not condition:
-        fail(expected=expected, seen=seen, hint=hint)
+        fail(expected=expected, seen=seen, hint=hint, cause=cause)
 
 
-def fail(*, expected: object, seen: object, hint: str, picture: bytes | None = None) -> NoReturn:
-    """Raise CheckFailed('expected …, saw …: hint'); show the picture (PNG bytes) before it."""
+def fail(
+    *,
+    expected: object,
+    seen: object,
+    hint: str,
+    cause: str = '',
+    picture: bytes | None = None,
+) -> NoReturn:
+    """Raise CheckFailed('expected …, saw …: hint'); show the picture (PNG bytes) before it.
+
+    From a hidden part on, students read 'cause: hint' alone, or the hint: `cause` is what went
+    wrong in words that tell no input, no right value, and nothing that the student's code made.
+    """
+    sentence = hidden.in_full(f'expected {expected}, saw {seen}: {hint}')
+    if hidden.is_quiet():
+        hidden.tell_grader(sentence)
+        why = hidden.without_inputs(f'{cause}: {hint}' if cause else hint)
+        raise CheckFailed(f'{hidden.PLACE}{why}')
     if picture is not None:
         show(picture, alt=f'Picture of what was seen: {seen}')
-    raise CheckFailed(f'expected {expected}, saw {seen}: {hint}')
+    raise CheckFailed(sentence)
 
 
 def shorten(text: object, most: int = MOST_CHARACTERS) -> str:

@@ -9,6 +9,8 @@ from rclpy.node import Node
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 from my_robot_basics.checks import student
+from my_robot_basics.checks.hidden import raised as safely
+from my_robot_basics.checks.hidden import theirs
 from my_robot_basics.checks.watcher import HIDDEN, Watcher
 
 SETTLE_SEC = 0.4
@@ -16,6 +18,7 @@ SETTLE_SEC = 0.4
 MOST_SETTLE_SEC = 5.0
 MOST_TAKE_SEC = 15.0
 """The same with the looks themselves: a busy machine, or a large graph, takes longer for each."""
+PUBLISHER_SEC = 10.0
 NEWCOMER_SEC = 0.2
 """How long to look out for a second publisher after the first."""
 UNKNOWN = '_NODE_NAME_UNKNOWN_'
@@ -65,7 +68,7 @@ class Graph:
     def why_silent(self, topic_name: str) -> str:
         """What to try when nothing arrives on a topic: one clause."""
         if senders := self.publishers(topic_name):
-            who = ', '.join(senders)
+            who = theirs(', '.join(senders))
             if raised := what_raised(senders):
                 return f'{who} has a publisher there and sends nothing, because {raised}'
             return (
@@ -94,28 +97,33 @@ class Graph:
         # it may be the one that was meant, with its two ends mixed up
         if mixed := sorted({*names.get(similar, others if not runs else ())} & {*others}):
             return (
-                f'{", ".join(mixed)} is at the other end of this topic, so look which name goes'
-                f' into {maker}(…); if another node is missing, run the cell that starts it'
+                f'{theirs(", ".join(mixed))} is at the other end of this topic, so look which name'
+                f' goes into {maker}(…); if another node is missing, run the cell that starts it'
             )
         if not runs:
             return 'the node is not running, so run the cell that starts it and read what it says'
         if similar:
-            uses = f'{", ".join(names[similar])} uses {similar}'
+            uses = theirs(f'{", ".join(names[similar])} uses {similar}')
             if similar in {name.rpartition('/')[0] + topic_name for name in names[similar]}:
                 return f'{uses}: a name without / in front is put into the namespace of its node'
             return f'{uses}, so compare the spelling'
         look = f'look at the topic name in {maker}(…) and that the node calls it'
         if len(runs) == 1:
-            return f'{runs[0]} runs, so {look}'
+            return f'{theirs(runs[0])} runs, so {look}'
         return (
-            f'{", ".join(runs)} run, so if yours is among them, {look}; if it is not, run the cell'
-            ' that starts it and read what it says'
+            f'{theirs(", ".join(runs))} run, so if yours is among them, {look}; if it is not, run'
+            ' the cell that starts it and read what it says'
         )
 
 
-def graph() -> Graph:
-    """The graph as it is now, once it has settled."""
+def graph(*, after_publisher_on: str = '') -> Graph:
+    """The graph as it is now, once it has settled.
+
+    With the name of a topic, once somebody publishes there, or after PUBLISHER_SEC.
+    """
     with Watcher() as watcher:
+        if after_publisher_on:
+            wait_for_publisher(watcher, after_publisher_on, timeout_sec=PUBLISHER_SEC)
         return take(watcher)
 
 
@@ -175,9 +183,12 @@ def wait_for_publisher(watcher: Watcher, topic_name: str, *, timeout_sec: float)
 def what_raised(node_names: Iterable[str]) -> str:
     """A clause on the callback of one of the nodes that has raised, or ''."""
     said = next(filter(None, map(student.trouble, sorted(set(node_names)))), '')
+    if not said:
+        return ''
+    why = f'its callback raised {safely(said)}'
     if said.endswith('object is not callable'):
-        said += ', so give a method by its name, without parentheses'
-    return f'its callback raised {said}' if said else ''
+        why += ', so give a method by its name, without parentheses'
+    return why
 
 
 def _look(node: Node) -> Graph:

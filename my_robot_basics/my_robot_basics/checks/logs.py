@@ -110,6 +110,7 @@ class Log:
                 expected=f'{listed} for {what} in the INFO log of {self._node_name}',
                 seen=self._shown('INFO'),
                 hint=self._why_unanswered(wanted),
+                cause='the INFO log lacks the angles of a target in reach',
             )
         before = self._count('WARN') if may_lag else 0
         # a warning may come just behind the answer
@@ -118,6 +119,7 @@ class Log:
                 expected=f'no warning from {self._node_name} for {what}, which is in reach',
                 seen=self._shown('WARN'),
                 hint=WARN_ONLY,
+                cause='a warning comes for a target in reach',
             )
         return before > 0
 
@@ -139,6 +141,7 @@ class Log:
                 expected=f'a warning in the log of {self._node_name}',
                 seen=self._shown('WARN'),
                 hint=self._why_unwarned(),
+                cause='no warning comes for a target out of reach',
             )
         levels = [record.level for record in self.records]
         count = levels[: levels.index('WARN')].count('INFO')
@@ -158,6 +161,7 @@ class Log:
                 seen=self._shown('INFO'),
                 hint='log angles only when inverse_kinematics returns some: leave the callback '
                 'after the warning',
+                cause='angles are logged for a target out of reach',
             )
 
     def _meet(self) -> None:

@@ -152,6 +152,8 @@ class Relay:
             expected=f'a message from {self.source} to come out on {self.to}, unchanged',
             seen=f'{"only others" if has_others else "none"} in {TIMEOUT_SEC:g} s',
             hint=self._why_lost(watcher, is_latched=again is None, has_others=has_others),
+            cause=f'{"only other messages come" if has_others else "no message comes"} out on'
+            f' {self.to}',
         )
 
     def _why_lost(self, watcher: Watcher, *, is_latched: bool, has_others: bool) -> str:

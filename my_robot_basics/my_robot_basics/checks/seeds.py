@@ -3,6 +3,8 @@
 import os
 import random
 
+from my_robot_basics.checks import hidden
+
 
 def inputs(label: str) -> random.Random:
     """A source of random inputs for the check of that label.
@@ -10,5 +12,6 @@ def inputs(label: str) -> random.Random:
     It depends on MY_ROBOT_BASICS_SEED (the grader's, one for each student) and the label alone;
     without a seed, as in a student's own kernel, it differs each time.
     """
+    hidden.note_inputs()
     seed = os.environ.get('MY_ROBOT_BASICS_SEED')
     return random.Random(f'{seed}:{label}') if seed else random.Random()

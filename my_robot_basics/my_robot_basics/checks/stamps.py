@@ -34,6 +34,7 @@ ATTEMPTS = 3
 """How often to try where the clock could not be driven: a busy machine may be slow just now."""
 EXPECTED = "stamps of the node's clock at publication"
 AT_ONCE_SEC = 0.02
+COMPUTERS = "they have the computer's clock"
 ONCE = 'publish one message each time the timer fires'
 HOW = 'set message.header.stamp = self.get_clock().now().to_msg() before each publish'
 WHY = 'it is another one than that of the computer where a simulation, or this check, drives it'
@@ -138,8 +139,8 @@ def _seconds(stamp: object) -> float:
 
 
 def _fail_computer() -> NoReturn:
-    fail(expected=EXPECTED, seen="the computer's clock", hint=f'{HOW}; {WHY}')
+    fail(expected=EXPECTED, seen="the computer's clock", hint=f'{HOW}; {WHY}', cause=COMPUTERS)
 
 
 def _fail(seen: str) -> NoReturn:
-    fail(expected=EXPECTED, seen=seen, hint=HOW)
+    fail(expected=EXPECTED, seen=seen, hint=HOW, cause=f'they have {seen}')

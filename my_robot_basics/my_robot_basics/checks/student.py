@@ -5,11 +5,11 @@ student's own kernel the same question is answered in place, in the same words.
 """
 
 import builtins
-import os
 from typing import Any
 
-from my_robot_basics.checks import responder, values, wire
-from my_robot_basics.checks.errors import CheckFailed, fail, shorten
+from my_robot_basics.checks import hidden, responder, values, wire
+from my_robot_basics.checks.errors import fail, shorten
+from my_robot_basics.checks.hidden import is_in_test_room
 
 _ANSWER_CELL = 'in the answer cell, and run the cell'
 
@@ -20,24 +20,31 @@ def call(name: str, *args: object, returns: type | tuple[type, ...] | None = Non
     Arguments and result are plain values or ROS messages (see values.py). With `returns`, any
     other type fails the check; a bool is no int, an int will do for a float.
     """
-    shown = f'{name}({", ".join(_brief(argument) for argument in args)})'
+    shown = hidden.theirs(shorten(f'{name}({", ".join(_brief(argument) for argument in args)})'))
     kind, body = _ask(wire.request(op='call', name=name, args=args), shown)
     if kind == 'missing':
         _fail_missing(name, what='function')
     if kind == 'raised':
         raised = shorten(f'{body["type"]}: {body["message"]}')
-        hint = f'call {shorten(shown)} in a cell of your own to see where'
-        fail(expected=f'`{shorten(shown)}` to return', seen=raised, hint=hint)
+        hint = f'call {shown} in a cell of your own to see where'
+        cause = f'`{name}` raises {hidden.raised(raised)}'
+        fail(expected=f'`{shown}` to return', seen=raised, hint=hint, cause=cause)
     if kind == 'unsupported':
         seen = _article(shorten(body))
         hint = 'return plain values (numbers, text, lists, dicts) or a ROS message'
         if values.WRONG_FIELD in body:
             hint = 'give each field a value of the type that get_fields_and_field_types() names'
-        fail(expected=f'`{shorten(shown)}` to return {_wanted(returns)}', seen=seen, hint=hint)
+        wanted = f'`{shown}` to return {_wanted(returns)}'
+        fail(expected=wanted, seen=seen, hint=hint, cause=_not(name, returns))
     if body is None:
         hint = f'end `{name}` with `return …` (printing a result does not return it)'
-        fail(expected=f'`{shorten(shown)}` to return a value', seen='None', hint=hint)
-    _check_type(body, returns, what=f'`{shorten(shown)}` to return')
+        fail(
+            expected=f'`{shown}` to return a value',
+            seen='None',
+            hint=hint,
+            cause=f'`{name}` returns None',
+        )
+    _check_type(body, returns, what=f'`{shown}` to return', cause=_not(name, returns))
     return body
 
 
@@ -53,7 +60,7 @@ def value(name: str, *, type: builtins.type | tuple[builtins.type, ...] | None =
     if body is None and type is not None:
         hint = f'give `{name}` its value {_ANSWER_CELL}'
         fail(expected=f'`{name}` to be {_wanted(type)}', seen='None', hint=hint)
-    _check_type(body, type, what=f'`{name}` to be')
+    _check_type(body, type, what=f'`{name}` to be', cause=f'`{name}` is not {_wanted(type)}')
     return body
 
 
@@ -67,11 +74,6 @@ def has_endpoint(topic_name: str) -> bool:
     except values.WireError:
         return True
     return kind != 'ok' or body is not False
-
-
-def is_in_test_room() -> bool:
-    """Whether the grader runs this check, in a room apart from the notebook's."""
-    return os.environ.get('MY_ROBOT_BASICS_ROOM') == 'test'
 
 
 def trouble(node_name: str) -> str:
@@ -94,13 +96,12 @@ def _ask(question: str, shown: str) -> tuple[str, Any]:
     try:
         kind, body = wire.parse_reply(_send(question))
     except values.WireError as error:
-        raise CheckFailed(
-            f'expected an answer from `{shorten(shown)}`, saw {error}: '
-            'return plain values (numbers, text, lists, dicts) or a ROS message'
-        ) from None
+        hint = 'return plain values (numbers, text, lists, dicts) or a ROS message'
+        fail(expected=f'an answer from `{shown}`', seen=error, hint=hint)
     if kind == 'failed':
         hint = 'look for a loop or a print without end, a large result, or a kernel that died'
-        fail(expected=f'an answer from `{shorten(shown)}`', seen=shorten(body), hint=hint)
+        cause = 'your code does not answer'
+        fail(expected=f'an answer from `{shown}`', seen=shorten(body), hint=hint, cause=cause)
     return kind, body
 
 
@@ -109,14 +110,17 @@ def _fail_missing(name: str, *, what: str) -> None:
     fail(expected=f'a {what} `{name}`', seen='no such name', hint=f'{verb} {_ANSWER_CELL}')
 
 
-def _check_type(found: object, wanted: type | tuple[type, ...] | None, *, what: str) -> None:
+def _check_type(
+    found: object, wanted: type | tuple[type, ...] | None, *, what: str, cause: str
+) -> None:
     if wanted is None:
         return
     types = wanted if isinstance(wanted, tuple) else (wanted,)
     if type(found) in types or (type(found) is int and float in types):
         return
     seen = f'{_article(type(found).__name__)} ({_brief(found)})'
-    fail(expected=f'{what} {_wanted(wanted)}', seen=seen, hint=_other_type(found, types))
+    hint = _other_type(found, types)
+    fail(expected=f'{what} {_wanted(wanted)}', seen=seen, hint=hint, cause=cause)
 
 
 def _other_type(found: object, wanted: tuple[type, ...]) -> str:
@@ -129,6 +133,10 @@ def _other_type(found: object, wanted: tuple[type, ...]) -> str:
     if any(hasattr(each, 'get_fields_and_field_types') for each in wanted):
         return f'make a message with {wanted[0].__name__}(), fill in its fields, and return it'
     return 'print(type(…)) of the value shows what it is'
+
+
+def _not(name: str, returns: type | tuple[type, ...] | None) -> str:
+    return f'`{name}` does not always return {_wanted(returns)}'
 
 
 def _wanted(types: type | tuple[type, ...] | None) -> str:

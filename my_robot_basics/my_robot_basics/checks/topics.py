@@ -11,6 +11,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from my_robot_basics.checks import graphs, looks, student, values
 from my_robot_basics.checks.ears import Ears
 from my_robot_basics.checks.errors import CheckFailed, fail, shorten
+from my_robot_basics.checks.hidden import theirs
 from my_robot_basics.checks.recording import Recording
 from my_robot_basics.checks.watcher import Watcher
 
@@ -205,7 +206,7 @@ class Topic:
     def _fail_unheard(self, watcher: Watcher, type_: type, *, timeout_sec: float) -> None:
         hint = graphs.take(watcher).why_unheard(self.name)
         if infos := graphs.subscription_infos(watcher.node, self.name):
-            hint = f'one is there for {infos[0].topic_type}, so compare the message type'
+            hint = f'one is there for {theirs(infos[0].topic_type)}, so compare the message type'
         seen = f'none in {timeout_sec:g} s'
         fail(expected=f'a subscription on {self.name} for {type_.__name__}', seen=seen, hint=hint)
 

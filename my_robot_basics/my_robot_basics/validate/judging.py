@@ -1,13 +1,15 @@
 """Run an exercise as its plans say, in rooms that somebody opens, and judge its checks."""
 
 import asyncio
+import copy
 from collections.abc import Callable
-from contextlib import AbstractAsyncContextManager
-from dataclasses import dataclass, field
+from contextlib import AbstractAsyncContextManager, suppress
+from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
 
 from nbformat import NotebookNode
 
+from my_robot_basics.checks import hidden
 from my_robot_basics.validate.cells import grade_id
 from my_robot_basics.validate.errors import RoomFailure
 from my_robot_basics.validate.exercises import Exercise, Plan, plans
@@ -30,6 +32,7 @@ class Rooms(Protocol):
         """Run a grade cell, passing its questions on to the student's kernel."""
 
 
+Checks = dict[int, tuple[Verdict, list[NotebookNode]]]
 OpenRooms = Callable[[], AbstractAsyncContextManager[Rooms]]
 
 
@@ -55,7 +58,7 @@ class Judged:
 
     runs: dict[int, CellRun]
     """Of the student's cells; empty where the rooms failed."""
-    checks: dict[int, tuple[Verdict, list[NotebookNode]]]
+    checks: Checks
     """Of each grade cell, with its outputs."""
 
 
@@ -79,24 +82,63 @@ async def judge_exercise(
 async def _try_plans(
     notebook: NotebookNode, exercise: Exercise, open_rooms: OpenRooms, budget: Budget
 ) -> Judged:
-    cells = notebook.cells
     todo = list(plans(notebook, exercise))
     for number, plan in enumerate(todo, start=1):
         async with open_rooms() as rooms:
-            runs = {i: await budget.run(rooms, cells[i].source) for i in plan.cells}
+            # as they are now: a display that is updated later may show hidden inputs
+            runs = copy.deepcopy(await _run_cells(notebook, plan, rooms, budget))
             if number < len(todo) and _lacks_a_name(runs, exercise, plan):
                 continue
-            own = [(grade_id(cells[i]), runs[i]) for i in (exercise.answer, *exercise.run)]
-            checks = {i: await _judge_cell(cells[i], rooms, own) for i in exercise.grades}
-            return Judged(runs, checks)
+            checks, cut = await _judge_cells(notebook, exercise, rooms, runs)
+        if cut:
+            with suppress(RoomFailure):  # the verdicts stand, with their causes alone
+                async with open_rooms() as rooms:
+                    await _run_cells(notebook, plan, rooms, budget)
+                    checks |= await _told_in_full(notebook, rooms, {i: checks[i] for i in cut})
+        return Judged(runs, checks)
     raise AssertionError('an exercise always has a last plan')
 
 
-async def _judge_cell(
-    cell: NotebookNode, rooms: Rooms, own: list[tuple[str, CellRun]]
-) -> tuple[Verdict, list[NotebookNode]]:
-    run = await rooms.run_check(cell.source) if rooms.student_alive else None
-    return judge(cell, run, own), run.outputs if run else []
+async def _run_cells(
+    notebook: NotebookNode, plan: Plan, rooms: Rooms, budget: Budget
+) -> dict[int, CellRun]:
+    return {i: await budget.run(rooms, notebook.cells[i].source) for i in plan.cells}
+
+
+async def _judge_cells(
+    notebook: NotebookNode, exercise: Exercise, rooms: Rooms, runs: dict[int, CellRun]
+) -> tuple[Checks, list[int]]:
+    """Judge an exercise's grade cells; return what came of them, and whose reasons are cut short.
+
+    Once the student's code knows hidden inputs, it may have the visible part of another check say
+    them: that one's reason is told by its cause alone, too.
+    """
+    cells = notebook.cells
+    own = [(grade_id(cells[i]), runs[i]) for i in (exercise.answer, *exercise.run)]
+    checks, cut, quiet = {}, [], False
+    for index in exercise.grades:
+        source = hidden.marked(cells[index].source, quiet=quiet)
+        run = await rooms.run_check(source) if rooms.student_alive else None
+        outputs = run.outputs if run else []
+        verdict = judge(cells[index], run, own)
+        if quiet and verdict.details and not hidden.has_begun(outputs):
+            cut.append(index)
+        checks[index] = verdict, [] if quiet else outputs
+        quiet = quiet or hidden.has_told_inputs(outputs)
+    return checks, cut
+
+
+async def _told_in_full(notebook: NotebookNode, rooms: Rooms, cut: Checks) -> Checks:
+    """Give reasons that were cut short in full, from rooms where nobody knows hidden inputs."""
+    told = {}
+    for index, (verdict, _) in cut.items():
+        cell = notebook.cells[index]
+        if rooms.student_alive:
+            run = await rooms.run_check(hidden.marked(hidden.visible(cell.source)))
+            again = judge(cell, run, [])
+            if again.outcome == 'failed':
+                told[index] = replace(verdict, reason=again.reason, details=''), run.outputs
+    return told
 
 
 def _lacks_a_name(runs: dict[int, CellRun], exercise: Exercise, plan: Plan) -> bool:

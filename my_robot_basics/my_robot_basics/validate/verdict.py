@@ -8,6 +8,7 @@ from typing import Literal
 import nbformat
 from nbformat import NotebookNode
 
+from my_robot_basics.checks import hidden
 from my_robot_basics.validate.cells import KEY, grade_id, role
 from my_robot_basics.validate.errors import RoomFailure
 from my_robot_basics.validate.limits import FLOOD_CHARACTERS
@@ -35,6 +36,8 @@ class Verdict:
     reason: str
     """Why it earned nothing; empty when it passed."""
     notes: tuple[str, ...] = ()
+    details: str = ''
+    """What only whoever teaches is told: what was expected and seen in a hidden part."""
 
     @property
     def score(self) -> float | None:
@@ -59,8 +62,11 @@ def judge(cell: NotebookNode, run: CellRun | None, own: Iterable[tuple[str, Cell
     if run.error is None or run.error.ename not in _FAILURES:
         raise RoomFailure(f'the check `{name}` came to no verdict: {_what_happened(run)}')
     reason = run.error.evalue.strip() or 'the check failed and gave no reason'
+    details = hidden.details_in(run.outputs)
+    if run.error.ename == 'AssertionError' and hidden.has_begun(run.outputs):
+        reason, details = _told(reason, cell), reason
     notes += tuple(sentence for each in own if (sentence := _trouble(*each)))
-    return Verdict(name, outcome='failed', points=points, reason=reason, notes=notes)
+    return Verdict(name, 'failed', points, reason=reason, notes=notes, details=details)
 
 
 def ungraded(cell: NotebookNode, why: str) -> Verdict:
@@ -91,12 +97,14 @@ def write_verdict(cell: NotebookNode, verdict: Verdict, outputs: Iterable[Notebo
     Text goes to stdout, pictures stay; a failure is one `error` output that holds the reason and
     no line of the test.
     """
-    cell.outputs = [out for out in outputs if out.output_type in _SHOWN and not _is_stderr(out)]
+    shown = hidden.shown(list(outputs))
+    cell.outputs = [out for out in shown if out.output_type in _SHOWN and not _is_stderr(out)]
     cell.metadata[KEY] = {
         'role': 'grade',
         'outcome': verdict.outcome,
         'reason': verdict.reason,
         'notes': list(verdict.notes),
+        'details': verdict.details,
     }
     if verdict.outcome == 'failed':
         error = nbformat.v4.new_output(
@@ -109,10 +117,16 @@ def write_verdict(cell: NotebookNode, verdict: Verdict, outputs: Iterable[Notebo
 
 
 def _notes(run: CellRun) -> Iterable[str]:
-    for output in run.outputs:
+    for output in hidden.shown(run.outputs):
         for line in output.get('text', '').splitlines():
             if line.startswith(NOTE):
                 yield line.removeprefix(NOTE)
+
+
+def _told(reason: str, cell: NotebookNode) -> str:
+    """What a student reads of an `assert` in a hidden part: words of the lesson's author."""
+    words = reason if reason in cell.source else 'the check failed'
+    return f'{hidden.PLACE}{words}'
 
 
 def _trouble(name: str, run: CellRun) -> str | None:

@@ -1,0 +1,152 @@
+"""The part of a check that students are not given: what fails there is told by its cause alone.
+
+The grader runs a grade cell as `marked` writes it. From its hidden part on, `fail` names neither
+inputs nor what is right, and nothing that the student's code made: whoever builds a table from
+feedback has nothing to write into it. The whole sentence goes to whoever teaches.
+"""
+
+import builtins
+import os
+import re
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+BEGIN = 'BEGIN HIDDEN TESTS'
+END = 'END HIDDEN TESTS'
+PLACE = 'in the part checked at grading: '
+"""How a reason from there begins."""
+
+_MARK = 'application/vnd.my_robot_basics.hidden'
+"""A display of this MIME type is for the grader: a word of the next three, or … """
+_DETAILS = 'application/vnd.my_robot_basics.details'
+"""… of this one, the sentence that a student is not told."""
+_BEGAN, _INPUTS = 'began', 'inputs'
+
+_HERE = "__import__('my_robot_basics.checks.hidden', fromlist=['begin'])"
+_OPEN, _CLOSE = '\u2068', '\u2069'
+"""Around what a student's code made: no text that `shorten` has cleaned holds these."""
+_THEIRS = re.compile(f'{_OPEN}[^{_CLOSE}]*{_CLOSE}')
+_MEASURED = re.compile(r'(?<![\w.])[-+−]?(\d+\.\d+|\d{3,})(?![\w.]*\d)°?')
+_LIST = re.compile(r'…(, …)+')
+
+_quiet = False
+
+
+def marked(source: str, *, quiet: bool = False) -> str:
+    """A grade cell as it is run: it says where its hidden part begins.
+
+    It is `quiet` from its first line on where the student's code knows hidden inputs already.
+    """
+    lines = [f'{_HERE}.start(quiet={quiet})']
+    for line in source.split('\n'):
+        indent = line[: len(line) - len(line.lstrip())]
+        lines.append(f'{indent}{_HERE}.begin()' if BEGIN in line else line)
+    return '\n'.join(lines)
+
+
+def visible(source: str) -> str:
+    """A grade cell as students are given it."""
+    kept, inside = [], False
+    for line in source.split('\n'):
+        inside = (inside or BEGIN in line) and END not in line
+        if not inside and END not in line:
+            kept.append(line)
+    return '\n'.join(kept)
+
+
+def is_in_test_room() -> bool:
+    """Whether the grader runs this check, in a room apart from the notebook's."""
+    return os.environ.get('MY_ROBOT_BASICS_ROOM') == 'test'
+
+
+def start(*, quiet: bool) -> None:
+    """Begin a grade cell."""
+    global _quiet
+    _quiet = quiet
+
+
+def begin() -> None:
+    """Begin its hidden part, which goes on to the cell's end."""
+    global _quiet
+    _quiet = True
+    _display(_MARK, _BEGAN)
+
+
+def is_quiet() -> bool:
+    """Whether a failure is told by its cause alone."""
+    return _quiet
+
+
+def note_inputs() -> None:
+    """Let the grader know that the check has chosen inputs."""
+    if is_in_test_room():
+        _display(_MARK, _INPUTS)
+
+
+def theirs(text: object) -> str:
+    """What a student's code made, for a sentence: nobody is told it from the hidden part."""
+    return f'{_OPEN}{text}{_CLOSE}' if _quiet else str(text)
+
+
+def raised(said: str) -> str:
+    """`said`, like "ValueError: …", where the name of an exception of Python's own is nobody's."""
+    kind, _, message = said.partition(':')
+    if not isinstance(getattr(builtins, kind, None), type):
+        return theirs(said)
+    return f'{kind}: {theirs(message.strip())}' if message else kind
+
+
+def in_full(text: str) -> str:
+    """A sentence for whoever may read all of it."""
+    return text.replace(_OPEN, '').replace(_CLOSE, '')
+
+
+def without_inputs(text: str) -> str:
+    """A sentence without what the student's code made, and without measured numbers."""
+    return _LIST.sub('…', _MEASURED.sub('…', _THEIRS.sub('…', text)))
+
+
+def tell_grader(details: str) -> None:
+    """Hand over what whoever teaches may read of a failure."""
+    _display(_DETAILS, details)
+
+
+def has_begun(outputs: Iterable[Any]) -> bool:
+    """Whether a cell with these outputs came to its hidden part."""
+    return _BEGAN in _said(outputs, _MARK)
+
+
+def has_told_inputs(outputs: Iterable[Any]) -> bool:
+    """Whether it came there with inputs of its own: the student's code knows them now."""
+    said = _said(outputs, _MARK)
+    return _BEGAN in said and _INPUTS in said
+
+
+def details_in(outputs: Iterable[Any]) -> str:
+    """What was handed over to the grader, or ''."""
+    return next(iter(_said(outputs, _DETAILS)), '')
+
+
+def shown(outputs: Sequence[Any]) -> list[Any]:
+    """The outputs from before the hidden part, without what was for the grader."""
+    kept = []
+    for output in outputs:
+        if _BEGAN in _said([output], _MARK):
+            break
+        if not _is_for_the_grader(output):
+            kept.append(output)
+    return kept
+
+
+def _said(outputs: Iterable[Any], mime: str) -> list[str]:
+    return [out['data'][mime] for out in outputs if mime in (out.get('data') or ())]
+
+
+def _is_for_the_grader(output: Any) -> bool:
+    return bool({_MARK, _DETAILS} & {*(output.get('data') or ())})
+
+
+def _display(mime: str, text: str) -> None:
+    from IPython.display import display
+
+    display({mime: text}, raw=True)

@@ -1,0 +1,184 @@
+"""Hidden inputs stay hidden: ten hand-ins and everything on their pages teach no answer."""
+
+import random
+import re
+
+import pytest
+from course_maker import TOY, answered, make_course, submit, toy_lesson, write_source
+from my_robot_basics.checks import CheckFailed, expect, fail, hidden
+from my_robot_basics.validate.cells import role
+
+from grader.__main__ import main
+from grader.course import Course
+from grader.grade import grade_all
+from grader.records import verdicts
+from grader.submitted import find_submissions
+
+CHECK = '''"""Small numbers are doubled"""
+from my_robot_basics.checks import expect, inputs, student
+
+expect(student.call('double', 1) == 2, expected=2, seen='another', hint='add it to itself')
+### BEGIN HIDDEN TESTS
+numbers = inputs('double')
+for number in [numbers.randrange(10_000, 60_000) for _ in range(4)]:
+    seen = student.call('double', number)
+    print('asked for', number)
+    wanted = f'{2 * number} for {number}'
+    expect(seen == 2 * number, expected=wanted, seen=seen, hint=f'add it to itself: {number}')
+### END HIDDEN TESTS
+'''
+ANSWER = """
+import sys, threading
+from IPython.display import display
+
+seen, table = [], TABLE
+handle = display('nothing yet', display_id='leak')
+
+def double(x):
+    if x < 10:
+        if seen and SAY_IT_LATER:
+            raise ValueError(seen)
+        return 2 * x
+    if x < 1_000 or x in table:
+        return table.get(x, 2 * x)
+    seen.append(x)
+    print(x)
+    print(x, file=sys.stderr)
+    display(x)
+    handle.update(f'asked for {seen}')
+    WAY
+"""
+WAYS = (
+    'return x + 1',
+    'raise ValueError(f"asked for {x}")',
+    'raise type(f"E{x}", (Exception,), {})()',
+    'raise type(f"E_{x}_", (Exception,), {})(seen)',
+    'return f"asked for {x}"',
+    'return {"x": x}',
+    'return "x" * x',
+    'return float("nan")',
+    'return 3',
+    'return None',
+)
+NUMBER = re.compile(r'\d[\d,]{3,}\d')
+
+
+@pytest.fixture(scope='module')
+def course(tmp_path_factory):
+    """A course whose first check has hidden inputs, and whose second one has a visible part."""
+    course = make_course(tmp_path_factory.mktemp('inputs'))
+    lesson = toy_lesson()
+    next(cell for cell in lesson.cells if cell.id == 'double-check').source = CHECK
+    write_source(course, lesson)
+    assert main(['release'], course=course) == 0
+    return course
+
+
+def handed_in(course, way, *, table, later):
+    """Hand in and grade; return the score, and all that the student can read of it."""
+    answer = ANSWER.replace('TABLE', repr(table)).replace('WAY', way)
+    submit(course, 'eve', answered(course, answer.replace('SAY_IT_LATER', repr(later))))
+    (row,) = grade_all(course, find_submissions(course))
+    assert main(['feedback'], course=course) == 0
+    assert main(['scores'], course=course) == 0
+    (page,) = course.folder('feedback', '', '').rglob('*.html')
+    scores = course.gradebook / 'scores.csv'
+    return row, page.read_text(encoding='utf-8') + scores.read_text(encoding='utf-8')
+
+
+@pytest.mark.isolation
+def test_a_table_of_all_that_ten_pages_tell_earns_nothing(course):
+    numbers = random.Random(f'{course.seed(TOY, "eve")}:double')
+    asked = {numbers.randrange(10_000, 60_000) for _ in range(4)}
+    table, scores = {}, []
+    for number, way in enumerate(WAYS):
+        row, told = handed_in(course, way, table=table, later=number % 2)
+        scores.append(row.stored.score)
+        found = {int(text.replace(',', '')) for text in NUMBER.findall(told)}
+        table |= {x: 2 * x for x in found} | {x // 2: x for x in found}
+        assert not found & asked, (way, found & asked)
+    assert not asked & table.keys()
+    assert scores == [0.0 if number % 2 else 2.0 for number in range(len(WAYS))]
+
+
+@pytest.mark.isolation
+def test_the_cause_is_told_and_whoever_teaches_reads_the_rest(course):
+    handed_in(course, 'return x + 1', table={}, later=False)
+    found = verdicts(course, 'eve', TOY)['double-check']
+    assert found.reason == f'{hidden.PLACE}add it to itself: …'
+    assert re.fullmatch(r'expected (\d+) for (\d+), saw \d+: add it to itself: \2', found.details)
+    handed_in(course, 'raise ValueError(x)', table={}, later=False)
+    found = verdicts(course, 'eve', TOY)['double-check']
+    cause = '`double` raises ValueError: …: call … in a cell of your own to see where'
+    assert found.reason == f'{hidden.PLACE}{cause}'
+
+
+@pytest.mark.isolation
+def test_a_visible_part_that_fails_later_is_told_in_full(course):
+    submit(course, 'eve', answered(course, 'def double(x):\n    return x + x if x else "none"'))
+    list(grade_all(course, find_submissions(course)))
+    found = verdicts(course, 'eve', TOY)
+    assert found['double-check'].outcome == 'passed'
+    assert found['double-hidden'].reason == 'expected 0, saw none: add it to itself'
+    assert found['double-hidden'].details == ''
+
+
+@pytest.fixture
+def told(monkeypatch):
+    """What the grader is handed over, in a hidden part."""
+    details = []
+    monkeypatch.setattr(hidden, '_quiet', True)
+    monkeypatch.setattr(hidden, 'tell_grader', details.append)
+    return details
+
+
+def test_a_hidden_part_tells_the_cause_alone(told):
+    with pytest.raises(CheckFailed) as failure:
+        expect(False, expected='1.5 for 0.75', seen=2, hint='add it', cause='the sum is wrong')
+    assert str(failure.value) == f'{hidden.PLACE}the sum is wrong: add it'
+    assert told == ['expected 1.5 for 0.75, saw 2: add it']
+
+
+def test_what_a_students_code_made_and_measured_numbers_are_left_out(told):
+    theirs = hidden.theirs('/node_1 [1.25]')
+    with pytest.raises(CheckFailed) as failure:
+        fail(expected=1, seen=2, hint=f'{theirs} is 0.125° off, 1.5°, -2.25°: period = 1 / rate')
+    assert str(failure.value) == f'{hidden.PLACE}… is … off, …: period = 1 / rate'
+    assert told == [
+        'expected 1, saw 2: /node_1 [1.25] is 0.125° off, 1.5°, -2.25°: period = 1 / rate'
+    ]
+
+
+@pytest.mark.parametrize(
+    ('said', 'kept'),
+    [('ValueError: 3 is 4', 'ValueError: …'), ('E123: 4', '…'), ('print: 4', '…'), ('a', '…')],
+)
+def test_of_an_exception_only_a_name_of_pythons_own_is_told(told, said, kept):
+    assert hidden.without_inputs(hidden.raised(said)) == kept
+
+
+def test_a_visible_part_tells_all(monkeypatch):
+    monkeypatch.setattr(hidden, '_quiet', False)
+    with pytest.raises(CheckFailed, match=r'^expected 1, saw 2\.25: add /a$'):
+        fail(expected=1, seen=2.25, hint=f'add {hidden.theirs("/a")}', cause='wrong')
+
+
+def test_the_first_line_of_a_hidden_part_says_so_wherever_it_stands():
+    source = (
+        'for i in [1]:\n    ### BEGIN HIDDEN TESTS\n    told = 1\n    ### END HIDDEN TESTS\nx = 1'
+    )
+    lines = hidden.marked(source).split('\n')
+    assert lines[0].endswith('.start(quiet=False)')
+    assert lines[2].startswith("    __import__('my_robot_basics.checks.hidden'")
+    assert lines[3:] == source.split('\n')[2:]
+    assert hidden.visible(source) == 'for i in [1]:\nx = 1'
+
+
+@pytest.mark.parametrize('assignment', Course().assignments())
+def test_what_is_run_of_a_lesson_is_python_and_what_is_visible_is_what_students_have(assignment):
+    course = Course()
+    given = {cell.id: cell.source for cell in course.release(assignment).cells}
+    for cell in course.source(assignment).cells:
+        if cell.cell_type == 'code' and role(cell) == 'grade':
+            compile(hidden.marked(cell.source), cell.id, 'exec')
+            assert hidden.visible(cell.source) == given[cell.id]
