@@ -16,6 +16,9 @@ END = 'END HIDDEN TESTS'
 PLACE = 'in the part checked at grading: '
 """How a reason from there begins."""
 
+MOST_DETAILS = 2_000
+"""Characters; what a student's code returned may be long."""
+
 _MARK = 'application/vnd.my_robot_basics.hidden'
 """A display of this MIME type is for the grader: a word of the next three, or … """
 _DETAILS = 'application/vnd.my_robot_basics.details'
@@ -124,7 +127,7 @@ def has_told_inputs(outputs: Iterable[Any]) -> bool:
 
 def details_in(outputs: Iterable[Any]) -> str:
     """What was handed over to the grader, or ''."""
-    return next(iter(_said(outputs, _DETAILS)), '')
+    return next(iter(_said(outputs, _DETAILS)), '')[:MOST_DETAILS]
 
 
 def shown(outputs: Sequence[Any]) -> list[Any]:
