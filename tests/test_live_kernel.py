@@ -402,6 +402,106 @@ def test_an_interrupted_cell_stops_no_node(lesson):
     assert cell.panel.startswith('Talker: running')
 
 
+SILENT = """class Silent(Node):
+    def __init__(self):
+        super().__init__('silent')"""
+
+
+@pytest.mark.parametrize(
+    'endless',
+    [
+        'rclpy.spin(node)',
+        'from rclpy import spin; spin(node)',
+        'rclpy.spin_once(node)',
+        'executor = rclpy.executors.SingleThreadedExecutor(); executor.add_node(node);'
+        'executor.spin()',
+        'rclpy.spin_until_future_complete(node, rclpy.task.Future())',
+    ],
+)
+def test_a_cell_that_spins_for_ever_can_be_interrupted(lesson, endless):
+    lesson.run(f'{SILENT}\nif not rclpy.ok(): rclpy.init()\nnode = Silent()')
+    talker = lesson.run('talker = run(Talker)')
+    cell = lesson.send(f"print('begun'); {endless}")
+    lesson.wait_for(lambda: 'begun' in cell.stdout)
+    time.sleep(0.3)  # until it waits
+    assert not cell.done
+    lesson.manager.interrupt_kernel()
+    assert lesson.wait_for(lambda: cell.done)
+    assert cell.error
+    assert lesson.value('alive(talker)') == 'True'
+    assert talker.panel.startswith('Talker: running')
+    lesson.run('node.destroy_node()')
+
+
+def test_a_cell_that_spins_is_told_how_to_stop_and_how_to_go_on(lesson):
+    lesson.run(f'{SILENT}\nif not rclpy.ok(): rclpy.init()')
+    cell = lesson.send('node = Silent()\nrclpy.spin(node)')
+    assert lesson.wait_for(lambda: '■ (Interrupt the kernel)' in cell.stdout)
+    lesson.manager.interrupt_kernel()
+    lesson.wait_for(lambda: cell.done)
+    assert ' '.join(cell.error.split()) == (
+        'rclpy.spin was interrupted, and silent is stopped. To go on, write run(Silent) in place '
+        'of the lines that make silent and spin it, and run this cell again: run spins in the '
+        'background.'
+    )
+    # what it says works
+    assert lesson.run('node = run(Silent)').stdout == ''
+    assert 'already: leave rclpy.spin out' in ' '.join(
+        lesson.run('rclpy.spin(node)').error.split()
+    )
+
+
+def test_a_program_pasted_into_a_cell_ends_as_on_a_robot(lesson):
+    lesson.run('reset()')
+    cell = lesson.send(f"""{SILENT}
+rclpy.init()
+node = Silent()
+try:
+    rclpy.spin(node)
+except KeyboardInterrupt:
+    print('caught')
+finally:
+    node.destroy_node()
+    rclpy.shutdown()""")
+    assert lesson.wait_for(lambda: '■' in cell.stdout)
+    lesson.manager.interrupt_kernel()
+    lesson.wait_for(lambda: cell.done)
+    assert (cell.error, cell.stdout.splitlines()[-1]) == (None, 'caught')
+
+
+def test_a_second_init_is_explained_in_a_sentence(lesson):
+    lesson.run('run(Talker)')
+    error = ' '.join(lesson.run('rclpy.init()').error.split())
+    assert re.fullmatch(
+        r'AlreadyInitialised: rclpy is initialised already, .+: leave rclpy.init\(\) out here, '
+        'and run this cell again',
+        error,
+    )
+    assert lesson.run('try: rclpy.init()\nexcept RuntimeError: pass').error is None
+    assert lesson.run('c = rclpy.Context(); rclpy.init(context=c); c.shutdown()').error is None
+
+
+def test_where_work_is_graded_rclpy_is_as_it_is_on_a_robot():
+    room = "import os; os.environ['MY_ROBOT_BASICS_ROOM'] = 'student'"
+    lesson = Lesson(room, 'import rclpy; spin, init = rclpy.spin, rclpy.init', TALKER)
+    try:
+        assert lesson.value('(rclpy.spin, rclpy.init) == (spin, init)') == 'True'
+    finally:
+        lesson.shut_down()
+
+
+def test_a_node_that_was_stopped_and_said_nothing_leaves_nothing_to_read(lesson):
+    lesson.run(SILENT)
+    cell = lesson.run('run(Silent)')
+    assert cell.panel == 'Silent: running'
+    lesson.run('run(Silent)')
+    assert lesson.wait_for(lambda: cell.panel == '')
+    assert cell.displays[-1]['data']['text/html'] == ''
+    talker = lesson.run('run(Talker)')
+    lesson.run('stop()')
+    assert lesson.wait_for(lambda: talker.panel.startswith('Talker: stopped\n[INFO]'))
+
+
 def test_a_constructor_that_blocks_can_be_interrupted(lesson):
     lesson.run('run(Talker)')
     lesson.run("""class Blocking(Talker):

@@ -12,6 +12,8 @@ from my_robot_basics.live.troubles import where_and_what
 LINES = 12
 LONGEST = 400
 """Characters of an entry that are shown."""
+STOPPED = 'stopped'
+"""The state of a node that was stopped or replaced, as every node of a lesson is in the end."""
 STYLE = 'margin:0;padding-left:8px;border-left:3px solid #0072b2;font-size:13px;word-break:normal'
 """As large as other outputs, and broken between words: JupyterLab does neither to a <pre>."""
 
@@ -75,7 +77,10 @@ class Panel:
             print(text, flush=True)
 
     def close(self, reason: str) -> None:
-        """Take no more log lines, and say why the node is gone."""
+        """Take no more log lines, and say why the node is gone.
+
+        Of a node that was stopped and has said nothing, nothing stays.
+        """
         notebook.sync()
         notebook.listen_no_more(self.log)
         with self._lock:
@@ -101,6 +106,8 @@ class Panel:
             if self._left_out:
                 lines.insert(0, f'… {self._left_out} earlier lines')
             state = self._state
+        if state == STOPPED and not lines:
+            return {'text/plain': '', 'text/html': ''}
         text = '\n'.join([f'{self._title}: {state}', *lines])
         return {
             'text/plain': text,

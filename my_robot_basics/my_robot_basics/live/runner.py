@@ -12,12 +12,12 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
-from my_robot_basics.live import classroom, notebook
+from my_robot_basics.live import classroom, notebook, spinning
 from my_robot_basics.live.background import Background
 from my_robot_basics.live.errors import NotRunnable
 from my_robot_basics.live.naming import announce_name
 from my_robot_basics.live.neighbours import Neighbours, bury_the_dead
-from my_robot_basics.live.panel import Panel
+from my_robot_basics.live.panel import STOPPED, Panel
 from my_robot_basics.live.refusals import is_made, no_node_yet, not_a_class
 
 _running: dict[str, Background] = {}
@@ -118,7 +118,7 @@ def _stop_keys(keys: list[str]) -> None:
             background, panel = _running.pop(key, None), _panels.pop(key, None)
         if background is not None:
             background.stop()
-            panel.close('stopped')
+            panel.close(STOPPED)
 
 
 def _ensure_rclpy() -> None:
@@ -175,6 +175,8 @@ def _say_nothing_of_a_race(
 # before anything logs, also where a student initialises rclpy
 classroom.enter()
 notebook.open_tap()
+if notebook.in_kernel() and not classroom.in_grading_room():
+    spinning.help_in_cells()
 threading.excepthook = _say_nothing_of_an_end(threading.excepthook)
 sys.unraisablehook = _say_nothing_of_a_race(sys.unraisablehook)
 
