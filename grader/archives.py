@@ -17,6 +17,7 @@ from datetime import datetime
 from pathlib import Path
 
 from grader.entries import Entry, Refused, copy, entries
+from grader.text import shorten
 
 MAX_FILE_BYTES = 50_000_000
 """A notebook with all its pictures has a few; one of over 20 MB is refused at grading."""
@@ -101,5 +102,5 @@ def _broken(error: Exception) -> str:
     """Put into words what is wrong with an archive; raise it where it is the disk."""
     if isinstance(error, OSError) and error.errno in _FULL:
         raise error
-    why = ' '.join(str(error).split()) or 'it ends too early'
+    why = shorten(' '.join(str(error).split()), 100) or 'it ends too early'
     return f'broken: {why}; get it again, or collect the folder that it was made from'

@@ -2,15 +2,18 @@
 
 import os
 import re
+import shutil
 import stat
+import tempfile
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 
 from grader.archives import MAX_FILE_BYTES, Allowance, unpack
 from grader.entries import ARCHIVE, MAX_PARTS
 from grader.errors import CourseError
+from grader.parsing import Limits, TooHard, parse
 from grader.submission import TIMESTAMP
 
 ALL = {'files': 100_000, 'bytes': 8_000_000_000}
@@ -19,6 +22,9 @@ ONE = {'files': 5_000, 'bytes': 200_000_000}
 """One student's archive, with all that the course's own bundle holds."""
 MAX_NESTED = 3
 """Archives within archives: a course management system's, a student's, and one more."""
+LIMITS_OF_ALL = Limits(cpu_sec=900, wall_sec=3_600)
+LIMITS_OF_ONE = Limits(cpu_sec=20, wall_sec=300)
+"""What reading them may take: a student's largest one takes two seconds of processor time."""
 
 OTHER_ARCHIVE = re.compile(r'\.(rar|7z|gz|bz2|xz|zst|lzh|cab|iso|dmg)$', re.IGNORECASE)
 """How names of archives end that can't be read here."""
@@ -62,7 +68,7 @@ def look_into(source: Path, aside: Path) -> Iterator[Incoming]:
     if source.is_dir():
         found: Iterator[Incoming] = _walk(source, ())
     elif source.is_file() and ARCHIVE.search(source.name):
-        found = _inside(Incoming((), source), source.name, aside, left)
+        found = _apart('inside', Incoming((), source), source.name, aside, left, LIMITS_OF_ALL)
     elif source.is_file() and source.suffix == '.ipynb':
         found = iter([_on_disk(source, (source.name,))])
     else:
@@ -71,7 +77,62 @@ def look_into(source: Path, aside: Path) -> Iterator[Incoming]:
             'a folder, a notebook or an archive (.zip, .tar, .tar.gz)'
         )
     for each in found:
-        yield from _opened(each, aside, left, nested=1)
+        if each.problem or each.litter or not ARCHIVE.search(each.parts[-1]):
+            yield from _opened(each, aside, left, nested=1)
+        else:
+            part = left.part(**ONE)
+            before = replace(part)
+            yield from _apart('opened', each, each.parts[-1], aside, part, LIMITS_OF_ONE)
+            left.less(before, part)
+
+
+def read_apart(way: str, outer: dict, name: str, aside: str, left: dict) -> dict:
+    """Do in a process of its own what `_apart` asks for: JSON comes, and JSON goes."""
+    allowance, archive = Allowance(**left), _unpacked(outer)
+    if way == 'inside':
+        found = _inside(archive, name, Path(aside), allowance)
+    else:
+        found = _opened(archive, Path(aside), allowance, nested=1)
+    return {'found': [_packed(each) for each in found], 'left': asdict(allowance)}
+
+
+def _apart(
+    way: str, outer: Incoming, name: str, aside: Path, left: Allowance, limits: Limits
+) -> Iterator[Incoming]:
+    """Yield what is in an archive, 'inside' alone or 'opened' with the archives in it."""
+    own = tempfile.mkdtemp(dir=aside)
+    arguments = (way, _packed(outer), name, own, asdict(left))
+    try:
+        said = parse('grader.incoming:read_apart', *arguments, limits=limits)
+    except TooHard as why:
+        shutil.rmtree(own)
+        yield replace(
+            outer,
+            parts=outer.parts or (name,),
+            file=None,
+            problem=f'it is not read, for {why}: ask for a new one, or unpack it by hand',
+        )
+        return
+    vars(left).update(said['left'])
+    yield from map(_unpacked, said['found'])
+
+
+def _packed(each: Incoming) -> dict:
+    """Return a file that came in as JSON."""
+    return vars(each) | {
+        'file': each.file and str(each.file),
+        'modified': each.modified and each.modified.isoformat(),
+    }
+
+
+def _unpacked(said: dict) -> Incoming:
+    return Incoming(
+        parts=tuple(said['parts']),
+        file=said['file'] and Path(said['file']),
+        modified=said['modified'] and datetime.fromisoformat(said['modified']),
+        problem=said['problem'],
+        archive=said['archive'],
+    )
 
 
 def wanted(name: str) -> bool:

@@ -4,11 +4,16 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator
 
 from grader.collect import AGAIN, EARLIER, KNOWN, LEFT, NEW, UNUSED, Row
-from grader.text import columns, pad, printable
+from grader.naming import shared_folders
+from grader.text import columns, pad, printable, shorten
 
 WORDS = {NEW: 'new', AGAIN: 'handed in again', EARLIER: 'an earlier one', KNOWN: 'there already'}
 SHOWN = 3
-"""Files of one folder that nobody grades are counted once they are more."""
+"""Files of one folder with one reason are counted once they are more."""
+MOST_OF_ONE = 12
+"""Lines about one folder; its student can make up as many reasons as files."""
+MAX_COLUMNS = 120
+"""Of a path: it may be 5,000 characters long, and all lines of a table are as wide as one."""
 
 
 def lines(rows: Iterable[Row]) -> Iterator[str]:
@@ -19,7 +24,7 @@ def lines(rows: Iterable[Row]) -> Iterator[str]:
     left = [(row.path, row.reason) for row in rows if row.outcome == LEFT]
     if left:
         yield from ('', 'Not taken; they stay where they are:')
-        yield from _table(('file', 'reason'), left)
+        yield from _table(('file', 'reason'), _few_alike(left))
     if unused := list(_gathered([row for row in rows if row.outcome == UNUSED])):
         yield from ('', 'Not used for grading:')
         yield from _table(('file', 'reason'), unused)
@@ -47,8 +52,31 @@ def _gathered(rows: list[Row]) -> Iterator[tuple[str, str]]:
             yield from ((path, reason) for path in paths)
 
 
+def _few_alike(left: list[tuple[str, str]]) -> Iterator[tuple[str, str]]:
+    """Yield paths and reasons; of many alike in one folder the first ones, and how many more."""
+    parts = [path.split('/') for path, _ in left]
+    shared = len(shared_folders([tuple(each[:-1]) for each in parts]))
+    folders: dict[str, dict[str, list]] = defaultdict(lambda: defaultdict(list))
+    for (path, reason), each in zip(left, parts, strict=True):
+        folders['/'.join(each[: shared + 1])][reason.partition(':')[0]].append((path, reason))
+    for folder, kinds in folders.items():
+        lines = 0
+        for kind, files in list(kinds.items()):
+            if lines >= MOST_OF_ONE:
+                break
+            del kinds[kind]
+            few = files if len(files) <= SHOWN + 1 else files[:SHOWN]
+            yield from few
+            if more := len(files) - len(few):
+                yield f'… and {more:,} more like it', kind
+            lines += len(few) + bool(more)
+        if more := sum(map(len, kinds.values())):
+            yield f'… and {more:,} more in {folder}', 'for other reasons'
+
+
 def _table(titles: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> Iterator[str]:
-    table = [titles, *(tuple(printable(field) for field in row) for row in rows)]
+    shown = ((shorten(printable(first), MAX_COLUMNS), *map(printable, r)) for first, *r in rows)
+    table = [titles, *shown]
     widths = [max(columns(row[i]) for row in table) for i in range(len(titles) - 1)]
     if len(table) > 1:
         for row in table:

@@ -65,7 +65,7 @@ class Naming:
         )
         notebooks = [each for each in found if is_notebook(each)]
         self._by_platform = self._all_by_platform(notebooks, list(students))
-        self._shared = len(_shared([each.parts[:-1] for each in notebooks]))
+        self._shared = len(shared_folders([each.parts[:-1] for each in notebooks]))
         named = (self._named.fullmatch(_stem(each.parts[-1])) for each in notebooks)
         self._several = len({name['who'] for name in named if name}) > 1
 
@@ -216,7 +216,7 @@ def _bare(name: str) -> str:
     return re.sub(r' \(\d+\)$', '', ARCHIVE.sub('', name))
 
 
-def _shared(folders: Sequence[tuple[str, ...]]) -> tuple[str, ...]:
+def shared_folders(folders: Sequence[tuple[str, ...]]) -> tuple[str, ...]:
     """Return the folders in which everything lies."""
     if not folders:
         return ()

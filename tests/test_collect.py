@@ -1,6 +1,8 @@
 import csv
+import gzip
 import json
 import os
+import tarfile
 import zipfile
 from datetime import datetime
 from pathlib import Path
@@ -11,12 +13,14 @@ from course_maker import TOY, answered, executed, released_course
 from nbgrader.coursedir import CourseDirectory
 
 from grader import collect as module
+from grader import incoming
 from grader.__main__ import main
 from grader.collect import AGAIN, EARLIER, KNOWN, LEFT, NEW, UNUSED, collect
 from grader.course import Course
 from grader.errors import CourseError
 from grader.gradebook import register, store
 from grader.heal import heal
+from grader.parsing import Limits
 from grader.pipeline import prepare
 from grader.submission import read_submission
 from grader.submitted import find_submissions
@@ -340,6 +344,62 @@ def test_a_folder_of_their_own_is_told_beside_what_was_taken(course, source):
     uploaded(source, 'Ada', 1, '', '/turtles')
     (row,) = collect(course, source)
     assert (row.outcome, row.reason) == (NEW, "in 'turtles' of Ada's own")
+
+
+# --- one upload stops nothing --------------------------------------------------------------------
+
+
+def a_tar_of_digits(path):
+    """87 kB on which the tar reader of Python 3.11.7 works for hours."""
+    header = tarfile.TarInfo('digits')
+    header.type, header.size = tarfile.XHDTYPE, 7_900_000
+    with gzip.open(path, 'wb') as packed:
+        packed.write(header.tobuf(tarfile.USTAR_FORMAT))
+        packed.write(b'1' * header.size)
+        packed.write(bytes(-header.size % 512))
+        packed.write(tarfile.TarInfo('a.ipynb').tobuf() + bytes(1024))
+
+
+def test_an_archive_that_takes_for_ever_costs_only_itself(course, source, monkeypatch):
+    monkeypatch.setattr(incoming, 'LIMITS_OF_ONE', Limits(cpu_sec=2))
+    for place in (source, source / f'bob/{TOY}'):
+        place.mkdir(parents=True, exist_ok=True)
+        a_tar_of_digits(place / 'mallory.tar.gz')
+    write(source / f'ada_{TOY}.ipynb', 'ada’s')
+    found = {row.path: (row.outcome, row.reason) for row in collect(course, source)}
+    assert found.pop(f'ada_{TOY}.ipynb') == (NEW, '')
+    assert {path.rpartition('/')[2] for path in found} <= {'mallory.tar.gz', 'a.ipynb'}
+    for outcome, reason in found.values():
+        assert outcome == LEFT
+        assert 'over 2 s of processor time' in reason or 'named after no assignment' in reason
+
+
+def test_an_archive_that_takes_too_much_memory_costs_only_itself(course, source, monkeypatch):
+    limits = Limits(memory_bytes=40_000_000)  # the reader itself does not fit in
+    monkeypatch.setattr(incoming, 'LIMITS_OF_ONE', limits)
+    with zipfile.ZipFile(source / 'mallory.zip', 'w') as box:
+        box.writestr(NOTEBOOK, 'x' * 10_000_000)
+    write(source / f'ada_{TOY}.ipynb', 'ada’s')
+    assert rows(course, source) == {'mallory.zip': LEFT, f'ada_{TOY}.ipynb': NEW}
+
+
+def test_thousands_of_broken_files_print_some_lines(course, source, capsys):
+    for student, name in (('mallory', '{}.ipynb'), ('eve', 'a_' + 'z' * 200 + '{}.ipynb')):
+        with zipfile.ZipFile(source / f'{student}.zip', 'w') as box:
+            for number in range(3_000):
+                box.writestr(name.format(number), 'x')
+        packed = (source / f'{student}.zip').read_bytes()
+        (source / f'{student}.zip').write_bytes(packed.replace(b'x' + b'PK\x03', b'yPK\x03'))
+    write(source / f'ada_{TOY}.ipynb', 'ada’s')
+    for number in range(9):
+        write(source / f'homework {number}.zip', '')
+    assert main(['collect', str(source)], course=course) == 1
+    out = capsys.readouterr().out
+    assert len(out.splitlines()) < 40
+    assert max(map(len, out.splitlines())) < 400
+    assert '… and 2,996 more like it' in out
+    assert out.count('homework') == 9
+    assert '1 new; 6009 not taken.' in out
 
 
 # --- the command ---------------------------------------------------------------------------------

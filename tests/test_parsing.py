@@ -1,0 +1,79 @@
+"""What strangers wrote is read in a process with limits."""
+
+import os
+import threading
+
+import pytest
+
+from grader import parsing
+from grader.errors import CourseError
+from grader.parsing import Limits, TooHard, parse
+
+SHORT = Limits(cpu_sec=1, wall_sec=60)
+
+
+def test_an_answer_comes_back_as_json():
+    assert parse('json:loads', '{"ä": [1, 2.5, null, "\\udcff"]}') == {
+        'ä': [1, 2.5, None, '\udcff']
+    }
+    assert parse('os:getpid') != os.getpid()
+
+
+def test_what_a_reader_prints_is_no_answer():
+    assert parse('builtins:print', '{"answer": 1}') is None
+
+
+@pytest.mark.parametrize(
+    ('question', 'why'),
+    [
+        (('re:fullmatch', '(a+)+b', 'a' * 60), 'it takes over 1 s of processor time'),
+        (('operator:mul', 'a', 10**10), 'it takes too much memory'),
+        (('json:loads', '[' * 100_000), 'it is nested too deep'),
+        (('json:loads', '{'), 'JSONDecodeError: Expecting property name'),
+        (('os:abort',), r'what reads such files crashed on it \(6\)'),
+        (('os:_exit', 3), r'what reads such files crashed on it \(-3\)'),
+        (('builtins:object',), 'TypeError: Object of type object is not JSON serializable'),
+    ],
+)
+def test_what_can_t_be_read_costs_one_question(question, why):
+    with pytest.raises(TooHard, match=why):
+        parse(*question, limits=SHORT)
+    assert parse('json:loads', '1') == 1
+
+
+def test_who_waits_for_ever_is_ended_by_the_clock():
+    with pytest.raises(TooHard, match=r'it takes over 1 s$'):
+        parse('time:sleep', 1_000, limits=Limits(wall_sec=1))
+
+
+def test_an_answer_that_is_too_long_is_none(monkeypatch):
+    with pytest.raises(TooHard, match='too long an answer'):
+        parse('operator:mul', 'a', parsing.MAX_ANSWER_BYTES + 1)
+
+
+def test_a_full_disk_is_not_the_text_s_fault():
+    with pytest.raises(FileNotFoundError):
+        parse('os:listdir', '/nowhere')
+
+
+def test_questions_of_several_threads_are_answered_in_turn():
+    found = {}
+    threads = [
+        threading.Thread(target=lambda n=n: found.update({n: parse('operator:neg', n)}))
+        for n in range(8)
+    ]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert found == {n: -n for n in range(8)}
+
+
+def test_a_process_that_is_gone_is_no_student_s_fault(monkeypatch):
+    monkeypatch.setattr(parsing, 'COMMAND', ('true',))
+    server = parsing._Server()
+    with pytest.raises((CourseError, BrokenPipeError)):
+        server.ask('json:loads', ['1'], Limits())
+    monkeypatch.undo()
+    assert server.ask('json:loads', ['1'], Limits()) == 1
+    server.end()
