@@ -5,8 +5,7 @@ from collections.abc import Callable, Sequence
 
 from my_robot_basics.checks import student
 from my_robot_basics.checks.errors import expect, fail, shorten
-from my_robot_basics.checks.stage import Stage
-from my_robot_basics.checks.watcher import Watcher
+from my_robot_basics.checks.stage import Stage, watchers
 
 Situation = Callable[[Stage], bool]
 """Runs on an empty stage, and returns whether the message arrived; named as its prediction is.
@@ -35,10 +34,10 @@ class Predictions:
 
     def compare(self, *situations: Situation) -> None:
         """Run the situations until one goes otherwise than predicted. Raises CheckFailed."""
-        with Watcher() as senders, Watcher() as receivers:
+        with watchers() as participants:
             for situation in situations:
                 key = situation.__name__
-                arrived = situation(Stage(senders, receivers))
+                arrived = situation(Stage(*participants))
                 what = 'the message arrived' if arrived else 'the message did not arrive'
                 expect(
                     self._values[key] is arrived,

@@ -8,7 +8,8 @@ met, the endpoints have met, too, or never will. And a mark that is published la
 
 import re
 import uuid
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 from rclpy.node import Node
@@ -23,6 +24,13 @@ TIMEOUT_SEC = 10.0
 
 class DidNotRun(RuntimeError):
     """The check's own nodes could not run a situation: no verdict follows from it."""
+
+
+@contextmanager
+def watchers() -> Iterator[tuple[Watcher, Watcher]]:
+    """The two participants of stages, which no process of a student's can reach."""
+    with Watcher(apart=True) as senders, Watcher(apart=True) as receivers:
+        yield senders, receivers
 
 
 class Stage:

@@ -1,7 +1,9 @@
 """A check's own ROS node: it lives for one check, and no student code can reach it."""
 
+import os
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, nullcontext
 from typing import Self
 
 import rclpy
@@ -12,14 +14,30 @@ from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
 
 from my_robot_basics.checks.errors import fail
+from my_robot_basics.checks.hidden import is_in_test_room
 from my_robot_basics.live import classroom
 
+TRANSPORTS = 'FASTDDS_BUILTIN_TRANSPORTS'
 HIDDEN = '_'
 """Nodes whose names start so are the course's own; no count and no check includes them."""
 MOST_ENDPOINTS = 1_000
 """Publishers, subscriptions and services in a domain: thirty nodes have some 400. With many
 thousands, no look at the graph comes to an end."""
 COUNT_EVERY_SEC = 0.5
+
+
+@contextmanager
+def _only_shared_memory() -> Iterator[None]:
+    """Participants that are made meanwhile have no socket: a room's memory is no other room's."""
+    former = os.environ.get(TRANSPORTS)
+    os.environ[TRANSPORTS] = 'SHM'
+    try:
+        yield
+    finally:
+        if former is None:
+            del os.environ[TRANSPORTS]
+        else:
+            os.environ[TRANSPORTS] = former
 
 
 class Watcher:
@@ -29,9 +47,13 @@ class Watcher:
     background, and an interrupt ends the check at once.
     """
 
-    def __init__(self, *, domain_id: int | None = None) -> None:
-        """`domain_id`: the ROS domain to join, instead of the lesson's."""
+    def __init__(self, *, domain_id: int | None = None, apart: bool = False) -> None:
+        """`domain_id`: the ROS domain to join, instead of the lesson's.
+
+        `apart`: where the grader runs the check, only meet what is in the test room, too.
+        """
         self._domain_id = domain_id
+        self._transports = _only_shared_memory if apart and is_in_test_room() else nullcontext
         self.late_sec = 0.0
         """How long the machine has kept this waiting at most, against its intention."""
         self._next_count = 0.0
@@ -48,7 +70,8 @@ class Watcher:
         )
         self._executor = SingleThreadedExecutor(context=self.context)
         self._nodes: list[Node] = []
-        self.node = self.add_node('check')
+        with self._transports():  # the first node makes the participant
+            self.node = self.add_node('check')
         return self
 
     def __exit__(self, *_: object) -> None:
