@@ -3,7 +3,7 @@
 Its modules, in the order in which things happen:
 
 - What is asked for: `__main__`, `arguments`, `verbs`, `stopping`, `demo`.
-- Lessons go out: `release`, `replaced`, `leaks`, `index`, `bundle`.
+- Lessons go out: `release`, `marks`, `replaced`, `leaks`, `index`, `bundle`.
 - Submissions come in: `collect`, `intake`, `owners`, `naming`, `students`, `incoming`, `archives`,
   `entries`, `dates`, `platforms`.
 - A run, from what was handed in to what is stored: `submitted`, `grade`, `reuse`, `replay`. The

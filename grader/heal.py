@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import nbformat
-from my_robot_basics.validate.cells import KEY, grade_id, is_reset, role, title_of
+from my_robot_basics.validate.cells import KEY, grade_id, role, roles, title_of
 from nbformat import NotebookNode
 
 NO_ANSWERS = 'the notebook holds none of the answer cells of this assignment'
@@ -42,12 +42,7 @@ def make_master(source: NotebookNode, release: NotebookNode) -> Master:
     """Join the instructor's notebook with the one that students were given."""
     released = {grade_id(cell): cell.source for cell in release.cells if grade_id(cell)}
     notebook = nbformat.from_dict(source)
-    in_exercise = False
-    for cell in notebook.cells:
-        kind = role(cell)
-        in_exercise = is_reset(cell) or (in_exercise and kind != 'grade')
-        if kind == 'setup' and in_exercise:
-            kind = 'free'  # the "try it" cell
+    for cell, kind in zip(notebook.cells, roles(notebook), strict=True):
         if kind == 'answer':
             cell.source = released.get(grade_id(cell), '')
         if cell.cell_type == 'code':

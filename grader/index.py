@@ -22,7 +22,7 @@ HOW_IT_WORKS = """\
 
 - Run its cells from top to bottom with **Shift+Enter**, and guess before you run.
 - Write your answer where it says `YOUR CODE HERE` or `YOUR ANSWER HERE`, or mend what is there.
-- **Validate**, in the bar above a lesson, says what its checks see.
+- **Validate**, in the bar above a lesson, runs your answers and shows which checks pass.
 - Your points are given when your notebook is graded. Some checks run only then.
 """
 TO_THE_TERMS = f"""

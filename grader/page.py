@@ -1,6 +1,5 @@
 """Lay out a graded notebook as one HTML page that needs nothing else and runs nothing."""
 
-import ast
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -10,6 +9,7 @@ from html import unescape
 import bleach
 from jinja2 import Template
 from markupsafe import Markup, escape
+from my_robot_basics.validate.titles import title_of_check
 from nbconvert.filters import markdown2html, strip_ansi
 from nbformat import NotebookNode
 from pygments import highlight
@@ -127,7 +127,7 @@ def _check(cell: NotebookNode) -> Check:
     status = 'passed' if score >= points else 'missed'
     status = 'waiting' if verdict.get('waits') else 'by hand' if verdict.get('by_hand') else status
     reason = verdict.get('reason') or _missing_reason(status, is_answer=is_answer)
-    title = 'Your written answer' if is_answer else docstring(cell.source) or name
+    title = 'Your written answer' if is_answer else title_of_check(cell.source) or name
     said = _REASON.fullmatch(reason)
     return Check(
         name=name,
@@ -150,14 +150,6 @@ def _missing_reason(status: str, *, is_answer: bool) -> str:
     if status == 'missed' and is_answer:
         return 'There was no answer.'
     return 'No reason is known.' if status == 'missed' else ''
-
-
-def docstring(source: str) -> str:
-    """Return the first line of a cell's docstring, or ''."""
-    try:
-        return (ast.get_docstring(ast.parse(source)) or '').partition('\n')[0]
-    except (SyntaxError, ValueError):
-        return ''
 
 
 def _pieces(cell: NotebookNode, *, about: str = '', with_errors: bool = True) -> Iterator[Piece]:

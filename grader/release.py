@@ -37,8 +37,10 @@ PASSES = (
     'nbgrader.preprocessors.CheckCellMetadata',
     'nbgrader.preprocessors.ComputeChecksums',
     'nbgrader.preprocessors.SaveCells',
+    'grader.marks.MarkHidden',
     'nbgrader.preprocessors.ClearHiddenTests',
     'nbgrader.preprocessors.ClearMarkScheme',
+    'grader.marks.MarkSources',
     'nbgrader.preprocessors.ComputeChecksums',
     'nbgrader.preprocessors.CheckCellMetadata',
 )

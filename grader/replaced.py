@@ -6,6 +6,7 @@ from datetime import datetime
 from pathlib import Path
 
 import nbformat
+from my_robot_basics.validate.cells import KEY
 from nbformat import NotebookNode
 from nbgrader.utils import compute_checksum
 
@@ -33,7 +34,8 @@ def _is_worked_in(path: Path, metadata: Mapping) -> bool:
         return False
     except (OSError, ValueError, nbformat.ValidationError):
         return True  # whatever it is, no release wrote it
-    return notebook.metadata != metadata or any(_is_touched(cell) for cell in notebook.cells)
+    kept = {name: value for name, value in notebook.metadata.items() if name != KEY}
+    return kept != metadata or any(_is_touched(cell) for cell in notebook.cells)
 
 
 def _is_touched(cell: NotebookNode) -> bool:

@@ -5,12 +5,12 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from statistics import mean, median
 
+from my_robot_basics.validate.titles import title_of_check
 from nbformat import NotebookNode
 
 from grader.course import Course
 from grader.grade import Row
 from grader.heal import KEY, grade_id
-from grader.page import docstring
 from grader.reasons import Reason, Said, grouped
 from grader.records import Record, graded_notebook, records, verdicts_in
 
@@ -115,7 +115,7 @@ def _assignments(
         cells = [
             r for (_, assignment), found in of_cells.items() if assignment == name for r in found
         ]
-        titles = {grade_id(c): docstring(c.source) for c in course.source(name).cells}
+        titles = {grade_id(c): title_of_check(c.source) for c in course.source(name).cells}
         said = defaultdict(list)
         for failure in failures:
             if failure.assignment == name:

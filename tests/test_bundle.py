@@ -268,7 +268,7 @@ def test_its_readme_says_what_is_so(students):
     assert (
         verbs
         == set(re.findall(r'\./course ([\w-]+)', readme))
-        == {'lab', 'workspace', 'ros-shell'}
+        == {'lab', 'validate', 'workspace', 'ros-shell'}
     )
     rows = readme.partition('## What lies where')[2]
     named = re.findall(r'`([^`]+)`', ' '.join(re.findall(r'^\| (`.+?) \|', rows, re.MULTILINE)))

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-VERBS = ['lab', 'workspace', 'ros-shell', 'test', 'release', 'bundle', 'collect']
+VERBS = ['lab', 'validate', 'workspace', 'ros-shell', 'test', 'release', 'bundle', 'collect']
 VERBS += ['due', 'grade', 'scores', 'feedback', 'solutions', 'demo', 'doctor']
 TOOLS = [
     'sh',
@@ -562,7 +562,11 @@ def test_a_path_to_collect_is_the_caller_s(machine):
 
 @pytest.mark.parametrize(
     ('verb', 'module', 'folder'),
-    [('workspace', 'live.workspace', '{root}'), ('ros-shell', 'ros2.shell', '/')],
+    [
+        ('workspace', 'live.workspace', '{root}'),
+        ('ros-shell', 'ros2.shell', '/'),
+        ('validate', 'validate', '/'),
+    ],
 )
 def test_workspace_and_shell_are_the_packages(machine, verb, module, folder):
     run = machine.course(verb, '-c', 'two words')
@@ -678,10 +682,10 @@ def test_in_a_bundle_help_lists_what_a_student_can_do(bundle):
     run = bundle.course('--help')
     assert (run.returncode, run.stderr) == (0, '')
     verbs = [line.split()[0] for line in run.stdout.splitlines() if line.startswith('  ')]
-    assert verbs == ['lab', 'workspace', 'ros-shell']
+    assert verbs == ['lab', 'validate', 'workspace', 'ros-shell']
 
 
-@pytest.mark.parametrize('verb', VERBS[3:])
+@pytest.mark.parametrize('verb', VERBS[4:])
 def test_in_a_bundle_an_instructors_verb_says_so_and_sets_nothing_up(bundle, verb):
     sentence = the_one_sentence(bundle.course(verb))
     assert sentence.startswith(f"'{verb}' is for instructors and needs the whole course")

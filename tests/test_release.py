@@ -41,7 +41,7 @@ def test_a_release_keeps_what_a_demonstration_shows_and_clears_the_rest(course):
 
 def test_a_release_carries_only_the_metadata_it_needs(course):
     notebook = json.loads(course.release_path(TOY).read_text())
-    assert notebook['metadata'].keys() == {'kernelspec', 'language_info'}
+    assert notebook['metadata'].keys() == {'kernelspec', 'language_info', 'my_robot_basics'}
     assert notebook['metadata']['kernelspec']['name'] == 'python3'
     keys = {key for cell in notebook['cells'] for key in cell['metadata']}
     assert keys == {'nbgrader', 'tags', 'deletable', 'editable'}

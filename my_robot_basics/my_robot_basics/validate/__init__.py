@@ -4,5 +4,7 @@
   names a cell needs.
 - What came of its cells: `messages` and `outputs` gather it, `patience` waits for it, `questions`
   are a check's to the student's kernel, `verdict` judges one check and `judging` an exercise.
-- For all of them: `errors`, `limits`, `text`.
+- *Validate* itself: `lesson` reads a student's notebook, `ahead`, `rooms` and `kernel` start what
+  its cells run in, `run` does all of it, `report` tells it, `as_text` in a terminal.
+- For all of them: `errors`, `limits`, `text`, `titles`.
 """

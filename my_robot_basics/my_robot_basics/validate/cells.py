@@ -1,9 +1,13 @@
 """What a cell of a lesson is for, as its metadata says."""
 
+import hashlib
+
 from nbformat import NotebookNode
 
 KEY = 'my_robot_basics'
 """Our one key in a cell's metadata: {'role': ...}, and after grading the verdict."""
+RECORD = 'cells'
+"""Under KEY in a released notebook's metadata: what each cell was given out as, by its id."""
 
 
 def grade_id(cell: NotebookNode) -> str | None:
@@ -37,3 +41,19 @@ def title_of(notebook: NotebookNode) -> str:
     texts = (cell.source for cell in notebook.cells if cell.cell_type == 'markdown')
     heads = (line for text in texts for line in text.splitlines() if line.startswith('# '))
     return next(heads, '').removeprefix('# ').strip()
+
+
+def roles(notebook: NotebookNode) -> list[str]:
+    """Return the role of each cell of a lesson as its author wrote it."""
+    found, in_exercise = [], False
+    for cell in notebook.cells:
+        kind = role(cell)
+        in_exercise = is_reset(cell) or (in_exercise and kind != 'grade')
+        # what is neither marked nor shown in an exercise is its "try it" cell
+        found.append('free' if kind == 'setup' and in_exercise else kind)
+    return found
+
+
+def fingerprint(source: str) -> str:
+    """Return what tells a cell's text from any other."""
+    return hashlib.sha256(source.strip().encode(errors='replace')).hexdigest()[:12]

@@ -19,6 +19,8 @@ Outcome = Literal['passed', 'failed', 'ungraded', 'manual']
 
 NOTE = 'note: '
 """A check's line that starts so costs nothing, and is told to the student."""
+TROUBLE = 'your cell '
+"""A note that begins so tells what went wrong in one of the student's cells."""
 _FAILURES = ('CheckFailed', 'AssertionError')
 _SHOWN = ('display_data', 'stream')
 _TEMPORARY_FILE = re.compile(r'\((<ipython-input-[^>]*>|\d+\.py), (?=line \d+\))')
@@ -134,12 +136,12 @@ def _trouble(name: str, run: CellRun) -> str | None:
     if run.timed_out:
         what = f'put out over {FLOOD_CHARACTERS:,} characters' if run.flooded else 'did not end'
         how = 'could not be' if run.died else 'was'
-        return f'your cell `{name}` {what} and {how} interrupted'
+        return f'{TROUBLE}`{name}` {what} and {how} interrupted'
     if run.died:
-        return f'your cell `{name}` ended the kernel'
+        return f'{TROUBLE}`{name}` ended the kernel'
     if run.error is not None:
         said = _TEMPORARY_FILE.sub('(', f'{run.error.ename}: {run.error.evalue}').rstrip(': ')
-        return f'your cell `{name}` stopped with {shorten(printable(said), 300)}'
+        return f'{TROUBLE}`{name}` stopped with {shorten(printable(said), 300)}'
     return None
 
 

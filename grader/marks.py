@@ -1,0 +1,56 @@
+"""Write into a released notebook what *Validate* must know of it and its cells no longer show."""
+
+import ast
+import re
+
+from my_robot_basics.validate.cells import KEY, RECORD, fingerprint, roles
+from nbconvert.preprocessors import Preprocessor
+from nbformat import NotebookNode
+
+_HIDDEN = re.compile(r'### BEGIN HIDDEN TESTS.*?### END HIDDEN TESTS\n?', re.DOTALL)
+
+
+class MarkHidden(Preprocessor):
+    """Record each cell's role, and which checks have a hidden part: before that is taken out."""
+
+    enabled = True
+
+    def preprocess(self, nb: NotebookNode, resources: dict) -> tuple[NotebookNode, dict]:
+        """Begin the record in the notebook's metadata; it tells nothing of what is hidden."""
+        record = {}
+        for cell, role in zip(nb.cells, roles(nb), strict=True):
+            if role != 'text':
+                record[cell.id] = {'role': role}
+            if role == 'grade' and (visible := _HIDDEN.sub('', cell.source)) != cell.source:
+                record[cell.id]['hidden'] = 'part' if _checks_something(visible) else 'all'
+        nb.metadata[KEY] = {RECORD: record}
+        return nb, resources
+
+
+class MarkSources(Preprocessor):
+    """Record what each cell says when it is given out, so that a change is seen."""
+
+    enabled = True
+
+    def preprocess(self, nb: NotebookNode, resources: dict) -> tuple[NotebookNode, dict]:
+        """Complete the record."""
+        for cell in nb.cells:
+            if mark := nb.metadata[KEY][RECORD].get(cell.id):
+                mark['source'] = fingerprint(cell.source)
+                if points := cell.metadata.get('nbgrader', {}).get('points'):
+                    mark['points'] = points
+        return nb, resources
+
+
+def _checks_something(source: str) -> bool:
+    """Whether the visible part of a check does more than import and print."""
+    return not all(
+        isinstance(node, ast.Import | ast.ImportFrom)
+        or (isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant))
+        or (
+            isinstance(node, ast.Expr)
+            and isinstance(node.value, ast.Call)
+            and getattr(node.value.func, 'id', '') == 'print'
+        )
+        for node in ast.parse(source).body
+    )

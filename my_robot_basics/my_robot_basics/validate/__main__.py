@@ -1,0 +1,66 @@
+"""`./course validate`: say in a terminal what the visible checks of a lesson come to.
+
+The exit code is 0 where all of them pass, 1 where not, and 2 where nothing could be checked.
+"""
+
+import argparse
+import asyncio
+import json
+import sys
+from pathlib import Path
+
+from my_robot_basics.validate.as_text import as_text
+from my_robot_basics.validate.errors import CourseError
+from my_robot_basics.validate.run import validate
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Validate the notebook that the command line names; return the exit code."""
+    parser = argparse.ArgumentParser(
+        prog='./course validate',
+        description='Run the visible checks of a lesson. Exit code: 0 if all of them pass, 1 if'
+        ' not, 2 if nothing could be checked.',
+    )
+    parser.add_argument('notebook', type=Path, help='a saved notebook of the course')
+    parser.add_argument(
+        '--json', action='store_true', help='write a line of JSON for each step and the report'
+    )
+    options = parser.parse_args(arguments)
+    say = _say_json if options.json else _say
+    try:
+        report = asyncio.run(validate(options.notebook, say=say))
+    except CourseError as error:
+        if options.json:
+            _write({'failed': str(error)})
+        else:
+            print(f'validate: {error}', file=sys.stderr)
+        return 2
+    if options.json:
+        _write({'report': report.as_data()})
+    else:
+        _clear()
+        print(as_text(report))
+    return 0 if report.passed else 1
+
+
+def _say(line: str) -> None:
+    """Show on a terminal what goes on, in one line that the next one replaces."""
+    if sys.stderr.isatty():
+        print(f'\r\033[K{line:.78}', end='', file=sys.stderr, flush=True)
+
+
+def _clear() -> None:
+    if sys.stderr.isatty():
+        print('\r\033[K', end='', file=sys.stderr, flush=True)
+
+
+def _say_json(line: str) -> None:
+    _write({'progress': line})
+
+
+def _write(message: dict) -> None:
+    print(json.dumps(message), flush=True)
+
+
+if __name__ == '__main__':
+    sys.exit(main())

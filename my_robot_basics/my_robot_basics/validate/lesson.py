@@ -1,0 +1,124 @@
+"""Read a student's notebook as a lesson: what each cell is for, and what was changed in it."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import nbformat
+from nbformat import NotebookNode
+
+from my_robot_basics.validate.cells import KEY, fingerprint, grade_id, roles
+from my_robot_basics.validate.errors import CourseError
+
+
+@dataclass(frozen=True)
+class Lesson:
+    """A notebook whose cells have their roles, one cell for each grade id."""
+
+    notebook: NotebookNode
+    hidden: dict[str, str]
+    """Of checks, by grade id: 'part' where more is checked at grading, 'all' where all is."""
+    altered: frozenset[str]
+    """Grade ids of checks that are not what they were given out as."""
+    missing: dict[str, float]
+    """Points of the checks that are not there any more, by grade id."""
+    notes: tuple[str, ...]
+    """What is wrong with the notebook, and what happens to that at grading."""
+
+
+def read_lesson(path: Path) -> Lesson:
+    """Read a notebook. Raises CourseError where there is none, or it holds no exercise."""
+    notebook, notes = _read(path), []
+    record = _record(notebook)
+    for cell in notebook.cells:
+        cell.metadata.pop(KEY, None)
+        _change_back(cell, notes)
+        if cell.cell_type == 'code':
+            cell.outputs, cell.execution_count = [], None
+    notebook.cells = _one_for_each_id(notebook.cells, notes)
+    for cell, given in zip(notebook.cells, roles(notebook), strict=True):
+        cell.metadata[KEY] = {'role': _role(cell, given, record)}
+    graded = [c for c in notebook.cells if c.metadata[KEY].role in ('answer', 'grade')]
+    if not graded:
+        raise CourseError(f'{path} holds no exercise: name the notebook of a lesson')
+    here = {grade_id(cell): cell for cell in notebook.cells}
+    altered = _altered(here, record)
+    return Lesson(
+        notebook=notebook,
+        hidden={name: mark['hidden'] for name, mark in record.items() if mark.get('hidden')},
+        altered=frozenset(name for name in altered if record[name]['role'] == 'grade'),
+        missing={name: record[name].get('points', 0) for name in altered if name not in here},
+        notes=(*notes, *altered.values()),
+    )
+
+
+def _read(path: Path) -> NotebookNode:
+    try:
+        return nbformat.read(path, as_version=4)
+    except OSError as error:
+        raise CourseError(f'{path} cannot be read: {error.strerror}') from None
+    except (nbformat.reader.NotJSONError, nbformat.ValidationError, ValueError) as error:
+        why = str(error).splitlines()[0][:200]
+        raise CourseError(
+            f'{path} is not a notebook ({why}): save it in JupyterLab, or take a fresh copy'
+        ) from None
+
+
+def _record(notebook: NotebookNode) -> dict[str, dict[str, str]]:
+    """Return what the cells were given out as; {} where an older release does not tell."""
+    match notebook.metadata.get(KEY):
+        case {'cells': dict(record)}:
+            return {i: mark for i, mark in record.items() if {'role', 'source'} <= mark.keys()}
+    return {}
+
+
+def _change_back(cell: NotebookNode, notes: list[str]) -> None:
+    """Give a cell of an exercise the type again that it was given out with."""
+    wanted = cell.metadata.get('nbgrader', {}).get('cell_type', cell.cell_type)
+    if wanted == cell.cell_type:
+        return
+    notes.append(f'the cell `{grade_id(cell)}` had another type: it is changed back')
+    cell.cell_type = wanted
+    if wanted == 'code':
+        cell.pop('attachments', None)
+        cell.outputs, cell.execution_count = [], None
+    else:
+        cell.pop('outputs', None)
+        cell.pop('execution_count', None)
+
+
+def _one_for_each_id(cells: list[NotebookNode], notes: list[str]) -> list[NotebookNode]:
+    """Join the parts of an answer that was split; of other repeated cells the first one counts."""
+    first: dict[str, NotebookNode] = {}
+    kept = []
+    for cell in cells:
+        name = grade_id(cell)
+        if name is None or name not in first:
+            kept.append(cell)
+            first.setdefault(name, cell)
+        elif cell.metadata.nbgrader.get('solution'):
+            notes.append(f'the answer cell `{name}` came in parts: they are joined')
+            first[name].source += '\n\n' + cell.source
+        else:
+            notes.append(f'the cell `{name}` is there twice: one counts')
+    return kept
+
+
+def _role(cell: NotebookNode, given: str, record: dict[str, dict[str, str]]) -> str:
+    """Return what a cell is for; what students added or changed is theirs."""
+    if given in ('text', 'answer') or grade_id(cell) or not record:
+        return given
+    mark = record.get(cell.get('id'), {})
+    return mark['role'] if mark.get('source') == fingerprint(cell.source) else 'free'
+
+
+def _altered(here: dict[str, NotebookNode], record: dict[str, dict[str, str]]) -> dict[str, str]:
+    """Return what to say of each cell of an exercise that was changed or taken away."""
+    said = {}
+    for name, mark in record.items():
+        if mark['role'] not in ('answer', 'grade', 'locked'):
+            continue
+        if name not in here:
+            said[name] = f'the cell `{name}` is missing: it comes back at grading'
+        elif mark['role'] != 'answer' and mark['source'] != fingerprint(here[name].source):
+            said[name] = f'the cell `{name}` was changed: the original counts at grading'
+    return said

@@ -1,0 +1,156 @@
+"""What *Validate* says of each exercise and check: data that any front end can show."""
+
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass
+from typing import Literal
+
+from nbformat import NotebookNode
+
+from my_robot_basics.validate.cells import KEY, grade_id
+from my_robot_basics.validate.lesson import Lesson
+from my_robot_basics.validate.titles import title_of_check
+from my_robot_basics.validate.verdict import TROUBLE, Verdict
+
+Outcome = Literal['passed', 'failed', 'at grading', 'by hand', 'not checked']
+MARKS = {'passed': '✓', 'failed': '✗', 'at grading': '…', 'by hand': '…', 'not checked': '?'}
+
+
+@dataclass(frozen=True)
+class Check:
+    """One graded cell."""
+
+    name: str
+    """Its grade id."""
+    title: str
+    points: float
+    outcome: Outcome
+    is_partly_hidden: bool
+    """Whether more of it is checked at grading."""
+    message: str = ''
+    notes: tuple[str, ...] = ()
+    """What costs no points, and is good to know."""
+    pictures: tuple[dict[str, str], ...] = ()
+    """{'png': base64, 'alt': text}: what the check has drawn."""
+    source: str = ''
+    """What students may read of the check."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """One exercise."""
+
+    name: str
+    troubles: tuple[str, ...]
+    """What went wrong in the student's own cells."""
+    checks: tuple[Check, ...]
+
+
+@dataclass(frozen=True)
+class Report:
+    """All that is said of a notebook."""
+
+    notebook: str
+    parts: tuple[Part, ...]
+    notes: tuple[str, ...]
+
+    @property
+    def checks(self) -> list[Check]:
+        """All checks, in order."""
+        return [check for part in self.parts for check in part.checks]
+
+    @property
+    def passed(self) -> bool:
+        """Whether all that can be checked here was, and passed."""
+        return not any(check.outcome in ('failed', 'not checked') for check in self.checks)
+
+    @property
+    def summary(self) -> str:
+        """What it comes to, in one line."""
+        said = [self._visible()]
+        total = _number(sum(check.points for check in self.checks))
+        at_grading = sum(check.points for check in self.checks if _waits(check))
+        if at_grading:
+            verb = 'is' if at_grading == 1 else 'are'
+            said.append(f'{_number(at_grading)} of {total} points {verb} decided at grading.')
+        by_hand = sum(check.points for check in self.checks if check.outcome == 'by hand')
+        if by_hand:
+            said.append(f'A person gives {_points(by_hand)} for what you have written.')
+        return ' '.join(said)
+
+    def as_data(self) -> dict:
+        """Return all of it as what JSON can say."""
+        return asdict(self) | {'summary': self.summary, 'passed': self.passed, 'marks': MARKS}
+
+    def _visible(self) -> str:
+        visible = [c for c in self.checks if c.outcome in ('passed', 'failed', 'not checked')]
+        failed = [check for check in visible if check.outcome == 'failed']
+        unknown = [check for check in visible if check.outcome == 'not checked']
+        if not visible:
+            return 'Nothing here can be checked before grading.'
+        if not failed and not unknown:
+            return 'All visible checks pass.'
+        said = []
+        if failed:
+            verb = 'fails' if len(failed) == 1 else 'fail'
+            lost = _points(sum(check.points for check in failed))
+            said.append(f'{len(failed)} of {len(visible)} visible checks {verb}: {lost} missing.')
+        if unknown:
+            said.append(f'{len(unknown)} of {len(visible)} could not be checked.')
+        return ' '.join(said)
+
+
+def make_check(
+    lesson: Lesson, cell: NotebookNode, verdict: Verdict | None, outputs: Iterable[NotebookNode]
+) -> Check:
+    """Tell of one graded cell; `verdict` is None where it was not run."""
+    name, hidden = grade_id(cell), lesson.hidden.get(grade_id(cell))
+    by_hand = cell.metadata[KEY].role == 'answer'
+    return Check(
+        name=name,
+        title='Your written answer' if by_hand else title_of_check(cell.source) or name,
+        points=float(cell.metadata.nbgrader.get('points', 0)),
+        outcome=_outcome(verdict, by_hand=by_hand, hidden=hidden, altered=name in lesson.altered),
+        is_partly_hidden=hidden == 'part',
+        message=verdict.reason if verdict else '',
+        notes=tuple(n for n in verdict.notes if not n.startswith(TROUBLE)) if verdict else (),
+        pictures=tuple(_pictures(outputs)),
+        source='' if by_hand else cell.source.strip(),
+    )
+
+
+def troubles_of(verdicts: Iterable[Verdict]) -> tuple[str, ...]:
+    """Return what went wrong in the student's own cells of an exercise, each once."""
+    notes = [note for verdict in verdicts for note in verdict.notes]
+    return tuple(dict.fromkeys(note for note in notes if note.startswith(TROUBLE)))
+
+
+def _outcome(
+    verdict: Verdict | None, *, by_hand: bool, hidden: str | None, altered: bool
+) -> Outcome:
+    if by_hand:
+        return 'by hand'
+    if altered:
+        return 'not checked'
+    if hidden == 'all':
+        return 'at grading'
+    known = verdict is not None and verdict.outcome in ('passed', 'failed')
+    return verdict.outcome if known else 'not checked'
+
+
+def _pictures(outputs: Iterable[NotebookNode]) -> Iterable[dict[str, str]]:
+    for output in outputs:
+        if png := output.get('data', {}).get('image/png'):
+            yield {'png': ''.join(png.split()), 'alt': output.data.get('text/plain', '')}
+
+
+def _waits(check: Check) -> bool:
+    """Whether its points are still open when all that can be seen is right."""
+    return check.outcome == 'at grading' or (check.outcome == 'passed' and check.is_partly_hidden)
+
+
+def _points(number: float) -> str:
+    return f'{_number(number)} point{"" if number == 1 else "s"}'
+
+
+def _number(value: float) -> str:
+    return f'{value:g}'

@@ -1,0 +1,126 @@
+"""The two kernels of *Validate*: as when a lesson is graded, but on the student's own machine."""
+
+import asyncio
+import shutil
+import tempfile
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from my_robot_basics.live.domain import Claim, claim
+from my_robot_basics.live.errors import LiveError
+from my_robot_basics.validate.errors import RoomFailure
+from my_robot_basics.validate.kernel import Kernel
+from my_robot_basics.validate.limits import CHECK_TIMEOUT_SEC, REPLY_TIMEOUT_SEC
+from my_robot_basics.validate.outputs import CellRun
+from my_robot_basics.validate.questions import (
+    STUDENT_COMES,
+    STUDENT_GOES,
+    TEST_HEARS,
+    as_expression,
+    reply_of,
+)
+from my_robot_basics.validate.titles import title_of_check
+
+SETUP_TIMEOUT_SEC = 60.0
+MOST_PATH = 60
+"""A socket's path has room for about 100 characters."""
+
+Say = Callable[[str], None]
+
+
+class Rooms:
+    """A student's kernel and a test's for one exercise; `async with` starts and ends them."""
+
+    say: Say = staticmethod(lambda line: None)
+    """Is told what begins."""
+
+    def __init__(self, *, files: Sequence[Path]) -> None:
+        """Prepare two kernels; the student's finds copies of `files`."""
+        self._files = files
+        self._claim: Claim | None = None
+        self._folder: Path | None = None
+        self._kernels: list[Kernel] = []
+
+    async def __aenter__(self) -> 'Rooms':
+        """Start both kernels, and see a message cross. Raises RoomFailure."""
+        try:
+            self._open()
+            async with asyncio.TaskGroup() as together:
+                together.create_task(self._prepare(self._student, STUDENT_COMES))
+                together.create_task(self._prepare(self._test, TEST_HEARS))
+            await self._run_ours(
+                self._student, STUDENT_GOES.format(files=str(self._folder / 'files'))
+            )
+        except BaseException as error:
+            await self.__aexit__()
+            reason = error.exceptions[0] if isinstance(error, ExceptionGroup) else error
+            if isinstance(reason, OSError | LiveError):
+                raise RoomFailure(f'no kernels could be started: {reason}') from error
+            raise reason from None
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        """End both kernels, whatever state they are in, and leave nothing behind."""
+        try:
+            # a check has closed its nodes itself; the student's may hold shared memory
+            stops = [k.stop(politely=k is self._kernels[0]) for k in self._kernels]
+            await asyncio.gather(*stops)
+        finally:
+            if self._folder is not None:
+                shutil.rmtree(self._folder, ignore_errors=True)
+            if self._claim is not None:
+                self._claim.release()
+
+    @property
+    def student_alive(self) -> bool:
+        """Whether the student's kernel still runs."""
+        return self._student.alive
+
+    async def run_student_cell(self, source: str, *, timeout_sec: float) -> CellRun:
+        """Run one of the student's cells."""
+        self.say('running your cells')
+        return await self._student.run(source, timeout_sec=timeout_sec)
+
+    async def run_check(self, source: str) -> CellRun:
+        """Run a grade cell, passing its questions on to the student's kernel."""
+        self.say(f'checking: {title_of_check(source)}')
+        return await self._test.run(
+            source, timeout_sec=CHECK_TIMEOUT_SEC, on_input=self._ask_student
+        )
+
+    async def _ask_student(self, request: str) -> str:
+        run = await self._student.run(
+            '', timeout_sec=REPLY_TIMEOUT_SEC, expressions=as_expression(request)
+        )
+        return reply_of(run, within_sec=REPLY_TIMEOUT_SEC)
+
+    def _open(self) -> None:
+        self._claim = claim()
+        short = None if len(tempfile.gettempdir()) < MOST_PATH else '/tmp'
+        self._folder = Path(tempfile.mkdtemp(prefix='validate-', dir=short))
+        (self._folder / 'files').mkdir()
+        for file in self._files:
+            shutil.copyfile(file, self._folder / 'files' / file.name)
+        self._student, self._test = self._kernel('student'), self._kernel('test')
+
+    def _kernel(self, room: str) -> Kernel:
+        environment = {
+            'MY_ROBOT_BASICS_ROOM': room,
+            'MY_ROBOT_BASICS_DOMAIN_ID': str(self._claim.domain_id),
+            'RCUTILS_LOGGING_USE_STDOUT': '1',
+            'ROS_LOG_DIR': str(self._folder / room / 'ros_log'),
+            'MPLBACKEND': 'module://matplotlib_inline.backend_inline',
+            'PYTHONSAFEPATH': '1',
+        }
+        self._kernels.append(Kernel(self._folder / room, environment))
+        return self._kernels[-1]
+
+    async def _prepare(self, kernel: Kernel, code: str) -> None:
+        await kernel.start()
+        await self._run_ours(kernel, code)
+
+    async def _run_ours(self, kernel: Kernel, code: str) -> None:
+        run = await kernel.run(code, timeout_sec=SETUP_TIMEOUT_SEC)
+        if not run.ran_to_end:
+            why = run.error.evalue if run.error else 'it did not end'
+            raise RoomFailure(f'a kernel could not be made ready: {why}')

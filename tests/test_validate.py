@@ -1,0 +1,261 @@
+"""*Validate*: what students are told of their answers before these are graded."""
+
+import json
+import os
+import subprocess
+import sys
+
+import nbformat
+import pytest
+from answered import ROOT, answered, read
+from nbformat.v4 import new_code_cell
+
+NOT_A_STUDENTS = ('PYTEST_', 'COV_', 'MY_ROBOT_BASICS_', 'ROS_', 'RCUTILS_', 'FASTRTPS_', 'JPY_')
+
+NODE = """
+class KinematicsPublisher(Node):
+    def __init__(self):
+        super().__init__('kinematics_publisher')
+        self.publisher = self.create_publisher(JointState, '/kinematics/joint_states', 10)
+        self.timer = self.create_timer(1 / 5, self.publish_pose)
+
+    def publish_pose(self):
+        message = JointState(name=['joint1', 'joint2'], position=[0.1, 0.2])
+        message.header.frame_id = 'base_link'
+        self.publisher.publish(message)
+"""
+PREDICTIONS = """
+predict_delivery = dict.fromkeys(
+    ['late_subscription', 'restarted_subscription', 'without_slash', 'same_namespace'], False
+) | dict.fromkeys(
+    ['two_publishers', 'absolute_in_namespace', 'remapped', 'capital_letter', 'other_type'], True
+)
+"""
+INVENTED = """
+endpoints = {'publishers': ['anna', 'bert'], 'subscriptions': ['carl', 'dora', 'emil', 'fritz']}
+"""
+LOSE_POINTS = {
+    'a publisher without a stamp': ('03_publisher', {'five_hz': NODE}),
+    'seven of nine predictions wrong': ('01_topics', {'predict_delivery': PREDICTIONS}),
+    'invented node names': ('05_command_line', {'find_endpoints': INVENTED}),
+}
+
+
+def command(path, *options):
+    clean = {k: v for k, v in os.environ.items() if not k.startswith(NOT_A_STUDENTS)}
+    run = [sys.executable, '-P', '-m', 'my_robot_basics.validate', *options, str(path)]
+    return subprocess.run(run, env=clean, capture_output=True, text=True, check=False)
+
+
+def validated(path):
+    """What Validate says of a notebook, and what it said meanwhile."""
+    run = command(path, '--json')
+    *progress, last = map(json.loads, run.stdout.splitlines())
+    report = last['report']
+    assert run.returncode == (0 if report['passed'] else 1), run.stderr
+    assert run.stderr == ''
+    return report, [line['progress'] for line in progress]
+
+
+def checks_of(report):
+    return {check['name']: check for part in report['parts'] for check in part['checks']}
+
+
+@pytest.mark.parametrize(('lesson', 'answers'), LOSE_POINTS.values(), ids=LOSE_POINTS)
+def test_work_that_loses_points_is_promised_none(tmp_path, lesson, answers):
+    report, _ = validated(answered(lesson, tmp_path, **answers))
+    (name,) = answers
+    part = next(part for part in report['parts'] if part['name'] == name)
+    sure = [c for c in part['checks'] if c['outcome'] == 'passed' and not c['is_partly_hidden']]
+    assert sum(check['points'] for check in sure) < sum(c['points'] for c in part['checks'])
+    assert 'decided at grading' in report['summary'] or 'missing' in report['summary']
+    assert 'Success' not in str(report)
+
+
+def test_a_right_answer_passes_and_what_is_still_open_is_said(tmp_path):
+    report, progress = validated(answered('02_joint_state', tmp_path))
+    assert report['summary'] == ('All visible checks pass. 3 of 4 points are decided at grading.')
+    names = checks_of(report)
+    assert [check['outcome'] for check in names.values()] == ['passed'] * 3
+    assert names['joint_names']['title'] == 'name holds joint1 and joint2, in this order'
+    assert (names['joint_names']['is_partly_hidden'], names['joint_names']['points']) == (False, 1)
+    assert names['radians']['is_partly_hidden']
+    assert 'HIDDEN' not in names['radians']['source']
+    assert progress[0] == 'to_joint_state: starting two kernels'
+    assert progress[-1].startswith('to_joint_state: checking: The header holds')
+
+
+def test_a_text_is_left_to_a_person(tmp_path):
+    report, _ = validated(answered('05_command_line', tmp_path))
+    text = checks_of(report)['explain_counts']
+    assert (text['outcome'], text['points']) == ('by hand', 2)
+    assert report['summary'].endswith('A person gives 2 points for what you have written.')
+
+
+def test_what_is_all_hidden_is_not_called_passed(tmp_path):
+    report, _ = validated(answered('00_two_link_arm', tmp_path))
+    assert checks_of(report)['reach-hidden']['outcome'] == 'at grading'
+
+
+BROKEN = {
+    'a syntax error': (
+        '02_joint_state', {'to_joint_state': 'def to_joint_state(:\n    pass'},
+        'your cell `to_joint_state` stopped with SyntaxError: invalid syntax (line 1)',
+    ),
+    'a constructor that does not return': (
+        '03_publisher',
+        {'five_hz': NODE.replace('_publisher\')\n', '_publisher\')\n        while True: pass\n')},
+        'your cell `five_hz-run` did not end and was interrupted',
+    ),
+    'a cell that does not end': (
+        '02_joint_state', {'to_joint_state': 'while True: pass'},
+        'your cell `to_joint_state` did not end and was interrupted',
+    ),
+    'one that cannot be interrupted': (
+        '02_joint_state',
+        {'to_joint_state': 'import os, signal\nos.kill(os.getpid(), signal.SIGSTOP)'},
+        'your cell `to_joint_state` did not end and could not be interrupted',
+    ),
+    'one that ends the kernel': (
+        '02_joint_state', {'to_joint_state': 'import os; os._exit(0)'},
+        'your cell `to_joint_state` ended the kernel',
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(('lesson', 'answers', 'said'), BROKEN.values(), ids=BROKEN)
+def test_a_broken_cell_is_named_as_the_grader_names_it(tmp_path, lesson, answers, said):
+    report, _ = validated(answered(lesson, tmp_path, **answers))
+    (part,) = report['parts']
+    assert {check['outcome'] for check in part['checks']} == {'failed'}
+    told = [*part['troubles'], *(check['message'] for check in part['checks'])]
+    assert any(said in line for line in told), told
+    assert 'Traceback' not in str(report)
+    assert 'CellTimeoutError' not in str(report)
+
+
+def test_a_function_that_does_not_return_is_named_as_the_grader_names_it(tmp_path):
+    endless = 'def to_joint_state(*args):\n    while True: pass'
+    report, _ = validated(answered('02_joint_state', tmp_path, to_joint_state=endless))
+    message = checks_of(report)['joint_names']['message']
+    assert message.startswith('expected an answer from `to_joint_state(')
+    assert 'no answer within 10 s' in message
+
+
+def test_names_of_demonstrations_are_there_and_no_other_demonstration_runs(tmp_path):
+    demo = next(c for c in read('notebooks', '02_joint_state').cells if 'as np' in c.source)
+    assert 'demo' in demo.metadata.tags
+    right = next(c for c in read('solutions', '02_joint_state').cells if c.id == 'to_joint_state')
+    with_numpy = right.source.replace(
+        '[radians(theta1_deg), radians(theta2_deg)]', 'list(np.radians([theta1_deg, theta2_deg]))'
+    )
+    path = answered('02_joint_state', tmp_path, to_joint_state=with_numpy)
+    notebook = nbformat.read(path, as_version=4)
+    first = next(c for c in notebook.cells if 'demo' in c.metadata.get('tags', ()) and c != demo)
+    first.source = f'open({str(tmp_path / "ran")!r}, "w")'
+    nbformat.write(notebook, path)
+    report, _ = validated(path)
+    assert report['summary'].startswith('All visible checks pass.')
+    assert not (tmp_path / 'ran').exists()
+
+
+def test_a_module_beside_the_notebook_is_found_and_cells_of_ones_own_are_lent(tmp_path):
+    (tmp_path / 'helper.py').write_text('from math import radians as to_rad\n')
+    right = next(c for c in read('solutions', '02_joint_state').cells if c.id == 'to_joint_state')
+    path = answered(
+        '02_joint_state', tmp_path, to_joint_state=right.source.replace('radians(', 'to_rad(')
+    )
+    notebook = nbformat.read(path, as_version=4)
+    notebook.cells += [new_code_cell('from helper import to_rad'), new_code_cell('1 / 0')]
+    nbformat.write(notebook, path)
+    assert validated(path)[0]['summary'].startswith('All visible checks pass.')
+
+
+def damaged(path, damage):
+    notebook = nbformat.read(path, as_version=4)
+    cells = {cell.id: cell for cell in notebook.cells}
+    damage(notebook, cells)
+    nbformat.write(notebook, path)
+    return path
+
+
+def change_a_check(notebook, cells):
+    cells['joint_names'].source = '"""name holds joint1 and joint2"""'
+
+
+def take_a_check_away(notebook, cells):
+    notebook.cells.remove(cells['joint_names'])
+
+
+def split_the_answer(notebook, cells):
+    first, rest = cells['to_joint_state'].source.split('    message = JointState()', 1)
+    cells['to_joint_state'].source = first
+    part = new_code_cell('    message = JointState()' + rest)
+    part.metadata = nbformat.from_dict(cells['to_joint_state'].metadata)
+    notebook.cells.insert(notebook.cells.index(cells['to_joint_state']) + 1, part)
+
+
+def make_the_answer_text(notebook, cells):
+    cells['to_joint_state'].cell_type = 'markdown'
+    del cells['to_joint_state']['outputs'], cells['to_joint_state']['execution_count']
+
+
+DAMAGE = {
+    change_a_check: ('the cell `joint_names` was changed: the original counts at grading', False),
+    take_a_check_away: ('the cell `joint_names` is missing: it comes back at grading', False),
+    split_the_answer: ('the answer cell `to_joint_state` came in parts: they are joined', True),
+    make_the_answer_text: ('the cell `to_joint_state` had another type', True),
+}
+
+
+@pytest.mark.parametrize(
+    ('damage', 'said'), DAMAGE.items(), ids=lambda each: getattr(each, '__name__', '')
+)
+def test_a_notebook_that_was_damaged_is_validated_as_far_as_it_can_be(tmp_path, damage, said):
+    note, is_whole = said
+    report, _ = validated(damaged(answered('02_joint_state', tmp_path), damage))
+    assert any(note in each for each in report['notes']), report['notes']
+    assert report['passed'] == is_whole
+    assert checks_of(report)['radians']['outcome'] == 'passed'
+    if not is_whole:
+        assert checks_of(report)['joint_names']['outcome'] == 'not checked'
+
+
+NO_LESSON = {
+    'no such file': (None, 'cannot be read: No such file'),
+    'not JSON': ('{', 'is not a notebook'),
+    'another notebook': (
+        '{"cells": [], "metadata": {}, "nbformat": 4, "nbformat_minor": 5}',
+        'no exercise',
+    ),
+}
+
+
+@pytest.mark.parametrize(('text', 'said'), NO_LESSON.values(), ids=NO_LESSON)
+def test_what_is_no_lesson_is_refused_in_a_sentence(tmp_path, text, said):
+    path = tmp_path / 'lesson.ipynb'
+    if text is not None:
+        path.write_text(text)
+    run = command(path)
+    assert run.returncode == 2
+    assert said in run.stderr
+    assert 'Traceback' not in run.stderr
+
+
+def test_the_verb_shows_marks_points_and_reasons(tmp_path):
+    wrong = 'def to_joint_state(a, b, stamp): return JointState(name=["joint1", "joint2"])'
+    path = answered('02_joint_state', tmp_path, to_joint_state=wrong)
+    run = subprocess.run(
+        [ROOT / 'course', 'validate', path.name],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert run.returncode == 1
+    assert '  ✓ name holds joint1 and joint2, in this order (1 point)\n' in run.stdout
+    assert (
+        '  ✗ position holds both angles, in radians (0 of 2 points; more at grading)' in run.stdout
+    )
+    assert 'expected [0.5236, -1.5708] rad for (30.0, -90.0) degrees, saw []' in run.stdout
+    assert run.stdout.endswith('2 of 3 visible checks fail: 3 points missing.\n')
