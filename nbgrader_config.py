@@ -9,6 +9,7 @@ try:
     from grader.course import Course
     from grader.database import make_ready
     from grader.feedback import FEEDBACK_PASSES
+    from grader.formgrader import FILTERS
     from grader.pipeline import AUTOGRADE_PASSES, SANITIZE_PASSES
     from grader.release import CODE_STUB, PASSES
 
@@ -43,4 +44,4 @@ c.GenerateFeedback.exporter_class = 'grader.feedback.FeedbackPage'
 
 # the formgrader shows what students wrote: nothing of it may run there
 c.HTMLExporter.sanitize_html = True
-c.HTMLExporter.filters = {'markdown2html': 'grader.formgrader.harmless_markdown'}
+c.HTMLExporter.filters = FILTERS

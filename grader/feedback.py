@@ -13,9 +13,12 @@ from grader.course import Course
 from grader.files import write_whole
 from grader.gradebook import recover
 from grader.heal import KEY, grade_id
-from grader.page import page
+from grader.parsing import Limits, TooHard, parse
 from grader.pipeline import resources_of
 
+ABOUT = ('student', 'assignment', 'score', 'max_score', 'late_penalty')
+LIMITS = Limits(cpu_sec=10)
+"""An ordinary page takes a tenth of a second of processor time."""
 FEEDBACK_PASSES = ('grader.feedback.GatherVerdicts',)
 """What nbgrader does with a graded notebook before it shows it."""
 
@@ -56,7 +59,17 @@ class FeedbackPage(Exporter):
     ) -> tuple[str, dict]:
         """Return the page of a graded notebook as HTML."""
         nb, resources = super().from_notebook_node(nb, resources, **options)
-        return page(nb, resources['nbgrader']), resources
+        return _page(nb, resources['nbgrader']), resources
+
+
+def _page(notebook: NotebookNode, about: dict) -> str:
+    """Return the page, made in a process with limits. Raises TooHard where that can't be."""
+    about = {key: about[key] for key in ABOUT if key in about}
+    try:
+        return parse('grader.page:page', notebook, about, limits=LIMITS)
+    except TooHard as why:
+        said = f'Your text is shown as you typed it: {why} to show it as it is meant.'
+        return parse('grader.page:page', notebook, about, said, limits=LIMITS)
 
 
 def write_feedback(
@@ -76,7 +89,12 @@ def write_feedback(
         if graded.stem != assignment:
             continue
         notebook = nbformat.read(graded, as_version=4)
-        html, _ = exporter.from_notebook_node(notebook, resources_of(course, assignment, student))
+        try:
+            at = resources_of(course, assignment, student)
+            html, _ = exporter.from_notebook_node(notebook, at)
+        except TooHard as why:
+            say(f'{assignment} of {student} has no page of feedback, for {why}')
+            continue
         place = course.folder('feedback', student, assignment) / f'{assignment}.html'
         if not place.exists() or place.read_text(encoding='utf-8') != html:
             place.parent.mkdir(parents=True, exist_ok=True)

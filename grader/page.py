@@ -7,6 +7,7 @@ from functools import cache
 from html import unescape
 
 import bleach
+import nbformat
 from jinja2 import Template
 from markupsafe import Markup, escape
 from my_robot_basics.validate.titles import title_of_check
@@ -79,15 +80,17 @@ class Part:
     comment: str = ''
 
 
-def page(notebook: NotebookNode, about: dict) -> str:
+def page(notebook: dict, about: dict, plain: str = '') -> str:
     """Return the page; `about` is nbgrader's: student, assignment, score, max_score, late_penalty.
 
-    Grade cells hold what students may see, and scores: see grader.feedback.GatherVerdicts.
+    Grade cells hold what students may see, and scores: see grader.feedback.GatherVerdicts. `plain`
+    says why text and code are shown as they were typed. All of it is JSON.
     """
+    notebook = nbformat.from_dict(notebook)
     parts, others = _parts(notebook)
     ours = notebook.metadata.get(KEY, {})
     problem = ours.get('problem', '')
-    return _template().render(
+    return _template(is_plain=bool(plain)).render(
         about=about,
         parts=[] if problem else [part for part in parts if part.checks or part.answer],
         checks=[check for part in parts for check in part.checks],
@@ -95,7 +98,7 @@ def page(notebook: NotebookNode, about: dict) -> str:
         problem=problem,
         title=ours.get('title', ''),
         no_sandbox='' if ours.get('in_sandbox', True) else NO_SANDBOX,
-        notes=[note for note in ours.get('notes', ()) if note != problem],
+        notes=[note for note in (plain, *ours.get('notes', ())) if note not in ('', problem)],
     )
 
 
@@ -214,13 +217,18 @@ def _number(value: float) -> str:
     return f'{value:.2f}'.rstrip('0').rstrip('.')
 
 
+def _typed(text: str) -> Markup:
+    """Show text in its own lines, as it was typed."""
+    return Markup('<pre>{}</pre>').format(visible(text))
+
+
 @cache
-def _template() -> Template:
+def _template(*, is_plain: bool) -> Template:
     return template(
         'page.html.j2',
         filters={
-            'colour': _colour,
-            'rich': _rich,
+            'colour': escape if is_plain else _colour,
+            'rich': _typed if is_plain else _rich,
             'words': _words,
             'sentence': _sentence,
             'number': _number,

@@ -6,10 +6,12 @@ import pytest
 from course_maker import PIXEL, TOY, answered, executed, released_course, submit
 from nbformat.v4 import new_output
 
+from grader import feedback as module
 from grader.course import Course
 from grader.feedback import write_feedback
 from grader.gradebook import store
 from grader.heal import KEY, heal
+from grader.parsing import Limits, TooHard, parse
 from grader.pipeline import prepare, prepared_master, unanswered
 from grader.submission import read_submission
 
@@ -170,3 +172,28 @@ def test_writing_again_changes_no_page(course):
 
 def test_a_course_without_submissions_has_no_pages(tmp_path):
     assert write_feedback(Course.at(tmp_path)) == []
+
+
+def test_text_that_takes_for_ever_is_shown_as_it_was_typed(course, monkeypatch):
+    """Each of these formulas is searched for its end, from each of them on."""
+    monkeypatch.setattr(module, 'LIMITS', Limits(cpu_sec=2))
+    html = feedback(course, 'eve', answered(course, RIGHT, explained=r'<b>\begin{a}' * 40_000))
+    assert 'Your text is shown as you typed it: it takes over 2 s of processor time' in html
+    assert r'<pre>&lt;b&gt;\begin{a}' in html
+    assert ' of 5 points' in html
+
+
+def test_a_page_that_can_t_be_made_at_all_costs_no_other(course, monkeypatch):
+    def too_hard(function, notebook, about, *more, limits):
+        if about['student'] == 'eve':
+            raise TooHard('it takes too much memory')
+        return parse(function, notebook, about, *more, limits=limits)
+
+    for student in ('eve', 'zoe'):
+        feedback(course, student, answered(course, RIGHT))
+    monkeypatch.setattr(module, 'parse', too_hard)
+    said = []
+    pages = write_feedback(course, say=said.append)
+    assert f'{TOY} of eve has no page of feedback, for it takes too much memory' in said
+    assert {page.parts[-3] for page in pages} >= {'zoe'}
+    assert 'eve' not in {page.parts[-3] for page in pages}

@@ -1,0 +1,57 @@
+"""The HTML that the formgrader shows is made in a process with limits."""
+
+import nbformat
+import pytest
+from nbconvert import HTMLExporter
+from traitlets.config import Config
+
+from grader import formgrader
+from grader.parsing import Limits
+
+FORMULAS = r'\begin{a}' * 40_000
+"""Each is searched for its end, from each of them on."""
+
+
+def shown(*cells):
+    """What the exporter that nbgrader_config.py sets up makes of cells."""
+    options = {'filters': formgrader.FILTERS, 'sanitize_html': True}
+    exporter = HTMLExporter(config=Config({'HTMLExporter': options}))
+    return exporter.from_notebook_node(nbformat.v4.new_notebook(cells=list(cells)))[0]
+
+
+def test_text_code_and_output_look_as_they_are_meant():
+    code = nbformat.v4.new_code_cell('def f():\n    pass')
+    data = {'text/html': '<b onclick="x()">bold</b><script>x()</script>'}
+    code.outputs = [nbformat.v4.new_output('display_data', data=data)]
+    text = nbformat.v4.new_markdown_cell('*so* `it` is: $x^2$ ![a](attachment:a.png)')
+    text.attachments = {'a.png': {'image/png': 'aGVsbG8='}}
+    html = shown(text, code)
+    assert '<em>so</em> <code>it</code> is: $x^2$' in html
+    assert 'src="data:image/png;base64,aGVsbG8="' in html
+    assert '<span class="k">def</span>' in html
+    assert '<b>bold</b>' in html
+    assert 'onclick' not in html
+
+
+@pytest.mark.parametrize(
+    'text', [FORMULAS, '<a ' * 60_000, '![a](files/' * 60_000], ids=['math', 'tags', 'files']
+)
+def test_text_that_takes_for_ever_is_shown_as_it_was_typed(text, monkeypatch):
+    monkeypatch.setattr(formgrader, 'LIMITS', Limits(cpu_sec=1))
+    output = nbformat.v4.new_output('display_data', data={'text/html': text})
+    html = shown(
+        nbformat.v4.new_markdown_cell(text),
+        nbformat.v4.new_code_cell('x = 1', outputs=[output]),
+        nbformat.v4.new_markdown_cell('*next*'),
+    )
+    assert 'Shown as it was typed: it takes over 1 s of processor time.' in html
+    assert '<em>next</em>' in html
+    assert '<a <a' not in html
+
+
+def test_what_all_submissions_have_is_made_once(monkeypatch):
+    asked = []
+    monkeypatch.setattr(formgrader, 'parse', lambda *args, limits: asked.append(args) or 'x')
+    for _ in range(3):
+        formgrader.highlighted('this_is_asked_once = 1')
+    assert len(asked) == 1
