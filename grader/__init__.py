@@ -13,7 +13,7 @@ Its modules, in the order in which things happen:
   and `local_paths`, with
   the exercises, plans and verdicts of my_robot_basics.validate, which students have, too.
 - Where a student's code runs: `isolation` says whether it can be kept in. `rooms`, `sandbox`,
-  `bubblewrap`, `sights`, `seccomp`, `limits`, `hierarchies`, `cgroups`, `memory`,
+  `bubblewrap`, `sights`, `seccomp`, `system_calls`, `limits`, `hierarchies`, `cgroups`, `memory`,
   `memory_watch`, `places` and `leftovers` keep it in.
   `provisioner`, `warm`, `servers`, `forked` and the program `forkserver` begin a kernel there;
   `kernels` and `pool` run its cells.

@@ -4,7 +4,7 @@ import os
 import sys
 from pathlib import Path
 
-from grader.limits import ROOM_DISK_BYTES, ROOM_FILES, limited
+from grader.limits import OUT_OF_MEMORY_SCORE, ROOM_DISK_BYTES, ROOM_FILES, limited
 from grader.sights import shown, sources
 
 ROOMS = ('student', 'test')
@@ -73,12 +73,19 @@ def holder_command(user: int | None, given: dict[str, Path]) -> list[str]:
 
 
 def room_command(
-    user: int | None, *, holder: int, room: str, seccomp: int, told: int | None = None
+    user: int | None,
+    *,
+    holder: int,
+    room: str,
+    seccomp: int,
+    told: int | None = None,
+    counted: bool = True,
 ) -> list[str]:
     """Return how a command begins that runs in a room.
 
     `holder` is the holder's process ID, `seccomp` the file descriptor of a filter. Where there is
     one to be `told` on, the command is the room's first process, and it is told which that is.
+    Unless a cgroup has what it uses `counted`, there is no /dev/zero, which makes memory to share.
     """
     first = [] if told is None else ['--as-pid-1', '--info-fd', str(told)]
     disk = f'{DISKS}/{room}'
@@ -87,11 +94,13 @@ def room_command(
         accounts += ['--symlink', f'{INSIDE}/given/{name}', f'/etc/{name}']
     enter = ['nsenter', '--target', str(holder), '--user', '--net', '--mount']
     return [
+        # before the room: there /proc is read-only, else a student would take it back
+        'choom', '-n', str(OUT_OF_MEMORY_SCORE), '--',
         *_drop(user),
         *enter, '--preserve-credentials', '--',
         'bwrap', *_ROOM, *first,
         '--proc', '/proc',
-        '--dev', '/dev',
+        '--dev', '/dev', *([] if counted else ['--dev-bind', '/dev/null', '/dev/zero']),
         '--bind', f'{disk}/shm', '/dev/shm',
         '--bind', f'{disk}/tmp', '/tmp',
         '--bind', f'{disk}/kernel', f'{INSIDE}/kernel',
@@ -99,6 +108,7 @@ def room_command(
         '--ro-bind', f'{_SEEN}/{room}', f'{INSIDE}/given',
         *shown(_SEEN, configuration=ENVIRONMENT['MPLCONFIGDIR']),
         *accounts,
+        '--remount-ro', '/proc',
         '--remount-ro', '/dev',
         '--remount-ro', '/',
         '--chdir', f'{INSIDE}/home/work',

@@ -91,6 +91,7 @@ class SandboxCgroups:
     def __init__(self, name: str, rooms: Iterable[str]) -> None:
         """Prepare, by a name that nobody else on this machine uses. Raises NoCgroups."""
         where = hierarchies()
+        self.name = name
         self._where = Hierarchies(where.version, {k: f / name for k, f in where.folders.items()})
         self.rooms = {
             room: RoomCgroup(

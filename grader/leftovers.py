@@ -19,7 +19,7 @@ from grader.cgroups import remove_cgroup
 PREFIX = 'mrb-rooms-'
 MAX_PARENT = 50
 """A Unix socket's path holds 107 characters at most."""
-_CGROUPS = 'cgroups'
+_CGROUPS = 'cgroups-'
 _END_SEC = 5.0
 """What killed processes may take to leave their cgroup."""
 
@@ -33,10 +33,14 @@ def own_folder() -> Path:
     return _own_folder(Path('/tmp' if len(parent) > MAX_PARENT else parent), os.getpid())
 
 
-def note_cgroups(folders: Iterable[Path]) -> None:
-    """Write down cgroups, before they are made: they go with the folder of this process."""
-    with (own_folder() / _CGROUPS).open('a', encoding='utf-8') as notes:
-        notes.writelines(f'{folder}\n' for folder in folders)
+def note_cgroups(name: str, folders: Iterable[Path]) -> Path:
+    """Write down cgroups before they are made, so that they go even if this process is killed.
+
+    Return the file: it is to be removed when they are gone.
+    """
+    note = own_folder() / f'{_CGROUPS}{name}'
+    note.write_text('\n'.join(map(str, folders)), encoding='utf-8')
+    return note
 
 
 def sweep(parent: Path) -> list[Path]:
@@ -75,11 +79,8 @@ def _remove(folder: Path, process: int) -> None:
 
 def _remove_cgroups(folder: Path) -> bool:
     """Remove the cgroups that are written down in a folder; return whether they are gone."""
-    try:
-        noted = (folder / _CGROUPS).read_text(encoding='utf-8').splitlines()
-    except FileNotFoundError:
-        return True
-    left = [Path(line) for line in noted]
+    notes = [note.read_text(encoding='utf-8') for note in folder.glob(f'{_CGROUPS}*')]
+    left = [Path(line) for note in notes for line in note.splitlines()]
     deadline = time.monotonic() + _END_SEC
     while left := [path for path in left if not remove_cgroup(path)]:
         if time.monotonic() > deadline:

@@ -42,8 +42,11 @@ IDLE_SHARE, BUSY_SHARE = 0.5, 0.75
 """The part of the time in which some process had to wait for a processor: below the first there is
 room for more submissions, above the second there are too many."""
 
+_RLIMIT_LOCKS = 10  # Python has no name for it
 PROCESS_LIMITS = {
     resource.RLIMIT_AS: 3 * 2**30,  # of each process, asked for or used; a lesson: under 1 GB
+    resource.RLIMIT_DATA: 3 * 2**30,  # is a part of that
+    resource.RLIMIT_STACK: 8 * 2**20,  # of each thread: what a login has
     resource.RLIMIT_NPROC: ROOM_PROCESSES,
     resource.RLIMIT_CPU: 300,  # seconds of each process; nothing outlives its submission anyway
     resource.RLIMIT_FSIZE: ROOM_DISK_BYTES,  # no file can be larger than the disk
@@ -51,25 +54,40 @@ PROCESS_LIMITS = {
     resource.RLIMIT_CORE: 0,  # nobody would look at it
     resource.RLIMIT_MEMLOCK: 0,  # locked memory cannot be taken back
     resource.RLIMIT_MSGQUEUE: 0,  # message queues outlive processes
+    resource.RLIMIT_SIGPENDING: 1_024,  # what waits is the kernel's memory; a lesson: none
+    resource.RLIMIT_RTPRIO: 0,  # a priority of real time keeps all others waiting
+    resource.RLIMIT_RTTIME: 0,
+    resource.RLIMIT_NICE: 0,  # nobody comes before others
+    resource.RLIMIT_RSS: 3 * 2**30,  # Linux does not look at this one, …
+    _RLIMIT_LOCKS: 1_024,  # … nor at this one
 }
-"""What Linux enforces in each process of a student's room."""
+"""What Linux enforces in each process of a student's room: all that it has limits for."""
 
 OUT_OF_MEMORY_SCORE = 1_000
 """Where the machine's memory runs out, Linux ends such processes before any other."""
 
-_OPTIONS = {
-    resource.RLIMIT_AS: 'as',
-    resource.RLIMIT_NPROC: 'nproc',
-    resource.RLIMIT_CPU: 'cpu',
-    resource.RLIMIT_FSIZE: 'fsize',
-    resource.RLIMIT_NOFILE: 'nofile',
-    resource.RLIMIT_CORE: 'core',
-    resource.RLIMIT_MEMLOCK: 'memlock',
-    resource.RLIMIT_MSGQUEUE: 'msgqueue',
-}
+
+def process_limits() -> dict[int, int]:
+    """Return PROCESS_LIMITS; less where our own hard limit is less, for nobody can raise that."""
+    return {
+        kind: _allowed(most, resource.getrlimit(kind)[1]) for kind, most in PROCESS_LIMITS.items()
+    }
 
 
 def limited() -> list[str]:
     """Return the beginning of a command that runs the rest within PROCESS_LIMITS."""
-    limits = [f'--{_OPTIONS[kind]}={most}:{most}' for kind, most in PROCESS_LIMITS.items()]
-    return ['choom', '-n', str(OUT_OF_MEMORY_SCORE), '--', 'prlimit', *limits]
+    names = {number: name.removeprefix('RLIMIT_').lower() for name, number in _constants()}
+    return [
+        'prlimit',
+        *(f'--{names[kind]}={most}:{most}' for kind, most in process_limits().items()),
+    ]
+
+
+def _allowed(most: int, hard: int) -> int:
+    return most if hard == resource.RLIM_INFINITY else min(most, hard)
+
+
+def _constants() -> list[tuple[str, int]]:
+    names = [name for name in dir(resource) if name.startswith('RLIMIT_') and 'OFILE' not in name]
+    found = [(name, getattr(resource, name)) for name in names]
+    return [*found, ('nofile', resource.RLIMIT_NOFILE), ('locks', _RLIMIT_LOCKS)]

@@ -49,6 +49,7 @@ class Sandbox:
         self._watch: asyncio.Future | None = None
         self._files: list[int] = []
         self._cgroups = _sandbox_cgroups()
+        self._note: Path | None = None
         self._folders = {room: make_folder(room) for room in ROOMS}
         for folder in self._folders.values():
             for name, text in ACCOUNTS.items():
@@ -117,12 +118,19 @@ class Sandbox:
         )
 
     def _room_command(self, room: str, seccomp: int, told: int | None = None) -> list[str]:
-        command = room_command(self._user, holder=self._pid, room=room, seccomp=seccomp, told=told)
+        command = room_command(
+            self._user,
+            holder=self._pid,
+            room=room,
+            seccomp=seccomp,
+            told=told,
+            counted=self._cgroups is not None,
+        )
         return [*joining(self.cgroup(room)), *command]
 
     def _make_cgroups(self) -> None:
         if self._cgroups is not None:
-            note_cgroups(self._cgroups.folders)
+            self._note = note_cgroups(self._cgroups.name, self._cgroups.folders)
             try:
                 self._cgroups.make()
             except OSError as problem:
@@ -134,7 +142,7 @@ class Sandbox:
         """Return a file with the filter of system calls: bubblewrap reads it up."""
         seccomp = os.memfd_create('seccomp')
         self._files.append(seccomp)
-        os.write(seccomp, seccomp_filter())
+        os.write(seccomp, seccomp_filter(counted=self._cgroups is not None))
         os.lseek(seccomp, 0, os.SEEK_SET)
         return seccomp
 
@@ -144,8 +152,7 @@ class Sandbox:
             async with asyncio.timeout(CLOSE_TIMEOUT_SEC):
                 if self._holder is not None:
                     await self._end()
-                while self._cgroups is not None and not self._cgroups.remove():
-                    await asyncio.sleep(0.005)
+                await self._remove_cgroups()
         except TimeoutError:
             raise RoomFailure('processes of a sandbox could not be ended') from None
         finally:
@@ -155,6 +162,13 @@ class Sandbox:
             self._files, self._network, self._holder = [], -1, None
             for folder in self._folders.values():
                 shutil.rmtree(folder, ignore_errors=True)
+
+    async def _remove_cgroups(self) -> None:
+        if self._note is not None:
+            while not self._cgroups.remove():
+                await asyncio.sleep(0.005)
+            self._note.unlink()
+            self._note = None
 
     async def _end(self) -> None:
         if self._watch is not None:

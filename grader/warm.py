@@ -12,7 +12,7 @@ import subprocess
 
 from grader.errors import RoomFailure
 from grader.forked import Forked
-from grader.limits import OUT_OF_MEMORY_SCORE, PROCESS_LIMITS
+from grader.limits import OUT_OF_MEMORY_SCORE, process_limits
 from grader.places import Place
 from grader.seccomp import seccomp_filter
 from grader.servers import MAX_ANSWER, Server, expect_fit, send
@@ -83,10 +83,10 @@ def _order(place: Place, environment: dict[str, str], first: int) -> dict:
         'user': place.keeper.user,
         'namespaces': [k for k in _NAMESPACES if _namespace(first, k) != _namespace('self', k)],
         'folder': folder,
-        'limits': list(PROCESS_LIMITS.items()),
+        'limits': list(process_limits().items()),
         'oom_score_adj': OUT_OF_MEMORY_SCORE,
         'environment': environment | {'PWD': folder},
-        'seccomp': seccomp_filter().hex(),
+        'seccomp': seccomp_filter(counted=bool(place.keeper.entrances)).hex(),
         'command': place.kernel_command(),
     }
 

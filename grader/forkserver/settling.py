@@ -39,6 +39,8 @@ def become_a_kernel(errand: socket.socket, made: dict[str, str]) -> None:
             os.write(entrance, b'0')  # this process joins, and what it forks is born there
         order = json.loads(text)
         order['environment'] |= made
+        # in the room /proc is read-only: what is forked there inherits this, and keeps it
+        Path('/proc/self/oom_score_adj').write_text(str(order['oom_score_adj']), encoding='ascii')
         _enter(room, order)
         os.setsid()
         if child := os.fork():
@@ -74,7 +76,6 @@ def _settle(order: dict, *, keep: int) -> None:
     os.chdir(order['folder'])
     _drop_capabilities()
     call('prctl', _PR_SET_DUMPABLE, 1, 0, 0, 0)  # else /proc/self would be somebody else's
-    Path('/proc/self/oom_score_adj').write_text(str(order['oom_score_adj']), encoding='ascii')
     for kind, most in order['limits']:
         resource.setrlimit(kind, (most, most))
     os.environ.clear()
