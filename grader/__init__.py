@@ -4,8 +4,8 @@ Its modules, in the order in which things happen:
 
 - What is asked for: `__main__`, `arguments`, `verbs`, `stopping`, `demo`.
 - Lessons go out: `release`, `marks`, `replaced`, `leaks`, `index`, `bundle`.
-- Submissions come in: `collect`, `intake`, `owners`, `naming`, `students`, `incoming`, `archives`,
-  `entries`, `dates`, `platforms`.
+- Submissions come in: `collect`, `intake`, `owners`, `naming`, `forms`, `students`, `incoming`,
+  `archives`, `entries`, `dates`, `platforms`.
 - A run, from what was handed in to what is stored: `submitted`, `grade`, `reuse`, `replay`. The
   work is a `task`, what comes of it is checked by `results`, and a `crew` does it: `workers` with
   `worker`, so many at a time as `pressure` says; or `cluster`, `connection` and `remote`.

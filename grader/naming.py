@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from grader.dates import date_in
-from grader.entries import ARCHIVE
+from grader.forms import Forms, bare, stem_of
 from grader.incoming import Incoming
 from grader.students import Label, Unclear, is_nobody, label_in, same_person, student_in
 
@@ -38,15 +38,6 @@ class Owner:
     """The folders and archives in that one, down to the notebook."""
 
 
-@dataclass(frozen=True)
-class _Exchanged:
-    """A folder of nbgrader's exchange."""
-
-    who: str
-    what: str
-    when: str
-
-
 class Naming:
     """How the files and folders of what came in are named."""
 
@@ -57,17 +48,13 @@ class Naming:
         students: Iterable[str] = (),
     ) -> None:
         """Look at all that came in; `students` are those who are known from before."""
-        self._known = sorted(assignments, key=len, reverse=True)
-        one_of = '|'.join(map(re.escape, self._known)) or '(?!)'
-        self._named = re.compile(rf'(?P<who>.+?)[_+\- .]+(?P<what>{one_of})(-\d+)?')
-        self._exchange = re.compile(
-            rf'(?P<who>.+)\+(?P<what>{one_of})\+(?P<when>\d{{4}}-[^+]+)(\+[\w=-]+)?'
-        )
+        self._known = frozenset(assignments)
+        self._forms = Forms(self._known)
         notebooks = [each for each in found if is_notebook(each)]
         self._by_platform = self._all_by_platform(notebooks, list(students))
         self._shared = len(shared_folders([each.parts[:-1] for each in notebooks]))
-        named = (self._named.fullmatch(_stem(each.parts[-1])) for each in notebooks)
-        self._several = len({name['who'] for name in named if name}) > 1
+        named = (self._forms.named(stem_of(each.parts[-1])) for each in notebooks)
+        self._several = len({name.who for name in named if name}) > 1
 
     def owner(self, each: Incoming) -> Owner:
         """Return whose notebook it is. Raises Unclear."""
@@ -76,22 +63,22 @@ class Naming:
             return self._owner_by_file_name(each)
         name, above, inside = each.parts[at], each.parts[:at], each.parts[at + 1 : -1]
         label = label_in(name)
-        stem = _stem(each.parts[-1])
+        stem = stem_of(each.parts[-1])
         if at == len(each.parts) - 1:  # no folder, and the file's name begins with the label
-            stem = _stem(label.rest)
+            stem = stem_of(label.rest)
         if label and label.platform == 'canvas':
             stem = re.sub(r'-\d+$', '', stem)  # handed in again
-        if exchanged := self._exchanged(name):
+        if exchanged := self._forms.exchanged(name):
             if stem != exchanged.what or inside:
                 raise Unclear(f'in the exchange, {exchanged.what}.ipynb was expected here')
             when = date_in(re.sub(r'(\d\d)_(\d\d)_(\d\d)', r'\1:\2:\3', exchanged.when))
             return Owner(student_in(exchanged.who), stem, True, when, above=above)
         assignment = self._assignment(stem, each.parts[:-1])
-        student = student_in(self._who(name))
-        if (named := self._named.fullmatch(stem)) and not same_person(named['who'], student):
+        student = student_in(self._forms.who(name))
+        if (named := self._forms.named(stem)) and not same_person(named.who, student):
             where = f'in the archive of {student}' if each.archive else f'in a folder {student}'
             raise Unclear(
-                f'it is named after {named["who"]}, and {where}: collect that folder by itself, '
+                f'it is named after {named.who}, and {where}: collect that folder by itself, '
                 'or rename it'
             )
         return Owner(
@@ -106,10 +93,10 @@ class Naming:
     def claims(self, owner: Owner) -> Iterator[tuple[str, bool]]:
         """Yield whom else the names inside an upload may name, and whether that is their form."""
         for name in owner.inside:
-            who = self._who(name)
+            who = self._forms.who(name)
             ours = who in self._known or is_nobody(who) or same_person(who, owner.student_id)
             if not ours:
-                yield who, who != _bare(name)
+                yield who, who != bare(name)
 
     def _decides(self, each: Incoming) -> int | None:
         """Return which part of its path says whose it is; None where only the file's name does.
@@ -127,9 +114,9 @@ class Naming:
                 raise Unclear(f'nothing says whose it is: {EXPECTED}')
             return len(folders) if label_in(each.parts[-1]) else None
         first, *others = candidates
-        if label_in(folders[first]) or self._exchanged(folders[first]):
+        if label_in(folders[first]) or self._forms.exchanged(folders[first]):
             return first
-        names = [self._who(folders[at]) for at in (first, *others)]
+        names = [self._forms.who(folders[at]) for at in (first, *others)]
         if not all(same_person(name, names[0]) for name in names):
             raise Unclear(
                 f'it may be of {" or of ".join(names)}: collect the folder by itself in which the '
@@ -139,38 +126,31 @@ class Naming:
 
     def _candidates(self, folders: Sequence[str], start: int) -> list[int]:
         """Return which folders may be named after a student, from one of them on."""
-        names = [(at, _bare(folder)) for at, folder in enumerate(folders) if at >= start]
+        names = [(at, bare(folder)) for at, folder in enumerate(folders) if at >= start]
         return [at for at, name in names if name not in self._known and not is_nobody(name)]
 
     def _owner_by_file_name(self, each: Incoming) -> Owner:
-        stem = _stem(each.parts[-1])
+        stem = stem_of(each.parts[-1])
         assignment = self._assignment(stem, each.parts[:-1])
         if stem in self._known:
             raise Unclear(f'nothing says whose it is: {EXPECTED}')
-        student = student_in(self._named.fullmatch(stem)['who'])
+        student = student_in(self._forms.named(stem).who)
         return Owner(student, assignment, by_folder=False, above=each.parts[:-1])
 
     def _assignment(self, stem: str, folders: Sequence[str]) -> str:
         """Return the assignment that a file is named after. Raises Unclear."""
-        named = self._named.fullmatch(stem)
+        named = self._forms.named(stem)
         if stem not in self._known and not named:
             known = ', '.join(sorted(self._known))
             raise Unclear(f'named after no assignment: {EXPECTED}, with {known}')
-        assignment = named['what'] if named else stem
+        assignment = named.what if named else stem
         for folder in reversed(folders):
-            name = _bare(folder)
-            of = self._named.fullmatch(name)
-            other = name if name in self._known else of['what'] if of else assignment
+            name = bare(folder)
+            of = self._forms.named(name)
+            other = name if name in self._known else of.what if of else assignment
             if other != assignment:
                 raise Unclear(f'it lies in a folder of another assignment, {other}')
         return assignment
-
-    def _who(self, name: str) -> str:
-        """Return whom a folder or an archive may be named after."""
-        if found := label_in(name) or self._exchanged(name):
-            return found.who
-        named = self._named.fullmatch(_bare(name))
-        return named['who'] if named else _bare(name)
 
     def _all_by_platform(self, notebooks: Sequence[Incoming], students: Sequence[str]) -> bool:
         """Whether Moodle, Canvas or the exchange made all of it, in folders of the teacher's.
@@ -190,30 +170,14 @@ class Naming:
     def _first_by_platform(self, each: Incoming) -> int | None:
         """Return which part Moodle, Canvas or nbgrader's exchange named, the outermost one."""
         for at, part in enumerate(each.parts[: each.archive] or each.parts):
-            if label_in(part) or (at < len(each.parts) - 1 and self._exchanged(part)):
+            if label_in(part) or (at < len(each.parts) - 1 and self._forms.exchanged(part)):
                 return at
         return None
-
-    def _exchanged(self, name: str) -> _Exchanged | None:
-        found = self._exchange.fullmatch(name)
-        return _Exchanged(found['who'], found['what'], found['when']) if found else None
 
 
 def is_notebook(each: Incoming) -> bool:
     """Whether a file is a notebook that can be read."""
     return not each.problem and each.parts[-1].lower().endswith('.ipynb')
-
-
-def _stem(name: str) -> str:
-    """Return a notebook's name without its ending, and what a browser put before that."""
-    return re.sub(r' \(\d+\)$', '', name[: -len('.ipynb')])
-
-
-def _bare(name: str) -> str:
-    """Return a folder's or an archive's name without what a program put behind it."""
-    if not ARCHIVE.search(name):
-        return name
-    return re.sub(r' \(\d+\)$', '', ARCHIVE.sub('', name))
 
 
 def shared_folders(folders: Sequence[tuple[str, ...]]) -> tuple[str, ...]:

@@ -1,7 +1,7 @@
 """Whose file it is: student, assignment and time, read off where it lay and how it is named."""
 
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
 from pathlib import Path
@@ -9,7 +9,7 @@ from pathlib import Path
 from grader.dates import date_of
 from grader.incoming import Incoming, wanted
 from grader.naming import Naming, Owner, is_notebook
-from grader.students import Label, Unclear, problem_of_id, same_person
+from grader.students import Label, Unclear, problem_of_id, spellings
 from grader.submission import TIMESTAMP
 
 
@@ -108,7 +108,10 @@ def _owners(
     numbers = defaultdict(set)
     for owner in owners.values():
         numbers[_namesakes(owner)].add(owner.label and owner.label.number)
-    known = {*students, *(owner.student_id for owner in owners.values())}
+    known = defaultdict(set)
+    for student in {*students, *(owner.student_id for owner in owners.values())}:
+        for spelling in spellings(student):
+            known[spelling].add(student)
     remarks, problems = {}, {}
     for each, owner in owners.items():
         remarks[each], problem = _claims(owner, naming, known)
@@ -138,11 +141,15 @@ def _of_several(owner: Owner) -> str:
     )
 
 
-def _claims(owner: Owner, naming: Naming, known: Iterable[str]) -> tuple[str, str]:
-    """Compare the names inside an upload with its owner's; return a remark, and a problem."""
+def _claims(owner: Owner, naming: Naming, known: Mapping[str, set[str]]) -> tuple[str, str]:
+    """Compare the names inside an upload with its owner's; return a remark, and a problem.
+
+    `known` are all students, by how their names may be spelled.
+    """
     whose, remark = owner.student_id, ''
     for who, surely in naming.claims(owner):
-        if surely or any(same_person(who, other) for other in known if other != whose):
+        others = set().union(*(known.get(spelling, ()) for spelling in spellings(who)))
+        if surely or others - {whose}:
             return '', (
                 f"it lies in what {whose} handed in, under the name of {who}: if it is {whose}'s, "
                 'rename that; if others packed it, collect what they packed by itself'

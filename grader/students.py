@@ -77,29 +77,24 @@ def student_in(name: str) -> str:
 
 def same_person(one: str, other: str) -> bool:
     """Whether two names may be one: case, accents, the words' order and what parts them apart."""
-    words, others = _words(one), _words(other)
-    if not words or not others:
-        return one == other
-    if sorted(words) == sorted(others):
-        return True
-    if len(words) > len(others):
-        words, others = others, words
-    if len(words) > 1 or len(others) > MOST_WORDS:
-        return False
-    return any(''.join(order) == words[0] for order in permutations(others))
+    return not spellings(one).isdisjoint(spellings(other))
+
+
+@lru_cache(maxsize=10_000)
+def spellings(name: str) -> frozenset[str]:
+    """Return what two names that may be one have in common: their words, in any order."""
+    plain = unicodedata.normalize('NFKD', name).casefold()
+    words = re.findall(r'[^\W_]+', ''.join(c for c in plain if not unicodedata.combining(c)))
+    if not words:
+        return frozenset({name})
+    orders = permutations(words) if len(words) <= MOST_WORDS else [words]
+    return frozenset({' '.join(sorted(words)), *(''.join(order) for order in orders)})
 
 
 def is_nobody(name: str) -> bool:
     """Whether a folder or an archive is named after work or a term, and after no student."""
     words = set(re.findall(r'[^\W\d_]+', unicodedata.normalize('NFC', name).lower()))
     return bool(words & _WORDS_OF_NOBODY) and words <= _WORDS_OF_NOBODY | _BESIDE_THEM
-
-
-@lru_cache(maxsize=10_000)
-def _words(name: str) -> list[str]:
-    plain = unicodedata.normalize('NFKD', name).casefold()
-    plain = ''.join(c for c in plain if not unicodedata.combining(c))
-    return re.findall(r'[^\W_]+', plain)
 
 
 def problem_of_id(student_id: str) -> str:
