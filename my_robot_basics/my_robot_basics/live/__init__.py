@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from my_robot_basics.live.exercise import reset, run_answer
     from my_robot_basics.live.follow import follow_arm
     from my_robot_basics.live.graph_picture import show_graph
+    from my_robot_basics.live.node_file import show_workspace
     from my_robot_basics.live.qos_pairs import measure_pairs
     from my_robot_basics.live.qos_pictures import show_lost_messages, show_qos_matrix
     from my_robot_basics.live.runner import run, stop
@@ -47,6 +48,7 @@ __all__ = [
     'show_graph',
     'show_lost_messages',
     'show_qos_matrix',
+    'show_workspace',
     'stop',
     'wait_until',
     'why',
@@ -73,6 +75,7 @@ _MODULES = {
     'why': 'doctor',
     'wait_until': 'waiting',
     'make_workspace': 'workspace',
+    'show_workspace': 'node_file',
 }
 
 

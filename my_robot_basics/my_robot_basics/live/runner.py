@@ -12,7 +12,7 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
-from my_robot_basics.live import classroom, notebook, spinning
+from my_robot_basics.live import classroom, node_file, notebook, spinning
 from my_robot_basics.live.background import Background
 from my_robot_basics.live.errors import NotRunnable
 from my_robot_basics.live.naming import announce_name
@@ -175,6 +175,8 @@ def _say_nothing_of_a_race(
 # before anything logs, also where a student initialises rclpy
 classroom.enter()
 notebook.open_tap()
+if notebook.in_kernel():
+    node_file.register()
 if notebook.in_kernel() and not classroom.in_grading_room():
     spinning.help_in_cells()
 threading.excepthook = _say_nothing_of_an_end(threading.excepthook)

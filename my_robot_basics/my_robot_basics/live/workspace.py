@@ -43,23 +43,22 @@ def make_workspace(*, refresh: bool = False) -> None:
             f'{PACKAGE} is not the folder of package.xml, expected the package as ./course sets '
             'it up: start the notebook with ./course lab'
         )
-    workspace = classroom.workspace()
-    copy = workspace / 'src' / NAME
+    workspace, package = classroom.workspace(), copy()
     _write_reference(workspace / 'reference')
-    changes = _differences(copy)
+    changes = _differences(package)
     if refresh and changes:
-        print(f'moved    {_shown(_move_aside(copy))}: the files as you had them')
-    if not copy.exists():
-        _copy_package(copy)
-        print(f'made     {_shown(copy)}: the package, yours to edit')
+        print(f'moved    {shown(_move_aside(package))}: the files as you had them')
+    if not package.exists():
+        _copy_package(package)
+        print(f'made     {shown(package)}: the package, yours to edit')
     elif changes:
-        print(f'kept     {_shown(copy)}: it is yours, and not as the course has it:')
+        print(f'kept     {shown(package)}: it is yours, and not as the course has it:')
         for change in changes:
             print(f'           {change}')
         print('           (./course workspace --refresh moves it aside and begins anew)')
     else:
-        print(f'kept     {_shown(copy)}: the package, as the course has it')
-    print(f'written  {_shown(workspace / "reference")}: files to copy from')
+        print(f'kept     {shown(package)}: the package, as the course has it')
+    print(f'written  {shown(workspace / "reference")}: files to copy from')
     _show_in_file_browser(workspace)
     print(f"build it in JupyterLab's terminal or in ./course ros-shell:\n           {BUILD}")
 
@@ -71,6 +70,19 @@ def _show_in_file_browser(workspace: Path) -> None:
         return
     if not link.exists() and not link.is_symlink():
         link.symlink_to(Path('..', workspace.name))
+
+
+def copy() -> Path:
+    """Return the folder of the student's own copy of the package."""
+    return classroom.workspace() / 'src' / NAME
+
+
+def make_shelf() -> Path:
+    """Return the folder for files of a student's that are moved aside; no build looks there."""
+    shelf = classroom.workspace() / 'kept'
+    shelf.mkdir(exist_ok=True)
+    (shelf / 'COLCON_IGNORE').touch()
+    return shelf
 
 
 def _write_reference(reference: Path) -> None:
@@ -98,13 +110,11 @@ def _copy_package(copy: Path) -> None:
     unfinished.rename(copy)
 
 
-def _move_aside(copy: Path) -> Path:
+def _move_aside(package: Path) -> Path:
     """Put the student's folder where no build finds it, beside those of earlier times."""
-    shelf = copy.parents[1] / 'kept'
-    shelf.mkdir(exist_ok=True)
-    (shelf / 'COLCON_IGNORE').touch()
+    shelf = make_shelf()
     number = 1 + sum(1 for _ in shelf.glob(f'{NAME}_*'))
-    return copy.rename(shelf / f'{NAME}_{number}')
+    return package.rename(shelf / f'{NAME}_{number}')
 
 
 def _differences(copy: Path) -> list[str]:
@@ -123,9 +133,9 @@ def _differences(copy: Path) -> list[str]:
     return [f'{words[name]:8} {name}' for name in sorted(words)]
 
 
-def _shown(path: Path) -> str:
-    """A path as a terminal of the course understands it."""
-    return f'$ROS_WS/{path.relative_to(classroom.workspace())}'
+def shown(path: Path) -> str:
+    """Return a path of the workspace as a terminal of the course understands it."""
+    return f'$ROS_WS/{path.relative_to(classroom.workspace())}'.removesuffix('/.')
 
 
 def main(argv: list[str] | None = None) -> str | None:

@@ -1,0 +1,87 @@
+"""`%%write_node FILE`: the text of a cell becomes a module of the student's package."""
+
+import shutil
+from pathlib import Path
+
+from my_robot_basics.live import kernel, workspace
+from my_robot_basics.live.errors import LiveError
+
+ROOM_FOR_NAMES = 34
+"""Columns of the tree; the words stand behind them."""
+
+
+class NotWritten(LiveError):
+    """`%%write_node` was given no name for a module, or there is no workspace."""
+
+
+def register() -> None:
+    """Make the magic known to the notebook."""
+    kernel.shell().register_magic_function(write_node, 'cell', 'write_node')
+
+
+def write_node(line: str, cell: str) -> None:
+    """Write the cell into the workspace's package; a file that differs is kept beside it."""
+    name = line.strip()
+    if not (name.endswith('.py') and name.removesuffix('.py').isidentifier()):
+        raise NotWritten(f'expected a name such as greeter.py behind %%write_node, saw {name!r}')
+    modules = workspace.copy() / workspace.NAME
+    if not modules.is_dir():
+        raise NotWritten('there is no workspace yet: run the cell with make_workspace() first')
+    target = modules / name
+    if target.exists() and target.read_text(encoding='utf-8') != cell:
+        print(f'moved    {workspace.shown(_kept(target))}: the file as it was')
+    target.write_text(cell, encoding='utf-8')
+    print(f'written  {workspace.shown(target)}')
+
+
+def _kept(target: Path) -> Path:
+    shelf = workspace.make_shelf()
+    number = 1 + sum(1 for _ in shelf.glob(f'{target.stem}_*.py'))
+    return Path(shutil.copy(target, shelf / f'{target.stem}_{number}.py'))
+
+
+def show_workspace() -> None:
+    """Print the workspace as a tree: its folders, and the files that are yours."""
+    lines = [f'{workspace.shown(workspace.copy().parents[1])}/']
+    lines += _below(workspace.copy().parents[1], Path(), '')
+    print('\n'.join(lines))
+
+
+def _below(root: Path, folder: Path, indent: str) -> list[str]:
+    """Return a line for each part of a folder that is on the list and exists."""
+    lines = []
+    entries = _entries(root, folder)
+    for entry in entries:
+        is_last = entry is entries[-1]
+        path = folder / entry
+        slash = '/' if (root / path).is_dir() else ''
+        name = f'{indent}{"└── " if is_last else "├── "}{entry}{slash}'
+        words = _WORDS.get(str(path), 'your own node')
+        lines.append(f'{name:{ROOM_FOR_NAMES}}{words}')
+        lines += _below(root, path, indent + ('    ' if is_last else '│   '))
+    return lines
+
+
+def _entries(root: Path, folder: Path) -> list[str]:
+    here = [Path(path) for path in _WORDS]
+    names = [path.name for path in here if path.parent == folder and (root / path).exists()]
+    if folder == _MODULES:
+        theirs = {path.name for path in (root / folder).glob('*.py')}
+        names += sorted(
+            theirs - {path.name for path in (workspace.PACKAGE / workspace.NAME).glob('*.py')}
+        )
+    return names
+
+
+_PACKAGE = Path('src', workspace.NAME)
+_MODULES = _PACKAGE / workspace.NAME
+_WORDS = {
+    'src': 'sources: what you write',
+    str(_PACKAGE): 'a package',
+    str(_PACKAGE / 'package.xml'): 'its name, and what it needs',
+    str(_PACKAGE / 'setup.py'): 'its entry points',
+    str(_MODULES): 'its Python modules',
+    'build': 'where colcon works',
+    'install': 'what ros2 run finds after source install/setup.bash',
+    'log': 'what each build printed',
+}
