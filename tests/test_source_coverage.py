@@ -21,7 +21,7 @@ TAUGHT = {
         (ARM, 'silent', 'silent'),
         (ARM, 'its_topics', 'get_publisher_names_and_types_by_node'),
         (ARM, 'problem', 'log'),
-        (PUBLISHER, 'smallest', 'silent'),
+        (PUBLISHER, 'smallest', 'nothing more'),
     ],
     '5.1 what a topic is': [(TOPICS, 'contract', 'Topics')],
     '5.1.1 like radio': [(TOPICS, 'radio_words', 'radio'), (TOPICS, 'nobody', 'Station')],
@@ -62,7 +62,10 @@ TAUGHT = {
         (PUBLISHER, 'absolute', 'namespace'),
         (PUBLISHER, 'urdf', 'robot_state_publisher'),
     ],
-    '5.3.3 its entry point': [(PUBLISHER, 'entry_points', 'setup.py')],
+    '5.3.3 its entry point': [
+        (PUBLISHER, 'greeter', 'rclpy.spin'),
+        (PUBLISHER, 'entry_point', 'setup.py'),
+    ],
     '5.3.4 build it and run it': [
         (PUBLISHER, 'colcon', 'colcon build --packages-select my_robot_basics'),
         (PUBLISHER, 'colcon', 'source install/setup.bash'),
