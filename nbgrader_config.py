@@ -10,6 +10,7 @@ try:
     from grader.database import make_ready
     from grader.feedback import FEEDBACK_PASSES
     from grader.formgrader import FILTERS
+    from grader.logs import NBGRADER_LOGGING
     from grader.pipeline import AUTOGRADE_PASSES, SANITIZE_PASSES
     from grader.release import CODE_STUB, PASSES
 
@@ -23,6 +24,8 @@ except (ImportError, OSError) as error:
     ) from None
 
 c = get_config()  # noqa: F821
+
+c.NbGrader.logging_config = NBGRADER_LOGGING  # names of folders may move the cursor
 
 c.CourseDirectory.root = str(course.root)
 c.CourseDirectory.source_directory = 'solutions'

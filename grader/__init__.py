@@ -21,5 +21,5 @@ Its modules, in the order in which things happen:
 - What is told: `feedback` and `page` to students; `table`, `report`, `tally`, `reasons`, `charts`,
   `scores`, `totals` and `formgrader` to teachers; `templates` for both. After the deadline:
   `sample_solutions`.
-- For all of them: `course`, `errors`, `files`, `parsing`, `text`, `versions`.
+- For all of them: `course`, `errors`, `files`, `logs`, `parsing`, `text`, `versions`.
 """

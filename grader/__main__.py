@@ -7,6 +7,7 @@ from grader.arguments import make_parser
 from grader.course import Course
 from grader.database import in_sentences
 from grader.errors import CourseError
+from grader.logs import log_visibly
 from grader.stopping import stoppable
 from grader.text import printable
 
@@ -17,6 +18,7 @@ def main(arguments: list[str] | None = None, *, course: Course | None = None) ->
     It is 143 on SIGTERM and 129 on SIGHUP, which end a run in the same way.
     """
     asked = make_parser().parse_args(arguments)
+    log_visibly()
     with stoppable() as stop:
         try:
             course = course or Course()

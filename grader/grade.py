@@ -21,6 +21,7 @@ from grader.reuse import conditions, held, kept, key_of, remember
 from grader.submission import Submission, read_submission
 from grader.submitted import HandedIn
 from grader.task import Result
+from grader.text import printable
 from grader.turn import Turn
 from grader.workers import Workers
 
@@ -153,6 +154,7 @@ def _begun(course: Course, found: HandedIn, way: _Way, crew: Crew) -> 'Future[Gr
 def _row(course: Course, found: HandedIn, work: Future[Graded]) -> Row:
     """Wait for a submission's turn to be stored, and store it."""
     stored, reason, seconds, reused = None, found.problem, None, False
+    which = printable(f'{found.assignment} of {found.student_id}')
     try:
         graded = work.result()
         seconds = graded.seconds
@@ -165,10 +167,10 @@ def _row(course: Course, found: HandedIn, work: Future[Graded]) -> Row:
     except (GradebookError, ClusterError):
         raise  # nothing comes of the next one either
     except TaskFailed as error:
-        logging.error('%s of %s: %s\n%s', found.assignment, found.student_id, error, error.trace)
+        logging.error('%s: %s\n%s', which, error, error.trace)
         reason = f'not graded, the grader failed: {error}'
     except Exception as error:  # the next submission can do nothing for it
         if not found.problem:
-            logging.exception('%s of %s', found.assignment, found.student_id)
+            logging.exception('%s', which)
             reason = f'not graded, the grader failed: {type(error).__name__}: {error}'
     return Row(found.student_id, found.assignment, stored, reason, seconds, reused)

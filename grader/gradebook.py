@@ -18,6 +18,7 @@ from grader.heal import KEY, grade_id
 from grader.pipeline import apply, finish, first_reason, resources_of
 from grader.release import PASSES
 from grader.submission import Submission, extra_python_files, handed_in, timestamps
+from grader.text import printable
 from grader.turn import Turn
 
 SAVE_CELLS = 'nbgrader.preprocessors.SaveCells'
@@ -133,7 +134,7 @@ def recover(course: Course) -> None:
         except GradebookError:
             raise
         except Exception:  # the lesson has changed since, for instance: it is graded again
-            logging.exception('%s of %s is not stored', assignment, student)
+            logging.exception('%s of %s is not stored', assignment, printable(student))
             begun.unlink()
     del turn  # whoever had it before keeps it
 

@@ -10,6 +10,7 @@ import struct
 import sys
 
 from grader.limits import MAX_TASK_BYTES
+from grader.logs import log_visibly
 from grader.task import graded
 
 BEAT_SEC = 5.0
@@ -69,6 +70,7 @@ async def _beat(writer: asyncio.StreamWriter) -> None:
 
 def main(handle: str) -> None:
     """Serve the socket of that number; nothing that is started from here inherits it."""
+    log_visibly()
     connection = socket.socket(fileno=int(handle))
     os.set_inheritable(connection.fileno(), False)
     asyncio.run(serve(connection))
