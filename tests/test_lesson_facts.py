@@ -3,11 +3,15 @@
 import subprocess
 import sys
 
+import pytest
 from my_robot_basics.checks.watcher import Watcher
 from my_robot_basics.ros2.verbs.topic_hz import Rate
 from rclpy.action.client import ClientGoalHandle
 from rclpy.action.server import ServerGoalHandle
-from std_msgs.msg import String
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
+from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from std_msgs.msg import Int32, String
 
 EXECUTORS = """
 import rclpy
@@ -25,6 +29,91 @@ def test_run_and_spin_use_a_single_threaded_executor():
         [sys.executable, '-c', EXECUTORS], capture_output=True, text=True, check=True
     )
     assert done.stdout.splitlines()[-1].split()[-2:] == ['SingleThreadedExecutor'] * 2
+
+
+BLOCKING = """
+import time
+from threading import Thread
+
+import rclpy
+from rclpy.node import Node
+from std_srvs.srv import SetBool
+
+rclpy.init()
+patient = Node('patient')
+patient.create_service(SetBool, '/patient/wake', lambda request, response: response)
+client = patient.create_client(SetBool, '/patient/wake')
+asked = []
+
+def ask():
+    asked.append('asked')
+    if WAITS_IN_A_CALLBACK:
+        client.call(SetBool.Request())
+        asked.append('answered')
+
+patient.create_timer(0.1, ask)
+spinning = Thread(target=rclpy.spin, args=[patient], daemon=True)
+spinning.start()
+while not asked:
+    time.sleep(0.01)
+spinning.join(2.0)
+print(spinning.is_alive(), len(asked) > 1, flush=True)
+"""
+
+
+@pytest.mark.parametrize('waits_in_a_callback', [False, True])
+def test_spin_does_not_return_and_a_call_in_a_callback_never_does(waits_in_a_callback):
+    """Lesson 7: `rclpy.spin` goes on for ever; the timer ticks on, unless a callback waits."""
+    script = f'WAITS_IN_A_CALLBACK = {waits_in_a_callback}{BLOCKING}import os; os._exit(0)'
+    done = subprocess.run(
+        [sys.executable, '-c', script], capture_output=True, text=True, timeout=60
+    )
+    is_spinning, ticks_on = done.stdout.split()
+    assert (is_spinning, ticks_on) == ('True', str(not waits_in_a_callback)), done.stderr
+
+
+def test_the_callbacks_of_a_node_exclude_each_other_unless_told_otherwise():
+    """Lesson 4; all of them are then in this one group."""
+    with Watcher() as watcher:
+        node = watcher.node
+        made = [node.create_timer(9.0, print), node.create_subscription(String, '/s', print, 1)]
+        assert {entity.callback_group for entity in made} == {node.default_callback_group}
+        assert isinstance(node.default_callback_group, MutuallyExclusiveCallbackGroup)
+
+
+def test_both_ends_get_an_event_when_more_is_requested_than_offered():
+    """Lesson 6: incompatible QoS is an event for the publisher, too."""
+    told = set()
+    best_effort = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+    offers = PublisherEventCallbacks(incompatible_qos=lambda _: told.add('publisher'))
+    requests = SubscriptionEventCallbacks(incompatible_qos=lambda _: told.add('subscription'))
+    with Watcher() as watcher:
+        node = watcher.node
+        node.create_publisher(Int32, '/_offered', best_effort, event_callbacks=offers)
+        node.create_subscription(Int32, '/_offered', print, 1, event_callbacks=requests)
+        assert watcher.spin_until(lambda: len(told) == 2, timeout_sec=10.0), told
+
+
+def test_two_types_on_one_topic_never_match_and_no_event_tells():
+    """Lesson 1: in two programs (contexts) nobody warns; a third end shows that they have met."""
+    told = []
+    offers = PublisherEventCallbacks(incompatible_type=told.append, incompatible_qos=told.append)
+    requests = SubscriptionEventCallbacks(
+        incompatible_type=told.append, incompatible_qos=told.append
+    )
+    with Watcher() as here, Watcher() as there:
+        here.node.create_subscription(String, '/_typed', told.append, 1, event_callbacks=requests)
+        numbers = there.node.create_publisher(Int32, '/_typed', 1, event_callbacks=offers)
+        there.node.create_subscription(Int32, '/_typed', lambda _: None, 1)
+        for watcher in here, there:
+            assert watcher.spin_until(
+                lambda: there.node.count_subscribers('/_typed') == 2, timeout_sec=10.0
+            )
+        numbers.publish(Int32(data=1))
+        for watcher in here, there:
+            watcher.spin_until(lambda: bool(told), timeout_sec=1.0)
+        assert numbers.get_subscription_count() == 1
+        assert told == []
 
 
 def test_a_message_does_not_say_who_sent_it():

@@ -21,16 +21,31 @@ def test_who_asks_for_all_pictures_gets_them_in_their_order(viewer):
     viewer.create_subscription(
         Image, '/camera', lambda p: numbers.append(int(p.header.frame_id)), QoSProfile(depth=12)
     )
-    send_pictures(12, listeners=1)
+    send_pictures(12, subscriptions=1)
     wait_until(lambda: len(numbers) == 12)
     assert numbers == [*range(1, 13)]
 
 
+def test_a_short_queue_of_the_publisher_loses_pictures_though_it_is_reliable(viewer):
+    """Lesson 6: what RELIABLE is to send again must still be in the publisher's queue."""
+    numbers = []
+    viewer.create_subscription(
+        Image, '/camera', lambda p: numbers.append(int(p.header.frame_id)), QoSProfile(depth=60)
+    )
+    send_pictures(60, subscriptions=1, depth=1)
+    wait_until(lambda: 60 in numbers)
+    assert 0 < len(numbers) < 60
+    numbers.clear()
+    send_pictures(60, subscriptions=1, depth=60)
+    wait_until(lambda: 60 in numbers)
+    assert numbers == [*range(1, 61)]
+
+
 def test_a_camera_that_nobody_watches_says_so(monkeypatch):
-    monkeypatch.setattr(camera, 'LISTENERS_SEC', 0.2)
+    monkeypatch.setattr(camera, 'SUBSCRIPTIONS_SEC', 0.2)
     rclpy.try_shutdown()  # the camera begins in a process where nothing was initialised
     with pytest.raises(SystemExit, match=r'0 subscriptions in 0\.2 s'):
-        camera.main(1, 1)
+        camera.main(1, 1, 1)
     rclpy.try_shutdown()
 
 
@@ -38,10 +53,10 @@ def test_what_the_camera_says_is_told(monkeypatch):
     ended = subprocess.CompletedProcess([], 1, stdout='', stderr='Traceback\nno memory')
     monkeypatch.setattr(camera.subprocess, 'run', lambda *args, **kwargs: ended)
     with pytest.raises(camera.NoPictures, match='saw the camera end with: no memory'):
-        send_pictures(2, listeners=1)
+        send_pictures(2, subscriptions=1)
 
 
 def test_nobody_waits_for_ever(monkeypatch, viewer):
     monkeypatch.setattr(camera, 'TIMEOUT_SEC', 0.1)
     with pytest.raises(camera.NoPictures, match=r'within 0\.1 s, saw it still run'):
-        send_pictures(2, listeners=1)
+        send_pictures(2, subscriptions=1)

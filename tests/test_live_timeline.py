@@ -58,7 +58,7 @@ def test_a_row_of_one_time_is_refused():
         show_arrivals({'lonely': [1.0]})
 
 
-def test_lines_lead_from_sent_to_heard_and_the_lost_are_crossed(drawn):
+def test_lines_lead_from_sent_to_received_and_the_lost_are_crossed(drawn):
     show_deliveries({'depth 1': ARRIVED, 'deaf': {}}, sent=SENT)
     figure, text = drawn()
     some, none = figure.axes
@@ -69,7 +69,7 @@ def test_lines_lead_from_sent_to_heard_and_the_lost_are_crossed(drawn):
     assert len(xs(none, 'x')) == 5
     assert {to_hex(line.get_color()) for line in none.lines} == {LOST}
     assert text == (
-        'timeline: depth 1: 3 of 5 heard, the last one after 500 ms; deaf: 0 of 5 heard'
+        'timeline: depth 1: 3 of 5 received, the last one after 500 ms; deaf: 0 of 5 received'
     )
 
 
@@ -84,6 +84,6 @@ def test_a_picture_is_told_in_words_outside_a_notebook(capsys):
     show_arrivals({'ticks': [1.0, 2.0]}, period_sec=1.0)
     told = capsys.readouterr().out.splitlines()
     assert [line.partition(',')[0] for line in told] == [
-        'timeline: depth 1: 3 of 5 heard',
+        'timeline: depth 1: 3 of 5 received',
         'timeline: ticks: 2 times',
     ]

@@ -18,9 +18,14 @@ if TYPE_CHECKING:
     from my_robot_basics.live.exercise import reset, run_answer
     from my_robot_basics.live.follow import follow_arm
     from my_robot_basics.live.graph_picture import show_graph
+<<<<<<< HEAD
     from my_robot_basics.live.node_file import show_workspace
+=======
+    from my_robot_basics.live.qos_offers import show_offers
+>>>>>>> 00f6d9b (Teach both queues, callback groups and what two types do; correct tf2, stamps and frames in lessons 1, 2, 4, 6, 7)
     from my_robot_basics.live.qos_pairs import measure_pairs
     from my_robot_basics.live.qos_pictures import show_lost_messages, show_qos_matrix
+    from my_robot_basics.live.queue_picture import show_queues
     from my_robot_basics.live.runner import run, stop
     from my_robot_basics.live.sliders import move_arm
     from my_robot_basics.live.target import drag_target
@@ -47,8 +52,13 @@ __all__ = [
     'show_domain',
     'show_graph',
     'show_lost_messages',
+    'show_offers',
     'show_qos_matrix',
+<<<<<<< HEAD
     'show_workspace',
+=======
+    'show_queues',
+>>>>>>> 00f6d9b (Teach both queues, callback groups and what two types do; correct tf2, stamps and frames in lessons 1, 2, 4, 6, 7)
     'stop',
     'wait_until',
     'why',
@@ -68,6 +78,8 @@ _MODULES = {
     'follow_arm': 'follow',
     'show_domain': 'classroom',
     'show_graph': 'graph_picture',
+    'show_queues': 'queue_picture',
+    'show_offers': 'qos_offers',
     'measure_pairs': 'qos_pairs',
     'show_qos_matrix': 'qos_pictures',
     'show_lost_messages': 'qos_pictures',

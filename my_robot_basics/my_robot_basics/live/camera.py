@@ -1,6 +1,6 @@
 """A camera in a process of its own that sends pictures faster than anybody takes them.
 
-`python -m my_robot_basics.live.camera COUNT LISTENERS` is what `send_pictures` runs.
+`python -m my_robot_basics.live.camera COUNT SUBSCRIPTIONS DEPTH` is what `send_pictures` runs.
 """
 
 import array
@@ -15,7 +15,7 @@ from my_robot_basics.live.errors import LiveError
 TOPIC_NAME = '/camera'
 WIDTH, HEIGHT = 480, 320
 """0.46 MB: small enough that a best-effort subscription gets some, large enough to lose others."""
-LISTENERS_SEC = 10.0
+SUBSCRIPTIONS_SEC = 10.0
 ARRIVED_SEC = 10.0
 TIMEOUT_SEC = 30.0
 
@@ -24,13 +24,15 @@ class NoPictures(LiveError):
     """The camera did not send what it was asked to."""
 
 
-def send_pictures(count: int, *, listeners: int) -> None:
-    """Publish `count` pictures (0.46 MB each) on /camera, once so many subscriptions listen.
+def send_pictures(count: int, *, subscriptions: int, depth: int | None = None) -> None:
+    """Publish `count` pictures (0.46 MB each) on /camera, once it has so many subscriptions.
 
     They are sent RELIABLE, without a pause, from a process of its own; it has ended when this
-    returns. The number of a picture, from 1, is its frame_id. Raises NoPictures.
+    returns. The publisher's queue holds `depth` pictures, by default all. The number of a picture,
+    from 1, is its frame_id. Raises NoPictures.
     """
-    command = [sys.executable, '-m', __name__, str(count), str(listeners)]
+    numbers = count, subscriptions, count if depth is None else depth
+    command = [sys.executable, '-m', __name__, *map(str, numbers)]
     here = {**os.environ, 'MY_ROBOT_BASICS_DOMAIN_ID': str(classroom.enter())}
     try:
         done = subprocess.run(
@@ -44,12 +46,12 @@ def send_pictures(count: int, *, listeners: int) -> None:
     if done.returncode:
         said = (done.stderr.strip().splitlines() or ['nothing'])[-1]
         raise NoPictures(
-            f'expected {listeners} subscriptions on {TOPIC_NAME} and {count} pictures, saw the '
-            f'camera end with: {said}'
+            f'expected {subscriptions} subscriptions on {TOPIC_NAME} and {count} pictures, saw'
+            f' the camera end with: {said}'
         )
 
 
-def main(count: int, listeners: int) -> None:
+def main(count: int, subscriptions: int, depth: int) -> None:
     """Be the camera."""
     classroom.enter()
     # by now the environment is what rclpy is to see
@@ -60,13 +62,13 @@ def main(count: int, listeners: int) -> None:
 
     rclpy.init()
     node = rclpy.create_node('camera')
-    publisher = node.create_publisher(Image, TOPIC_NAME, QoSProfile(depth=count))
+    publisher = node.create_publisher(Image, TOPIC_NAME, QoSProfile(depth=depth))
     picture = Image(width=WIDTH, height=HEIGHT, step=3 * WIDTH, encoding='rgb8')
     picture.data = array.array('B', bytes(3 * WIDTH * HEIGHT))
-    deadline = time.monotonic() + LISTENERS_SEC
-    while (seen := publisher.get_subscription_count()) < listeners:
+    deadline = time.monotonic() + SUBSCRIPTIONS_SEC
+    while (seen := publisher.get_subscription_count()) < subscriptions:
         if time.monotonic() > deadline:
-            sys.exit(f'{seen} subscriptions in {LISTENERS_SEC:g} s')
+            sys.exit(f'{seen} subscriptions in {SUBSCRIPTIONS_SEC:g} s')
         time.sleep(0.01)
     for number in range(1, count + 1):
         picture.header.frame_id = str(number)

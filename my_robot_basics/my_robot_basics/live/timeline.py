@@ -68,8 +68,8 @@ def show_deliveries(
             else:
                 axes.plot([sent_sec - start_sec], [1], 'x', color=LOST, ms=6)
         axes.set_title(_delays(label, arrived, sent), fontsize=9, loc='left')
-        axes.set_title('× = never heard', fontsize=9, loc='right', color=LOST)
-        axes.set(yticks=[1, 0], yticklabels=['sent', 'heard'], ylim=(-0.3, 1.3))
+        axes.set_title('× = never received', fontsize=9, loc='right', color=LOST)
+        axes.set(yticks=[1, 0], yticklabels=['sent', 'received'], ylim=(-0.3, 1.3))
     figure.axes[-1].set_xlabel('time since the first message was sent (s)')
     text = 'timeline: ' + '; '.join(_delays(label, each, sent) for label, each in rows.items())
     _show(figure, text)
@@ -90,7 +90,7 @@ def _gaps(label: str, times_sec: Sequence[float]) -> str:
 def _delays(label: str, arrived: Mapping[int, float], sent: Mapping[int, float]) -> str:
     delays = delays_sec(arrived, sent=sent)
     last = f', the last one after {1e3 * delays[-1]:.0f} ms' if delays else ''
-    return f'{label}: {len(delays)} of {len(sent)} heard{last}'
+    return f'{label}: {len(delays)} of {len(sent)} received{last}'
 
 
 def _panels(heights_inches: Sequence[float], *, title: str) -> tuple:

@@ -1,0 +1,69 @@
+"""A picture of the rule for QoS: no more may be requested than is offered."""
+
+from itertools import product
+
+from my_robot_basics.doctor import picture
+from my_robot_basics.live import notebook
+
+POLICIES = {
+    'reliability': ('RELIABLE', 'BEST_EFFORT'),
+    'durability': ('TRANSIENT_LOCAL', 'VOLATILE'),
+}
+"""The values of each policy, the one that promises more first."""
+OFFERED, REQUESTED = 0.0, 1.0
+GAP = 0.07
+"""Between the end of a line and the name there."""
+CROSS = 0.25
+"""Where a line that does not match is crossed: off the middle, where two lines meet."""
+
+
+def show_offers() -> None:
+    """Show which offered values of reliability and durability match which requested ones."""
+    said = [
+        f'{offered} → {requested} {"yes" if matches(values, offered, requested) else "no"}'
+        for values in POLICIES.values()
+        for offered, requested in product(values, repeat=2)
+    ]
+    text = 'offered → requested, does it match: ' + ', '.join(said)
+    notebook.Display().show({'image/png': draw(), 'text/plain': text})
+
+
+def matches(values: tuple[str, str], offered: str, requested: str) -> bool:
+    """Whether no more is requested than is offered; of the values, the first promises more."""
+    return values.index(offered) <= values.index(requested)
+
+
+def draw() -> bytes:
+    """The rule as a PNG, 400 pixels wide: a panel for each policy, arrows for pairs that match."""
+    from matplotlib.figure import Figure  # takes a second
+
+    figure = Figure(figsize=(4.0, 3.4), dpi=100, layout='constrained')
+    panels = figure.subplots(len(POLICIES), 1)
+    for axes, (policy, values) in zip(panels, POLICIES.items(), strict=True):
+        axes.set(xlim=(-1.6, 2.6), ylim=(1.5, -0.5))
+        axes.set_axis_off()
+        axes.set_title(f'{policy}: offered → requested', fontsize=11)
+        for offered, requested in product(values, repeat=2):
+            _line(axes, values.index(offered), values.index(requested))
+        for y, value in enumerate(values):
+            _name(axes, OFFERED, y, value, side='right')
+            _name(axes, REQUESTED, y, value, side='left')
+    return picture.png(figure)
+
+
+def _name(axes: object, x: float, y: float, value: str, *, side: str) -> None:
+    frame = {'boxstyle': 'square,pad=0.4', 'facecolor': 'white', 'edgecolor': 'black'}
+    axes.text(x, y, value, ha=side, va='center', fontsize=10, bbox=frame)
+
+
+def _line(axes: object, offered: int, requested: int) -> None:
+    """Draw an arrow for a pair that matches; a dashed, crossed line for one that does not."""
+    start, stop = (OFFERED + GAP, offered), (REQUESTED - GAP, requested)
+    if offered <= requested:
+        style = {'arrowstyle': '-|>', 'color': picture.WELL, 'lw': 2, 'mutation_scale': 16}
+        axes.annotate('', xy=stop, xytext=start, arrowprops={**style, 'shrinkA': 0, 'shrinkB': 0})
+        return
+    way = zip(start, stop, strict=True)
+    axes.plot(*way, color=picture.BROKEN, lw=2, ls='--')
+    at = [(1 - CROSS) * a + CROSS * b for a, b in zip(start, stop, strict=True)]
+    axes.plot(*at, 'X', color=picture.BROKEN, ms=12, zorder=4)
