@@ -18,4 +18,75 @@ if TYPE_CHECKING:
     from my_robot_basics.live.exercise import reset, run_answer
     from my_robot_basics.live.follow import follow_arm
     from my_robot_basics.live.graph_picture import show_graph
+    from my_robot_basics.live.node_file import show_workspace
+    from my_robot_basics.live.qos_offers import show_offers
+    from my_robot_basics.live.qos_pairs import measure_pairs
+    from my_robot_basics.live.qos_pictures import show_lost_messages, show_qos_matrix
+    from my_robot_basics.live.queue_picture import show_queues
+    from my_robot_basics.live.runner import run, stop
+    from my_robot_basics.live.sliders import move_arm
+    from my_robot_basics.live.target import drag_target
+    from my_robot_basics.live.timeline import show_arrivals, show_deliveries
+    from my_robot_basics.live.waiting import wait_until
+    from my_robot_basics.live.workspace import make_workspace
+
+__all__ = [
+    'classroom',
+    'domain',
+    'drag_target',
+    'follow_arm',
+    'make_workspace',
+    'measure_pairs',
+    'move_arm',
+    'reset',
+    'run',
+    'run_answer',
+    'send_pictures',
+    'show_arm',
+    'show_arrivals',
+    'show_branches',
+    'show_deliveries',
+    'show_domain',
+    'show_graph',
+    'show_lost_messages',
+    'show_offers',
+    'show_qos_matrix',
     'show_queues',
+    'show_workspace',
+    'stop',
+    'wait_until',
+    'why',
+]
+
+_MODULES = {
+    'run': 'runner',
+    'stop': 'runner',
+    'reset': 'exercise',
+    'run_answer': 'exercise',
+    'show_arm': 'arm',
+    'show_branches': 'branches',
+    'show_arrivals': 'timeline',
+    'show_deliveries': 'timeline',
+    'drag_target': 'target',
+    'move_arm': 'sliders',
+    'follow_arm': 'follow',
+    'show_domain': 'classroom',
+    'show_graph': 'graph_picture',
+    'show_queues': 'queue_picture',
+    'show_offers': 'qos_offers',
+    'measure_pairs': 'qos_pairs',
+    'show_qos_matrix': 'qos_pictures',
+    'show_lost_messages': 'qos_pictures',
+    'send_pictures': 'camera',
+    'why': 'doctor',
+    'wait_until': 'waiting',
+    'make_workspace': 'workspace',
+    'show_workspace': 'node_file',
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _MODULES:
+        raise AttributeError(f'module {__name__!r} has no attribute {name!r}')
+    classroom.enter()
+    return getattr(import_module(f'{__name__}.{_MODULES[name]}'), name)
