@@ -20,7 +20,7 @@ SAMPLES = ROOT / 'tests' / 'submissions'
 
 OUTCOMES: dict[str, Callable[[list[str]], bool]] = {
     'pass': lambda outcomes: set(outcomes) == {'passed'},
-    'fail': lambda outcomes: 'failed' in outcomes and 'ungraded' not in outcomes,
+    'fail': lambda outcomes: {'partial', 'failed'} & {*outcomes} and 'ungraded' not in outcomes,
     'mixed': lambda outcomes: set(outcomes) == {'passed', 'failed'},
     'zero': lambda outcomes: set(outcomes) == {'failed'},
 }

@@ -56,7 +56,7 @@ class Check:
     score: float
     points: float
     status: str
-    """'passed', 'missed', 'by hand' or 'waiting'."""
+    """'passed', 'partly', 'missed', 'by hand' or 'waiting'."""
     reason: str
     expected: str
     seen: str
@@ -127,7 +127,7 @@ def _check(cell: NotebookNode) -> Check:
     marks, verdict = cell.metadata.nbgrader, cell.metadata.get(KEY, {})
     score, points = marks.get('score') or 0.0, marks.get('points') or 0.0
     name, is_answer = grade_id(cell), role(cell) == 'answer'
-    status = 'passed' if score >= points else 'missed'
+    status = 'passed' if score >= points else 'partly' if score > 0.0 else 'missed'
     status = 'waiting' if verdict.get('waits') else 'by hand' if verdict.get('by_hand') else status
     reason = verdict.get('reason') or _missing_reason(status, is_answer=is_answer)
     title = 'Your written answer' if is_answer else title_of_check(cell.source) or name
@@ -141,7 +141,7 @@ def _check(cell: NotebookNode) -> Check:
         reason=reason,
         notes=tuple(verdict.get('notes', ())),
         comment='' if is_answer else marks.get('comment') or '',
-        pieces=() if is_answer else tuple(_pieces(cell, about=title, with_errors=False)),
+        pieces=() if is_answer else tuple(_pieces(cell, about=title, reason=reason)),
         source='' if is_answer else cell.source.strip(),
         **(said.groupdict() if said else {'expected': '', 'seen': '', 'hint': ''}),
     )
@@ -155,12 +155,18 @@ def _missing_reason(status: str, *, is_answer: bool) -> str:
     return 'No reason is known.' if status == 'missed' else ''
 
 
-def _pieces(cell: NotebookNode, *, about: str = '', with_errors: bool = True) -> Iterator[Piece]:
-    """Yield what a cell put out, in forms that can do nothing: text, PNG and JPEG."""
+def _pieces(cell: NotebookNode, *, about: str = '', reason: str | None = None) -> Iterator[Piece]:
+    """Yield what a cell put out, in forms that can do nothing: text, PNG and JPEG.
+
+    Of a check, which has a `reason`, it is what stands beside that and the points.
+    """
     for output in cell.get('outputs', ()):
+        if output.output_type in ('error', 'execute_result') and reason is not None:
+            continue
+        if reason and output.get('text', '').strip() == reason:
+            continue
         if output.output_type == 'error':
-            if with_errors:
-                yield _text_piece('error', '\n'.join(output.traceback) or output.evalue)
+            yield _text_piece('error', '\n'.join(output.traceback) or output.evalue)
         elif output.output_type == 'stream':
             yield _text_piece('text', output.text)
         else:

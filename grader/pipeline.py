@@ -105,7 +105,7 @@ def first_reason(graded: NotebookNode) -> str:
         return problem
     for cell in graded.cells:
         verdict = cell.metadata.get(KEY, {})
-        if verdict.get('outcome') in ('failed', 'ungraded') and verdict.get('reason'):
+        if verdict.get('outcome') in ('partial', 'failed', 'ungraded') and verdict.get('reason'):
             causes = [note for note in healed.get('notes', ()) if note == NO_ANSWERS]
             return '; '.join([*causes, *verdict.get('notes', ())[:1], verdict.reason])
     return ''

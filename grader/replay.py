@@ -72,7 +72,10 @@ def recorded_seed(course: Course, found: HandedIn) -> str:
 
 def _compared(name: str, now: Mapping, stored: Mapping[str, Mapping]) -> tuple[str, bool]:
     then = stored.get(name, {})
-    same = (now['outcome'], now['reason']) == (then.get('outcome'), then.get('reason'))
+    same = all(
+        (now.get(key) or None) == (then.get(key) or None)
+        for key in ('outcome', 'reason', 'earned')
+    )
     line = f'  {name}  {_told(now)}'
     return (f'{line}  as stored', True) if same else (f'{line}  STORED: {_told(then)}', False)
 

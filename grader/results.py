@@ -55,10 +55,11 @@ _VERDICT = jsonschema.Draft202012Validator(
         'type': 'object',
         'properties': {
             'role': {'const': 'grade'},
-            'outcome': {'enum': ['passed', 'failed', 'ungraded']},
+            'outcome': {'enum': ['passed', 'partial', 'failed', 'ungraded']},
             'reason': {'type': 'string', 'maxLength': MAX_REASON_CHARACTERS},
             'notes': _NOTES,
             'details': {'type': 'string', 'maxLength': MAX_REASON_CHARACTERS},
+            'earned': {'type': 'number', 'minimum': 0},
         },
         'required': ['role', 'outcome', 'reason', 'notes'],
         'additionalProperties': False,
@@ -122,7 +123,10 @@ def _problems_of_check(cell: NotebookNode) -> Iterator[str]:
         yield f'`{name}`: {error.json_path}: {_first_line(error)}'
         return
     errors = [output for output in cell.outputs if output.output_type == 'error']
-    others = [output for output in cell.outputs if output.output_type != 'error']
+    is_partial = verdict['outcome'] == 'partial'
+    points_kind = ['execute_result'] if is_partial else []
+    results = [output for output in cell.outputs if output.output_type in points_kind]
+    others = [out for out in cell.outputs if out.output_type not in ('error', *points_kind)]
     if not all(_tells_only(output) for output in others):
         yield f'`{name}`: an output that a check cannot have'
         return
@@ -130,8 +134,11 @@ def _problems_of_check(cell: NotebookNode) -> Iterator[str]:
     if [error.evalue for error in errors] != wanted:
         yield f'`{name}`: its outputs do not say what its verdict does'
         return
-    points = cell.metadata.nbgrader.points
-    score = {'passed': points, 'failed': 0.0}.get(verdict['outcome'])
+    points, earned = cell.metadata.nbgrader.points, verdict.get('earned', 0.0)
+    if is_partial != (0.0 < earned < points) or len(results) != is_partial:
+        yield f'`{name}`: {earned:g} of {points:g} points for the outcome {verdict["outcome"]}'
+        return
+    score = {'passed': points, 'partial': earned, 'failed': 0.0}.get(verdict['outcome'])
     if score is not None and determine_grade(cell) != (score, points):
         yield f'`{name}`: nbgrader would read another score off its outputs'
 

@@ -5,6 +5,7 @@ import json
 from pathlib import Path
 
 import nbformat
+from my_robot_basics.validate.verdict import SCORED
 from nbformat import NotebookNode
 from nbgrader.api import SubmittedNotebook
 
@@ -87,16 +88,19 @@ def _agree(grades: list, graded: NotebookNode) -> bool:
     """Whether the scores are those of the notebook's verdicts."""
     outcomes = _outcomes(graded)
     scores = {grade.name: grade.auto_score for grade in grades if grade.name in outcomes}
-    points = {grade_id(cell): cell.metadata.nbgrader.points for cell in _checks(graded)}
+    cells = {grade_id(cell): cell.metadata for cell in _checks(graded)}
     return scores == {
-        name: points[name] if outcome == 'passed' else 0 for name, outcome in outcomes.items()
+        name: cells[name].nbgrader.points
+        if outcome == 'passed'
+        else cells[name][KEY].get('earned', 0.0)
+        for name, outcome in outcomes.items()
     }
 
 
 def _outcomes(notebook: NotebookNode) -> dict[str, str]:
-    """Return 'passed', 'failed' or '' for each check, by its grade id."""
+    """Return the outcome of each check, or '' where it has no score, by its grade id."""
     found = {grade_id(c): c.metadata.get(KEY, {}).get('outcome') for c in _checks(notebook)}
-    return {name: said if said in ('passed', 'failed') else '' for name, said in found.items()}
+    return {name: said if said in SCORED else '' for name, said in found.items()}
 
 
 def _checks(notebook: NotebookNode) -> list[NotebookNode]:

@@ -1,6 +1,7 @@
 """The pass that puts the verdicts of a notebook into nbgrader's database."""
 
 import nbformat
+from my_robot_basics.validate.verdict import SCORED
 from nbformat import NotebookNode
 from nbgrader.preprocessors import SaveAutoGrades
 
@@ -40,7 +41,7 @@ class SaveGrades(SaveAutoGrades):
             grade_id(cell), self.notebook_id, self.assignment_id, self.student_id
         )
         verdict = cell.metadata.setdefault(KEY, nbformat.from_dict({}))
-        if cell.cell_type == 'code' and verdict.get('outcome') not in ('passed', 'failed'):
+        if cell.cell_type == 'code' and verdict.get('outcome') not in SCORED:
             grade.auto_score, grade.needs_manual_grade = None, True
         elif cell.cell_type != 'code' and grade.auto_score is not None:
             # nobody has to read what nobody wrote

@@ -150,7 +150,7 @@ def _check(cells: list[Record], title: str | None, failures: list[Said]) -> Chec
 def _failures(notebooks: dict[tuple[str, str], NotebookNode]) -> Iterable[Said]:
     for whose, notebook in notebooks.items():
         for name, verdict in verdicts_in(notebook).items():
-            if verdict.get('outcome') == 'failed':
+            if verdict.get('outcome') in ('partial', 'failed'):
                 yield Said(*whose, name, verdict.get('details') or verdict.get('reason', ''))
 
 

@@ -1,11 +1,13 @@
-"""Predictions: what a dict must hold, and what is said of the first wrong one."""
+"""Predictions: what a dict must hold, what is said of wrong ones, what points are left."""
 
+import math
 import sys
 from collections import OrderedDict
 
 import numpy as np
 import pytest
 from my_robot_basics.checks import CheckFailed, Predictions
+from my_robot_basics.checks.errors import PartlyRight
 
 KEYS = 'arrives', 'is_lost'
 
@@ -27,36 +29,56 @@ def predictions(monkeypatch, **answer):
     return Predictions('answer', KEYS)
 
 
+def concluded(predictions, *situations):
+    predictions.run(*situations)
+    predictions.conclude(points={2: 2, 1: 1})
+
+
 @pytest.mark.parametrize('yes', [True, np.bool_(True)])
 def test_what_happens_is_right(monkeypatch, yes):
-    predictions(monkeypatch, arrives=yes, is_lost=False).compare(arrives, is_lost)
+    concluded(predictions(monkeypatch, arrives=yes, is_lost=False), arrives, is_lost)
 
 
 def test_any_dict_will_do_with_keys_of_ones_own(monkeypatch):
     answer = OrderedDict([('note', 'mine'), ('is_lost', False), ('arrives', True)])
     monkeypatch.setattr(sys.modules['__main__'], 'answer', answer, raising=False)
-    Predictions('answer', KEYS).compare(arrives, is_lost)
+    concluded(Predictions('answer', KEYS), arrives, is_lost)
 
 
-@pytest.mark.parametrize(
-    ('answer', 'words'),
-    [
-        (
-            {'arrives': False, 'is_lost': True},
-            "expected True for 'arrives' (the message arrived when this was run), saw False: "
-            'the subscription is there',
-        ),
-        (
-            {'arrives': True, 'is_lost': True},
-            "expected False for 'is_lost' (the message did not arrive when this was run), "
-            'saw True: nobody is there',
-        ),
-    ],
-)
-def test_the_first_wrong_prediction_is_named_alone(monkeypatch, answer, words):
+EXPECTED = 'expected each prediction to be what happens when the check runs it'
+
+
+def test_each_wrong_prediction_is_named_with_its_why(monkeypatch):
     with pytest.raises(CheckFailed) as failure:
-        predictions(monkeypatch, **answer).compare(arrives, is_lost)
-    assert str(failure.value) == words
+        concluded(predictions(monkeypatch, arrives=False, is_lost=True), arrives, is_lost)
+    assert str(failure.value) == (
+        f'{EXPECTED}, saw 2 wrong: `arrives` arrives (the subscription is there); '
+        '`is_lost` does not arrive (nobody is there)'
+    )
+    assert not isinstance(failure.value, PartlyRight)
+
+
+def test_enough_right_predictions_leave_points(monkeypatch):
+    with pytest.raises(PartlyRight) as failure:
+        concluded(predictions(monkeypatch, arrives=True, is_lost=True), arrives, is_lost)
+    assert str(failure.value) == (
+        f'{EXPECTED}, saw 1 wrong, which leaves 1 of 2 points: '
+        '`is_lost` does not arrive (nobody is there)'
+    )
+
+
+def test_what_is_only_a_part_leaves_none(monkeypatch):
+    with pytest.raises(CheckFailed) as failure:
+        concluded(predictions(monkeypatch, arrives=False, is_lost=False), arrives)
+    assert str(failure.value).startswith(f'{EXPECTED}, saw 1 of the 1 that this part runs wrong: ')
+    assert not isinstance(failure.value, PartlyRight)
+
+
+def test_a_coin_earns_next_to_nothing():
+    """Of nine predictions two are known from the visible part; the rest are thrown."""
+    thrown = [math.comb(7, right) / 2**7 for right in range(8)]
+    points = [{9: 2, 8: 1, 7: 1}.get(2 + right, 0) for right in range(8)]
+    assert sum(p * n for p, n in zip(thrown, points, strict=True)) < 0.25
 
 
 @pytest.mark.parametrize(

@@ -119,6 +119,36 @@ def test_no_output_is_read_as_points(asked, answer, place, points):
         read(answer, asked)
 
 
+def leave_points(answer, *, earned=0.5, shown='0.5', times=1):
+    cell = answer['notebook'].cells[CHECK + 1]
+    cell.metadata[KEY] |= {'outcome': 'partial', 'reason': '1 wrong', 'earned': earned}
+    cell.outputs = [result_of(shown) for _ in range(times)]
+
+
+def test_some_of_the_points_are_one_result(asked, answer):
+    leave_points(answer)
+    assert read(answer, asked)
+
+
+@pytest.mark.parametrize(
+    'spoiled',
+    [
+        {'earned': 0.0, 'shown': '0.0'},
+        {'earned': 2.0, 'shown': '2.0'},
+        {'earned': 99.0, 'shown': '2.0'},
+        {'earned': '1'},
+        {'shown': '1.0'},
+        {'shown': 'x'},
+        {'times': 0},
+        {'times': 2},
+    ],
+)
+def test_no_other_points_than_the_verdicts_are(asked, answer, spoiled):
+    leave_points(answer, **spoiled)
+    with pytest.raises(TaskFailed, match='what came back is no verdict: `double-hidden`'):
+        read(answer, asked)
+
+
 def test_what_fails_says_so_once(asked, answer):
     cell = answer['notebook'].cells[CHECK]
     cell.outputs.append(cell.outputs[-1])

@@ -57,6 +57,30 @@ def test_a_check_that_came_to_an_end_is_judged(cell, run, outcome, reason):
     assert verdict.score == {'passed': 3.0, 'failed': 0.0}[outcome]
 
 
+def points(earned):
+    return new_output('display_data', {'application/vnd.my_robot_basics.points': earned})
+
+
+def test_some_of_the_points_are_left_where_the_check_says_so(cell):
+    run = failing('PartlyRight', '1 wrong')
+    run.outputs.insert(0, points('1.0'))
+    verdict = judge(cell, run, [])
+    assert (verdict.outcome, verdict.score, verdict.reason) == ('partial', 1.0, '1 wrong')
+    write_verdict(cell, verdict, run.outputs)
+    assert determine_grade(cell) == (1.0, 3.0)
+    assert cell.metadata[KEY].earned == 1.0
+    assert [output.output_type for output in cell.outputs] == ['stream', 'execute_result']
+    nbformat.validate(nbformat.v4.new_notebook(cells=[cell]))
+
+
+@pytest.mark.parametrize('earned', ['0.0', '3.0', '-1.0', 'nan', 'inf'])
+def test_no_other_number_of_points_is_a_part_of_them(cell, earned):
+    run = failing('PartlyRight', '1 wrong')
+    run.outputs.insert(0, points(earned))
+    with pytest.raises(RoomFailure, match='came to no verdict'):
+        judge(cell, run, [])
+
+
 NO_VERDICT = {
     'another exception': (failing('KeyError', 'hidden_target'), 'it stopped with KeyError'),
     'a timeout': (failing('KeyboardInterrupt', '', timed_out=True), 'it did not end in time'),
@@ -163,6 +187,7 @@ def test_a_failure_is_written_as_one_error_without_the_test(cell):
         'reason': 'too slow',
         'notes': ['n'],
         'details': '',
+        'earned': 0.0,
     }
 
 

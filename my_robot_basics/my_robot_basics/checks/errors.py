@@ -20,6 +20,10 @@ class CheckFailed(AssertionError):
         return in_lines(str(self))
 
 
+class PartlyRight(CheckFailed):
+    """A verdict that leaves some of the points: the grader is told how many."""
+
+
 def expect(condition: bool, *, expected: object, seen: object, hint: str, cause: str = '') -> None:
     """Raise CheckFailed('expected …, saw …: hint') unless the condition holds; see `fail`.
 
@@ -38,20 +42,25 @@ def fail(
     hint: str,
     cause: str = '',
     picture: bytes | None = None,
+    earned: float = 0.0,
 ) -> NoReturn:
     """Raise CheckFailed('expected …, saw …: hint'); show the picture (PNG bytes) before it.
 
     From a hidden part on, students read 'cause: hint' alone, or the hint: `cause` is what went
     wrong in words that tell no input, no right value, and nothing that the student's code made.
+    What is `earned` all the same, fewer points than the check has, makes it a PartlyRight.
     """
+    Failure = PartlyRight if earned else CheckFailed
+    if earned:
+        hidden.tell_points(earned)
     sentence = hidden.in_full(f'expected {expected}, saw {seen}: {hint}')
     if hidden.is_quiet():
         hidden.tell_grader(sentence)
         why = hidden.without_inputs(f'{cause}: {hint}' if cause else hint)
-        raise CheckFailed(f'{hidden.PLACE}{why}')
+        raise Failure(f'{hidden.PLACE}{why}')
     if picture is not None:
         show(picture, alt=f'Picture of what was seen: {seen}')
-    raise CheckFailed(sentence)
+    raise Failure(sentence)
 
 
 def shorten(text: object, most: int = MOST_CHARACTERS) -> str:

@@ -8,7 +8,8 @@ feedback has nothing to write into it. The whole sentence goes to whoever teache
 import builtins
 import os
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 BEGIN = 'BEGIN HIDDEN TESTS'
@@ -20,9 +21,12 @@ MOST_DETAILS = 2_000
 """Characters; what a student's code returned may be long."""
 
 _MARK = 'application/vnd.my_robot_basics.hidden'
-"""A display of this MIME type is for the grader: a word of the next three, or … """
+"""A display of this MIME type is for the grader: that the hidden part began, or that inputs were
+chosen. …"""
 _DETAILS = 'application/vnd.my_robot_basics.details'
-"""… of this one, the sentence that a student is not told."""
+"""… Of this one, too: the sentence that a student is not told. …"""
+_POINTS = 'application/vnd.my_robot_basics.points'
+"""… And of this one: the points that a check leaves which fails."""
 _BEGAN, _INPUTS = 'began', 'inputs'
 
 _HERE = "__import__('my_robot_basics.checks.hidden', fromlist=['begin'])"
@@ -114,6 +118,28 @@ def tell_grader(details: str) -> None:
     _display(_DETAILS, details)
 
 
+def tell_points(earned: float) -> None:
+    """Hand over how many points a check that fails leaves."""
+    if is_in_test_room():
+        _display(_POINTS, repr(float(earned)))
+
+
+def points_in(outputs: Iterable[Any]) -> float:
+    """How many points were handed over; 0 where none were."""
+    return float(next(iter(_said(outputs, _POINTS)), 0.0))
+
+
+@contextmanager
+def said_in_full() -> Iterator[None]:
+    """For what a check says of a student's work without a word of any hidden input."""
+    global _quiet
+    former, _quiet = _quiet, False
+    try:
+        yield
+    finally:
+        _quiet = former
+
+
 def has_begun(outputs: Iterable[Any]) -> bool:
     """Whether a cell with these outputs came to its hidden part."""
     return _BEGAN in _said(outputs, _MARK)
@@ -146,7 +172,7 @@ def _said(outputs: Iterable[Any], mime: str) -> list[str]:
 
 
 def _is_for_the_grader(output: Any) -> bool:
-    return bool({_MARK, _DETAILS} & {*(output.get('data') or ())})
+    return bool({_MARK, _DETAILS, _POINTS} & {*(output.get('data') or ())})
 
 
 def _display(mime: str, text: str) -> None:

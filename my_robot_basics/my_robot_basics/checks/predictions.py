@@ -1,10 +1,11 @@
 """Predictions of what arrives, held against what does: the check runs each situation itself."""
 
 import difflib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from my_robot_basics.checks import student
-from my_robot_basics.checks.errors import expect, fail, shorten
+from my_robot_basics.checks.errors import fail, shorten
+from my_robot_basics.checks.hidden import said_in_full
 from my_robot_basics.checks.stage import Stage, watchers
 
 Situation = Callable[[Stage], bool]
@@ -22,6 +23,9 @@ class Predictions:
 
         Keys of the student's own beside these do no harm.
         """
+        self._keys = tuple(keys)
+        self._ran = 0
+        self._wrong: list[tuple[Situation, bool]] = []
         self._values = student.value(name, type=dict)
         for key in keys:
             if key not in self._values:
@@ -32,19 +36,40 @@ class Predictions:
                 )
             self._check_bool(key)
 
-    def compare(self, *situations: Situation) -> None:
-        """Run the situations until one goes otherwise than predicted. Raises CheckFailed."""
+    def run(self, *situations: Situation) -> None:
+        """Run the situations, and remember which went otherwise than predicted."""
         with watchers() as participants:
             for situation in situations:
-                key = situation.__name__
                 arrived = situation(Stage(*participants))
-                what = 'the message arrived' if arrived else 'the message did not arrive'
-                expect(
-                    self._values[key] is arrived,
-                    expected=f'{arrived} for {key!r} ({what} when this was run)',
-                    seen=self._values[key],
-                    hint=situation.__doc__,
-                )
+                self._ran += 1
+                if self._values[situation.__name__] is not arrived:
+                    self._wrong.append((situation, arrived))
+
+    def conclude(self, points: Mapping[int, float]) -> None:
+        """Name each prediction that was wrong, and why. Raises CheckFailed where there are any.
+
+        `points` are those that so many right predictions, or more, leave, once all have run. A
+        coin must not earn any to speak of.
+        """
+        if not self._wrong:
+            return
+        right = self._ran - len(self._wrong)
+        has_all = self._ran == len(self._keys)
+        earned = max((p for least, p in points.items() if has_all and right >= least), default=0)
+        told = [
+            f'`{each.__name__}` {"arrives" if arrived else "does not arrive"} ({each.__doc__})'
+            for each, arrived in self._wrong
+        ]
+        rest = '' if has_all else f' of the {self._ran} that this part runs'
+        leaves = f', which leaves {earned:g} of {max(points.values()):g} points' if earned else ''
+        # it tells what happens on the check's own stage, and the student's own yes and no
+        with said_in_full():
+            fail(
+                expected='each prediction to be what happens when the check runs it',
+                seen=f'{len(self._wrong)}{rest} wrong{leaves}',
+                hint='; '.join(told),
+                earned=earned,
+            )
 
     def _instead_of(self, key: str, keys: Sequence[str]) -> str:
         others = [other for other in self._values if isinstance(other, str) and other not in keys]

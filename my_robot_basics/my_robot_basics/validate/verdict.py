@@ -15,13 +15,15 @@ from my_robot_basics.validate.limits import FLOOD_CHARACTERS
 from my_robot_basics.validate.outputs import CellRun
 from my_robot_basics.validate.text import printable, shorten
 
-Outcome = Literal['passed', 'failed', 'ungraded', 'manual']
+Outcome = Literal['passed', 'partial', 'failed', 'ungraded', 'manual']
+SCORED = ('passed', 'partial', 'failed')
+"""Outcomes that leave nothing to a person."""
 
 NOTE = 'note: '
 """A check's line that starts so costs nothing, and is told to the student."""
 TROUBLE = 'your cell '
 """A note that begins so tells what went wrong in one of the student's cells."""
-_FAILURES = ('CheckFailed', 'AssertionError')
+_FAILURES = ('CheckFailed', 'PartlyRight', 'AssertionError')
 _SHOWN = ('display_data', 'stream')
 _TEMPORARY_FILE = re.compile(r'\((<ipython-input-[^>]*>|\d+\.py), (?=line \d+\))')
 """How a SyntaxError names a cell of a notebook, which nobody would recognise."""
@@ -36,15 +38,18 @@ class Verdict:
     points: float
     """The most that the cell can earn."""
     reason: str
-    """Why it earned nothing; empty when it passed."""
+    """Why it did not earn all of them; empty when it passed."""
     notes: tuple[str, ...] = ()
     details: str = ''
     """What only whoever teaches is told: what was expected and seen in a hidden part."""
+    earned: float = 0.0
+    """The points of a `partial` outcome."""
 
     @property
     def score(self) -> float | None:
         """Points earned; None when a person has to decide."""
-        return {'passed': self.points, 'failed': 0.0}.get(self.outcome)
+        scores = {'passed': self.points, 'partial': self.earned, 'failed': 0.0}
+        return scores.get(self.outcome)
 
 
 def judge(cell: NotebookNode, run: CellRun | None, own: Iterable[tuple[str, CellRun]]) -> Verdict:
@@ -68,7 +73,14 @@ def judge(cell: NotebookNode, run: CellRun | None, own: Iterable[tuple[str, Cell
     if run.error.ename == 'AssertionError' and hidden.has_begun(run.outputs):
         reason, details = _told(reason, cell), reason
     notes += tuple(sentence for each in own if (sentence := _trouble(*each)))
-    return Verdict(name, 'failed', points, reason=reason, notes=notes, details=details)
+    if run.error.ename != 'PartlyRight':
+        return Verdict(name, 'failed', points, reason=reason, notes=notes, details=details)
+    earned = hidden.points_in(run.outputs)
+    if not 0.0 < earned < points:
+        raise RoomFailure(
+            f'the check `{name}` came to no verdict: {earned:g} of {points:g} points'
+        )
+    return Verdict(name, 'partial', points, reason, notes, details=details, earned=earned)
 
 
 def ungraded(cell: NotebookNode, why: str) -> Verdict:
@@ -97,7 +109,7 @@ def write_verdict(cell: NotebookNode, verdict: Verdict, outputs: Iterable[Notebo
     """Write a verdict into its grade cell, in the form that nbgrader scores.
 
     Text goes to stdout, pictures stay; a failure is one `error` output that holds the reason and
-    no line of the test.
+    no line of the test; some of the points are one result, their number, beside the reason.
     """
     shown = hidden.shown(list(outputs))
     cell.outputs = [out for out in shown if out.output_type in _SHOWN and not _is_stderr(out)]
@@ -107,15 +119,19 @@ def write_verdict(cell: NotebookNode, verdict: Verdict, outputs: Iterable[Notebo
         'reason': verdict.reason,
         'notes': list(verdict.notes),
         'details': verdict.details,
+        'earned': verdict.earned,
     }
     if verdict.outcome == 'failed':
         error = nbformat.v4.new_output(
             'error', ename='CheckFailed', evalue=verdict.reason, traceback=[verdict.reason]
         )
         cell.outputs.append(error)
-    elif verdict.outcome == 'ungraded':
+    elif verdict.outcome in ('ungraded', 'partial'):
         text = verdict.reason + '\n'
         cell.outputs.append(nbformat.v4.new_output('stream', name='stdout', text=text))
+    if verdict.outcome == 'partial':
+        data = {'text/plain': repr(verdict.earned)}
+        cell.outputs.append(nbformat.v4.new_output('execute_result', data=data))
 
 
 def _notes(run: CellRun) -> Iterable[str]:
