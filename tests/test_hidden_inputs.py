@@ -169,6 +169,9 @@ def test_the_first_line_of_a_hidden_part_says_so_wherever_it_stands():
     )
     lines = hidden.marked(source).split('\n')
     assert lines[0].endswith('.start(quiet=False)')
+    titled = hidden.marked(f'"""A title\n\nand more"""\n{source}', quiet=True).split('\n')
+    assert titled[3].endswith('.start(quiet=True)')
+    assert titled[4:6] == lines[1:3]
     assert lines[2].startswith("    __import__('my_robot_basics.checks.hidden'")
     assert lines[3:] == source.split('\n')[2:]
     assert hidden.visible(source) == 'for i in [1]:\nx = 1'

@@ -5,6 +5,7 @@ inputs nor what is right, and nothing that the student's code made: whoever buil
 feedback has nothing to write into it. The whole sentence goes to whoever teaches.
 """
 
+import ast
 import builtins
 import os
 import re
@@ -44,10 +45,11 @@ def marked(source: str, *, quiet: bool = False) -> str:
 
     It is `quiet` from its first line on where the student's code knows hidden inputs already.
     """
-    lines = [f'{_HERE}.start(quiet={quiet})']
+    lines = []
     for line in source.split('\n'):
         indent = line[: len(line) - len(line.lstrip())]
         lines.append(f'{indent}{_HERE}.begin()' if BEGIN in line else line)
+    lines.insert(_title_lines(source), f'{_HERE}.start(quiet={quiet})')
     return '\n'.join(lines)
 
 
@@ -165,6 +167,13 @@ def shown(outputs: Sequence[Any]) -> list[Any]:
         if not _is_for_the_grader(output):
             kept.append(output)
     return kept
+
+
+def _title_lines(source: str) -> int:
+    """How many lines the docstring takes, which stays the first thing of a cell."""
+    first, *_ = [*ast.parse(source).body, None]
+    has_title = isinstance(first, ast.Expr) and isinstance(first.value, ast.Constant)
+    return first.end_lineno if has_title else 0
 
 
 def _said(outputs: Iterable[Any], mime: str) -> list[str]:
