@@ -1,13 +1,11 @@
 """Write into a released notebook what *Validate* must know of it and its cells no longer show."""
 
 import ast
-import re
 
+from my_robot_basics.checks.hidden import visible
 from my_robot_basics.validate.cells import KEY, RECORD, fingerprint, roles
 from nbconvert.preprocessors import Preprocessor
 from nbformat import NotebookNode
-
-_HIDDEN = re.compile(r'### BEGIN HIDDEN TESTS.*?### END HIDDEN TESTS\n?', re.DOTALL)
 
 
 class MarkHidden(Preprocessor):
@@ -21,8 +19,8 @@ class MarkHidden(Preprocessor):
         for cell, role in zip(nb.cells, roles(nb), strict=True):
             if role != 'text':
                 record[cell.id] = {'role': role}
-            if role == 'grade' and (visible := _HIDDEN.sub('', cell.source)) != cell.source:
-                record[cell.id]['hidden'] = 'part' if _checks_something(visible) else 'all'
+            if role == 'grade' and (shown := visible(cell.source)) != cell.source:
+                record[cell.id]['hidden'] = 'part' if _checks_something(shown) else 'all'
         nb.metadata[KEY] = {RECORD: record}
         return nb, resources
 

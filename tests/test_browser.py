@@ -13,6 +13,7 @@ import urllib.request
 from pathlib import Path
 
 import nbformat
+import psutil
 import pytest
 from chromium import LONG, drives_chromium, launched
 from my_robot_basics.live.workspace import make_workspace
@@ -141,11 +142,12 @@ class Lesson:
         self.page.keyboard.insert_text(text)
 
     def validate(self):
-        """Press nbgrader's button; return what its dialog says."""
+        """Press the button; return what its dialog says in the end."""
         self.page.get_by_role('button', name='Validate').click()
         dialog = self.page.locator('.jp-Dialog', has_text='Validation Results')
+        dialog.locator('.mrb-validate-summary').wait_for()
         said = dialog.inner_text()
-        dialog.get_by_role('button', name='Ok').click()
+        dialog.get_by_role('button', name='Close').click()
         expect(dialog).to_have_count(0)
         return ' '.join(said.split())
 
@@ -319,9 +321,35 @@ def test_validate_says_what_is_wrong_and_then_that_all_is_right(opened):
     lesson.type('to_joint_state', WRONG)
     said = lesson.validate()
     assert 'expected [0.5236, -1.5708] rad for (30.0, -90.0) degrees, saw [30.0, -90.0]' in said
-    assert said.count('The following cell failed') == 1
+    assert '✗ position holds both angles, in radians 0 of 2 points, more at grading' in said
+    assert '✓ name holds joint1 and joint2, in this order 1 point ✓' in said
+    assert said.count('Show the check') == 1
+    assert 'def check_position' not in said  # folded away
     lesson.type('to_joint_state', RIGHT)
-    assert 'Success! Your notebook passes all the tests.' in lesson.validate()
+    said = lesson.validate()
+    assert 'All visible checks pass. 3 of 4 points are decided at grading.' in said
+    assert 'Success' not in said
+
+
+def test_validate_shows_what_it_does_and_ends_with_its_dialog(lab, opened):
+    lesson = opened('03_publisher')
+    endless = 'class KinematicsPublisher(Node):\n    def __init__(self):\n        while True: pass'
+    lesson.type('five_hz', endless)
+    lesson.page.get_by_role('button', name='Validate').click()
+    dialog = lesson.page.locator('.jp-Dialog', has_text='Validation Results')
+    expect(dialog.get_by_role('status')).to_have_text('five_hz: running your cells …')
+    lesson.command('docmanager:save')  # the server goes on with everything else
+    (validating,) = validations(lab.server)
+    dialog.get_by_role('button', name='Close').click()
+    expect(dialog).to_have_count(0)
+    assert validating.wait(LONG / 1000) is not None or not validating.is_running()
+    expect(lesson.page.get_by_role('button', name='Validate')).to_be_enabled()
+
+
+def validations(server):
+    """The processes that validate for a JupyterLab."""
+    below = psutil.Process(server.pid).children(recursive=True)
+    return [p for p in below if 'my_robot_basics.validate' in p.cmdline()]
 
 
 def test_an_answer_passes_where_it_is_written(opened):

@@ -13,8 +13,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-BEGIN = 'BEGIN HIDDEN TESTS'
-END = 'END HIDDEN TESTS'
+BEGIN, END = (f'{word} HIDDEN TESTS' for word in ('BEGIN', 'END'))
+# in one piece, these words would show that something hidden was given out
 PLACE = 'in the part checked at grading: '
 """How a reason from there begins."""
 

@@ -29,6 +29,8 @@ def main(arguments: list[str] | None = None) -> int:
     say = _say_json if options.json else _say
     try:
         report = asyncio.run(validate(options.notebook, say=say))
+    except KeyboardInterrupt:
+        return 130
     except CourseError as error:
         if options.json:
             _write({'failed': str(error)})

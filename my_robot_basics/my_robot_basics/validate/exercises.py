@@ -36,10 +36,13 @@ class Plan:
 
 
 def find_exercises(notebook: NotebookNode) -> tuple[Exercise, ...]:
-    """Return the exercises in the notebook's order; each begins with its `<id>-reset` cell."""
+    """Return the exercises in the notebook's order; each begins with its `<id>-reset` cell.
+
+    Where an answer cell was taken away there is no exercise.
+    """
     starts = [i for i, cell in enumerate(notebook.cells) if is_reset(cell)]
-    spans = pairwise([*starts, len(notebook.cells)])
-    return tuple(_exercise(notebook, range(start, end)) for start, end in spans)
+    spans = [range(*span) for span in pairwise([*starts, len(notebook.cells)])]
+    return tuple(_exercise(notebook, span) for span in spans if _answer(notebook, span))
 
 
 def plans(notebook: NotebookNode, exercise: Exercise) -> Iterator[Plan]:
@@ -72,6 +75,11 @@ def plans(notebook: NotebookNode, exercise: Exercise) -> Iterator[Plan]:
     )
 
 
+def _answer(notebook: NotebookNode, span: range) -> int | None:
+    name = grade_id(notebook.cells[span.start]).removesuffix('-reset')
+    return next((i for i in span if grade_id(notebook.cells[i]) == name), None)
+
+
 def _exercise(notebook: NotebookNode, span: range) -> Exercise:
     cells = notebook.cells
     name = grade_id(cells[span.start]).removesuffix('-reset')
@@ -79,7 +87,7 @@ def _exercise(notebook: NotebookNode, span: range) -> Exercise:
         name=name,
         defines=string_arguments(cells[span.start].source, 'reset'),
         reset=span.start,
-        answer=next(i for i in span if grade_id(cells[i]) == name),
+        answer=_answer(notebook, span),
         run=tuple(i for i in span[1:] if role(cells[i]) == 'locked'),
         grades=tuple(i for i in span if role(cells[i]) == 'grade' and _is_code(cells[i])),
     )

@@ -41,7 +41,9 @@ async def validate(path: Path, *, say: Say = lambda line: None) -> Report:
                     lesson.notebook, replace(exercise, grades=runnable), open_rooms, budget
                 )
             parts.append(_part(lesson, exercise, judged))
-    return Report(path.name, (*parts, *_by_hand(lesson), *_missing(lesson)), lesson.notes)
+    told = {check.name for part in parts for check in part.checks}
+    parts += [*_by_hand(lesson), *_without_exercise(lesson, told), *_missing(lesson)]
+    return Report(path.name, tuple(parts), lesson.notes)
 
 
 def _can_run(lesson: Lesson, index: int) -> bool:
@@ -62,6 +64,13 @@ def _by_hand(lesson: Lesson) -> list[Part]:
     """Tell of the answers that a person reads."""
     written = [c for c in lesson.notebook.cells if role(c) == 'answer' and _has_points(c)]
     checks: list[Check] = [make_check(lesson, cell, None, []) for cell in written]
+    return [Part(check.name, (), (check,)) for check in checks]
+
+
+def _without_exercise(lesson: Lesson, told: set[str]) -> list[Part]:
+    """Tell of the checks whose answer cell, or what begins their exercise, was taken away."""
+    cells = [c for c in lesson.notebook.cells if role(c) == 'grade' and grade_id(c) not in told]
+    checks = [make_check(lesson, cell, None, []) for cell in cells]
     return [Part(check.name, (), (check,)) for check in checks]
 
 

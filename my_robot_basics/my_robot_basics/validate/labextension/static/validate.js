@@ -1,0 +1,191 @@
+/* The Validate button of a notebook, in the place of nbgrader's.
+
+JupyterLab loads this file as it is: a module federation container, written by hand, so that it
+needs no build. What it shows is text; nothing in a report is read as HTML. */
+(() => {
+  'use strict';
+
+  const NAME = 'my_robot_basics_validate';
+  const URL_PATH = 'my_robot_basics/validate';
+  let shared = {};
+
+  /** Return a module of JupyterLab's own. */
+  async function lab(name) {
+    const [provider] = Object.values(shared[name]);
+    return (await provider.get())();
+  }
+
+  /** Make an element: text between backticks becomes code, children are appended. */
+  function element(tag, className, ...content) {
+    const made = document.createElement(tag);
+    if (className) made.className = `mrb-validate-${className}`;
+    for (const each of content) {
+      if (typeof each !== 'string') {
+        made.append(each);
+        continue;
+      }
+      each.split('`').forEach((piece, i) => {
+        made.append(i % 2 ? Object.assign(document.createElement('code'), { textContent: piece }) : piece);
+      });
+    }
+    return made;
+  }
+
+  const points = number => `${number} point${number === 1 ? '' : 's'}`;
+  const MORE = {
+    'at grading': 'checked only at grading',
+    'by hand': 'a person reads it',
+    'not checked': 'could not be checked'
+  };
+
+  function showCheck(check, marks) {
+    const more = MORE[check.outcome] || (check.is_partly_hidden ? 'more at grading' : '');
+    const score = (check.outcome === 'failed' ? '0 of ' : '') + points(check.points);
+    const row = element('li', check.outcome.replace(' ', '-'));
+    const mark = element('span', 'mark', marks[check.outcome]);
+    mark.setAttribute('aria-label', check.outcome);
+    mark.setAttribute('role', 'img');
+    row.append(
+      element('div', 'row', mark, element('span', 'title', check.title),
+        element('span', 'points', more ? `${score}, ${more}` : score))
+    );
+    if (check.message) row.append(element('p', 'message', check.message));
+    for (const note of check.notes) row.append(element('p', 'note', note));
+    for (const picture of check.pictures) {
+      const image = element('img', 'picture');
+      image.src = `data:image/png;base64,${picture.png}`;
+      image.alt = picture.alt;
+      row.append(image);
+    }
+    if (check.source && check.outcome === 'failed') {
+      const code = document.createElement('pre');
+      code.textContent = check.source;
+      row.append(element('details', '', element('summary', '', 'Show the check'), code));
+    }
+    return row;
+  }
+
+  function showReport(body, report) {
+    body.replaceChildren(element('p', report.passed ? 'summary' : 'summary mrb-validate-bad', report.summary));
+    for (const note of report.notes) body.append(element('p', 'message', note));
+    for (const part of report.parts) {
+      body.append(element('h3', '', `\`${part.name}\``));
+      for (const trouble of part.troubles) body.append(element('p', 'message', trouble));
+      body.append(element('ul', '', ...part.checks.map(check => showCheck(check, report.marks))));
+    }
+  }
+
+  function showLine(body, line) {
+    const shown = element('p', 'progress', line);
+    shown.setAttribute('role', 'status');
+    body.replaceChildren(shown);
+  }
+
+  /** Take what the server writes line by line: steps, and at the end a report or why there is none. */
+  async function follow(response, body) {
+    const reader = response.body.getReader();
+    const decoder = new TextDecoder();
+    let text = '';
+    for (;;) {
+      const { done, value } = await reader.read();
+      text += decoder.decode(value, { stream: !done });
+      const lines = text.split('\n');
+      text = lines.pop();
+      for (const line of lines.filter(Boolean).map(JSON.parse)) {
+        if (line.progress) showLine(body, `${line.progress} …`);
+        if (line.report) showReport(body, line.report);
+        if (line.failed) showLine(body, line.failed);
+      }
+      if (done) return;
+    }
+  }
+
+  async function validate(panel, button, { apputils, services, coreutils, widgets }) {
+    const body = element('div', 'report');
+    const node = new widgets.Widget({ node: body });
+    const dialog = new apputils.Dialog({
+      title: 'Validation Results',
+      body: node,
+      buttons: [apputils.Dialog.okButton({ label: 'Close' })]
+    });
+    const stop = new AbortController();
+    button.enabled = false;
+    dialog.launch().finally(() => stop.abort());
+    try {
+      showLine(body, 'saving the notebook …');
+      await panel.context.save();
+      const settings = services.ServerConnection.makeSettings();
+      const response = await services.ServerConnection.makeRequest(
+        coreutils.URLExt.join(settings.baseUrl, URL_PATH),
+        { method: 'POST', body: JSON.stringify({ path: panel.context.localPath ?? panel.context.path }), signal: stop.signal },
+        settings
+      );
+      if (!response.ok) throw new Error(`the server answered ${response.status} ${response.statusText}`);
+      await follow(response, body);
+    } catch (error) {
+      if (!stop.signal.aborted) showLine(body, `Validate could not run: ${error.message}`);
+    } finally {
+      button.enabled = true;
+    }
+  }
+
+  const STYLE = `
+    .jp-Dialog-content:has(.mrb-validate-report) { width: min(720px, 94vw); max-width: 94vw; min-width: 0; max-height: 86vh; }
+    .mrb-validate-report { overflow: auto; color: var(--jp-ui-font-color1); font-size: var(--jp-ui-font-size1); line-height: 1.45; }
+    .mrb-validate-report p { margin: 4px 0; overflow-wrap: anywhere; }
+    .mrb-validate-report h3 { margin: 14px 0 4px; font-size: var(--jp-ui-font-size2); }
+    .mrb-validate-report ul { list-style: none; margin: 0; padding: 0; }
+    .mrb-validate-report li { padding: 5px 0; border-top: 1px solid var(--jp-border-color2); }
+    .mrb-validate-row { display: flex; flex-wrap: wrap; gap: 2px 8px; align-items: baseline; }
+    .mrb-validate-title { flex: 1 1 240px; overflow-wrap: anywhere; }
+    .mrb-validate-points { color: var(--jp-ui-font-color2); margin-left: calc(1em + 8px); }
+    .mrb-validate-mark { font-weight: bold; width: 1em; }
+    .mrb-validate-passed .mrb-validate-mark { color: var(--jp-success-color1); }
+    .mrb-validate-failed .mrb-validate-mark, .mrb-validate-bad { color: var(--jp-error-color1); }
+    .mrb-validate-summary { font-weight: 600; font-size: var(--jp-ui-font-size2); }
+    .mrb-validate-message, .mrb-validate-note { padding-left: calc(1em + 8px); }
+    .mrb-validate-note { color: var(--jp-ui-font-color2); }
+    .mrb-validate-report details { padding-left: calc(1em + 8px); color: var(--jp-ui-font-color2); }
+    .mrb-validate-report pre { white-space: pre-wrap; overflow-wrap: anywhere; font-family: var(--jp-code-font-family); font-size: var(--jp-code-font-size); }
+    .mrb-validate-report code { font-family: var(--jp-code-font-family); font-size: 0.95em; }
+    .mrb-validate-picture { max-width: 100%; background: white; }
+  `;
+
+  async function makePlugin() {
+    const names = ['@jupyterlab/apputils', '@jupyterlab/services', '@jupyterlab/coreutils', '@lumino/widgets'];
+    const [apputils, services, coreutils, widgets] = await Promise.all(names.map(lab));
+    const parts = { apputils, services, coreutils, widgets };
+    const factory = {
+      createNew(panel) {
+        const button = new apputils.ToolbarButton({
+          className: 'validate-button',
+          label: 'Validate',
+          tooltip: 'Run the visible checks of this lesson',
+          onClick: () => void validate(panel, button, parts)
+        });
+        panel.toolbar.insertBefore('spacer', 'validate', button);
+        return button;
+      }
+    };
+    return {
+      id: `${NAME}:button`,
+      description: 'Adds the Validate button to notebooks.',
+      autoStart: true,
+      activate: app => {
+        document.head.append(Object.assign(document.createElement('style'), { textContent: STYLE }));
+        app.docRegistry.addWidgetExtension('Notebook', factory);
+      }
+    };
+  }
+
+  window._JUPYTERLAB = window._JUPYTERLAB || {};
+  window._JUPYTERLAB[NAME] = {
+    init: scope => {
+      shared = scope;
+    },
+    get: async () => {
+      const plugin = await makePlugin();
+      return () => ({ __esModule: true, default: plugin });
+    }
+  };
+})();

@@ -1,0 +1,97 @@
+"""Lets JupyterLab's button validate: a Jupyter server extension with one address.
+
+It starts `python -m my_robot_basics.validate` and passes its lines on as they come: the student's
+server goes on with everything else meanwhile.
+"""
+
+import asyncio
+import contextlib
+import json
+import os
+import signal
+import sys
+from pathlib import Path
+
+from jupyter_server.base.handlers import APIHandler
+from jupyter_server.serverapp import ServerApp
+from jupyter_server.utils import url_path_join
+from tornado import iostream, web
+
+ADDRESS = 'my_robot_basics/validate'
+MAX_LINE_BYTES = 2**26
+"""A report with its pictures is one line."""
+STOP_TIMEOUT_SEC = 15.0
+
+
+class ValidateHandler(APIHandler):
+    """Takes {"path": ...}, answers with lines of JSON: progress, and a report at the end."""
+
+    _process: asyncio.subprocess.Process | None = None
+
+    @web.authenticated
+    async def post(self) -> None:
+        """Validate a notebook below the server's root."""
+        path = self._notebook(self.get_json_body() or {})
+        self.set_header('Content-Type', 'application/x-ndjson')
+        self._process = await asyncio.create_subprocess_exec(
+            *(sys.executable, '-P', '-m', 'my_robot_basics.validate', '--json', str(path)),
+            stdin=asyncio.subprocess.DEVNULL,
+            stdout=asyncio.subprocess.PIPE,
+            stderr=asyncio.subprocess.PIPE,
+            limit=MAX_LINE_BYTES,
+        )
+        try:
+            await self._pass_on(self._process)
+        except iostream.StreamClosedError:
+            _interrupt(self._process)  # nobody reads on: the dialog was closed
+        finally:
+            await _end_of(self._process)
+
+    def on_connection_close(self) -> None:
+        """End what was begun for somebody who has closed the dialog."""
+        super().on_connection_close()
+        if self._process is not None:
+            _interrupt(self._process)
+
+    def _notebook(self, body: dict) -> Path:
+        root = Path(self.serverapp.root_dir).expanduser().resolve()
+        path = (root / str(body.get('path', '')).lstrip('/')).resolve()
+        if not path.is_relative_to(root):
+            raise web.HTTPError(403, 'the notebook lies outside of the folder that is served')
+        return path
+
+    async def _pass_on(self, process: asyncio.subprocess.Process) -> None:
+        errors = asyncio.create_task(process.stderr.read())
+        said = b'{}'
+        async for line in process.stdout:
+            said = line
+            self.write(line)
+            await self.flush()
+        trace = (await errors).decode(errors='replace')
+        if not {'report', 'failed'} & json.loads(said).keys():
+            self.log.error('Validate failed: %s', trace)
+            why = (trace.strip().splitlines() or ['it ended without a word'])[-1]
+            self.write(json.dumps({'failed': f'Validate itself failed: {why}'}) + '\n')
+
+
+def _interrupt(process: asyncio.subprocess.Process) -> None:
+    """Ask it to end its kernels and itself."""
+    if process.returncode is None:
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(process.pid, signal.SIGINT)
+
+
+async def _end_of(process: asyncio.subprocess.Process) -> None:
+    try:
+        await asyncio.wait_for(process.wait(), STOP_TIMEOUT_SEC)
+    except TimeoutError:
+        process.kill()
+
+
+def _jupyter_server_extension_points() -> list[dict[str, str]]:
+    return [{'module': 'my_robot_basics.validate.server'}]
+
+
+def _load_jupyter_server_extension(server: ServerApp) -> None:
+    url = url_path_join(server.web_app.settings['base_url'], ADDRESS)
+    server.web_app.add_handlers('.*$', [(url, ValidateHandler)])

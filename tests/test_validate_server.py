@@ -1,0 +1,136 @@
+"""The address behind the Validate button: lines as they come, and a server that goes on."""
+
+import json
+import os
+import socket
+import subprocess
+import sys
+import time
+import urllib.error
+import urllib.request
+
+import psutil
+import pytest
+from answered import answered
+from test_validate import NOT_A_STUDENTS
+
+TOKEN = 'a-token-of-this-test'
+LONG_SEC = 120.0
+
+
+class Server:
+    """A Jupyter server with the extension, for one folder."""
+
+    def __init__(self, folder):
+        with socket.socket() as free:
+            free.bind(('127.0.0.1', 0))
+            port = free.getsockname()[1]
+        self.address = f'http://127.0.0.1:{port}'
+        clean = {k: v for k, v in os.environ.items() if not k.startswith(NOT_A_STUDENTS)}
+        mine = {f'JUPYTER_{n}_DIR': str(folder.parent / n) for n in ('CONFIG', 'DATA', 'RUNTIME')}
+        options = ['--ServerApp.port_retries=0', '--allow-root', '--no-browser']
+        options += [f'--ServerApp.port={port}', f'--IdentityProvider.token={TOKEN}']
+        options += [f'--ServerApp.root_dir={folder}']
+        self.process = subprocess.Popen(
+            [sys.executable, '-P', '-m', 'jupyter_server', *options],
+            env=clean | mine,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+
+    def ask(self, path, data=None, token=TOKEN):
+        headers = {'Authorization': f'token {token}', 'Content-Type': 'application/json'}
+        request = urllib.request.Request(f'{self.address}/{path}', data, headers)
+        return urllib.request.urlopen(request, timeout=LONG_SEC)
+
+    def validate(self, path, **options):
+        return self.ask('my_robot_basics/validate', json.dumps({'path': path}).encode(), **options)
+
+    def wait_until_up(self):
+        deadline = time.monotonic() + LONG_SEC
+        while True:
+            try:
+                return self.ask('api/status').close()
+            except urllib.error.URLError:
+                assert self.process.poll() is None
+                assert time.monotonic() < deadline
+                time.sleep(0.2)
+
+    def validations(self):
+        below = psutil.Process(self.process.pid).children(recursive=True)
+        return [p for p in below if 'my_robot_basics.validate' in p.cmdline()]
+
+
+@pytest.fixture(scope='module')
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp('served') / 'notebooks'
+
+
+@pytest.fixture(scope='module')
+def server(folder):
+    answered('02_joint_state', folder)
+    answered('03_publisher', folder, five_hz='import time\nwhile True: time.sleep(1)')
+    server = Server(folder)
+    try:
+        server.wait_until_up()
+        yield server
+    finally:
+        server.process.terminate()
+        server.process.wait(30)
+
+
+def test_a_report_comes_at_the_end_of_lines_of_progress(server):
+    with server.validate('02_joint_state.ipynb') as response:
+        assert response.headers['Content-Type'] == 'application/x-ndjson'
+        *progress, last = map(json.loads, response)
+    assert progress[0] == {'progress': 'to_joint_state: starting two kernels'}
+    assert last['report']['summary'].startswith('All visible checks pass.')
+
+
+def test_meanwhile_the_server_answers_and_who_closes_the_dialog_ends_it_all(server):
+    response = server.validate('03_publisher.ipynb')
+    assert b'starting two kernels' in response.readline()
+    assert b'running your cells' in response.readline()
+    with server.ask('api/status') as status:
+        assert status.status == 200
+    (validating,) = server.validations()
+    begun = [validating, *validating.children(recursive=True)]
+    assert len(begun) >= 3
+    response.close()
+    _, alive = psutil.wait_procs(begun, timeout=LONG_SEC)
+    assert alive == []
+    assert server.validations() == []
+
+
+REFUSED = {
+    'no such file': ('nothing.ipynb', 'cannot be read: No such file'),
+    'a folder': ('', 'cannot be read: Is a directory'),
+}
+
+
+@pytest.mark.parametrize(('path', 'said'), REFUSED.values(), ids=REFUSED)
+def test_what_is_no_notebook_is_refused_in_a_sentence(server, path, said):
+    with server.validate(path) as response:
+        (line,) = map(json.loads, response)
+    assert said in line['failed']
+
+
+@pytest.mark.parametrize(
+    ('path', 'token', 'code'),
+    [('../secret.ipynb', TOKEN, 403), ('02_joint_state.ipynb', 'another', 403)],
+)
+def test_nobody_validates_outside_or_without_a_token(server, path, token, code):
+    with pytest.raises(urllib.error.HTTPError) as refused:
+        server.validate(path, token=token)
+    assert refused.value.code == code
+
+
+def test_where_validate_itself_fails_its_last_line_is_told(server, folder):
+    broken = json.loads((folder / '02_joint_state.ipynb').read_text())
+    for cell in broken['cells']:
+        cell['metadata'].get('nbgrader', {})['points'] = 'many'
+    (folder / 'broken.ipynb').write_text(json.dumps(broken))
+    with server.validate('broken.ipynb') as response:
+        *_, line = map(json.loads, response)
+    assert line['failed'].startswith('Validate itself failed: ValueError: could not convert')
