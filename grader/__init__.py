@@ -15,8 +15,9 @@ Its modules, in the order in which things happen:
 - Where a student's code runs: `isolation` says whether it can be kept in. `rooms`, `sandbox`,
   `bubblewrap`, `sights`, `seccomp`, `system_calls`, `limits`, `hierarchies`, `cgroups`, `memory`,
   `memory_watch`, `places` and `leftovers` keep it in.
-  `provisioner`, `warm`, `servers`, `forked` and the program `forkserver` begin a kernel there;
-  `kernels` and `pool` run its cells.
+  `provisioner`, `warm`, `servers`, `forked`, `waiting` and the program `forkserver` begin a kernel
+  there; `kernels` and `pool` run its cells; `notifying`, `signals` and `endings` say
+  why it ended.
 - What is kept: `gradebook`, `saving`, `lateness`, `due`, `turn`, `database`, `backups`, `records`.
 - What is told: `feedback` and `page` to students; `table`, `report`, `tally`, `reasons`, `charts`,
   `scores`, `totals` and `formgrader` to teachers; `templates` for both. After the deadline:

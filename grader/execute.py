@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import nbformat
@@ -38,8 +39,8 @@ class _Task:
     isolated: bool
     budget: Budget
 
-    def rooms(self) -> Rooms:
-        return Rooms(extra_files=self.files, seed=self.seed, isolated=self.isolated)
+    def rooms(self, doubts: list[str]) -> Rooms:
+        return Rooms(extra_files=self.files, seed=self.seed, isolated=self.isolated, doubts=doubts)
 
     def write(self, index: int, verdict: Verdict, outputs: Sequence[NotebookNode]) -> Verdict:
         write_verdict(self.notebook.cells[index], verdict, outputs)
@@ -92,7 +93,8 @@ async def executed(
 async def _execute(task: _Task) -> list[Verdict]:
     verdicts = []
     for exercise in find_exercises(task.notebook):
-        judged = await judge_exercise(task.notebook, exercise, task.rooms, task.budget)
+        rooms = partial(task.rooms, [])
+        judged = await judge_exercise(task.notebook, exercise, rooms, task.budget)
         for index, run in judged.runs.items():
             task.notebook.cells[index].outputs = run.outputs
         verdicts += [task.write(index, *check) for index, check in judged.checks.items()]

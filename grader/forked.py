@@ -1,10 +1,21 @@
 """A kernel that was forked into a room, as the process that Jupyter looks after."""
 
+import asyncio
 import contextlib
+import json
 import os
 import select
 import signal
+import socket
 import subprocess
+
+from grader.endings import Ending
+from grader.servers import MAX_ANSWER
+from grader.signals import Signals
+from grader.waiting import readable
+
+_TOLD_SEC = 5.0
+"""How long its parent may take to tell how a kernel ended."""
 
 
 class Forked:
@@ -12,9 +23,16 @@ class Forked:
 
     stdin = stdout = stderr = None
 
-    def __init__(self, room: subprocess.Popen, kernel: int) -> None:
-        """Take the process that keeps the room, and a pidfd of the kernel; both end together."""
-        self._room, self._kernel = room, kernel
+    def __init__(
+        self, room: subprocess.Popen, kernel: int, listener: int, told: socket.socket
+    ) -> None:
+        """Take the process that keeps the room, and a pidfd of the kernel; both end together.
+
+        `told` is where the kernel's parent tells how it ended, `listener` where Linux tells of
+        signals that are sent in the room, or -1.
+        """
+        self._room, self._kernel, self._told = room, kernel, told
+        self.signals = Signals(kernel, listener)
         self.pid = room.pid
 
     def poll(self) -> int | None:
@@ -42,6 +60,22 @@ class Forked:
         if self._kernel >= 0:
             with contextlib.suppress(ProcessLookupError):
                 signal.pidfd_send_signal(self._kernel, signal.SIGKILL)
+
+    async def ending(self) -> Ending:
+        """Return how it ended; to be called once when it has."""
+        try:
+            async with asyncio.timeout(_TOLD_SEC):
+                await readable(self._told.fileno())
+            status, cpu_sec = json.loads(self._told.recv(MAX_ANSWER))
+        except (TimeoutError, OSError, ValueError):  # its parent was ended, too
+            return Ending()
+        number = os.WTERMSIG(status) if os.WIFSIGNALED(status) else 0
+        return Ending(number, sent=self.signals.explain(number), cpu_sec=cpu_sec)
+
+    def close(self) -> None:
+        """Forget it, ended or not."""
+        self.signals.close()
+        self._told.close()
 
     def send_signal(self, number: int) -> None:
         """End it, whatever the signal: for an interrupt there are messages."""

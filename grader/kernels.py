@@ -16,9 +16,11 @@ from my_robot_basics.validate.messages import Messages, OnInput
 from my_robot_basics.validate.outputs import CellRun
 from my_robot_basics.validate.patience import finished, finished_in_grace
 
+from grader.endings import Ending, is_from_outside
 from grader.errors import RoomFailure
 from grader.places import Place, environment_of, open_place
 from grader.provisioner import NAME
+from grader.signals import killed_processes
 
 START_TIMEOUT_SEC = 60.0
 STOP_GRACE_SEC = 2.0
@@ -67,6 +69,8 @@ class Kernel:
             connection_file=str(self.place.folder / 'connection.json'),
         )
         self._client = None
+        self._ending: Ending | None = None
+        self._ended_by_us = False
         self.alive = False
 
     @property
@@ -123,6 +127,7 @@ class Kernel:
             if result.timed_out and self.alive:
                 await self._manager.interrupt_kernel()
                 if not await finished_in_grace(done, self._is_alive):
+                    self._ended_by_us = self.alive
                     await self._kill()
         finally:
             done.cancel()
@@ -131,6 +136,30 @@ class Kernel:
         result.died = not self.alive
         result.close()
         return result
+
+    async def ending(self) -> Ending | None:
+        """Look whether the kernel has ended, and return how; None where it lives, or we ended it.
+
+        Where it has the rights of whoever grades, nobody knows who sent a signal.
+        """
+        if self._ending is None and not self._ended_by_us and not await self._is_alive():
+            provisioner = self._manager.provisioner
+            if self.place.closed:
+                self._ending = await provisioner.ending()
+            else:
+                self._ending = Ending(max(0, -(provisioner.process.returncode or 0)))
+        return self._ending
+
+    def strangers_signal(self) -> int:
+        """Return what signal from outside ended a process that the kernel started, or 0.
+
+        They are known while nobody in the room has asked how they ended.
+        """
+        signals = self._manager.provisioner.signals if self.place.closed and self.alive else None
+        for number, ids in killed_processes(signals.pid) if signals else ():
+            if signals.known and is_from_outside(number) and not signals.explain(number, ids):
+                return number
+        return 0
 
     async def stop(self, *, politely: bool = True) -> None:
         """End the kernel and its folder; politely first where nodes of its hold shared memory."""

@@ -15,10 +15,11 @@ WATCH_EVERY_SEC = 0.5
 _OWN = re.compile(r'^Rss(?:Anon|Shmem):\s+(\d+) kB$', re.MULTILINE)
 
 
-async def watch_memory(inhabitants: Callable[[], Iterable[int]]) -> None:
+async def watch_memory(inhabitants: Callable[[], Iterable[int]], killed: set[int]) -> None:
     """Keep all processes of each room within its memory: the largest ends first.
 
-    `inhabitants` returns the processes of all rooms. It goes on until it is cancelled.
+    `inhabitants` returns the processes of all rooms; those that were ended for it are added to
+    `killed`. It goes on until it is cancelled.
     """
     while True:
         await asyncio.sleep(WATCH_EVERY_SEC)
@@ -30,6 +31,7 @@ async def watch_memory(inhabitants: Callable[[], Iterable[int]]) -> None:
             while sum(used.values()) > ROOM_MEMORY_BYTES:
                 largest = max(used, key=used.get)
                 del used[largest]
+                killed.add(largest)
                 with contextlib.suppress(ProcessLookupError):
                     os.kill(largest, signal.SIGKILL)
 

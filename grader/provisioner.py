@@ -6,6 +6,8 @@ notebook in the kernel that is called NAME. The grader itself names the rooms th
 
 import asyncio
 import os
+import socket
+import sys
 from pathlib import Path
 from subprocess import DEVNULL
 from typing import Any
@@ -14,13 +16,20 @@ from jupyter_client.connect import KernelConnectionInfo
 from jupyter_client.provisioning import LocalProvisioner
 from my_robot_basics.live.domain import Claim, claim
 
+from grader.endings import Ending
 from grader.errors import RoomFailure
+from grader.forked import Forked
+from grader.notifying import SHIM, signals_filter
 from grader.places import Place, environment_of
 from grader.sandbox import Sandbox
 from grader.servers import NoWarmKernel
+from grader.signals import Signals
+from grader.waiting import readable
 from grader.warm import fork_into
 
 START_TIMEOUT_SEC = 60.0
+_SIGNALLED = 128
+"""A signal's number and this is what bubblewrap exits with where a signal ended its command."""
 NAME = 'my_robot_basics_sandbox'
 """Of the kernelspec, and of this provisioner's entry point."""
 
@@ -30,6 +39,8 @@ class SandboxProvisioner(LocalProvisioner):
 
     why_not_warm = ''
     """Why the kernel was started the slow way, where it was."""
+    signals: Signals | None = None
+    """What the room's processes send each other."""
     _place: Place
     _pins: dict[str, int]
     _room = 'student'
@@ -61,16 +72,42 @@ class SandboxProvisioner(LocalProvisioner):
             self.process = await fork_into(self._place, room=self._room, environment=kwargs['env'])
         except NoWarmKernel as problem:
             self.why_not_warm = str(problem)
-            return await super().launch_kernel(
-                cmd,
-                env=kwargs['env'],
+            return await self._started(kwargs['env'])
+        self.pid, self.signals = self.process.pid, self.process.signals
+        return self.connection_info
+
+    async def ending(self) -> Ending:
+        """Return how the kernel ended; to be called once when it has, before its cleanup."""
+        if isinstance(self.process, Forked):
+            return await self.process.ending()
+        status = self.process.returncode
+        if status is None or status < 0 or self.signals is None:
+            return Ending()  # what ended the room's keeper was outside of it
+        exited = status <= _SIGNALLED or status == self.signals.exit_code
+        number = 0 if exited else status - _SIGNALLED
+        return Ending(number, sent=self.signals.explain(number))
+
+    async def _started(self, environment: dict[str, str]) -> KernelConnectionInfo:
+        ours, theirs = socket.socketpair()
+        with ours, theirs:
+            python = [sys.executable, '-I', '-S', '-c', SHIM]
+            shim = [*python, str(theirs.fileno()), signals_filter().hex()]
+            info = await super().launch_kernel(
+                [*self._place.prefix, *shim, *self._place.kernel_command()],
+                env=environment,
                 cwd='/',
                 stdout=DEVNULL,
                 stderr=DEVNULL,
-                pass_fds=self._place.pass_fds,
+                pass_fds=(*self._place.pass_fds, theirs.fileno()),
             )
-        self.pid = self.process.pid
-        return self.connection_info
+            theirs.close()
+            async with asyncio.timeout(START_TIMEOUT_SEC):
+                await readable(ours.fileno())
+            _, files, _, _ = socket.recv_fds(ours, 10, 2)
+            if files:
+                self.signals = Signals(*files)
+                os.close(files[0])
+        return info
 
     async def post_launch(self, **kwargs: Any) -> None:
         """Let all connections lead to the sockets that the kernel makes now.
@@ -97,6 +134,10 @@ class SandboxProvisioner(LocalProvisioner):
             (self._place.sockets / name).unlink(missing_ok=True)
             os.close(pin)
         self._pins = {}
+        if self.signals is not None:
+            self.signals.close()
+        if isinstance(self.process, Forked):
+            self.process.close()
         if self._sandbox is not None and not restart:
             await self._close()
 

@@ -17,6 +17,8 @@ from my_robot_basics.validate.questions import (
     reply_of,
 )
 
+from grader.cgroups import MemoryEvents
+from grader.endings import Doing, signal_name, whose_memory
 from grader.errors import RoomFailure
 from grader.kernels import Kernel
 from grader.sandbox import Sandbox
@@ -28,11 +30,18 @@ class Rooms:
     """A student room and a test room for one exercise; `async with` starts and ends them."""
 
     def __init__(
-        self, *, extra_files: Sequence[Path] = (), seed: str = '', isolated: bool = True
+        self,
+        *,
+        extra_files: Sequence[Path] = (),
+        seed: str = '',
+        isolated: bool = True,
+        doubts: list[str] | None = None,
     ) -> None:
         """Prepare two rooms; the student's gets a copy of the submission's own modules.
 
-        Unless `isolated`, what runs in them has the rights of whoever grades.
+        Unless `isolated`, what runs in them has the rights of whoever grades. `doubts` is shared
+        by all rooms of an exercise: what its code seems to have done. The first time counts as
+        a failure of the room, the second one as its own doing.
         """
         self._extra_files = tuple(extra_files)
         self._seed = seed
@@ -40,6 +49,7 @@ class Rooms:
         self._sandbox: Sandbox | None = None
         self._claim: Claim | None = None
         self._kernels: list[Kernel] = []
+        self._doubts = [] if doubts is None else doubts
 
     async def __aenter__(self) -> 'Rooms':
         """Start both kernels, and see a message cross from one to the other."""
@@ -71,14 +81,48 @@ class Rooms:
         return self._student.alive
 
     async def run_student_cell(self, source: str, *, timeout_sec: float) -> CellRun:
-        """Run one of the student's cells."""
-        return await self._student.run(source, timeout_sec=timeout_sec)
+        """Run one of the student's cells.
+
+        Raises RoomFailure where their kernel ended and nothing shows that they did it.
+        """
+        run = await self._student.run(source, timeout_sec=timeout_sec)
+        if run.died:
+            run.ending = await self._expect_fair()
+        return run
 
     async def run_check(self, source: str) -> CellRun:
-        """Run a grade cell, passing its questions on to the student's kernel."""
-        return await self._test.run(
+        """Run a grade cell, passing its questions on to the student's kernel.
+
+        Raises RoomFailure where it failed and something ended a process of the student's that
+        nothing shows to be their doing.
+        """
+        run = await self._test.run(
             source, timeout_sec=CHECK_TIMEOUT_SEC, on_input=self._ask_student
         )
+        if not run.ran_to_end:
+            run.ending = await self._expect_fair()
+        return run
+
+    async def _expect_fair(self) -> str:
+        """Return what of the student's doing ended a process of theirs; '' where nothing is told.
+
+        Raises RoomFailure where nothing shows that it was theirs.
+        """
+        memory = self._sandbox.memory_events('student') if self._sandbox else MemoryEvents()
+        doing, why = Doing.STUDENTS, ''
+        if ending := await self._student.ending():
+            doing, why = ending.whose(memory)
+        elif memory.killed:
+            doing, why = whose_memory(memory)
+        elif number := self._student.strangers_signal():
+            doing = Doing.NOT_SHOWN
+            why = f'{signal_name(number)} ended a process in it that nothing in it had sent'
+        first = not self._doubts
+        if doing is not Doing.STUDENTS:
+            self._doubts.append(why)
+        if doing is Doing.NOT_SHOWN or (doing is Doing.DOUBTFUL and first):
+            raise RoomFailure(f'the student room came to an end that is no verdict: {why}')
+        return why
 
     async def _ask_student(self, request: str) -> str:
         """Take one question of a check over, and text of a bounded size back."""

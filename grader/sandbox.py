@@ -25,7 +25,7 @@ from grader.bubblewrap import (
     room_command,
     slot_user,
 )
-from grader.cgroups import RoomCgroup, SandboxCgroups, joining
+from grader.cgroups import MemoryEvents, RoomCgroup, SandboxCgroups, joining
 from grader.errors import RoomFailure
 from grader.hierarchies import NoCgroups
 from grader.leftovers import note_cgroups, own_folder
@@ -47,6 +47,7 @@ class Sandbox:
         self._holder: subprocess.Popen | None = None
         self._network = -1
         self._watch: asyncio.Future | None = None
+        self._killed: set[int] = set()
         self._files: list[int] = []
         self._cgroups = _sandbox_cgroups()
         self._note: Path | None = None
@@ -83,11 +84,20 @@ class Sandbox:
         self._pid = int(line)
         self._network = os.open(f'/proc/{self._pid}/ns/net', os.O_RDONLY)
         if self._cgroups is None:
-            self._watch = asyncio.ensure_future(watch_memory(self._inhabitants))
+            self._watch = asyncio.ensure_future(watch_memory(self._inhabitants, self._killed))
 
     def cgroup(self, room: str) -> RoomCgroup | None:
         """Return the cgroup of a room; None where this machine gives us none."""
         return self._cgroups and self._cgroups.rooms[room]
+
+    def memory_events(self, room: str) -> MemoryEvents:
+        """Return whether the memory of a room ran out, and what was ended for it.
+
+        Without cgroups our own watch ends processes, and does not tell the rooms apart.
+        """
+        if cgroup := self.cgroup(room):
+            return cgroup.memory_events()
+        return MemoryEvents(limit_reached=bool(self._killed), killed=len(self._killed))
 
     def place(self, room: str) -> Place:
         """Return the place of the 'student' or the 'test' kernel, for one command."""

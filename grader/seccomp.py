@@ -29,6 +29,7 @@ _NAMESPACES = 0x7E020000  # the flags of clone that make new ones
 _MAP_SHARED, _MAP_ANONYMOUS = 0x01, 0x20
 _KILL, _ERROR, _ALLOW = 0x80000000, 0x00050000, 0x7FFF0000
 _LOAD, _EQUAL, _AT_LEAST, _ANY_BIT, _RETURN = 0x20, 0x15, 0x35, 0x45, 0x06
+_NEW_LISTENER = 8
 _NUMBER_AT, _ARCHITECTURE_AT, _ARGUMENTS_AT = 0, 4, 16
 
 Instruction = tuple[int, int, int, int]
@@ -48,6 +49,7 @@ def seccomp_filter(*, counted: bool = True) -> bytes:
         (_LOAD, 0, 0, _NUMBER_AT),
     ]
     closer = {'socket': _sockets(), 'socketpair': _pairs(), 'clone': _no_namespaces()}
+    closer['seccomp'] = _a_listener()
     if not counted:
         closer['mmap'] = _no_hidden_memory()
     for name, instructions in closer.items():
@@ -83,6 +85,12 @@ def _one_of(values: tuple[int, ...] | list[int]) -> list[Instruction]:
 def _no_namespaces() -> list[Instruction]:
     refused, fine = (_RETURN, 0, 0, _ERROR | EPERM), (_RETURN, 0, 0, _ALLOW)
     return [_argument(0), (_ANY_BIT, 0, 1, _NAMESPACES), refused, fine]
+
+
+def _a_listener() -> list[Instruction]:
+    """Allow a filter with a listener: `signals` sets one, and Linux takes no second one."""
+    refused, fine = (_RETURN, 0, 0, _ERROR | EPERM), (_RETURN, 0, 0, _ALLOW)
+    return [_argument(1), (_EQUAL, 1, 0, _NEW_LISTENER), refused, fine]
 
 
 def _no_hidden_memory() -> list[Instruction]:

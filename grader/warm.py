@@ -13,9 +13,11 @@ import subprocess
 from grader.errors import RoomFailure
 from grader.forked import Forked
 from grader.limits import OUT_OF_MEMORY_SCORE, process_limits
+from grader.notifying import signals_filter
 from grader.places import Place
 from grader.seccomp import seccomp_filter
 from grader.servers import MAX_ANSWER, Server, expect_fit, send
+from grader.waiting import readable
 
 _TIMEOUT_SEC = 60.0
 _NAMESPACES = ('user', 'mnt', 'net', 'pid', 'ipc', 'uts', 'cgroup')
@@ -40,7 +42,7 @@ async def fork_into(place: Place, *, room: str, environment: dict[str, str]) -> 
     try:
         async with asyncio.timeout(_TIMEOUT_SEC):
             first = await _built(keeper, place.keeper.told)
-            return Forked(keeper, await _forked(place, room, environment, first))
+            return Forked(keeper, *await _forked(place, room, environment, first))
     except BaseException:
         keeper.kill()
         keeper.wait()
@@ -51,19 +53,24 @@ async def fork_into(place: Place, *, room: str, environment: dict[str, str]) -> 
 
 async def _built(keeper: subprocess.Popen, told: int) -> int:
     """Wait until a room is built; return the process ID of its first process."""
-    await _readable(keeper.stdout.fileno())
+    await readable(keeper.stdout.fileno())
     said = keeper.stdout.read(MAX_ANSWER)
     if said != b'\n':
         raise RoomFailure(f'the room could not be built: {said.decode(errors="replace").strip()}')
     return json.loads(os.read(told, MAX_ANSWER))['child-pid']
 
 
-async def _forked(place: Place, room: str, environment: dict[str, str], first: int) -> int:
-    """Return a pidfd of a kernel that was forked into the room of a first process."""
+async def _forked(
+    place: Place, room: str, environment: dict[str, str], first: int
+) -> tuple[int, int, socket.socket]:
+    """Fork a kernel into the room of a first process.
+
+    Return its pidfd, the listener of its signals (-1 for none), and where its end is told.
+    """
     order = json.dumps(_order(place, environment, first)).encode()
     ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-    with ours:
-        ours.setblocking(False)
+    ours.setblocking(False)
+    try:
         with contextlib.ExitStack() as opened:
             files = [os.pidfd_open(first)]
             opened.callback(os.close, files[0])
@@ -73,7 +80,10 @@ async def _forked(place: Place, room: str, environment: dict[str, str], first: i
             socket.send_fds(ours, [order], files)
             with theirs:
                 server = await asyncio.to_thread(send, theirs, room=room)
-        return await _answer(ours, server)
+        return *await _answer(ours, server), ours
+    except BaseException:
+        ours.close()
+        raise
 
 
 def _order(place: Place, environment: dict[str, str], first: int) -> dict:
@@ -87,47 +97,38 @@ def _order(place: Place, environment: dict[str, str], first: int) -> dict:
         'oom_score_adj': OUT_OF_MEMORY_SCORE,
         'environment': environment | {'PWD': folder},
         'seccomp': seccomp_filter(counted=bool(place.keeper.entrances)).hex(),
+        'signals': signals_filter().hex(),
         'command': place.kernel_command(),
     }
 
 
-async def _answer(errand: socket.socket, server: Server) -> int:
-    """Return the pidfd that comes over an errand, when its end says that the kernel is ready."""
-    kernel, said = -1, ''
+async def _answer(errand: socket.socket, server: Server) -> tuple[int, int]:
+    """Return the pidfd and the listener that come over an errand, when the kernel is ready."""
+    found: dict[bytes, int] = {}
+    problem = ''
     try:
-        while True:
-            await _readable(errand.fileno())
+        while not problem and set(found) != {b'kernel', b'ready'}:
+            await readable(errand.fileno())
             try:
                 text, files, _, _ = socket.recv_fds(errand, MAX_ANSWER, 1)
             except ConnectionResetError:  # nobody has read what was sent
-                break
+                text, files = b'', []
             if not text:
-                break
-            if files:
-                kernel = files[0]
+                raise server.failure()
+            if text in (b'kernel', b'ready'):
+                found[text] = files[0] if files else -1
             else:
-                said = text.decode(errors='replace')
-        if kernel < 0 and not said:
-            raise server.failure()
-        if said:
-            raise RoomFailure(f'the forked kernel could not enter its room: {said}')
+                problem = text.decode(errors='replace')
+        if problem:
+            raise RoomFailure(f'the forked kernel could not enter its room: {problem}')
     except BaseException:
-        if kernel >= 0:
-            os.close(kernel)
+        for file in found.values():
+            if file >= 0:
+                os.close(file)
         raise
     server.settle()
-    return kernel
+    return found[b'kernel'], found[b'ready']
 
 
 def _namespace(pid: int | str, kind: str) -> str:
     return os.readlink(f'/proc/{pid}/ns/{kind}')
-
-
-async def _readable(file: int) -> None:
-    """Wait until there is something to read, or no more to come."""
-    loop, ready = asyncio.get_running_loop(), asyncio.Event()
-    loop.add_reader(file, ready.set)
-    try:
-        await ready.wait()
-    finally:
-        loop.remove_reader(file)

@@ -59,5 +59,5 @@ def process_of(kernel):
 
 
 def server_of(kernel):
-    """Return the process that the kernel was forked from."""
-    return process_of(kernel).parent()
+    """Return the process that the kernel was forked from; its parent is one that waits for it."""
+    return process_of(kernel).parent().parent()

@@ -19,7 +19,7 @@ io_uring_register io_uring_setup ioperm iopl kcmp kexec_file_load kexec_load key
 mbind memfd_create memfd_secret migrate_pages modify_ldt mount mount_setattr move_mount move_pages
 mq_open msgget name_to_handle_at open_by_handle_at open_tree perf_event_open personality
 pidfd_getfd pivot_root process_madvise process_vm_readv process_vm_writev ptrace quotactl
-quotactl_fd reboot remap_file_pages request_key seccomp semget setdomainname sethostname setns
+quotactl_fd reboot remap_file_pages request_key semget setdomainname sethostname setns
 settimeofday shmget swapoff swapon sync syslog umount2 unshare uselib userfaultfd vhangup vmsplice
 """.split()  # noqa: SIM905 - a list of that length is read more easily so
 """System calls that no room may make."""
@@ -53,6 +53,7 @@ def outcome(number, *arguments, architecture=X86_64, counted=True):
 def test_exactly_what_is_allowed_is_there():
     arguments = (AF_UNIX,)  # what sockets may be; no flag of mmap and of clone that matters
     outcomes = {number: outcome(number, *arguments) for number in range(600)}
+    outcomes[ALLOWED['seccomp']] = outcome(ALLOWED['seccomp'], 1, 8)  # only with a listener
     assert {n for n, came in outcomes.items() if came == ALLOW} == set(ALLOWED.values())
     assert set(outcomes.values()) == {ALLOW, ENOSYS}
 
@@ -105,6 +106,11 @@ def test_a_process_is_made_with_no_namespace_of_its_own():
     clone, thread, fork = ALLOWED['clone'], 0x003D0F00, 0x01200011
     assert {outcome(clone, flags) for flags in (thread, fork, 17)} == {ALLOW}
     assert {outcome(clone, flag | 17) for flag in NEW} == {EPERM}
+
+
+def test_a_filter_is_added_with_a_listener_alone_of_which_there_is_one():
+    assert outcome(ALLOWED['seccomp'], 1, 8) == ALLOW
+    assert {outcome(ALLOWED['seccomp'], 1, flags) for flags in (0, 1, 9, 16)} == {EPERM}
 
 
 PRIVATE, SHARED, VALIDATED, ANONYMOUS = 0x02, 0x01, 0x03, 0x20

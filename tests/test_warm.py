@@ -342,9 +342,10 @@ def test_a_room_ends_with_its_kernel(loop, code):
     assert (run.died, kernel.alive) == (True, False) or '-1' in code
     loop.run(kernel.stop())
     deadline = time.monotonic() + 60
-    while len(inhabitants(network)) > before - 3 and time.monotonic() < deadline:
+    while len(inhabitants(network)) > before - 4 and time.monotonic() < deadline:
         time.sleep(0.02)
-    assert len(inhabitants(network)) == before - 3  # bubblewrap, the room's keeper, the kernel
+    # bubblewrap, the room's keeper, the kernel, its parent
+    assert len(inhabitants(network)) == before - 4
     loop.run(sandbox.close())
     assert inhabitants(network) == []
 

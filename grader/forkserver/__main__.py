@@ -36,7 +36,7 @@ def main(control: socket.socket, room: str) -> None:
         os._exit(1)  # a thread may be what is wrong, and would be waited for
     gc.collect()
     gc.freeze()  # a collection in a kernel would else copy all of it
-    # what ends is waited for by nobody; a kernel's parent leaves at once, and this process follows
+    # what ends is waited for by nobody; a kernel's parent waits for that alone
     signal.signal(signal.SIGCHLD, signal.SIG_IGN)
     libc.call('prctl', _PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
     while True:

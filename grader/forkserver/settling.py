@@ -1,5 +1,6 @@
 """What a forked process does to become a kernel: join its room, and give up all rights."""
 
+import contextlib
 import ctypes
 import json
 import os
@@ -11,8 +12,9 @@ import struct
 import sys
 import time
 from pathlib import Path
+from typing import NoReturn
 
-from libc import call
+from libc import call, listen
 
 _MAX_ORDER = 1_000_000
 _MAX_FILES = 8
@@ -30,7 +32,8 @@ def become_a_kernel(errand: socket.socket, made: dict[str, str]) -> None:
     """Do as ordered, in the room of an errand, and return where only the kernel is left to start.
 
     `made` is what imports have put into the environment. The process that was forked first can't
-    enter a PID namespace itself: its child does. Neither returns where something fails.
+    enter a PID namespace itself: its child does, and it stays to tell how that ended. Neither
+    returns where something fails.
     """
     try:
         signal.signal(signal.SIGCHLD, signal.SIG_DFL)
@@ -42,15 +45,33 @@ def become_a_kernel(errand: socket.socket, made: dict[str, str]) -> None:
         # in the room /proc is read-only: what is forked there inherits this, and keeps it
         Path('/proc/self/oom_score_adj').write_text(str(order['oom_score_adj']), encoding='ascii')
         _enter(room, order)
-        os.setsid()
+        ours = os.getpgrp()
+        os.setpgrp()
         if child := os.fork():
+            os.setpgid(0, ours)  # what the kernel sends to its group must not reach this process
             socket.send_fds(errand, [b'kernel'], [os.pidfd_open(child)])
-            os._exit(0)
-        _settle(order, keep=errand.fileno())
+            _tell_the_end(errand, child)
+        listener = _settle(order, keep=errand.fileno())
+        socket.send_fds(errand, [b'ready'], [listener] if listener >= 0 else [])
     except BaseException as error:
         errand.send(f'{type(error).__name__}: {error}'[:2000].encode())
         os._exit(1)
-    errand.close()  # its end says that all went well
+    if listener >= 0:
+        os.close(listener)
+    errand.close()
+
+
+def _tell_the_end(errand: socket.socket, child: int) -> NoReturn:
+    """Wait for a kernel, and tell its status and its seconds of processor time: only a parent can.
+
+    Nothing in the room sees this process, or can send it a signal.
+    """
+    _drop_capabilities()
+    close_all_but(errand.fileno())
+    _, status, used = os.wait4(child, 0)
+    with contextlib.suppress(OSError):  # whoever wanted to know has ended
+        errand.send(json.dumps([status, used.ru_utime + used.ru_stime]).encode())
+    os._exit(0)
 
 
 def close_all_but(keep: int) -> None:
@@ -68,8 +89,11 @@ def _enter(room: int, order: dict) -> None:
     call('setns', room, sum(_NAMESPACES[name] for name in order['namespaces']))
 
 
-def _settle(order: dict, *, keep: int) -> None:
-    """Give up all rights, and be as a new process is there; only the file `keep` stays open."""
+def _settle(order: dict, *, keep: int) -> int:
+    """Give up all rights, and be as a new process is there; only the file `keep` stays open.
+
+    Return who is told of the signals that are sent from here on, -1 where Linux tells nobody.
+    """
     null = os.open('/dev/null', os.O_RDWR)
     for standard in (0, 1, 2):
         os.dup2(null, standard)
@@ -81,10 +105,12 @@ def _settle(order: dict, *, keep: int) -> None:
     os.environ.clear()
     os.environ.update(order['environment'])
     time.tzset()
+    close_all_but(keep)
     call('prctl', _PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0)
+    listener = listen(bytes.fromhex(order['signals']))
     _filter_system_calls(bytes.fromhex(order['seccomp']))
     _forget(order['command'])
-    close_all_but(keep)
+    return listener
 
 
 def _drop_capabilities() -> None:

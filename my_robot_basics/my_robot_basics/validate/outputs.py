@@ -34,6 +34,8 @@ class CellRun:
     """The reply's user_expressions, as the kernel sent them."""
     timed_out: bool = False
     died: bool = False
+    ending: str = ''
+    """How the student's kernel, or what it had started, was ended, if that was their doing."""
     _kept: int = 0
     _dropped: int = 0
 

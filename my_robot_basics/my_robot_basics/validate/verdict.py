@@ -73,6 +73,8 @@ def judge(cell: NotebookNode, run: CellRun | None, own: Iterable[tuple[str, Cell
     if run.error.ename == 'AssertionError' and hidden.has_begun(run.outputs):
         reason, details = _told(reason, cell), reason
     notes += tuple(sentence for each in own if (sentence := _trouble(*each)))
+    if run.ending:
+        notes += (f'what you started has ended: {run.ending}',)
     if run.error.ename != 'PartlyRight':
         return Verdict(name, 'failed', points, reason=reason, notes=notes, details=details)
     earned = hidden.points_in(run.outputs)
@@ -154,7 +156,7 @@ def _trouble(name: str, run: CellRun) -> str | None:
         how = 'could not be' if run.died else 'was'
         return f'{TROUBLE}`{name}` {what} and {how} interrupted'
     if run.died:
-        return f'{TROUBLE}`{name}` ended the kernel'
+        return f'{TROUBLE}`{name}` ended the kernel' + (f': {run.ending}' if run.ending else '')
     if run.error is not None:
         said = _TEMPORARY_FILE.sub('(', f'{run.error.ename}: {run.error.evalue}').rstrip(': ')
         return f'{TROUBLE}`{name}` stopped with {shorten(printable(said), 300)}'
