@@ -1,7 +1,15 @@
 """Which names a cell binds and needs, read from its text."""
 
 import pytest
-from my_robot_basics.validate.names import MAX_SOURCE_CHARACTERS, Names, names_of, string_arguments
+from IPython.core import inputtransformer2
+from IPython.core.inputtransformer2 import make_tokens_by_line
+from my_robot_basics.validate.names import (
+    MAX_IPYTHON,
+    MAX_SOURCE_CHARACTERS,
+    Names,
+    names_of,
+    string_arguments,
+)
 
 CELLS = {
     'nothing': ('', '', ''),
@@ -68,6 +76,18 @@ def test_magics_beyond_number_are_not_read(line):
     """IPython would read all of the cell anew for each of them, and give up after 500."""
     assert names_of(f'{line}\n' * 600) == Names()
     assert names_of(f'x = 1\n{line}\n').bound >= {'x'}
+
+
+@pytest.mark.parametrize('text', [';', ',', '\t;'])
+def test_what_ipython_reads_again_and_again_is_left_soon(text, monkeypatch):
+    tokenized = []
+    monkeypatch.setattr(
+        inputtransformer2,
+        'make_tokens_by_line',
+        lambda lines: tokenized.append(1) or make_tokens_by_line(lines),
+    )
+    assert names_of(f'x = 1\n{text * 700}\n') == Names()
+    assert len(tokenized) <= 2 * MAX_IPYTHON['lines']
 
 
 ARGUMENTS = {
