@@ -10,7 +10,7 @@ from pathlib import Path
 from grader.course import Course
 from grader.errors import CourseError
 from grader.files import write_whole
-from grader.index import INDEX, TERMS
+from grader.index import INDEX, copied_pages
 from grader.leaks import files_in, leaks_beside
 from grader.release import stale_or_leaking
 
@@ -83,8 +83,7 @@ def _contents(course: Course, faults: list[str]) -> Iterator[tuple[str, bytes]]:
 def _paths(course: Course, faults: list[str]) -> Iterator[str]:
     """Yield the paths of all that students get, from the course's root."""
     yield from (*AS_THEY_ARE, *SETTINGS, f'solutions/{README}')
-    pages = [INDEX, *([TERMS] if (course.root / 'solutions' / TERMS).exists() else [])]
-    yield from (f'notebooks/{page}' for page in pages)
+    yield from (f'notebooks/{page}' for page in (INDEX, *copied_pages(course)))
     for assignment in course.assignments():
         lesson = course.root / 'notebooks' / assignment
         names = {f'{assignment}.ipynb', *map(str, files_in(lesson))}

@@ -11,21 +11,25 @@ from grader.index import make_index
 
 INDEX = nbformat.read(ROOT / 'notebooks' / 'index.ipynb', as_version=4)
 TEXT = '\n\n'.join(cell.source for cell in INDEX.cells)
-ROWS = re.findall(r'^\| \[(.+?)\]\((.+?)\) \| (.+?) \| (.+?) \| (\d+) \|$', TEXT, re.MULTILINE)
+ROW = r'^\| \[(.+?)\]\((.+?)\) \| (.+?) \| (.+?) \| (\d+) \| (.+?) \| (\d+) \|$'
+ROWS = re.findall(ROW, TEXT, re.MULTILINE)
 
 
 def test_each_lesson_has_its_row_with_title_exercises_and_points():
     course = Course()
     names = course.assignments()
     assert [link for _, link, *_ in ROWS] == [f'{name}/{name}.ipynb' for name in names]
-    for (title, _, abilities, exercises, points), name in zip(ROWS, names, strict=True):
+    for row, name in zip(ROWS, names, strict=True):
+        title, _, abilities, needs, minutes, exercises, points = row
         opening = course.release(name).cells[0].source
         assert opening.startswith(f'# {title}\n')
         assert abilities.split('; ')[0] in opening
         promised = re.findall(r'^\| `(\w+)` \| (\d+) \|$', opening, re.MULTILINE)
         assert re.findall(r'`(\w+)`', exercises) == [exercise for exercise, _ in promised]
+        assert f'| {needs} | about {minutes} minutes |\n' in f'{opening}\n'
         assert int(points) == sum(int(worth) for _, worth in promised)
     assert f'| **{sum(int(row[-1]) for row in ROWS)}** |' in TEXT
+    assert f'| **{sum(int(row[-3]) for row in ROWS)}** |' in TEXT
 
 
 @pytest.mark.parametrize('link', re.findall(r'\]\((.+?)\)', TEXT))
@@ -40,8 +44,10 @@ def test_lessons_say_where_the_answer_goes_in_the_words_of_the_index():
     assert [stub for stub in stubs if stub not in released] == []
 
 
-def test_the_core_terms_are_a_click_away():
-    assert '](terms.md)' in TEXT
+@pytest.mark.parametrize('page', ['terms.md', 'what_next.md'])
+def test_the_other_pages_are_a_click_away_and_lead_back(page):
+    assert f']({page})' in TEXT
+    assert '](index.ipynb)' in (ROOT / 'notebooks' / page).read_text()
 
 
 def test_long_items_stand_in_one_line_and_break_no_table(tmp_path):
@@ -52,6 +58,6 @@ def test_long_items_stand_in_one_line_and_break_no_table(tmp_path):
         '2. say what |x| is.\n\n| exercise | points |\n|---|---|\n'
     )
     write_source(course, lesson)
-    contents = make_index(course, has_terms=False).cells[0].source
+    contents = make_index(course).cells[0].source
     row = next(line for line in contents.splitlines() if TOY in line)
     assert r'| double a number, whatever it is; say what \|x\| is |' in row

@@ -1,7 +1,11 @@
 """What a lesson states in passing and does not show: each fact is seen here."""
 
+import os
+import shutil
 import subprocess
 import sys
+from importlib.util import find_spec
+from pathlib import Path
 
 import pytest
 from my_robot_basics.checks.watcher import Watcher
@@ -139,6 +143,18 @@ def test_the_window_of_hz_counts_gaps(capsys):
         now_nsec += 5 * 10**8
     assert 'average rate: 2.000' in (said := capsys.readouterr().out)
     assert said.endswith('window: 3\n')
+
+
+@pytest.mark.parametrize('tool', ['launch', 'tf2_ros', 'rosbag2_py', 'urdf_parser_py', 'rviz2'])
+def test_what_comes_next_is_not_in_the_course(tool):
+    """What next: these tools need a ROS 2 of one's own."""
+    assert find_spec(tool) is None
+    assert shutil.which(tool, path=str(Path(sys.executable).parent)) is None
+
+
+def test_a_lesson_looks_for_nodes_on_its_own_machine_only():
+    """What next; `enter` has set this for the session of these tests, as for every lesson."""
+    assert os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] == 'LOCALHOST'
 
 
 def test_an_action_is_made_with_rclpy_action():

@@ -106,12 +106,32 @@ def test_lesson_opens_with_its_contract_and_closes_with_points_and_the_next_less
     assert first.startswith(f'# {int(path.stem[:2])} · ')
     assert 'You will be able to' in first
     following = [name for name in sorted(CONTRACT) if name > path.stem]
-    the_way_on = f'../{following[0]}/{following[0]}.ipynb' if following else '../index.ipynb'
+    the_way_on = f'../{following[0]}/{following[0]}.ipynb' if following else '../what_next.md'
     assert f']({the_way_on})' in last
     for exercise, (_, grade_cells) in CONTRACT[path.stem].items():
         assert f'| `{exercise}` | {sum(grade_cells.values())} |' in first
         for grade_id, points in grade_cells.items():
             assert f'| `{grade_id}` | {points} |' in last
+
+
+EXERCISE_MIN = 4
+"""Minutes for each point of an exercise."""
+
+
+def test_opening_says_what_is_needed_before_and_how_long_it_takes(lesson, path):
+    """An estimate: to read, with the code; to predict and run each demonstration; to answer."""
+    row = r'\| you need \| time \|\n\|---\|---\|\n\| (.+) \| about (\d+) minutes \|'
+    needs, minutes = re.search(row, lesson.cells[0].source).groups()
+    earlier = [int(number) for number in re.findall(r'\d', needs)]
+    assert earlier or path.stem.startswith('00')
+    assert all(number < int(path.stem[:2]) for number in earlier)
+    demos = [c for c in lesson.cells if 'demo' in c.metadata.get('tags', [])]
+    lines = sum(len(visible_part(cell.source).splitlines()) for cell in code_cells(lesson))
+    points = sum(marks(cell).get('points', 0) for cell in lesson.cells)
+    reading_min = len(prose(lesson).split()) / 200 + lines / 20
+    estimate = reading_min + len(demos) + EXERCISE_MIN * points
+    assert int(minutes) % 5 == 0
+    assert abs(int(minutes) - estimate) <= 10, estimate
 
 
 def test_the_prompt_of_an_exercise_names_its_points(lesson, path):

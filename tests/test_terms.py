@@ -47,6 +47,14 @@ def test_a_term_is_used_in_the_lesson_that_it_names(term, meaning, number, link)
     assert re.search(rf'\b{re.escape(term.strip("`"))}', text, re.IGNORECASE)
 
 
+@each_row
+def test_the_lesson_leads_to_the_term_where_it_is_first_explained(term, meaning, number, link):
+    lesson = nbformat.read(ROOT / 'solutions' / link, as_version=4)
+    text = '\n'.join(cell.source for cell in lesson.cells if cell.cell_type == 'markdown')
+    linked = re.findall(r'\[([^\]]+)\]\(\.\./terms\.md\)', text)
+    assert any(words.strip('`').lower().startswith(term.strip('`').lower()) for words in linked)
+
+
 @pytest.mark.parametrize('link', sorted(LINKS))
 def test_its_links_lead_somewhere(link):
     assert (ROOT / 'notebooks' / link).is_file()
