@@ -28,6 +28,7 @@ from grader.turn import Turn
 
 NEW, AGAIN, EARLIER, KNOWN = 'new', 'again', 'earlier', 'known'
 """What became of a submission: the first one, a later one, an earlier one, one that was there."""
+FULL = (errno.ENOSPC, errno.EDQUOT)
 LEFT, UNUSED = 'left', 'unused'
 """What was not taken: a person should look at it, or nobody would have graded it."""
 
@@ -67,7 +68,7 @@ def collect(course: Course, source: Path, *, file_times: bool = False) -> Iterat
             for each, problem in zip(hand_ins, problems, strict=True):
                 yield _row(course, each, problem, grades)
         except OSError as error:
-            if error.errno not in (errno.ENOSPC, errno.EDQUOT):
+            if error.errno not in FULL:
                 raise
             raise CourseError(
                 'the disk is full: what was collected is kept whole; free some space, and collect '
@@ -85,7 +86,9 @@ def _row(course: Course, each: HandIn, problem: str, grades: Callable[[], list[R
         outcome, reason = (LEFT, problem) if problem else _take(course, each, grades)
         if not problem and each.remark:
             reason = f'{reason}; {each.remark}' if reason else each.remark
-    except (FileExistsError, NotADirectoryError, PermissionError) as error:
+    except OSError as error:
+        if error.errno in FULL:
+            raise
         outcome, reason = LEFT, f'{error.strerror}: {error.filename}'
     whose = (each.student_id, each.assignment)
     return Row(each.notebook.path, outcome, reason, *whose, each.handed_in)

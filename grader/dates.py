@@ -33,11 +33,14 @@ def date_in(text: str) -> datetime | None:
 
 
 def date_of(path: Path) -> datetime | None:
-    """Read a file that holds a time; None where there is none, or no such file."""
-    if not path.is_file() or path.is_symlink():
+    """Read a file that holds a time; None where there is none, or no file that can be read."""
+    try:
+        if not path.is_file() or path.is_symlink():
+            return None
+        with path.open('rb') as file:
+            return date_in(file.read(MAX_BYTES).decode(errors='replace'))
+    except OSError:
         return None
-    with path.open('rb') as file:
-        return date_in(file.read(MAX_BYTES).decode(errors='replace'))
 
 
 def _zone(offset: str, name: str) -> tzinfo:

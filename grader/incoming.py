@@ -175,13 +175,16 @@ def _inside(outer: Incoming, name: str, aside: Path, left: Allowance) -> Iterato
 def _walk(folder: Path, above: tuple[str, ...]) -> Iterator[Incoming]:
     for path in sorted(folder.iterdir()):
         parts = (*above, path.name)
-        each = _on_disk(path, parts)
-        if each.problem or each.litter or not path.is_dir():
-            yield each
-        elif len(parts) > MAX_PARTS:
-            yield Incoming(parts, problem=f'it lies more than {MAX_PARTS} folders deep')
-        else:
-            yield from _walk(path, parts)
+        try:
+            each = _on_disk(path, parts)
+            if each.problem or each.litter or not path.is_dir():
+                yield each
+            elif len(parts) > MAX_PARTS:
+                yield Incoming(parts, problem=f'it lies more than {MAX_PARTS} folders deep')
+            else:
+                yield from _walk(path, parts)
+        except OSError as error:  # it is gone meanwhile, or the disk is damaged
+            yield Incoming(parts, problem=f'it can not be read: {error.strerror}')
 
 
 def _on_disk(path: Path, parts: tuple[str, ...]) -> Incoming:

@@ -383,6 +383,38 @@ def test_an_archive_that_takes_too_much_memory_costs_only_itself(course, source,
     assert rows(course, source) == {'mallory.zip': LEFT, f'ada_{TOY}.ipynb': NEW}
 
 
+def test_a_file_that_can_t_be_read_costs_only_itself(course, source, monkeypatch):
+    """It may lie on a damaged disk, or be gone since the folder was listed."""
+    for student in ('ada', 'bob', 'zoe'):
+        write(source / f'{student}_{TOY}.ipynb', student)
+        write(source / f'{student}-{TOY}.ipynb', student)
+    lstat, read_bytes = Path.lstat, Path.read_bytes
+
+    def damaged(path):
+        if path.name.startswith('ada'):
+            raise OSError(5, 'Input/output error', str(path))
+        return read_bytes(path)
+
+    def gone(path):
+        if path.name.startswith('bob_'):
+            raise FileNotFoundError(2, 'No such file or directory', str(path))
+        return lstat(path)
+
+    monkeypatch.setattr(Path, 'read_bytes', damaged)
+    monkeypatch.setattr(Path, 'lstat', gone)
+    assert rows(course, source) == {
+        f'ada_{TOY}.ipynb': LEFT,
+        f'ada-{TOY}.ipynb': LEFT,
+        f'bob_{TOY}.ipynb': LEFT,
+        f'bob-{TOY}.ipynb': NEW,
+        f'zoe-{TOY}.ipynb': NEW,
+        f'zoe_{TOY}.ipynb': UNUSED,
+    }
+    (source / f'ada_{TOY}.ipynb').unlink()
+    (row,) = (row for row in collect(course, source) if row.path.startswith('ada'))
+    assert (row.outcome, row.reason[:18]) == (LEFT, 'Input/output error')
+
+
 def test_thousands_of_broken_files_print_some_lines(course, source, capsys):
     for student, name in (('mallory', '{}.ipynb'), ('eve', 'a_' + 'z' * 200 + '{}.ipynb')):
         with zipfile.ZipFile(source / f'{student}.zip', 'w') as box:
