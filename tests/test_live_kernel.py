@@ -587,6 +587,46 @@ def test_reset_and_run_answer(lesson):
     assert lesson.run('rclpy.init(); rclpy.shutdown()').error is None
 
 
+IMPORTED = 'from my_robot_basics import kinematics_publisher as course\n'
+TAKEN = {
+    'derives': f'{IMPORTED}class Answer(course.KinematicsPublisher): pass',
+    'derives by a class between': f"""{IMPORTED}
+class Between(course.KinematicsPublisher): pass
+class Answer(Between): pass""",
+    'takes a method': f"""{IMPORTED}
+class Answer(Node):
+    publish_pose = course.KinematicsPublisher.publish_pose
+    def __init__(self): super().__init__('answer')""",
+    'makes one': f"""{IMPORTED}
+class Answer(Node):
+    def __init__(self):
+        super().__init__('answer')
+        self.inner = course.KinematicsPublisher()""",
+}
+
+
+@pytest.mark.parametrize('definition', TAKEN.values(), ids=TAKEN)
+def test_no_answer_is_made_of_the_courses_nodes(lesson, definition):
+    lesson.run("reset('Answer')")
+    assert lesson.run(definition).error is None
+    error = ' '.join(lesson.run("run_answer('Answer')").error.split())
+    assert error.startswith('NotRunnable: expected ')
+    assert 'write your own in the answer cell' in error
+    assert lesson.run('run(course.KinematicsPublisher); stop()').error is None
+
+
+def test_an_answer_may_call_the_courses_functions(lesson):
+    lesson.run("reset('Answer')")
+    lesson.run("""from my_robot_basics.two_link_kinematics import forward_kinematics
+class Answer(Node):
+    forward = staticmethod(forward_kinematics)
+    def __init__(self):
+        super().__init__('answer')
+        self.point = self.forward(0.0, 0.0)""")
+    assert lesson.run("answer = run_answer('Answer')").error is None
+    assert lesson.value('answer.point[0] > 1.7') == 'True'
+
+
 def test_the_arm_follows_the_joint_states(lesson):
     lesson.run("""from sensor_msgs.msg import JointState
 class Mover(Talker):

@@ -107,6 +107,8 @@ class Graph:
             if similar in {name.rpartition('/')[0] + topic_name for name in names[similar]}:
                 return f'{uses}: a name without / in front is put into the namespace of its node'
             return f'{uses}, so compare the spelling'
+        if raised := what_raised(runs):
+            return f'{theirs(", ".join(runs))} runs, and {raised}, so fix that first'
         look = f'look at the topic name in {maker}(…) and that the node calls it'
         if len(runs) == 1:
             return f'{theirs(runs[0])} runs, so {look}'

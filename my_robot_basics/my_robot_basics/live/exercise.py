@@ -5,16 +5,19 @@ from typing import Any
 
 from rclpy.node import Node
 
-from my_robot_basics.live import runner
+from my_robot_basics.live import classroom, course_nodes, runner
 from my_robot_basics.live.errors import NotRunnable
 
 
 def reset(*names: str) -> None:
     """Stop every node, shut rclpy down, and delete `names` from the notebook's variables.
 
-    So no earlier cell can stand in for an answer, and an answer may initialise rclpy itself.
+    So no earlier cell can stand in for an answer, and an answer may initialise rclpy itself. Where
+    the notebook is graded, nor can the course's own nodes.
     """
     runner.shut_down()
+    if classroom.in_grading_room():
+        course_nodes.close()
     for name in names:
         _notebook().pop(name, None)
     print(f'reset: no node is running; {", ".join(names) or "nothing"} is yours to write')
@@ -32,7 +35,10 @@ def run_answer(name: str, *args: Any, **kwargs: Any) -> Node | None:
         raise NotRunnable(f'expected {name} to be a class derived from Node, saw {kind}: {where}')
     if answer.__module__ != '__main__':
         raise NotRunnable(f'expected your own {name}, saw that of {answer.__module__}: {where}')
-    return runner.run(answer, *args, **kwargs)
+    if taken := course_nodes.taken_from(answer):
+        raise NotRunnable(f'expected {name} to be your own, saw {taken}: {course_nodes.HOW}')
+    with course_nodes.none_made():
+        return runner.run(answer, *args, **kwargs)
 
 
 def _notebook() -> dict[str, Any]:

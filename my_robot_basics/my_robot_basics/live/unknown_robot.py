@@ -1,7 +1,5 @@
 """A robot that the student has not seen before: which of its nodes meet on a topic?"""
 
-from dataclasses import dataclass
-
 from geometry_msgs.msg import Point
 from rclpy.node import Node
 from sensor_msgs.msg import JointState, Temperature
@@ -14,55 +12,38 @@ WARMTH = '/kinematics/joint_temperature'
 TOOL = '/kinematics/tool_point'
 
 
-@dataclass(frozen=True)
-class Part:
-    """A node of the robot: its name, and the topics on which it publishes and subscribes."""
-
-    name: str
-    publishes: tuple[str, ...] = ()
-    subscribes: tuple[str, ...] = ()
-
-
-PARTS = (
-    Part('encoder_board', publishes=(TOPIC, WARMTH)),
-    Part('self_test', publishes=(TOPIC,), subscribes=(TOPIC,)),
-    Part('motor_guard', subscribes=(TOPIC, WARMTH)),
-    Part('pose_logger', subscribes=(TOPIC,)),
-    Part('tool_tracker', publishes=(TOOL,), subscribes=(TOPIC,)),
-    # and those that only seem to belong there
-    Part('joint_viewer', subscribes=('/kinematics/joint_state',)),
-    Part('gripper_driver', publishes=('/joint_states',), subscribes=(TOOL,)),
-    Part('left_arm_board', publishes=('/left_arm/kinematics/joint_states',)),
-)
-"""All nodes of the robot. The names occur nowhere else in the lessons."""
-
-
 class UnknownRobot(Node):
     """Brings all nodes of the robot along, lets them publish, and takes them with it."""
 
     def __init__(self) -> None:
         super().__init__('_unknown_robot', enable_rosout=False, start_parameter_services=False)
-        # nobody spins the parts: a service of theirs would never answer
-        self.parts = [Node(part.name, start_parameter_services=False) for part in PARTS]
+        self._parts: list[Node] = []
         self._publishers_and_messages = []
-        for node, part in zip(self.parts, PARTS, strict=True):
-            for topic_name in part.publishes:
-                message = _message(topic_name)
-                publisher = node.create_publisher(type(message), topic_name, 10)
-                self._publishers_and_messages.append((publisher, message))
-            for topic_name in part.subscribes:
-                type_ = type(_message(topic_name))
-                node.create_subscription(type_, topic_name, lambda message: None, 10)
+        # no table of them can be imported: a running system is to be asked
+        self._add('encoder_board', publishes=(TOPIC, WARMTH))
+        self._add('self_test', publishes=(TOPIC,), subscribes=(TOPIC,))
+        self._add('motor_guard', subscribes=(TOPIC, WARMTH))
+        self._add('pose_logger', subscribes=(TOPIC,))
+        self._add('tool_tracker', publishes=(TOOL,), subscribes=(TOPIC,))
+        # and those that only seem to belong there
+        self._add('joint_viewer', subscribes=('/kinematics/joint_state',))
+        self._add('gripper_driver', publishes=('/joint_states',), subscribes=(TOOL,))
+        self._add('left_arm_board', publishes=('/left_arm/kinematics/joint_states',))
         self.create_timer(PERIOD_SEC, self._publish)
 
     @property
     def runs(self) -> bool:
         """Whether its nodes are there."""
-        return bool(self.parts) and self.context.ok()
+        return bool(self._parts) and self.context.ok()
+
+    @property
+    def size(self) -> int:
+        """How many nodes it consists of."""
+        return len(self._parts)
 
     def strangers(self) -> list[str]:
         """Names of nodes that are on the robot's topic and none of its own."""
-        own = {part.name for part in PARTS}
+        own = {part.get_name() for part in self._parts}
         infos = [
             *self.get_publishers_info_by_topic(TOPIC),
             *self.get_subscriptions_info_by_topic(TOPIC),
@@ -72,9 +53,24 @@ class UnknownRobot(Node):
 
     def destroy_node(self) -> None:
         """Destroy the parts, then this node."""
-        while self.parts:
-            self.parts.pop().destroy_node()
+        while self._parts:
+            self._parts.pop().destroy_node()
         super().destroy_node()
+
+    def _add(
+        self, name: str, *, publishes: tuple[str, ...] = (), subscribes: tuple[str, ...] = ()
+    ) -> None:
+        """Make a node of that name; it occurs nowhere else in the lessons."""
+        # nobody spins it: a service of its own would never answer
+        node = Node(name, start_parameter_services=False)
+        self._parts.append(node)
+        for topic_name in publishes:
+            message = _message(topic_name)
+            publisher = node.create_publisher(type(message), topic_name, 10)
+            self._publishers_and_messages.append((publisher, message))
+        for topic_name in subscribes:
+            type_ = type(_message(topic_name))
+            node.create_subscription(type_, topic_name, lambda message: None, 10)
 
     def _publish(self) -> None:
         for publisher, message in self._publishers_and_messages:
@@ -93,7 +89,7 @@ def start_unknown_robot() -> None:
         _robot = runner.run(UnknownRobot)
     if _robot is None:
         return
-    print(f'the unknown robot runs: {len(PARTS)} nodes')
+    print(f'the unknown robot runs: {_robot.size} nodes')
     if strangers := _robot.strangers():
         print(
             f'note: {", ".join(strangers)} is on {TOPIC} and no part of it: '
