@@ -9,10 +9,11 @@ from nbformat import NotebookNode
 from my_robot_basics.validate.cells import KEY, grade_id
 from my_robot_basics.validate.lesson import Lesson
 from my_robot_basics.validate.titles import title_of_check
-from my_robot_basics.validate.verdict import TROUBLE, Verdict
+from my_robot_basics.validate.verdict import SCORED, TROUBLE, Verdict
 
-Outcome = Literal['passed', 'failed', 'at grading', 'by hand', 'not checked']
-MARKS = {'passed': '✓', 'failed': '✗', 'at grading': '…', 'by hand': '…', 'not checked': '?'}
+Outcome = Literal['passed', 'partial', 'failed', 'at grading', 'by hand', 'not checked']
+MARKS = {'passed': '✓', 'partial': '✗', 'failed': '✗'}
+MARKS |= {'at grading': '…', 'by hand': '…', 'not checked': '?'}
 
 
 @dataclass(frozen=True)
@@ -26,6 +27,8 @@ class Check:
     outcome: Outcome
     is_partly_hidden: bool
     """Whether more of it is checked at grading."""
+    earned: float = 0.0
+    """The points that what can be seen here leaves."""
     message: str = ''
     notes: tuple[str, ...] = ()
     """What costs no points, and is good to know."""
@@ -61,14 +64,15 @@ class Report:
     @property
     def passed(self) -> bool:
         """Whether all that can be checked here was, and passed."""
-        return not any(check.outcome in ('failed', 'not checked') for check in self.checks)
+        return all(c.outcome not in ('failed', 'partial', 'not checked') for c in self.checks)
 
     @property
     def summary(self) -> str:
         """What it comes to, in one line."""
         said = [self._visible()]
         total = _number(sum(check.points for check in self.checks))
-        at_grading = sum(check.points for check in self.checks if _waits(check))
+        waiting = [check for check in self.checks if _waits(check)]
+        at_grading = sum(check.earned or check.points for check in waiting)
         if at_grading:
             verb = 'is' if at_grading == 1 else 'are'
             said.append(f'{_number(at_grading)} of {total} points {verb} decided at grading.')
@@ -82,8 +86,8 @@ class Report:
         return asdict(self) | {'summary': self.summary, 'passed': self.passed, 'marks': MARKS}
 
     def _visible(self) -> str:
-        visible = [c for c in self.checks if c.outcome in ('passed', 'failed', 'not checked')]
-        failed = [check for check in visible if check.outcome == 'failed']
+        visible = [c for c in self.checks if c.outcome not in ('at grading', 'by hand')]
+        failed = [check for check in visible if check.outcome in ('failed', 'partial')]
         unknown = [check for check in visible if check.outcome == 'not checked']
         if not visible:
             return 'Nothing here can be checked before grading.'
@@ -92,7 +96,7 @@ class Report:
         said = []
         if failed:
             verb = 'fails' if len(failed) == 1 else 'fail'
-            lost = _points(sum(check.points for check in failed))
+            lost = _points(sum(check.points - check.earned for check in failed))
             said.append(f'{len(failed)} of {len(visible)} visible checks {verb}: {lost} missing.')
         if unknown:
             said.append(f'{len(unknown)} of {len(visible)} could not be checked.')
@@ -111,6 +115,7 @@ def make_check(
         points=float(cell.metadata.nbgrader.get('points', 0)),
         outcome=_outcome(verdict, by_hand=by_hand, hidden=hidden, altered=name in lesson.altered),
         is_partly_hidden=hidden == 'part',
+        earned=(verdict.score or 0.0) if verdict else 0.0,
         message=verdict.reason if verdict else '',
         notes=tuple(n for n in verdict.notes if not n.startswith(TROUBLE)) if verdict else (),
         pictures=tuple(_pictures(outputs)),
@@ -133,8 +138,7 @@ def _outcome(
         return 'not checked'
     if hidden == 'all':
         return 'at grading'
-    known = verdict is not None and verdict.outcome in ('passed', 'failed')
-    return verdict.outcome if known else 'not checked'
+    return verdict.outcome if verdict and verdict.outcome in SCORED else 'not checked'
 
 
 def _pictures(outputs: Iterable[NotebookNode]) -> Iterable[dict[str, str]]:
@@ -145,7 +149,7 @@ def _pictures(outputs: Iterable[NotebookNode]) -> Iterable[dict[str, str]]:
 
 def _waits(check: Check) -> bool:
     """Whether its points are still open when all that can be seen is right."""
-    return check.outcome == 'at grading' or (check.outcome == 'passed' and check.is_partly_hidden)
+    return check.outcome == 'at grading' or (check.earned > 0 and check.is_partly_hidden)
 
 
 def _points(number: float) -> str:

@@ -1,14 +1,11 @@
-"""What a check is called: the first line of its docstring, whatever is put before it."""
+"""What a check is called: the first line of its docstring."""
 
 import ast
 
 
 def title_of_check(source: str) -> str:
-    """Return the first line of the first text that stands by itself in a cell, or ''."""
+    """Return the first line of a cell's docstring, or ''."""
     try:
-        body = ast.parse(source).body
+        return (ast.get_docstring(ast.parse(source)) or '').partition('\n')[0]
     except (SyntaxError, ValueError):
         return ''
-    values = (getattr(node.value, 'value', None) for node in body if isinstance(node, ast.Expr))
-    text = next((value for value in values if isinstance(value, str)), '')
-    return text.strip().partition('\n')[0]

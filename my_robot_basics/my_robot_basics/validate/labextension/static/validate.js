@@ -40,7 +40,8 @@ needs no build. What it shows is text; nothing in a report is read as HTML. */
 
   function showCheck(check, marks) {
     const more = MORE[check.outcome] || (check.is_partly_hidden ? 'more at grading' : '');
-    const score = (check.outcome === 'failed' ? '0 of ' : '') + points(check.points);
+    const missed = ['failed', 'partial'].includes(check.outcome);
+    const score = (missed ? `${check.earned} of ` : '') + points(check.points);
     const row = element('li', check.outcome.replace(' ', '-'));
     const mark = element('span', 'mark', marks[check.outcome]);
     mark.setAttribute('aria-label', check.outcome);
@@ -57,7 +58,7 @@ needs no build. What it shows is text; nothing in a report is read as HTML. */
       image.alt = picture.alt;
       row.append(image);
     }
-    if (check.source && check.outcome === 'failed') {
+    if (check.source && missed) {
       const code = document.createElement('pre');
       code.textContent = check.source;
       row.append(element('details', '', element('summary', '', 'Show the check'), code));
@@ -141,7 +142,7 @@ needs no build. What it shows is text; nothing in a report is read as HTML. */
     .mrb-validate-points { color: var(--jp-ui-font-color2); margin-left: calc(1em + 8px); }
     .mrb-validate-mark { font-weight: bold; width: 1em; }
     .mrb-validate-passed .mrb-validate-mark { color: var(--jp-success-color1); }
-    .mrb-validate-failed .mrb-validate-mark, .mrb-validate-bad { color: var(--jp-error-color1); }
+    .mrb-validate-failed .mrb-validate-mark, .mrb-validate-partial .mrb-validate-mark, .mrb-validate-bad { color: var(--jp-error-color1); }
     .mrb-validate-summary { font-weight: 600; font-size: var(--jp-ui-font-size2); }
     .mrb-validate-message, .mrb-validate-note { padding-left: calc(1em + 8px); }
     .mrb-validate-note { color: var(--jp-ui-font-color2); }

@@ -1,0 +1,79 @@
+"""What Validate's report adds up to, in words."""
+
+import pytest
+from my_robot_basics.validate.as_text import as_text
+from my_robot_basics.validate.report import Check, Part, Report
+
+
+def check(outcome, points=2.0, *, earned=None, hidden=False):
+    earned = (points if outcome == 'passed' else 0.0) if earned is None else earned
+    return Check(outcome, f'It is {outcome}', points, outcome, hidden, earned, message='')
+
+
+def report(*checks):
+    return Report('lesson.ipynb', (Part('exercise', (), checks),), ())
+
+
+SUMMARIES = {
+    'all is seen': ([check('passed')], 'All visible checks pass.', True),
+    'a part is hidden': (
+        [check('passed', 3.0), check('passed', hidden=True)],
+        'All visible checks pass. 2 of 5 points are decided at grading.',
+        True,
+    ),
+    'one point is open': (
+        [check('passed'), check('passed', 1.0, hidden=True)],
+        'All visible checks pass. 1 of 3 points is decided at grading.',
+        True,
+    ),
+    'all is hidden': (
+        [check('at grading')],
+        'Nothing here can be checked before grading. 2 of 2 points are decided at grading.',
+        True,
+    ),
+    'a text': (
+        [check('passed'), check('by hand')],
+        'All visible checks pass. A person gives 2 points for what you have written.',
+        True,
+    ),
+    'one fails': (
+        [check('passed', 3.0, hidden=True), check('failed', hidden=True)],
+        '1 of 2 visible checks fails: 2 points missing. 3 of 5 points are decided at grading.',
+        False,
+    ),
+    'a part is right': (
+        [check('partial', earned=1.0, hidden=True)],
+        '1 of 1 visible checks fails: 1 point missing. 1 of 2 points is decided at grading.',
+        False,
+    ),
+    'one could not be checked': (
+        [check('not checked'), check('failed')],
+        '1 of 2 visible checks fails: 2 points missing. 1 of 2 could not be checked.',
+        False,
+    ),
+}
+
+
+@pytest.mark.parametrize(('checks', 'summary', 'passed'), SUMMARIES.values(), ids=SUMMARIES)
+def test_a_summary_promises_no_more_than_is_known(checks, summary, passed):
+    told = report(*checks)
+    assert (told.summary, told.passed) == (summary, passed)
+    assert as_text(told).endswith(summary)
+    assert told.as_data()['summary'] == summary
+
+
+LINES = {
+    check('passed'): '  ✓ It is passed (2 points)',
+    check('failed', 1.0): '  ✗ It is failed (0 of 1 point)',
+    check('partial', earned=1.0, hidden=True): (
+        '  ✗ It is partial (1 of 2 points; more at grading)'
+    ),
+    check('by hand'): '  … It is by hand (2 points; a person reads it)',
+    check('at grading'): '  … It is at grading (2 points; checked only at grading)',
+    check('not checked'): '  ? It is not checked (2 points; could not be checked)',
+}
+
+
+@pytest.mark.parametrize(('one', 'line'), LINES.items(), ids=lambda each: str(each)[:20])
+def test_a_check_has_its_mark_and_its_points(one, line):
+    assert line in as_text(report(one)).splitlines()
