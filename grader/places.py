@@ -20,6 +20,17 @@ _ALWAYS = {
 }
 
 
+_LAUNCHER = (
+    Path(__file__).with_name('forkserver').joinpath('offline.py').read_text('utf-8')
+    + """
+
+keep_off_the_network()
+import runpy
+runpy.run_module('ipykernel_launcher', run_name='__main__', alter_sys=True)
+"""
+)
+
+
 @dataclass(frozen=True)
 class Keeper:
     """A process that keeps a room, so that one which was forked elsewhere can join it there."""
@@ -68,7 +79,7 @@ class Place:
 
     def kernel_command(self) -> list[str]:
         """Return the command of a kernel, as its process knows it."""
-        launcher = [sys.executable, '-m', 'ipykernel_launcher', '-f']
+        launcher = [sys.executable, '-c', _LAUNCHER, '-f']
         options = ['--InteractiveShellApp.ignore_cwd=True', '--HistoryManager.enabled=False']
         connection = str(self.inside / 'given' / 'connection.json')
         return [*launcher, connection, *options]

@@ -1,0 +1,48 @@
+"""Keep a kernel off the network: it listens in its own folder alone.
+
+ipykernel takes the output of processes that were forked in a kernel over TCP, whatever transport
+the kernel has, and reads whatever comes. The network of a room is the other room's, too.
+"""
+
+import json
+import sys
+from typing import Any
+
+
+def keep_off_the_network() -> None:
+    """Let what forked processes print come over a Unix socket beside the kernel's own."""
+    from ipykernel.iostream import IOPubThread
+
+    IOPubThread._setup_pipe_in = _listen
+    IOPubThread._setup_pipe_out = _connect
+
+
+def _listen(self: Any) -> None:
+    """Do what ipykernel's own method does, with another address."""
+    import os
+
+    import zmq
+    from zmq.eventloop.zmqstream import ZMQStream
+
+    self._pipe_uuid = os.urandom(16)
+    pipe = self.socket.context.socket(zmq.PULL)
+    pipe.linger = 0
+    pipe.bind(_address())
+    self._pipe_in = ZMQStream(pipe, self.io_loop)
+    self._pipe_in.on_recv(self._handle_pipe_msg)
+
+
+def _connect(self: Any) -> tuple:
+    """Return the context and the socket of a forked process, which needs its own."""
+    import zmq
+
+    context = zmq.Context()
+    pipe = context.socket(zmq.PUSH)
+    pipe.linger = 3_000
+    pipe.connect(_address())
+    return context, pipe
+
+
+def _address() -> str:
+    with open(sys.argv[sys.argv.index('-f') + 1], encoding='utf-8') as connection:
+        return f'ipc://{json.load(connection)["ip"]}-forked'
