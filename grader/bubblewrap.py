@@ -4,7 +4,7 @@ import os
 import sys
 from pathlib import Path
 
-from grader.limits import OUT_OF_MEMORY_SCORE, ROOM_DISK_BYTES, ROOM_FILES, limited
+from grader.limits import OUT_OF_MEMORY_SCORE, ROOM_DISK_BYTES, ROOM_FILES, ROOM_TERMINALS, limited
 from grader.sights import shown, sources
 
 ROOMS = ('student', 'test')
@@ -17,10 +17,12 @@ KEEPER = ['sh', '-c', "trap '' CHLD; echo; exec sleep infinity >/dev/null 2>&1"]
 
 _SEEN, DISKS = '/tmp/seen', '/tmp/disks'
 """Where the holder keeps what the rooms see of the machine, and what they write to."""
+_TERMINALS = f'newinstance,ptmxmode=0666,mode=620,max={ROOM_TERMINALS}'
 _HOLD = f"""
 for room in {' '.join(ROOMS)}; do
     mount -t tmpfs -o size={ROOM_DISK_BYTES},nr_inodes={ROOM_FILES} room {DISKS}/$room || exit 1
-    (cd {DISKS}/$room && mkdir -p kernel home/work tmp shm) || exit 1
+    (cd {DISKS}/$room && mkdir -p kernel home/work tmp shm pts) || exit 1
+    mount -t devpts -o {_TERMINALS} room {DISKS}/$room/pts || exit 1
 done
 echo $$
 exec cat
@@ -101,6 +103,7 @@ def room_command(
         'bwrap', *_ROOM, *first,
         '--proc', '/proc',
         '--dev', '/dev', *([] if counted else ['--dev-bind', '/dev/null', '/dev/zero']),
+        '--dev-bind', f'{disk}/pts', '/dev/pts',
         '--bind', f'{disk}/shm', '/dev/shm',
         '--bind', f'{disk}/tmp', '/tmp',
         '--bind', f'{disk}/kernel', f'{INSIDE}/kernel',

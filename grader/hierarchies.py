@@ -9,6 +9,7 @@ import contextlib
 import os
 import shutil
 import subprocess
+import uuid
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
@@ -16,6 +17,8 @@ from pathlib import Path
 
 GRADERS = 'mrb-graders'
 """The cgroup that graders move into."""
+UNIT = 'mrb-'
+"""How a scope is called that is for graders alone: not every systemd marks what it delegates."""
 NEEDED, WANTED = ('memory', 'pids'), ('memory', 'pids', 'cpu')
 """The controllers without which a cgroup is of no use, and those that we use."""
 GRADERS_WEIGHT = 1_000
@@ -57,24 +60,29 @@ def scoped(command: tuple[str, ...]) -> tuple[str, ...]:
     That is a scope: it is begun by `systemd-run`, as the user's own, and ends with the command.
     """
     found = _found(Path('/proc/self'))
-    return (*_scope(), *command) if isinstance(found, NoCgroups) else command
+    return (*_scope(), *command) if isinstance(found, NoCgroups) and _has_scopes() else command
+
+
+def _scope() -> tuple[str, ...]:
+    """Return how a command begins that runs in a new scope."""
+    whose = ('--user',) if os.geteuid() else ()
+    unit = f'--unit={UNIT}{uuid.uuid4().hex}'
+    return ('systemd-run', *whose, '--scope', '--quiet', '--collect', unit, '-pDelegate=yes', '--')
 
 
 @cache
-def _scope() -> tuple[str, ...]:
-    """Return how a command begins that runs in a scope; () where there is none to be had."""
-    tool = shutil.which('systemd-run')
-    if tool is None or not _SYSTEMD.is_dir() or 'memory' in _own_paths(Path('/proc/self')):
-        return ()
-    whose = ['--user'] if os.geteuid() else []
-    scope = (tool, *whose, '--scope', '--quiet', '--collect', '--property=Delegate=yes', '--')
+def _has_scopes() -> bool:
+    """Try whether systemd makes a scope for us."""
+    lacking = shutil.which('systemd-run') is None or not _SYSTEMD.is_dir()
+    if lacking or 'memory' in _own_paths(Path('/proc/self')):  # of version 1: it has none to give
+        return False
     try:
         tried = subprocess.run(
-            [*scope, 'true'], stdin=subprocess.DEVNULL, capture_output=True, timeout=_TRY_SEC
+            [*_scope(), 'true'], stdin=subprocess.DEVNULL, capture_output=True, timeout=_TRY_SEC
         )
     except subprocess.TimeoutExpired:
-        return ()
-    return () if tried.returncode else scope
+        return False
+    return tried.returncode == 0
 
 
 @cache
@@ -154,6 +162,8 @@ def _version_2(own: Path, top: Path | None) -> Path:
 
 
 def _delegated(folder: Path) -> bool:
+    if folder.name.startswith(UNIT) and folder.suffix == '.scope':
+        return True
     for name in ('user.delegate', 'trusted.delegate'):
         with contextlib.suppress(OSError):
             if os.getxattr(folder, name) == b'1':

@@ -18,6 +18,8 @@ ROOM_MEMORY_BYTES = 2 * 2**30
 """All processes of a room together; the kernel of a lesson uses 0.15 GB."""
 ROOM_SOCKET_BYTES = 256 * 2**20
 """What waits in a room's sockets, where Linux counts that aside; a lesson: under 1 MB."""
+ROOM_TERMINALS = 32
+"""Pseudo-terminals, one for each command after a `!`: the machine has some thousands for all."""
 ROOM_PROCESSES = 256
 """Processes and threads of a room together; a lesson: some 60."""
 CPU_WEIGHT = 100

@@ -15,7 +15,7 @@ OFF = 'cpu io memory pids'
 @pytest.fixture(autouse=True)
 def fresh():
     """What was found out about this machine is forgotten, before and after."""
-    caches = (module._found, module._scope)
+    caches = (module._found, module._has_scopes)
     for each in caches:
         each.cache_clear()
     yield
@@ -115,11 +115,14 @@ def test_version_1_is_of_no_use_without_the_controllers_that_matter(machine, lac
 V2 = [('/', 'unified', 'cgroup2', 'nsdelegate')]
 
 
-def test_a_delegated_scope_is_used_with_its_processes_moved_aside(machine, switches, monkeypatch):
-    monkeypatch.setattr(os, 'getxattr', lambda path, name: b'1')
-    proc = machine('0::/user.slice/run-7.scope\n', V2, root=False)
+@pytest.mark.parametrize(('name', 'marked'), [('run-7.scope', b'1'), ('mrb-7.scope', b'')])
+def test_a_delegated_scope_is_used_with_its_processes_moved_aside(
+    machine, switches, monkeypatch, name, marked
+):
+    monkeypatch.setattr(os, 'getxattr', lambda path, name: marked)
+    proc = machine(f'0::/user.slice/{name}\n', V2, root=False)
     tree(proc / 'unified', is_root=True)
-    scope = proc / 'unified' / 'user.slice' / 'run-7.scope'
+    scope = proc / 'unified' / 'user.slice' / name
     tree(scope, processes='41 42')
     where = found(proc)
     assert (where.version, set(where.folders.values())) == (2, {scope})
@@ -195,9 +198,10 @@ def nowhere(machine, monkeypatch):
 def test_systemd_gives_a_scope_of_the_users_own(nowhere):
     nowhere.setattr(module.subprocess, 'run', answering(0))
     command = scoped(('python', 'x'))
-    assert command[:3] == ('/usr/bin/systemd-run', '--user', '--scope')
+    assert command[:3] == ('systemd-run', '--user', '--scope')
     assert command[-3:] == ('--', 'python', 'x')
-    assert '--property=Delegate=yes' in command
+    assert '-pDelegate=yes' in command
+    assert len({scoped(('python', 'x')) for _ in range(3)}) == 3  # each has a unit of its own
 
 
 def test_where_systemd_refuses_the_command_is_as_it_was(nowhere):

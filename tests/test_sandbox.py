@@ -20,7 +20,7 @@ from grader.bubblewrap import FIRST_USER, slot_user
 from grader.course import ROOT
 from grader.errors import RoomFailure
 from grader.kernels import Kernel
-from grader.limits import ROOM_DISK_BYTES, ROOM_FILES, process_limits
+from grader.limits import ROOM_DISK_BYTES, ROOM_FILES, ROOM_TERMINALS, process_limits
 from grader.places import Place
 from grader.sandbox import Sandbox
 from grader.seccomp import PROTOCOLS
@@ -435,6 +435,11 @@ BOMBS = {
         "kept = []\ntry:\n  while True: kept.append(open('/dev/null'))\n"
         'except OSError as e: print(e.strerror)',
         'Too many open files',
+    ),
+    'terminals': (
+        "import os; kept = []\ntry:\n  while True: kept.append(os.open('/dev/ptmx', os.O_RDWR))\n"
+        'except OSError as e: print(e.strerror, len(kept))',
+        f'No space left on device {ROOM_TERMINALS}',
     ),
     'locked memory': (
         'import ctypes; print(ctypes.CDLL(None).mlockall(3))',
