@@ -64,6 +64,8 @@ PROCESS_LIMITS = {
     _RLIMIT_LOCKS: 1_024,  # … nor at this one
 }
 """What Linux enforces in each process of a student's room: all that it has limits for."""
+OWN_FILES = 16_384
+"""What may be open in a process of ours."""
 
 OUT_OF_MEMORY_SCORE = 1_000
 """Where the machine's memory runs out, Linux ends such processes before any other."""
@@ -71,9 +73,24 @@ OUT_OF_MEMORY_SCORE = 1_000
 
 def process_limits() -> dict[int, int]:
     """Return PROCESS_LIMITS; less where our own hard limit is less, for nobody can raise that."""
-    return {
+    limits = {
         kind: _allowed(most, resource.getrlimit(kind)[1]) for kind, most in PROCESS_LIMITS.items()
     }
+    hard = resource.getrlimit(resource.RLIMIT_NOFILE)[1]
+    limits[resource.RLIMIT_NOFILE] = _allowed(limits[resource.RLIMIT_NOFILE], hard // 2)
+    return limits
+
+
+def let_us_open_more() -> None:
+    """Raise our own limit of open files, as far as rooms can't get.
+
+    Linux counts what is on its way through sockets by user, and that may be a room's user, too:
+    who has more under way than its own limit can send no file any more, whoever's they are.
+    """
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    wanted = OWN_FILES if hard == resource.RLIM_INFINITY else min(OWN_FILES, hard)
+    if resource.RLIM_INFINITY != soft < wanted:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (wanted, hard))
 
 
 def limited() -> list[str]:

@@ -29,6 +29,7 @@ from grader.cgroups import MemoryEvents, RoomCgroup, SandboxCgroups, joining
 from grader.errors import RoomFailure
 from grader.hierarchies import NoCgroups
 from grader.leftovers import note_cgroups, own_folder
+from grader.limits import let_us_open_more
 from grader.memory_watch import watch_memory
 from grader.places import Keeper, Place, make_folder
 from grader.seccomp import seccomp_filter
@@ -43,6 +44,7 @@ class Sandbox:
 
     def __init__(self, *, slot: int) -> None:
         """Prepare; `slot` is a small number that nobody else on this machine uses meanwhile."""
+        let_us_open_more()
         self._user = slot_user(slot)
         self._holder: subprocess.Popen | None = None
         self._network = -1

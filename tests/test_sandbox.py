@@ -605,28 +605,14 @@ def test_a_closed_sandbox_leaves_no_file_and_no_descriptor(loop):
 ORDINARY = 65_534
 
 
-@pytest.mark.skipif(os.geteuid() != 0, reason='we are an ordinary user')
-def test_an_ordinary_user_has_the_same_sandbox(tmp_path_factory):
-    home = tmp_path_factory.mktemp('home')
+def as_ordinary_user(home, code):
+    """Run Python as an ordinary user, who reaches no more of ours than the course."""
     home.chmod(0o777)
-    code = f"""
-import asyncio, sys
-sys.path.insert(0, {str(ROOT)!r})
-from grader.rooms import Rooms
-async def main():
-    async with Rooms() as rooms:
-        run = await rooms.run_student_cell('import os; print(os.getuid()); x = 7', timeout_sec=60)
-        print(run.outputs[0].text.strip())
-        run = await rooms.run_check(
-            'from my_robot_basics.checks import student; print(student.value("x"))')
-        print(run.outputs[0].text.strip())
-        print(rooms._student.why_not_warm or 'forked')
-asyncio.run(main())
-"""
+    code = f'import asyncio, sys\nsys.path.insert(0, {str(ROOT)!r})\n{code}\nasyncio.run(main())'
     reachable = ['--tmpfs', f'/{ROOT.parts[1]}', '--tmpfs', f'/{Path(sys.base_prefix).parts[1]}']
     for path in dict.fromkeys([str(ROOT), sys.prefix, sys.base_prefix]):
         reachable += ['--dir', path, '--ro-bind', path, path]
-    done = subprocess.run(
+    return subprocess.run(
         [
             *('bwrap', '--dev-bind', '/', '/', *reachable),
             *('--cap-add', 'CAP_SETUID', '--cap-add', 'CAP_SETGID', '--'),
@@ -638,7 +624,53 @@ asyncio.run(main())
         text=True,
         cwd='/',
     )
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason='we are an ordinary user')
+def test_an_ordinary_user_has_the_same_sandbox(tmp_path_factory):
+    code = """
+from grader.rooms import Rooms
+async def main():
+    async with Rooms() as rooms:
+        run = await rooms.run_student_cell('import os; print(os.getuid()); x = 7', timeout_sec=60)
+        print(run.outputs[0].text.strip())
+        run = await rooms.run_check(
+            'from my_robot_basics.checks import student; print(student.value("x"))')
+        print(run.outputs[0].text.strip())
+        print(rooms._student.why_not_warm or 'forked')
+"""
+    done = as_ordinary_user(tmp_path_factory.mktemp('home'), code)
     assert done.stdout.splitlines() == ['1000', '7', 'forked'], done.stderr
+
+
+UNDER_WAY = """
+import os, socket
+kept = []
+try:
+    while True:
+        kept.append(socket.socketpair(socket.AF_UNIX, socket.SOCK_DGRAM))
+        for _ in range(8): socket.send_fds(kept[-1][0], [b'x'], [0] * 100)
+except OSError as error: print(error.strerror)
+"""
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason='we are an ordinary user')
+def test_files_on_their_way_in_one_room_stop_none_elsewhere(tmp_path_factory):
+    code = f"""
+import resource
+resource.setrlimit(resource.RLIMIT_NOFILE, (1_024, 4_096))  # as for a login
+from grader.rooms import Rooms
+async def main():
+    async with Rooms() as rooms:
+        run = await rooms.run_student_cell({UNDER_WAY!r}, timeout_sec=60)
+        print(run.outputs[0].text.strip())
+        async with Rooms() as others:
+            run = await others.run_student_cell('print("fine")', timeout_sec=60)
+            print(run.outputs[0].text.strip())
+"""
+    done = as_ordinary_user(tmp_path_factory.mktemp('home'), code)
+    said = ['Too many references: cannot splice', 'fine']
+    assert done.stdout.splitlines() == said, done.stderr
 
 
 def test_many_sandboxes_open_and_close_side_by_side(loop):
