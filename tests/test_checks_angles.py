@@ -24,17 +24,23 @@ def test_an_angle_is_what_it_is_whole_turns_aside(number, is_near):
         ([round(angle, 1) for angle in WANTED], 'two decimals or more'),
         ([math.radians(angle) for angle in WANTED], 'these are radians'),
         ([round(math.radians(angle), 2) for angle in WANTED], 'these are radians'),
-        (WANTED[:2], 'both angles of both branches: -35.92°, 67.80° not found'),
-        ([WANTED[0], WANTED[2]], '-67.80°, 67.80° not found'),
+        (WANTED[:2], 'both angles of both branches: one branch is not there'),
+        ([WANTED[0], WANTED[2]], 'θ2 is missing or wrong in both'),
+        (WANTED[:3], '1 of 4 angles missing or wrong'),
+        # what atan(y / x) makes of the left half plane, and of a wrong sign of y
+        ([WANTED[0] - 180, WANTED[1], WANTED[2] + 180, WANTED[3]], 'half a turn off: atan2(y, x)'),
+        ([-23.4, -67.8, 35.92, 67.8], 'all angles are mirrored, so look at the sign of y'),
         ([-angle / 2 for angle in WANTED], 'compare with what inverse_kinematics(x, y) returns'),
         # of the target (y, x), and of its other branch
         ([90.0 - WANTED[2], WANTED[1], 90.0 - WANTED[0], WANTED[3]], 'x and y are swapped'),
         # one of them by chance
-        ([90.0 - WANTED[2], WANTED[1], WANTED[3]], '23.40°, -35.92° not found'),
+        ([90.0 - WANTED[2], WANTED[1], WANTED[3]], 'θ1 is missing or wrong in both'),
         # those of the target, and the number of its branches
         ((1.2, 0.8, 2), 'compare with what inverse_kinematics(x, y) returns'),
     ],
 )
 def test_advice_follows_what_is_there_instead(numbers, advice):
     assert angles.missing(WANTED, numbers)
-    assert advice in angles.what_to_try(WANTED, numbers)
+    found = angles.what_to_try(WANTED, numbers)
+    assert advice in found
+    assert not any(f'{abs(angle):g}' in found for angle in WANTED)

@@ -147,9 +147,10 @@ def test_a_crowded_machine_gives_more_time_to_answer_but_not_without_end(
 
     monkeypatch.setattr(pressure, 'time', types.SimpleNamespace(monotonic=lambda: now[0]))
     monkeypatch.setattr(pressure, 'crowded_sec', lambda: crowded_share * now[0])
-    watcher = types.SimpleNamespace(spin_until=spin_until)
-    simulated = clock.SimulatedClock(watcher, needed=set())
-    assert simulated._in_time(lambda: now[0] >= answers_after_sec, 0.5) == in_time
+    watcher = Watcher()
+    monkeypatch.setattr(watcher, 'spin_until', spin_until)
+    is_done = watcher.spin_until_free(lambda: now[0] >= answers_after_sec, free_sec=0.5)
+    assert is_done == in_time
 
 
 class Counter(Node):

@@ -1,10 +1,13 @@
 """The joints of a message by name, and the advice for a pose that is not the right one."""
 
+import math
+
 import pytest
-from my_robot_basics.checks import joints
+from my_robot_basics.checks import CheckFailed, joints
 from sensor_msgs.msg import JointState
 
-RIGHT = {'joint1': 0.5236, 'joint2': -1.5708}
+POSE_DEG = 30.0, -90.0
+RIGHT = joints.in_radians(POSE_DEG)
 NAMES = ['joint1', 'joint2']
 
 
@@ -21,8 +24,22 @@ def test_joints_agree_in_any_order():
     ('wrong', 'seen', 'advice'),
     [
         (message(0.52004, -1.57), {'joint1': 0.52, 'joint2': -1.57}, 'close: '),
-        (message(-1.5708, 0.5236), {'joint1': -1.5708, 'joint2': 0.5236}, 'put x beside'),
-        (message(30.0, -90.0), {'joint1': 30.0, 'joint2': -90.0}, 'convert both'),
+        (
+            message(-1.5708, 0.5236),
+            {'joint1': -1.5708, 'joint2': 0.5236},
+            'the joints have changed',
+        ),
+        (message(30.0, -90.0), {'joint1': 30.0, 'joint2': -90.0}, 'these are degrees'),
+        (message(0.5236, -90.0), {'joint1': 0.5236, 'joint2': -90.0}, 'joint2 is still in degr'),
+        (message(30.0, -1.5708), {'joint1': 30.0, 'joint2': -1.5708}, 'joint1 is still in degr'),
+        (message(0.5236, 1.5708), {'joint1': 0.5236, 'joint2': 1.5708}, 'the sign of joint2'),
+        (message(0.5236, 0.5236), {'joint1': 0.5236, 'joint2': 0.5236}, 'joint2 holds θ1, too'),
+        (
+            message(1718.8734, -5156.6202),
+            {'joint1': 1718.8734, 'joint2': -5156.6202},
+            'degrees() ',
+        ),
+        (message(0.7, 0.1), {'joint1': 0.7, 'joint2': 0.1}, 'convert both angles with'),
         (message(0.5236, -1.5708, 0.0), '3 positions with 2 names', 'give each message two'),
         (message(0.5236, name=NAMES[:1]), {'joint1': 0.5236}, 'give each message two'),
         (message(name=[]), '0 positions with 0 names', 'give each message two'),
@@ -32,4 +49,20 @@ def test_another_pose_is_shown_with_advice(wrong, seen, advice):
     pose = joints.pose(wrong)
     assert not joints.agree(pose, RIGHT)
     assert joints.shown(wrong) == seen
-    assert joints.what_to_try(pose, RIGHT).startswith(advice)
+    assert joints.why_wrong(wrong, POSE_DEG).startswith(advice)
+
+
+@pytest.mark.parametrize(
+    ('position', 'advice'),
+    [
+        ([0.5236, math.nan], 'no finite number'),
+        ([math.nan, -1.5708], 'no finite number'),
+        ([math.inf, -1.5708], 'no finite number'),
+        ([0.5236], 'one position for each joint'),
+        ([0.5236, -1.57], 'do not round'),
+    ],
+)
+def test_a_position_that_is_not_there_or_no_number_is_wrong(position, advice):
+    with pytest.raises(CheckFailed, match=advice):
+        joints.expect_radians(position, POSE_DEG)
+    joints.expect_radians([math.radians(angle) for angle in POSE_DEG], POSE_DEG)

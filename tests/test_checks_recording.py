@@ -81,6 +81,53 @@ def test_even_is_what_one_timer_explains(times, even):
     assert rates.is_even(recording(times)) is even
 
 
+def ticked(period_sec, seconds, step_sec, *, late=()):
+    """When messages of a timer are seen on a clock that moves in steps; some a step late."""
+    count = int(seconds / period_sec)
+    ticks = [math.ceil(period_sec * i / step_sec - 1e-9) + (i in late) for i in range(1, count)]
+    return [step_sec * tick for tick in ticks]
+
+
+def proven(period_sec, proof_period_sec=None, *, late=(), proof_late=()):
+    proof = ticked(proof_period_sec or period_sec, 3.0, 0.02, late=proof_late)
+    return recording(
+        ticked(period_sec, 10.0, 0.1, late=late),
+        proof=recording(proof, step_sec=0.02, seconds=3.0),
+        look_again=lambda seconds: recording(every(0.2), clock='wall'),
+    )
+
+
+@pytest.mark.parametrize('period_sec', [0.195, 0.205, 0.19, 0.21, 0.25, 1.0])
+def test_a_timer_that_two_steps_of_the_clock_agree_on_is_certain(period_sec):
+    with pytest.raises(CheckFailed, match=rf'saw {round(1 / period_sec, 2)} Hz over 10 s'):
+        proven(period_sec).assert_rate(hz=5.0)
+
+
+@pytest.mark.parametrize(
+    'made',
+    [
+        proven(0.2),
+        proven(0.2, late=(7,), proof_late=(3, 4)),
+        # a thread that comes late now and then is later with coarse steps: another look decides
+        proven(0.206, 0.201),
+        proven(0.21, 0.202),
+    ],
+)
+def test_a_period_that_the_steps_have_made_is_not(made):
+    made.assert_rate(hz=5.0)
+
+
+def test_by_turns_too_early_and_too_late_is_uneven():
+    turns = [0.2 * i - 0.1 * (i % 2) for i in range(1, 50)]
+    assert rates.is_even(recording(turns))
+    assert not rates.is_nearly_even(recording(turns, step_sec=0.02))
+    with pytest.raises(CheckFailed, match=r'saw 0\.10 to 0\.30 s between messages .* one timer'):
+        recording(turns, clock='wall').assert_rate(hz=5.0)
+    # as a busy machine may have it
+    jitter = [0.2 * i + 0.04 * (i % 2) for i in range(1, 50)]
+    recording(jitter, clock='wall').assert_rate(hz=5.0)
+
+
 def test_on_the_wall_clock_the_largest_gap_counts():
     bursts = [i // 5 + 1.0 + 0.001 * (i % 5) for i in range(-5, 46)][6:]
     with pytest.raises(CheckFailed, match=r'saw pauses of 1\.0 s over 10 s \(45 messages\)'):

@@ -56,7 +56,7 @@ def pose():
 
 
 def check_delivery():
-    joint_states.assert_carries(pose(), pose(), qos_profile=qos_profile_sensor_data)
+    joint_states.assert_carries(pose, qos_profile=qos_profile_sensor_data)
 
 
 def check_late_joiner():
@@ -168,6 +168,102 @@ def test_a_callback_that_publishes_nothing_does_not_pass(run, impatient):
             check()
 
 
+class Counts(monitor.JointStateMonitor):
+    """Gives each callback the number of the message, and the messages so far."""
+
+    def changed(self, publish):
+        heard = []
+
+        def receive(message):
+            heard.append(message)
+            for each in self.chosen(heard):
+                publish(each)
+
+        return receive
+
+
+class DropsEverySecond(Counts):
+    def chosen(self, heard):
+        return heard[-1:] if len(heard) % 2 else []
+
+
+class DropsEveryTenth(Counts):
+    def chosen(self, heard):
+        return heard[-1:] if len(heard) % 10 else []
+
+
+class Lags(Counts):
+    def chosen(self, heard):
+        return heard[-2:-1]
+
+
+class Doubles(Counts):
+    def chosen(self, heard):
+        return heard[-1:] * 2
+
+
+class SwapsPairs(Counts):
+    def chosen(self, heard):
+        return [] if len(heard) % 2 else heard[:-3:-1]
+
+
+@pytest.mark.parametrize(
+    ('node_class', 'reason'),
+    [
+        (DropsEverySecond, 'saw messages that do not come out: publish in every call'),
+        (DropsEveryTenth, 'saw messages that do not come out: publish in every call'),
+        (Lags, 'saw a message that comes out only when the next one is sent: publish the message'),
+        (SwapsPairs, 'saw a message that comes out only when the next one is sent'),
+        (Doubles, 'saw a message that comes out 2 times: subscribe once'),
+    ],
+)
+def test_each_message_comes_out_at_once_and_once(run, node_class, reason):
+    run(node_class)
+    with pytest.raises(CheckFailed, match=reason):
+        check_delivery()
+
+
+def test_a_description_that_comes_out_twice_is_one_too_many(run):
+    run(Doubles)
+    with pytest.raises(CheckFailed, match='saw a message that comes out 2 times: subscribe once'):
+        check_late_joiner()
+
+
+def test_what_waits_for_a_timer_is_in_time(run):
+    class Queues(Counts):
+        def __init__(self):
+            self.queue = []
+            super().__init__()
+            self.create_timer(0.1, self.flush)
+
+        def changed(self, publish):
+            return lambda message: self.queue.append((publish, message))
+
+        def flush(self):
+            while self.queue:
+                publish, message = self.queue.pop(0)
+                publish(message)
+
+    run(Queues)
+    check_delivery()
+    check_late_joiner()
+
+
+def test_a_subscription_of_each_kind_is_no_choice(run):
+    class Everything(monitor.JointStateMonitor):
+        def pass_on(self, type_, source, to, asked, offered):
+            publisher = self.create_publisher(type_, to, offered)
+            for each in PROFILES.values():
+                self.create_subscription(type_, source, publisher.publish, each)
+
+    run(Everything)
+    for check in check_delivery, check_late_joiner:
+        with pytest.raises(
+            CheckFailed, match=r'saw BEST_EFFORT/TRANSIENT_LOCAL and .* choose one'
+        ):
+            check()
+
+
 def test_the_wrong_topics_are_named(run, impatient):
     class NoEars(Node):
         def __init__(self):
@@ -183,7 +279,7 @@ def test_the_wrong_topics_are_named(run, impatient):
         check_late_joiner()
     with pytest.raises(CheckFailed, match='a publisher on /monitor/joint_state, saw none in 1 s'):
         relay('/sensor/joint_states', to='/monitor/joint_state').assert_carries(
-            pose(), qos_profile=qos_profile_sensor_data
+            pose, qos_profile=qos_profile_sensor_data
         )
 
 

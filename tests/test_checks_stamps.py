@@ -3,7 +3,7 @@
 import pytest
 from my_robot_basics.checks import CheckFailed, stamps, topic
 from my_robot_basics.checks.clock import Inconclusive
-from nodes.running import imported
+from nodes.running import imported, running
 from sensor_msgs.msg import JointState
 
 from my_robot_basics import live
@@ -32,7 +32,8 @@ def run(patient):
 
 
 @pytest.mark.parametrize(
-    ('node_class', 'clock'), [(WallStamp, 'simulated'), (SteadyWallStamp, 'wall')]
+    ('node_class', 'clock'),
+    [(WallStamp, 'simulated'), (SteadyWallStamp, 'wall'), (UnmovableWallStamp, 'wall')],
 )
 def test_the_computers_clock_fails_on_both(run, node_class, clock):
     run(node_class)
@@ -44,9 +45,9 @@ def test_the_computers_clock_fails_on_both(run, node_class, clock):
 
 @pytest.mark.parametrize(
     'node_class',
-    [SteadyClock, NoParameterServices, pytest.param(UnmovableWallStamp, marks=pytest.mark.slow)],
+    [SteadyClock, NoParameterServices],
 )
-def test_the_nodes_clock_passes_and_so_does_one_that_nobody_can_move(run, node_class):
+def test_the_nodes_clock_passes_and_is_given_back(run, node_class):
     node = run(node_class)
     recording = topic(TOPIC).record(seconds=10.0)
     assert recording.clock == 'wall'
@@ -56,12 +57,20 @@ def test_the_nodes_clock_passes_and_so_does_one_that_nobody_can_move(run, node_c
     topic(TOPIC).wait_for(timeout_sec=5.0)
 
 
+@pytest.mark.slow
+def test_a_clock_that_nobody_can_move_is_taken_for_the_nodes(patient):
+    with running('no_parameter_services'):
+        topic(TOPIC).record(seconds=10.0).assert_stamps()
+
+
 @pytest.mark.parametrize(
     ('looks', 'passes'),
     [
         ([[4.9, 4.9]], True),
         ([[0.1, 4.9]], True),
         ([[0.1, 0.1]], False),
+        # the node's clock stands at 0: it has not got the time yet
+        ([[-1.7e9, -1.7e9]], True),
         # nothing was published meanwhile
         ([[]], True),
         # the clock could not be driven, at first or at all

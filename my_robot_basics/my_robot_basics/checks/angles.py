@@ -24,7 +24,10 @@ def missing(
 
 
 def what_to_try(wanted: Sequence[float], numbers: Sequence[float]) -> str:
-    """Advice for a log that lacks some of the wanted angles, by what it holds instead."""
+    """Advice for a log that lacks some of the wanted angles, by what it holds instead.
+
+    It names the cause, and none of the angles.
+    """
     if not numbers:
         return f'log every solution for each target, with self.get_logger().info(…) {HOW}'
     if not missing(wanted, numbers, ROUNDED_DEG):
@@ -35,7 +38,20 @@ def what_to_try(wanted: Sequence[float], numbers: Sequence[float]) -> str:
     if not missing([90.0 - angle for angle in absent], numbers):
         # mirrored in the line x = y, and the branches change places with it
         return 'x and y are swapped: call inverse_kinematics(x, y) with x first'
+    if not missing([angle + 180.0 for angle in absent], numbers):
+        return 'θ1 is half a turn off: atan2(y, x) knows the quadrant, atan(y / x) does not'
+    if not missing([-angle for angle in wanted], numbers):
+        return 'all angles are mirrored, so look at the sign of y'
     if len(absent) < len(wanted):
-        listed = ', '.join(f'{angle:.2f}°' for angle in absent)
-        return f'log every solution, both angles of both branches: {listed} not found'
+        return _what_is_absent(wanted, absent)
     return 'compare with what inverse_kinematics(x, y) returns for this target'
+
+
+def _what_is_absent(wanted: Sequence[float], absent: Sequence[float]) -> str:
+    every = 'log every solution, both angles of both branches'
+    if absent in (list(wanted[:2]), list(wanted[2:])):
+        return f'{every}: one branch is not there'
+    if absent in (list(wanted[::2]), list(wanted[1::2])):
+        joint = 'θ1' if absent == list(wanted[::2]) else 'θ2'
+        return f'{every}: {joint} is missing or wrong in both'
+    return f'{every}: {len(absent)} of {len(wanted)} angles missing or wrong'

@@ -7,7 +7,7 @@ loaded the machine is. A node that doesn't follow raises Inconclusive, and wall 
 import bisect
 import statistics
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from typing import Self
 
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
@@ -26,14 +26,13 @@ BUDGET_SEC = 15.0
 SLOWEST_BARRIER_SEC = 0.5
 SLOWEST_MEDIAN_SEC = 0.02
 FIRST_ANSWER_SEC = 1.0
-"""What a node may take to answer. Time in which processes had to wait for a processor does not
-count: an honest node on a crowded machine is slow, too. …"""
-CROWDED_TIMES = 5.0
-"""… But no answer takes so many times as long."""
-LOOK_EVERY_SEC = 0.05
+"""What a node may take to answer, of time that was free: an honest node on a crowded machine is
+slow, too."""
 RESTORE_SEC = 10.0
 MEDIAN_EVERY = 40
 HELD_EVERY_SEC = 0.02
+_latest_ns = 0
+"""What `/clock` showed last: a node that waits for a time would else wait for it once more."""
 
 
 class Inconclusive(Exception):
@@ -60,7 +59,7 @@ class SimulatedClock:
         self.now_ns = 0
 
     def __enter__(self) -> Self:
-        """Switch the nodes to `/clock`, which starts at wall time. Raises Inconclusive."""
+        """Switch the nodes to `/clock`, which starts no earlier than now. Raises Inconclusive."""
         node = self._watcher.node
         if node.get_publishers_info_by_topic('/clock'):
             raise Inconclusive('another node publishes /clock')
@@ -102,6 +101,10 @@ class SimulatedClock:
         tick = bisect.bisect_right(self._tick_wall_ns, wall_ns) - 1
         return self._tick_ns[tick] if tick >= 0 else 0
 
+    def is_half_over(self) -> bool:
+        """Whether half of the time is gone for which the clock may be driven."""
+        return time.monotonic() > self._deadline - BUDGET_SEC / 2
+
     def _expect_time_left(self) -> None:
         if time.monotonic() > self._deadline:
             raise Inconclusive(f'the clock could not be driven within {BUDGET_SEC:g} s')
@@ -122,15 +125,18 @@ class SimulatedClock:
 
     def _switch(self) -> None:
         """Turn `use_sim_time` on for every node that answers, and start `/clock` at wall time."""
-        self._in_time(lambda: self._needed <= self._with_services(), FIRST_ANSWER_SEC)
+        self._watcher.spin_until_free(
+            lambda: self._needed <= self._with_services(), free_sec=FIRST_ANSWER_SEC
+        )
         node = self._watcher.node
         for name in self._with_services():
             self._barriers[name] = node.create_client(GetParameters, f'{name}/get_parameters')
             self._setters[name] = node.create_client(SetParameters, f'{name}/set_parameters')
             self._expect_time_left()
         clients = [*self._barriers.values(), *self._setters.values()]
-        self._in_time(
-            lambda: all(client.service_is_ready() for client in clients), FIRST_ANSWER_SEC
+        self._watcher.spin_until_free(
+            lambda: all(client.service_is_ready() for client in clients),
+            free_sec=FIRST_ANSWER_SEC,
         )
         asked = {name: self._ask(client) for name, client in self._barriers.items()}
         self._answered(asked.values(), FIRST_ANSWER_SEC)
@@ -142,9 +148,9 @@ class SimulatedClock:
             name: any(value.bool_value for value in reply.values)
             for name, reply in answered.items()
         }
-        self.now_ns = time.time_ns()
+        self.now_ns = max(time.time_ns(), _latest_ns)
         self._answered(self._set_all(dict.fromkeys(self._former, True)), FIRST_ANSWER_SEC)
-        self._in_time(self._is_heard, FIRST_ANSWER_SEC)
+        self._watcher.spin_until_free(self._is_heard, free_sec=FIRST_ANSWER_SEC)
         self._publish()
         self._barrier()
 
@@ -153,6 +159,8 @@ class SimulatedClock:
         return self._publisher.get_subscription_count() >= len(self._barriers)
 
     def _restore(self) -> None:
+        global _latest_ns
+        _latest_ns = max(_latest_ns, self.now_ns)
         former, self._former = self._former, {}
         # back to wall time first: rcl leaves a timer that is due this very moment where it is, and
         # in the future of wall time it would be silent until that has come
@@ -180,16 +188,9 @@ class SimulatedClock:
         )
 
     def _answered(self, asked: Iterable[Future], free_sec: float) -> bool:
-        return self._in_time(lambda: all(future.done() for future in asked), free_sec)
-
-    def _in_time(self, done: Callable[[], bool], free_sec: float) -> bool:
-        """Spin until `done()`, at most `free_sec` of time that was free; whether it is done."""
-        watch = Stopwatch()
-        while not self._watcher.spin_until(done, timeout_sec=LOOK_EVERY_SEC):
-            waited_sec = watch.wall_sec()
-            if watch.free_sec() >= free_sec or waited_sec >= CROWDED_TIMES * free_sec:
-                return False
-        return True
+        return self._watcher.spin_until_free(
+            lambda: all(future.done() for future in asked), free_sec=free_sec
+        )
 
     def _with_services(self) -> set[str]:
         suffix = '/set_parameters'

@@ -1,6 +1,11 @@
 """The joints of a JointState by name, and what to say where they are not as asked for."""
 
+import math
+from collections.abc import Sequence
+
 from sensor_msgs.msg import JointState
+
+from my_robot_basics.checks.errors import expect
 
 EXACT_RAD = 2e-4
 CLOSE_RAD = 0.02
@@ -29,12 +34,62 @@ def shown(message: JointState) -> dict[str, float] | str:
     return pose(message) or f'{positions} positions with {names} names'
 
 
-def what_to_try(seen: dict[str, float], right: dict[str, float]) -> str:
-    """Advice for a pose that is not the right one, both as `pose` returns them."""
+def in_radians(pose_deg: Sequence[float]) -> dict[str, float]:
+    """The position of joint1 and joint2 for a pose in degrees, to four decimals."""
+    return {
+        f'joint{number}': round(math.radians(angle), 4)
+        for number, angle in enumerate(pose_deg, start=1)
+    }
+
+
+def expect_radians(position: Sequence[float], pose_deg: Sequence[float]) -> None:
+    """The positions are these angles in radians, in this order. Raises CheckFailed."""
+    seen, right = [round(each, 4) for each in position], list(in_radians(pose_deg).values())
+    expect(
+        _are_near(seen, right),
+        expected=f'{right} rad for {tuple(pose_deg)} degrees',
+        seen=f'{seen}',
+        hint=_why_off(list(position), pose_deg),
+    )
+
+
+def why_wrong(message: JointState, pose_deg: Sequence[float]) -> str:
+    """Advice for a message that is not that pose; it names the cause, and none of the angles."""
+    seen, right = pose(message), in_radians(pose_deg)
     if seen.keys() != right.keys():
         return f'give each message two positions, and the names {" and ".join(right)}'
-    if agree(seen, right, CLOSE_RAD):
-        return 'close: take math.radians() itself, and do not round'
-    if {*seen.values()} == {*right.values()}:
-        return 'put x beside the name joint1, and y beside joint2'
-    return 'convert both with math.radians(…), x for the name joint1 and y for joint2'
+    return _why_off([seen[name] for name in right], pose_deg)
+
+
+def _why_off(seen: Sequence[float], pose_deg: Sequence[float]) -> str:
+    right = [math.radians(angle) for angle in pose_deg]
+    if len(seen) != len(right):
+        return 'put one position for each joint into the list'
+    if not all(map(math.isfinite, seen)):
+        return 'a position is no finite number (nan or inf), so look how it is computed'
+    causes = {
+        'these are degrees: convert both with radians()': pose_deg,
+        'the joints have changed places: θ1 belongs to joint1, and comes first': right[::-1],
+        'radians() is called twice': [math.radians(angle) for angle in right],
+        'degrees() converts the other way: call radians()': [math.degrees(a) for a in pose_deg],
+        'joint2 is still in degrees: convert both with radians()': [right[0], pose_deg[1]],
+        'joint1 is still in degrees: convert both with radians()': [pose_deg[0], right[1]],
+        'the sign of joint1 is wrong': [-right[0], right[1]],
+        'the sign of joint2 is wrong': [right[0], -right[1]],
+        'both signs are wrong': [-angle for angle in right],
+        'joint2 holds θ1, too': [right[0], right[0]],
+        'joint1 holds θ2, too': [right[1], right[1]],
+    }
+    found = [cause for cause, wrong in causes.items() if _are_near(seen, wrong)]
+    if not found and _are_near(seen, right, CLOSE_RAD):
+        return 'close: take radians() itself, and do not round'
+    return next(iter(found), 'convert both angles with radians(), θ1 for joint1, θ2 for joint2')
+
+
+def _are_near(
+    seen: Sequence[float], wanted: Sequence[float], within_rad: float = EXACT_RAD
+) -> bool:
+    # a NaN is near nothing
+    return len(seen) == len(wanted) and all(
+        abs(a - b) < within_rad for a, b in zip(seen, wanted, strict=True)
+    )

@@ -1,25 +1,28 @@
 """What a node logs, as everybody else on the robot can read it: the topic /rosout."""
 
-import re
 import time
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import Self
+from typing import Any, Self
 
 from rcl_interfaces.msg import Log as LogMessage
+from rclpy.publisher import Publisher
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
-from my_robot_basics.checks import angles, graphs
+from my_robot_basics.checks import angles, answers, graphs
 from my_robot_basics.checks.errors import fail, shorten
+from my_robot_basics.checks.topics import Topic
 from my_robot_basics.checks.watcher import Watcher
 
 LEVELS = {10: 'DEBUG', 20: 'INFO', 30: 'WARN', 40: 'ERROR', 50: 'FATAL'}
 DEPTH = 1000
 NODE_SEC = 10.0
 AFTERTHOUGHT_SEC = 0.3
+"""How long angles may come behind a warning …"""
+WARNED_SEC = 0.1
+"""… And a warning behind the angles: a later one is found with the next target."""
 WARN_ONLY = 'warn only when inverse_kinematics(x, y) raises ValueError'
 INFO_FOR_ANGLES = 'log angles with self.get_logger().info(…), and ' + WARN_ONLY
-_NUMBER = re.compile(r'[-−+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?')
 
 
 @dataclass(frozen=True)
@@ -48,6 +51,11 @@ class Log:
         self._heard: list[tuple[int, Record]] = []
         self._watcher = Watcher()
         self._since_ns = 0
+        self._publishers: dict[str, Publisher] = {}
+        self._forms: set[str] = set()
+        """Texts without their numbers that held angles, of targets in reach."""
+        self._answer: list[float] = []
+        """The angles of the last target in reach."""
 
     def __enter__(self) -> Self:
         """Subscribe and wait for the node. Raises CheckFailed when it does not come."""
@@ -68,6 +76,17 @@ class Log:
         """Let only records count that are logged from now on."""
         self._since_ns = time.time_ns()
 
+    def ask(self, topic_name: str, message: Any) -> None:
+        """Publish a target, of which the records since then are to tell.
+
+        Raises CheckFailed where nobody subscribes to the topic.
+        """
+        if topic_name not in self._publishers:
+            publisher = Topic(topic_name).meet(self._watcher, type(message))
+            self._publishers[topic_name] = publisher
+        self.mark()
+        self._publishers[topic_name].publish(message)
+
     @property
     def records(self) -> tuple[Record, ...]:
         """The records that were heard since the mark, oldest first."""
@@ -75,12 +94,34 @@ class Log:
 
     def numbers(self, level: str = 'INFO', *, since: int = 0) -> tuple[float, ...]:
         """All numbers in the records of a level since the mark, in order; or `since` its n-th."""
-        texts = [record.text for record in self.records if record.level == level][since:]
-        return tuple(float(n.replace('−', '-')) for text in texts for n in _NUMBER.findall(text))
+        texts = self._texts(level)[since:]
+        return tuple(number for text in texts for number in answers.numbers_of(text))
 
     def wait_for(self, done: Callable[[Self], bool], *, timeout_sec: float = 5.0) -> bool:
         """Listen until `done(log)`, at most `timeout_sec`; whether it came to that."""
         return self._watcher.spin_until(lambda: done(self), timeout_sec=timeout_sec)
+
+    def expect_solutions(
+        self,
+        solutions: answers.Solutions,
+        *,
+        target: Sequence[float] = (),
+        may_lag: bool = False,
+    ) -> bool:
+        """INFO records hold both angles of each solution, each θ1 with its own θ2, where in pairs.
+
+        The rest is as `expect_angles` says.
+        """
+        angles_deg = [angle for pair in solutions for angle in pair]
+        had_warning = self.expect_angles(angles_deg, target=target, may_lag=may_lag)
+        if answers.are_mixed_up(list(solutions), self._texts('INFO')):
+            fail(
+                expected=f'θ1 and θ2 of one solution together in the log of {self._node_name}',
+                seen=self._shown('INFO'),
+                hint='θ1 stands with the θ2 of the other branch: both signs of θ2 are right, so'
+                ' look at the sign with which θ1 takes it',
+            )
+        return had_warning
 
     def expect_angles(
         self,
@@ -93,10 +134,10 @@ class Log:
     ) -> bool:
         """INFO records hold every one of these angles, on any number of lines; no WARN is there.
 
-        Other numbers don't matter, nor do whole turns. Raises CheckFailed after `timeout_sec`;
-        it names the `target` (m) that has these angles. With `may_lag`, a WARN before the answer
-        may be about the target before, which a timer has taken up once more; returns whether
-        there was one.
+        Other numbers don't matter, up to a thousand, nor do whole turns. Raises CheckFailed after
+        `timeout_sec`; it names the `target` (m) that has these angles. With `may_lag`, a WARN
+        before the answer may be about the target before, which a timer has taken up once more;
+        returns whether there was one.
         """
         wanted = list(angles_deg)
 
@@ -104,7 +145,9 @@ class Log:
             return not angles.missing(wanted, log.numbers(), within_deg)
 
         what = f'({", ".join(f"{metres:.3f}" for metres in target)})' if target else 'a target'
-        if not self.wait_for(is_answered, timeout_sec=timeout_sec):
+        is_there = self.wait_for(is_answered, timeout_sec=timeout_sec)
+        self._expect_no_table()
+        if not is_there:
             listed = ', '.join(f'{angle:.2f}°' for angle in wanted)
             fail(
                 expected=f'{listed} for {what} in the INFO log of {self._node_name}',
@@ -114,28 +157,25 @@ class Log:
             )
         before = self._count('WARN') if may_lag else 0
         # a warning may come just behind the answer
-        if self.wait_for(lambda log: log._count('WARN') > before, timeout_sec=AFTERTHOUGHT_SEC):
+        if self.wait_for(lambda log: log._count('WARN') > before, timeout_sec=WARNED_SEC):
             fail(
                 expected=f'no warning from {self._node_name} for {what}, which is in reach',
                 seen=self._shown('WARN'),
                 hint=WARN_ONLY,
                 cause='a warning comes for a target in reach',
             )
+        self._forms |= answers.forms_with(wanted, self._texts('INFO'))
+        self._answer = wanted
         return before > 0
 
-    def expect_warning(
-        self,
-        *,
-        no_angles: Iterable[float] = (),
-        no_longer: Iterable[float] = (),
-        timeout_sec: float = 5.0,
-    ) -> None:
-        """At least one WARN record comes, and INFO records hold none of the angles `no_angles`.
+    def expect_warning(self, *, no_angles: Iterable[float] = (), timeout_sec: float = 5.0) -> None:
+        """At least one WARN record comes, and no INFO record with angles.
 
-        Nor do they hold any of `no_longer`, those of the target before, once the warning is there.
-        Raises CheckFailed after `timeout_sec`.
+        That is one that looks like those which held the angles of a target in reach, and has
+        other numbers; once the warning is there, these very angles, too; and one of `no_angles`
+        beside the θ2 of a stretched or folded arm. Raises CheckFailed after `timeout_sec`.
         """
-        unwanted, former = list(no_angles), list(no_longer)
+        bearings = list(no_angles)
         if not self.wait_for(lambda log: log._has('WARN'), timeout_sec=timeout_sec):
             fail(
                 expected=f'a warning in the log of {self._node_name}',
@@ -146,16 +186,21 @@ class Log:
         levels = [record.level for record in self.records]
         count = levels[: levels.index('WARN')].count('INFO')
 
-        def has_unwanted(log: Self) -> bool:
-            found = [
-                *((a, n) for a in unwanted for n in log.numbers()),
-                *((a, n) for a in former for n in log.numbers(since=count)),
-            ]
-            return any(angles.near(*pair) for pair in found)
+        def has_angles(log: Self) -> bool:
+            texts = log._texts('INFO')
+            return any(
+                answers.has_stretched(bearings, text)
+                or (number >= count and answers.holds_any(self._answer, text))
+                or (
+                    answers.form_of(text) in self._forms
+                    and not answers.holds_any(self._answer, text)
+                )
+                for number, text in enumerate(texts)
+            )
 
         # angles may come just behind the warning, and so may a second one, which is no answer to
         # the next target
-        if self.wait_for(has_unwanted, timeout_sec=AFTERTHOUGHT_SEC):
+        if self.wait_for(has_angles, timeout_sec=AFTERTHOUGHT_SEC):
             fail(
                 expected=f'no angles from {self._node_name} for a target out of reach',
                 seen=self._shown('INFO'),
@@ -213,6 +258,19 @@ class Log:
             f'catch ValueError each time and log it with self.get_logger().warning(…) {angles.HOW}'
         )
 
+    def _expect_no_table(self) -> None:
+        count = len(set(self.numbers()))
+        if count > answers.MOST_NUMBERS:
+            fail(
+                expected=f'the angles of one target in the INFO log of {self._node_name}',
+                seen=f'{count:,} different numbers',
+                hint='log the solutions of each target, and not every angle that there is',
+                cause=f'over {answers.MOST_NUMBERS:,} different numbers for one target',
+            )
+
+    def _texts(self, level: str) -> list[str]:
+        return [record.text for record in self.records if record.level == level]
+
     def _has(self, level: str) -> bool:
         return self._count(level) > 0
 
@@ -220,8 +278,7 @@ class Log:
         return sum(record.level == level for record in self.records)
 
     def _shown(self, level: str) -> str:
-        texts = [record.text for record in self.records if record.level == level]
-        if texts:
+        if texts := self._texts(level):
             return f"'{shorten(' | '.join(texts))}'"
         others = ' | '.join(f'{record.level} {record.text}' for record in self.records)
         return f'no {level} record' + (f" but '{shorten(others)}'" if others else '')

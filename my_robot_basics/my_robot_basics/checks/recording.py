@@ -43,6 +43,8 @@ class Recording:
     """A remark for the feedback that costs nothing."""
     late_sec: float = 0.0
     """How long the machine kept the recording itself waiting at most: a node fares no better."""
+    proof: 'Recording | None' = field(default=None, repr=False)
+    """What the simulated clock showed with other steps."""
     look_again: Callable[[float], 'Recording'] | None = field(default=None, repr=False)
     """Records so many seconds more on the wall clock, for a second opinion."""
 
@@ -69,7 +71,7 @@ class Recording:
             if self.note:
                 print(self.note)
             return
-        if self.look_again is None or rates.is_regular(self):
+        if self.look_again is None or rates.is_certain(self):
             rates.fail_rate(self, hz)
         try:
             second = self.look_again(min(max(SECOND_LOOK_SEC, 3.0 / hz), LONGEST_LOOK_SEC))

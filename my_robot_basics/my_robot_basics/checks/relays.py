@@ -15,6 +15,7 @@ from rclpy.qos import (
 )
 
 from my_robot_basics.checks import graphs
+from my_robot_basics.checks.carried import QUIET_SEC, Carried, carry
 from my_robot_basics.checks.errors import expect, fail
 from my_robot_basics.checks.fits import brief, incompatible, leave_out
 from my_robot_basics.checks.latched import said_to_nobody
@@ -23,6 +24,9 @@ from my_robot_basics.checks.topics import Topic
 from my_robot_basics.checks.watcher import Watcher
 
 TIMEOUT_SEC = 10.0
+TIMES = 10
+"""Messages in a row: one that is left out now and then is among them."""
+ATTEMPTS = 2
 AGAIN_SEC = 0.1
 """How long to wait for a message to come out before it is sent once more."""
 REFUSED_SEC = 2.0
@@ -41,19 +45,30 @@ class Relay:
     source: str
     to: str
 
-    def assert_carries(self, *messages: Any, qos_profile: QoSProfile) -> None:
-        """Each message, offered with that profile on `source`, comes out on `to`.
+    def assert_carries(
+        self, make_message: Callable[[], Any], *, qos_profile: QoSProfile, times: int = TIMES
+    ) -> None:
+        """Each of so many messages, offered with that profile on `source`, comes out on `to`.
 
-        It is sent again and again meanwhile: a BEST_EFFORT end may lose one.
+        `make_message` makes each another one. They are sent one at a time: each has to come out
+        before the next one, and once. The first is sent again and again meanwhile, and where one
+        of the others is amiss, all begins anew: a BEST_EFFORT end may lose one.
         """
         with Watcher() as watcher:
-            ears = self._listen(watcher, type(messages[0]))
-            publisher = self._publish_to_node(watcher, type(messages[0]), qos_profile)
-            for message in messages:
-                self._expect_out(watcher, ears, message, again=publisher)
+            first = make_message()
+            ears = self._listen(watcher, type(first))
+            publisher = self._publish_to_node(watcher, type(first), qos_profile)
+            self._expect_one_profile(watcher)
+            self._expect_out(watcher, ears, first, again=publisher)
+            for _ in range(ATTEMPTS):
+                messages = [make_message() for _ in range(times)]
+                carried = carry(watcher, ears, messages, publish=publisher.publish, is_same=_says)
+                if carried.is_whole():
+                    return
+            self._fail_carried(carried)
 
     def assert_carries_latched(self, make_message: Callable[[], Any], *, times: int = 1) -> None:
-        """What was said before anybody listened comes out on `to`.
+        """A message that was published before anybody subscribed comes out on `to`, once.
 
         So many times a new participant publishes one latched message, a new one of
         `make_message`, before it has met anybody. And the graph says that the node asks for it:
@@ -63,9 +78,15 @@ class Relay:
             ears = self._listen(watcher, type(make_message()))
             self._expect_transient_local(watcher)
             self._expect_type(watcher, ears.type)
+            self._expect_one_profile(watcher)
             for _ in range(times):
                 with said_to_nobody(self.source, make_message) as (message, _):
                     self._expect_out(watcher, ears, message)
+                    # one behind the other, should there be two
+                    watcher.spin_for(QUIET_SEC)
+                count = sum(_says(heard, message) for heard in ears.messages())
+                if count > 1:
+                    self._fail_carried(Carried(counts=(count,), late=0))
 
     def _listen(self, watcher: Watcher, type_: type) -> Ears:
         """Listen on `to`; a VOLATILE publisher is waited for until it knows of the listener."""
@@ -133,6 +154,32 @@ class Relay:
                 seen=' and '.join(sorted(asked())),
                 hint='what was said before you joined comes only to those who ask for it',
             )
+
+    def _expect_one_profile(self, watcher: Watcher) -> None:
+        """The node that publishes on `to` subscribes to `source` with one profile: it chose."""
+        offers = graphs.publisher_infos(watcher.node, self.to)
+        names = {graphs.full_name(offer) for offer in offers}
+        asked = {
+            brief(info.qos_profile)
+            for info in graphs.subscription_infos(watcher.node, self.source)
+            if graphs.full_name(info) in names
+        }
+        expect(
+            len(asked) <= 1,
+            expected=f'one subscription on {self.source}, with the profile that fits',
+            seen=' and '.join(sorted(asked)),
+            hint='choose one profile: with one subscription of each kind, some never receive'
+            ' anything, and others receive everything twice',
+        )
+
+    def _fail_carried(self, carried: Carried) -> NoReturn:
+        seen, hint = carried.fault()
+        fail(
+            expected=f'each message of {self.source} to come out on {self.to} at once, and once',
+            seen=seen,
+            hint=hint,
+            cause=seen,
+        )
 
     def _expect_out(
         self, watcher: Watcher, ears: Ears, message: Any, *, again: Publisher | None = None

@@ -21,12 +21,15 @@ def answer(request_text: str) -> str:
         'value',
         'endpoint',
         'trouble',
+        'clock',
     ):
         raise values.WireError('a request of another protocol')
     if op == 'endpoint':
         return _reply(_has_endpoint(name))
     if op == 'trouble':
         return _reply(_trouble(name))
+    if op == 'clock':
+        return _reply(_set_use_sim_time(name, *args))
     namespace = vars(sys.modules['__main__'])
     if name not in namespace:
         return wire.dumps({'missing': name})
@@ -60,6 +63,25 @@ def _trouble(node_name: str) -> str:
     """What a callback of a node raised last that live spins, or ''."""
     troubles = sys.modules.get('my_robot_basics.live.troubles')
     return troubles.last(node_name) if troubles else ''
+
+
+def _set_use_sim_time(node_name: str, value: bool) -> bool | None:
+    """Give a node of this process its clock; its former `use_sim_time`, None where there is none.
+
+    For one without parameter services: nobody else can.
+    """
+    if 'rclpy' not in sys.modules:
+        return None
+    from rclpy.parameter import Parameter
+
+    from my_robot_basics.live.neighbours import nodes_here
+
+    for node in nodes_here():
+        if node.get_fully_qualified_name() == node_name:
+            former = node.get_parameter('use_sim_time').value
+            node.set_parameters([Parameter('use_sim_time', value=bool(value))])
+            return former
+    return None
 
 
 def _reply(value: object) -> str:

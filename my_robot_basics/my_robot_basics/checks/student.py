@@ -88,6 +88,20 @@ def trouble(node_name: str) -> str:
     return shorten(body) if kind == 'ok' and isinstance(body, str) else ''
 
 
+def set_use_sim_time(node_name: str, value: bool) -> bool | None:
+    """Give a node of the notebook's process its clock; its former `use_sim_time`.
+
+    None where that process has no such node, or does not answer. It drives a node that nothing
+    else can drive; the verdict stays with what the node publishes.
+    """
+    try:
+        question = wire.request(op='clock', name=node_name, args=(value,))
+        kind, body = wire.parse_reply(_send(question))
+    except values.WireError:
+        return None
+    return body if kind == 'ok' and isinstance(body, bool) else None
+
+
 def _send(question: str) -> str:
     return input(question) if is_in_test_room() else responder.answer(question)
 

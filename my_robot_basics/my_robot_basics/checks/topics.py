@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 from rclpy.duration import Duration
+from rclpy.publisher import Publisher
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 from my_robot_basics.checks import graphs, looks, student, values
@@ -71,27 +72,36 @@ class Topic:
         The publisher is RELIABLE and TRANSIENT_LOCAL, which every subscription is content with.
         """
         with Watcher() as watcher:
-            offer = QoSProfile(
-                depth=max(10, len(messages)),
-                reliability=ReliabilityPolicy.RELIABLE,
-                durability=DurabilityPolicy.TRANSIENT_LOCAL,
+            publisher = self.meet(
+                watcher, type(messages[0]), depth=len(messages), timeout_sec=timeout_sec
             )
-            publisher = watcher.node.create_publisher(type(messages[0]), self.name, offer)
-            timeout_sec = self.patience_sec(timeout_sec)
-            if not watcher.spin_until(
-                lambda: publisher.get_subscription_count() > 0, timeout_sec=timeout_sec
-            ):
-                self._fail_unheard(watcher, type(messages[0]), timeout_sec=timeout_sec)
-            infos = graphs.subscription_infos(watcher.node, self.name)
-            sent_once = any(
-                info.qos_profile.reliability == ReliabilityPolicy.BEST_EFFORT for info in infos
-            )
-            # such a subscription may not know yet of a publisher that knows of it
-            watcher.spin_for(ACQUAINTANCE_SEC if sent_once else 0.0)
             for message in messages:
                 publisher.publish(message)
             publisher.wait_for_all_acked(Duration(seconds=2))
-            watcher.spin_for(ACQUAINTANCE_SEC if sent_once else 0.0)
+            watcher.spin_for(ACQUAINTANCE_SEC if self._sends_once(watcher) else 0.0)
+
+    def meet(
+        self, watcher: Watcher, type_: type, *, depth: int = 10, timeout_sec: float = 10.0
+    ) -> Publisher:
+        """A publisher that every subscription is content with, once one is there."""
+        offer = QoSProfile(
+            depth=max(10, depth),
+            reliability=ReliabilityPolicy.RELIABLE,
+            durability=DurabilityPolicy.TRANSIENT_LOCAL,
+        )
+        publisher = watcher.node.create_publisher(type_, self.name, offer)
+        timeout_sec = self.patience_sec(timeout_sec)
+        if not watcher.spin_until(
+            lambda: publisher.get_subscription_count() > 0, timeout_sec=timeout_sec
+        ):
+            self._fail_unheard(watcher, type_, timeout_sec=timeout_sec)
+        # a BEST_EFFORT one may not know yet of a publisher that knows of it
+        watcher.spin_for(ACQUAINTANCE_SEC if self._sends_once(watcher) else 0.0)
+        return publisher
+
+    def _sends_once(self, watcher: Watcher) -> bool:
+        infos = graphs.subscription_infos(watcher.node, self.name)
+        return any(info.qos_profile.reliability == ReliabilityPolicy.BEST_EFFORT for info in infos)
 
     def wait_for(
         self,

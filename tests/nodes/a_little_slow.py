@@ -1,0 +1,6 @@
+"""At 4.88 Hz: within what the wall clock allows, and not 5 Hz."""
+
+from five_hz import FiveHz, spin
+
+if __name__ == '__main__':
+    spin(FiveHz, period_sec=0.205)
