@@ -42,6 +42,7 @@ PASSES = (
     'nbgrader.preprocessors.ClearMarkScheme',
     'grader.marks.MarkSources',
     'nbgrader.preprocessors.ComputeChecksums',
+    'grader.release.LetRunAllGoOn',
     'nbgrader.preprocessors.CheckCellMetadata',
 )
 """What happens to a source notebook, in order; up to SaveCells it is what the gradebook keeps."""
@@ -100,6 +101,24 @@ def broken(cleared: str) -> str:
             f' ### END SOLUTION, each beginning with {BROKEN!r}'
         )
     return source
+
+
+class LetRunAllGoOn(Preprocessor):
+    """Tag the cells that check answers: where one fails, JupyterLab still runs the cells below.
+
+    Its error shows as ever. nbgrader looks at outputs alone, and what we grade and validate is
+    made from solutions/, where no cell has this tag.
+    """
+
+    enabled = True
+
+    def preprocess_cell(
+        self, cell: NotebookNode, resources: dict, index: int
+    ) -> tuple[NotebookNode, dict]:
+        """Tag one cell, if it is locked code: it runs an answer, or checks it."""
+        if cell.cell_type == 'code' and cell.metadata.get('nbgrader', {}).get('locked'):
+            cell.metadata['tags'] = [*cell.metadata.get('tags', []), 'raises-exception']
+        return cell, resources
 
 
 class KeepDemoOutputs(Preprocessor):

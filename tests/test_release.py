@@ -219,3 +219,12 @@ def test_an_answer_that_a_demonstration_prints_is_not_released(course):
 
 def test_the_lessons_of_this_course_are_released_fresh_and_leak_nothing():
     assert stale_or_leaking(Course()) == []
+
+
+def test_only_released_cells_that_check_answers_let_run_all_go_on():
+    course = Course()
+    for name in course.assignments():
+        for cell in course.release(name).cells:
+            locked = cell.cell_type == 'code' and cell.metadata.get('nbgrader', {}).get('locked')
+            assert ('raises-exception' in cell.metadata.get('tags', [])) == bool(locked), cell.id
+        assert 'raises-exception' not in course.source_path(name).read_text(encoding='utf-8')
