@@ -161,6 +161,12 @@ def errors(cells):
     }
 
 
+ALL_RAN = """() => {
+    const {content, sessionContext} = jupyterapp.shell.currentWidget;
+    const code = content.model.toJSON().cells.filter(cell => cell.cell_type === 'code');
+    return code.every(cell => cell.execution_count !== null)
+        && sessionContext.session.kernel.status === 'idle';
+}"""
 WIDTH = 'async image => (await image.decode(), image.naturalWidth)'
 
 
@@ -256,13 +262,12 @@ def test_run_all_goes_through_an_unanswered_lesson_and_stops_at_no_check(opened,
     released = lesson.cells
     graded = [c.id for c in released if c.metadata.get('nbgrader', {}).get('grade')]
     lesson.command('notebook:run-all-cells')
+    lesson.page.wait_for_function(ALL_RAN)  # the command waits for the first error only
     cells = lesson.cells
     failed = errors(cells)
     assert failed
     assert set(failed) <= set(graded)
     assert warnings(cells) == []
-    code = [c for c in cells if c.cell_type == 'code']
-    assert [c.id for c in code if c.execution_count is None] == []
     for cell in released:
         if count := len(pictures(cell)):
             images = lesson.shown(cell.id).locator('.jp-OutputArea img')
