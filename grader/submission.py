@@ -13,10 +13,13 @@ from nbformat import NotebookNode
 
 from grader.dates import date_of
 from grader.errors import UnreadableSubmission
+from grader.parsing import TooHard, parse
 
 MAX_NOTEBOOK_BYTES = 20_000_000
 """More than any lesson with all its pictures; a larger file is refused, not read."""
 
+MAX_BYTES_HERE = 1_000_000
+"""A larger file is read in a process of its own."""
 MAX_CELLS = 2_000
 MAX_CHARACTERS = 500_000
 """Of all cells together, pictures apart: twenty times what a lesson has."""
@@ -80,8 +83,32 @@ def handed_in(submission: Submission) -> tuple[datetime | None, list[str]]:
 def read_notebook(path: Path) -> NotebookNode:
     """Read a notebook that nobody vouches for, keeping only what grading needs.
 
-    Raises UnreadableSubmission with a sentence for the student.
+    A large one is read in a process with limits: JSON may take 30 times its size in memory. Raises
+    UnreadableSubmission with a sentence for the student.
     """
+    if path.is_symlink() or not path.is_file() or path.stat().st_size <= MAX_BYTES_HERE:
+        return _read(path)
+    try:
+        said = parse('grader.submission:read_apart', str(path))
+    except TooHard as why:
+        raise UnreadableSubmission(
+            f'{path.name} is not read, for {why}: choose "Clear All Outputs" in JupyterLab, save, '
+            'and submit again.'
+        ) from None
+    if problem := said.get('problem'):
+        raise UnreadableSubmission(problem)
+    return nbformat.from_dict(said['notebook'])
+
+
+def read_apart(path: str) -> dict:
+    """Read a notebook; return it, or what is wrong with it, as JSON."""
+    try:
+        return {'notebook': _read(Path(path))}
+    except UnreadableSubmission as error:
+        return {'problem': str(error)}
+
+
+def _read(path: Path) -> NotebookNode:
     raw = _read_json(path)
     if not isinstance(raw, dict) or not isinstance(raw.get('nbformat'), int):
         raise UnreadableSubmission(
@@ -91,13 +118,14 @@ def read_notebook(path: Path) -> NotebookNode:
     cells = raw.get('cells')
     if raw['nbformat'] < 4:
         cells = [c for sheet in _dicts(raw.get('worksheets')) for c in _dicts(sheet.get('cells'))]
-    cells = [_clean_cell(cell) for cell in _dicts(cells)]
+    cells = _dicts(cells)
     if not cells:
         raise UnreadableSubmission(f'{path.name} has no cells: submit the notebook you worked in.')
     if len(cells) > MAX_CELLS:
         raise UnreadableSubmission(
             f'{path.name} has {len(cells)} cells, more than the {MAX_CELLS} that are graded.'
         )
+    cells = [_clean_cell(cell) for cell in cells]
     characters = sum(len(cell.source) for cell in cells)
     if characters > MAX_CHARACTERS:
         raise UnreadableSubmission(

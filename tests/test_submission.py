@@ -1,11 +1,13 @@
 """Reading what strangers hand in: every oddity gets a sentence, nothing gets a traceback."""
 
 import json
+import resource
 
 import nbformat
 import pytest
 from nbformat.v4 import new_code_cell, new_notebook
 
+from grader import submission
 from grader.errors import UnreadableSubmission
 from grader.submission import (
     MAX_CELLS,
@@ -203,3 +205,28 @@ def test_reading_changes_nothing(tmp_path):
     before = (path.read_bytes(), path.stat().st_mtime_ns, sorted(tmp_path.iterdir()))
     read_submission(tmp_path, student_id='ada', assignment='03_publisher')
     assert (path.read_bytes(), path.stat().st_mtime_ns, sorted(tmp_path.iterdir())) == before
+
+
+@pytest.mark.parametrize(
+    'content', [notebook_text(CODE), *(text for text, _ in UNREADABLE.values())]
+)
+def test_a_large_one_is_read_elsewhere_to_the_same_end(read, content, monkeypatch):
+    def outcome():
+        try:
+            return [(cell.cell_type, cell.source) for cell in read(content).cells]
+        except UnreadableSubmission as error:
+            return str(error)
+
+    here = outcome()
+    monkeypatch.setattr(submission, 'MAX_BYTES_HERE', -1)
+    assert outcome() == here
+
+
+def test_a_notebook_that_takes_all_memory_is_refused_and_takes_none_here(read):
+    """Read in this process, it took 7 GB."""
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    cells = ','.join(['{}'] * 6_000_000)
+    with pytest.raises(UnreadableSubmission, match=r'the 2000 that are graded|too much memory'):
+        read(f'{{"nbformat": 4, "cells": [{cells}]}}')
+    kilobytes = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before
+    assert kilobytes < 400_000  # of which this test itself takes some
