@@ -1,4 +1,4 @@
-"""Who hears whom, and what was lost: the pictures, and what they say in words."""
+"""Which profiles match, and what was lost: the pictures, and what they say in words."""
 
 import numpy as np
 import pytest
@@ -26,11 +26,11 @@ def shown(monkeypatch):
 
 
 def test_a_matrix_says_yes_or_no_in_each_cell_and_in_words(shown):
-    show_qos_matrix(OUTCOMES, title='who hears whom')
+    show_qos_matrix(OUTCOMES, title='who reaches whom')
     [bundle] = shown
     assert bundle['image/png'].startswith(b'\x89PNG')
     assert bundle['text/plain'].splitlines() == [
-        'who hears whom',
+        'who reaches whom',
         'RELIABLE VOLATILE → RELIABLE VOLATILE yes, none yes',
         'none → RELIABLE VOLATILE no (RELIABILITY), none yes',
     ]
@@ -51,7 +51,7 @@ def test_each_outcome_stands_where_its_pair_says():
     assert axes.get_ylim() == (2, 0)
     assert [tick.get_text() for tick in axes.get_xticklabels()] == ['RELIABLE\nVOLATILE', 'none']
     assert 'offers' in axes.get_ylabel()
-    assert 'asks for' in axes.get_xlabel()
+    assert 'requests' in axes.get_xlabel()
 
 
 def test_a_matrix_with_a_hole_is_refused():

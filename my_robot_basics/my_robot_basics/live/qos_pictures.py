@@ -1,4 +1,4 @@
-"""Pictures of who hears whom, and of the messages that were lost on the way."""
+"""Pictures of which QoS profiles match, and of the messages that were lost on the way."""
 
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
@@ -18,7 +18,7 @@ LONG = 12
 
 
 def show_qos_matrix(outcomes: Mapping[tuple[str, str], str], *, title: str = '') -> None:
-    """Show a table of pairs (what is offered, what is asked for), each with what came of it.
+    """Show a table of pairs (what is offered, what is requested), each with what came of it.
 
     An outcome is 'yes' where a message arrived, else the name of the policy that did not match.
     Raises ValueError for a table with holes.
@@ -36,10 +36,14 @@ def show_qos_matrix(outcomes: Mapping[tuple[str, str], str], *, title: str = '')
     _show(figure, '\n'.join(filter(None, [title, *lines])))
 
 
-def show_lost_messages(heard: Mapping[str, Sequence[int]], *, sent: int, title: str = '') -> None:
-    """Show, for each listener, which of the messages 1 to `sent` it heard and which it missed."""
-    counts = [f'{name}: {len(_known(numbers, sent))} of {sent}' for name, numbers in heard.items()]
-    figure = _draw_lost(heard, sent=sent, title=title)
+def show_lost_messages(
+    received: Mapping[str, Sequence[int]], *, sent: int, title: str = ''
+) -> None:
+    """Show, for each subscription, which of the messages 1 to `sent` it received."""
+    counts = [
+        f'{name}: {len(_known(numbers, sent))} of {sent}' for name, numbers in received.items()
+    ]
+    figure = _draw_lost(received, sent=sent, title=title)
     _show(figure, '\n'.join(filter(None, [title, *counts])))
 
 
@@ -64,7 +68,7 @@ def _draw_matrix(
     figure = Figure(figsize=(2.2 + 1.4 * columns, 1.4 + 0.6 * rows), dpi=80, layout='constrained')
     axes = figure.add_subplot(xlim=(0, columns), ylim=(rows, 0))
     axes.set_title(title)
-    axes.set_xlabel('the subscription asks for')
+    axes.set_xlabel('the subscription requests')
     axes.set_ylabel('the publisher offers')
     axes.set_xticks([i + 0.5 for i in range(columns)], [_broken(name) for name in requests])
     axes.set_yticks([i + 0.5 for i in range(rows)], [_broken(name) for name in offers])
@@ -87,19 +91,19 @@ def _broken(name: str) -> str:
     return name.replace(' ', '\n', 1) if len(name) > LONG else name
 
 
-def _draw_lost(heard: Mapping[str, Sequence[int]], *, sent: int, title: str) -> 'Figure':
+def _draw_lost(received: Mapping[str, Sequence[int]], *, sent: int, title: str) -> 'Figure':
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(7.0, 1.1 + 0.5 * len(heard)), dpi=80, layout='constrained')
-    axes = figure.add_subplot(xlim=(0, sent + 1), ylim=(len(heard) - 0.5, -0.5))
+    figure = Figure(figsize=(7.0, 1.1 + 0.5 * len(received)), dpi=80, layout='constrained')
+    axes = figure.add_subplot(xlim=(0, sent + 1), ylim=(len(received) - 0.5, -0.5))
     labels = []
-    for row, (name, numbers) in enumerate(heard.items()):
+    for row, (name, numbers) in enumerate(received.items()):
         known = _known(numbers, sent)
         lost = [number for number in range(1, sent + 1) if number not in known]
         axes.plot(known, [row] * len(known), '|', color=ARRIVED, ms=16, mew=3, label='arrived')
         axes.plot(lost, [row] * len(lost), 'x', color=LOST, ms=5, label='lost')
         labels.append(f'{name}\n{len(known)} of {sent}')
-    axes.set_yticks(range(len(heard)), labels)
+    axes.set_yticks(range(len(received)), labels)
     axes.xaxis.get_major_locator().set_params(integer=True)
     axes.set_xlabel('message number')
     axes.set_title(title)
