@@ -155,7 +155,7 @@ def _claims(owner: Owner, naming: Naming, known: Mapping[str, set[str]]) -> tupl
                 f"it lies in what {whose} handed in, under the name of {who}: if it is {whose}'s, "
                 'rename that; if others packed it, collect what they packed by itself'
             )
-        remark = remark or f"in {who!r} of {whose}'s own"
+        remark = remark or f'from a folder of their own, {who!r}'
     return remark, ''
 
 

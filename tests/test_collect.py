@@ -343,7 +343,7 @@ def test_a_hostile_time_costs_only_itself(course, source):
 def test_a_folder_of_their_own_is_told_beside_what_was_taken(course, source):
     uploaded(source, 'Ada', 1, '', '/turtles')
     (row,) = collect(course, source)
-    assert (row.outcome, row.reason) == (NEW, "in 'turtles' of Ada's own")
+    assert (row.outcome, row.reason) == (NEW, "from a folder of their own, 'turtles'")
 
 
 # --- one upload stops nothing --------------------------------------------------------------------

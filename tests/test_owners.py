@@ -317,7 +317,7 @@ def test_names_of_every_alphabet_on_every_platform(path, student, at):
 def test_a_folder_named_after_nobody_known_is_taken_and_told(at):
     (hand_in,), left = match([at(f'{ADA}/turtle-bot/03_publisher.ipynb')], ASSIGNMENTS)
     assert (hand_in.student_id, left) == ('Ada Lovelace', [])
-    assert hand_in.remark == "in 'turtle-bot' of Ada Lovelace's own"
+    assert hand_in.remark == "from a folder of their own, 'turtle-bot'"
 
 
 @pytest.mark.parametrize('wrapper', ['', 'download/'])
