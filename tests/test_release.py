@@ -4,11 +4,13 @@ from pathlib import Path
 import nbformat
 import pytest
 from course_maker import PIXEL, TOY, make_course, toy_lesson, write_source
+from my_robot_basics.validate.cells import fingerprint
 from nbgrader.utils import compute_checksum
 
 from grader.course import Course
 from grader.errors import CourseError
 from grader.leaks import leaks_of
+from grader.marks import MarkHidden
 from grader.release import broken, release, stale_or_leaking
 
 
@@ -45,6 +47,36 @@ def test_a_release_carries_only_the_metadata_it_needs(course):
     assert notebook['metadata']['kernelspec']['name'] == 'python3'
     keys = {key for cell in notebook['cells'] for key in cell['metadata']}
     assert keys == {'nbgrader', 'tags', 'deletable', 'editable'}
+
+
+def test_a_release_tells_validate_what_is_hidden_and_nothing_of_it(course):
+    record = course.release(TOY).metadata.my_robot_basics.cells
+    assert {name: mark.role for name, mark in record.items()}.items() >= {
+        ('setup', 'setup'), ('shown', 'demo'), ('double', 'answer'), ('double-reset', 'locked'),
+    }  # fmt: skip
+    source = {cell.id: cell.source for cell in course.source(TOY).cells}
+    hidden = {name for name, text in source.items() if 'HIDDEN' in text}
+    assert hidden
+    assert {name for name, mark in record.items() if 'hidden' in mark} == hidden
+    given = {cell.id: cell.source for cell in course.release(TOY).cells}
+    assert all(mark.source == fingerprint(given[name]) for name, mark in record.items())
+
+
+VISIBLE_PARTS = {
+    'a check': ('expect(x, seen=y)', 'part'),
+    'a loop': ('for x in y:\n    expect(x)', 'part'),
+    'imports, and a word on it': ('from math import pi\nprint("checked at grading")', 'all'),
+    'nothing': ('', 'all'),
+}
+
+
+@pytest.mark.parametrize(('shown', 'hidden'), VISIBLE_PARTS.values(), ids=VISIBLE_PARTS)
+def test_a_check_is_marked_by_how_much_of_it_is_hidden(shown, hidden):
+    source = f'"""A title"""\n{shown}\n### BEGIN HIDDEN TESTS\n1 / 0\n### END HIDDEN TESTS'
+    marks = {'grade': True, 'grade_id': 'a', 'points': 1}
+    cell = nbformat.v4.new_code_cell(source, id='a', metadata={'nbgrader': marks})
+    notebook, _ = MarkHidden().preprocess(nbformat.v4.new_notebook(cells=[cell]), {})
+    assert notebook.metadata.my_robot_basics.cells.a == {'role': 'grade', 'hidden': hidden}
 
 
 def test_releasing_again_changes_nothing(course):

@@ -1,8 +1,14 @@
 """What Validate's report adds up to, in words."""
 
+import asyncio
+
 import pytest
+from answered import answered
+from my_robot_basics.validate import ahead
 from my_robot_basics.validate.as_text import as_text
+from my_robot_basics.validate.errors import RoomFailure
 from my_robot_basics.validate.report import Check, Part, Report
+from my_robot_basics.validate.run import validate
 
 
 def check(outcome, points=2.0, *, earned=None, hidden=False):
@@ -77,3 +83,20 @@ LINES = {
 @pytest.mark.parametrize(('one', 'line'), LINES.items(), ids=lambda each: str(each)[:20])
 def test_a_check_has_its_mark_and_its_points(one, line):
     assert line in as_text(report(one)).splitlines()
+
+
+def test_what_validate_fails_in_itself_is_no_fault_of_an_answer(monkeypatch, tmp_path):
+    class NoRooms:
+        def __init__(self, **options):
+            pass
+
+        async def __aenter__(self):
+            raise RoomFailure('all ROS domains are taken')
+
+    monkeypatch.setattr(ahead, 'Rooms', NoRooms)
+    told = asyncio.run(validate(answered('07_common_errors', tmp_path)))
+    assert [check.outcome for check in told.checks] == ['not checked'] * 3
+    assert told.checks[0].message == (
+        'Validate itself failed here, and your answer was not checked: all ROS domains are taken'
+    )
+    assert not told.passed

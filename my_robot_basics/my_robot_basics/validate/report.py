@@ -9,7 +9,7 @@ from nbformat import NotebookNode
 from my_robot_basics.validate.cells import KEY, grade_id
 from my_robot_basics.validate.lesson import Lesson
 from my_robot_basics.validate.titles import title_of_check
-from my_robot_basics.validate.verdict import SCORED, TROUBLE, Verdict
+from my_robot_basics.validate.verdict import SCORED, TROUBLE, UNGRADED, Verdict
 
 Outcome = Literal['passed', 'partial', 'failed', 'at grading', 'by hand', 'not checked']
 MARKS = {'passed': '✓', 'partial': '✗', 'failed': '✗'}
@@ -116,7 +116,7 @@ def make_check(
         outcome=_outcome(verdict, by_hand=by_hand, hidden=hidden, altered=name in lesson.altered),
         is_partly_hidden=hidden == 'part',
         earned=(verdict.score or 0.0) if verdict else 0.0,
-        message=verdict.reason if verdict else '',
+        message=_message(verdict) if verdict else '',
         notes=tuple(n for n in verdict.notes if not n.startswith(TROUBLE)) if verdict else (),
         pictures=tuple(_pictures(outputs)),
         source='' if by_hand else cell.source.strip(),
@@ -127,6 +127,13 @@ def troubles_of(verdicts: Iterable[Verdict]) -> tuple[str, ...]:
     """Return what went wrong in the student's own cells of an exercise, each once."""
     notes = [note for verdict in verdicts for note in verdict.notes]
     return tuple(dict.fromkeys(note for note in notes if note.startswith(TROUBLE)))
+
+
+def _message(verdict: Verdict) -> str:
+    if verdict.outcome != 'ungraded':
+        return verdict.reason
+    why = verdict.reason.removeprefix(UNGRADED)
+    return f'Validate itself failed here, and your answer was not checked: {why}'
 
 
 def _outcome(

@@ -23,6 +23,8 @@ NOTE = 'note: '
 """A check's line that starts so costs nothing, and is told to the student."""
 TROUBLE = 'your cell '
 """A note that begins so tells what went wrong in one of the student's cells."""
+UNGRADED = 'not graded, a person has to look at it: '
+"""How the reason begins where the grader itself failed."""
 _FAILURES = ('CheckFailed', 'PartlyRight', 'AssertionError')
 _SHOWN = ('display_data', 'stream')
 _TEMPORARY_FILE = re.compile(r'\((<ipython-input-[^>]*>|\d+\.py), (?=line \d+\))')
@@ -87,7 +89,7 @@ def judge(cell: NotebookNode, run: CellRun | None, own: Iterable[tuple[str, Cell
 
 def ungraded(cell: NotebookNode, why: str) -> Verdict:
     """Leave a grade cell to a person, because the grader itself failed."""
-    reason = f'not graded, a person has to look at it: {why}'
+    reason = UNGRADED + why
     return Verdict(
         grade_id(cell),
         outcome='ungraded',
