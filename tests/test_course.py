@@ -69,6 +69,8 @@ class Machine:
         (self.root / 'grader').mkdir()
         (self.root / 'grader/__init__.py').touch()
         shutil.copytree(ROOT / 'grader/kernelspec', self.root / 'grader/kernelspec')
+        button = 'my_robot_basics/my_robot_basics/validate/labextension'
+        shutil.copytree(ROOT / button, self.root / button)
         (self.root / 'notebooks').mkdir()
         for name in ('package.xml', 'setup.py', 'setup.cfg'):
             shutil.copy(ROOT / 'my_robot_basics' / name, package.parent)
