@@ -10,9 +10,12 @@ from my_robot_basics.validate.cells import role
 
 from grader.__main__ import main
 from grader.course import Course
+from grader.feedback import write_feedback
 from grader.grade import grade_all
 from grader.records import verdicts
+from grader.scores import write_scores
 from grader.submitted import find_submissions
+from grader.workers import Workers
 
 CHECK = '''"""Small numbers are doubled"""
 from my_robot_basics.checks import expect, inputs, student
@@ -74,25 +77,43 @@ def course(tmp_path_factory):
     return course
 
 
-def handed_in(course, way, *, table, later):
+@pytest.fixture(scope='module')
+def crew():
+    """Workers that are there for all of the hand-ins: beginning with each anew takes long."""
+    with Workers() as workers:
+        yield Standing(workers)
+
+
+class Standing:
+    """A crew that goes on when a run ends."""
+
+    def __init__(self, crew):
+        self.room, self.isolated, self.submit = crew.room, crew.isolated, crew.submit
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *exception):
+        pass
+
+
+def handed_in(course, crew, way, *, table, later):
     """Hand in and grade; return the score, and all that the student can read of it."""
     answer = ANSWER.replace('TABLE', repr(table)).replace('WAY', way)
     submit(course, 'eve', answered(course, answer.replace('SAY_IT_LATER', repr(later))))
-    (row,) = grade_all(course, find_submissions(course))
-    assert main(['feedback'], course=course) == 0
-    assert main(['scores'], course=course) == 0
-    (page,) = course.folder('feedback', '', '').rglob('*.html')
-    scores = course.gradebook / 'scores.csv'
+    (row,) = grade_all(course, find_submissions(course), crew=crew)
+    (page,) = write_feedback(course)
+    scores = write_scores(course)
     return row, page.read_text(encoding='utf-8') + scores.read_text(encoding='utf-8')
 
 
 @pytest.mark.isolation
-def test_a_table_of_all_that_ten_pages_tell_earns_nothing(course):
+def test_a_table_of_all_that_ten_pages_tell_earns_nothing(course, crew):
     numbers = random.Random(f'{course.seed(TOY, "eve")}:double')
     asked = {numbers.randrange(10_000, 60_000) for _ in range(4)}
     table, scores = {}, []
     for number, way in enumerate(WAYS):
-        row, told = handed_in(course, way, table=table, later=number % 2)
+        row, told = handed_in(course, crew, way, table=table, later=number % 2)
         scores.append(row.stored.score)
         found = {int(text.replace(',', '')) for text in NUMBER.findall(told)}
         table |= {x: 2 * x for x in found} | {x // 2: x for x in found}
@@ -102,21 +123,21 @@ def test_a_table_of_all_that_ten_pages_tell_earns_nothing(course):
 
 
 @pytest.mark.isolation
-def test_the_cause_is_told_and_whoever_teaches_reads_the_rest(course):
-    handed_in(course, 'return x + 1', table={}, later=False)
+def test_the_cause_is_told_and_whoever_teaches_reads_the_rest(course, crew):
+    handed_in(course, crew, 'return x + 1', table={}, later=False)
     found = verdicts(course, 'eve', TOY)['double-check']
     assert found.reason == f'{hidden.PLACE}add it to itself: …'
     assert re.fullmatch(r'expected (\d+) for (\d+), saw \d+: add it to itself: \2', found.details)
-    handed_in(course, 'raise ValueError(x)', table={}, later=False)
+    handed_in(course, crew, 'raise ValueError(x)', table={}, later=False)
     found = verdicts(course, 'eve', TOY)['double-check']
     cause = '`double` raises ValueError: …: call … in a cell of your own to see where'
     assert found.reason == f'{hidden.PLACE}{cause}'
 
 
 @pytest.mark.isolation
-def test_a_visible_part_that_fails_later_is_told_in_full(course):
+def test_a_visible_part_that_fails_later_is_told_in_full(course, crew):
     submit(course, 'eve', answered(course, 'def double(x):\n    return x + x if x else "none"'))
-    list(grade_all(course, find_submissions(course)))
+    list(grade_all(course, find_submissions(course), crew=crew))
     found = verdicts(course, 'eve', TOY)
     assert found['double-check'].outcome == 'passed'
     assert found['double-hidden'].reason == 'expected 0, saw none: add it to itself'
