@@ -37,6 +37,9 @@ def test_numbers_are_read_as_people_write_them(text, numbers):
         # joint by joint in two orders: nothing tells what belongs together
         [f'{UP[0]} {DOWN[0]} {DOWN[1]} {UP[1]}'],
         ['no numbers', by_turns(UP, DOWN), '2 solutions'],
+        # a distance or bearing that happens to be one of them
+        [f'bearing {DOWN[1]}: {by_turns(UP, DOWN)}'],
+        [f'bearing {DOWN[1]}, θ1 {UP[0]}', by_turns(UP), by_turns(DOWN)],
         # said again and again: the first one may be the end of the one before
         [by_turns(DOWN), by_turns(UP), by_turns(DOWN)],
         [],
@@ -51,7 +54,7 @@ def test_solutions_may_be_logged_in_many_ways(texts):
     [
         [by_turns((UP[0], DOWN[1]), (DOWN[0], UP[1]))],
         [by_turns((UP[0], DOWN[1])), by_turns((DOWN[0], UP[1]))],
-        [f'{UP[0]} {DOWN[1]} at 1.44 m', by_turns(DOWN)],
+        [by_turns((UP[0], DOWN[1])), 'at 1.44 m', by_turns((DOWN[0], UP[1]))] * 3,
         [str(angle) for angle in (UP[0], DOWN[1], DOWN[0], UP[1])],
     ],
 )

@@ -128,6 +128,14 @@ def test_by_turns_too_early_and_too_late_is_uneven():
     recording(jitter, clock='wall').assert_rate(hz=5.0)
 
 
+def test_pairs_and_plain_rates_are_not_taken_for_turns():
+    twice = [0.2 * (i // 2) + 0.001 * (i % 2) for i in range(2, 82)]
+    with pytest.raises(CheckFailed, match='publish one message each time the timer fires'):
+        recording(twice, clock='wall').assert_rate(hz=5.0)
+    with pytest.raises(CheckFailed, match=r'saw 50\.0 Hz .*: the timer period is in seconds'):
+        recording(every(0.02), clock='wall').assert_rate(hz=5.0)
+
+
 def test_on_the_wall_clock_the_largest_gap_counts():
     bursts = [i // 5 + 1.0 + 0.001 * (i % 5) for i in range(-5, 46)][6:]
     with pytest.raises(CheckFailed, match=r'saw pauses of 1\.0 s over 10 s \(45 messages\)'):

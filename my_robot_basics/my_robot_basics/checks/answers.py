@@ -61,15 +61,21 @@ def has_stretched(bearings_deg: Iterable[float], text: str) -> bool:
 def are_mixed_up(solutions: Solutions, texts: Iterable[str]) -> bool:
     """Whether θ1 of one branch plainly stands with θ2 of the other one.
 
-    So it does on one line, where the lines hold one angle of each joint; and by turns, where one
-    line holds all four angles, or each line one.
+    So it does on two lines that hold one angle of each joint; and by turns, where one line holds
+    all four angles, or each line one. Another number that happens to be one of the angles accuses
+    nobody.
     """
     lines = [line for text in texts if (line := _labels(solutions, text))]
-    if any(_is_wrong_pair(line) for line in lines if len(set(line)) == 2):
+    pairs = [_is_wrong_pair(line) for line in lines if len(set(line)) == 2]
+    if pairs.count(True) > 1 and all(pairs):
         return True
     if all(len(set(line)) == 1 for line in lines):
         lines = [[label for line in lines for label in line]]
-    return any(_are_wrong_pairs(list(dict.fromkeys(line))) for line in lines)
+    return any(
+        _are_wrong_pairs(list(dict.fromkeys(line)))
+        and _are_wrong_pairs(list(dict.fromkeys(reversed(line))))
+        for line in lines
+    )
 
 
 def _labels(solutions: Solutions, text: str) -> list[tuple[int, int]]:

@@ -242,7 +242,7 @@ class Log:
     def _why_unanswered(self, wanted: Sequence[float]) -> str:
         raised = '' if self._has('INFO') else graphs.what_raised([self._node_name])
         if raised:
-            return f'{raised}, so mend that first'
+            return f'{raised}, so fix that first'
         if self._has('INFO') or not self._has('WARN'):
             return angles.what_to_try(wanted, self.numbers())
         elsewhere = not angles.missing(wanted, self.numbers('WARN'), angles.ROUNDED_DEG)
@@ -251,7 +251,7 @@ class Log:
     def _why_unwarned(self) -> str:
         raised = graphs.what_raised([self._node_name])
         if raised and 'ValueError' not in raised:
-            return f'{raised}, so mend that first'
+            return f'{raised}, so fix that first'
         if self.records:
             return 'a target out of reach asks for the level WARN: self.get_logger().warning(…)'
         return (

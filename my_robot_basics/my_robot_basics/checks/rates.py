@@ -17,6 +17,9 @@ LARGEST_GAP_PERIODS = 1.75
 GAP_SLACK_SEC = 0.05
 UNEVEN_PART = 0.25
 """So much of a period may most messages be off: 0.1 s and 0.3 s by turns are no 5 Hz."""
+AT_ONCE_SEC = 0.02
+"""Nobody's timer means two messages so near to each other."""
+ONCE = 'publish one message each time the timer fires'
 FEWEST = 2
 """Messages that tell whether they are evenly spaced, beside the one to begin at."""
 
@@ -87,12 +90,14 @@ def fail_rate(recording: 'Recording', hz: float) -> NoReturn:
     near = recording.rate_hz >= 0.9 * hz
     if near and recording.largest_gap_sec > LARGEST_GAP_PERIODS / hz:
         seen, cause = f'pauses of {recording.largest_gap_sec:.1f} s {over}', 'there are pauses'
-        hint = 'publish one message each time the timer fires'
-    elif near and recording.clock == 'wall' and _is_uneven(recording, hz):
+        hint = ONCE
+    elif near and recording.clock == 'wall' and _is_uneven(recording, recording.rate_hz):
         gaps = np.diff(_times(recording))
         seen = f'{np.min(gaps):.2f} to {np.max(gaps):.2f} s between messages {over}'
         cause = 'messages come too early and too late by turns'
         hint = 'the messages are unevenly spaced, so use one timer, and leave its period as it is'
+        if np.min(gaps) < AT_ONCE_SEC:
+            cause, hint = 'several messages come at once', ONCE
     else:
         seen = f'{_hz(_measured_hz(recording))} {over}'
         hint, cause = 'the timer period is in seconds, and period = 1 / rate', 'another rate'

@@ -217,7 +217,7 @@ class Relay:
             return leave_out(gaps[0])
         listeners = graphs.subscription_infos(watcher.node, self.source)
         if raised := graphs.what_raised(map(graphs.full_name, listeners)):
-            return f'{raised}, so mend that first'
+            return f'{raised}, so fix that first'
         if has_others:
             return 'publish the very message that your callback is given'
         return 'see that your callback publishes each message, and that it raises nothing'
