@@ -7,7 +7,7 @@ import pytest
 from course_maker import TOY, make_course, toy_lesson, write_source
 
 from grader.course import ROOT, Course
-from grader.index import make_index
+from grader.index import make_index, write_pages
 
 INDEX = nbformat.read(ROOT / 'notebooks' / 'index.ipynb', as_version=4)
 TEXT = '\n\n'.join(cell.source for cell in INDEX.cells)
@@ -61,3 +61,16 @@ def test_long_items_stand_in_one_line_and_break_no_table(tmp_path):
     contents = make_index(course).cells[0].source
     row = next(line for line in contents.splitlines() if TOY in line)
     assert r'| double a number, whatever it is; say what \|x\| is |' in row
+
+
+def test_only_pages_that_are_there_are_given_out_and_linked(tmp_path):
+    course = make_course(tmp_path)
+    write_source(course, toy_lesson())
+    (course.root / 'solutions/what_next.md').write_text('# What next\n')
+    built = tmp_path / 'built'
+    built.mkdir()
+    write_pages(course, built, metadata={})
+    assert sorted(path.name for path in built.iterdir()) == ['index.ipynb', 'what_next.md']
+    text = nbformat.read(built / 'index.ipynb', as_version=4).cells[-1].source
+    assert '](what_next.md)' in text
+    assert 'terms.md' not in text
