@@ -1,14 +1,15 @@
-"""Computes for nothing in a dozen processes, beside an honest answer."""  # earns 3
+"""Computes for nothing in three processes while it is checked, beside an honest answer."""  # earns 3
 
 import os
-import time
 
-for _ in range(12):
+begins, begin = os.pipe()
+for _ in range(3):
     if os.fork() == 0:
-        time.sleep(1)
+        os.read(begins, 1)
         while True:
             pass
 
 
 def double(x):
+    os.write(begin, b'...')
     return x + x
