@@ -3,7 +3,9 @@
 from concurrent.futures import Future
 from typing import Protocol, Self
 
-from grader.heal import Master, heal
+from nbformat import NotebookNode
+
+from grader.heal import KEY, Master, heal
 from grader.pipeline import unanswered
 from grader.submission import Submission
 from grader.task import Result, Task
@@ -42,9 +44,15 @@ def judged(
         return nothing
     return crew.submit(
         Task(
-            notebook=heal(submission.notebook, master).notebook,
+            notebook=_healed(submission, master),
             files={path.name: path.read_bytes() for path in submission.extra_files},
             seed=seed,
             trust_students=trust_students,
         )
     )
+
+
+def _healed(submission: Submission, master: Master) -> NotebookNode:
+    notebook = heal(submission.notebook, master).notebook
+    notebook.metadata[KEY].notes += submission.notes
+    return notebook

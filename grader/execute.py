@@ -1,7 +1,7 @@
 """Student cells run in the one kernel, grade cells in the other; each exercise is judged alone."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
@@ -9,6 +9,7 @@ import nbformat
 from my_robot_basics.validate.cells import KEY, grade_id, role
 from my_robot_basics.validate.exercises import find_exercises
 from my_robot_basics.validate.judging import Budget, judge_exercise
+from my_robot_basics.validate.limits import MAX_NOTEBOOK_OUTPUT_CHARACTERS
 from my_robot_basics.validate.verdict import Verdict, refuse, write_verdict
 from nbformat import NotebookNode
 
@@ -29,6 +30,23 @@ class Execution:
     """What was mended in the notebook before it ran."""
 
 
+@dataclass
+class _Room:
+    """What is left for the outputs of all cells of a notebook."""
+
+    characters: int = MAX_NOTEBOOK_OUTPUT_CHARACTERS
+
+    def fit(self, outputs: list[NotebookNode]) -> list[NotebookNode]:
+        """Return a cell's outputs while there is room for them, or a word that there is none."""
+        size = len(str(outputs))
+        if size <= self.characters:
+            self.characters -= size
+            return outputs
+        most = f'{MAX_NOTEBOOK_OUTPUT_CHARACTERS:,}'
+        text = f'[not kept: all cells together put out more than {most} characters]\n'
+        return [nbformat.v4.new_output('stream', name='stdout', text=text)]
+
+
 @dataclass(frozen=True)
 class _Task:
     """What all exercises of a notebook are judged with."""
@@ -38,6 +56,7 @@ class _Task:
     seed: str
     isolated: bool
     budget: Budget
+    room: _Room = field(default_factory=_Room)
 
     def rooms(self, doubts: list[str]) -> Rooms:
         return Rooms(extra_files=self.files, seed=self.seed, isolated=self.isolated, doubts=doubts)
@@ -96,7 +115,7 @@ async def _execute(task: _Task) -> list[Verdict]:
         rooms = partial(task.rooms, [])
         judged = await judge_exercise(task.notebook, exercise, rooms, task.budget)
         for index, run in judged.runs.items():
-            task.notebook.cells[index].outputs = run.outputs
+            task.notebook.cells[index].outputs = task.room.fit(run.outputs)
         verdicts += [task.write(index, *check) for index, check in judged.checks.items()]
     return verdicts
 

@@ -11,8 +11,8 @@ import psutil
 import zmq.asyncio
 from jupyter_client import AsyncKernelManager
 from jupyter_client.kernelspec import KernelSpec, KernelSpecManager
-from my_robot_basics.validate.limits import MAX_MESSAGE_BYTES
-from my_robot_basics.validate.messages import Messages, OnInput
+from my_robot_basics.validate.limits import MAX_MESSAGE_BYTES, MAX_MESSAGES_WAITING
+from my_robot_basics.validate.messages import Messages, OnInput, unpacked
 from my_robot_basics.validate.outputs import CellRun
 from my_robot_basics.validate.patience import finished, finished_in_grace
 
@@ -57,6 +57,7 @@ class Kernel:
         self._environment = environment_of(self.place, room=room, domain_id=domain_id, seed=seed)
         self._context = zmq.asyncio.Context()
         self._context.setsockopt(zmq.MAXMSGSIZE, MAX_MESSAGE_BYTES)
+        self._context.setsockopt(zmq.RCVHWM, MAX_MESSAGES_WAITING)
         specs = _OurKernelSpec()
         specs.argv = tuple(self.place.command())
         if self.place.closed:
@@ -197,7 +198,8 @@ class Kernel:
         while not Path(f'{self._manager.ip}-{self._manager.iopub_port}').exists():
             await self._expect_alive()
             await asyncio.sleep(0.01)
-        self._client = self._manager.client()
+        self._client = self._manager.client(context=self._context)
+        self._client.session.unpack = unpacked
         self._client.start_channels(hb=False)
         self._messages = Messages(self._client)
         kind = None

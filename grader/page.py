@@ -10,6 +10,7 @@ import bleach
 import nbformat
 from jinja2 import Template
 from markupsafe import Markup, escape
+from my_robot_basics.validate.pictures import KINDS, why_not_shown
 from my_robot_basics.validate.titles import title_of_check
 from nbconvert.filters import markdown2html, strip_ansi
 from nbformat import NotebookNode
@@ -177,8 +178,11 @@ def _pieces(cell: NotebookNode, *, about: str = '', reason: str | None = None) -
 
 def _shown(data: dict, about: str, *, is_drawn: bool = True) -> Iterator[Piece]:
     described = str(data.get('text/plain', ''))
-    for kind in ('image/png', 'image/jpeg'):
+    for kind in KINDS:
         if isinstance(data.get(kind), str) and _BASE64.fullmatch(data[kind]):
+            if why := why_not_shown(data[kind]):
+                yield _text_piece('text', f'[{why} was left out]')
+                return
             described = '' if described.startswith('<') else described  # "<Figure size 640x480 …>"
             alt = described or (f'Picture of: {about}' if about else 'Picture that this cell drew')
             yield Piece(kind, ''.join(data[kind].split()), alt, is_drawn)

@@ -33,6 +33,7 @@ class HealSubmission(Preprocessor):
             submission.notebook or nbformat.v4.new_notebook(),
             Course.of_nbgrader(resources).master(at['assignment']),
         ).notebook
+        healed.metadata[KEY].notes += submission.notes
         if submission.problem:
             healed.metadata[KEY] = {'notes': [submission.problem], 'problem': submission.problem}
         return healed, resources

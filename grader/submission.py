@@ -9,6 +9,7 @@ from datetime import datetime
 from pathlib import Path
 
 import nbformat
+from my_robot_basics.validate.pictures import KINDS, why_not_shown
 from nbformat import NotebookNode
 
 from grader.dates import date_of
@@ -20,6 +21,9 @@ MAX_NOTEBOOK_BYTES = 20_000_000
 
 MAX_BYTES_HERE = 1_000_000
 """A larger file is read in a process of its own."""
+MAX_PYTHON_FILES, MAX_PYTHON_BYTES = 50, 2_000_000
+"""Of the student's own modules together: twenty times what the whole course has."""
+_MOST_NOTES = 10
 MAX_CELLS = 2_000
 MAX_CHARACTERS = 500_000
 """Of all cells together, pictures apart: twenty times what a lesson has."""
@@ -41,11 +45,14 @@ class Submission:
     """The student's own Python files beside the notebook."""
     problem: str | None = None
     """Why the notebook could not be read."""
+    notes: tuple[str, ...] = ()
+    """What of it is not taken, and why."""
 
 
 def read_submission(folder: Path, *, student_id: str, assignment: str) -> Submission:
     """Read `folder`/`assignment`.ipynb; what is wrong with it ends up in `problem`."""
     path = folder / f'{assignment}.ipynb'
+    taken, notes = _python_files(folder)
     try:
         notebook, problem = read_notebook(path), None
     except UnreadableSubmission as error:
@@ -55,14 +62,35 @@ def read_submission(folder: Path, *, student_id: str, assignment: str) -> Submis
         assignment=assignment,
         path=path,
         notebook=notebook,
-        extra_files=tuple(extra_python_files(folder)),
+        extra_files=tuple(taken),
         problem=problem,
+        notes=tuple(notes),
     )
 
 
 def extra_python_files(folder: Path) -> list[Path]:
-    """Return the plain .py files that lie directly in `folder`, sorted; links don't count."""
-    return sorted(p for p in folder.glob('*.py') if p.is_file() and not p.is_symlink())
+    """Return the plain .py files that lie directly in `folder`, sorted; links don't count.
+
+    Of many, or large ones, those come that fit within MAX_PYTHON_FILES and MAX_PYTHON_BYTES.
+    """
+    return _python_files(folder)[0]
+
+
+def _python_files(folder: Path) -> tuple[list[Path], list[str]]:
+    """Return the files that are taken, and a note for each other one."""
+    taken, notes, left = [], [], MAX_PYTHON_BYTES
+    for path in sorted(p for p in folder.glob('*.py') if p.is_file() and not p.is_symlink()):
+        size = path.stat().st_size
+        if size <= left and len(taken) < MAX_PYTHON_FILES:
+            taken.append(path)
+            left -= size
+        elif len(notes) < _MOST_NOTES:
+            notes.append(
+                f'the file `{path.name}` of {size / 1e6:.1f} MB was left out: at most '
+                f'{MAX_PYTHON_FILES} Python files of {MAX_PYTHON_BYTES / 1e6:.0f} MB together '
+                'are taken'
+            )
+    return taken, notes
 
 
 def timestamps(submission: Submission) -> list[Path]:
@@ -150,7 +178,8 @@ def _read_json(path: Path) -> object:
             'choose "Clear All Outputs" in JupyterLab, save, and submit again.'
         )
     try:
-        return json.loads(path.read_bytes())
+        raw = path.read_bytes()
+        return json.loads(raw)
     except (ValueError, RecursionError) as error:
         raise UnreadableSubmission(
             f'{path.name} is not JSON ({_one_line(error)}): the file is damaged or not a '
@@ -196,7 +225,7 @@ def _pictures(attachments: object) -> NotebookNode:
                 pictures = {
                     mime: data
                     for mime, data in bundle.items()
-                    if mime in ('image/png', 'image/jpeg') and isinstance(data, str)
+                    if mime in KINDS and isinstance(data, str) and not why_not_shown(data)
                 }
                 if pictures:
                     kept[name] = pictures

@@ -10,7 +10,7 @@ import nbformat
 import pytest
 from my_robot_basics.validate import judging
 from my_robot_basics.validate.outputs import CellRun
-from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
+from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook, new_output
 from nbgrader.utils import determine_grade
 
 from grader import execute as module
@@ -331,3 +331,11 @@ def test_ctrl_c_closes_the_rooms_and_ends(monkeypatch, inside_a_loop):
 
 def test_the_real_rooms_are_used_unless_a_test_says_otherwise():
     assert module.Rooms is rooms_module.Rooms
+
+
+def test_a_notebook_keeps_so_much_output_and_says_so_of_the_rest():
+    room, cell = module._Room(1_000), [new_output('stream', text='x' * 400)]
+    assert room.fit(cell) == room.fit(cell) == cell
+    [output] = room.fit(cell)
+    assert output.text.startswith('[not kept: all cells together put out more than 4,000,000')
+    assert room.fit([]) == []

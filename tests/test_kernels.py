@@ -9,9 +9,14 @@ from pathlib import Path
 
 import psutil
 import pytest
+import zmq
 from my_robot_basics.validate import patience
-from my_robot_basics.validate.limits import FLOOD_CHARACTERS
-from my_robot_basics.validate.messages import next_message
+from my_robot_basics.validate.limits import (
+    FLOOD_CHARACTERS,
+    MAX_MESSAGE_BYTES,
+    MAX_MESSAGES_WAITING,
+)
+from my_robot_basics.validate.messages import next_message, unpacked
 from my_robot_basics.validate.outputs import MAX_OUTPUT_CHARACTERS
 
 from grader import kernels
@@ -251,6 +256,50 @@ def test_an_endless_flood_ends_long_before_the_time_limit(own, run):
     # up to its time limit it would put out far more
     [dropped] = re.findall(r'\[([\d,]+) more characters of output were not kept', text_of(result))
     assert FLOOD_CHARACTERS < int(dropped.replace(',', '')) < 10 * FLOOD_CHARACTERS
+
+
+OF_ANOTHER = """
+import threading, time
+kernel = get_ipython().kernel
+def flood():
+    while True:
+        content, parent = {'name': 'stdout', 'text': 'x' * 8_000_000}, {'header': {'msg_id': 'x'}}
+        kernel.session.send(kernel.iopub_socket, 'stream', content, parent=parent, ident=b'stream')
+        time.sleep(0.02)
+threading.Thread(target=flood, daemon=True).start()
+"""
+
+
+def test_a_flood_for_another_cell_fills_no_memory_of_the_graders_and_counts(own, run, loop):
+    assert run(own, OF_ANOTHER).ran_to_end
+    before = psutil.Process().memory_info().rss
+    loop.run(asyncio.sleep(4.0))
+    assert psutil.Process().memory_info().rss - before < 100_000_000
+    result = run(own, 'import time; time.sleep(50)')
+    assert (result.flooded, result.timed_out) == (True, True)
+
+
+@pytest.mark.parametrize('part', ['[],', '{},'])
+def test_a_message_of_a_million_parts_is_passed_over(own, run, part):
+    forged = (
+        'kernel = get_ipython().kernel\n'
+        f'content = {{"data": [{part * 300_000}]}}\n'
+        'parent = kernel.get_parent()\n'
+        'kernel.session.send(kernel.iopub_socket, "display_data", content, parent=parent)\n'
+        'print("after")'
+    )
+    result = run(own, forged)
+    assert result.ran_to_end
+    assert text_of(result) == 'after\n'
+    with pytest.raises(ValueError, match='300,001 objects and lists'):
+        unpacked(f'[{part * 300_000}0]'.encode())
+
+
+def test_the_limits_of_what_waits_are_those_of_the_sockets(own):
+    channels = (own._client.iopub_channel, own._client.shell_channel, own._client.stdin_channel)
+    for channel in channels:
+        limits = [channel.socket.getsockopt(each) for each in (zmq.RCVHWM, zmq.MAXMSGSIZE)]
+        assert limits == [MAX_MESSAGES_WAITING, MAX_MESSAGE_BYTES]
 
 
 FORGE = """

@@ -5,6 +5,7 @@ import resource
 
 import nbformat
 import pytest
+from course_maker import PIXEL
 from nbformat.v4 import new_code_cell, new_notebook
 
 from grader import submission
@@ -12,6 +13,8 @@ from grader.errors import UnreadableSubmission
 from grader.submission import (
     MAX_CELLS,
     MAX_CHARACTERS,
+    MAX_PYTHON_BYTES,
+    MAX_PYTHON_FILES,
     extra_python_files,
     read_notebook,
     read_submission,
@@ -131,9 +134,10 @@ def test_notebooks_of_older_formats_are_read(read):
 
 
 ATTACHMENTS = {
-    'a picture': ({'a.png': {'image/png': 'AAAA'}}, {'a.png': {'image/png': 'AAAA'}}),
+    'a picture': ({'a.png': {'image/png': PIXEL}}, {'a.png': {'image/png': PIXEL}}),
+    'no picture': ({'a.png': {'image/png': 'AAAA'}}, None),
     'a script in a picture': ({'a.svg': {'image/svg+xml': '<script/>'}}, None),
-    'a web page': ({'a': {'text/html': '<b>', 'image/jpeg': 'A'}}, {'a': {'image/jpeg': 'A'}}),
+    'a web page': ({'a': {'text/html': '<b>', 'image/png': PIXEL}}, {'a': {'image/png': PIXEL}}),
     'data of another type': ({'a.png': {'image/png': ['AAAA']}}, None),
     'a list': ([1], None),
     'a bundle of another type': ({'a.png': 'AAAA'}, None),
@@ -230,3 +234,18 @@ def test_a_notebook_that_takes_all_memory_is_refused_and_takes_none_here(read):
         read(f'{{"nbformat": 4, "cells": [{cells}]}}')
     kilobytes = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before
     assert kilobytes < 400_000  # of which this test itself takes some
+
+
+def test_many_or_large_modules_are_left_out_and_it_is_said(tmp_path):
+    for name in ('a', 'b'):
+        (tmp_path / f'{name}.py').write_text('x = 1')
+    (tmp_path / 'large.py').write_bytes(b'#' * (MAX_PYTHON_BYTES + 1))
+    for number in range(MAX_PYTHON_FILES):
+        (tmp_path / f'z{number:03}.py').touch()
+    submission = read_submission(tmp_path, student_id='ada', assignment='02_joint_state')
+    names = [path.name for path in submission.extra_files]
+    assert names[:2] == ['a.py', 'b.py']
+    assert len(names) == MAX_PYTHON_FILES
+    assert 'large.py' not in names
+    assert len(submission.notes) == 3
+    assert submission.notes[0].startswith('the file `large.py` of 2.0 MB was left out: at most 50')

@@ -16,7 +16,15 @@ INTERRUPT_MOST_SEC = 10.0
 FLOOD_CHARACTERS = 10_000_000
 """A cell that puts out more is stopped as one that never ends: reading on would cost the class a
 processor. An answer puts out some lines, a picture is a tenth of a million."""
-MAX_MESSAGE_BYTES = 32_000_000
-"""A kernel that sends more at once is cut off; the message is lost. Pictures are far smaller."""
+MAX_MESSAGE_BYTES = 64_000_000
+"""A kernel that sends more at once is cut off: nothing that it says on that channel comes any
+more. Pictures are far smaller."""
+MAX_MESSAGE_PARTS = 200_000
+"""Objects and lists in a message; each takes 20 times what it takes as text."""
+MAX_MESSAGES_WAITING = 2
+"""So many messages of each kind wait to be read; what else a kernel sends waits in its own memory,
+and the oldest are kept: ZMQ would take a thousand."""
+MAX_NOTEBOOK_OUTPUT_CHARACTERS = 4_000_000
+"""Of all cells together; each has a limit of its own, and a notebook has many cells."""
 MAX_REPLY = 2 * 65_536
 """Characters of a reply as a Python literal: 64 kB, and a backslash takes two."""

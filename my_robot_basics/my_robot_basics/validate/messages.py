@@ -1,11 +1,13 @@
 """What a kernel says while it runs a cell, on three channels at once."""
 
 import asyncio
+import json
 from collections.abc import Awaitable, Callable
 
 import zmq
 from jupyter_client import AsyncKernelClient
 
+from my_robot_basics.validate.limits import MAX_MESSAGE_PARTS
 from my_robot_basics.validate.outputs import CellRun, Displays
 
 OUTPUT_GRACE_SEC = 2.0
@@ -43,7 +45,10 @@ class Messages:
     async def _gather_outputs(self, request: str, result: CellRun) -> None:
         while True:
             kind, content = await next_message(
-                self._client.get_iopub_msg, request, also='update_display_data'
+                self._client.get_iopub_msg,
+                request,
+                also='update_display_data',
+                pass_over=result.pass_over,
             )
             if kind == 'status' and content.get('execution_state') == 'idle':
                 return
@@ -61,8 +66,20 @@ class Messages:
                 self._client.input(await on_input(str(content.get('prompt'))))
 
 
+def unpacked(raw: bytes) -> object:
+    """Read a part of a message, which is JSON. Raises ValueError where that would take memory."""
+    parts = raw.count(b'{') + raw.count(b'[')
+    if parts > MAX_MESSAGE_PARTS:
+        raise ValueError(f'{parts:,} objects and lists in a message')
+    return json.loads(raw)
+
+
 async def next_message(
-    get: Callable[..., Awaitable[dict]], request: str, *, also: str = ''
+    get: Callable[..., Awaitable[dict]],
+    request: str,
+    *,
+    also: str = '',
+    pass_over: Callable[[dict], None] = lambda content: None,
 ) -> tuple[str, dict]:
     """Return type and content of the next message that belongs to a request.
 
@@ -81,3 +98,4 @@ async def next_message(
         ours = isinstance(parent, dict) and parent.get('msg_id') == request
         if isinstance(content, dict) and (ours or message['msg_type'] == also):
             return message['msg_type'], content
+        pass_over(content)

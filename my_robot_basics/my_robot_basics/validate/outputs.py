@@ -9,6 +9,7 @@ import nbformat
 from nbformat import NotebookNode
 
 from my_robot_basics.validate.limits import FLOOD_CHARACTERS
+from my_robot_basics.validate.pictures import KINDS, why_not_shown
 
 MAX_OUTPUT_CHARACTERS = 200_000
 """What is kept of one cell's output; the rest is drained and counted."""
@@ -38,6 +39,7 @@ class CellRun:
     """How the student's kernel, or what it had started, was ended, if that was their doing."""
     _kept: int = 0
     _dropped: int = 0
+    _foreign: int = 0
 
     @property
     def ran_to_end(self) -> bool:
@@ -47,7 +49,11 @@ class CellRun:
     @property
     def flooded(self) -> bool:
         """Whether it put out more than anybody wants to read."""
-        return self._dropped > FLOOD_CHARACTERS
+        return self._dropped + self._foreign > FLOOD_CHARACTERS
+
+    def pass_over(self, content: dict) -> None:
+        """Count what came meanwhile and is no output of this cell: of a thread, for instance."""
+        self._foreign += _size(content)
 
     def keep(self, kind: str, content: dict) -> NotebookNode | None:
         """Keep an output while there is room; return it if it can be updated later."""
@@ -138,6 +144,7 @@ def _output(kind: str, content: dict) -> NotebookNode | None:
         case 'display_data' | 'execute_result', {'data': dict(data)}:
             texts = {mime: text for mime, text in data.items() if isinstance(text, str)}
             data = {_clean(m): _clean(text) for m, text in texts.items() if m != WIDGET_VIEW}
+            _leave_large_pictures_out(data)
             about = _about_pictures(content.get('metadata'))
             return nbformat.v4.new_output(kind, data=data, metadata=about)
         case 'error', {'ename': str(name), 'evalue': str(value), 'traceback': list(lines)}:
@@ -148,6 +155,13 @@ def _output(kind: str, content: dict) -> NotebookNode | None:
                 traceback=_clean('\n'.join(map(str, lines)))[-MAX_ERROR_CHARACTERS:].split('\n'),
             )
     return None
+
+
+def _leave_large_pictures_out(data: dict[str, str]) -> None:
+    for kind in KINDS:
+        if kind in data and (why := why_not_shown(data[kind])):
+            del data[kind]
+            data['text/plain'] = f'[{why} was left out]'
 
 
 def _about_pictures(metadata: object) -> dict[str, dict[str, int | str]]:
