@@ -2,10 +2,13 @@
 
 import json
 import os
+import signal
 import subprocess
 import sys
+from pathlib import Path
 
 import nbformat
+import psutil
 import pytest
 from answered import ROOT, answered, read
 from nbformat.v4 import new_code_cell
@@ -225,6 +228,23 @@ def test_a_notebook_that_was_damaged_is_validated_as_far_as_it_can_be(tmp_path, 
         assert checks_of(report)['radians']['outcome'] == 'passed'
     if not is_whole:
         assert checks_of(report)['joint_names']['outcome'] == 'not checked'
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM], ids=str)
+def test_who_stops_it_ends_all_that_it_began(tmp_path, number):
+    path = answered('02_joint_state', tmp_path, to_joint_state='import time; time.sleep(600)')
+    clean = {k: v for k, v in os.environ.items() if not k.startswith(NOT_A_STUDENTS)}
+    run = [sys.executable, '-P', '-m', 'my_robot_basics.validate', '--json', str(path)]
+    with subprocess.Popen(run, env=clean, stdout=subprocess.PIPE, text=True) as process:
+        while 'running your cells' not in process.stdout.readline():
+            assert process.poll() is None
+        begun = psutil.Process(process.pid).children(recursive=True)
+        folders = {Path(p.cwd()).parents[1] for p in begun}
+        assert len(begun) >= 2
+        process.send_signal(number)
+        assert process.wait() == 130
+    assert not any(child.is_running() for child in begun)
+    assert [folder for folder in folders if folder.exists()] == []
 
 
 NO_LESSON = {

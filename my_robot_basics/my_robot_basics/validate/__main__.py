@@ -6,6 +6,7 @@ The exit code is 0 where all of them pass, 1 where not, and 2 where nothing coul
 import argparse
 import asyncio
 import json
+import signal
 import sys
 from pathlib import Path
 
@@ -27,6 +28,7 @@ def main(arguments: list[str] | None = None) -> int:
     )
     options = parser.parse_args(arguments)
     say = _say_json if options.json else _say
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # ends its kernels then, too
     try:
         report = asyncio.run(validate(options.notebook, say=say))
     except KeyboardInterrupt:
