@@ -23,7 +23,8 @@ HOW_IT_WORKS = """\
 ## How a lesson works
 
 - Run its cells from top to bottom with **Shift+Enter**, and guess before you run.
-- Write your answer where it says `YOUR CODE HERE` or `YOUR ANSWER HERE`, or mend what is there.
+- Write your answer where it says `YOUR CODE HERE` or `YOUR ANSWER HERE`, or fix the code
+  that is there.
 - **Validate**, in the bar above a lesson, runs your answers and shows which checks pass.
 - Your points are given when your notebook is graded. Some checks run only then.
 """

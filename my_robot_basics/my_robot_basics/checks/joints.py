@@ -1,6 +1,7 @@
 """The joints of a JointState by name, and what to say where they are not as asked for."""
 
 import math
+import random
 from collections.abc import Sequence
 
 from sensor_msgs.msg import JointState
@@ -10,6 +11,11 @@ from my_robot_basics.checks.errors import expect
 EXACT_RAD = 2e-4
 CLOSE_RAD = 0.02
 """Who rounds to two decimals is no further off."""
+
+
+def make(numbers: random.Random, *names: str) -> JointState:
+    """Return a message with these joints, each at a random angle within ±1.5 rad."""
+    return JointState(name=[*names], position=[numbers.uniform(-1.5, 1.5) for _ in names])
 
 
 def pose(message: JointState) -> dict[str, float]:
