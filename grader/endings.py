@@ -10,6 +10,10 @@ from grader.limits import PROCESS_LIMITS, ROOM_MEMORY_BYTES
 
 _CRASHES = {'SIGSEGV', 'SIGBUS', 'SIGILL', 'SIGFPE', 'SIGABRT', 'SIGSYS', 'SIGTRAP', 'SIGXFSZ'}
 """What Linux sends a process for what that did itself."""
+_OWN = {'SIGALRM', 'SIGVTALRM', 'SIGPROF', 'SIGIO', 'SIGPIPE', 'SIGXCPU'}
+"""What Linux sends a process that has set a timer, or uses a file or a processor so."""
+_TERMINALS = {'SIGHUP', 'SIGINT', 'SIGQUIT'}
+"""What Linux sends whoever was started in a terminal that is closed, or where such keys come."""
 
 
 class Doing(Enum):
@@ -46,6 +50,8 @@ class Ending:
             return Doing.STUDENTS, f'it kept a processor busy for more than {most} s'
         if name in _CRASHES:
             return Doing.DOUBTFUL, f'it crashed with {name}'
+        if name in _OWN:
+            return Doing.DOUBTFUL, f'{name} ended it, which Linux sends for what a process does'
         return Doing.NOT_SHOWN, f'{name} ended it, and nothing in its room had sent that'
 
 
@@ -57,8 +63,8 @@ def whose_memory(memory: MemoryEvents) -> tuple[Doing, str]:
 
 
 def is_from_outside(number: int) -> bool:
-    """Whether a signal is none that Linux sends a process for what that did itself."""
-    return signal_name(number) not in _CRASHES | {'SIGXCPU', 'SIGALRM', 'SIGPIPE'}
+    """Whether a signal is none that Linux sends a program for what it, or its terminal, did."""
+    return signal_name(number) not in _CRASHES | _OWN | _TERMINALS
 
 
 def signal_name(number: int) -> str:

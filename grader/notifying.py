@@ -13,10 +13,11 @@ SENDING = {
     424: (None, 1),  # pidfd_send_signal: names a file
 }
 """Numbers of x86-64."""
-EXIT_GROUP = 231
+EXIT_GROUP, PRCTL = 231, 157
 _CLONE, _FCNTL, _PRLIMIT, _SETRLIMIT, _TIMER_CREATE = 56, 72, 302, 160, 222
 _SET_SIGNAL, _SET_OWNER, _SET_OWNER_OF = 10, 8, 15
 _RLIMIT_CPU = 0
+_SET_PARENT_DEATH_SIGNAL = 1
 _ARCHITECTURE = 0xC000003E  # AUDIT_ARCH_X86_64
 _NOTIFY, _ALLOW = 0x7FC00000, 0x7FFF0000
 _LOAD, _AND, _EQUAL, _GREATER, _RETURN = 0x20, 0x54, 0x15, 0x25, 0x06
@@ -54,6 +55,7 @@ def signals_filter() -> bytes:
         program += [(_EQUAL, 0, 1, number), (_RETURN, 0, 0, _NOTIFY)]
     program += _where(_SETRLIMIT, 0, (_EQUAL, _RLIMIT_CPU))
     program += _where(_PRLIMIT, 1, (_EQUAL, _RLIMIT_CPU))
+    program += _where(PRCTL, 0, (_EQUAL, _SET_PARENT_DEATH_SIGNAL))
     for command in (_SET_SIGNAL, _SET_OWNER, _SET_OWNER_OF):
         program += _where(_FCNTL, 1, (_EQUAL, command))
     program += [  # a child may announce its end by any signal; a process' is SIGCHLD, a thread's 0

@@ -14,7 +14,7 @@ import select
 import struct
 from pathlib import Path
 
-from grader.notifying import EXIT_GROUP, SENDING
+from grader.notifying import EXIT_GROUP, PRCTL, SENDING
 
 EVERYONE = 0
 """Stands for whoever may be meant."""
@@ -89,8 +89,11 @@ class Signals:
             if Path(f'/proc/{self.pid}/task/{sender}').exists():
                 self.exit_code = arguments[0] & 0xFF
             return
-        if call not in SENDING or len(self._sent) > _MOST:
+        if call not in (*SENDING, PRCTL) or len(self._sent) > _MOST:
             self._by_other_means = True
+            return
+        if call == PRCTL:  # it wants a signal when its parent ends
+            self._sent.add((_ids(sender)[0], _signed(arguments[1])))
             return
         place, signal_place = SENDING[call]
         target = EVERYONE if place is None else _signed(arguments[place])
@@ -135,7 +138,7 @@ def _ids(pid: int) -> tuple[int, int]:
     """Return the ID of a process and of its group as its own PID namespace knows them."""
     status = Path(f'/proc/{pid}/status')
     try:
-        return int(_field(status, 'NSpid').split()[-1]), int(_field(status, 'NSpgid').split()[-1])
+        return int(_field(status, 'NStgid').split()[-1]), int(_field(status, 'NSpgid').split()[-1])
     except (OSError, IndexError):  # it has ended
         return EVERYONE, EVERYONE
 

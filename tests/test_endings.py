@@ -189,6 +189,28 @@ OWN_DOING = {
     ),
     'a crash': ('import ctypes; ctypes.string_at(0)', 'it crashed with SIGSEGV'),
     'abort': ('import os; os.abort()', 'your code sent it SIGABRT'),
+    'an alarm': ('import signal, time; signal.alarm(1); time.sleep(5)', 'SIGALRM ended it'),
+    'a timer of its processor time': (
+        'import signal\nsignal.setitimer(signal.ITIMER_PROF, 0.2)\nwhile True: pass',
+        'SIGPROF ended it',
+    ),
+    'a pipe that nobody reads': (
+        'import os, signal\n'
+        'signal.signal(signal.SIGPIPE, signal.SIG_DFL)\n'
+        'r, w = os.pipe()\n'
+        'os.close(r)\n'
+        'os.write(w, b"x")',
+        'SIGPIPE ended it',
+    ),
+    'a socket that tells its group': (
+        'import fcntl, os, socket, struct\n'
+        'a, b = socket.socketpair()\n'
+        'fcntl.ioctl(a, 0x8902, struct.pack("i", os.getpid()))\n'
+        'fcntl.fcntl(a, fcntl.F_SETFL, os.O_ASYNC)\n'
+        'b.send(b"x")\n'
+        'import time; time.sleep(2)',
+        'SIGIO ended it',
+    ),
 }  # fmt: skip
 
 
@@ -227,6 +249,30 @@ def test_a_node_that_lives_the_second_time_passes(monkeypatch, times, outcome):
     assert graded(NEEDS_NODE, answer_with_node()).outcome == outcome
 
 
+WITH_ITS_PARENT = """
+import ctypes, threading
+def start():
+    global node
+    die_with_me = lambda: ctypes.CDLL(None).prctl(1, 9)
+    node = subprocess.Popen(['sleep', '60'], preexec_fn=die_with_me)
+node.kill()
+node.wait()
+thread = threading.Thread(target=start)
+thread.start()
+thread.join()
+"""
+BY_ITS_TERMINAL = """
+import os, pty
+node.kill()
+node.wait()
+pid, terminal = pty.fork()
+if pid == 0:
+    os.execvp('sleep', ['sleep', '60'])
+node.pid = pid
+os.close(terminal)
+"""
+
+
 @pytest.mark.parametrize(
     'own',
     [
@@ -234,6 +280,8 @@ def test_a_node_that_lives_the_second_time_passes(monkeypatch, times, outcome):
         'node.terminate()',
         'import os; os.kill(node.pid, 9)',
         'subprocess.run(["sh", "-c", f"kill -9 {node.pid}"])',
+        WITH_ITS_PARENT,
+        BY_ITS_TERMINAL,
     ],
 )
 def test_who_ends_their_own_node_gets_a_zero(way, own):
