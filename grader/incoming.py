@@ -14,6 +14,7 @@ from grader.archives import MAX_FILE_BYTES, Allowance, unpack
 from grader.entries import ARCHIVE, MAX_PARTS
 from grader.errors import CourseError
 from grader.parsing import Limits, TooHard, parse
+from grader.students import label_in
 from grader.submission import TIMESTAMP
 
 ALL = {'files': 100_000, 'bytes': 8_000_000_000}
@@ -65,8 +66,13 @@ def look_into(source: Path, aside: Path) -> Iterator[Incoming]:
     there is nothing of the kind.
     """
     left = Allowance(**ALL)
+    # the name of one student's upload says whose it is; a class's may look like one of Canvas's
+    name = source.resolve().name
+    upload = (name,) if (label := label_in(name)) and label.platform == 'moodle' else ()
     if source.is_dir():
-        found: Iterator[Incoming] = _walk(source, ())
+        found: Iterator[Incoming] = _walk(source, upload)
+    elif upload and source.is_file():
+        found = iter([_on_disk(source, upload)])
     elif source.is_file() and ARCHIVE.search(source.name):
         found = _apart('inside', Incoming((), source), source.name, aside, left, LIMITS_OF_ALL)
     elif source.is_file() and source.suffix == '.ipynb':

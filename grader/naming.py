@@ -78,8 +78,8 @@ class Naming:
         if (named := self._forms.named(stem)) and not same_person(named.who, student):
             where = f'in the archive of {student}' if each.archive else f'in a folder {student}'
             raise Unclear(
-                f'it is named after {named.who}, and {where}: collect that folder by itself, '
-                'or rename it'
+                f"it is named after {named.who}, and {where}: rename it if it is {student}'s, "
+                'or else collect it by itself'
             )
         return Owner(
             student,

@@ -2,6 +2,7 @@ import io
 import os
 import tarfile
 import zipfile
+from pathlib import Path
 
 import pytest
 
@@ -157,3 +158,22 @@ def test_leftovers_are_no_files_and_refused_paths_are(source, tmp_path):
         'ada.tar/../a.ipynb',
     ]
     assert next(each.path for each in found if each.litter) == '.git'
+
+
+def test_one_upload_of_moodle_is_known_by_its_own_name(source, tmp_path, monkeypatch):
+    name = 'Mallory Evil_666_assignsubmission_file_'
+    (source / name / 'Ada Lovelace').mkdir(parents=True)
+    (source / name / 'Ada Lovelace/a.ipynb').write_text('x')
+    wanted = {f'{name}/Ada Lovelace/a.ipynb': b'x'}
+    assert seen(source / name, tmp_path) == wanted
+    monkeypatch.chdir(source / name)
+    assert seen(Path('.'), tmp_path) == wanted
+    archive = source / f'{name}Ada Lovelace.zip'
+    archive.write_bytes(zip_of(a_ipynb='x'))
+    assert seen(archive, tmp_path) == {f'{archive.name}/a.ipynb': b'x'}
+
+
+def test_a_class_of_some_year_is_no_upload_of_canvas(source, tmp_path):
+    (source / 'ros_2026_2027/ada').mkdir(parents=True)
+    (source / 'ros_2026_2027/ada/a.ipynb').write_text('x')
+    assert seen(source / 'ros_2026_2027', tmp_path) == {'ada/a.ipynb': b'x'}

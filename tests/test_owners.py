@@ -398,3 +398,10 @@ def test_nor_one_in_the_name_of_a_folder_in_the_exchange_s_form(upload, at):
     folder = f'{upload}/Ada Lovelace+03_publisher+2020-01-01 00:00:00 UTC'
     for options, when in (({}, None), ({'file_times': True}, '01-01 12:00:00')):
         assert time_of(at(f'{folder}/03_publisher.ipynb'), **options) == (when, [])
+
+
+def test_what_moodle_gives_out_says_which_of_two_names_counts(at):
+    path = 'Mallory_666_assignsubmission_file_/Ada_02_joint_state.ipynb'
+    taken, [(_, reason)] = owners(at(path))
+    assert taken == []
+    assert reason.endswith("rename it if it is Mallory's, or else collect it by itself")
