@@ -327,7 +327,7 @@ def test_validate_says_what_is_wrong_and_then_that_all_is_right(opened):
     lesson.type('to_joint_state', WRONG)
     said = lesson.validate()
     assert 'expected [0.5236, -1.5708] rad for (30.0, -90.0) degrees, saw [30.0, -90.0]' in said
-    assert '✗ position holds both angles, in radians 0 of 2 points, more at grading' in said
+    assert '✗ position holds both angles, in radians 0 of 2 points, more checks at grading' in said
     assert '✓ name holds joint1 and joint2, in this order 1 point ✓' in said
     assert said.count('Show the check') == 1
     assert 'def check_position' not in said  # folded away

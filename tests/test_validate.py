@@ -280,8 +280,7 @@ def test_the_verb_shows_marks_points_and_reasons(tmp_path):
     )
     assert run.returncode == 1
     assert '  ✓ name holds joint1 and joint2, in this order (1 point)\n' in run.stdout
-    assert (
-        '  ✗ position holds both angles, in radians (0 of 2 points; more at grading)' in run.stdout
-    )
+    title = 'position holds both angles, in radians'
+    assert f'  ✗ {title} (0 of 2 points; more checks at grading)' in run.stdout
     assert 'expected [0.5236, -1.5708] rad for (30.0, -90.0) degrees, saw []' in run.stdout
     assert run.stdout.endswith('2 of 3 visible checks fail: 3 points missing.\n')

@@ -72,7 +72,7 @@ LINES = {
     check('passed'): '  ✓ It is passed (2 points)',
     check('failed', 1.0): '  ✗ It is failed (0 of 1 point)',
     check('partial', earned=1.0, hidden=True): (
-        '  ✗ It is partial (1 of 2 points; more at grading)'
+        '  ✗ It is partial (1 of 2 points; more checks at grading)'
     ),
     check('by hand'): '  … It is by hand (2 points; a person reads it)',
     check('at grading'): '  … It is at grading (2 points; checked only at grading)',

@@ -34,7 +34,7 @@ def _part(part: Part) -> Iterator[str]:
 def _check(check: Check) -> Iterator[str]:
     lost = f'{check.earned:g} of ' if check.outcome in ('failed', 'partial') else ''
     points = f'{lost}{check.points:g} point{"" if check.points == 1 else "s"}'
-    more = MORE.get(check.outcome) or ('more at grading' if check.is_partly_hidden else '')
+    more = MORE.get(check.outcome) or ('more checks at grading' if check.is_partly_hidden else '')
     about = f'({points}{"; " if more else ""}{more})'
     yield f'  {MARKS[check.outcome]} {check.title} {about}'
     for line in (check.message, *check.notes):

@@ -39,7 +39,7 @@ needs no build. What it shows is text; nothing in a report is read as HTML. */
   };
 
   function showCheck(check, marks) {
-    const more = MORE[check.outcome] || (check.is_partly_hidden ? 'more at grading' : '');
+    const more = MORE[check.outcome] || (check.is_partly_hidden ? 'more checks at grading' : '');
     const missed = ['failed', 'partial'].includes(check.outcome);
     const score = (missed ? `${check.earned} of ` : '') + points(check.points);
     const row = element('li', check.outcome.replace(' ', '-'));
