@@ -15,7 +15,7 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
             title='message type not installed here',
             expected=f'{type_name}, which {senders} publishes, to be installed here',
             seen='no such type in this environment: no node of it can subscribe, and whether'
-            ' messages arrive at nodes of another environment cannot be heard from here',
+            ' messages arrive at nodes of another environment cannot be seen from here',
             mend=f'install the package {package} here, or source the workspace in which it was'
             ' built, and start again from there',
             code='$ source install/setup.bash',
