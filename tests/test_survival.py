@@ -51,7 +51,7 @@ def handed_in(tmp_path_factory):
     notebook.with_name('helper.py').write_text('x = 1')
     notebook.with_name('timestamp.txt').write_text('2026-01-02 03:04:05 UTC')
     submit(course, 'eve', b'no notebook')
-    course.seed(TOY)
+    course.seed(TOY, 'ada')
     return course
 
 

@@ -43,8 +43,10 @@ def test_assignments_come_in_turn_and_most_answers_are_right(papers):
 
 def test_every_sample_has_its_turn_before_one_comes_again():
     samples = {name for name in PATHS if assignment_of(PATHS[name]) == '06_qos'}
-    papers = synthetic_class(30, assignments=['06_qos'])
-    assert {paper.sample for paper in papers} == samples
+    came = [paper.sample for paper in synthetic_class(8 * len(samples), assignments=['06_qos'])]
+    for pile in ({s for s in samples if '-pass-' in s}, {s for s in samples if '-pass-' not in s}):
+        first = [sample for sample in came if sample in pile][: len(pile)]
+        assert sorted(first) == sorted(pile)
 
 
 def test_samples_can_be_chosen():

@@ -46,7 +46,8 @@ async def look(notebook, *, extra_files=(), seed='', trust_students=False):
             handles = child.stdout.strip()
     reason = '' if '2 * x' in answer else 'expected 2, saw 3: add it to itself'
     notebook = executed(notebook, {'double-check': reason, 'double-hidden': reason})
-    notebook.metadata.setdefault('my_robot_basics', {'notes': []})['seed'] = seed
+    ours = notebook.metadata.setdefault('my_robot_basics', {})
+    ours.update({'notes': [], 'seed': seed})
     told = f'note: {os.getpid()}\nnote: {handles}\n'
     notebook.cells[-2].outputs[0].text += told  # a check may say anything
     return Execution(notebook=notebook, verdicts=(), notes=())

@@ -53,6 +53,8 @@ def become_a_kernel(errand: socket.socket, made: dict[str, str]) -> None:
             _tell_the_end(errand, child)
         listener = _settle(order, keep=errand.fileno())
         socket.send_fds(errand, [b'ready'], [listener] if listener >= 0 else [])
+        # not before: Linux lets nobody send a file who has more under way than this limit
+        _limit(order, only_files=True)
     except BaseException as error:
         errand.send(f'{type(error).__name__}: {error}'[:2000].encode())
         os._exit(1)
@@ -100,8 +102,7 @@ def _settle(order: dict, *, keep: int) -> int:
     os.chdir(order['folder'])
     _drop_capabilities()
     call('prctl', _PR_SET_DUMPABLE, 1, 0, 0, 0)  # else /proc/self would be somebody else's
-    for kind, most in order['limits']:
-        resource.setrlimit(kind, (most, most))
+    _limit(order, only_files=False)
     os.environ.clear()
     os.environ.update(order['environment'])
     time.tzset()
@@ -111,6 +112,13 @@ def _settle(order: dict, *, keep: int) -> int:
     _filter_system_calls(bytes.fromhex(order['seccomp']))
     _forget(order['command'])
     return listener
+
+
+def _limit(order: dict, *, only_files: bool) -> None:
+    """Set the limit of open files, or all others."""
+    for kind, most in order['limits']:
+        if (kind == resource.RLIMIT_NOFILE) is only_files:
+            resource.setrlimit(kind, (most, most))
 
 
 def _drop_capabilities() -> None:

@@ -97,12 +97,12 @@ def _explaining_spin(spin: Callable[..., None]) -> Callable[..., None]:
                 f'{name} spins in the background already: leave rclpy.spin out, and go on with '
                 'the next cell'
             )
-        print(
-            f'rclpy.spin keeps this cell busy while {name} runs, and no other cell can run: press '
-            '■ (Interrupt the kernel) above to stop it.',
-            flush=True,
-        )
-        try:
+        try:  # an interrupt may come as soon as the line is read
+            print(
+                f'rclpy.spin keeps this cell busy while {name} runs, and no other cell can run: '
+                'press ■ (Interrupt the kernel) above to stop it.',
+                flush=True,
+            )
             spin(node, executor)
         except KeyboardInterrupt:
             node.destroy_node()
