@@ -15,6 +15,7 @@ from my_robot_basics.validate.errors import RoomFailure
 from my_robot_basics.validate.exercises import Exercise, Plan, plans
 from my_robot_basics.validate.limits import STUDENT_CELL_TIMEOUT_SEC, STUDENT_CELLS_BUDGET_SEC
 from my_robot_basics.validate.outputs import CellRun
+from my_robot_basics.validate.overdue import judge_overdue
 from my_robot_basics.validate.verdict import Verdict, judge, ungraded
 
 
@@ -43,13 +44,17 @@ class Budget:
     remaining_sec: float = STUDENT_CELLS_BUDGET_SEC
     loop_time: Any = field(default_factory=lambda: asyncio.get_running_loop().time)
 
-    async def run(self, rooms: Rooms, source: str) -> CellRun:
+    async def run(self, rooms: Rooms, cell: NotebookNode) -> CellRun:
         """Run one of the student's cells within its limit, and within what is left."""
         start = self.loop_time()
         timeout_sec = max(0.1, min(STUDENT_CELL_TIMEOUT_SEC, self.remaining_sec))
-        run = await rooms.run_student_cell(source, timeout_sec=timeout_sec)
+        run = await self.run_within(timeout_sec, rooms, cell)
         self.remaining_sec -= self.loop_time() - start
         return run
+
+    async def run_within(self, timeout_sec: float, rooms: Rooms, cell: NotebookNode) -> CellRun:
+        """Run one of the student's cells for so long at most."""
+        return await rooms.run_student_cell(cell.source, timeout_sec=timeout_sec)
 
 
 @dataclass(frozen=True)
@@ -102,7 +107,7 @@ async def _try_plans(
 async def _run_cells(
     notebook: NotebookNode, plan: Plan, rooms: Rooms, budget: Budget
 ) -> dict[int, CellRun]:
-    return {i: await budget.run(rooms, notebook.cells[i].source) for i in plan.cells}
+    return {i: await budget.run(rooms, notebook.cells[i]) for i in plan.cells}
 
 
 async def _judge_cells(
@@ -115,12 +120,15 @@ async def _judge_cells(
     """
     cells = notebook.cells
     own = [(grade_id(cells[i]), runs[i]) for i in (exercise.answer, *exercise.run)]
+    given_up = [(_name(cells, i), run) for i, run in runs.items() if run.cut_after_sec]
     checks, cut, quiet = {}, [], False
     for index in exercise.grades:
         source = hidden.marked(cells[index].source, quiet=quiet)
-        run = await rooms.run_check(source) if rooms.student_alive else None
+        can_tell = rooms.student_alive and not any(each.cut_after_sec for _, each in own)
+        run = await rooms.run_check(source) if can_tell else None
         outputs = run.outputs if run else []
-        verdict = judge(cells[index], run, own)
+        open_ = judge_overdue(cells[index], run, given_up)
+        verdict = open_ or judge(cells[index], run, own)
         if quiet and verdict.details and not hidden.has_begun(outputs):
             cut.append(index)
         checks[index] = verdict, [] if quiet else outputs
@@ -139,6 +147,10 @@ async def _told_in_full(notebook: NotebookNode, rooms: Rooms, cut: Checks) -> Ch
             if again.outcome == 'failed':
                 told[index] = replace(verdict, reason=again.reason, details=''), run.outputs
     return told
+
+
+def _name(cells: list[NotebookNode], index: int) -> str:
+    return f'`{name}`' if (name := grade_id(cells[index])) else f'{index + 1}'
 
 
 def _lacks_a_name(runs: dict[int, CellRun], exercise: Exercise, plan: Plan) -> bool:

@@ -2,6 +2,7 @@
 
 import asyncio
 import contextlib
+import math
 import os
 import queue
 import signal
@@ -13,6 +14,7 @@ import psutil
 from jupyter_client import AsyncKernelManager
 from jupyter_client.kernelspec import KernelSpec, KernelSpecManager
 
+from my_robot_basics.checks.pressure import Stopwatch
 from my_robot_basics.validate.errors import RoomFailure
 from my_robot_basics.validate.messages import Messages, OnInput
 from my_robot_basics.validate.outputs import CellRun
@@ -67,11 +69,15 @@ class Kernel:
         code: str,
         *,
         timeout_sec: float,
+        free_sec: float = math.inf,
         on_input: OnInput | None = None,
         expressions: dict[str, str] | None = None,
     ) -> CellRun:
-        """Run one cell; interrupt it after `timeout_sec`, kill the kernel if that does nothing."""
-        result = CellRun()
+        """Run one cell; interrupt it after `timeout_sec`, kill the kernel if that does nothing.
+
+        So it does after `free_sec` in which no process had to wait for a processor.
+        """
+        result, watch = CellRun(), Stopwatch()
         if not self.alive:
             result.died = True
             return result
@@ -85,8 +91,13 @@ class Kernel:
         done = asyncio.ensure_future(self._messages.follow(request, result, on_input))
         try:
             result.timed_out = not await finished(
-                done, timeout_sec, self._is_alive, lambda: result.flooded
+                done,
+                timeout_sec,
+                self._is_alive,
+                lambda: result.flooded or watch.free_sec() >= free_sec,
             )
+            if result.timed_out and not result.flooded and watch.wall_sec() < timeout_sec:
+                result.cut_after_sec = watch.wall_sec()
             if result.timed_out and self.alive:
                 await self._manager.interrupt_kernel()
                 if not await finished_in_grace(done, self._is_alive):

@@ -2,6 +2,12 @@
 
 STUDENT_CELL_TIMEOUT_SEC = 10.0
 """No answer of the course takes a second; a loop that waits for messages takes a few."""
+VALIDATE_TIMEOUT_SEC = 2.5
+"""*Validate* waits so long for a student's cell or function, and says that grading waits longer:
+what takes more is not checked, and never called wrong. Time in which processes had to wait for a
+processor does not count, up to the grader's own limit, …"""
+VALIDATE_NEXT_TIMEOUT_SEC = 1.0
+"""… and so long where something has not returned already."""
 STUDENT_CELLS_BUDGET_SEC = 120.0
 """The most that all student cells of a notebook may take together: a class has to end."""
 REPLY_TIMEOUT_SEC = 10.0

@@ -34,6 +34,8 @@ class CellRun:
     expressions: object = None
     """The reply's user_expressions, as the kernel sent them."""
     timed_out: bool = False
+    cut_after_sec: float = 0.0
+    """After how long *Validate* gave the student's code up, where grading waits longer; else 0."""
     died: bool = False
     ending: str = ''
     """How the student's kernel, or what it had started, was ended, if that was their doing."""

@@ -37,12 +37,12 @@ def as_expression(request: str) -> dict[str, str]:
     return {'reply': _RESPONDER.format(request=request)}
 
 
-def reply_of(run: CellRun, *, within_sec: float) -> str:
+def reply_of(run: CellRun, *, within_sec: float, at_grading: str = '') -> str:
     """Return what came of it in so long as text for the check: a reply, or why there is none."""
     if run.flooded:
         return _failed(f'no answer in {FLOOD_CHARACTERS:,} characters of output')
     if run.timed_out:
-        return _failed(f'no answer within {within_sec:.0f} s')
+        return _failed(f'no answer within {within_sec:g} s{at_grading}')
     if run.died:
         return _failed('the kernel of your notebook has ended')
     match run.expressions:

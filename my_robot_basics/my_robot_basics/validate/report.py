@@ -130,7 +130,7 @@ def troubles_of(verdicts: Iterable[Verdict]) -> tuple[str, ...]:
 
 
 def _message(verdict: Verdict) -> str:
-    if verdict.outcome != 'ungraded':
+    if not verdict.reason.startswith(UNGRADED):
         return verdict.reason
     why = verdict.reason.removeprefix(UNGRADED)
     return f'Validate itself failed here, and your answer was not checked: {why}'

@@ -1,6 +1,7 @@
 """The two kernels of *Validate*: as when a lesson is graded, but on the student's own machine."""
 
 import asyncio
+import math
 import shutil
 import tempfile
 from collections.abc import Callable, Sequence
@@ -10,8 +11,13 @@ from my_robot_basics.live.domain import Claim, claim
 from my_robot_basics.live.errors import LiveError
 from my_robot_basics.validate.errors import RoomFailure
 from my_robot_basics.validate.kernel import Kernel
-from my_robot_basics.validate.limits import CHECK_TIMEOUT_SEC, REPLY_TIMEOUT_SEC
+from my_robot_basics.validate.limits import (
+    CHECK_TIMEOUT_SEC,
+    REPLY_TIMEOUT_SEC,
+    VALIDATE_TIMEOUT_SEC,
+)
 from my_robot_basics.validate.outputs import CellRun
+from my_robot_basics.validate.overdue import rounded_down
 from my_robot_basics.validate.questions import (
     STUDENT_COMES,
     STUDENT_GOES,
@@ -40,6 +46,8 @@ class Rooms:
         self._claim: Claim | None = None
         self._folder: Path | None = None
         self._kernels: list[Kernel] = []
+        self._unanswered: CellRun | None = None
+        """The question that was given up."""
 
     async def __aenter__(self) -> 'Rooms':
         """Start both kernels, and see a message cross. Raises RoomFailure."""
@@ -76,23 +84,36 @@ class Rooms:
         """Whether the student's kernel still runs."""
         return self._student.alive
 
-    async def run_student_cell(self, source: str, *, timeout_sec: float) -> CellRun:
-        """Run one of the student's cells."""
+    async def run_student_cell(
+        self, source: str, *, timeout_sec: float, free_sec: float = math.inf
+    ) -> CellRun:
+        """Run one of the student's cells; give it up after `free_sec` with a free processor."""
         self.say('running your cells')
-        return await self._student.run(source, timeout_sec=timeout_sec)
+        return await self._student.run(source, timeout_sec=timeout_sec, free_sec=free_sec)
 
     async def run_check(self, source: str) -> CellRun:
         """Run a grade cell, passing its questions on to the student's kernel."""
         self.say(f'checking: {title_of_check(source)}')
-        return await self._test.run(
+        run = await self._test.run(
             source, timeout_sec=CHECK_TIMEOUT_SEC, on_input=self._ask_student
         )
+        if self._unanswered is not None and not run.ran_to_end:
+            run.cut_after_sec = self._unanswered.cut_after_sec
+        return run
 
     async def _ask_student(self, request: str) -> str:
-        run = await self._student.run(
-            '', timeout_sec=REPLY_TIMEOUT_SEC, expressions=as_expression(request)
+        """Take a question over; what has not answered one in time is asked no more."""
+        run = self._unanswered or await self._student.run(
+            '',
+            timeout_sec=REPLY_TIMEOUT_SEC,
+            free_sec=VALIDATE_TIMEOUT_SEC,
+            expressions=as_expression(request),
         )
-        return reply_of(run, within_sec=REPLY_TIMEOUT_SEC)
+        if run.cut_after_sec:
+            self._unanswered = run
+        within_sec = rounded_down(run.cut_after_sec or REPLY_TIMEOUT_SEC)
+        at_grading = f'; at grading it has {REPLY_TIMEOUT_SEC:g} s' if run.cut_after_sec else ''
+        return reply_of(run, within_sec=within_sec, at_grading=at_grading)
 
     def _open(self) -> None:
         self._claim = claim()

@@ -10,9 +10,10 @@ from nbformat import NotebookNode
 from my_robot_basics.validate.ahead import Ahead
 from my_robot_basics.validate.cells import grade_id, role
 from my_robot_basics.validate.exercises import Exercise, find_exercises
-from my_robot_basics.validate.judging import Budget, Judged, judge_exercise
+from my_robot_basics.validate.judging import Judged, judge_exercise
 from my_robot_basics.validate.lesson import Lesson, read_lesson
 from my_robot_basics.validate.report import Check, Part, Report, make_check, troubles_of
+from my_robot_basics.validate.short_budget import ShortBudget
 
 Say = Callable[[str], None]
 
@@ -25,7 +26,7 @@ async def validate(path: Path, *, say: Say = lambda line: None) -> Report:
     """
     lesson = read_lesson(path)
     files = [p for p in sorted(path.parent.glob('*.py')) if p.is_file()]
-    budget = Budget()
+    budget = ShortBudget()
     parts = []
     exercises = find_exercises(lesson.notebook)
     async with Ahead(files) as ahead:
