@@ -8,7 +8,7 @@ from my_robot_basics.validate.outputs import CellRun
 from my_robot_basics.validate.pictures import MAX_PIXELS, why_not_shown
 
 from grader.page import _shown
-from grader.submission import _pictures
+from grader.raw_notebook import _pictures
 
 
 def png(width, height):
