@@ -11,11 +11,13 @@ try:
     from grader.feedback import FEEDBACK_PASSES
     from grader.formgrader import FILTERS
     from grader.logs import NBGRADER_LOGGING
+    from grader.nbgrader_input import read_timestamps_as_we_do
     from grader.pipeline import AUTOGRADE_PASSES, SANITIZE_PASSES
     from grader.release import CODE_STUB, PASSES
 
     course = Course.at(Path(__file__).parent)
     make_ready(course)
+    read_timestamps_as_we_do()
 except (ImportError, OSError) as error:
     # nbgrader would go on with its defaults, which let a submission choose its own score
     raise SystemExit(
@@ -39,6 +41,7 @@ c.GenerateAssignment.preprocessors = list(PASSES)
 c.ClearSolutions.code_stub = CODE_STUB
 # a mark scheme stands in the text before an answer: the grader puts that back from the source
 c.ClearMarkScheme.enforce_metadata = False
+c.Autograde.exporter_class = 'grader.nbgrader_input.AutogradeExporter'
 c.Autograde.sanitize_preprocessors = list(SANITIZE_PASSES)
 c.Autograde.autograde_preprocessors = list(AUTOGRADE_PASSES)
 c.Autograde.pre_convert_hook = 'grader.gradebook.register_before_autograde'

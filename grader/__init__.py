@@ -9,9 +9,9 @@ Its modules, in the order in which things happen:
 - A run, from what was handed in to what is stored: `submitted`, `grade`, `reuse`, `replay`. The
   work is a `task`, what comes of it is checked by `results`, and a `crew` does it: `workers` with
   `worker`, so many at a time as `pressure` says; or `cluster`, `connection` and `remote`.
-- One submission: `submission`, `reading`, `raw_notebook`, `heal`, `pipeline`, `passes`. One
-  exercise of it: `execute` and `local_paths`, with the exercises, plans and verdicts of
-  my_robot_basics.validate, which students have, too.
+- One submission: `submission`, `reading`, `raw_notebook`, `heal`, `pipeline`, `passes`,
+  `nbgrader_input`. One exercise of it: `execute` and `local_paths`, with the exercises, plans and
+  verdicts of my_robot_basics.validate, which students have, too.
 - Where a student's code runs: `isolation` says whether it can be kept in. `rooms`, `sandbox`,
   `bubblewrap`, `sights`, `seccomp`, `system_calls`, `limits`, `hierarchies`, `cgroups`, `memory`,
   `memory_watch`, `places` and `leftovers` keep it in.

@@ -1,5 +1,7 @@
 """Our two passes among nbgrader's: heal a submission, and run it in two rooms."""
 
+import atexit
+from functools import cache
 from pathlib import Path
 
 import nbformat
@@ -8,9 +10,11 @@ from nbformat import NotebookNode
 from traitlets import Bool
 
 from grader.course import Course
-from grader.execute import execute
 from grader.heal import KEY, heal
+from grader.isolation import isolated
 from grader.submission import extra_python_files, read_submission
+from grader.task import Task
+from grader.workers import Workers
 
 
 class HealSubmission(Preprocessor):
@@ -42,6 +46,7 @@ class HealSubmission(Preprocessor):
 class ExecuteRooms(Preprocessor):
     """Run student cells in one kernel and grade cells in another, in nbgrader's Execute's place.
 
+    That is done by a worker process, as for `./course grade`: this one holds the gradebook.
     nbgrader's resource path is not used as a working directory: that folder holds the tests.
     """
 
@@ -51,12 +56,24 @@ class ExecuteRooms(Preprocessor):
     ).tag(config=True)
 
     def preprocess(self, nb: NotebookNode, resources: dict) -> tuple[NotebookNode, dict]:
-        """Return the executed notebook with a verdict in each grade cell."""
+        """Return the executed notebook with a verdict in each grade cell.
+
+        Raises CourseError where there is no sandbox, and TaskFailed where there is no verdict.
+        """
         at, folder = resources['nbgrader'], Path(resources['metadata']['path'])
-        execution = execute(
-            nb,
-            extra_files=extra_python_files(folder),
+        isolated(trust_students=self.trust_students)
+        task = Task(
+            notebook=nb,
+            files={path.name: path.read_bytes() for path in extra_python_files(folder)},
             seed=Course.of_nbgrader(resources).seed(at['assignment'], at['student']),
             trust_students=self.trust_students,
         )
-        return execution.notebook, resources
+        return _workers().submit(task).result().notebook, resources
+
+
+@cache
+def _workers() -> Workers:
+    """Return the one that grades for this process, as long as this one lives."""
+    workers = Workers(1, in_flight=1).__enter__()
+    atexit.register(workers.__exit__)
+    return workers

@@ -6,6 +6,7 @@ import os
 import socket
 import subprocess
 import sys
+import time
 from concurrent.futures import Future
 from typing import Self
 
@@ -30,6 +31,8 @@ MOST_MISSED = 24
 """A worker that says nothing for so many beats hangs: two minutes, on however busy a machine."""
 END_GRACE_SEC = 30.0
 """What a worker may take to end its kernels."""
+REAP_SEC = 0.02
+"""How often it is looked whether it has ended."""
 TRIES = 3
 
 
@@ -180,7 +183,7 @@ class _Worker:
             watch.cancel()
             if self._writer:
                 self._writer.close()
-            await asyncio.to_thread(_reap, process)
+            await _reap(process)
 
     async def _watch(self, process: subprocess.Popen) -> None:
         """Kill a process that has gone silent; counted, for a machine may sleep meanwhile."""
@@ -190,10 +193,10 @@ class _Worker:
         process.kill()
 
 
-def _reap(process: subprocess.Popen) -> None:
-    """Wait for a process that was told to end."""
-    try:
-        process.wait(END_GRACE_SEC)
-    except subprocess.TimeoutExpired:
-        process.kill()
-        process.wait()
+async def _reap(process: subprocess.Popen) -> None:
+    """Wait for a process that was told to end; without a thread, for Python may be ending, too."""
+    deadline = time.monotonic() + END_GRACE_SEC
+    while process.poll() is None:
+        if time.monotonic() > deadline:
+            process.kill()
+        await asyncio.sleep(REAP_SEC)

@@ -1,14 +1,17 @@
 """nbgrader's own commands, in real rooms, beside ours: the same scores and the same pages."""
 
 import csv
+import json
 import os
 import subprocess
 import sys
 from pathlib import Path
 
+import nbformat
 import pytest
 from course_maker import TOY, answered, make_course, submit
 from nbformat import NotebookNode
+from test_dates import STOPS_DATEUTIL
 
 from grader.__main__ import main
 from grader.course import Course
@@ -38,8 +41,11 @@ def courses(tmp_path_factory):
         for student, answer in ANSWERS.items():
             submit(course, student, answered(course, answer, explained='so'))
         submit(course, 'right', mangled(answered(course, ANSWERS['right'])))
+        path = submit(course, 'hostile', hostile(answered(course, ANSWERS['right'])))
+        path.with_name('timestamp.txt').write_text(STOPS_DATEUTIL)
     assert main(['grade'], course=ours) == 0
-    nbgrader(theirs, 'autograde', TOY)
+    said = nbgrader(theirs, 'autograde', TOY)
+    assert 'Traceback' not in said
     return ours, theirs
 
 
@@ -48,6 +54,13 @@ def mangled(notebook: NotebookNode) -> NotebookNode:
     notebook.cells = [c for c in notebook.cells if c.id not in ('double-check', 'explain')]
     notebook.cells[-1].metadata['nbgrader']['points'] = 50
     return notebook
+
+
+def hostile(notebook: NotebookNode) -> str:
+    """Return a notebook that is right, and that nbformat's checks take 40 s and 1.4 GB for."""
+    raw = json.loads(nbformat.writes(notebook))
+    raw['cells'].append(raw['cells'][0] | {'outputs': [{'output_type': 'x'}] * 30_000})
+    return json.dumps(raw)
 
 
 def nbgrader(course: Course, *arguments: str) -> str:
@@ -70,6 +83,9 @@ def test_both_ways_give_the_same_scores(courses):
     )
     assert ours == theirs
     assert ours == {
+        ('hostile', 'double-check'): 1.0,
+        ('hostile', 'double-hidden'): 2.0,
+        ('hostile', 'explain'): None,
         ('right', 'double-check'): 1.0,
         ('right', 'double-hidden'): 2.0,
         ('right', 'explain'): 0.0,
@@ -97,7 +113,7 @@ def test_nbgrader_exports_what_we_stored(courses):
     nbgrader(ours, 'export', f'--CourseDirectory.db_url={ours.db_url}', '--to', 'ours.csv')
     with (ours.root / 'ours.csv').open() as file:
         total = {row['student_id']: float(row['score']) for row in csv.DictReader(file)}
-    assert total == {'right': 3.0, 'small': 1.0, 'silent': 0.0}
+    assert total == {'hostile': 3.0, 'right': 3.0, 'small': 1.0, 'silent': 0.0}
 
 
 def test_the_formgrader_grades_alike_inside_its_event_loop(courses):

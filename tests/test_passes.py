@@ -1,6 +1,7 @@
 """Our two passes, as nbgrader calls them."""
 
 import asyncio
+from concurrent.futures import Future
 
 import nbformat
 import pytest
@@ -8,9 +9,9 @@ from course_maker import TOY, answered, released_course, submit
 from nbformat.v4 import new_code_cell
 
 from grader import passes
-from grader.execute import Execution
 from grader.heal import KEY, grade_id
 from grader.passes import ExecuteRooms, HealSubmission
+from grader.task import Result, Task
 
 ANSWER = 'def double(x): return 2 * x'
 
@@ -97,20 +98,23 @@ def test_the_unreadable_is_healed_to_nothing_with_its_problem(course, content):
 
 
 @pytest.fixture
-def executed_with(monkeypatch):
-    """What the second pass hands to the executor."""
-    seen = {}
+def tasks(monkeypatch):
+    """What the second pass hands to the worker."""
+    seen = []
 
-    def execute(notebook, **options):
-        seen.update(options)
-        return Execution(notebook=notebook, verdicts=(), notes=())
+    class Stub:
+        def submit(self, task):
+            seen.append(task)
+            done = Future()
+            done.set_result(Result(task.notebook, 1.0))
+            return done
 
-    monkeypatch.setattr(passes, 'execute', execute)
+    monkeypatch.setattr(passes, '_workers', Stub)
     return seen
 
 
 @pytest.mark.parametrize('in_a_loop', [False, True], ids=['command', 'formgrader'])
-def test_running_takes_the_students_seed_and_the_students_files(course, executed_with, in_a_loop):
+def test_running_takes_the_students_seed_and_the_students_files(course, tasks, in_a_loop):
     folder = course.folder('autograded', 'ada', TOY)
     folder.mkdir(parents=True, exist_ok=True)
     (folder / 'helper.py').write_text('')
@@ -123,11 +127,9 @@ def test_running_takes_the_students_seed_and_the_students_files(course, executed
     at = resources(course, 'autograded')
     result = asyncio.run(formgrader()) if in_a_loop else ExecuteRooms().preprocess(notebook, at)
     assert result[0] is notebook
-    assert executed_with == {
-        'extra_files': [folder / 'helper.py'],
-        'seed': course.seed(TOY, 'ada'),
-        'trust_students': False,
-    }
+    assert tasks == [
+        Task(notebook=notebook, files={'helper.py': b''}, seed=course.seed(TOY, 'ada'))
+    ]
 
 
 def test_both_passes_are_in_force():
