@@ -14,6 +14,8 @@ from grader.forms import Forms, bare, stem_of
 from grader.incoming import Incoming
 from grader.students import Label, Unclear, is_nobody, label_in, same_person, student_in
 
+_AGAIN = re.compile(r'-\d+(?=$|\.(zip|tar|tgz|tbz2|txz)\b)', re.IGNORECASE)
+"""What Canvas puts behind the name of what is handed in again."""
 EXPECTED = (
     'expected STUDENT_ASSIGNMENT.ipynb, STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb or an archive named '
     'after the student'
@@ -66,8 +68,10 @@ class Naming:
         stem = stem_of(each.parts[-1])
         if at == len(each.parts) - 1:  # no folder, and the file's name begins with the label
             stem = stem_of(label.rest)
+        elif label and label.rest:  # what the student called that folder or archive
+            inside = (_AGAIN.sub('', label.rest), *inside)
         if label and label.platform == 'canvas':
-            stem = re.sub(r'-\d+$', '', stem)  # handed in again
+            stem = _AGAIN.sub('', stem)
         if exchanged := self._forms.exchanged(name):
             if stem != exchanged.what or inside:
                 raise Unclear(f'in the exchange, {exchanged.what}.ipynb was expected here')

@@ -2,6 +2,7 @@
 
 import re
 import unicodedata
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import permutations
@@ -20,7 +21,9 @@ MOST_WORDS = 4
 _MOODLE = re.compile(
     r'(?P<who>.+?)_(?P<number>\d+)_assignsubmission_(file|onlinetext)_?(?P<rest>.*)'
 )
-_CANVAS = re.compile(r'(?P<who>[^_]+)(_LATE)?_(?P<number>\d{3,})_\d{3,}(_(?P<rest>.*))?', re.I)
+_CANVAS = re.compile(
+    r'(?P<who>[^_]+)(_LATE)?_(?P<number>\d{3,})_(?P<upload>\d{3,})(_(?P<rest>.*))?', re.I
+)
 _ANONYMOUS = {'Participant', 'Teilnehmer', 'Teilnehmerin'}
 """What Moodle calls everybody where teachers must not know who it was."""
 _UPLOADS = """
@@ -57,11 +60,17 @@ class Label:
 def label_in(name: str) -> Label | None:
     """Return what Moodle or Canvas says in a name, if one of them wrote it."""
     for platform, form in (('moodle', _MOODLE), ('canvas', _CANVAS)):
-        if found := form.fullmatch(name):
+        if (found := form.fullmatch(name)) and not _is_term(found.groupdict()):
             who, number = found['who'], found['number']
             who = f'{who} {number}' if who in _ANONYMOUS else who
             return Label(platform, number, who, found['rest'] or '')
     return None
+
+
+def _is_term(found: Mapping[str, str]) -> bool:
+    """Whether two numbers are those of a year and the next, as in ws_2026_2027_group_a."""
+    number, upload = found['number'], found.get('upload', '')
+    return len(number) == len(upload) == 4 and int(upload) - int(number) in (0, 1)
 
 
 def student_in(name: str) -> str:

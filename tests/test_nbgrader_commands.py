@@ -85,7 +85,7 @@ def test_both_ways_give_the_same_scores(courses):
     assert ours == {
         ('hostile', 'double-check'): 1.0,
         ('hostile', 'double-hidden'): 2.0,
-        ('hostile', 'explain'): None,
+        ('hostile', 'explain'): 0.0,
         ('right', 'double-check'): 1.0,
         ('right', 'double-hidden'): 2.0,
         ('right', 'explain'): 0.0,

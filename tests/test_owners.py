@@ -68,6 +68,36 @@ def test_names_from_any_alphabet_are_kept(name, at):
         assert owners(at(path)) == ([(name, '02_joint_state')], [])
 
 
+@pytest.mark.parametrize('folder', ['ws_2026_2027', 'ws_2026_2027_a', 'ros_2026_2026_b'])
+def test_a_folder_of_a_term_is_no_upload_of_canvas(folder, at):
+    found = [at(f'{folder}/{who}/02_joint_state.ipynb') for who in ('ada', 'bob')]
+    assert owners(*found) == ([('ada', '02_joint_state'), ('bob', '02_joint_state')], [])
+    taken, ((_, why),) = owners(found[0])  # nothing beside it says that it is no student
+    assert (taken, why[:10]) == ([], 'it may be ')
+
+
+UPLOADS = {
+    'moodle': 'ada_1815_assignsubmission_file_/{}.zip/02_joint_state.ipynb',
+    'moodle, flat': 'ada_1815_assignsubmission_file_{}.zip/02_joint_state.ipynb',
+    'canvas': 'ada_18151_21012_{}.zip/02_joint_state.ipynb',
+    'canvas, again': 'ada_LATE_18151_21012_{}-1.zip/02_joint_state.ipynb',
+    'canvas, unpacked': 'ada_18151_21012_{}/02_joint_state.ipynb',
+}
+
+
+@pytest.mark.parametrize('upload', UPLOADS.values(), ids=UPLOADS)
+def test_an_upload_that_bears_another_name_is_told_to_a_person(upload, at):
+    for own in ('ada', 'Ada', 'my homework', 'lab 3', '02_joint_state'):
+        (taken,), left = match([at(upload.format(own))], ASSIGNMENTS, students=['bob'])
+        assert (taken.student_id, taken.remark, left) == ('ada', '', [])
+    (taken,), left = match([at(upload.format('turtle'))], ASSIGNMENTS, students=['bob'])
+    assert (taken.remark, left) == ("from a folder of their own, 'turtle'", [])
+    for others in ('bob', 'eve_02_joint_state'):
+        taken, (left,) = match([at(upload.format(others))], ASSIGNMENTS, students=['bob'])
+        assert taken == []
+        assert f'handed in, under the name of {others[:3]}: if it is ada' in left.reason
+
+
 def test_a_name_is_the_same_however_its_letters_are_composed(at):
     found = owners(at('Zoe\u0308_02_joint_state.ipynb'), at('Zo\u00eb_03_publisher.ipynb'))
     assert {student for student, _ in found[0]} == {'Zo\u00eb'}
