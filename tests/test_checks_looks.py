@@ -35,6 +35,13 @@ def test_a_wrong_rate_fails(node, seen):
 
 
 @pytest.mark.usefixtures('patient')
+def test_a_timer_that_leaves_every_twentieth_out_fails_without_another_look(monkeypatch):
+    monkeypatch.setattr(looks, 'wall', lambda *_, **__: pytest.fail('looked at the wall clock'))
+    with running('leaves_out'), pytest.raises(CheckFailed, match='one message of 20 missing each'):
+        topic(TOPIC).record(seconds=60.0).assert_rate(hz=5.0)
+
+
+@pytest.mark.usefixtures('patient')
 def test_on_a_busy_machine_the_clock_is_driven_for_a_shorter_time(monkeypatch):
     monkeypatch.setattr(SimulatedClock, 'is_half_over', lambda clock: True)
     with running('well_equipped'):
@@ -106,7 +113,12 @@ def test_honest_nodes_that_are_no_plain_timers_pass(capfd, node, out):
     [
         ('bursts', r'pauses of (0\.9|1\.)'),
         ('pairs', r'pauses of 0\.[345]'),
-        ('by_turns', r'0\.1\d to 0\.\d+ s between messages over 4 s .* unevenly spaced'),
+        ('a_little_fast_without_services', r'5\.1\d Hz over'),
+        ('a_little_slow_without_services', r'4\.8\d Hz over'),
+        ('a_little_fast_loop', r'5\.1\d Hz over'),
+        ('nearly_by_turns', r'0\.\d+ to 0\.\d+ s between messages over .* unevenly spaced'),
+        ('nearly_by_turns_on_its_clock', r'0\.\d+ s between messages over .* unevenly spaced'),
+        ('by_turns', r'0\.\d+ to 0\.\d+ s between messages over 4 s .* unevenly spaced'),
         ('too_busy', r'[34]\.\d+ Hz over 4 s'),
     ],
 )

@@ -1,11 +1,13 @@
 """What a recording may say: assertions on made-up arrivals, each with a near miss."""
 
+import itertools
 import math
+import random
 
 import pytest
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import Point
-from my_robot_basics.checks import CheckFailed, rates
+from my_robot_basics.checks import CheckFailed, periods, rates
 from my_robot_basics.checks.recording import Recording, Sample
 from sensor_msgs.msg import JointState
 
@@ -43,10 +45,10 @@ def every(period_sec, count=50):
         ('simulated', 1 / 4.89, False),
         ('simulated', 1 / 5.09, True),
         ('simulated', 1 / 5.11, False),
-        ('wall', 1 / 4.86, True),
-        ('wall', 1 / 4.84, False),
-        ('wall', 1 / 5.14, True),
-        ('wall', 1 / 5.16, False),
+        ('wall', 1 / 4.91, True),
+        ('wall', 1 / 4.89, False),
+        ('wall', 1 / 5.09, True),
+        ('wall', 1 / 5.11, False),
         ('wall', 1.0, False),
         ('wall', 0.04, False),
     ],
@@ -123,9 +125,100 @@ def test_by_turns_too_early_and_too_late_is_uneven():
     assert not rates.is_nearly_even(recording(turns, step_sec=0.02))
     with pytest.raises(CheckFailed, match=r'saw 0\.10 to 0\.30 s between messages .* one timer'):
         recording(turns, clock='wall').assert_rate(hz=5.0)
-    # as a busy machine may have it
-    jitter = [0.2 * i + 0.04 * (i % 2) for i in range(1, 50)]
-    recording(jitter, clock='wall').assert_rate(hz=5.0)
+
+
+TURNS = [(0.15, 0.25), (0.18, 0.22), (0.15, 0.2, 0.25), (0.22, 0.22, 0.16), (0.2, 0.2, 0.15, 0.25)]
+
+
+@pytest.mark.parametrize('turns', TURNS)
+@pytest.mark.parametrize('late_sec', [0.0, 0.01])
+def test_what_comes_by_turns_is_no_rate(turns, late_sec):
+    seed = random.Random(0)
+    for seconds in 4.0, 8.0:
+        gaps = itertools.islice(itertools.cycle(turns), round(5 * seconds))
+        times = [time + late_sec * seed.random() ** 2 for time in itertools.accumulate(gaps)]
+        with pytest.raises(CheckFailed, match='so use one timer, and leave its period as it is'):
+            recording(times, clock='wall', seconds=seconds).assert_rate(hz=5.0)
+
+
+def test_turns_are_seen_with_steps_of_the_clock_that_are_finer_than_they():
+    by_turns = list(itertools.accumulate([0.15, 0.25] * 8))
+    for step_sec in 0.02, 0.05:
+        times = [step_sec * math.ceil(time / step_sec - 1e-9) for time in by_turns]
+        assert not rates.is_nearly_even(recording(times, step_sec=step_sec))
+    for period_sec in 0.2, 0.21, 0.205, 0.195, 0.213:
+        assert rates.is_nearly_even(recording(ticked(period_sec, 3.0, 0.02), step_sec=0.02))
+
+
+def on_a_busy_machine(period_sec, *, seconds, is_loop=False, seed=0):
+    """When messages of a timer, or of a loop that sleeps, are seen: one of four is late."""
+    chance = random.Random(seed)
+    late = [
+        3e-4 + (chance.random() < 0.25) * min(0.1, chance.expovariate(1 / 0.015))
+        for _ in range(int(seconds / period_sec))
+    ]
+    if is_loop:
+        return list(itertools.accumulate(period_sec + each for each in late))
+    return [period_sec * i + each for i, each in enumerate(late, start=1)]
+
+
+@pytest.mark.parametrize('is_loop', [False, True])
+@pytest.mark.parametrize('seconds', [4.0, 8.0])
+def test_a_busy_machine_hides_no_period_and_makes_none(is_loop, seconds):
+    for seed in range(30):
+        for period_sec, passes in (0.2, True), (0.195, False), (0.205, False):
+            times = on_a_busy_machine(period_sec, seconds=seconds, is_loop=is_loop, seed=seed)
+            made = recording(times, clock='wall', seconds=seconds)
+            assert abs(periods.meant(rates._times(made)) / period_sec - 1.0) < 0.01
+            assert rates.has_rate(made, 5.0) is passes
+
+
+def test_a_doubt_on_the_wall_clock_asks_for_a_longer_look():
+    asked = []
+
+    def look_again(period_sec):
+        def look(seconds):
+            asked.append(seconds)
+            return recording(every(period_sec), clock='wall')
+
+        return look
+
+    def look(period_sec, again_sec):
+        made = recording(every(period_sec, 20), clock='wall', look_again=look_again(again_sec))
+        made.assert_rate(hz=5.0)
+
+    look(0.201, 0.3)  # no doubt
+    look(0.203, 0.201)
+    look(0.205, 0.201)
+    assert asked == [8.0, 8.0]
+    for first_sec in 0.203, 0.205:
+        with pytest.raises(CheckFailed, match=r'saw 4\.88 Hz over 10 s'):
+            look(first_sec, 0.205)
+
+
+def test_a_longer_look_with_pauses_takes_nothing_back():
+    def look(seconds):
+        return recording(
+            [*every(0.2, 20), *(0.4 + time for time in every(0.2, 40)[20:])], clock='wall'
+        )
+
+    recording(every(0.203, 20), clock='wall', look_again=look).assert_rate(hz=5.0)
+    with pytest.raises(CheckFailed, match='pauses of'):
+        recording(every(0.205, 20), clock='wall', look_again=look).assert_rate(hz=5.0)
+
+
+@pytest.mark.parametrize('nth', [7, 10, 20, 50, 100])
+def test_a_message_that_is_left_out_again_and_again_leaves_no_doubt(nth):
+    times = [time for i, time in enumerate(every(0.2, 310), start=1) if (i + 3) % nth]
+    made = recording(times, seconds=62.0, look_again=lambda _: pytest.fail('looked'))
+    with pytest.raises(CheckFailed, match=f'saw one message of {nth} missing each time .*: publ'):
+        made.assert_rate(hz=5.0)
+
+
+@pytest.mark.parametrize('missing', [(), (9,), (9, 19), (9, 19, 30), (9, 19, 29, 41)])
+def test_what_a_thread_misses_now_and_then_is_not_left_out(missing):
+    times = [time for i, time in enumerate(every(0.2, 300)) if i not in missing]
+    assert not rates.leaves_out(recording(times, seconds=60.0))
 
 
 def test_pairs_and_plain_rates_are_not_taken_for_turns():

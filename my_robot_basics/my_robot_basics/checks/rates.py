@@ -4,14 +4,17 @@ from typing import TYPE_CHECKING, NoReturn
 
 import numpy as np
 
-from my_robot_basics.checks import pictures
+from my_robot_basics.checks import periods, pictures
 from my_robot_basics.checks.errors import fail
 
 if TYPE_CHECKING:
     from my_robot_basics.checks.recording import Recording
 
-SIMULATED_TOLERANCE = 0.02
-WALL_TOLERANCE = 0.03
+TOLERANCE = 0.02
+MEAN_TOLERANCE = -0.05, 0.03
+"""So much may the mean be off on the wall clock: a busy machine adds to each sleep of a loop."""
+DOUBTFUL = 0.01, 0.04
+"""Off by more, and by no more than that: 4 s of a busy machine do not decide it."""
 LARGEST_GAP_PERIODS = 1.75
 """More between two messages (on the wall clock) is a pause: bursts are not a rate."""
 GAP_SLACK_SEC = 0.05
@@ -28,59 +31,69 @@ def is_even(recording: 'Recording') -> bool:
     """Whether a timer of one period explains every arrival, within a step of the clock."""
     if len(recording.messages) < FEWEST:
         return False
-    low, high = period_range(recording)
+    low, high = _period_range(recording)
     return low <= high
 
 
 def is_nearly_even(recording: 'Recording') -> bool:
-    """Whether it does so within a quarter of that period, or within a step of the clock."""
+    """Whether it does so within a quarter of that period, or a step, and without any turns."""
     slack_sec = max(_slack_sec(recording), UNEVEN_PART / recording.rate_hz)
-    low, high = period_range(recording, slack_sec)
-    return low <= high
-
-
-def period_range(recording: 'Recording', slack_sec: float | None = None) -> tuple[float, float]:
-    """The least and the greatest period, in seconds, of a timer that explains every arrival.
-
-    Each may be so late (by default a step of the clock). The least is above the greatest where
-    none explains them.
-    """
-    slack_sec = _slack_sec(recording) if slack_sec is None else slack_sec
     times = _times(recording)
-    earlier, later = np.triu_indices(len(times), k=1)
-    periods, apart = times[later] - times[earlier], later - earlier
-    # each pair of arrivals leaves the period a range; they must all agree on one
-    low, high = (periods - slack_sec) / apart, (periods + slack_sec) / apart
-    return float(np.max(low)), float(np.min(high))
+    low, high = periods.spanned(times, slack_sec)
+    return low <= high and not periods.come_by_turns(times, _slack_sec(recording))
+
+
+def leaves_out(recording: 'Recording') -> int:
+    """Which message of the robot's clock is missing again and again (10: every tenth), or 0."""
+    if recording.clock != 'simulated':
+        return 0
+    return periods.left_out(_times(recording), _slack_sec(recording))
 
 
 def is_certain(recording: 'Recording') -> bool:
     """Whether the robot's clock has shown a timer, and its period, beyond doubt.
 
-    All messages are equally far apart, or one period explains them and those of the proof, which
-    took other steps: a thread that is late now and then is later with coarse steps.
+    All messages are equally far apart, or every so many of them is left out, or one period
+    explains them and those of the proof, which took other steps: a thread that is late now and
+    then is later with coarse steps.
     """
     if recording.clock != 'simulated':
         return False
-    if np.ptp(np.diff(_times(recording))) < 0.5 * recording.step_sec:
+    if np.ptp(np.diff(_times(recording))) < 0.5 * recording.step_sec or leaves_out(recording):
         return True
     low, high = _certain_range(recording)
     return low <= high
 
 
 def has_rate(recording: 'Recording', hz: float) -> bool:
-    """Whether messages came `hz` times a second: ±2 % simulated, ±3 % and evenly on the wall."""
+    """Whether messages came `hz` times a second, within ±2 %, and evenly.
+
+    On the wall clock that is the period which was meant: a busy machine slows a loop down.
+    """
     off = abs(recording.rate_hz / hz - 1.0)
     if recording.clock == 'simulated':
         low, high = _certain_range(recording)
         if low > high:
-            low, high = period_range(recording)
-        shortest, longest = (1.0 / (hz * (1.0 + sign * SIMULATED_TOLERANCE)) for sign in (1, -1))
+            low, high = _period_range(recording)
+        shortest, longest = (1.0 / (hz * (1.0 + sign * TOLERANCE)) for sign in (1, -1))
         # the mean alone is off by as much as a step
-        return off <= SIMULATED_TOLERANCE and (low > high or (low <= longest and shortest <= high))
+        is_right = off <= TOLERANCE and (low > high or (low <= longest and shortest <= high))
+        return is_right and not leaves_out(recording)
+    least, most = MEAN_TOLERANCE
+    is_meant = abs(_off_meant(recording, hz)) <= TOLERANCE
+    return is_meant and least <= recording.rate_hz / hz - 1.0 <= most and is_steady(recording, hz)
+
+
+def is_steady(recording: 'Recording', hz: float) -> bool:
+    """Whether messages on the wall clock came without pauses, and evenly, as `hz` asks for."""
     largest = max(LARGEST_GAP_PERIODS / hz, 1.0 / hz + GAP_SLACK_SEC)
-    is_steady = recording.largest_gap_sec <= largest and not _is_uneven(recording, hz)
-    return off <= WALL_TOLERANCE and is_steady
+    return recording.largest_gap_sec <= largest and not _is_uneven(recording, hz)
+
+
+def is_doubtful(recording: 'Recording', hz: float) -> bool:
+    """Whether the period on the wall clock is so near the tolerance that a longer look decides."""
+    low, high = DOUBTFUL
+    return recording.clock == 'wall' and low < abs(_off_meant(recording, hz)) <= high
 
 
 def fail_rate(recording: 'Recording', hz: float) -> NoReturn:
@@ -88,7 +101,10 @@ def fail_rate(recording: 'Recording', hz: float) -> NoReturn:
     n = len(recording.messages)
     over = f'over {recording.seconds:.3g} s ({n} message{"" if n == 1 else "s"})'
     near = recording.rate_hz >= 0.9 * hz
-    if near and recording.largest_gap_sec > LARGEST_GAP_PERIODS / hz:
+    if every := leaves_out(recording):
+        seen, cause = f'one message of {every} missing each time {over}', 'messages are left out'
+        hint = 'publish in every call of the timer'
+    elif near and recording.largest_gap_sec > LARGEST_GAP_PERIODS / hz:
         seen, cause = f'pauses of {recording.largest_gap_sec:.1f} s {over}', 'there are pauses'
         hint = ONCE
     elif near and recording.clock == 'wall' and _is_uneven(recording, recording.rate_hz):
@@ -99,22 +115,31 @@ def fail_rate(recording: 'Recording', hz: float) -> NoReturn:
         if np.min(gaps) < AT_ONCE_SEC:
             cause, hint = 'several messages come at once', ONCE
     else:
-        seen = f'{_hz(_measured_hz(recording))} {over}'
+        seen = f'{_hz(_measured_hz(recording, hz))} {over}'
         hint, cause = 'the timer period is in seconds, and period = 1 / rate', 'another rate'
     picture = pictures.arrivals(recording, hz=hz)
     fail(expected=_hz(hz), seen=seen, hint=hint, cause=cause, picture=picture)
 
 
-def _measured_hz(recording: 'Recording') -> float:
+def _measured_hz(recording: 'Recording', hz: float) -> float:
     low, high = _certain_range(recording)
-    return 2.0 / (low + high) if low <= high else recording.rate_hz
+    if low <= high:
+        return 2.0 / (low + high)
+    if recording.clock == 'wall' and abs(_off_meant(recording, hz)) > TOLERANCE:
+        return 1.0 / periods.meant(_times(recording))
+    return recording.rate_hz
+
+
+def _off_meant(recording: 'Recording', hz: float) -> float:
+    """How far off is the rate that was meant: 0.01 for one that is 1 % too fast."""
+    return 1.0 / (hz * periods.meant(_times(recording))) - 1.0 if recording.messages else -1.0
 
 
 def _certain_range(recording: 'Recording') -> tuple[float, float]:
     """The periods that explain a recording and its proof; the first above the second: none."""
     if recording.proof is None or not recording.messages or not recording.proof.messages:
         return 1.0, 0.0
-    ranges = period_range(recording), period_range(recording.proof)
+    ranges = _period_range(recording), _period_range(recording.proof)
     if any(low > high for low, high in ranges):
         return 1.0, 0.0
     return max(low for low, _ in ranges), min(high for _, high in ranges)
@@ -123,10 +148,16 @@ def _certain_range(recording: 'Recording') -> tuple[float, float]:
 def _is_uneven(recording: 'Recording', hz: float) -> bool:
     """Whether half of the messages, or more, are far from one period behind the one before.
 
-    On a busy machine one or the other is late, and the next one is early.
+    Or whether they come by turns. On a busy machine one or the other is late, and the next one
+    is early.
     """
-    gaps = np.diff(_times(recording))
-    return bool(np.median(np.abs(gaps * hz - 1.0)) > UNEVEN_PART)
+    times = _times(recording)
+    is_far = np.median(np.abs(np.diff(times) * hz - 1.0)) > UNEVEN_PART
+    return bool(is_far) or periods.come_by_turns(times)
+
+
+def _period_range(recording: 'Recording') -> tuple[float, float]:
+    return periods.spanned(_times(recording), _slack_sec(recording))
 
 
 def _slack_sec(recording: 'Recording') -> float:

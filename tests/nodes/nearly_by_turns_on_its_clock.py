@@ -1,0 +1,14 @@
+"""Publishes 0.15 s and 0.25 s after the message before, by turns, on the clock of the robot."""
+
+from five_hz import spin
+from nearly_by_turns import NearlyByTurns
+
+
+class OnItsClock(NearlyByTurns):
+    def start(self, period_sec):
+        self.calls = 0
+        self.timer = self.create_timer(period_sec / 4, self.publish)
+
+
+if __name__ == '__main__':
+    spin(OnItsClock)
