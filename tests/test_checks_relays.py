@@ -287,5 +287,5 @@ def test_the_node_at_the_other_end_is_not_at_fault(run):
     arm = run(Node, 'arm', key='arm')
     arm.create_publisher(JointState, '/sensor/joint_states', 10)
     run(Node, 'joint_state_monitor', key='monitor')
-    with pytest.raises(CheckFailed, match='saw none in 3 s: /joint_state_monitor runs, so look'):
+    with pytest.raises(CheckFailed, match=r'saw none.*: /joint_state_monitor runs, so look'):
         check_delivery()

@@ -166,7 +166,10 @@ def test_answering_loads_no_check():
     done = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True, check=True)
     names = [
         'my_robot_basics.checks',
-        *(f'my_robot_basics.checks.{m}' for m in ['responder', 'tick', 'values', 'wire']),
+        *(
+            f'my_robot_basics.checks.{m}'
+            for m in ('responder', 'settled', 'tick', 'values', 'wire')
+        ),
     ]
     assert done.stdout.strip() == str(names)
 

@@ -21,6 +21,10 @@ MOST_TAKE_SEC = 15.0
 PUBLISHER_SEC = 10.0
 NEWCOMER_SEC = 0.2
 """How long to look out for a second publisher after the first."""
+SETTLED_SEC = 0.5
+"""How long to wait for what the notebook has not got, and nothing in it can make any more."""
+SEEN_SEC = 3.0
+"""How long the nodes that it has may take to be seen."""
 UNKNOWN = '_NODE_NAME_UNKNOWN_'
 """rclpy's word while it knows an endpoint, and not yet its node (about 20 ms)."""
 _PLUMBING = ('/clock', '/parameter_events', '/rosout')
@@ -182,6 +186,24 @@ def wait_for_publisher(watcher: Watcher, topic_name: str, *, timeout_sec: float)
     return watcher.spin_until(is_settled, timeout_sec=timeout_sec)
 
 
+def is_settled(watcher: Watcher, node_name: str = '') -> bool:
+    """Whether the graph has all nodes of the notebook, and no other endpoint of its can come.
+
+    Nor a node of that name: they have none.
+    """
+    names = student.settled_nodes()
+    if names is None or node_name in names:
+        return False
+    return watcher.spin_until(
+        lambda: {*names} <= {*_node_names(watcher.node)}, timeout_sec=SEEN_SEC
+    )
+
+
+def none_in(seconds: float) -> str:
+    """What was seen of what was waited for in vain."""
+    return 'none' if seconds <= SETTLED_SEC else f'none in {seconds:g} s'
+
+
 def what_raised(node_names: Iterable[str]) -> str:
     """A clause on the callback of one of the nodes that has raised, or ''."""
     said = next(filter(None, map(student.trouble, sorted(set(node_names)))), '')
@@ -194,17 +216,21 @@ def what_raised(node_names: Iterable[str]) -> str:
 
 
 def _look(node: Node) -> Graph:
-    names = {
-        f'{namespace.rstrip("/")}/{name}'
-        for name, namespace in node.get_node_names_and_namespaces()
-        if not name.startswith(HIDDEN)
-    }
+    names = set(_node_names(node))
     topic_names = [name for name, _ in node.get_topic_names_and_types()]
     return Graph(
         node_names=tuple(sorted(names)),
         publisher_names=_endpoints(topic_names, node.get_publishers_info_by_topic),
         subscription_names=_endpoints(topic_names, node.get_subscriptions_info_by_topic),
     )
+
+
+def _node_names(node: Node) -> list[str]:
+    return [
+        f'{namespace.rstrip("/")}/{name}'
+        for name, namespace in node.get_node_names_and_namespaces()
+        if not name.startswith(HIDDEN)
+    ]
 
 
 def _endpoints(

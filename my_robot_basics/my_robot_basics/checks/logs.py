@@ -218,7 +218,9 @@ class Log:
             infos = node.get_publishers_info_by_topic('/rosout')
             return self._node_name in map(graphs.full_name, infos)
 
-        if not self._watcher.spin_until(is_there, timeout_sec=NODE_SEC):
+        is_settled = graphs.is_settled(self._watcher, self._node_name)
+        timeout_sec = graphs.SETTLED_SEC if is_settled else NODE_SEC
+        if not self._watcher.spin_until(is_there, timeout_sec=timeout_sec):
             others = graphs.take(self._watcher).nodes()
             fail(
                 expected=f'a node {self._node_name}',

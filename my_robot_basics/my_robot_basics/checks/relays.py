@@ -14,7 +14,7 @@ from rclpy.qos import (
     qos_policy_name_from_kind,
 )
 
-from my_robot_basics.checks import graphs
+from my_robot_basics.checks import graphs, values
 from my_robot_basics.checks.carried import QUIET_SEC, Carried, carry
 from my_robot_basics.checks.errors import expect, fail
 from my_robot_basics.checks.fits import brief, incompatible, leave_out
@@ -91,11 +91,11 @@ class Relay:
     def _listen(self, watcher: Watcher, type_: type) -> Ears:
         """Listen on `to`; a VOLATILE publisher is waited for until it knows of the listener."""
         topic = Topic(self.to)
-        patience_sec = topic.patience_sec(TIMEOUT_SEC)
+        patience_sec = topic.patience_sec(watcher, TIMEOUT_SEC, end='publishers')
         if not graphs.wait_for_publisher(watcher, self.to, timeout_sec=patience_sec):
             fail(
                 expected=f'a publisher on {self.to}',
-                seen=f'none in {patience_sec:g} s',
+                seen=graphs.none_in(patience_sec),
                 hint=self._graph(watcher).why_silent(self.to),
             )
         ears = topic.listen(watcher)
@@ -121,7 +121,9 @@ class Relay:
         def is_there() -> bool:
             return publisher.get_subscription_count() > 0
 
-        patience_sec = Topic(self.source).patience_sec(TIMEOUT_SEC)
+        patience_sec = Topic(self.source).patience_sec(
+            watcher, TIMEOUT_SEC, end='subscriptions', type_=type_
+        )
         watcher.spin_until(lambda: is_there() or bool(refused), timeout_sec=patience_sec)
         if watcher.spin_until(is_there, timeout_sec=REFUSED_SEC if refused else 0.0):
             return publisher
@@ -144,7 +146,7 @@ class Relay:
         def asked() -> set[str]:
             return {asked.durability.name for asked in _requests(watcher.node, self.source)}
 
-        patience_sec = Topic(self.source).patience_sec(TIMEOUT_SEC)
+        patience_sec = Topic(self.source).patience_sec(watcher, TIMEOUT_SEC, end='subscriptions')
         if not watcher.spin_until(lambda: bool(asked()), timeout_sec=patience_sec):
             self._fail_absent(watcher, patience_sec=patience_sec)
         # a second subscription may be a moment behind the first
@@ -224,7 +226,7 @@ class Relay:
 
     def _expect_type(self, watcher: Watcher, type_: type) -> None:
         """Who subscribes to `source` does so with that type: another one never meets it."""
-        wanted = f'{type_.__module__.partition(".")[0]}/msg/{type_.__name__}'
+        wanted = values.type_name(type_)
         infos = graphs.subscription_infos(watcher.node, self.source)
         found = {info.topic_type for info in infos}
         expect(
@@ -237,7 +239,7 @@ class Relay:
     def _fail_absent(self, watcher: Watcher, *, patience_sec: float) -> NoReturn:
         fail(
             expected=f'a subscription on {self.source}',
-            seen=f'none in {patience_sec:g} s',
+            seen=graphs.none_in(patience_sec),
             hint=self._graph(watcher).why_unheard(self.source),
         )
 

@@ -1,12 +1,15 @@
 """The student's side of `student`: look a name or an endpoint up, answer in JSON.
 
-This module, wire.py and values.py are all of `checks` that a student's kernel runs at grading.
+This module, settled.py, wire.py and values.py are all of `checks` that a student's kernel runs at
+grading.
 """
 
 import contextlib
 import sys
 
-from my_robot_basics.checks import values, wire
+from my_robot_basics.checks import settled, values, wire
+
+_PROTOCOL = ('call', 'value', 'endpoint', 'settled', 'trouble', 'clock')
 
 
 def answer(request_text: str) -> str:
@@ -16,16 +19,12 @@ def answer(request_text: str) -> str:
     """
     request = wire.loads(request_text)
     op, name, args = request.get('op'), request.get('name'), request.get('args', [])
-    if request.get('protocol') != wire.PROTOCOL or op not in (
-        'call',
-        'value',
-        'endpoint',
-        'trouble',
-        'clock',
-    ):
+    if request.get('protocol') != wire.PROTOCOL or op not in _PROTOCOL:
         raise values.WireError('a request of another protocol')
     if op == 'endpoint':
-        return _reply(_has_endpoint(name))
+        return _reply(_has_endpoint(name, *args))
+    if op == 'settled':
+        return _reply(settled.settled_nodes(*args))
     if op == 'trouble':
         return _reply(_trouble(name))
     if op == 'clock':
@@ -45,8 +44,11 @@ def answer(request_text: str) -> str:
     return _reply(value)
 
 
-def _has_endpoint(topic_name: str) -> bool:
-    """Whether a node of this process publishes on a topic or subscribes to it."""
+def _has_endpoint(topic_name: str, end: str = '', type_name: str = '') -> bool:
+    """Whether a node of this process publishes on a topic or subscribes to it.
+
+    With `end`, 'publishers' or 'subscriptions', whether it does that; and with that type.
+    """
     if 'rclpy' not in sys.modules:
         return False
     from my_robot_basics.live.neighbours import nodes_here
@@ -55,7 +57,9 @@ def _has_endpoint(topic_name: str) -> bool:
         endpoint.topic_name == topic_name
         for node in nodes_here()
         if not node.get_name().startswith('_')
-        for endpoint in (*node.publishers, *node.subscriptions)
+        for kind in ('publishers', 'subscriptions')
+        for endpoint in getattr(node, kind)
+        if end in ('', kind) and type_name in ('', values.type_name(endpoint.msg_type))
     )
 
 

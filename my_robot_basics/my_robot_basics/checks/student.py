@@ -64,16 +64,32 @@ def value(name: str, *, type: builtins.type | tuple[builtins.type, ...] | None =
     return body
 
 
-def has_endpoint(topic_name: str) -> bool:
+def has_endpoint(topic_name: str, end: str = '', type_name: str = '') -> bool:
     """Whether the notebook's process has a publisher or subscription there, or does not say.
 
+    With `end`, 'publishers' or 'subscriptions', whether it has one of these; and of that type.
     It saves waiting for what can't come; the verdict stays with the graph.
     """
+    question = wire.request(op='endpoint', name=topic_name, args=(end, type_name))
     try:
-        kind, body = wire.parse_reply(_send(wire.request(op='endpoint', name=topic_name)))
+        kind, body = wire.parse_reply(_send(question))
     except values.WireError:
         return True
     return kind != 'ok' or body is not False
+
+
+def settled_nodes() -> list[str] | None:
+    """The full names of the notebook's nodes; None where more may come, or it does not say.
+
+    It saves waiting for what can't come; the verdict stays with the graph.
+    """
+    question = wire.request(op='settled', name='', args=(hidden.checked_for_sec(),))
+    try:
+        kind, body = wire.parse_reply(_send(question))
+    except values.WireError:
+        return None
+    is_told = kind == 'ok' and isinstance(body, list) and all(isinstance(n, str) for n in body)
+    return body if is_told else None
 
 
 def trouble(node_name: str) -> str:

@@ -90,7 +90,7 @@ class Topic:
             durability=DurabilityPolicy.TRANSIENT_LOCAL,
         )
         publisher = watcher.node.create_publisher(type_, self.name, offer)
-        timeout_sec = self.patience_sec(timeout_sec)
+        timeout_sec = self.patience_sec(watcher, timeout_sec, end='subscriptions', type_=type_)
         if not watcher.spin_until(
             lambda: publisher.get_subscription_count() > 0, timeout_sec=timeout_sec
         ):
@@ -152,11 +152,11 @@ class Topic:
 
         Raises CheckFailed when there is no publisher, or no one type.
         """
-        patience_sec = self.patience_sec(PUBLISHER_SEC)
+        patience_sec = self.patience_sec(watcher, PUBLISHER_SEC, end='publishers')
         if not graphs.wait_for_publisher(watcher, self.name, timeout_sec=patience_sec):
             fail(
                 expected=f'a publisher on {self.name}',
-                seen=f'none in {patience_sec:g} s',
+                seen=graphs.none_in(patience_sec),
                 hint=graphs.take(watcher).why_silent(self.name),
             )
         message_type = self._message_type(watcher)
@@ -170,8 +170,18 @@ class Topic:
         )
         return Ears(watcher, topic_name=self.name, type_=message_type, qos_profile=wanted)
 
-    def patience_sec(self, most_sec: float) -> float:
-        """How long to wait for an endpoint of the notebook: less where it says it has none."""
+    def patience_sec(
+        self, watcher: Watcher, most_sec: float, *, end: str, type_: type | None = None
+    ) -> float:
+        """How long to wait for an endpoint of the notebook: less where it says it has none.
+
+        `end` is 'publishers' or 'subscriptions', with `type_` if only one of that type will do.
+        """
+        type_name = values.type_name(type_) if type_ else ''
+        if student.has_endpoint(self.name, end, type_name):
+            return most_sec
+        if graphs.is_settled(watcher):
+            return graphs.SETTLED_SEC
         return most_sec if student.has_endpoint(self.name) else min(most_sec, ABSENT_SEC)
 
     def _message_type(self, watcher: Watcher) -> type:
@@ -217,7 +227,7 @@ class Topic:
         hint = graphs.take(watcher).why_unheard(self.name)
         if infos := graphs.subscription_infos(watcher.node, self.name):
             hint = f'one is there for {theirs(infos[0].topic_type)}, so compare the message type'
-        seen = f'none in {timeout_sec:g} s'
+        seen = graphs.none_in(timeout_sec)
         fail(expected=f'a subscription on {self.name} for {type_.__name__}', seen=seen, hint=hint)
 
 

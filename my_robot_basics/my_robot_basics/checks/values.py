@@ -105,13 +105,18 @@ def message_type(name: str) -> type:
     return found
 
 
+def type_name(message_type: type) -> str:
+    """The name of a message class, like 'std_msgs/msg/String'."""
+    return f'{message_type.__module__.partition(".")[0]}/msg/{message_type.__name__}'
+
+
 def _within(depth: int) -> str:
     """Words for a value that stands in the one that was asked for."""
     return ' in it' if depth else ''
 
 
 def _encode_message(value: object, depth: int) -> dict:
-    name = f'{type(value).__module__.partition(".")[0]}/msg/{type(value).__name__}'
+    name = type_name(type(value))
     try:
         known = message_type(name) is type(value)
     except WireError:

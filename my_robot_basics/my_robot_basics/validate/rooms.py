@@ -127,6 +127,7 @@ class Rooms:
     def _kernel(self, room: str) -> Kernel:
         environment = {
             'MY_ROBOT_BASICS_ROOM': room,
+            'MY_ROBOT_BASICS_ADVICE': '1',
             'MY_ROBOT_BASICS_DOMAIN_ID': str(self._claim.domain_id),
             'RCUTILS_LOGGING_USE_STDOUT': '1',
             'ROS_LOG_DIR': str(self._folder / room / 'ros_log'),

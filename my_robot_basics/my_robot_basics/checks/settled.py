@@ -1,0 +1,84 @@
+"""Whether anything of a notebook may still make an endpoint while none of its cells runs.
+
+A publisher that is not there yet may come late: from a thread of the student's, from a process
+that was started, from a timer's callback. Where there is none of these, waiting longer brings
+nothing, however slow the machine is.
+"""
+
+import asyncio
+import os
+import signal
+import sys
+import threading
+from collections.abc import Callable, Iterator
+
+import psutil
+
+_OURS = ('ipykernel', 'my_robot_basics')
+"""Packages whose threads and tasks make no endpoint by themselves."""
+_FIRED_SEC = 2.0
+"""A timer that has had its period, and so much more, has fired."""
+
+
+def settled_nodes(lived_sec: float = 0.0) -> list[str] | None:
+    """Return the full names of this process's nodes; None where another endpoint may come.
+
+    Their timers may make one when they fire first: those have that did so in the `lived_sec`
+    which the nodes have lived at least.
+    """
+    if any(may_come() for may_come in (_threads, _processes, _tasks, _alarm)):
+        return None
+    if 'rclpy' not in sys.modules:
+        return []
+    from my_robot_basics.live.neighbours import nodes_here
+
+    nodes = [*nodes_here()]
+    most_sec = max(0.0, lived_sec - _FIRED_SEC)
+    periods = [t.timer_period_ns / 1e9 for n in nodes for t in n.timers if not t.is_canceled()]
+    if any(period_sec >= most_sec for period_sec in periods):
+        return None
+    return [n.get_fully_qualified_name() for n in nodes if not n.get_name().startswith('_')]
+
+
+def _threads() -> bool:
+    known = {thread.ident for thread in threading.enumerate() if _is_ours(thread)}
+    # also those that threading does not know
+    return bool(sys._current_frames().keys() - known)
+
+
+def _is_ours(thread: threading.Thread) -> bool:
+    target: Callable[[], object] | None = getattr(thread, '_target', None)
+    module = type(thread).__module__ if target is None else getattr(target, '__module__', '')
+    return thread is threading.main_thread() or f'{module}'.partition('.')[0] in _OURS
+
+
+def _processes() -> bool:
+    """Whether there are processes that were started here, their parents gone or not."""
+    return bool(psutil.Process().children(recursive=True)) or any(_in_session())
+
+
+def _in_session() -> Iterator[int]:
+    ours = os.getsid(0)
+    for pid in psutil.pids():
+        try:
+            if pid != os.getpid() and os.getsid(pid) == ours:
+                yield pid
+        except (ProcessLookupError, PermissionError):
+            continue
+
+
+def _tasks() -> bool:
+    try:
+        tasks = asyncio.all_tasks()
+    except RuntimeError:  # no event loop runs here
+        return False
+    return any(_module_of(task).partition('.')[0] not in _OURS for task in tasks)
+
+
+def _module_of(task: asyncio.Task) -> str:
+    frame = getattr(task.get_coro(), 'cr_frame', None)
+    return str(frame.f_globals.get('__name__', '')) if frame else ''
+
+
+def _alarm() -> bool:
+    return any(signal.getitimer(which)[0] for which in (signal.ITIMER_REAL, signal.ITIMER_PROF))

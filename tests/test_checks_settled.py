@@ -1,0 +1,83 @@
+"""Whether a notebook may still make an endpoint: told by its process, while no cell runs."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+NODE = """
+import rclpy
+from rclpy.node import Node
+rclpy.init()
+node = Node('idle')
+"""
+NOTHING_COMES = {
+    'nothing': ('', 0, []),
+    'our own threads': ('import my_robot_basics.live.runner', 0, []),
+    'a node without a timer': (NODE, 0, ['/idle']),
+    'a node of the course': (NODE.replace('idle', '_idle'), 0, []),
+    'a timer that is cancelled': (NODE + 'node.create_timer(1, print).cancel()', 0, ['/idle']),
+    'a timer that has fired': (NODE + 'timer = node.create_timer(1, print)', 9, ['/idle']),
+}
+SOMETHING_MAY = {
+    'a thread': (
+        'import threading, time\n'
+        'threading.Thread(target=time.sleep, args=[9], daemon=True).start()',
+        9,
+    ),
+    'a thread that threading does not know': (
+        'import _thread, time\ndef rest(): time.sleep(9)\n_thread.start_new_thread(rest, ())',
+        9,
+    ),
+    'a process': ('import subprocess; child = subprocess.Popen(["sleep", "9"], stdout=-3)', 9),
+    'a process whose parent is gone': ('import os; os.system("sleep 9 >/dev/null 2>&1 &")', 9),
+    'an alarm': ('import signal; signal.setitimer(signal.ITIMER_REAL, 9)', 9),
+    'a timer': (NODE + 'timer = node.create_timer(1, print)', 0),
+    'a timer that has hardly fired': (NODE + 'timer = node.create_timer(1, print)', 2),
+    'a slow timer': (NODE + 'timer = node.create_timer(8, print)', 9),
+}
+ASK = """
+import json, os
+from my_robot_basics.checks.settled import settled_nodes
+os.write(2, json.dumps(settled_nodes({lived_sec})).encode())
+os._exit(0)
+"""
+IN_A_TASK = """
+import asyncio
+async def later(): await asyncio.sleep(9)
+async def ask():
+    task = asyncio.create_task(later())
+    await asyncio.sleep(0)
+{ask}
+asyncio.run(ask())
+"""
+
+
+def told(source):
+    """What a process says that has run this; it is in a session of its own, as a kernel is."""
+    run = subprocess.run(
+        [sys.executable, '-P', '-c', source],
+        capture_output=True,
+        text=True,
+        check=True,
+        start_new_session=True,
+    )
+    return json.loads(run.stderr)
+
+
+@pytest.mark.parametrize(
+    ('source', 'lived_sec', 'names'), NOTHING_COMES.values(), ids=NOTHING_COMES
+)
+def test_where_nothing_can_come_the_nodes_that_are_there_are_told(source, lived_sec, names):
+    assert told(source + ASK.format(lived_sec=lived_sec)) == names
+
+
+@pytest.mark.parametrize(('source', 'lived_sec'), SOMETHING_MAY.values(), ids=SOMETHING_MAY)
+def test_where_something_may_come_it_is_not_called_absent(source, lived_sec):
+    assert told(source + ASK.format(lived_sec=lived_sec)) is None
+
+
+def test_a_task_of_the_students_may_make_one():
+    ask = ASK.format(lived_sec=9).replace('\n', '\n    ')
+    assert told(IN_A_TASK.format(ask=ask)) is None
