@@ -22,11 +22,12 @@ lesson; each lesson ends with a link to the next one.
 HOW_IT_WORKS = """\
 ## How a lesson works
 
-- Run its cells from top to bottom with **Shift+Enter**, and guess before you run.
+- Run its cells from top to bottom with **Shift+Enter**. Predict what a cell will show
+  before you run it.
 - Write your answer where it says `YOUR CODE HERE` or `YOUR ANSWER HERE`, or fix the code
   that is there.
 - **Validate**, in the bar above a lesson, runs your answers and shows which checks pass.
-- Your points are given when your notebook is graded. Some checks run only then.
+- You get your points when your notebook is graded. Some checks run only then.
 """
 TO_THE_PAGES = {
     TERMS: f'Each of the [core terms]({TERMS}) is explained in one sentence.',
