@@ -72,6 +72,7 @@ FAILURES = {
     'a generator': (lambda x: iter([]), 'to return a bool, saw a list_iterator: return plain'),
     'a generator within': (lambda x: {'a': iter([])}, 'bool, saw a list_iterator in it'),
     'a wrong field': (with_a_stamp_for_a_header, "'stamp'): give each field a value of the type"),
+    'exits silently': (lambda x: sys.exit(), 'expected `f(2)` to return, saw SystemExit: call'),
     'not a function': (5, "saw TypeError: 'int' object is not callable"),
     'too much': (lambda x: 'a' * 70_000, 'saw more than 64 kB of text'),
 }  # fmt: skip
@@ -122,6 +123,23 @@ def test_advice_follows_the_type_that_is_wanted(notebook, wanted, advice):
     with pytest.raises(CheckFailed) as failed:
         student.call('f', returns=wanted)
     assert str(failed.value).endswith(f'saw an int (5): {advice}')
+
+
+@pytest.mark.parametrize(
+    ('result', 'seen'),
+    [
+        (JointState, 'saw the class JointState: make a message of it with parentheses, Joi'),
+        (
+            {'angles': JointState().position},
+            'saw an array in it: make a message with JointState()',
+        ),
+    ],
+)
+def test_a_result_that_cannot_travel_is_told_from_a_message(notebook, result, seen):
+    notebook(f=lambda: result)
+    with pytest.raises(CheckFailed) as failed:
+        student.call('f', returns=JointState)
+    assert seen in str(failed.value)
 
 
 @pytest.mark.parametrize(
@@ -200,3 +218,9 @@ def test_what_a_callback_raised_is_told_until_its_node_begins_anew(monkeypatch):
     live.run(Still, key='Raises')
     assert student.trouble('/raises') == ''
     live.stop()
+
+
+def test_a_stamp_that_is_no_message_is_told_what_makes_one(monkeypatch):
+    said = "AttributeError: 'Time' object has no attribute 'sec' (line 3)"
+    monkeypatch.setattr(student, 'trouble', lambda name: said)
+    assert graphs.what_raised(['/any']).endswith('so make a stamp of the time with .to_msg()')

@@ -572,14 +572,15 @@ def test_reset_and_run_answer(lesson):
     assert 'saw nothing of that name: run the answer cell' in ' '.join(error.split())
     assert len(error.splitlines()) <= 2
     where = 'write it in the answer cell: only the notebook is submitted'
-    for definition in (
-        'Answer = 3',
-        'from my_robot_basics.kinematics_publisher import KinematicsPublisher as Answer',
-    ):
+    for definition, advice in {
+        'Answer = 3': 'saw an object of type int: begin it with `class Answer(Node):`',
+        'class Answer: pass': 'saw one that is not: begin it with `class Answer(Node):`',
+        'from my_robot_basics.kinematics_publisher import KinematicsPublisher as Answer': where,
+    }.items():
         lesson.run(definition)
         error = lesson.run("run_answer('Answer')").error
         assert error.startswith('NotRunnable: expected ')
-        assert ' '.join(error.split()).endswith(where)
+        assert ' '.join(error.split()).endswith(advice)
         assert len(error.splitlines()) <= 2
     lesson.run("class Answer(Talker): pass\nanswer = run_answer('Answer', 'yes')")
     assert lesson.value('answer.text, alive(answer)') == "('yes', True)"

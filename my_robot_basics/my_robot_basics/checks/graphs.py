@@ -78,7 +78,7 @@ class Graph:
             return (
                 f'{who} has a publisher there and sends nothing, so see that it spins, that its '
                 'timer is created (with a period in seconds, and the name of a method, without '
-                'parentheses), and that no callback raises'
+                'parentheses), and that no callback raises, or waits and so keeps the node busy'
             )
         others = self.subscriptions(topic_name)
         return self._why_none(topic_name, self.publisher_names, 'create_publisher', others)
@@ -212,6 +212,8 @@ def what_raised(node_names: Iterable[str]) -> str:
     why = f'its callback raised {safely(said)}'
     if said.endswith('object is not callable'):
         why += ', so give a method by its name, without parentheses'
+    if "'Time' object has no attribute 'sec'" in said:
+        why += ', so make a stamp of the time with .to_msg()'
     return why
 
 

@@ -85,9 +85,13 @@ def _why_off(seen: Sequence[float], pose_deg: Sequence[float]) -> str:
         'both signs are wrong': [-angle for angle in right],
         'joint2 holds θ1, too': [right[0], right[0]],
         'joint1 holds θ2, too': [right[1], right[1]],
+        'joint2 holds θ1 + θ2, and not θ2 alone': [right[0], sum(right)],
+        '180 degrees are pi radians, and not 360: call radians()': [each / 2 for each in right],
+        'these are parts of a whole turn: call radians()': [each / 360 for each in pose_deg],
     }
     found = [cause for cause, wrong in causes.items() if _are_near(seen, wrong)]
-    if not found and _are_near(seen, right, CLOSE_RAD):
+    to_one_decimal = [round(angle, 1) for angle in right]
+    if not found and (_are_near(seen, right, CLOSE_RAD) or _are_near(seen, to_one_decimal)):
         return 'close: take radians() itself, and do not round'
     return next(iter(found), 'convert both angles with radians(), θ1 for joint1, θ2 for joint2')
 

@@ -11,6 +11,8 @@ from my_robot_basics.checks import hidden, responder, values, wire
 from my_robot_basics.checks.errors import fail, shorten
 from my_robot_basics.checks.hidden import is_in_test_room
 
+_CLASS_OF_A_MESSAGE = 'Metaclass_'
+"""How rosidl calls the class of a message's class."""
 _ANSWER_CELL = 'in the answer cell, and run the cell'
 
 
@@ -25,15 +27,12 @@ def call(name: str, *args: object, returns: type | tuple[type, ...] | None = Non
     if kind == 'missing':
         _fail_missing(name, what='function')
     if kind == 'raised':
-        raised = shorten(f'{body["type"]}: {body["message"]}')
+        raised = shorten(': '.join(filter(None, (body['type'], body['message']))))
         hint = f'call {shown} in a cell of your own to see where'
         cause = f'`{name}` raises {hidden.raised(raised)}'
         fail(expected=f'`{shown}` to return', seen=raised, hint=hint, cause=cause)
     if kind == 'unsupported':
-        seen = _article(shorten(body))
-        hint = 'return plain values (numbers, text, lists, dicts) or a ROS message'
-        if values.WRONG_FIELD in body:
-            hint = 'give each field a value of the type that get_fields_and_field_types() names'
+        seen, hint = _unsupported(body, returns)
         wanted = f'`{shown}` to return {_wanted(returns)}'
         fail(expected=wanted, seen=seen, hint=hint, cause=_not(name, returns))
     if body is None:
@@ -151,6 +150,20 @@ def _check_type(
     seen = f'{_article(type(found).__name__)} ({_brief(found)})'
     hint = _other_type(found, types)
     fail(expected=f'{what} {_wanted(wanted)}', seen=seen, hint=hint, cause=cause)
+
+
+def _unsupported(body: str, wanted: type | tuple[type, ...] | None) -> tuple[str, str]:
+    """What to say of a result that cannot travel: what it is, and what to do."""
+    if values.WRONG_FIELD in body:
+        hint = 'give each field a value of the type that get_fields_and_field_types() names'
+    elif body.startswith(_CLASS_OF_A_MESSAGE):
+        name = body.removeprefix(_CLASS_OF_A_MESSAGE)
+        return f'the class {name}', f'make a message of it with parentheses, {name}()'
+    elif isinstance(wanted, type) and hasattr(wanted, 'get_fields_and_field_types'):
+        hint = _other_type(None, (wanted,))
+    else:
+        hint = 'return plain values (numbers, text, lists, dicts) or a ROS message'
+    return _article(shorten(body)), hint
 
 
 def _other_type(found: object, wanted: tuple[type, ...]) -> str:

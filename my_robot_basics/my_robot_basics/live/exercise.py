@@ -31,8 +31,10 @@ def run_answer(name: str, *args: Any, **kwargs: Any) -> Node | None:
         first = 'run the answer cell, and where that ends in an error, fix that first'
         raise NotRunnable(f'expected a class {name}, saw nothing of that name: {first}')
     if not (isinstance(answer, type) and issubclass(answer, Node)):
-        kind = type(answer).__name__
-        raise NotRunnable(f'expected {name} to be a class derived from Node, saw {kind}: {where}')
+        is_class, type_name = isinstance(answer, type), type(answer).__name__
+        kind = 'one that is not' if is_class else f'an object of type {type_name}'
+        wanted = f'expected {name} to be a class derived from Node'
+        raise NotRunnable(f'{wanted}, saw {kind}: begin it with `class {name}(Node):`')
     if answer.__module__ != '__main__':
         raise NotRunnable(f'expected your own {name}, saw that of {answer.__module__}: {where}')
     if taken := course_nodes.taken_from(answer):
