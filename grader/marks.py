@@ -1,9 +1,8 @@
 """Write into a released notebook what *Validate* must know of it and its cells no longer show."""
 
-import ast
-
 from my_robot_basics.checks.hidden import visible
 from my_robot_basics.validate.cells import KEY, RECORD, fingerprint, roles
+from my_robot_basics.validate.titles import checks_something
 from nbconvert.preprocessors import Preprocessor
 from nbformat import NotebookNode
 
@@ -20,7 +19,7 @@ class MarkHidden(Preprocessor):
             if role != 'text':
                 record[cell.id] = {'role': role}
             if role == 'grade' and (shown := visible(cell.source)) != cell.source:
-                record[cell.id]['hidden'] = 'part' if _checks_something(shown) else 'all'
+                record[cell.id]['hidden'] = 'part' if checks_something(shown) else 'all'
         nb.metadata[KEY] = {RECORD: record}
         return nb, resources
 
@@ -38,17 +37,3 @@ class MarkSources(Preprocessor):
                 if points := cell.metadata.get('nbgrader', {}).get('points'):
                     mark['points'] = points
         return nb, resources
-
-
-def _checks_something(source: str) -> bool:
-    """Whether the visible part of a check does more than import and print."""
-    return not all(
-        isinstance(node, ast.Import | ast.ImportFrom)
-        or (isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant))
-        or (
-            isinstance(node, ast.Expr)
-            and isinstance(node.value, ast.Call)
-            and getattr(node.value.func, 'id', '') == 'print'
-        )
-        for node in ast.parse(source).body
-    )

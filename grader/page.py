@@ -11,7 +11,7 @@ import nbformat
 from jinja2 import Template
 from markupsafe import Markup, escape
 from my_robot_basics.validate.pictures import KINDS, why_not_shown
-from my_robot_basics.validate.titles import title_of_check
+from my_robot_basics.validate.titles import title_of_check, title_of_failure
 from nbconvert.filters import markdown2html, strip_ansi
 from nbformat import NotebookNode
 from pygments import highlight
@@ -131,7 +131,7 @@ def _check(cell: NotebookNode) -> Check:
     status = 'passed' if score >= points else 'partly' if score > 0.0 else 'missed'
     status = 'waiting' if verdict.get('waits') else 'by hand' if verdict.get('by_hand') else status
     reason = verdict.get('reason') or _missing_reason(status, is_answer=is_answer)
-    title = 'Your written answer' if is_answer else title_of_check(cell.source) or name
+    title = 'Your written answer' if is_answer else _title(cell) or name
     said = _REASON.fullmatch(reason)
     return Check(
         name=name,
@@ -146,6 +146,13 @@ def _check(cell: NotebookNode) -> Check:
         source='' if is_answer else cell.source.strip(),
         **(said.groupdict() if said else {'expected': '', 'seen': '', 'hint': ''}),
     )
+
+
+def _title(cell: NotebookNode) -> str:
+    """Return what a check is called: true of what failed."""
+    if cell.metadata.get(KEY, {}).get('failed_at_grading'):
+        return title_of_failure(cell.source)
+    return title_of_check(cell.source)
 
 
 def _missing_reason(status: str, *, is_answer: bool) -> str:

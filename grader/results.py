@@ -60,6 +60,7 @@ _VERDICT = jsonschema.Draft202012Validator(
             'notes': _NOTES,
             'details': {'type': 'string', 'maxLength': MAX_REASON_CHARACTERS},
             'earned': {'type': 'number', 'minimum': 0},
+            'failed_at_grading': {'type': 'boolean'},
         },
         'required': ['role', 'outcome', 'reason', 'notes'],
         'additionalProperties': False,

@@ -6,7 +6,8 @@ from collections import OrderedDict
 
 import numpy as np
 import pytest
-from my_robot_basics.checks import CheckFailed, Predictions
+from my_robot_basics.checks import CheckFailed, Predictions, hidden
+from my_robot_basics.checks import watcher as stage_watchers
 from my_robot_basics.checks.errors import PartlyRight
 
 KEYS = 'arrives', 'is_lost'
@@ -65,6 +66,22 @@ def test_enough_right_predictions_leave_points(monkeypatch):
         f'{EXPECTED}, saw 1 wrong, which leaves 1 of 2 points: '
         '`is_lost` does not arrive (nobody is there)'
     )
+
+
+@pytest.mark.parametrize(('arrives_too', 'told'), [(True, []), (False, ['already'])])
+def test_the_grader_learns_whether_a_visible_prediction_was_wrong(monkeypatch, arrives_too, told):
+    displayed = []
+    monkeypatch.setattr(hidden, '_display', lambda mime, text: displayed.append(text))
+    monkeypatch.setattr(hidden, '_quiet', False)
+    monkeypatch.setattr(hidden, 'is_in_test_room', lambda: True)
+    monkeypatch.setattr(stage_watchers, 'is_in_test_room', lambda: False)
+    predicted = predictions(monkeypatch, arrives=arrives_too, is_lost=True)
+    predicted.run(arrives)
+    hidden.begin()
+    predicted.run(is_lost)
+    with pytest.raises(CheckFailed):
+        predicted.conclude(points={2: 2})
+    assert [text for text in displayed if text == 'already'] == told
 
 
 def test_what_is_only_a_part_leaves_none(monkeypatch):

@@ -4,9 +4,10 @@ from html import unescape
 
 import pytest
 from course_maker import PIXEL, TOY, answered, executed, released_course, submit
-from nbformat.v4 import new_output
+from nbformat.v4 import new_code_cell, new_output
 
 from grader import feedback as module
+from grader import page
 from grader.course import Course
 from grader.feedback import write_feedback
 from grader.gradebook import store
@@ -71,6 +72,22 @@ def test_a_failed_check_tells_what_was_expected_seen_and_what_to_try(course):
 def test_a_reason_in_other_words_is_shown_whole(course, reason, shown):
     html = feedback(course, 'ada', answered(course, RIGHT), reasons={'double-check': reason})
     assert re.search(f'<td class="why"[^>]*>{re.escape(shown)}</td>', html)
+
+
+def test_a_title_is_true_of_what_failed():
+    """The first two predictions may be right, and others wrong."""
+    cell = new_code_cell(
+        '"""The first two are right"""\ncheck()',
+        metadata={
+            'nbgrader': {'grade': True, 'grade_id': 'a', 'points': 2, 'score': 1.0},
+            KEY: {'role': 'grade', 'reason': '2 wrong', 'failed_at_grading': False},
+        },
+    )
+    assert page._check(cell).title == 'The first two are right'
+    cell.metadata[KEY].failed_at_grading = True
+    assert page._check(cell).title == 'Checked at grading, beyond “The first two are right”'
+    cell.source = '"""The others are right"""\nprint("checked at grading")'
+    assert page._check(cell).title == 'The others are right'
 
 
 def test_no_hidden_test_is_shown_but_its_open_part_is(course):

@@ -73,6 +73,23 @@ def test_some_of_the_points_are_left_where_the_check_says_so(cell):
     nbformat.validate(nbformat.v4.new_notebook(cells=[cell]))
 
 
+def said(what):
+    return new_output('display_data', {'application/vnd.my_robot_basics.hidden': what})
+
+
+@pytest.mark.parametrize(
+    ('outputs', 'only_there'),
+    [([], False), ([said('began')], True), ([said('began'), said('already')], False)],
+)
+def test_a_failure_says_whether_it_is_of_what_students_are_given(cell, outputs, only_there):
+    run = failing()
+    run.outputs[:0] = map(nbformat.from_dict, outputs)
+    verdict = judge(cell, run, [])
+    assert (verdict.outcome, verdict.failed_at_grading) == ('failed', only_there)
+    write_verdict(cell, verdict, run.outputs)
+    assert cell.metadata[KEY].failed_at_grading is only_there
+
+
 @pytest.mark.parametrize('earned', ['0.0', '3.0', '-1.0', 'nan', 'inf'])
 def test_no_other_number_of_points_is_a_part_of_them(cell, earned):
     run = failing('PartlyRight', '1 wrong')
@@ -187,6 +204,7 @@ def test_a_failure_is_written_as_one_error_without_the_test(cell):
         'reason': 'too slow',
         'notes': ['n'],
         'details': '',
+        'failed_at_grading': False,
         'earned': 0.0,
     }
 

@@ -29,7 +29,7 @@ _DETAILS = 'application/vnd.my_robot_basics.details'
 """… Of this one, too: the sentence that a student is not told. …"""
 _POINTS = 'application/vnd.my_robot_basics.points'
 """… And of this one: the points that a check leaves which fails."""
-_BEGAN, _INPUTS = 'began', 'inputs'
+_BEGAN, _INPUTS, _ALREADY = 'began', 'inputs', 'already'
 
 _HERE = "__import__('my_robot_basics.checks.hidden', fromlist=['begin'])"
 _OPEN, _CLOSE = '\u2068', '\u2069'
@@ -92,6 +92,12 @@ def begin() -> None:
     global _quiet
     _quiet = True
     _display(_MARK, _BEGAN)
+
+
+def tell_failed_already() -> None:
+    """Let the grader know that a failure which is told at the end is of the visible part, too."""
+    if is_in_test_room():
+        _display(_MARK, _ALREADY)
 
 
 def is_quiet() -> bool:
@@ -158,6 +164,12 @@ def said_in_full() -> Iterator[None]:
 def has_begun(outputs: Iterable[Any]) -> bool:
     """Whether a cell with these outputs came to its hidden part."""
     return _BEGAN in _said(outputs, _MARK)
+
+
+def failed_only_there(outputs: Iterable[Any]) -> bool:
+    """Whether a check that failed did so in its hidden part, and not before it."""
+    said = _said(outputs, _MARK)
+    return _BEGAN in said and _ALREADY not in said
 
 
 def has_told_inputs(outputs: Iterable[Any]) -> bool:

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from my_robot_basics.checks import student
 from my_robot_basics.checks.errors import fail, shorten
-from my_robot_basics.checks.hidden import said_in_full
+from my_robot_basics.checks.hidden import is_quiet, said_in_full, tell_failed_already
 from my_robot_basics.checks.stage import Stage, watchers
 
 Situation = Callable[[Stage], bool]
@@ -26,6 +26,7 @@ class Predictions:
         self._keys = tuple(keys)
         self._ran = 0
         self._wrong: list[tuple[Situation, bool]] = []
+        self._failed_already = False
         self._values = student.value(name, type=dict)
         for key in keys:
             if key not in self._values:
@@ -44,6 +45,7 @@ class Predictions:
                 self._ran += 1
                 if self._values[situation.__name__] is not arrived:
                     self._wrong.append((situation, arrived))
+                    self._failed_already |= not is_quiet()
 
     def conclude(self, points: Mapping[int, float]) -> None:
         """Name each prediction that was wrong, and why. Raises CheckFailed where there are any.
@@ -53,6 +55,8 @@ class Predictions:
         """
         if not self._wrong:
             return
+        if self._failed_already:
+            tell_failed_already()
         right = self._ran - len(self._wrong)
         has_all = self._ran == len(self._keys)
         earned = max((p for least, p in points.items() if has_all and right >= least), default=0)

@@ -2,6 +2,17 @@
 
 import ast
 
+from my_robot_basics.checks.hidden import visible
+
+
+def title_of_failure(source: str) -> str:
+    """Return what a check is called that failed only in what students are not given.
+
+    A check without any other part has a title of its own for that.
+    """
+    title = title_of_check(source)
+    return f'Checked at grading, beyond “{title}”' if checks_something(visible(source)) else title
+
 
 def title_of_check(source: str) -> str:
     """Return the first line of a cell's docstring, or ''."""
@@ -9,3 +20,17 @@ def title_of_check(source: str) -> str:
         return (ast.get_docstring(ast.parse(source)) or '').partition('\n')[0]
     except (SyntaxError, ValueError):
         return ''
+
+
+def checks_something(source: str) -> bool:
+    """Whether the visible part of a check does more than import and print."""
+    return not all(
+        isinstance(node, ast.Import | ast.ImportFrom)
+        or (isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant))
+        or (
+            isinstance(node, ast.Expr)
+            and isinstance(node.value, ast.Call)
+            and getattr(node.value.func, 'id', '') == 'print'
+        )
+        for node in ast.parse(source).body
+    )

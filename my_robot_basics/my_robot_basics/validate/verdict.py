@@ -46,6 +46,8 @@ class Verdict:
     """What only whoever teaches is told: what was expected and seen in a hidden part."""
     earned: float = 0.0
     """The points of a `partial` outcome."""
+    failed_at_grading: bool = False
+    """Whether what students can run of it passed, and what is checked at grading did not."""
 
     @property
     def score(self) -> float | None:
@@ -77,14 +79,15 @@ def judge(cell: NotebookNode, run: CellRun | None, own: Iterable[tuple[str, Cell
     notes += tuple(sentence for each in own if (sentence := _trouble(*each)))
     if run.ending:
         notes += (f'what you started has ended: {run.ending}',)
+    beyond = hidden.failed_only_there(run.outputs)
     if run.error.ename != 'PartlyRight':
-        return Verdict(name, 'failed', points, reason=reason, notes=notes, details=details)
+        return Verdict(name, 'failed', points, reason, notes, details, failed_at_grading=beyond)
     earned = hidden.points_in(run.outputs)
     if not 0.0 < earned < points:
         raise RoomFailure(
             f'the check `{name}` came to no verdict: {earned:g} of {points:g} points'
         )
-    return Verdict(name, 'partial', points, reason, notes, details=details, earned=earned)
+    return Verdict(name, 'partial', points, reason, notes, details, earned, beyond)
 
 
 def ungraded(cell: NotebookNode, why: str) -> Verdict:
@@ -124,6 +127,7 @@ def write_verdict(cell: NotebookNode, verdict: Verdict, outputs: Iterable[Notebo
         'notes': list(verdict.notes),
         'details': verdict.details,
         'earned': verdict.earned,
+        'failed_at_grading': verdict.failed_at_grading,
     }
     if verdict.outcome == 'failed':
         error = nbformat.v4.new_output(
