@@ -18,7 +18,9 @@ FOLDER = 'my_robot_basics_course'
 """What the zip unpacks to."""
 README = 'students.md'
 """In solutions/, beside the lessons: the bundle's README.md."""
-AS_THEY_ARE = ('course', 'environment.txt', 'LICENSE')
+AS_THEY_ARE = ('course', 'environment.txt', 'LICENSE', 'launcher/verbs.txt')
+LAUNCHER = 'launcher'
+"""What `course` runs; of it, the modules."""
 SETTINGS = ('.jupyterlab/overrides.json', '.jupyterlab/page_config.json')
 """What `./course lab` shows JupyterLab."""
 PACKAGE = 'my_robot_basics'
@@ -83,6 +85,8 @@ def _contents(course: Course, faults: list[str]) -> Iterator[tuple[str, bytes]]:
 def _paths(course: Course, faults: list[str]) -> Iterator[str]:
     """Yield the paths of all that students get, from the course's root."""
     yield from (*AS_THEY_ARE, *SETTINGS, f'solutions/{README}')
+    modules = [path for path in files_in(course.root / LAUNCHER) if path.suffix == '.py']
+    yield from (f'{LAUNCHER}/{path}' for path in modules)
     yield from (f'notebooks/{page}' for page in (INDEX, *copied_pages(course)))
     for assignment in course.assignments():
         lesson = course.root / 'notebooks' / assignment

@@ -17,9 +17,10 @@ from grader.bundle import FOLDER, bundle
 from grader.course import ROOT, Course
 from grader.errors import CourseError
 from grader.release import release
+from launcher import lab
 
-TOP = ['.jupyterlab', 'LICENSE', 'README.md', 'course', 'environment.txt', 'my_robot_basics']
-TOP += ['notebooks']
+TOP = ['.jupyterlab', 'LICENSE', 'README.md', 'course', 'environment.txt', 'launcher']
+TOP += ['my_robot_basics', 'notebooks']
 ANSWER = '    return x + x  # the secret answer'
 CANARY = 'assert student.call("double", 21) == 42, "count again"  # hidden canary'
 
@@ -35,6 +36,7 @@ def made(tmp_path_factory):
     shutil.copytree(
         ROOT / 'my_robot_basics', course.root / 'my_robot_basics', ignore=made_by_tools
     )
+    shutil.copytree(ROOT / 'launcher', course.root / 'launcher', ignore=made_by_tools)
     release(course)
     return course
 
@@ -89,13 +91,14 @@ def test_it_holds_what_students_need_and_nothing_else(made, fresh_lessons, tmp_p
     assert {f'notebooks/{TOY}/{TOY}.ipynb', 'notebooks/index.ipynb'} < found
     assert {'my_robot_basics/package.xml', 'my_robot_basics/my_robot_basics/ros2/start.py'} < found
     tracked = subprocess.run(
-        ['git', 'ls-files', 'my_robot_basics'],
+        ['git', 'ls-files', 'my_robot_basics', 'launcher'],
         cwd=ROOT,
         capture_output=True,
         text=True,
         check=True,
     ).stdout.split()
-    assert {name for name in found if name.startswith('my_robot_basics/')} == set(tracked)
+    ours = ('my_robot_basics/', 'launcher/')
+    assert {name for name in found if name.startswith(ours)} == set(tracked)
 
 
 def test_only_the_script_is_a_program(made, fresh_lessons, tmp_path):
@@ -204,6 +207,7 @@ def test_an_answer_of_two_lines_in_the_package_is_no_accident(course, fresh_less
     [
         'course',
         'environment.txt',
+        'launcher/verbs.txt',
         'LICENSE',
         '.jupyterlab/page_config.json',
         'solutions/students.md',
@@ -270,7 +274,7 @@ def test_its_readme_says_what_is_so(students):
         == set(re.findall(r'\./course ([\w-]+)', readme))
         == {'lab', 'validate', 'workspace', 'ros-shell'}
     )
-    rows = readme.partition('## What lies where')[2]
+    rows = readme.partition('## What is where')[2]
     named = re.findall(r'`([^`]+)`', ' '.join(re.findall(r'^\| (`.+?) \|', rows, re.MULTILINE)))
     assert len(named) == 4
     assert [name for name in named if not (students / name).exists()] == []
@@ -278,11 +282,9 @@ def test_its_readme_says_what_is_so(students):
 
 
 def test_what_lab_is_given_is_there(students):
-    script = (students / 'course').read_text()
-    given = re.findall(r'\$root/([\w./-]+)', script.partition('\nlab() {')[2].partition('\n}')[0])
-    given = [name for name in given if name != 'ros_ws']  # a student's own, if there is one
-    assert len(given) == 3
-    assert [name for name in given if not (students / name).exists()] == []
+    assert (students / 'notebooks/index.ipynb').is_file()
+    assert (students / lab.SETTINGS).is_dir()
+    assert (students / lab.TERMINAL).is_file()
 
 
 def test_a_verb_that_needs_the_grader_says_so(students):

@@ -1,0 +1,89 @@
+"""Where the course and its `.venv` lie, and the variables that what runs in it sees."""
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+FOREIGN = ('PYTHONPATH', 'PYTHONHOME', 'PYTHONSTARTUP', 'PYTHONUSERBASE', 'VIRTUAL_ENV')
+FOREIGN += (
+    'CONDA_PREFIX',
+    'PIP_TARGET',
+    'PIP_PREFIX',
+    'PIP_ROOT',
+    'UV_SYSTEM_PYTHON',
+    'UV_PYTHON',
+)
+FOREIGN += ('AMENT_PREFIX_PATH', 'COLCON_PREFIX_PATH', 'CMAKE_PREFIX_PATH')
+FOREIGN += ('ROS_DISTRO', 'ROS_VERSION', 'ROS_PYTHON_VERSION', 'ROS_DOMAIN_ID')
+FOREIGN += ('ROS_LOCALHOST_ONLY', 'ROS_DISCOVERY_SERVER', 'ROS_STATIC_PEERS')
+FOREIGN += ('ROS_AUTOMATIC_DISCOVERY_RANGE', 'ROS_SECURITY_ENABLE', 'RMW_IMPLEMENTATION')
+FOREIGN += ('FASTRTPS_DEFAULT_PROFILES_FILE', 'FASTDDS_DEFAULT_PROFILES_FILE')
+FOREIGN += ('FASTDDS_BUILTIN_TRANSPORTS', 'RCUTILS_CONSOLE_OUTPUT_FORMAT')
+FOREIGN += ('_ROS_WHEELS_BOOTSTRAP_COMPLETE',)
+"""Variables of the user's Python and of a robot's ROS: they would mix with what .venv brings."""
+PREFIXES = ('AMENT_PREFIX_PATH', 'COLCON_PREFIX_PATH', 'CMAKE_PREFIX_PATH')
+"""Variables that list where a ROS sourced in the caller's shell lies."""
+
+
+@dataclass(frozen=True)
+class Environment:
+    """A checkout of the course, or a student's bundle."""
+
+    root: Path
+
+    @property
+    def venv(self) -> Path:
+        """Where everything is installed."""
+        return self.root / '.venv'
+
+    @property
+    def python(self) -> Path:
+        """The Python that runs the verbs."""
+        return self.venv / 'bin/python'
+
+    @property
+    def has_grader(self) -> bool:
+        """Whether this is the whole course: a bundle has no grader."""
+        return (self.root / 'grader').is_dir()
+
+    def outside(self, variables: Mapping[str, str]) -> dict[str, str]:
+        """Return the caller's variables without other environments': what installers see."""
+        foreign = {str(self.venv), '/opt/ros'}
+        for name in PREFIXES:
+            foreign.update(filter(None, variables.get(name, '').split(os.pathsep)))
+        kept = {name: value for name, value in variables.items() if name not in FOREIGN}
+        for name in ('PATH', 'LD_LIBRARY_PATH'):
+            kept[name] = without_foreign(kept.get(name, ''), foreign)
+        if not kept['LD_LIBRARY_PATH']:
+            del kept['LD_LIBRARY_PATH']
+        return kept
+
+    def variables(self, variables: Mapping[str, str]) -> dict[str, str]:
+        """Return the variables with which a verb runs."""
+        inside = self.outside(variables)
+        inside |= {
+            'VIRTUAL_ENV': str(self.venv),
+            'PATH': os.pathsep.join(filter(None, [str(self.venv / 'bin'), inside['PATH']])),
+            'AMENT_PREFIX_PATH': str(self.venv),
+            'RCUTILS_LOGGING_USE_STDOUT': '1',
+            'RCUTILS_COLORIZED_OUTPUT': '0',
+            # a kernel that the user once installed as python3 does not replace ours
+            'JUPYTER_PREFER_ENV_PATH': '1',
+            # tutorials use this name, too: the user's is another
+            'ROS_WS': variables.get('MY_ROBOT_BASICS_WORKSPACE') or str(self.root / 'ros_ws'),
+        }
+        if ' ' in str(self.venv):
+            # colcon's setup.bash stumbles over a space in its Python's path; any Python serves it
+            inside['COLCON_PYTHON_EXECUTABLE'] = str(self.python.resolve())
+        return inside
+
+
+def without_foreign(folders: str, foreign: set[str]) -> str:
+    """Return a list of folders without those that lie in a foreign prefix."""
+    kept = []
+    for folder in filter(None, folders.split(os.pathsep)):
+        above = {folder, folder.rstrip('/'), *map(str, Path(folder).parents)}
+        if not above & foreign:
+            kept.append(folder)
+    return os.pathsep.join(kept)

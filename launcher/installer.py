@@ -1,0 +1,160 @@
+"""uv or pip: what they are asked for, and why they failed, in one sentence."""
+
+import errno
+import os
+import shutil
+import subprocess
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from launcher.environment import Environment
+from launcher.messages import CourseError, clear_progress, say, show_progress
+
+STEPS = ('Resolved ', 'Collecting ', 'Downloading ', 'Prepared ', 'Installed ')
+"""How the lines of an installer begin that tell how far it is."""
+NO_DISK = ('No space left on device', 'os error 28', 'Disk quota exceeded', 'os error 122')
+NO_NETWORK = ('error sending request', 'Failed to fetch', 'dns error', 'NewConnectionError')
+NO_NETWORK += ('Failed to establish a new connection', 'Temporary failure in name resolution')
+NO_NETWORK += ('Network is unreachable', 'Max retries exceeded', 'ConnectTimeout', 'ReadTimeout')
+NO_NETWORK += ('Read timed out', 'ProxyError')
+DISK_IS_FULL = (
+    'the disk is full: free some space (.venv takes 0.9 GB and the downloads as much again), '
+    'then start again.'
+)
+NETWORK_IS_AWAY = (
+    'the package registry cannot be reached: check the network and its proxy settings, then '
+    'start again.'
+)
+FAILED = 'setting up failed for the reason above: fix it, then start again.'
+SHOWN_LINES = 20
+"""How much of an installer's last words is shown where nobody knows what they mean."""
+
+
+@dataclass(frozen=True)
+class Installer:
+    """What installs packages into a course's .venv."""
+
+    environment: Environment
+    variables: dict[str, str]
+    lock: int
+    """Held by what is started, too: should this process end first, nobody else may write."""
+    uses_uv: bool = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Find out whether there is a uv that runs: pyenv has a shim for one that is not there."""
+        object.__setattr__(self, 'uses_uv', _runs(['uv', '--version'], self.variables))
+
+    @property
+    def name(self) -> str:
+        """What a person is told."""
+        return 'uv' if self.uses_uv else 'pip'
+
+    def make_venv(self, python: Path) -> None:
+        """Make an empty .venv. Raises CourseError where that Python has no venv module."""
+        venv = self.environment.venv
+        if not self.uses_uv and not _runs(
+            [python, '-c', 'import ensurepip, venv'], self.variables
+        ):
+            version = version_of(python)
+            raise CourseError(
+                f'Python {version} ({python}) has no venv module: install it (on Debian and '
+                f'Ubuntu: sudo apt install python{version.rpartition(".")[0]}-venv), then start '
+                'again.'
+            )
+        say(
+            f'setting up .venv with Python {version_of(python)} and {self.name} '
+            '(about 0.9 GB; some minutes the first time)'
+        )
+        with writing():
+            if venv.is_dir():
+                shutil.rmtree(venv)
+        if self.uses_uv:
+            self.run('uv', 'venv', '--python', python, venv)
+        else:
+            # in two steps: venv would keep the reason to itself, should there be no room for pip
+            self.run(python, '-m', 'venv', '--without-pip', venv)
+            self.run(self.environment.python, '-m', 'ensurepip')
+
+    def install(self, *arguments: str | Path, constraints: str = '') -> None:
+        """Install what the arguments name; constraints hold for what sources are built with."""
+        pins = {}
+        if constraints:
+            names = ('UV_BUILD_CONSTRAINT', 'PIP_CONSTRAINT', 'PIP_BUILD_CONSTRAINT')
+            pins = dict.fromkeys(names, constraints)
+        python = self.environment.python
+        if self.uses_uv:
+            command = ('uv', 'pip', 'install', '--compile-bytecode', '--python', python)
+        else:
+            pins['PIP_USER'] = '0'
+            command = (python, '-m', 'pip', 'install', '--disable-pip-version-check')
+            command += ('--no-input', '--progress-bar', 'off')
+        self.run(*command, *arguments, **pins)
+
+    def run(self, *command: str | Path, **variables: str) -> None:
+        """Run a command and show its progress. Raises CourseError with why it failed."""
+        process = subprocess.Popen(
+            list(map(str, command)),
+            cwd=self.environment.root,
+            env=self.variables | variables,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            pass_fds=(self.lock,),
+            text=True,
+            errors='replace',
+        )
+        said = []
+        for line in process.stdout:
+            said.append(line.rstrip('\n'))
+            if step := progress(said[-1]):
+                show_progress(step)
+        failed = process.wait()
+        clear_progress()
+        if failed:
+            raise CourseError(reason_of(said))
+
+
+def progress(line: str) -> str:
+    """Return the step that a line of an installer tells of, or ''."""
+    if line.startswith('Installing collected packages'):
+        return 'Installing'
+    return line.partition(' (from ')[0] if line.startswith(STEPS) else ''
+
+
+def reason_of(lines: Iterable[str]) -> str:
+    """Return why an installer failed, in one sentence; an unknown cause behind its last lines."""
+    lines = list(lines)
+    for causes, sentence in ((NO_DISK, DISK_IS_FULL), (NO_NETWORK, NETWORK_IS_AWAY)):
+        if any(cause in line for line in lines for cause in causes):
+            return sentence
+    return '\n'.join([*lines[-SHOWN_LINES:], FAILED])
+
+
+@contextmanager
+def writing() -> Iterator[None]:
+    """Turn what goes wrong with files into a CourseError."""
+    try:
+        yield
+    except OSError as error:
+        full = error.errno in (errno.ENOSPC, errno.EDQUOT)
+        raise CourseError(DISK_IS_FULL if full else f'{error}\n{FAILED}') from error
+
+
+def version_of(python: Path) -> str:
+    """Return the version of a Python, '3.12.1' say, or '' where it does not run."""
+    code = 'import sys; print("%d.%d.%d" % sys.version_info[:3])'
+    try:
+        run = subprocess.run([python, '-ISc', code], capture_output=True, text=True)
+    except OSError:
+        return ''
+    return '' if run.returncode else run.stdout.strip()
+
+
+def _runs(command: list, variables: dict[str, str]) -> bool:
+    program = shutil.which(command[0], path=variables.get('PATH', os.defpath))
+    if not program:
+        return False
+    run = subprocess.run([program, *command[1:]], env=variables, capture_output=True)
+    return run.returncode == 0

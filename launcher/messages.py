@@ -1,0 +1,27 @@
+"""What `./course` says to a person: on stderr, in sentences."""
+
+import sys
+
+
+class CourseError(Exception):
+    """The reason why nothing can be done, and what to do: one sentence, the last of its lines."""
+
+
+def say(sentence: str) -> None:
+    """Print a sentence; lines before it are somebody else's words."""
+    *shown, last = sentence.split('\n')
+    print(*shown, f'course: {last}', sep='\n', file=sys.stderr, flush=True)
+
+
+def show_progress(step: str) -> None:
+    """Show a step: in a terminal it replaces the one before."""
+    if sys.stderr.isatty():
+        print(f'\r\033[K  {step:.72}', end='', file=sys.stderr, flush=True)
+    else:
+        print(f'  {step}', file=sys.stderr, flush=True)
+
+
+def clear_progress() -> None:
+    """Take the last step away from a terminal."""
+    if sys.stderr.isatty():
+        print('\r\033[K', end='', file=sys.stderr, flush=True)

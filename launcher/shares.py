@@ -1,0 +1,75 @@
+"""What an editable install leaves out of .venv: ROS's index, Jupyter's folders, the two tools."""
+
+import os
+import re
+import shutil
+from pathlib import Path
+
+from launcher.environment import Environment
+
+TOOLS = {'ros2': 'ros2.main', 'topic_doctor': 'doctor.main'}
+"""The two tools and their modules. setup.py names the nodes alone, which students build, too."""
+TOOL = r"""#!/bin/sh
+# PYTHON_ARGCOMPLETE_OK
+# {name}, of the package that is installed here
+exec "${{0%/*}}/python" -P "${{0%/*}}/../../my_robot_basics/my_robot_basics/ros2/start.py" {module} "$@"
+"""  # noqa: E501
+UNDERLAY = r"""case :$PATH: in *:"$COLCON_CURRENT_PREFIX/bin":*) ;; *) export PATH="$COLCON_CURRENT_PREFIX/bin:$PATH" ;; esac
+case :${AMENT_PREFIX_PATH:-}: in
+    *:"$COLCON_CURRENT_PREFIX":*) ;;
+    *) export AMENT_PREFIX_PATH="$COLCON_CURRENT_PREFIX${AMENT_PREFIX_PATH:+:$AMENT_PREFIX_PATH}" ;;
+esac
+"""  # noqa: E501
+"""What a workspace's setup.bash reads of the ROS that it was built on: any terminal can."""
+BUTTON = 'my_robot_basics/my_robot_basics/validate/labextension'
+KERNEL = 'share/jupyter/kernels/my_robot_basics_sandbox'
+
+
+def tell_ament(environment: Environment) -> None:
+    """Put what ROS looks for in place: the package's marker, package.xml and executables."""
+    venv, package = environment.venv, environment.root / 'my_robot_basics'
+    index = venv / 'share/ament_index/resource_index/packages'
+    share, executables = venv / 'share/my_robot_basics', venv / 'lib/my_robot_basics'
+    if executables.is_dir():
+        shutil.rmtree(executables)
+    for folder in (index, share, executables):
+        folder.mkdir(parents=True, exist_ok=True)
+    shutil.copy(package / 'resource/my_robot_basics', index)
+    shutil.copy(package / 'package.xml', share)
+    for name in executables_of((package / 'setup.py').read_text(encoding='utf-8')):
+        (executables / name).symlink_to(f'../../bin/{name}')
+    for script in ('local_setup.sh', 'local_setup.bash'):
+        (venv / script).write_text(UNDERLAY, encoding='utf-8')
+
+
+def executables_of(setup: str) -> list[str]:
+    """Return the names of the executables in a package's setup.py."""
+    return re.findall(r"^ *'([a-z0-9_]*) = my_robot_basics\.", setup, re.MULTILINE)
+
+
+def tell_jupyter(environment: Environment) -> None:
+    """Put in place the Validate button, its part of the server and the sandbox's kernel."""
+    venv, button = environment.venv, environment.root / BUTTON
+    extensions, server = venv / 'share/jupyter/labextensions', venv / 'etc/jupyter'
+    server /= 'jupyter_server_config.d'
+    for folder in (extensions, server):
+        folder.mkdir(parents=True, exist_ok=True)
+    point(extensions / 'my_robot_basics_validate', button)
+    shutil.copy(button / 'server.json', server / 'my_robot_basics.json')
+    if environment.has_grader:
+        (venv / KERNEL).mkdir(parents=True, exist_ok=True)
+        shutil.copy(environment.root / 'grader/kernelspec/kernel.json', venv / KERNEL)
+
+
+def point(link: Path, target: Path) -> None:
+    """Make a link, in the place of one that is there."""
+    link.unlink(missing_ok=True)
+    link.symlink_to(target)
+
+
+def make_tools(environment: Environment) -> None:
+    """Write the two tools."""
+    for name, module in TOOLS.items():
+        tool = environment.venv / 'bin' / name
+        tool.write_text(TOOL.format(name=name, module=module), encoding='utf-8')
+        os.chmod(tool, 0o755)

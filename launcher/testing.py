@@ -1,0 +1,119 @@
+"""`./course test`: ruff, the tests, and the lessons against their stored outputs."""
+
+import subprocess
+import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from launcher.environment import Environment
+from launcher.messages import say
+from launcher.unstable import MOST, add_unstable, read_failures, read_passes, unstable
+
+TIERS = ('--quick', '--slow')
+ALL_THE_SAME = (*TIERS, '--no-isolation')
+"""Options that leave it a check of everything."""
+LESSONS = 'solutions/*/*.ipynb'
+RECORD = 'unstable_tests.txt'
+"""In the course's root; one line for each test that failed beside others and passed alone."""
+
+
+@dataclass(frozen=True)
+class Checks:
+    """One run of the checks."""
+
+    environment: Environment
+    variables: dict[str, str]
+    reports: Path
+    """Where pytest writes what came of each test."""
+
+    def call(self, *command: str) -> int:
+        """Run a command in the course's folder; return its exit status."""
+        root = self.environment.root
+        return subprocess.call(command, cwd=root, env=self.variables)
+
+    def pytest(self, report: str, *arguments: str) -> int:
+        """Run pytest; `report` is the name of what it writes."""
+        python = str(self.environment.python)
+        written = f'--junitxml={self.reports / report}'
+        return self.call(python, '-P', '-m', 'pytest', written, *arguments)
+
+    def tests(self, arguments: list[str]) -> int:
+        """Run the tests, several at a time, and once more alone what failed."""
+        # most tests wait most of the time; one file stays on one worker: its tests share kernels
+        # and a ROS domain
+        many = ('-n', '4', '--dist', 'loadfile', '--no-loadscope-reorder')
+        return self.twice(
+            'tests',
+            lambda report: self.pytest(report, *many, *arguments),
+            lambda report: self.pytest(
+                report, '-v', *arguments, '--last-failed', '-n', '0', '--maxfail', '5'
+            ),
+        )
+
+    def lessons(self) -> int:
+        """Run the lessons against their stored outputs, and once more alone those that differ."""
+        options = ('-p', 'tests.conftest', '--nbval', '--nbval-cell-timeout', '60')
+
+        def again(report: str) -> int:
+            # whole ones: a cell needs those before it
+            failed = failed_lessons(self.environment.root)
+            return self.pytest(report, *options, '-v', '-n', '0', *(failed or ['solutions']))
+
+        return self.twice(
+            'lessons',
+            lambda report: self.pytest(
+                report, *options, '-n', '4', '--dist', 'loadfile', 'solutions'
+            ),
+            again,
+        )
+
+    def twice(self, what: str, first: Callable[[str], int], again: Callable[[str], int]) -> int:
+        """Run checks, and again alone what failed: what fails twice has failed.
+
+        A machine that was short of time fails tests that nothing is wrong with. They are written
+        down, with why: more than MOST of them in a run have failed, too.
+        """
+        status = first(f'{what}.xml')
+        if status != 1:
+            return status
+        say(f'now the {what} that failed beside others once more, alone; they are named above')
+        status = again(f'{what}-alone.xml')
+        passed = unstable(
+            read_failures(self.reports / f'{what}.xml'),
+            read_passes(self.reports / f'{what}-alone.xml'),
+        )
+        if passed:
+            record = self.environment.root / RECORD
+            written = add_unstable(record, passed)
+            say(
+                f'{len(passed)} of the {what} failed beside others and passed alone; why is '
+                f'written in {RECORD}, which counts {written} by now'
+            )
+        if len(passed) > MOST:
+            say(f'more than {MOST} such in one run count as a failure: find out why they do that')
+            return status or 1
+        return status
+
+
+def run(environment: Environment, variables: dict[str, str], arguments: list[str]) -> int:
+    """Run everything even after a failure; return the last failure's exit status."""
+    options = [argument for argument in arguments if argument in ALL_THE_SAME]
+    named = [argument for argument in arguments if argument not in ALL_THE_SAME]
+    with tempfile.TemporaryDirectory(prefix='reports-') as reports:
+        checks = Checks(environment, variables, Path(reports))
+        ruff = str(environment.venv / 'bin/ruff')
+        statuses = [checks.call(ruff, 'check', '.'), checks.call(ruff, 'format', '--check', '.')]
+        statuses.append(checks.tests([*options, *named]))
+        # unless single tests were asked for, or what starts no kernel
+        if not named and '--quick' not in options and any(environment.root.glob(LESSONS)):
+            statuses.append(checks.lessons())
+    return next((status for status in reversed(statuses) if status), 0)
+
+
+def failed_lessons(root: Path) -> list[str]:
+    """Return the paths of the lessons in which a cell failed last, as pytest remembers it."""
+    remembered = root / '.pytest_cache/v/cache/lastfailed'
+    text = remembered.read_text(encoding='utf-8') if remembered.is_file() else ''
+    lessons = (str(path.relative_to(root)) for path in sorted(root.glob(LESSONS)))
+    return [lesson for lesson in lessons if f'"{lesson}::' in text]

@@ -1,0 +1,53 @@
+"""Tests that fail beside others and pass alone: which they are, why, and how many."""
+
+from collections.abc import Iterator
+from datetime import datetime
+from pathlib import Path
+from xml.etree import ElementTree
+
+MOST = 2
+"""How many of them a run may have."""
+BAD = ('failure', 'error')
+
+
+def read_failures(report: Path) -> dict[str, str]:
+    """Return the tests that failed and why, in a line, from what `pytest --junitxml` wrote."""
+    failures = {}
+    for name, case in _cases(report):
+        for bad in case.iter():
+            if bad.tag not in BAD:
+                continue
+            failures.setdefault(
+                name, ' '.join(bad.get('message', '').split()) or 'no reason given'
+            )
+    return failures
+
+
+def read_passes(report: Path) -> set[str]:
+    """Return the tests that passed."""
+    cases = list(_cases(report))
+    return {name for name, _ in cases} - {
+        name
+        for name, case in cases
+        if any(case.find(tag) is not None for tag in (*BAD, 'skipped'))
+    }
+
+
+def unstable(failures: dict[str, str], passes: set[str]) -> dict[str, str]:
+    """Return those that failed first and passed then, with why they failed."""
+    return {name: why for name, why in failures.items() if name in passes}
+
+
+def add_unstable(record: Path, tests: dict[str, str]) -> int:
+    """Add a line for each test to the record; return how many it has."""
+    now = datetime.now().astimezone().isoformat(' ', 'minutes')
+    with record.open('a', encoding='utf-8') as file:
+        file.writelines(f'{now}  {name}: {why}\n' for name, why in tests.items())
+    return len(record.read_text(encoding='utf-8').splitlines())
+
+
+def _cases(report: Path) -> Iterator[tuple[str, ElementTree.Element]]:
+    """Yield each test's name and its element; nothing where pytest wrote no report."""
+    if report.is_file():
+        for case in ElementTree.parse(report).iter('testcase'):
+            yield f'{case.get("classname")}::{case.get("name")}', case

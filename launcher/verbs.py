@@ -1,0 +1,39 @@
+"""The table of the verbs; `course` reads the same file for `--help`."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+TABLE = Path(__file__).with_name('verbs.txt')
+
+
+@dataclass(frozen=True)
+class Verb:
+    """A row of the table."""
+
+    name: str
+    owner: str
+    """`everyone`, or `course` where it needs the whole repository."""
+    runs: str
+    """`launcher.lab`, say, or else the arguments that follow `python -P -m`."""
+    folder: str
+    """`root`, the course's, or `caller`, that in which ./course was called."""
+    help: str
+    """What it is for, in a line."""
+
+
+def read_verbs(table: Path = TABLE) -> dict[str, Verb]:
+    """Return the verbs by their names, in the order of the table.
+
+    Raises ValueError where a row is not as the table's first lines tell.
+    """
+    verbs = {}
+    for line in table.read_text(encoding='utf-8').splitlines():
+        owner, runs, folder, text = line.split('|', 3) if line[:1] not in '#' else [''] * 4
+        if not owner:
+            continue
+        if owner not in ('everyone', 'course') or folder not in ('root', 'caller'):
+            raise ValueError(f'{table}: not a verb, its owner and its folder: {line}')
+        usage, _, explained = text.partition('  ')
+        name = usage.split()[0]
+        verbs[name] = Verb(name, owner, runs, folder, explained.strip())
+    return verbs

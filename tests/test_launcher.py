@@ -1,0 +1,172 @@
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from grader.arguments import make_parser
+from grader.course import ROOT
+from launcher.environment import Environment, without_foreign
+from launcher.installer import DISK_IS_FULL, FAILED, NETWORK_IS_AWAY, progress, reason_of
+from launcher.shares import executables_of
+from launcher.testing import Checks
+from launcher.unstable import add_unstable, read_failures, read_passes, unstable
+from launcher.verbs import read_verbs
+
+# --- the table of the verbs ----------------------------------------------------------------------
+
+
+def test_a_row_is_what_help_and_dispatch_are_made_from():
+    verbs = read_verbs()
+    grade = verbs['grade']
+    assert (grade.owner, grade.runs, grade.folder) == ('course', 'grader grade', 'root')
+    assert grade.help.startswith('grade what is new in gradebook/submitted/')
+    assert [verb.name for verb in verbs.values() if verb.owner == 'everyone'] == [
+        *('lab', 'validate', 'workspace', 'ros-shell')
+    ]
+
+
+def test_the_grader_has_the_verbs_that_the_table_says_it_has():
+    (choices,) = (action.choices for action in make_parser()._actions if action.choices)
+    said = [verb.runs for verb in read_verbs().values() if verb.runs.startswith('grader ')]
+    assert sorted(said) == sorted(f'grader {name}' for name in choices)
+
+
+@pytest.mark.parametrize(
+    'row', ['nobody|launcher.lab|root|lab  open', 'everyone|launcher.lab|home|lab  open']
+)
+def test_a_wrong_row_is_refused(row, tmp_path):
+    table = tmp_path / 'verbs.txt'
+    table.write_text(f'# the verbs\n{row}\n')
+    with pytest.raises(ValueError, match=re.escape(row)):
+        read_verbs(table)
+
+
+def test_a_new_verb_is_one_row(tmp_path):
+    shutil.copy(ROOT / 'course', tmp_path)
+    shutil.copytree(ROOT / 'launcher', tmp_path / 'launcher')
+    with (tmp_path / 'launcher/verbs.txt').open('a') as table:
+        table.write('everyone|launcher.wave|root|wave NAME          say hello\n')
+    usage = subprocess.run([tmp_path / 'course', '--help'], capture_output=True, text=True)
+    assert '  wave NAME          say hello\n' in usage.stdout
+    assert read_verbs(tmp_path / 'launcher/verbs.txt')['wave'].help == 'say hello'
+
+
+def test_it_needs_nothing_that_is_installed():
+    code = (
+        f'import sys; sys.path.append({str(ROOT)!r})\n'
+        'from launcher import lab, main, testing\n'
+        'names = {name.partition(".")[0] for name in sys.modules} - {"__main__", "launcher"}\n'
+        'print(sorted(names - sys.stdlib_module_names))\n'
+    )
+    command = ['sh', '-c', 'exec "$@"', 'sh', sys._base_executable, '-ISc', code]
+    run = subprocess.run(command, capture_output=True, text=True)
+    assert (run.stdout, run.stderr) == ('[]\n', '')
+
+
+# --- variables -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ('folders', 'kept'),
+    [
+        ('/usr/bin:/opt/ros/jazzy/bin:/opt/rosy', '/usr/bin:/opt/rosy'),
+        ('/opt/ros', ''),
+        ('', ''),
+        ('::/usr/bin:', '/usr/bin'),
+        ('/home/ada/ros ws/bin/', ''),
+    ],
+)
+def test_folders_of_other_environments_are_left_out(folders, kept):
+    assert without_foreign(folders, {'/opt/ros', '/home/ada/ros ws'}) == kept
+
+
+def test_what_the_caller_asked_of_his_workspace_stays():
+    environment = Environment(Path('/course'))
+    inside = environment.variables({'PATH': '/bin', 'MY_ROBOT_BASICS_WORKSPACE': '/mine'})
+    assert inside['ROS_WS'] == '/mine'
+    assert inside['PATH'] == '/course/.venv/bin:/bin'
+    assert 'COLCON_PYTHON_EXECUTABLE' not in inside
+
+
+# --- installers ----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ('line', 'step'),
+    [
+        ('Collecting six==1.17.0 (from -r environment.txt (line 7))', 'Collecting six==1.17.0'),
+        ('Installing collected packages: six, pip', 'Installing'),
+        ('Using CPython 3.12.1', ''),
+    ],
+)
+def test_the_steps_of_an_installer_are_shown(line, step):
+    assert progress(line) == step
+
+
+def test_a_full_disk_is_the_reason_whatever_else_went_wrong():
+    assert reason_of(['Max retries exceeded', 'No space left on device']) == DISK_IS_FULL
+    assert reason_of(['x', 'error: Failed to fetch: `https://…`']) == NETWORK_IS_AWAY
+
+
+def test_only_the_last_words_of_an_unknown_reason_are_shown():
+    lines = [f'line {number}' for number in range(30)]
+    assert reason_of(lines).split('\n') == [*lines[10:], FAILED]
+
+
+def test_the_executables_are_those_of_setup_py():
+    setup = "    'a_node = my_robot_basics.a_node:main',\n    'other = elsewhere.other:main',\n"
+    assert executables_of(setup) == ['a_node']
+
+
+# --- tests that fail beside others and pass alone ------------------------------------------------
+
+
+def report(path, **cases):
+    """Write what pytest writes: each case failed with these words, or passed."""
+    bodies = {name: f'<failure message="{why}"/>' if why else '' for name, why in cases.items()}
+    rows = [f'<testcase classname="f" name="{n}">{body}</testcase>' for n, body in bodies.items()]
+    path.write_text(f'<testsuites><testsuite>{"".join(rows)}</testsuite></testsuites>')
+    return path
+
+
+def test_what_failed_and_then_passed_is_unstable(tmp_path):
+    failures = read_failures(report(tmp_path / '1', a='late\nby 2 s', b='wrong', c='late', d=''))
+    assert failures == {'f::a': 'late by 2 s', 'f::b': 'wrong', 'f::c': 'late'}
+    passes = read_passes(report(tmp_path / '2', a='', b='wrong'))
+    assert unstable(failures, passes) == {'f::a': 'late by 2 s'}
+
+
+def test_no_report_is_no_test(tmp_path):
+    assert read_failures(tmp_path / 'none') == {}
+    assert read_passes(tmp_path / 'none') == set()
+
+
+def test_the_record_counts_those_of_all_runs(tmp_path):
+    record = tmp_path / 'unstable_tests.txt'
+    assert add_unstable(record, {'f::a': 'late'}) == 1
+    assert add_unstable(record, {'f::a': 'late', 'f::b': 'late'}) == 3
+    assert record.read_text().splitlines()[0].endswith('  f::a: late')
+
+
+@pytest.mark.parametrize(('number', 'status'), [(0, 0), (1, 0), (2, 0), (3, 1)])
+def test_more_than_two_unstable_tests_fail_a_run(number, status, tmp_path, capsys):
+    names = [f't{each}' for each in range(number)]
+    checks = Checks(Environment(tmp_path), {}, tmp_path)
+
+    def first(name):
+        report(tmp_path / name, good='', **dict.fromkeys(names, 'late'))
+        return 1
+
+    def again(name):
+        report(tmp_path / name, **dict.fromkeys(names, ''))
+        return 0
+
+    assert checks.twice('tests', first, again) == status
+    record = tmp_path / 'unstable_tests.txt'
+    assert record.exists() == bool(number)
+    if number:
+        assert len(record.read_text().splitlines()) == number
+        assert 'failed beside others and passed alone' in capsys.readouterr().err
