@@ -24,6 +24,8 @@ from grader.signals import killed_processes
 
 START_TIMEOUT_SEC = 60.0
 STOP_GRACE_SEC = 2.0
+_END_SEC = 1.0
+"""A process whose sockets are closed is gone after so long, if it is ending."""
 
 
 class _OurKernelSpec(KernelSpecManager):
@@ -70,6 +72,7 @@ class Kernel:
             connection_file=str(self.place.folder / 'connection.json'),
         )
         self._client = None
+        self._monitors: list[zmq.asyncio.Socket] = []
         self._ending: Ending | None = None
         self._ended_by_us = False
         self.alive = False
@@ -123,9 +126,14 @@ class Kernel:
         done = asyncio.ensure_future(self._messages.follow(request, result, on_input))
         try:
             result.timed_out = not await finished(
-                done, timeout_sec, self._is_alive, lambda: result.flooded
+                done, timeout_sec, self._is_alive, lambda: result.flooded or self._is_cut_off
             )
-            if result.timed_out and self.alive:
+            if result.timed_out and self._is_cut_off:
+                result.timed_out = result.cut_off = await self._lives_on()
+                if result.cut_off:
+                    self._ended_by_us = True
+                    await self._kill()
+            elif result.timed_out and self.alive:
                 await self._manager.interrupt_kernel()
                 if not await finished_in_grace(done, self._is_alive):
                     self._ended_by_us = self.alive
@@ -202,11 +210,30 @@ class Kernel:
         self._client.session.unpack = unpacked
         self._client.start_channels(hb=False)
         self._messages = Messages(self._client)
+        for channel in (self._client.iopub_channel, self._client.shell_channel):
+            self._monitors.append(channel.socket.get_monitor_socket(zmq.EVENT_DISCONNECTED))
         kind = None
         while kind != 'iopub_welcome':
             await self._expect_alive()
             with contextlib.suppress(queue.Empty):
                 kind = (await self._client.get_iopub_msg(timeout=0.5))['msg_type']
+
+    @property
+    def _is_cut_off(self) -> bool:
+        """Whether a connection has ended: by the kernel's end, by its doing, or by a message.
+
+        ZMQ ends one whose message is larger than MAX_MESSAGE_BYTES; nothing comes on it any more.
+        """
+        return any(monitor.get(zmq.EVENTS) & zmq.POLLIN for monitor in self._monitors)
+
+    async def _lives_on(self) -> bool:
+        """Whether the kernel did not end with its connection; what ends takes a moment for it."""
+        moment = asyncio.ensure_future(asyncio.sleep(_END_SEC))
+        try:
+            await finished(moment, _END_SEC, self._is_alive)
+        finally:
+            moment.cancel()
+        return self.alive
 
     async def _expect_alive(self) -> None:
         if not await self._manager.is_alive():

@@ -1,6 +1,7 @@
 """One kernel: what a cell may do to it, and what is left when it has gone."""
 
 import asyncio
+import json
 import os
 import re
 import tempfile
@@ -17,7 +18,10 @@ from my_robot_basics.validate.limits import (
     MAX_MESSAGES_WAITING,
 )
 from my_robot_basics.validate.messages import next_message, unpacked
-from my_robot_basics.validate.outputs import MAX_OUTPUT_CHARACTERS
+from my_robot_basics.validate.outputs import CUT_OFF, MAX_OUTPUT_CHARACTERS
+from my_robot_basics.validate.questions import reply_of
+from my_robot_basics.validate.verdict import judge
+from nbformat.v4 import new_code_cell
 
 from grader import kernels
 from grader.errors import RoomFailure
@@ -300,6 +304,38 @@ def test_the_limits_of_what_waits_are_those_of_the_sockets(own):
     for channel in channels:
         limits = [channel.socket.getsockopt(each) for each in (zmq.RCVHWM, zmq.MAXMSGSIZE)]
         assert limits == [MAX_MESSAGES_WAITING, MAX_MESSAGE_BYTES]
+
+
+TOO_LARGE = {
+    'printed': ("print('x' * 70_000_000)", None),
+    'in an error': ("raise ValueError('x' * 70_000_000)", None),
+    'as an answer': ('', {'reply': "'x' * 70_000_000"}),
+}
+
+
+@pytest.mark.parametrize(('code', 'asked'), TOO_LARGE.values(), ids=TOO_LARGE)
+def test_a_message_that_is_too_large_ends_the_kernel_and_it_is_said(own, run, code, asked):
+    """Else nothing that the kernel says would be received any more, and nobody told why."""
+    result = run(own, code, expressions=asked)
+    assert (result.cut_off, result.flooded, result.died) == (True, True, True)
+    reply = json.loads(reply_of(result, within_sec=10.0))
+    assert reply == {'failed': f'no answer: your code {CUT_OFF}'}
+    cell = new_code_cell('x', metadata={'nbgrader': {'grade_id': 'check', 'points': 1}})
+    verdict = judge(cell, None, [('double', result)])
+    assert verdict.outcome == 'failed'
+    assert verdict.reason.endswith(f'before the check: your cell `double` {CUT_OFF}')
+    assert 'put out over 64 MB at once' in CUT_OFF
+    assert asyncio.run(own.ending()) is None  # we have ended it: that is nobody's doubt
+
+
+def test_a_kernel_that_ends_is_not_taken_for_one_that_was_cut_off(own, run):
+    result = run(own, 'import os; os._exit(3)')
+    assert (result.cut_off, result.timed_out, result.died) == (False, False, True)
+
+
+def test_a_large_message_within_the_limit_cuts_nothing_off(own, run):
+    assert not run(own, "print('x' * 9_000_000)").cut_off
+    assert text_of(run(own, "print('after')")) == 'after\n'
 
 
 FORGE = """

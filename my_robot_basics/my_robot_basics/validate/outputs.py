@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import nbformat
 from nbformat import NotebookNode
 
-from my_robot_basics.validate.limits import FLOOD_CHARACTERS
+from my_robot_basics.validate.limits import FLOOD_CHARACTERS, MAX_MESSAGE_BYTES
 from my_robot_basics.validate.pictures import KINDS, why_not_shown
 
 MAX_OUTPUT_CHARACTERS = 200_000
@@ -16,6 +16,11 @@ MAX_OUTPUT_CHARACTERS = 200_000
 MAX_ALT_CHARACTERS = 500
 MAX_ERROR_CHARACTERS = 10_000
 
+CUT_OFF = (
+    f'put out over {MAX_MESSAGE_BYTES / 1e6:.0f} MB at once, or closed a connection of its '
+    'kernel, which was ended: nothing that it says could be received any more'
+)
+"""What is said of a cell whose kernel was cut off."""
 WIDGET_VIEW = 'application/vnd.jupyter.widget-view+json'
 """Outlives no kernel; as text it ends whatever wants to show the notebook."""
 _OVERHEAD = 100
@@ -37,6 +42,8 @@ class CellRun:
     cut_after_sec: float = 0.0
     """After how long *Validate* gave the student's code up, where grading waits longer; else 0."""
     died: bool = False
+    cut_off: bool = False
+    """Whether its kernel had to be ended, for nothing that it says could be received any more."""
     ending: str = ''
     """How the student's kernel, or what it had started, was ended, if that was their doing."""
     _kept: int = 0
@@ -51,7 +58,7 @@ class CellRun:
     @property
     def flooded(self) -> bool:
         """Whether it put out more than anybody wants to read."""
-        return self._dropped + self._foreign > FLOOD_CHARACTERS
+        return self.cut_off or self._dropped + self._foreign > FLOOD_CHARACTERS
 
     def pass_over(self, content: dict) -> None:
         """Count what came meanwhile and is no output of this cell: of a thread, for instance."""

@@ -10,7 +10,7 @@ import json
 import re
 
 from my_robot_basics.validate.limits import FLOOD_CHARACTERS, MAX_REPLY
-from my_robot_basics.validate.outputs import CellRun
+from my_robot_basics.validate.outputs import CUT_OFF, CellRun
 
 STUDENT_COMES = """
 from my_robot_basics.checks import probe
@@ -39,6 +39,8 @@ def as_expression(request: str) -> dict[str, str]:
 
 def reply_of(run: CellRun, *, within_sec: float, at_grading: str = '') -> str:
     """Return what came of it in so long as text for the check: a reply, or why there is none."""
+    if run.cut_off:
+        return _failed(f'no answer: your code {CUT_OFF}')
     if run.flooded:
         return _failed(f'no answer in {FLOOD_CHARACTERS:,} characters of output')
     if run.timed_out:

@@ -12,7 +12,7 @@ from my_robot_basics.checks import hidden
 from my_robot_basics.validate.cells import KEY, grade_id, role
 from my_robot_basics.validate.errors import RoomFailure
 from my_robot_basics.validate.limits import FLOOD_CHARACTERS
-from my_robot_basics.validate.outputs import CellRun
+from my_robot_basics.validate.outputs import CUT_OFF, CellRun
 from my_robot_basics.validate.text import printable, shorten
 
 Outcome = Literal['passed', 'partial', 'failed', 'ungraded', 'manual']
@@ -157,6 +157,8 @@ def _told(reason: str, cell: NotebookNode) -> str:
 
 def _trouble(name: str, run: CellRun) -> str | None:
     """Say what went wrong in one of the student's cells."""
+    if run.cut_off:
+        return f'{TROUBLE}`{name}` {CUT_OFF}'
     if run.timed_out:
         what = f'put out over {FLOOD_CHARACTERS:,} characters' if run.flooded else 'did not end'
         how = 'could not be' if run.died else 'was'
