@@ -122,6 +122,22 @@ STRANGE = {
         {'a': 'double = eval("hel" + "per")', 'before': ['def helper(x): return 2 * x']},
         'passed',
     ),
+    'a helper that is looked up when it is called': (
+        {
+            'a': 'def double(x): return globals()["helper"](x)',
+            'before': ['def helper(x): return 2 * x'],
+        },
+        'passed',
+    ),
+    'a helper of a module beside the notebook, so to speak': (
+        {
+            'a': 'import types\nm = types.ModuleType("m")\n'
+            'exec("import __main__\\ndef twice(x): return __main__.helper(x)", vars(m))\n'
+            'double = m.twice',
+            'before': ['def helper(x): return 2 * x'],
+        },
+        'passed',
+    ),
     'a cell of no use that loops': ({'a': GOOD, 'before': ['while True: pass']}, 'passed'),
     'cells of no use that fail': (
         {'a': GOOD, 'before': ['1 / 0'], 'after': ['import os; os._exit(0)']},

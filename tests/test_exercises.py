@@ -2,7 +2,11 @@
 
 import nbformat
 import pytest
-from my_robot_basics.validate.exercises import find_exercises, plans
+from my_robot_basics.validate.exercises import (
+    find_exercises,
+    plan_for_names,
+    plans,
+)
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
 from grader.heal import heal, make_master
@@ -173,6 +177,7 @@ BORROWED = {
     'beside a star import': ('from math import *\ndef area(r): return np', ['np = 1']),
     'a name of its own': ('np = 3\ndef area(r): return np', []),
     'nothing': ('def area(r): return math.pi', []),
+    'a name that its text tells': ('def area(r): return getattr(math, "pi")', []),
     'a name that nobody binds': ('def area(r): return tau', []),
 }  # fmt: skip
 
@@ -189,6 +194,41 @@ def test_what_the_lesson_shows_is_run_for_the_names_that_an_answer_needs(area, e
     assert [notebook.cells[i].source for i in first.borrowed] == expected
     own = ["reset('area')", area]
     assert sorted(sources(notebook, first)) == sorted(['import math', *expected, *own])
+
+
+@pytest.mark.parametrize(
+    'area',
+    ['def area(r): return eval("np")', 'area = lambda r: globals()["np"]', 'import __main__ as m'],
+)
+def test_all_that_is_shown_before_runs_first_where_names_are_looked_up_by_other_means(area):
+    notebook = lesson(area=area, at_start='early = 1', at_end='late = 2')
+    exercise, _ = find_exercises(notebook)
+    first = next(plans(notebook, exercise))
+    assert first.why == 'with all that the lesson shows'
+    assert sources(notebook, first) == ['import math', 'shown = 1', "reset('area')", area]
+    assert first.borrowed == ()
+
+
+@pytest.mark.parametrize(
+    ('name', 'expected'),
+    [
+        ('shown', ['import math', 'shown = 1']),
+        ('late', ['import math', 'shown = 1', 'late = 2']),
+        ('math', None),  # it was run
+        ('nobody', None),
+        ('cmath', None),  # the lesson comes to it later
+        ('area', None),
+    ],
+)
+def test_cells_that_bind_a_name_which_was_missing_run_with_all_that_is_shown(name, expected):
+    notebook = lesson(area='area = 1', at_end='late = 2')
+    exercise, _ = find_exercises(notebook)
+    plan = plan_for_names(notebook, exercise, next(plans(notebook, exercise)), {name})
+    if expected is None:
+        assert plan is None
+    else:
+        own = ["reset('area')", 'area = 1']
+        assert sorted(sources(notebook, plan)) == sorted([*expected, *own])
 
 
 def test_a_helper_that_is_lent_brings_what_it_needs_along():

@@ -7,6 +7,7 @@ from my_robot_basics.validate.names import (
     MAX_IPYTHON,
     MAX_SOURCE_CHARACTERS,
     Names,
+    names_not_defined,
     names_of,
     string_arguments,
 )
@@ -64,6 +65,43 @@ def test_names_of_a_cell(source, bound, needed):
 def test_a_star_import_binds_more_than_is_told():
     assert names_of('from math import *').binds_more
     assert not names_of('from math import sin\nimport cmath').binds_more
+
+
+@pytest.mark.parametrize(
+    'source',
+    [
+        'def f(): return eval("np").pi',
+        'f = lambda: globals()["np"]',
+        'def f(): exec("x = np")',
+        'def f(): return vars()',
+        'import sys\ndef f(): return getattr(sys.modules["__main__"], "np")',
+        'import __main__',
+        'from __main__ import np',
+        'get_ipython().user_ns["np"]',
+    ],
+)
+def test_names_that_are_looked_up_by_other_means_are_not_known(source):
+    assert names_of(source).needs_more
+
+
+@pytest.mark.parametrize(
+    'source', ['def f(): return getattr(np, "pi")', 'evaluate(x)', 'x = "in the main program"']
+)
+def test_ordinary_names_are_known(source):
+    assert not names_of(source).needs_more
+
+
+@pytest.mark.parametrize(
+    ('said', 'names'),
+    [
+        ("saw NameError: name 'np' is not defined: call", {'np'}),
+        ("its callback raised KeyError: 'np' (line 3", {'np'}),
+        ("AttributeError: module '__main__' has no attribute 'np'", {'np'}),
+        ("ValueError: 'np', name 'np'", set()),
+    ],
+)
+def test_names_that_an_error_says_are_missing(said, names):
+    assert names_not_defined(said) == names
 
 
 def test_reading_a_cell_runs_none_of_it(capfd):

@@ -64,7 +64,9 @@ def plans(notebook: NotebookNode, exercise: Exercise) -> Iterator[Plan]:
         and (i < _end(exercise) or names_of(cell.source).bound & lacks)
     ]
     alone = {*setup, *own}
-    if not lent or not _lends(cells, lent, lacks):
+    if names_of(cells[exercise.answer].source).needs_more:
+        yield _with_all_shown(cells, exercise)
+    elif not lent or not _lends(cells, lent, lacks):
         yield _with_what_is_shown(cells, exercise, alone, why='the answer alone')
     if lent:
         yield _with_what_is_shown(cells, exercise, alone | {*lent}, why='with your other cells')
@@ -73,6 +75,37 @@ def plans(notebook: NotebookNode, exercise: Exercise) -> Iterator[Plan]:
         cells=tuple(i for i in whole if role(cells[i]) not in ('grade', 'locked') or i in own),
         why='the whole lesson',
     )
+
+
+def plan_for_names(
+    notebook: NotebookNode, exercise: Exercise, plan: Plan, names: set[str]
+) -> Plan | None:
+    """Plan the answer with what binds names that it turned out to need, and all that is shown.
+
+    None where no cell that was left out binds one of them.
+    """
+    cells = notebook.cells
+    more = _with_all_shown(cells, exercise)
+    binds = {i for i, cell in enumerate(cells) if _is_code(cell) and _binds(cell, names)}
+    lent = {i for i in binds if _is_students(cells[i])}
+    if not (binds & {*more.cells, *lent}) - {*plan.cells}:
+        return None
+    return Plan(tuple(sorted({*more.cells, *lent})), why='with what binds a name that it needs')
+
+
+def _with_all_shown(cells: list[NotebookNode], exercise: Exercise) -> Plan:
+    """Plan the answer after all that the lesson shows before it.
+
+    So it is where a text looks names up by other means: which it will need, nobody can know.
+    """
+    before = cells[: exercise.reset]
+    shown = [i for i, c in enumerate(before) if _is_code(c) and role(c) in ('demo', 'setup')]
+    own = (exercise.reset, exercise.answer, *exercise.run)
+    return Plan((*shown, *own), why='with all that the lesson shows')
+
+
+def _binds(cell: NotebookNode, names: set[str]) -> bool:
+    return bool(names_of(cell.source).bound & names)
 
 
 def _answer(notebook: NotebookNode, span: range) -> int | None:

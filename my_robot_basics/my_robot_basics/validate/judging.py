@@ -12,8 +12,14 @@ from nbformat import NotebookNode
 from my_robot_basics.checks import hidden
 from my_robot_basics.validate.cells import grade_id
 from my_robot_basics.validate.errors import RoomFailure
-from my_robot_basics.validate.exercises import Exercise, Plan, plans
+from my_robot_basics.validate.exercises import (
+    Exercise,
+    Plan,
+    plan_for_names,
+    plans,
+)
 from my_robot_basics.validate.limits import STUDENT_CELL_TIMEOUT_SEC, STUDENT_CELLS_BUDGET_SEC
+from my_robot_basics.validate.names import names_not_defined
 from my_robot_basics.validate.outputs import CellRun
 from my_robot_basics.validate.overdue import judge_overdue
 from my_robot_basics.validate.verdict import Verdict, judge, ungraded
@@ -89,19 +95,49 @@ async def _try_plans(
 ) -> Judged:
     todo = list(plans(notebook, exercise))
     for number, plan in enumerate(todo, start=1):
-        async with open_rooms() as rooms:
-            # as they are now: a display that is updated later may show hidden inputs
-            runs = copy.deepcopy(await _run_cells(notebook, plan, rooms, budget))
-            if number < len(todo) and _lacks_a_name(runs, exercise, plan):
-                continue
-            checks, cut = await _judge_cells(notebook, exercise, rooms, runs)
-        if cut:
-            with suppress(RoomFailure):  # the verdicts stand, with their causes alone
-                async with open_rooms() as rooms:
-                    await _run_cells(notebook, plan, rooms, budget)
-                    checks |= await _told_in_full(notebook, rooms, {i: checks[i] for i in cut})
-        return Judged(runs, checks)
+        is_last = number == len(todo)
+        judged = await _try_plan(notebook, exercise, plan, open_rooms, budget, is_last=is_last)
+        if judged is None:
+            continue
+        if more := plan_for_names(notebook, exercise, plan, _missing_names(judged)):
+            again = await _try_plan(notebook, exercise, more, open_rooms, budget, is_last=True)
+            return max(judged, again, key=_points)
+        return judged
     raise AssertionError('an exercise always has a last plan')
+
+
+async def _try_plan(
+    notebook: NotebookNode,
+    exercise: Exercise,
+    plan: Plan,
+    open_rooms: OpenRooms,
+    budget: Budget,
+    *,
+    is_last: bool,
+) -> Judged | None:
+    """Judge an exercise after a plan's cells; None where it lacks a name and others are left."""
+    async with open_rooms() as rooms:
+        # as they are now: a display that is updated later may show hidden inputs
+        runs = copy.deepcopy(await _run_cells(notebook, plan, rooms, budget))
+        if not is_last and _lacks_a_name(runs, exercise, plan):
+            return None
+        checks, cut = await _judge_cells(notebook, exercise, rooms, runs)
+    if cut:
+        with suppress(RoomFailure):  # the verdicts stand, with their causes alone
+            async with open_rooms() as rooms:
+                await _run_cells(notebook, plan, rooms, budget)
+                checks |= await _told_in_full(notebook, rooms, {i: checks[i] for i in cut})
+    return Judged(runs, checks)
+
+
+def _missing_names(judged: Judged) -> set[str]:
+    """Return names for want of which the answer raised when a check called it."""
+    lost = [verdict for verdict, _ in judged.checks.values() if verdict.outcome != 'passed']
+    return set().union(*(names_not_defined(f'{v.reason} {v.details}') for v in lost))
+
+
+def _points(judged: Judged) -> float:
+    return sum(verdict.score or 0.0 for verdict, _ in judged.checks.values())
 
 
 async def _run_cells(

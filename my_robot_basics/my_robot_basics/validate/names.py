@@ -24,6 +24,8 @@ class Names:
     """Read somewhere in the cell, in its functions too, bound nowhere in it, and no builtin."""
     binds_more: bool = False
     """Whether a star import binds names that its text does not tell."""
+    needs_more: bool = False
+    """Whether it looks names up by other means than its text: `eval`, `globals()`, `__main__`."""
 
 
 @lru_cache(maxsize=1_000)
@@ -44,7 +46,13 @@ def names_of(source: str) -> Names:
         bound=frozenset(bound - loop_names),
         needed=frozenset(read - bound - vars(builtins).keys() - _IPYTHON),
         binds_more=any(isinstance(n, ast.ImportFrom) and n.names[0].name == '*' for n in nodes),
+        needs_more=any(_said(node) & _LOOK_UP for node in nodes),
     )
+
+
+def names_not_defined(said: str) -> set[str]:
+    """Return the names that errors in a text say are not there."""
+    return {name for names in _NOT_DEFINED.findall(said) for name in names if name}
 
 
 def string_arguments(source: str, function: str) -> tuple[str, ...]:
@@ -56,6 +64,26 @@ def string_arguments(source: str, function: str) -> tuple[str, ...]:
         for argument in node.args
         if isinstance(argument, ast.Constant) and isinstance(argument.value, str)
     )
+
+
+_NOT_DEFINED = re.compile(
+    r"NameError: name '(\w+)' is not defined|KeyError: '(\w+)'"
+    r"|AttributeError: module '__main__' has no attribute '(\w+)'"
+)
+_LOOK_UP = frozenset(('eval', 'exec', 'globals', 'locals', 'vars', '__main__', 'user_ns'))
+"""Names, modules, attributes and texts that lead to names which a text does not tell."""
+
+
+def _said(node: ast.AST) -> set[str]:
+    """Return what a node names: a name, an attribute, a module, a text."""
+    match node:
+        case ast.Name(id=name) | ast.Attribute(attr=name) | ast.Constant(value=str(name)):
+            return {name}
+        case ast.Import(names=names):
+            return {alias.name for alias in names}
+        case ast.ImportFrom(module=str(name), names=names):
+            return {name, *(alias.name for alias in names)}
+    return set()
 
 
 _MAGIC = re.compile(r'^\s*[!%?,;/]|\?\s*$|=\s*[!%]', re.MULTILINE)
