@@ -6,14 +6,14 @@ Instructors open the formgrader with `.venv/bin/jupyter lab`, started in this fo
 from pathlib import Path
 
 try:
+    from grader.authoring.release import CODE_STUB, PASSES
+    from grader.autograde.submitted_files import read_timestamps_as_we_do
+    from grader.common.logs import NBGRADER_LOGGING
     from grader.course import Course
-    from grader.database import make_ready
-    from grader.feedback import FEEDBACK_PASSES
-    from grader.formgrader import FILTERS
-    from grader.logs import NBGRADER_LOGGING
-    from grader.nbgrader_input import read_timestamps_as_we_do
-    from grader.pipeline import AUTOGRADE_PASSES, SANITIZE_PASSES
-    from grader.release import CODE_STUB, PASSES
+    from grader.report.feedback import FEEDBACK_PASSES
+    from grader.report.formgrader import FILTERS
+    from grader.storage.database import make_ready
+    from grader.storage.pipeline import AUTOGRADE_PASSES, SANITIZE_PASSES
 
     course = Course.at(Path(__file__).parent)
     make_ready(course)
@@ -41,12 +41,12 @@ c.GenerateAssignment.preprocessors = list(PASSES)
 c.ClearSolutions.code_stub = CODE_STUB
 # a mark scheme stands in the text before an answer: the grader puts that back from the source
 c.ClearMarkScheme.enforce_metadata = False
-c.Autograde.exporter_class = 'grader.nbgrader_input.AutogradeExporter'
+c.Autograde.exporter_class = 'grader.autograde.submitted_files.AutogradeExporter'
 c.Autograde.sanitize_preprocessors = list(SANITIZE_PASSES)
 c.Autograde.autograde_preprocessors = list(AUTOGRADE_PASSES)
-c.Autograde.pre_convert_hook = 'grader.gradebook.register_before_autograde'
+c.Autograde.pre_convert_hook = 'grader.storage.gradebook.register_before_autograde'
 c.GenerateFeedback.preprocessors = list(FEEDBACK_PASSES)
-c.GenerateFeedback.exporter_class = 'grader.feedback.FeedbackPage'
+c.GenerateFeedback.exporter_class = 'grader.report.feedback.FeedbackPage'
 
 # the formgrader shows what students wrote: nothing of it may run there
 c.HTMLExporter.sanitize_html = True

@@ -1,26 +1,45 @@
-"""Grades the course: a submission comes in, is healed, runs in rooms, is judged, stored and told.
+"""Grades the course: a submission is collected, restored, run in a sandbox, judged and stored.
 
-Its modules, in the order in which things happen:
+`grade` is the whole flow, `replay` grades once more and stores nothing, and `course` says where a
+course keeps its files. Each package imports only from those named before it in LAYERS:
 
-- What is asked for: `__main__`, `arguments`, `verbs`, `stopping`, `demo`.
-- Lessons go out: `release`, `marks`, `replaced`, `leaks`, `index`, `bundle`.
-- Submissions come in: `collect`, `intake`, `owners`, `naming`, `forms`, `students`, `incoming`,
-  `archives`, `entries`, `dates`, `platforms`.
-- A run, from what was handed in to what is stored: `submitted`, `grade`, `reuse`, `replay`. The
-  work is a `task`, what comes of it is checked by `results`, and a `crew` does it: `workers` with
-  `worker`, so many at a time as `pressure` says; or `cluster`, `connection` and `remote`.
-- One submission: `submission`, `reading`, `raw_notebook`, `heal`, `pipeline`, `passes`,
-  `nbgrader_input`. One exercise of it: `execute` and `local_paths`, with the exercises, plans and
-  verdicts of my_robot_basics.validate, which students have, too.
-- Where a student's code runs: `isolation` says whether it can be kept in. `rooms`, `sandbox`,
-  `bubblewrap`, `sights`, `seccomp`, `system_calls`, `limits`, `hierarchies`, `cgroups`, `memory`,
-  `memory_watch`, `places` and `leftovers` keep it in.
-  `provisioner`, `warm`, `servers`, `forked`, `waiting` and the program `forkserver` begin a kernel
-  there; `kernels` and `pool` run its cells; `notifying`, `signals` and `endings` say
-  why it ended.
-- What is kept: `gradebook`, `saving`, `lateness`, `due`, `turn`, `database`, `backups`, `records`.
-- What is told: `feedback` and `page` to students; `table`, `report`, `tally`, `reasons`, `charts`,
-  `scores`, `totals` and `formgrader` to teachers; `templates` for both. After the deadline:
-  `sample_solutions`.
-- For all of them: `course`, `errors`, `files`, `logs`, `parsing`, `text`, `versions`.
+- `cli`: The command line: `./course VERB`, its arguments and what each verb does.
+- `authoring`: From the instructors' source to what students get: release, contents page, bundle.
+- `collect`: Take in what students handed in, from archives and folders of any course platform.
+- `notebook`: A submitted notebook: read it, and put it back into the shape of its source.
+- `judging`: Run the exercises of one submission and give each grade cell its verdict.
+- `sandbox`: What student code can reach and use up: files, system calls, network, memory,
+  processes.
+- `kernels`: Jupyter kernels inside of sandboxes: started or forked, spoken to, and how each one
+  ended.
+- `workers`: Processes that grade, on this machine or on a Dask cluster, and how many at a time.
+- `autograde`: What `nbgrader autograde` runs of ours, in place of its own reading and execution.
+- `storage`: What is kept: nbgrader's database, submissions, due dates, late penalties, earlier
+  results.
+- `export`: What leaves the gradebook as files: scores, totals, sample solutions.
+- `report`: What people read: feedback for students; progress, run report and formgrader for
+  teachers.
+- `common`: What every part uses: errors, files, text, names of students, dates, a process that
+  parses.
 """
+
+LAYERS = (
+    'common',
+    'notebook',
+    'course',
+    'authoring',
+    'sandbox',
+    'storage',
+    'kernels',
+    'judging',
+    'export',
+    'workers',
+    'autograde',
+    'collect',
+    'grade',
+    'replay',
+    'report',
+    'cli',
+    '__main__',
+)
+"""Packages, and modules beside them, from the lowest to the highest."""

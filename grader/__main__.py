@@ -3,13 +3,13 @@
 import contextlib
 import sys
 
-from grader.arguments import make_parser
+from grader.cli.arguments import make_parser
+from grader.cli.stopping import stoppable
+from grader.common.errors import CourseError
+from grader.common.logs import log_visibly
+from grader.common.text import printable
 from grader.course import Course
-from grader.database import in_sentences
-from grader.errors import CourseError
-from grader.logs import log_visibly
-from grader.stopping import stoppable
-from grader.text import printable
+from grader.storage.database import in_sentences
 
 
 def main(arguments: list[str] | None = None, *, course: Course | None = None) -> int:

@@ -13,8 +13,8 @@ from pathlib import Path
 import nbformat
 from nbformat import NotebookNode
 
-from grader.errors import CourseError
-from grader.heal import Master, make_master
+from grader.common.errors import CourseError
+from grader.notebook.restore import Master, make_master
 
 ROOT = Path(__file__).resolve().parents[1]
 """The checkout that this grader belongs to."""

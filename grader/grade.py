@@ -8,22 +8,22 @@ from dataclasses import dataclass
 
 from nbformat import NotebookNode
 
-from grader.backups import bring_in_order
+from grader.common.errors import ClusterError, CourseError, GradebookError, TaskFailed
+from grader.common.text import printable
 from grader.course import Course
-from grader.crew import Crew, judged
-from grader.database import in_sentences, one_engine
-from grader.errors import ClusterError, CourseError, GradebookError, TaskFailed
-from grader.gradebook import Stored, register, store
-from grader.heal import Master
-from grader.lateness import deadlines
-from grader.pipeline import prepared_master
-from grader.reuse import conditions, held, kept, key_of, remember
-from grader.submission import Submission, read_submission
-from grader.submitted import HandedIn
-from grader.task import Result
-from grader.text import printable
-from grader.turn import Turn
-from grader.workers import Workers
+from grader.judging.task import Result
+from grader.notebook.restore import Master
+from grader.notebook.submission import Submission, read_submission
+from grader.storage.backups import bring_in_order
+from grader.storage.database import in_sentences, one_engine
+from grader.storage.gradebook import Stored, register, store
+from grader.storage.late_penalties import deadlines
+from grader.storage.lock import Turn
+from grader.storage.pipeline import prepared_master
+from grader.storage.reuse import conditions, held, kept, key_of, remember
+from grader.storage.submitted import HandedIn
+from grader.workers.backend import Crew, judged
+from grader.workers.workers import Workers
 
 AHEAD = 4
 """How many times more submissions may be done and wait for a slower one before them."""

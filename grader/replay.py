@@ -2,16 +2,16 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 
+from grader.common.errors import CourseError
+from grader.common.text import printable
 from grader.course import Course
-from grader.crew import Crew, judged
-from grader.errors import CourseError
-from grader.heal import KEY, grade_id, role
-from grader.pipeline import prepared_master
-from grader.records import graded_notebook, verdicts
-from grader.submission import read_submission
-from grader.submitted import HandedIn
-from grader.text import printable
-from grader.workers import Workers
+from grader.notebook.restore import KEY, grade_id, role
+from grader.notebook.submission import read_submission
+from grader.storage.pipeline import prepared_master
+from grader.storage.records import graded_notebook, verdicts
+from grader.storage.submitted import HandedIn
+from grader.workers.backend import Crew, judged
+from grader.workers.workers import Workers
 
 RECORDED = 'recorded'
 """Stands for the seed that a submission's stored result came from."""

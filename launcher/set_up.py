@@ -34,7 +34,7 @@ def made_packages(environment: Environment) -> str:
     files = [package / 'package.xml', *sorted(package.glob('setup.*'))]
     files += sorted((package / 'my_robot_basics/validate/labextension').glob('*.json'))
     if environment.has_grader:
-        files += [root / 'pyproject.toml', root / 'grader/kernelspec/kernel.json']
+        files += [root / 'pyproject.toml', root / 'grader/kernels/kernelspec/kernel.json']
     return ''.join([*(file.read_text(encoding='utf-8') for file in files), UNDERLAY, str(TOOLS)])
 
 

@@ -58,7 +58,7 @@ def tell_jupyter(environment: Environment) -> None:
     shutil.copy(button / 'server.json', server / 'my_robot_basics.json')
     if environment.has_grader:
         (venv / KERNEL).mkdir(parents=True, exist_ok=True)
-        shutil.copy(environment.root / 'grader/kernelspec/kernel.json', venv / KERNEL)
+        shutil.copy(environment.root / 'grader/kernels/kernelspec/kernel.json', venv / KERNEL)
 
 
 def point(link: Path, target: Path) -> None:

@@ -13,7 +13,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 from my_robot_basics.live import classroom
 
-from grader.isolation import TRUST, missing
+from grader.kernels.isolation import TRUST, missing
 
 # a busy machine fails no test
 settings.register_profile('busy', deadline=None, suppress_health_check=[HealthCheck.too_slow])

@@ -9,10 +9,10 @@ import nbformat
 from nbformat import NotebookNode
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook, new_output
 
+from grader.authoring.release import release
 from grader.course import ROOT, Course
-from grader.gradebook import register
-from grader.heal import KEY
-from grader.release import release
+from grader.notebook.restore import KEY
+from grader.storage.gradebook import register
 
 TOY = '00_toy'
 PIXEL = (

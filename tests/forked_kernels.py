@@ -8,9 +8,9 @@ from pathlib import Path
 import psutil
 import pytest
 
-from grader import servers
-from grader.kernels import Kernel
-from grader.sandbox import Sandbox
+from grader.kernels import fork_servers
+from grader.kernels.kernels import Kernel
+from grader.sandbox.sandbox import Sandbox
 
 FIRST_SLOT = 1000 + os.getpid() % 400 * 100
 SLOTS = itertools.count(FIRST_SLOT)
@@ -26,7 +26,7 @@ async def opened(*, room='student', seed='', fresh=False):
     kernel = Kernel(room=room, domain_id=DOMAIN, seed=seed, place=sandbox.place(room))
     with pytest.MonkeyPatch.context() as patch:
         if fresh:
-            patch.setitem(servers._unfit, room, 'the test says so')
+            patch.setitem(fork_servers._unfit, room, 'the test says so')
         await kernel.start()
     assert kernel.why_not_warm == ('the test says so' if fresh else '')
     return sandbox, kernel

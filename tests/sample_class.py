@@ -7,9 +7,9 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from grader.course import Course
-from grader.crew import Crew
 from grader.grade import Row, grade_all
-from grader.submitted import find_submissions
+from grader.storage.submitted import find_submissions
+from grader.workers.backend import Crew
 
 FOLDER = Path(__file__).parent / 'submissions'
 sys.path.insert(0, str(FOLDER))

@@ -6,11 +6,12 @@ from typing import Any
 import pytest
 from nbformat import NotebookNode
 
-from grader import grade, replay, task
-from grader.execute import Execution
-from grader.heal import KEY
-from grader.isolation import isolated
-from grader.pool import Pool
+from grader import grade, replay
+from grader.common.pool import Pool
+from grader.judging import task
+from grader.judging.execute import Execution
+from grader.kernels.isolation import isolated
+from grader.notebook.restore import KEY
 
 
 class Here:
@@ -36,7 +37,7 @@ class Here:
 
 
 def stand_in(look: Callable[..., Awaitable[Execution]], patch: pytest.MonkeyPatch) -> None:
-    """Let `look` stand in for `grader.execute.executed`, in this process."""
+    """Let `look` stand in for `grader.judging.execute.executed`, in this process."""
 
     async def looked(notebook: NotebookNode, **options: Any) -> Execution:
         execution = await look(notebook, **options)

@@ -10,11 +10,12 @@ import pytest
 from course_maker import executed
 from stand_in import stand_in as stand_in_for_rooms
 
-from grader import grade, gradebook, reuse
+from grader import grade
 from grader.__main__ import main
 from grader.course import Course
-from grader.execute import Execution
-from grader.saving import SaveGrades
+from grader.judging.execute import Execution
+from grader.storage import gradebook, reuse
+from grader.storage.save_grades import SaveGrades
 
 PARTS = ('all', 'storing', 'scores')
 """Of a run: all of it, the storing of submissions, and of that the writing of their scores."""

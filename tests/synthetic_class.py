@@ -26,8 +26,8 @@ if __name__ == '__main__':
 from sample_class import EXPECTED, PATHS, assignment_of, rebased
 
 from grader.course import Course
-from grader.heal import grade_id, role
-from grader.records import records, verdicts
+from grader.notebook.restore import grade_id, role
+from grader.storage.records import records, verdicts
 
 HONEST = 0.6
 """The share of a class that answers rightly."""

@@ -10,8 +10,8 @@ from nbconvert import HTMLExporter
 from sample_class import PATHS, assignment_of, grade
 
 from grader.course import ROOT, Course
-from grader.feedback import write_feedback
-from grader.report import Run, write_report
+from grader.report.feedback import write_feedback
+from grader.report.report import Run, write_report
 
 LESSONS = sorted(ROOT.glob('notebooks/**/*.ipynb'))
 OF_THE_THEME = ['.jp-InputPrompt', '.jp-OutputPrompt', '.highlight']

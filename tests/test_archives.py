@@ -8,8 +8,8 @@ import zipfile
 
 import pytest
 
-from grader import archives, entries
-from grader.archives import Allowance, unpack
+from grader.collect import archive_entries, archives
+from grader.collect.archives import Allowance, unpack
 
 A_ZIP, A_TAR = 'x.zip', 'x.tar.gz'
 
@@ -65,7 +65,7 @@ def test_files_are_copied_and_told_by_their_paths(make, tmp_path):
 )
 def test_every_kind_of_tar_is_read(suffix, mode, tmp_path):
     archive = tarred(tmp_path, ('a.py', b'one'), name=f'x{suffix}', mode=mode)
-    assert entries.ARCHIVE.search(archive.name)
+    assert archive_entries.ARCHIVE.search(archive.name)
     assert said(archive) == {'a.py': 'one'}
 
 
@@ -177,7 +177,7 @@ def test_too_many_files_are_not_read(make, tmp_path):
 
 
 def test_a_table_of_contents_that_claims_to_be_huge_is_not_read(tmp_path, monkeypatch):
-    monkeypatch.setattr(entries, 'MAX_READ_BYTES', 1_000)
+    monkeypatch.setattr(archive_entries, 'MAX_READ_BYTES', 1_000)
     archive = zipped(tmp_path, *((f'{i:0100}.py', b'') for i in range(20)))
     (refused,) = members(archive)
     assert 'its table of contents claims' in refused.problem

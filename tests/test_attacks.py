@@ -37,13 +37,13 @@ from attacks.corpus import (
 from course_maker import TOY, released_course
 
 from grader.course import Course
-from grader.feedback import write_feedback
+from grader.export.scores import write_scores
 from grader.grade import grade_all
-from grader.heal import KEY
-from grader.records import verdicts
-from grader.scores import write_scores
-from grader.submitted import find_submissions
-from grader.workers import Workers
+from grader.notebook.restore import KEY
+from grader.report.feedback import write_feedback
+from grader.storage.records import verdicts
+from grader.storage.submitted import find_submissions
+from grader.workers.workers import Workers
 
 pytestmark = pytest.mark.isolation
 

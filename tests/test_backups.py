@@ -4,9 +4,9 @@ from contextlib import closing
 
 import pytest
 
-from grader.backups import KEPT, back_up, bring_in_order
+from grader.common.errors import GradebookError
 from grader.course import Course
-from grader.errors import GradebookError
+from grader.storage.backups import KEPT, back_up, bring_in_order
 
 
 @pytest.fixture

@@ -17,15 +17,15 @@ from my_robot_basics.validate.outputs import CellRun
 from nbformat.v4 import new_output
 from nbgrader.api import Gradebook
 
-from grader.feedback import write_feedback
+from grader.authoring.release import release
 from grader.grade import Row
-from grader.gradebook import register, store
-from grader.heal import heal
-from grader.pipeline import prepare
-from grader.release import release
-from grader.report import Run, write_report
-from grader.submission import read_submission
-from grader.submitted import find_submissions
+from grader.notebook.restore import heal
+from grader.notebook.submission import read_submission
+from grader.report.feedback import write_feedback
+from grader.report.report import Run, write_report
+from grader.storage.gradebook import register, store
+from grader.storage.pipeline import prepare
+from grader.storage.submitted import find_submissions
 
 TOKEN = 'a-token-of-this-test'
 PATIENCE_SEC = 120

@@ -13,10 +13,10 @@ from course_maker import TOY, make_course
 from fresh_machine import fresh_environment
 
 from grader.__main__ import main
-from grader.bundle import FOLDER, bundle
+from grader.authoring.bundle import FOLDER, bundle
+from grader.authoring.release import release
+from grader.common.errors import CourseError
 from grader.course import ROOT, Course
-from grader.errors import CourseError
-from grader.release import release
 from launcher import lab
 
 TOP = ['.jupyterlab', 'LICENSE', 'README.md', 'course', 'environment.txt', 'launcher']
@@ -51,7 +51,7 @@ def course(made, tmp_path):
 @pytest.fixture
 def fresh_lessons(monkeypatch):
     """Spare the time that a release takes: what else is wrong is looked for."""
-    monkeypatch.setattr('grader.bundle.stale_or_leaking', lambda course: [])
+    monkeypatch.setattr('grader.authoring.bundle.stale_or_leaking', lambda course: [])
 
 
 def entries(path):
@@ -259,7 +259,7 @@ def students(tmp_path_factory):
     """The real bundle, unpacked; that its lessons are fresh is for test_release.py to say."""
     folder = tmp_path_factory.mktemp('a student')
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr('grader.bundle.stale_or_leaking', lambda course: [])
+        patch.setattr('grader.authoring.bundle.stale_or_leaking', lambda course: [])
         bundle(Course(), folder / 'students.zip')
     return unpacked(folder / 'students.zip', folder)
 

@@ -12,15 +12,15 @@ from pathlib import Path
 import pytest
 from forked_kernels import DOMAIN, SLOTS, closed, opened
 
-from grader import cgroups as module
-from grader import servers
-from grader.cgroups import MemoryEvents, joining, remove_cgroup
-from grader.errors import RoomFailure
-from grader.hierarchies import NoCgroups, hierarchies
-from grader.kernels import Kernel
-from grader.leftovers import sweep
-from grader.limits import ROOM_MEMORY_BYTES, ROOM_PROCESSES
-from grader.sandbox import Sandbox
+from grader.common.errors import RoomFailure
+from grader.kernels import fork_servers
+from grader.kernels.kernels import Kernel
+from grader.sandbox import cgroups as module
+from grader.sandbox.cgroup_hierarchies import NoCgroups, hierarchies
+from grader.sandbox.cgroups import MemoryEvents, joining, remove_cgroup
+from grader.sandbox.limits import ROOM_MEMORY_BYTES, ROOM_PROCESSES
+from grader.sandbox.sandbox import Sandbox
+from grader.sandbox.temporary_folders import sweep
 
 pytestmark = pytest.mark.isolation
 
@@ -56,7 +56,7 @@ def kernels(request, loop, sandbox):
         with pytest.MonkeyPatch.context() as patch:
             for room in ('student', 'test'):
                 if request.param == 'started':
-                    patch.setitem(servers._unfit, room, 'the test says so')
+                    patch.setitem(fork_servers._unfit, room, 'the test says so')
                 kernels[room] = Kernel(room=room, domain_id=DOMAIN, place=sandbox.place(room))
                 await kernels[room].start()
                 assert bool(kernels[room].why_not_warm) is (request.param == 'started')
@@ -184,7 +184,7 @@ def test_cgroups_that_can_not_be_made_are_the_graders_failure(loop):
 
 GRADER = """
 import asyncio, subprocess, time
-from grader.sandbox import Sandbox
+from grader.sandbox.sandbox import Sandbox
 async def main():
     sandbox = Sandbox(slot=304)
     await sandbox.open()

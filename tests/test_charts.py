@@ -2,7 +2,7 @@ import re
 
 import pytest
 
-from grader.charts import distribution, histogram, share
+from grader.report.charts import distribution, histogram, share
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ import pytest
 from course_maker import answered, released_course, submit
 from dask_processes import start_scheduler, starter, wait_for
 
-from grader.records import records
+from grader.storage.records import records
 
 pytestmark = [pytest.mark.slow, pytest.mark.isolation, pytest.mark.timeout(900)]
 

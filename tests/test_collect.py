@@ -12,18 +12,18 @@ import pytest
 from course_maker import TOY, answered, executed, released_course
 from nbgrader.coursedir import CourseDirectory
 
-from grader import collect as module
-from grader import incoming
 from grader.__main__ import main
-from grader.collect import AGAIN, EARLIER, KNOWN, LEFT, NEW, UNUSED, collect
+from grader.collect import collect as module
+from grader.collect import uploads
+from grader.collect.collect import AGAIN, EARLIER, KNOWN, LEFT, NEW, UNUSED, collect
+from grader.common.errors import CourseError
+from grader.common.parsing import Limits
 from grader.course import Course
-from grader.errors import CourseError
-from grader.gradebook import register, store
-from grader.heal import heal
-from grader.parsing import Limits
-from grader.pipeline import prepare
-from grader.submission import read_submission
-from grader.submitted import find_submissions
+from grader.notebook.restore import heal
+from grader.notebook.submission import read_submission
+from grader.storage.gradebook import register, store
+from grader.storage.pipeline import prepare
+from grader.storage.submitted import find_submissions
 
 NOTEBOOK = f'{TOY}.ipynb'
 RIGHT, WRONG = 'def double(x):\n    return 2 * x', 'def double(x):\n    return x'
@@ -361,7 +361,7 @@ def a_tar_of_digits(path):
 
 
 def test_an_archive_that_takes_for_ever_costs_only_itself(course, source, monkeypatch):
-    monkeypatch.setattr(incoming, 'LIMITS_OF_ONE', Limits(cpu_sec=2))
+    monkeypatch.setattr(uploads, 'LIMITS_OF_ONE', Limits(cpu_sec=2))
     for place in (source, source / f'bob/{TOY}'):
         place.mkdir(parents=True, exist_ok=True)
         a_tar_of_digits(place / 'mallory.tar.gz')
@@ -376,7 +376,7 @@ def test_an_archive_that_takes_for_ever_costs_only_itself(course, source, monkey
 
 def test_an_archive_that_takes_too_much_memory_costs_only_itself(course, source, monkeypatch):
     limits = Limits(memory_bytes=40_000_000)  # the reader itself does not fit in
-    monkeypatch.setattr(incoming, 'LIMITS_OF_ONE', limits)
+    monkeypatch.setattr(uploads, 'LIMITS_OF_ONE', limits)
     with zipfile.ZipFile(source / 'mallory.zip', 'w') as box:
         box.writestr(NOTEBOOK, 'x' * 10_000_000)
     write(source / f'ada_{TOY}.ipynb', 'ada’s')

@@ -58,7 +58,9 @@ class Machine:
         (package / '__init__.py').touch()
         (self.root / 'grader').mkdir()
         (self.root / 'grader/__init__.py').touch()
-        shutil.copytree(ROOT / 'grader/kernelspec', self.root / 'grader/kernelspec')
+        shutil.copytree(
+            ROOT / 'grader/kernels/kernelspec', self.root / 'grader/kernels/kernelspec'
+        )
         button = 'my_robot_basics/my_robot_basics/validate/labextension'
         shutil.copytree(ROOT / button, self.root / button)
         unmade = shutil.ignore_patterns('__pycache__')

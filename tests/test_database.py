@@ -9,9 +9,10 @@ import psutil
 import pytest
 from nbgrader.api import Gradebook, InvalidEntry, Student
 
-from grader import database
+from grader.common.errors import CourseError, GradebookError
 from grader.course import Course
-from grader.database import (
+from grader.storage import database
+from grader.storage.database import (
     connected,
     in_sentences,
     make_database,
@@ -19,7 +20,6 @@ from grader.database import (
     transaction,
     wait_until_free,
 )
-from grader.errors import CourseError, GradebookError
 
 
 @pytest.fixture

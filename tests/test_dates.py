@@ -1,7 +1,7 @@
 import pytest
 from dateutil.parser import parse
 
-from grader.dates import date_in, date_of
+from grader.common.dates import date_in, date_of
 
 
 @pytest.mark.parametrize(

@@ -20,10 +20,10 @@ import sys, tempfile
 from pathlib import Path
 import nbformat
 from grader.course import ROOT, Course
-from grader.execute import execute
-from grader.gradebook import register
-from grader.heal import heal
-from grader.pipeline import prepare
+from grader.judging.execute import execute
+from grader.storage.gradebook import register
+from grader.notebook.restore import heal
+from grader.storage.pipeline import prepare
 if __name__ == '__main__':
     course = Course(gradebook=Path(tempfile.mkdtemp()))
     register(course, '02_joint_state')

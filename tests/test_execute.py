@@ -13,11 +13,11 @@ from my_robot_basics.validate.outputs import CellRun
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook, new_output
 from nbgrader.utils import determine_grade
 
-from grader import execute as module
-from grader import rooms as rooms_module
-from grader.errors import RoomFailure
-from grader.execute import execute
-from grader.heal import KEY, grade_id, heal, make_master
+from grader.common.errors import RoomFailure
+from grader.judging import execute as module
+from grader.judging.execute import execute
+from grader.kernels import rooms as rooms_module
+from grader.notebook.restore import KEY, grade_id, heal, make_master
 
 CANARY = 'hidden canary'
 CHECK = f"""

@@ -9,7 +9,7 @@ from my_robot_basics.validate.exercises import (
 )
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
-from grader.heal import heal, make_master
+from grader.notebook.restore import heal, make_master
 
 
 def marked(name, source='', *, new=new_code_cell, **marks):

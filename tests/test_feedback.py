@@ -6,15 +6,15 @@ import pytest
 from course_maker import PIXEL, TOY, answered, executed, released_course, submit
 from nbformat.v4 import new_code_cell, new_output
 
-from grader import feedback as module
-from grader import page
+from grader.common.parsing import Limits, TooHard, parse
 from grader.course import Course
-from grader.feedback import write_feedback
-from grader.gradebook import store
-from grader.heal import KEY, heal
-from grader.parsing import Limits, TooHard, parse
-from grader.pipeline import prepare, prepared_master, unanswered
-from grader.submission import read_submission
+from grader.notebook.restore import KEY, heal
+from grader.notebook.submission import read_submission
+from grader.report import feedback as module
+from grader.report import page
+from grader.report.feedback import write_feedback
+from grader.storage.gradebook import store
+from grader.storage.pipeline import prepare, prepared_master, unanswered
 
 RIGHT = 'def double(x):\n    return 2 * x'
 SCRIPT = '<script>alert("from a student")</script>'

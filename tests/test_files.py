@@ -3,8 +3,8 @@ import os
 
 import pytest
 
-from grader import files
-from grader.files import write_whole
+from grader.common import files
+from grader.common.files import write_whole
 
 
 @pytest.mark.parametrize('content', ['né\r\n', b'\x00\xff'])

@@ -20,10 +20,10 @@ from playwright.sync_api import expect
 from sample_class import FOLDER
 from stand_in import stand_in
 
-from grader import reuse
 from grader.__main__ import main
 from grader.course import ROOT, Course
-from grader.execute import Execution
+from grader.judging.execute import Execution
+from grader.storage import reuse
 
 LESSON, ANSWER = '05_command_line', 'explain_counts'
 SAMPLE = '05_command_line-pass-typed_with_slashes'

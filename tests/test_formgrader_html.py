@@ -5,8 +5,8 @@ import pytest
 from nbconvert import HTMLExporter
 from traitlets.config import Config
 
-from grader import formgrader
-from grader.parsing import Limits
+from grader.common.parsing import Limits
+from grader.report import formgrader
 
 FORMULAS = r'\begin{a}' * 40_000
 """Each is searched for its end, from each of them on."""

@@ -12,7 +12,7 @@ from course_maker import TOY, answered, released_course, submit
 
 from grader.__main__ import main
 from grader.course import Course
-from grader.records import records
+from grader.storage.records import records
 
 DISK_BYTES = 3_000_000
 ROOM_BYTES = (0, 4_096, 150_000, 230_000, 250_000, 270_000, 290_000, 310_000)

@@ -5,15 +5,15 @@ import pytest
 from course_maker import TOY, answered, executed, released_course, submit
 from stand_in import stand_in
 
+from grader.cli.demo import demo
+from grader.common.errors import CourseError
 from grader.course import Course
-from grader.demo import demo
-from grader.errors import CourseError
-from grader.execute import Execution
 from grader.grade import grade_all
-from grader.heal import KEY
-from grader.records import graded_notebook, records
-from grader.submitted import find_submissions
-from grader.table import print_rows
+from grader.judging.execute import Execution
+from grader.notebook.restore import KEY
+from grader.report.progress_table import print_rows
+from grader.storage.records import graded_notebook, records
+from grader.storage.submitted import find_submissions
 
 RIGHT = 'def double(x):\n    return 2 * x'
 WRONG = 'def double(x):\n    return x + 1'

@@ -11,15 +11,15 @@ import pytest
 from course_maker import TOY, answered, executed, released_course, submit, toy_lesson, write_source
 from nbgrader.api import Gradebook
 
-from grader import gradebook
+from grader.common.errors import CourseError
 from grader.course import Course
-from grader.errors import CourseError
-from grader.gradebook import register, store
-from grader.heal import KEY, heal
-from grader.pipeline import prepare, prepared_master, unanswered
-from grader.records import records, verdicts
-from grader.scores import COLUMNS, write_scores
-from grader.submission import read_submission
+from grader.export.scores import COLUMNS, write_scores
+from grader.notebook.restore import KEY, heal
+from grader.notebook.submission import read_submission
+from grader.storage import gradebook
+from grader.storage.gradebook import register, store
+from grader.storage.pipeline import prepare, prepared_master, unanswered
+from grader.storage.records import records, verdicts
 
 RIGHT = 'def double(x):\n    return 2 * x'
 

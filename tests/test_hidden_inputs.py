@@ -10,12 +10,12 @@ from my_robot_basics.validate.cells import role
 
 from grader.__main__ import main
 from grader.course import Course
-from grader.feedback import write_feedback
+from grader.export.scores import write_scores
 from grader.grade import grade_all
-from grader.records import verdicts
-from grader.scores import write_scores
-from grader.submitted import find_submissions
-from grader.workers import Workers
+from grader.report.feedback import write_feedback
+from grader.storage.records import verdicts
+from grader.storage.submitted import find_submissions
+from grader.workers.workers import Workers
 
 CHECK = '''"""Small numbers are doubled"""
 from my_robot_basics.checks import expect, inputs, student

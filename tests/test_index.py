@@ -6,8 +6,8 @@ import nbformat
 import pytest
 from course_maker import TOY, make_course, toy_lesson, write_source
 
+from grader.authoring.index import make_index, write_pages
 from grader.course import ROOT, Course
-from grader.index import make_index, write_pages
 
 INDEX = nbformat.read(ROOT / 'notebooks' / 'index.ipynb', as_version=4)
 TEXT = '\n\n'.join(cell.source for cell in INDEX.cells)

@@ -14,7 +14,7 @@ import pytest
 from course_maker import answered, released_course, submit
 
 from grader.__main__ import main
-from grader.records import records
+from grader.storage.records import records
 
 ENDLESS = 'import time\n\nwhile True:\n    time.sleep(0.1)'
 GRADE = (
@@ -132,7 +132,7 @@ def test_a_run_that_is_killed_takes_its_kernels_with_it_and_is_done_again(course
 def killed(found):
     """Kill the workers that are at something, with all that they have begun."""
     for process in found.below:
-        if 'grader.worker' in ' '.join(_command(process)):
+        if 'grader.workers.worker' in ' '.join(_command(process)):
             process.kill()
     return found
 

@@ -9,15 +9,15 @@ import nbformat
 import pytest
 from course_maker import TOY, answered, released_course, submit
 
-from grader import isolation as module
-from grader import servers
 from grader.__main__ import main
-from grader.demo import demo
-from grader.errors import CourseError
-from grader.feedback import write_feedback
-from grader.isolation import NO_SANDBOX, TRUST, isolated, missing, protections
-from grader.passes import ExecuteRooms
-from grader.scores import write_scores
+from grader.autograde.preprocessors import ExecuteRooms
+from grader.cli.demo import demo
+from grader.common.errors import CourseError
+from grader.export.scores import write_scores
+from grader.kernels import fork_servers
+from grader.kernels import isolation as module
+from grader.kernels.isolation import NO_SANDBOX, TRUST, isolated, missing, protections
+from grader.report.feedback import write_feedback
 
 RIGHT = 'def double(x): return 2 * x'
 BWRAP = module.subprocess.run
@@ -75,7 +75,7 @@ def test_this_machine_can_isolate():
 @pytest.mark.parametrize('problem', ['', 'the test says so'])
 def test_the_doctor_says_where_kernels_can_not_be_forked(course, monkeypatch, capsys, problem):
     if problem:
-        monkeypatch.setitem(servers._unfit, 'student', problem)
+        monkeypatch.setitem(fork_servers._unfit, 'student', problem)
     assert main(['doctor'], course=course) == 0
     assert ('It is slower' in capsys.readouterr().out) is bool(problem)
 
@@ -138,7 +138,7 @@ def test_an_old_bubblewrap_is_not_enough(monkeypatch):
 
 
 def test_a_sandbox_that_fails_as_a_whole_is_missing(monkeypatch):
-    monkeypatch.setattr('grader.bubblewrap._HOLD', 'echo no mounts >&2; exit 1')
+    monkeypatch.setattr('grader.sandbox.bubblewrap._HOLD', 'echo no mounts >&2; exit 1')
     assert 'all of it together' in missing()
     assert 'no mounts' in missing()
 

@@ -10,9 +10,9 @@ import pytest
 from course_maker import TOY, answered, released_course, submit
 from nbclient import NotebookClient
 
-from grader.errors import RoomFailure
-from grader.isolation import TRUST
-from grader.provisioner import NAME
+from grader.common.errors import RoomFailure
+from grader.kernels.isolation import TRUST
+from grader.kernels.provisioner import NAME
 
 WAYS = {
     './course grade': ['-m', 'grader', 'grade'],
@@ -74,7 +74,7 @@ def test_nothing_runs_unasked(tmp_path, path, way):
 
 @pytest.mark.usefixtures('signals')
 def test_the_kernel_of_the_sandbox_is_none_without_it(tmp_path, monkeypatch):
-    monkeypatch.setattr('grader.bubblewrap._HOLD', 'echo no mounts >&2; exit 1')
+    monkeypatch.setattr('grader.sandbox.bubblewrap._HOLD', 'echo no mounts >&2; exit 1')
     mark = tmp_path / 'it_ran'
     cell = nbformat.v4.new_code_cell(f'open({str(mark)!r}, "w")')
     client = NotebookClient(nbformat.v4.new_notebook(cells=[cell]), kernel_name=NAME)

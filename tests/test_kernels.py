@@ -23,9 +23,8 @@ from my_robot_basics.validate.questions import reply_of
 from my_robot_basics.validate.verdict import judge
 from nbformat.v4 import new_code_cell
 
-from grader import kernels
-from grader.errors import RoomFailure
-from grader.kernels import Kernel
+from grader.common.errors import RoomFailure
+from grader.kernels.kernels import Kernel, kernels
 
 DOMAIN = 0
 """No kernel of this module makes a node."""

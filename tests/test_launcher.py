@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.arguments import make_parser
+from grader.cli.arguments import make_parser
 from grader.course import ROOT
 from launcher.environment import Environment, without_foreign
 from launcher.installer import DISK_IS_FULL, FAILED, NETWORK_IS_AWAY, progress, reason_of

@@ -13,7 +13,7 @@ PACKAGES = {
     'grader': ROOT / 'grader',
     'my_robot_basics': ROOT / 'my_robot_basics' / 'my_robot_basics',
 }
-PROGRAM = 'grader.forkserver.'
+PROGRAM = 'grader.kernels.forkserver.'
 """Run by its folder, so its modules know each other by their own names."""
 
 
@@ -56,8 +56,8 @@ def test_no_module_needs_one_that_needs_it():
         module: {other for other, _ in imported(module) if other in modules() and other != module}
         for module in modules()
     }
-    assert needs['grader.__main__'] >= {'grader.arguments', 'grader.course'}
-    assert needs['grader.forkserver.__main__'] >= {'grader.forkserver.settling'}
+    assert needs['grader.__main__'] >= {'grader.cli.arguments', 'grader.course'}
+    assert needs[f'{PROGRAM}__main__'] >= {f'{PROGRAM}privilege_drop'}
     graphlib.TopologicalSorter(needs).prepare()  # raises CycleError, which names them
 
 
@@ -71,11 +71,26 @@ def test_what_a_module_keeps_to_itself_is_imported_nowhere():
     assert taken == []
 
 
-def test_the_map_of_the_grader_names_each_module_once():
-    told = re.findall(r'`(\w+)`', grader.__doc__)
-    found = {path.stem for path in PACKAGES['grader'].iterdir() if path.suffix == '.py'}
-    found |= {'forkserver'}
-    assert sorted(told) == sorted(found - {'__init__'})
+def layer(module):
+    """Return the part of the grader that a module belongs to, or ''."""
+    return module.split('.')[1] if module.startswith('grader.') else ''
+
+
+def test_parts_of_the_grader_import_only_from_lower_ones():
+    upward = [
+        f'{module} imports {other}'
+        for module in modules()
+        for other, _ in imported(module)
+        if layer(module) and layer(other)
+        if grader.LAYERS.index(layer(module)) < grader.LAYERS.index(layer(other))
+    ]
+    assert upward == []
+
+
+def test_each_part_of_the_grader_has_its_line_in_the_map():
+    parts = {layer(module) for module in modules()} - {''}
+    assert sorted(parts) == sorted(grader.LAYERS)
+    assert sorted(re.findall(r'`(\w+)`', grader.__doc__)) == sorted(parts - {'__main__'})
 
 
 def test_what_students_get_needs_no_grader():

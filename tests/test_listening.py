@@ -4,8 +4,8 @@ import asyncio
 
 import pytest
 
-from grader import servers
-from grader.rooms import Rooms
+from grader.kernels import fork_servers
+from grader.kernels.rooms import Rooms
 
 pytestmark = pytest.mark.isolation
 
@@ -36,7 +36,7 @@ def rooms(request):
     with asyncio.Runner() as loop, pytest.MonkeyPatch.context() as patch:
         if request.param == 'started':
             for room in ('student', 'test'):
-                patch.setitem(servers._unfit, room, 'the test says so')
+                patch.setitem(fork_servers._unfit, room, 'the test says so')
         opened = Rooms()
         loop.run(opened.__aenter__())
         yield lambda code: printed(loop.run(opened.run_student_cell(code, timeout_sec=30.0)))

@@ -7,11 +7,11 @@ from my_robot_basics.validate.cells import KEY, grade_id
 from nbformat.v4 import new_code_cell, new_notebook, new_output
 
 from grader.course import ROOT
-from grader.execute import execute
-from grader.heal import heal
-from grader.isolation import isolated
-from grader.local_paths import hide_local_paths, shorten_local_paths
-from grader.pipeline import prepare
+from grader.judging.execute import execute
+from grader.judging.local_paths import hide_local_paths, shorten_local_paths
+from grader.kernels.isolation import isolated
+from grader.notebook.restore import heal
+from grader.storage.pipeline import prepare
 
 
 @pytest.mark.parametrize(

@@ -8,14 +8,14 @@ import pytest
 
 OURS = """
 import logging
-from grader.logs import log_visibly
+from grader.common.logs import log_visibly
 log_visibly()
 log = logging
 """
 NBGRADERS = """
 from nbgrader.apps.baseapp import NbGrader
 from traitlets.config import Config
-from grader.logs import NBGRADER_LOGGING
+from grader.common.logs import NBGRADER_LOGGING
 log = NbGrader(config=Config({'NbGrader': {'logging_config': NBGRADER_LOGGING}})).log
 """
 NAME = 'a\x1b[31m\x07red\u202e'

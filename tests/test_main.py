@@ -9,11 +9,11 @@ from contextlib import closing
 import pytest
 from course_maker import TOY, make_course, submit
 
-from grader import database
 from grader.__main__ import main
+from grader.common.errors import CourseError
 from grader.course import Course
-from grader.database import make_database
-from grader.errors import CourseError
+from grader.storage import database
+from grader.storage.database import make_database
 
 
 def test_help_lists_every_verb(capsys):
@@ -56,7 +56,7 @@ def test_a_stopped_run_says_how_to_go_on(tmp_path, capsys, monkeypatch):
     def interrupted(*_, **__):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr('grader.verbs.find_submissions', interrupted)
+    monkeypatch.setattr('grader.cli.verbs.find_submissions', interrupted)
     assert main(['grade'], course=Course.at(tmp_path)) == 130
     assert 'run it again to go on' in capsys.readouterr().err
 
@@ -102,7 +102,7 @@ def test_a_second_writer_waits_for_the_first_and_says_so(tmp_path):
     hold = (
         'import sys, time\n'
         'from pathlib import Path\n'
-        'from grader.turn import Turn\n'
+        'from grader.storage.lock import Turn\n'
         'with Turn.take(Path(sys.argv[1])):\n'
         '    print("mine", flush=True)\n'
         '    sys.stdin.read()\n'
@@ -121,7 +121,7 @@ def test_a_second_writer_waits_for_the_first_and_says_so(tmp_path):
 
 
 def test_a_turn_that_could_not_be_written_down_is_not_taken(tmp_path, monkeypatch):
-    from grader.turn import Turn
+    from grader.storage.lock import Turn
 
     def full(*_):
         raise OSError(errno.ENOSPC, 'No space left on device')
@@ -135,7 +135,7 @@ def test_a_turn_that_could_not_be_written_down_is_not_taken(tmp_path, monkeypatc
 
 
 def test_a_turn_is_the_same_for_all_of_a_process_and_ends_with_its_last_holder(tmp_path):
-    from grader.turn import Turn
+    from grader.storage.lock import Turn
 
     turn = Turn.take(tmp_path)
     assert Turn.take(tmp_path) is turn
@@ -147,7 +147,7 @@ def test_a_turn_is_the_same_for_all_of_a_process_and_ends_with_its_last_holder(t
 
 
 def test_the_sample_class_is_what_demo_grades():
-    from grader.demo import SAMPLES
+    from grader.cli.demo import SAMPLES
 
     names = [path.stem.split('-', 2) for path in SAMPLES.glob('*.ipynb')]
     assert 16 <= len(names) <= 20

@@ -14,14 +14,14 @@ from pathlib import Path
 import pytest
 from course_maker import TOY, answered, executed, released_course, submit
 
-from grader.feedback import write_feedback
+from grader.export.scores import write_scores
 from grader.grade import Row
-from grader.gradebook import store
-from grader.heal import heal
-from grader.pipeline import prepare
-from grader.scores import write_scores
-from grader.submission import read_submission
-from grader.table import score_of, why
+from grader.notebook.restore import heal
+from grader.notebook.submission import read_submission
+from grader.report.feedback import write_feedback
+from grader.report.progress_table import score_of, why
+from grader.storage.gradebook import store
+from grader.storage.pipeline import prepare
 
 TOKEN = 'a-token'
 RIGHT = 'def double(x):\n    return 2 * x'

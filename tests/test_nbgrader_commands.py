@@ -14,10 +14,10 @@ from nbformat import NotebookNode
 from test_dates import STOPS_DATEUTIL
 
 from grader.__main__ import main
+from grader.authoring.release import release
 from grader.course import Course
-from grader.gradebook import register
-from grader.records import records
-from grader.release import release
+from grader.storage.gradebook import register
+from grader.storage.records import records
 
 ANSWERS = {
     'right': 'def double(x):\n    return 2 * x',
@@ -130,7 +130,7 @@ def test_the_formgrader_grades_alike_inside_its_event_loop(courses):
         f'    result = api.autograde({TOY!r}, "small", force=True)\n'
         '    assert result["success"], result\n'
         '    from pathlib import Path\n'
-        '    from grader.turn import Turn\n'
+        '    from grader.storage.lock import Turn\n'
         f'    assert not Turn._taken, "the turn is still held"\n'
         'asyncio.run(grade())\n'
     )

@@ -17,7 +17,7 @@ from nbgrader.validator import Validator
 from traitlets.config import Config
 from traitlets.config.loader import PyFileConfigLoader
 
-from grader.pipeline import AUTOGRADE_PASSES, SANITIZE_PASSES
+from grader.storage.pipeline import AUTOGRADE_PASSES, SANITIZE_PASSES
 
 
 def names(passes):
@@ -164,10 +164,10 @@ def test_the_configured_passes_are_registered_and_in_force(config):
 
 
 def test_healing_comes_first_and_running_before_the_scores_are_saved():
-    assert SANITIZE_PASSES[0] == 'grader.passes.HealSubmission'
+    assert SANITIZE_PASSES[0] == 'grader.autograde.preprocessors.HealSubmission'
     assert 'nbgrader.preprocessors.Execute' not in AUTOGRADE_PASSES
-    run = AUTOGRADE_PASSES.index('grader.passes.ExecuteRooms')
-    assert run < AUTOGRADE_PASSES.index('grader.saving.SaveGrades')
+    run = AUTOGRADE_PASSES.index('grader.autograde.preprocessors.ExecuteRooms')
+    assert run < AUTOGRADE_PASSES.index('grader.storage.save_grades.SaveGrades')
 
 
 def test_our_saver_overrides_what_nbgraders_calls():

@@ -12,14 +12,14 @@ from course_maker import TOY, answered, executed, make_course, toy_lesson, write
 from nbgrader.api import Gradebook
 from stand_in import stand_in
 
-from grader import reuse
 from grader.__main__ import main
+from grader.authoring.release import release
 from grader.course import Course
-from grader.execute import Execution
-from grader.gradebook import register
-from grader.heal import grade_id
-from grader.lateness import FILE
-from grader.release import release
+from grader.judging.execute import Execution
+from grader.notebook.restore import grade_id
+from grader.storage import reuse
+from grader.storage.gradebook import register
+from grader.storage.late_penalties import FILE
 
 OTHER = '01_other'
 RIGHT = 'def double(x):\n    return 2 * x'

@@ -5,9 +5,9 @@ import threading
 
 import pytest
 
-from grader import parsing
-from grader.errors import CourseError
-from grader.parsing import Limits, TooHard, parse
+from grader.common import parsing
+from grader.common.errors import CourseError
+from grader.common.parsing import Limits, TooHard, parse
 
 SHORT = Limits(cpu_sec=1, wall_sec=60)
 

@@ -10,9 +10,9 @@ from my_robot_basics.validate.verdict import Verdict, write_verdict
 from stand_in import stand_in
 
 from grader.__main__ import main
-from grader.execute import Execution
 from grader.grade import grade_all
-from grader.submitted import find_submissions
+from grader.judging.execute import Execution
+from grader.storage.submitted import find_submissions
 
 REASON = 'expected 4 right, saw 1 wrong, which leaves 0.5 of 2 points: `one` arrives (it is there)'
 

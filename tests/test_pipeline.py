@@ -3,10 +3,10 @@ import pytest
 from sample_class import PATHS, assignment_of
 
 from grader.course import Course
-from grader.gradebook import register
-from grader.heal import heal
-from grader.pipeline import prepare, prepared_master
-from grader.submission import read_submission
+from grader.notebook.restore import heal
+from grader.notebook.submission import read_submission
+from grader.storage.gradebook import register
+from grader.storage.pipeline import prepare, prepared_master
 
 NAMES = (
     '02_joint_state-pass-helper_in_the_last_cell',

@@ -5,7 +5,7 @@ import threading
 
 import pytest
 
-from grader.pool import Pool
+from grader.common.pool import Pool
 
 
 async def returned(value):

@@ -16,10 +16,11 @@ from jupyter_client.kernelspec import KernelSpecManager
 from nbclient import NotebookClient
 from nbclient.exceptions import CellTimeoutError
 
-from grader import sandbox, servers
+from grader.common.errors import RoomFailure
 from grader.course import ROOT
-from grader.errors import RoomFailure
-from grader.provisioner import NAME, SandboxProvisioner
+from grader.kernels import fork_servers
+from grader.kernels.provisioner import NAME, SandboxProvisioner
+from grader.sandbox import sandbox
 
 pytestmark = [pytest.mark.isolation, pytest.mark.usefixtures('signals')]
 
@@ -29,7 +30,7 @@ SPEC = Path(sys.prefix, 'share', 'jupyter', 'kernels', NAME, 'kernel.json')
 @pytest.fixture(autouse=True)
 def no_server_before():
     """So that what a test leaves can be counted."""
-    servers.close_servers()
+    fork_servers.close_servers()
 
 
 def notebook(*sources):
@@ -181,7 +182,7 @@ def test_a_manager_without_an_event_loop_starts_it_too(left):
 
 
 def test_where_there_is_no_sandbox_nothing_runs(monkeypatch, left):
-    monkeypatch.setattr('grader.bubblewrap._HOLD', 'echo no namespaces >&2; exit 1')
+    monkeypatch.setattr('grader.sandbox.bubblewrap._HOLD', 'echo no namespaces >&2; exit 1')
     with pytest.raises(RoomFailure, match='no namespaces'):
         run("open('/tmp/it_ran', 'w')")
     assert not os.path.exists('/tmp/it_ran')

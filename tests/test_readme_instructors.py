@@ -12,7 +12,7 @@ import pytest
 from fresh_machine import fresh_environment
 from synthetic_class import synthetic_class
 
-from grader.bundle import FOLDER
+from grader.authoring.bundle import FOLDER
 from grader.course import ROOT
 
 PAGE = (ROOT / 'README.md').read_text(encoding='utf-8').partition('## For instructors')[2]

@@ -7,11 +7,11 @@ from course_maker import PIXEL, TOY, make_course, toy_lesson, write_source
 from my_robot_basics.validate.cells import fingerprint
 from nbgrader.utils import compute_checksum
 
+from grader.authoring.hidden_points import MarkHidden
+from grader.authoring.leaks import leaks_of
+from grader.authoring.release import broken, release, stale_or_leaking
+from grader.common.errors import CourseError
 from grader.course import Course
-from grader.errors import CourseError
-from grader.leaks import leaks_of
-from grader.marks import MarkHidden
-from grader.release import broken, release, stale_or_leaking
 
 
 @pytest.fixture(scope='module')

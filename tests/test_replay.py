@@ -5,8 +5,8 @@ from course_maker import TOY, answered, executed, released_course, submit, toy_l
 from stand_in import stand_in
 
 from grader.__main__ import main
-from grader.execute import Execution, execute
-from grader.heal import KEY
+from grader.judging.execute import Execution, execute
+from grader.notebook.restore import KEY
 
 ANSWER = 'def double(x):\n    return 2 * x'
 

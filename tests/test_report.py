@@ -6,15 +6,15 @@ import pytest
 from course_maker import TOY, answered, executed, released_course, submit
 from nbgrader.api import Gradebook
 
+from grader.cli.demo import demo
 from grader.course import Course
-from grader.demo import demo
 from grader.grade import Row
-from grader.gradebook import store
-from grader.heal import heal
-from grader.pipeline import prepare, prepared_master, unanswered
-from grader.report import Run, write_report
-from grader.submission import read_submission
-from grader.tally import WRITTEN, tally
+from grader.notebook.restore import heal
+from grader.notebook.submission import read_submission
+from grader.report.report import Run, write_report
+from grader.report.statistics import WRITTEN, tally
+from grader.storage.gradebook import store
+from grader.storage.pipeline import prepare, prepared_master, unanswered
 
 ANSWER = 'def double(x):\n    return x + x'
 SCRIPT = '<script>alert("from a student")</script>'
@@ -189,7 +189,7 @@ def test_the_report_says_whether_there_was_a_sandbox_and_which_inputs(course, mo
     rows = [graded(course, 'ada', {})]
     said = set()
     for sandbox in (True, False):
-        monkeypatch.setattr('grader.report.isolated', lambda trust_students, it=sandbox: it)
+        monkeypatch.setattr('grader.report.report.isolated', lambda trust_students, it=sandbox: it)
         said.add(reported(course, rows)[0]['environment']['isolation'])
     assert said == {'each submission in a sandbox', 'none: --trust-students'}
     facts, _ = reported(course, rows, Run(RUN.began, seed='abc'))

@@ -11,15 +11,17 @@ from nbformat.v4 import new_markdown_cell
 from nbgrader.api import Gradebook
 from stand_in import Here, stand_in
 
-from grader import limits, reuse, versions
 from grader.__main__ import main
+from grader.common import versions
 from grader.course import ROOT
-from grader.execute import Execution
 from grader.grade import grade_all
-from grader.heal import KEY
-from grader.records import records
-from grader.submitted import find_submissions
-from grader.table import changes
+from grader.judging.execute import Execution
+from grader.notebook.restore import KEY
+from grader.report.progress_table import changes
+from grader.sandbox import limits
+from grader.storage import reuse
+from grader.storage.records import records
+from grader.storage.submitted import find_submissions
 
 RIGHT = 'def double(x):\n    return 2 * x'
 WRONG = 'def double(x):\n    return x + 1'
@@ -319,7 +321,7 @@ def machine(tmp_path, monkeypatch):
         (folder / 'code.py').write_text('1')
     shutil.copy(limits.__file__, grader)
     packages = [Installed('numpy', '2.3.0'), Installed('ros-jazzy-rclpy', '7.1.0')]
-    monkeypatch.setattr(versions, '__file__', str(grader / 'versions.py'))
+    monkeypatch.setattr(versions, '__file__', str(grader / 'common' / 'versions.py'))
     monkeypatch.setattr(versions.my_robot_basics, '__file__', str(robot / '__init__.py'))
     monkeypatch.setattr(versions, 'distributions', lambda path: packages)
 
@@ -408,6 +410,6 @@ def test_what_python_writes_beside_code_and_the_order_of_packages_change_no_hash
 
 
 def test_the_hash_holds_this_very_grader_and_robot():
-    folders = {Path(versions.__file__).parent, Path(versions.my_robot_basics.__file__).parent}
+    folders = {Path(versions.__file__).parents[1], Path(versions.my_robot_basics.__file__).parent}
     assert folders == {ROOT / 'grader', ROOT / 'my_robot_basics' / 'my_robot_basics'}
     assert Path(limits.__file__) in versions._code(ROOT / 'grader')

@@ -12,10 +12,10 @@ from my_robot_basics.live import domain
 from my_robot_basics.live.errors import NoFreeDomain
 from my_robot_basics.validate.outputs import CellRun
 
-from grader import rooms as module
-from grader.errors import RoomFailure
-from grader.isolation import isolated
-from grader.rooms import Rooms
+from grader.common.errors import RoomFailure
+from grader.kernels import rooms as module
+from grader.kernels.isolation import isolated
+from grader.kernels.rooms import Rooms
 
 IMPORT = 'from my_robot_basics.checks import student\n'
 

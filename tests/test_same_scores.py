@@ -11,7 +11,7 @@ import pytest
 from sample_class import EXPECTED, PATHS, assignment_of, hand_in
 
 from grader.course import ROOT, Course
-from grader.records import records, verdicts
+from grader.storage.records import records, verdicts
 
 UNREADABLE = '03_publisher-zero-not_json'
 """What nbgrader stops at: it stores nothing, where `./course grade` gives zero and a reason."""

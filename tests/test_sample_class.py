@@ -10,10 +10,10 @@ from sample_class import EXPECTED, PATHS, assignment_of, grade, rebased
 from stock_validator import validators
 
 from grader.course import Course
-from grader.execute import execute
-from grader.heal import heal, make_master
-from grader.records import verdicts
-from grader.workers import Workers
+from grader.judging.execute import execute
+from grader.notebook.restore import heal, make_master
+from grader.storage.records import verdicts
+from grader.workers.workers import Workers
 
 NO_VERDICT = {
     '03_publisher-fail-os_exit': 'Kernel died',

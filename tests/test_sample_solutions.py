@@ -5,11 +5,11 @@ import pytest
 from course_maker import TOY, make_course, toy_lesson, write_source
 
 from grader.__main__ import main
+from grader.authoring.leaks import MARKS
+from grader.authoring.release import release
 from grader.course import Course
-from grader.due import set_due
-from grader.leaks import MARKS
-from grader.release import release
-from grader.sample_solutions import write_solutions
+from grader.export.sample_solutions import write_solutions
+from grader.storage.due_dates import set_due
 
 MARK_SCHEME = '## Explain\n### BEGIN MARK SCHEME\nHalf a point for a try.\n### END MARK SCHEME'
 

@@ -14,16 +14,16 @@ from pathlib import Path
 import psutil
 import pytest
 
-from grader import bubblewrap, cgroups, memory_watch
-from grader import sandbox as module
-from grader.bubblewrap import FIRST_USER, slot_user
+from grader.common.errors import RoomFailure
 from grader.course import ROOT
-from grader.errors import RoomFailure
-from grader.kernels import Kernel
-from grader.limits import ROOM_DISK_BYTES, ROOM_FILES, ROOM_TERMINALS, process_limits
-from grader.places import Place
-from grader.sandbox import Sandbox
-from grader.seccomp import PROTOCOLS
+from grader.kernels.kernels import Kernel
+from grader.sandbox import bubblewrap, cgroups, memory_watch
+from grader.sandbox import sandbox as module
+from grader.sandbox.bubblewrap import FIRST_USER, slot_user
+from grader.sandbox.kernel_paths import Place
+from grader.sandbox.limits import ROOM_DISK_BYTES, ROOM_FILES, ROOM_TERMINALS, process_limits
+from grader.sandbox.sandbox import Sandbox
+from grader.sandbox.seccomp import PROTOCOLS
 
 pytestmark = pytest.mark.isolation
 
@@ -536,7 +536,7 @@ def test_nothing_outlives_the_sandbox(loop, code):
 
 GRADER = f"""
 import asyncio, subprocess, sys, time
-from grader.sandbox import Sandbox
+from grader.sandbox.sandbox import Sandbox
 async def main():
     sandbox = Sandbox(slot=303)
     await sandbox.open()
@@ -629,7 +629,7 @@ def as_ordinary_user(home, code):
 @pytest.mark.skipif(os.geteuid() != 0, reason='we are an ordinary user')
 def test_an_ordinary_user_has_the_same_sandbox(tmp_path_factory):
     code = """
-from grader.rooms import Rooms
+from grader.kernels.rooms import Rooms
 async def main():
     async with Rooms() as rooms:
         run = await rooms.run_student_cell('import os; print(os.getuid()); x = 7', timeout_sec=60)
@@ -659,7 +659,7 @@ def test_files_on_their_way_in_one_room_stop_none_elsewhere(tmp_path_factory):
     code = f"""
 import resource
 resource.setrlimit(resource.RLIMIT_NOFILE, (1_024, 4_096))  # as for a login
-from grader.rooms import Rooms
+from grader.kernels.rooms import Rooms
 async def main():
     async with Rooms() as rooms:
         run = await rooms.run_student_cell({UNDER_WAY!r}, timeout_sec=60)

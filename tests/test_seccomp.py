@@ -6,8 +6,15 @@ from pathlib import Path
 
 import pytest
 
-from grader.seccomp import AF_INET, AF_INET6, AF_NETLINK, AF_UNIX, PROTOCOLS, seccomp_filter
-from grader.system_calls import ALLOWED
+from grader.sandbox.seccomp import (
+    AF_INET,
+    AF_INET6,
+    AF_NETLINK,
+    AF_UNIX,
+    PROTOCOLS,
+    seccomp_filter,
+)
+from grader.sandbox.system_calls import ALLOWED
 
 X86_64, AARCH64 = 0xC000003E, 0xC00000B7
 ALLOW, KILL = 0x7FFF0000, 0x80000000

@@ -8,8 +8,8 @@ import json
 
 import pytest
 
-from grader.isolation import isolated
-from grader.rooms import Rooms
+from grader.kernels.isolation import isolated
+from grader.kernels.rooms import Rooms
 
 pytestmark = pytest.mark.isolation
 

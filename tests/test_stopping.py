@@ -5,8 +5,8 @@ import signal
 import pytest
 
 from grader.__main__ import main
+from grader.cli.stopping import stoppable
 from grader.course import Course
-from grader.stopping import stoppable
 
 SIGNALS = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGHUP: 129}
 
@@ -25,7 +25,7 @@ def told(monkeypatch, tmp_path):
 
     def run(number):
         monkeypatch.setattr(
-            'grader.verbs.find_submissions', lambda *_, **__: signal.raise_signal(number)
+            'grader.cli.verbs.find_submissions', lambda *_, **__: signal.raise_signal(number)
         )
         return main(['grade'], course=Course.at(tmp_path))
 

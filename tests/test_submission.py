@@ -10,11 +10,11 @@ import pytest
 from course_maker import PIXEL
 from nbformat.v4 import new_code_cell, new_notebook
 
-from grader import raw_notebook, reading
-from grader.errors import CourseError, UnreadableSubmission
-from grader.raw_notebook import MAX_CELLS, MAX_CHARACTERS, MAX_PICTURES
-from grader.reading import read_notebook
-from grader.submission import (
+from grader.common.errors import CourseError, UnreadableSubmission
+from grader.notebook import raw_notebook, reading
+from grader.notebook.raw_notebook import MAX_CELLS, MAX_CHARACTERS, MAX_PICTURES
+from grader.notebook.reading import read_notebook
+from grader.notebook.submission import (
     MAX_PYTHON_BYTES,
     MAX_PYTHON_FILES,
     extra_python_files,

@@ -12,7 +12,7 @@ import survivor
 from course_maker import TOY, answered, released_course, submit
 
 from grader.course import Course
-from grader.records import records
+from grader.storage.records import records
 
 RIGHT = '# {}\ndef double(x):\n    return 2 * x'
 WRONG = '# {}\ndef double(x):\n    return x + 1'

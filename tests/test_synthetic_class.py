@@ -11,13 +11,13 @@ from sample_class import EXPECTED, PATHS, assignment_of
 from stand_in import stand_in
 from synthetic_class import hand_in, synthetic_class, wrong_scores, zip_up
 
-from grader import reuse
-from grader.collect import NEW, collect
+from grader.collect.collect import NEW, collect
 from grader.course import Course
-from grader.execute import Execution
 from grader.grade import grade_all
-from grader.heal import heal, role
-from grader.submitted import find_submissions
+from grader.judging.execute import Execution
+from grader.notebook.restore import heal, role
+from grader.storage import reuse
+from grader.storage.submitted import find_submissions
 
 
 @pytest.fixture(scope='module')

@@ -6,11 +6,11 @@ import pytest
 from course_maker import executed as judged
 from course_maker import toy_lesson
 
-from grader import task
-from grader.errors import TaskFailed
-from grader.execute import Execution
-from grader.heal import KEY
-from grader.task import Task, graded, packed, unpacked
+from grader.common.errors import TaskFailed
+from grader.judging import task
+from grader.judging.execute import Execution
+from grader.judging.task import Task, graded, packed, unpacked
+from grader.notebook.restore import KEY
 
 ODD = 'lone \udcff, nul \0, ideographs 小明, escapes \x1b[31m, </script>'
 

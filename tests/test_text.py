@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from grader.text import (
+from grader.common.text import (
     columns,
     pad,
     printable,

@@ -4,12 +4,12 @@ import pytest
 from course_maker import TOY, answered, executed, released_course, submit
 
 from grader.__main__ import main
-from grader.gradebook import store
-from grader.heal import heal
-from grader.pipeline import prepare
-from grader.records import Record
-from grader.submission import read_submission
-from grader.totals import add_up, as_csv, write_totals
+from grader.export.totals import add_up, as_csv, write_totals
+from grader.notebook.restore import heal
+from grader.notebook.submission import read_submission
+from grader.storage.gradebook import store
+from grader.storage.pipeline import prepare
+from grader.storage.records import Record
 
 
 def cell(student, assignment, score, most, *, submitted=True, name='check'):

@@ -7,8 +7,8 @@ from course_maker import PIXEL
 from my_robot_basics.validate.outputs import CellRun
 from my_robot_basics.validate.pictures import MAX_PIXELS, why_not_shown
 
-from grader.page import _shown
-from grader.raw_notebook import _pictures
+from grader.notebook.raw_notebook import _pictures
+from grader.report.page import _shown
 
 
 def png(width, height):

@@ -7,8 +7,8 @@ from my_robot_basics.validate.verdict import Verdict, judge, ungraded, write_ver
 from nbformat.v4 import new_code_cell, new_output
 from nbgrader.utils import determine_grade
 
-from grader.errors import RoomFailure
-from grader.heal import KEY
+from grader.common.errors import RoomFailure
+from grader.notebook.restore import KEY
 
 SECRET = 'assert hidden == 42'
 

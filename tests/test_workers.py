@@ -9,15 +9,14 @@ import pytest
 from course_maker import answered, released_course, submit
 from my_robot_basics.checks import pressure
 
-from grader import workers
+from grader.common.errors import TaskFailed
 from grader.course import Course
-from grader.errors import TaskFailed
 from grader.grade import grade_all
-from grader.limits import SUBMISSION_MEMORY_BYTES
-from grader.records import records
-from grader.submitted import find_submissions
-from grader.task import Task
-from grader.workers import Workers
+from grader.judging.task import Task
+from grader.sandbox.limits import SUBMISSION_MEMORY_BYTES
+from grader.storage.records import records
+from grader.storage.submitted import find_submissions
+from grader.workers.workers import Workers, workers
 
 COMMAND = (sys.executable, str(Path(__file__).with_name('toy_worker.py')))
 RIGHT = 'def double(x):\n    return 2 * x'

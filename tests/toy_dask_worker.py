@@ -8,9 +8,9 @@ import sys
 from importlib.metadata import version
 from pathlib import Path
 
-from grader import remote, workers
+from grader.workers import dask_worker, workers
 
 workers.COMMAND = (sys.executable, str(Path(__file__).with_name('toy_worker.py')))
-remote.versions = lambda: {'numpy': os.environ.get('TOY_NUMPY', version('numpy'))}
-remote.machinery = lambda: f'toy, numpy {remote.versions()["numpy"]}'
-remote.missing = lambda: os.environ.get('TOY_MISSING', '')
+dask_worker.versions = lambda: {'numpy': os.environ.get('TOY_NUMPY', version('numpy'))}
+dask_worker.machinery = lambda: f'toy, numpy {dask_worker.versions()["numpy"]}'
+dask_worker.missing = lambda: os.environ.get('TOY_MISSING', '')

@@ -15,8 +15,9 @@ from pathlib import Path
 
 from course_maker import executed
 
-from grader import task, worker
-from grader.execute import Execution
+from grader.judging import task
+from grader.judging.execute import Execution
+from grader.workers import worker
 
 worker.BEAT_SEC = 0.1
 

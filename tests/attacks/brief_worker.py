@@ -7,6 +7,6 @@ from my_robot_basics.validate import limits
 limits.STUDENT_CELL_TIMEOUT_SEC /= 2
 limits.REPLY_TIMEOUT_SEC /= 2
 
-from grader.worker import main  # noqa: E402 - what it imports takes over the limits
+from grader.workers.worker import main  # noqa: E402 - what it imports takes over the limits
 
 main(sys.argv[1])

@@ -11,7 +11,7 @@ from pathlib import Path
 from nbformat import NotebookNode
 from nbformat.v4 import new_code_cell
 
-from grader.heal import KEY
+from grader.notebook.restore import KEY
 
 
 def skips_its_checks(notebook: NotebookNode, folder: Path) -> None:

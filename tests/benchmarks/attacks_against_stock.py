@@ -45,12 +45,12 @@ from attacks.corpus import (
 )
 from course_maker import TOY, make_course, toy_lesson, write_source
 
+from grader.authoring.release import release
+from grader.common.errors import RoomFailure
 from grader.course import Course
-from grader.errors import RoomFailure
 from grader.grade import grade_all
-from grader.release import release
-from grader.sandbox import Sandbox
-from grader.submitted import find_submissions
+from grader.sandbox.sandbox import Sandbox
+from grader.storage.submitted import find_submissions
 
 ATTACKER, NEIGHBOUR = 'a-attacker', 'b-neighbour'
 PORT = 40_861

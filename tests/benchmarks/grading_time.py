@@ -24,12 +24,12 @@ from nbgrader.preprocessors import Execute
 from sample_class import PATHS, assignment_of, grade
 
 from grader.course import Course
-from grader.execute import execute
-from grader.gradebook import register
-from grader.heal import heal, role
-from grader.kernels import Kernel
-from grader.pipeline import prepare
-from grader.rooms import Rooms
+from grader.judging.execute import execute
+from grader.kernels.kernels import Kernel
+from grader.kernels.rooms import Rooms
+from grader.notebook.restore import heal, role
+from grader.storage.gradebook import register
+from grader.storage.pipeline import prepare
 
 NAMES = (
     '02_joint_state-pass-numpy',

@@ -17,9 +17,9 @@ from measuring import ROW, Course, course_command, kill_a_worker, new_course, ta
 from nbgrader.api import Gradebook
 from synthetic_class import Paper
 
-from grader.collect import collect
-from grader.gradebook import waits_for_a_person
-from grader.records import records, verdicts
+from grader.collect.collect import collect
+from grader.storage.gradebook import waits_for_a_person
+from grader.storage.records import records, verdicts
 
 MOST_SHOWN = 20
 _TIMES_OF_RUNS = re.compile(r'(data:image/\w+;base64,)[\w+/=\s]+|-?\d+(\.\d+)?(e-?\d+)?')

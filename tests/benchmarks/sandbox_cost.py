@@ -19,12 +19,12 @@ sys.path[:0] = [str(ROOT), str(ROOT / 'tests')]
 import nbformat
 from sample_class import PATHS, assignment_of
 
-from grader import execute as module
 from grader.course import Course
-from grader.gradebook import register
-from grader.heal import heal
-from grader.isolation import isolated
-from grader.pipeline import prepare
+from grader.judging import execute as module
+from grader.kernels.isolation import isolated
+from grader.notebook.restore import heal
+from grader.storage.gradebook import register
+from grader.storage.pipeline import prepare
 
 NAMES = (
     '02_joint_state-pass-numpy',

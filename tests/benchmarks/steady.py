@@ -18,7 +18,7 @@ from measuring import ROW, Course, busy, course_command, minutes, new_course, wa
 from sample_class import PATHS, assignment_of
 from synthetic_class import Paper, synthetic_class, wrong_scores, zip_up
 
-from grader.collect import collect
+from grader.collect.collect import collect
 
 RIGHT = tuple(name for name in PATHS if '-pass-' in name)
 LESSONS = len({assignment_of(PATHS[name]) for name in RIGHT})

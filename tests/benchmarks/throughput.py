@@ -31,7 +31,7 @@ from measuring import ROOT, Course, Watched, course_command, new_course, table, 
 from sample_class import PATHS, assignment_of
 from synthetic_class import Paper, hand_in, synthetic_class, wrong_scores
 
-from grader.heal import role
+from grader.notebook.restore import role
 
 LESSONS = ('02_joint_state', '03_publisher', '04_subscriber', '07_common_errors')
 HOSTILE = (

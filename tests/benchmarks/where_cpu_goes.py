@@ -19,14 +19,14 @@ from pathlib import Path
 from measuring import Course, new_course, table
 from sample_class import PATHS, assignment_of
 
-from grader.database import one_engine
-from grader.execute import executed
-from grader.gradebook import register, store
-from grader.heal import heal
-from grader.isolation import isolated
-from grader.kernels import Kernel
-from grader.pipeline import prepared_master
-from grader.submission import read_submission
+from grader.judging.execute import executed
+from grader.kernels.isolation import isolated
+from grader.kernels.kernels import Kernel
+from grader.notebook.restore import heal
+from grader.notebook.submission import read_submission
+from grader.storage.database import one_engine
+from grader.storage.gradebook import register, store
+from grader.storage.pipeline import prepared_master
 
 NAMES = (
     '02_joint_state-pass-one_constructor',

@@ -21,16 +21,17 @@ sys.path[:0] = [str(ROOT), str(ROOT / 'tests')]
 
 from sample_class import PATHS, assignment_of
 
-from grader import execute, servers, warm
 from grader.course import Course
-from grader.gradebook import register
-from grader.heal import heal
-from grader.isolation import isolated
-from grader.kernels import Kernel
-from grader.pipeline import prepare
-from grader.provisioner import SandboxProvisioner
-from grader.rooms import Rooms
-from grader.sandbox import Sandbox
+from grader.judging import execute
+from grader.kernels import fork_client, fork_servers
+from grader.kernels.isolation import isolated
+from grader.kernels.kernels import Kernel
+from grader.kernels.provisioner import SandboxProvisioner
+from grader.kernels.rooms import Rooms
+from grader.notebook.restore import heal
+from grader.sandbox.sandbox import Sandbox
+from grader.storage.gradebook import register
+from grader.storage.pipeline import prepare
 
 NAMES = (
     '02_joint_state-pass-numpy',
@@ -40,8 +41,8 @@ NAMES = (
 )
 WATCHED = {
     'open the sandbox': (Sandbox, 'open'),
-    'build the room': (warm, '_built'),
-    'fork the kernel': (warm, '_forked'),
+    'build the room': (fork_client, '_built'),
+    'fork the kernel': (fork_client, '_forked'),
     'IPython starts': (SandboxProvisioner, 'post_launch'),
     'connect to it': (Kernel, '_connect'),
     'student cells': (Rooms, 'run_student_cell'),
@@ -110,9 +111,9 @@ def main(runs: int = 3) -> None:
     judge(course)  # starts the servers
     forked, started = [], []
     for _ in range(runs):
-        servers._unfit.clear()
+        fork_servers._unfit.clear()
         forked += judge(course)
-        servers._unfit.update(student='to compare', test='to compare')
+        fork_servers._unfit.update(student='to compare', test='to compare')
         started += judge(course)
     print(f'median ms of {len(forked)} exercises   forked  started')
     for part in forked[0]:

@@ -20,7 +20,7 @@ from nbformat import NotebookNode
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 from grader.course import Course
-from grader.heal import KEY, grade_id, role
+from grader.notebook.restore import KEY, grade_id, role
 
 FOLDER = Path(__file__).parent
 

@@ -1,0 +1,1 @@
+"""From the instructors' source to what students get: release, contents page, bundle."""

@@ -1,0 +1,122 @@
+"""Make the students' zip: what is on a list, nothing else, and nothing of it stale or telling."""
+
+import io
+import zipfile
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fnmatch import fnmatch
+from pathlib import Path
+
+from grader.authoring.index import INDEX, copied_pages
+from grader.authoring.leaks import files_in, leaks_beside
+from grader.authoring.release import stale_or_leaking
+from grader.common.errors import CourseError
+from grader.common.files import write_whole
+from grader.course import Course
+
+FOLDER = 'my_robot_basics_course'
+"""What the zip unpacks to."""
+README = 'students.md'
+"""In solutions/, beside the lessons: the bundle's README.md."""
+AS_THEY_ARE = ('course', 'environment.txt', 'LICENSE', 'launcher/verbs.txt')
+LAUNCHER = 'launcher'
+"""What `course` runs; of it, the modules."""
+SETTINGS = ('.jupyterlab/overrides.json', '.jupyterlab/page_config.json')
+"""What `./course lab` shows JupyterLab."""
+PACKAGE = 'my_robot_basics'
+IN_PACKAGE = ('package.xml', 'setup.py', 'setup.cfg', 'resource/my_robot_basics', 'test/*.py')
+IN_PACKAGE += ('my_robot_basics/*.py', 'my_robot_basics/*.xml', 'my_robot_basics/*.bash')
+IN_PACKAGE += ('my_robot_basics/validate/labextension/*.js*',)
+"""What a package consists of; `*` stands for folders, too."""
+MADE_BY_TOOLS = ('*__pycache__*', '*.egg-info*', 'build/*', 'install/*', 'log/*')
+EXECUTABLE = ('course',)
+LONG_AGO = (1980, 1, 1, 0, 0, 0)
+"""The time of each file, so that the same files give the same zip."""
+
+
+@dataclass(frozen=True)
+class Bundle:
+    """A zip that was made."""
+
+    files: tuple[str, ...]
+    """Their paths in it."""
+    bytes: int
+    left_out: tuple[str, ...]
+    """Files in notebooks/ that are no lesson's."""
+
+
+def bundle(course: Course, target: Path) -> Bundle:
+    """Write the zip; the same files give the same bytes.
+
+    Raises CourseError, and writes nothing, where something is missing or stale, is not on the
+    list, or holds an answer or a hidden test.
+    """
+    if not (course.root / 'notebooks').is_dir():
+        raise CourseError(
+            'no bundle was made: there is no folder notebooks/: run ./course release'
+        )
+    faults = stale_or_leaking(course)
+    files = dict(sorted(_contents(course, faults)))
+    faults += leaks_beside(course, {n: c for n, c in files.items() if not _is_lesson(course, n)})
+    if faults:
+        raise CourseError('no bundle was made: ' + '; '.join(faults))
+    packed = _zipped(files)
+    target.parent.mkdir(parents=True, exist_ok=True)
+    write_whole(target, packed)
+    released = {f'notebooks/{path}' for path in files_in(course.root / 'notebooks')}
+    left_out = sorted(released - {name.partition('/')[2] for name in files})
+    return Bundle(tuple(files), len(packed), tuple(left_out))
+
+
+def _contents(course: Course, faults: list[str]) -> Iterator[tuple[str, bytes]]:
+    """Yield each file's path in the zip and its content; add to `faults` what is not as it should.
+
+    What is written is what was read here once, and what is checked.
+    """
+    for path in _paths(course, faults):
+        file = course.root / path
+        if file.is_symlink() or not file.is_file():
+            faults.append(f'{path} is {"a link" if file.is_symlink() else "missing"}')
+            continue
+        name = 'README.md' if path == f'solutions/{README}' else path
+        yield f'{FOLDER}/{name}', file.read_bytes()
+
+
+def _paths(course: Course, faults: list[str]) -> Iterator[str]:
+    """Yield the paths of all that students get, from the course's root."""
+    yield from (*AS_THEY_ARE, *SETTINGS, f'solutions/{README}')
+    modules = [path for path in files_in(course.root / LAUNCHER) if path.suffix == '.py']
+    yield from (f'{LAUNCHER}/{path}' for path in modules)
+    yield from (f'notebooks/{page}' for page in (INDEX, *copied_pages(course)))
+    for assignment in course.assignments():
+        lesson = course.root / 'notebooks' / assignment
+        names = {f'{assignment}.ipynb', *map(str, files_in(lesson))}
+        yield from (f'notebooks/{assignment}/{name}' for name in sorted(names))
+    yield from (f'{PACKAGE}/{name}' for name in IN_PACKAGE if '*' not in name)
+    for path in map(str, files_in(course.root / PACKAGE)):
+        if any(fnmatch(path, pattern) for pattern in MADE_BY_TOOLS):
+            continue
+        if not any(fnmatch(path, pattern) for pattern in IN_PACKAGE):
+            faults.append(
+                f'{PACKAGE}/{path} is not on the list of what students get '
+                '(grader/authoring/bundle.py): add it there, or remove it'
+            )
+        elif path not in IN_PACKAGE:
+            yield f'{PACKAGE}/{path}'
+
+
+def _is_lesson(course: Course, name: str) -> bool:
+    """Whether a file was checked line by line with its own lesson."""
+    return any(name.startswith(f'{FOLDER}/notebooks/{each}/') for each in course.assignments())
+
+
+def _zipped(files: dict[str, bytes]) -> bytes:
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, 'w') as box:
+        for name, content in files.items():
+            info = zipfile.ZipInfo(name, LONG_AGO)
+            info.create_system = 3  # Unix, whose rights are kept
+            mode = 0o755 if name.removeprefix(f'{FOLDER}/') in EXECUTABLE else 0o644
+            info.external_attr = (0o100000 | mode) << 16
+            box.writestr(info, content, zipfile.ZIP_DEFLATED, 9)
+    return packed.getvalue()

@@ -1,0 +1,1 @@
+"""What `nbgrader autograde` runs of ours, in place of its own reading and execution."""

@@ -1,0 +1,79 @@
+"""Our two passes among nbgrader's: heal a submission, and run it in two rooms."""
+
+import atexit
+from functools import cache
+from pathlib import Path
+
+import nbformat
+from nbconvert.preprocessors import Preprocessor
+from nbformat import NotebookNode
+from traitlets import Bool
+
+from grader.course import Course
+from grader.judging.task import Task
+from grader.kernels.isolation import isolated
+from grader.notebook.restore import KEY, heal
+from grader.notebook.submission import extra_python_files, read_submission
+from grader.workers.workers import Workers
+
+
+class HealSubmission(Preprocessor):
+    """Put a submitted notebook back into the shape of its source."""
+
+    enabled = True
+
+    def preprocess(self, nb: NotebookNode, resources: dict) -> tuple[NotebookNode, dict]:
+        """Return the healed notebook; the submitted file is not touched.
+
+        It is read anew, as strangers' files are: what nbgrader has read may hold anything.
+        """
+        at = resources['nbgrader']
+        submission = read_submission(
+            Path(resources['metadata']['path']),
+            student_id=at['student'],
+            assignment=at['assignment'],
+        )
+        healed = heal(
+            submission.notebook or nbformat.v4.new_notebook(),
+            Course.of_nbgrader(resources).master(at['assignment']),
+        ).notebook
+        healed.metadata[KEY].notes += submission.notes
+        if submission.problem:
+            healed.metadata[KEY] = {'notes': [submission.problem], 'problem': submission.problem}
+        return healed, resources
+
+
+class ExecuteRooms(Preprocessor):
+    """Run student cells in one kernel and grade cells in another, in nbgrader's Execute's place.
+
+    That is done by a worker process, as for `./course grade`: this one holds the gradebook.
+    nbgrader's resource path is not used as a working directory: that folder holds the tests.
+    """
+
+    enabled = True
+    trust_students = Bool(
+        False, help='Grade even where this machine has no sandbox for student code.'
+    ).tag(config=True)
+
+    def preprocess(self, nb: NotebookNode, resources: dict) -> tuple[NotebookNode, dict]:
+        """Return the executed notebook with a verdict in each grade cell.
+
+        Raises CourseError where there is no sandbox, and TaskFailed where there is no verdict.
+        """
+        at, folder = resources['nbgrader'], Path(resources['metadata']['path'])
+        isolated(trust_students=self.trust_students)
+        task = Task(
+            notebook=nb,
+            files={path.name: path.read_bytes() for path in extra_python_files(folder)},
+            seed=Course.of_nbgrader(resources).seed(at['assignment'], at['student']),
+            trust_students=self.trust_students,
+        )
+        return _workers().submit(task).result().notebook, resources
+
+
+@cache
+def _workers() -> Workers:
+    """Return the one that grades for this process, as long as this one lives."""
+    workers = Workers(1, in_flight=1).__enter__()
+    atexit.register(workers.__exit__)
+    return workers

@@ -1,0 +1,1 @@
+"""The command line: `./course VERB`, its arguments and what each verb does."""

@@ -1,0 +1,128 @@
+"""What may stand behind `./course`: verbs, their arguments, and what `--help` says of them."""
+
+import argparse
+from datetime import datetime
+from pathlib import Path
+
+from grader.cli import verbs
+from grader.replay import RECORDED
+from grader.storage.due_dates import local_time
+
+
+def make_parser() -> argparse.ArgumentParser:
+    """Return the parser; what it makes of arguments has the function that does it as `run`."""
+    parser = argparse.ArgumentParser(prog='./course', description='Release, grade, tell.')
+    subparsers = parser.add_subparsers(required=True, metavar='VERB')
+
+    verb = subparsers.add_parser('release', help="make the students' notebooks/ from solutions/")
+    verb.add_argument('assignment', nargs='?', metavar='ASSIGNMENT', help='only this one')
+    verb.set_defaults(run=verbs.run_release)
+
+    verb = subparsers.add_parser('bundle', help='make the zip that students get')
+    verb.add_argument(
+        'file',
+        nargs='?',
+        type=Path,
+        default=Path('students.zip'),
+        metavar='FILE',
+        help='students.zip, unless you name another',
+    )
+    verb.set_defaults(run=verbs.run_bundle)
+
+    verb = subparsers.add_parser('collect', help='take in a folder or an archive of submissions')
+    text = 'what came in: notebooks named STUDENT_ASSIGNMENT.ipynb, and other names (README.md)'
+    verb.add_argument('source', type=Path, metavar='FOLDER|ZIP|TAR', help=text)
+    verb.add_argument(
+        '--file-times',
+        action='store_true',
+        help="take a file's own time for the time it was handed in, where nothing else tells",
+    )
+    verb.set_defaults(run=verbs.run_collect)
+
+    verb = subparsers.add_parser('due', help='list due dates, or set one')
+    verb.add_argument('assignment', nargs='?', metavar='ASSIGNMENT', help='whose date to set')
+    verb.add_argument(
+        'when',
+        nargs='?',
+        type=date,
+        metavar='DATE|none',
+        help="2026-11-30 (its end), '2026-11-30 18:00', with a zone or in this machine's",
+    )
+    verb.add_argument('--student', metavar='ID', help='extend it for this student alone')
+    verb.set_defaults(run=verbs.run_due)
+
+    verb = subparsers.add_parser('grade', help='grade what lies in gradebook/submitted/')
+    verb.add_argument('assignment', nargs='?', metavar='ASSIGNMENT', help='only this one')
+    verb.add_argument('--student', metavar='ID', help='only this student')
+    verb.add_argument(
+        '--seed',
+        type=hexadecimal,
+        metavar=f'HEX|{RECORDED}',
+        help='grade once more with these inputs of hidden tests, and only compare',
+    )
+    verb.add_argument('--store', action='store_true', help='store what --seed HEX comes to')
+    verb.add_argument(
+        '--trust-students',
+        action='store_true',
+        help='grade even where this machine has no sandbox for their code (./course doctor)',
+    )
+    where = verb.add_mutually_exclusive_group()
+    where.add_argument(
+        '--workers',
+        type=at_least_one,
+        metavar='N',
+        help='grade in so many processes; without it, one for each core',
+    )
+    where.add_argument(
+        '--dask',
+        metavar='tls://HOST:8786',
+        help='grade on the workers of this Dask scheduler; on this machine, tcp://127.0.0.1:8786',
+    )
+    for option in ('--tls-ca-file', '--tls-cert', '--tls-key'):
+        verb.add_argument(option, metavar='FILE', help='for --dask tls://…, as dask takes it')
+    verb.add_argument(
+        '--force', action='store_true', help='grade again what has not changed since, too'
+    )
+    verb.set_defaults(run=verbs.run_grade)
+
+    verb = subparsers.add_parser('scores', help='write gradebook/scores.csv')
+    verb.add_argument(
+        '--totals',
+        action='store_true',
+        help='write gradebook/totals.csv: a row for each student, a column for each assignment',
+    )
+    verb.set_defaults(run=verbs.run_scores)
+
+    verb = subparsers.add_parser('solutions', help='write the answers, for after the deadline')
+    verb.add_argument('assignment', nargs='?', metavar='ASSIGNMENT', help='only this one')
+    verb.add_argument(
+        '--early', action='store_true', help='even if somebody may still hand in (./course due)'
+    )
+    verb.set_defaults(run=verbs.run_solutions)
+
+    for name, run, text in (
+        ('feedback', verbs.run_feedback, 'write a page of feedback for each submission'),
+        ('demo', verbs.run_demo, 'grade a sample class, to see all of it in about a minute'),
+        ('doctor', verbs.run_doctor, 'say what keeps student code in here, and what is missing'),
+    ):
+        subparsers.add_parser(name, help=text).set_defaults(run=run)
+    return parser
+
+
+def hexadecimal(text: str) -> str:
+    """Check an argument; argparse names this function when it is wrong."""
+    if text != RECORDED:
+        int(text, 16)
+    return text
+
+
+def date(text: str) -> datetime | str:
+    """Check an argument; argparse names this function when it is wrong."""
+    return text if text == verbs.NO_DATE else local_time(text)
+
+
+def at_least_one(text: str) -> int:
+    """Check an argument; argparse shows what this raises."""
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f'{text!r} is not a number from 1 on')
+    return int(text)

@@ -1,0 +1,78 @@
+"""Grade a sample class whose file names say what should come of each notebook."""
+
+import shutil
+import tempfile
+from collections.abc import Callable
+from datetime import datetime
+from pathlib import Path
+
+from grader.common.errors import CourseError
+from grader.course import ROOT, Course
+from grader.grade import Row, grade_all
+from grader.kernels.isolation import NO_SANDBOX, isolated
+from grader.report.feedback import write_feedback
+from grader.report.progress_table import print_rows
+from grader.report.report import Run, write_report
+from grader.storage.records import verdicts
+from grader.storage.submitted import find_submissions
+
+SAMPLES = ROOT / 'tests' / 'submissions'
+
+OUTCOMES: dict[str, Callable[[list[str]], bool]] = {
+    'pass': lambda outcomes: set(outcomes) == {'passed'},
+    'fail': lambda outcomes: {'partial', 'failed'} & {*outcomes} and 'ungraded' not in outcomes,
+    'mixed': lambda outcomes: set(outcomes) == {'passed', 'failed'},
+    'zero': lambda outcomes: set(outcomes) == {'failed'},
+}
+"""What the second part of a sample's name asks of its checks."""
+
+
+def demo(samples: Path = SAMPLES, *, root: Path = ROOT) -> bool:
+    """Grade `<assignment>-<outcome>-<why>.ipynb`, print the table; return whether all is as named.
+
+    The gradebook is a temporary one, and stays to be looked at.
+    """
+    course = Course(root=root, gradebook=Path(tempfile.mkdtemp(prefix='my_robot_basics-demo-')))
+    expected = {}
+    for sample in sorted(samples.glob('*.ipynb')):
+        assignment, outcome, _ = _parts(sample, course)
+        expected[sample.stem] = outcome
+        folder = course.folder('submitted', sample.stem, assignment)
+        folder.mkdir(parents=True)
+        shutil.copyfile(sample, folder / f'{assignment}.ipynb')
+    submissions = find_submissions(course)
+    if not isolated(trust_students=True):
+        print(f'The samples are {NO_SANDBOX}. They are part of the course, and do no harm.')
+    graded = grade_all(course, submissions, trust_students=True)
+    run = Run(datetime.now().astimezone())
+    rows = list(print_rows(graded, submissions, expected=expected))
+    surprises = [row for row in rows if not _as_named(course, row, expected[row.student_id])]
+    pages = write_feedback(course)
+    for row in surprises:
+        print(f'NOT AS NAMED: {row.student_id}: {row.reason or "no points are missing"}')
+    print(f'{len(submissions) - len(surprises)} of {len(submissions)} came out as named.')
+    if pages:
+        print(f'A page of feedback: {_most_telling(pages, expected)}')
+    print(f'A report of the run: {write_report(course, run, rows)}')
+    return not surprises
+
+
+def _parts(sample: Path, course: Course) -> tuple[str, str, str]:
+    parts = sample.stem.split('-', 2)
+    if len(parts) == 3 and parts[0] in course.assignments() and parts[1] in OUTCOMES:
+        return parts[0], parts[1], parts[2]
+    raise CourseError(
+        f'{sample.name} is not named <assignment>-<{"|".join(OUTCOMES)}>-<why>.ipynb after one of '
+        f'{", ".join(course.assignments())}'
+    )
+
+
+def _as_named(course: Course, row: Row, outcome: str) -> bool:
+    said = verdicts(course, row.student_id, row.assignment).values()
+    outcomes = [verdict.outcome for verdict in said if 'outcome' in verdict]
+    return row.stored is not None and OUTCOMES[outcome](outcomes)
+
+
+def _most_telling(pages: list[Path], expected: dict[str, str]) -> Path:
+    """Return a page of somebody who has something to mend."""
+    return next((p for p in pages if expected[p.parts[-3]] != 'pass'), pages[0])

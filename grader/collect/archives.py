@@ -1,0 +1,106 @@
+"""Read archives that nobody vouches for: nothing in them chooses where a byte is written.
+
+Each file that is wanted is copied to a fresh name of ours in a folder of ours. The path that the
+archive gives is only ever read as text, so no link, no `..` and no device can lead anywhere.
+"""
+
+import errno
+import lzma
+import struct
+import tarfile
+import tempfile
+import zipfile
+import zlib
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+
+from grader.collect.archive_entries import Entry, Refused, copy, entries
+from grader.common.text import shorten
+
+MAX_FILE_BYTES = 50_000_000
+"""A notebook with all its pictures has a few; one of over 20 MB is refused at grading."""
+
+_BROKEN = (zipfile.BadZipFile, tarfile.TarError, zlib.error, lzma.LZMAError, EOFError, OSError)
+_BROKEN += (ValueError, OverflowError, RuntimeError, struct.error, KeyError, IndexError)
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EMFILE)
+
+
+@dataclass
+class Allowance:
+    """What may still be unpacked."""
+
+    files: int
+    bytes: int
+
+    def part(self, *, files: int, bytes: int) -> 'Allowance':
+        """Return an allowance of its own for one archive, within this one."""
+        return Allowance(min(files, self.files), min(bytes, self.bytes))
+
+    def less(self, part: 'Allowance', left: 'Allowance') -> None:
+        """Take off what was used of a part."""
+        self.files -= part.files - left.files
+        self.bytes -= part.bytes - left.bytes
+
+
+@dataclass(frozen=True)
+class Member:
+    """One entry of an archive that is not a folder; without parts, the archive itself."""
+
+    parts: tuple[str, ...]
+    """Its path, component by component."""
+    modified: datetime | None = None
+    file: Path | None = None
+    """Where a copy of it lies, if it was wanted and nothing is wrong with it."""
+    problem: str = ''
+    """Why it was not unpacked."""
+
+
+def unpack(
+    archive: Path, *, name: str, aside: Path, left: Allowance, wanted: Callable[[str], bool]
+) -> Iterator[Member]:
+    """Yield what an archive holds; copies of wanted files, told by their names, lie in `aside`.
+
+    `name` tells the kind of archive. Raises OSError where the disk is full, and nothing else:
+    whatever is wrong with the archive is the problem of a member.
+    """
+    try:
+        for entry in entries(archive, name=name, aside=aside, most=left.bytes):
+            left.files -= 1
+            if left.files < 0:
+                raise Refused('more files in it than are unpacked')
+            file, problem = None, entry.problem
+            if not problem and wanted(entry.parts[-1]):
+                file, problem = _copied(entry, aside, left)
+            yield Member(entry.parts, entry.modified, file, problem)
+    except Refused as refusal:
+        yield Member((), problem=f'{refusal}; what lies behind that was not read')
+    except _BROKEN as error:
+        yield Member((), problem=_broken(error))
+
+
+def _copied(entry: Entry, aside: Path, left: Allowance) -> tuple[Path | None, str]:
+    """Copy an entry to a name of ours; return that, or why not."""
+    most = min(MAX_FILE_BYTES, left.bytes)
+    problem = f'over {most / 1e6:.0f} MB once unpacked: a bomb?'
+    with tempfile.NamedTemporaryFile(dir=aside, delete=False) as target:
+        try:
+            with entry.content() as source:
+                if copy(source, target, most=most):
+                    problem = ''
+        except _BROKEN as error:
+            problem = _broken(error)
+        finally:
+            left.bytes -= target.tell()
+            if problem:
+                Path(target.name).unlink()
+    return (None if problem else Path(target.name)), problem
+
+
+def _broken(error: Exception) -> str:
+    """Put into words what is wrong with an archive; raise it where it is the disk."""
+    if isinstance(error, OSError) and error.errno in _FULL:
+        raise error
+    why = shorten(' '.join(str(error).split()), 100) or 'it ends too early'
+    return f'broken: {why}; get it again, or collect the folder that it was made from'

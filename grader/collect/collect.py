@@ -1,0 +1,192 @@
+"""Take in what students handed in: match it, and put it where it is graded, overwriting nothing.
+
+The submission that counts lies in gradebook/submitted/STUDENT/ASSIGNMENT/. What it replaced lies
+in gradebook/submitted_before/STUDENT/ASSIGNMENT/NUMBER/, with the grade that it had.
+"""
+
+import errno
+import shutil
+import tempfile
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from datetime import datetime
+from functools import cache
+from pathlib import Path
+
+from grader.collect.matching import HandIn, match
+from grader.collect.platform_ids import Numbers
+from grader.collect.uploads import look_into
+from grader.common.dates import date_of
+from grader.common.errors import CourseError
+from grader.common.files import write_whole
+from grader.course import Course
+from grader.export.scores import as_csv
+from grader.notebook.submission import TIMESTAMP
+from grader.storage.lock import Turn
+from grader.storage.records import Record, records
+from grader.storage.submitted import known_students
+
+NEW, AGAIN, EARLIER, KNOWN = 'new', 'again', 'earlier', 'known'
+"""What became of a submission: the first one, a later one, an earlier one, one that was there."""
+FULL = (errno.ENOSPC, errno.EDQUOT)
+LEFT, UNUSED = 'left', 'unused'
+"""What was not taken: a person should look at it, or nobody would have graded it."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """What the run says of one file."""
+
+    path: str
+    """Where it lies within what was collected."""
+    outcome: str
+    reason: str = ''
+    student_id: str = ''
+    assignment: str = ''
+    handed_in: datetime | None = None
+
+
+def collect(course: Course, source: Path, *, file_times: bool = False) -> Iterator[Row]:
+    """Take in a folder, an archive or a notebook; yield a row for each file, those left last.
+
+    Nothing is written but under gradebook/, and `source` stays as it is. Doing it again changes
+    nothing. `file_times` takes a file's time for the time it was handed in, where nothing else
+    tells. Raises CourseError where `source` is nothing of the kind, and where the disk is full.
+    """
+    grades = cache(lambda: records(course))
+    with Turn.take(course.gradebook), tempfile.TemporaryDirectory(prefix='collect-') as aside:
+        try:
+            found = list(look_into(source, Path(aside)))
+            visible = [each for each in found if not each.litter]
+            hand_ins, rest = match(
+                visible,
+                course.assignments(),
+                students=known_students(course),
+                file_times=file_times,
+            )
+            problems = Numbers(course).take(hand_ins)
+            for each, problem in zip(hand_ins, problems, strict=True):
+                yield _row(course, each, problem, grades)
+        except OSError as error:
+            if error.errno not in FULL:
+                raise
+            raise CourseError(
+                'the disk is full: what was collected is kept whole; free some space, and collect '
+                'the same again'
+            ) from None
+        for left in sorted(rest, key=lambda left: left.incoming.parts):
+            yield Row(left.incoming.path, LEFT if left.matters else UNUSED, left.reason)
+        for each in found:
+            if each.litter:
+                yield Row(each.path, UNUSED, 'hidden, or left behind by a program')
+
+
+def _row(course: Course, each: HandIn, problem: str, grades: Callable[[], list[Record]]) -> Row:
+    try:
+        outcome, reason = (LEFT, problem) if problem else _take(course, each, grades)
+        if not problem and each.remark:
+            reason = f'{reason}; {each.remark}' if reason else each.remark
+    except OSError as error:
+        if error.errno in FULL:
+            raise
+        outcome, reason = LEFT, f'{error.strerror}: {error.filename}'
+    whose = (each.student_id, each.assignment)
+    return Row(each.notebook.path, outcome, reason, *whose, each.handed_in)
+
+
+def _take(course: Course, each: HandIn, grades: Callable[[], list[Record]]) -> tuple[str, str]:
+    """Put a submission in its place; return what became of it, and why."""
+    place = course.folder('submitted', each.student_id, each.assignment)
+    shelf = course.folder('submitted_before', each.student_id, each.assignment)
+    came = {name: path.read_bytes() for name, path in _files(each)}
+    if not place.exists():
+        _put(_writer(came, each.handed_in), place)
+        return NEW, ''
+    there, when = _contents(place), date_of(place / TIMESTAMP)
+    if came == there:
+        return KNOWN, 'nothing new'
+    both_known = each.handed_in is not None and when is not None
+    if not (both_known and each.handed_in > when) and came in _shelved(shelf):
+        return KNOWN, 'as an earlier one, which was replaced since'
+    if both_known and each.handed_in <= when:
+        kept = _shelve(_within('submitted', _writer(came, each.handed_in)), shelf)
+        return EARLIER, f'a later one is there already; kept in {_shown(kept, course)}'
+    if there not in _shelved(shelf):  # else an earlier run was ended right after that
+        _shelve(lambda folder: _copy_all(course, each, folder, grades), shelf)
+    _put(_writer(came, each.handed_in), place)
+    return AGAIN, f'the one before and its grade are kept in {_shown(shelf, course)}'
+
+
+def _files(each: HandIn) -> Iterator[tuple[str, Path]]:
+    yield f'{each.assignment}.ipynb', each.notebook.file
+    yield from each.extra.items()
+
+
+def _contents(folder: Path) -> dict[str, bytes]:
+    """Return the files of a submission, without the time."""
+    files = (path for path in folder.iterdir() if path.is_file() and path.name != TIMESTAMP)
+    return {path.name: path.read_bytes() for path in files}
+
+
+def _shelved(shelf: Path) -> list[dict[str, bytes]]:
+    return [_contents(folder) for folder in shelf.glob('*/submitted')]
+
+
+def _writer(files: Mapping[str, bytes], handed_in: datetime | None) -> Callable[[Path], None]:
+    """Return what writes a submission into an empty folder, its time as nbgrader does."""
+
+    def write(folder: Path) -> None:
+        for name, content in files.items():
+            (folder / name).write_bytes(content)
+        if handed_in:
+            time = handed_in.strftime('%Y-%m-%d %H:%M:%S.%f UTC')
+            (folder / TIMESTAMP).write_text(time, encoding='ascii')
+
+    return write
+
+
+def _within(name: str, write: Callable[[Path], None]) -> Callable[[Path], None]:
+    def write_within(folder: Path) -> None:
+        (folder / name).mkdir()
+        write(folder / name)
+
+    return write_within
+
+
+def _copy_all(
+    course: Course, each: HandIn, folder: Path, grades: Callable[[], list[Record]]
+) -> None:
+    """Copy what there is of a submission: its files, what came of them, and its scores."""
+    for step in ('submitted', 'autograded', 'feedback'):
+        there = course.folder(step, each.student_id, each.assignment)
+        if there.is_dir():
+            shutil.copytree(there, folder / step, symlinks=True)
+    if not course.database.exists():
+        return
+    whose = (each.student_id, each.assignment)
+    theirs = [grade for grade in grades() if (grade.student_id, grade.assignment) == whose]
+    write_whole(folder / 'scores.csv', as_csv(course, theirs))
+
+
+def _shelve(write: Callable[[Path], None], shelf: Path) -> Path:
+    """Put a folder beside those of earlier times; return it."""
+    numbers = [int(path.name) for path in shelf.glob('*') if path.name.isdecimal()]
+    place = shelf / str(max(numbers, default=0) + 1)
+    _put(write, place)
+    return place
+
+
+def _put(write: Callable[[Path], None], place: Path) -> None:
+    """Write a folder aside and put it in its place: nobody ever finds half of it."""
+    place.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix='.new-', dir=place.parents[2]) as aside:
+        new = Path(aside, 'new')
+        new.mkdir()
+        write(new)
+        if place.exists():
+            place.rename(Path(aside, 'old'))
+        new.rename(place)
+
+
+def _shown(path: Path, course: Course) -> str:
+    return str(path.relative_to(course.gradebook.parent))

@@ -1,0 +1,84 @@
+"""Put into lines what `./course collect` has taken, and what it has not."""
+
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Iterator
+
+from grader.collect.collect import AGAIN, EARLIER, KNOWN, LEFT, NEW, UNUSED, Row
+from grader.collect.naming import shared_folders
+from grader.common.text import columns, pad, printable, shorten
+
+WORDS = {NEW: 'new', AGAIN: 'handed in again', EARLIER: 'an earlier one', KNOWN: 'there already'}
+SHOWN = 3
+"""Files of one folder with one reason are counted once they are more."""
+MOST_OF_ONE = 12
+"""Lines about one folder; its student can make up as many reasons as files."""
+MAX_COLUMNS = 120
+"""Of a path: it may be 5,000 characters long, and all lines of a table are as wide as one."""
+
+
+def lines(rows: Iterable[Row]) -> Iterator[str]:
+    """Yield the lines of the report: what was taken, what was not and why, and how many."""
+    rows = list(rows)
+    taken = [row for row in rows if row.student_id and row.outcome != LEFT]
+    yield from _table(('student', 'assignment', 'handed in (UTC)', ''), map(_taken, taken))
+    left = [(row.path, row.reason) for row in rows if row.outcome == LEFT]
+    if left:
+        yield from ('', 'Not taken; they stay where they are:')
+        yield from _table(('file', 'reason'), _few_alike(left))
+    if unused := list(_gathered([row for row in rows if row.outcome == UNUSED])):
+        yield from ('', 'Not used for grading:')
+        yield from _table(('file', 'reason'), unused)
+    count = Counter(row.outcome for row in rows)
+    parts = [f'{count[outcome]} {words}' for outcome, words in WORDS.items() if count[outcome]]
+    nothing = 'Nothing was taken' if rows else 'Nothing was taken, for there is no file in it'
+    yield from ('', f'{", ".join(parts) or nothing}; {len(left)} not taken.')
+
+
+def _taken(row: Row) -> tuple[str, ...]:
+    time = f'{row.handed_in:%Y-%m-%d %H:%M:%S}' if row.handed_in else '–'
+    what = f'{WORDS[row.outcome]}: {row.reason}' if row.reason else WORDS[row.outcome]
+    return row.student_id, row.assignment, time, what
+
+
+def _gathered(rows: list[Row]) -> Iterator[tuple[str, str]]:
+    """Yield files and reasons; many of one kind in one place are counted."""
+    alike = defaultdict(list)
+    for row in rows:
+        alike[row.path.split('/')[0] if '/' in row.path else '', row.reason].append(row.path)
+    for (_, reason), paths in alike.items():
+        if len(paths) > SHOWN:
+            yield f'{paths[0]} and {len(paths) - 1} more', reason
+        else:
+            yield from ((path, reason) for path in paths)
+
+
+def _few_alike(left: list[tuple[str, str]]) -> Iterator[tuple[str, str]]:
+    """Yield paths and reasons; of many alike in one folder the first ones, and how many more."""
+    parts = [path.split('/') for path, _ in left]
+    shared = len(shared_folders([tuple(each[:-1]) for each in parts]))
+    folders: dict[str, dict[str, list]] = defaultdict(lambda: defaultdict(list))
+    for (path, reason), each in zip(left, parts, strict=True):
+        folders['/'.join(each[: shared + 1])][reason.partition(':')[0]].append((path, reason))
+    for folder, kinds in folders.items():
+        lines = 0
+        for kind, files in list(kinds.items()):
+            if lines >= MOST_OF_ONE:
+                break
+            del kinds[kind]
+            few = files if len(files) <= SHOWN + 1 else files[:SHOWN]
+            yield from few
+            if more := len(files) - len(few):
+                yield f'… and {more:,} more like it', kind
+            lines += len(few) + bool(more)
+        if more := sum(map(len, kinds.values())):
+            yield f'… and {more:,} more in {folder}', 'for other reasons'
+
+
+def _table(titles: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> Iterator[str]:
+    shown = ((shorten(printable(first), MAX_COLUMNS), *map(printable, r)) for first, *r in rows)
+    table = [titles, *shown]
+    widths = [max(columns(row[i]) for row in table) for i in range(len(titles) - 1)]
+    if len(table) > 1:
+        for row in table:
+            padded = [pad(field, width) for field, width in zip(row, [*widths, 0], strict=True)]
+            yield '  '.join(padded).rstrip()

@@ -1,0 +1,209 @@
+"""Whose file it is: student, assignment and time, read off where it lay and how it is named."""
+
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from datetime import datetime
+from hashlib import sha256
+from pathlib import Path
+
+from grader.collect.naming import Naming, Owner, is_notebook
+from grader.collect.uploads import Incoming, wanted
+from grader.common.dates import date_of
+from grader.common.student_names import Label, Unclear, problem_of_id, spellings
+from grader.notebook.submission import TIMESTAMP
+
+
+@dataclass(frozen=True)
+class HandIn:
+    """One assignment of one student, as it came in."""
+
+    student_id: str
+    assignment: str
+    notebook: Incoming
+    extra: dict[str, Path] = field(default_factory=dict)
+    """The student's Python files beside it, by name."""
+    handed_in: datetime | None = None
+    """In UTC; None where nothing tells."""
+    label: Label | None = None
+    """What Moodle or Canvas said of the student."""
+    remark: str = ''
+    """What a person may want to look at, although it was taken."""
+
+
+@dataclass(frozen=True)
+class Left:
+    """A file that was not taken."""
+
+    incoming: Incoming
+    reason: str
+    matters: bool = True
+    """Whether a person should look at it; else nobody would grade it anyway."""
+
+
+def match(
+    found: Sequence[Incoming],
+    assignments: Iterable[str],
+    *,
+    students: Iterable[str] = (),
+    file_times: bool = False,
+) -> tuple[list[HandIn], list[Left]]:
+    """Sort what came in: submissions, each student's in their order, and the rest with reasons.
+
+    `students` are those who are known from before. `file_times` takes the time of a file for the
+    time it was handed in, where nothing else tells.
+    """
+    rest = [Left(each, each.problem) for each in found if each.problem]
+    beside: dict[tuple[str, ...], dict[str, Incoming]] = defaultdict(dict)
+    for each in (each for each in found if not each.problem and not is_notebook(each)):
+        if wanted(each.parts[-1]):
+            beside[each.parts[:-1]][each.parts[-1]] = each
+        else:
+            rest.append(Left(each, 'neither a notebook nor Python', matters=False))
+    owners, remarks, unclear = _owners(found, assignments, students)
+    rest += unclear
+    hand_ins, used = [], set()
+    for notebook, owner in owners.items():
+        files = beside[notebook.parts[:-1]] if owner.by_folder or notebook.archive else {}
+        stamp = files.get(TIMESTAMP) if not (notebook.archive or owner.label) else None
+        when = owner.handed_in or (date_of(stamp.file) if stamp else None)
+        if when is None and file_times:
+            when = notebook.modified
+        extra = {
+            name: each.file
+            for name, each in files.items()
+            if name.endswith('.py') and not problem_of_id(name)
+        }
+        hand_ins.append(
+            HandIn(
+                owner.student_id,
+                owner.assignment,
+                notebook,
+                extra,
+                when,
+                owner.label,
+                remarks[notebook],
+            )
+        )
+        used |= {files[name] for name in extra}
+        used |= {stamp} if stamp and date_of(stamp.file) else set()
+    uploads = {notebook.parts[:-1] for notebook, owner in owners.items() if owner.label}
+    for folder, files in beside.items():
+        left = (each for each in files.values() if each not in used)
+        rest += [_not_taken(each, in_upload=folder in uploads) for each in left]
+    return _in_order(hand_ins, rest), rest
+
+
+def _owners(
+    found: Sequence[Incoming], assignments: Iterable[str], students: Iterable[str]
+) -> tuple[dict[Incoming, Owner], dict[Incoming, str], list[Left]]:
+    """Return whose each notebook is, what is strange about it, and those that are nobody's."""
+    owners: dict[Incoming, Owner] = {}
+    left, students = [], list(students)
+    naming = Naming(found, assignments, students)
+    for each in filter(is_notebook, found):
+        try:
+            owners[each] = naming.owner(each)
+        except Unclear as unclear:
+            left.append(Left(each, str(unclear)))
+    numbers = defaultdict(set)
+    for owner in owners.values():
+        numbers[_namesakes(owner)].add(owner.label and owner.label.number)
+    known = defaultdict(set)
+    for student in {*students, *(owner.student_id for owner in owners.values())}:
+        for spelling in spellings(student):
+            known[spelling].add(student)
+    remarks, problems = {}, {}
+    for each, owner in owners.items():
+        remarks[each], problem = _claims(owner, naming, known)
+        if len(numbers[_namesakes(owner)]) > 1:
+            problem = _of_several(owner)
+        if problem:
+            problems[each] = problem
+    left += [Left(each, problem) for each, problem in problems.items()]
+    return {e: owner for e, owner in owners.items() if e not in problems}, remarks, left
+
+
+def _namesakes(owner: Owner) -> tuple:
+    """Return what two owners have in common who may be two persons of one name.
+
+    In one download Moodle numbers each of them; Canvas's number is the same in each download.
+    """
+    if owner.label is None:
+        return (owner.student_id, owner.above, owner.assignment, None)
+    platform = owner.label.platform
+    return (owner.student_id, owner.above if platform == 'moodle' else (), platform)
+
+
+def _of_several(owner: Owner) -> str:
+    return (
+        f'there are several {owner.student_id} with different numbers, this one is '
+        f'{owner.label.number}: rename the folders so that each has a name of its own'
+    )
+
+
+def _claims(owner: Owner, naming: Naming, known: Mapping[str, set[str]]) -> tuple[str, str]:
+    """Compare the names inside an upload with its owner's; return a remark, and a problem.
+
+    `known` are all students, by how their names may be spelled.
+    """
+    whose, remark = owner.student_id, ''
+    for who, surely in naming.claims(owner):
+        others = set().union(*(known.get(spelling, ()) for spelling in spellings(who)))
+        if surely or others - {whose}:
+            return '', (
+                f"it lies in what {whose} handed in, under the name of {who}: if it is {whose}'s, "
+                'rename that; if others packed it, collect what they packed by itself'
+            )
+        remark = remark or f'from a folder of their own, {who!r}'
+    return remark, ''
+
+
+def _not_taken(each: Incoming, *, in_upload: bool) -> Left:
+    """Say why a file that lies beside notebooks goes with none of them."""
+    if each.parts[-1] != TIMESTAMP:
+        return Left(each, "it lies beside no notebook, or beside several students'", matters=False)
+    if each.archive or in_upload:
+        where = 'archive' if each.archive else 'upload'
+        return Left(each, f"a time in a student's own {where} is not believed")
+    if date_of(each.file) is None:
+        return Left(each, 'it holds no date')
+    return Left(each, 'it lies beside no notebook of one student')
+
+
+def _in_order(hand_ins: list[HandIn], rest: list[Left]) -> list[HandIn]:
+    """Sort by student, assignment and time; what can't be put in an order joins the rest."""
+    whose: dict[tuple[str, str], list[HandIn]] = defaultdict(list)
+    for each in hand_ins:
+        whose[each.student_id, each.assignment].append(each)
+    ordered = []
+    for (student, assignment), several in sorted(whose.items()):
+        times = {each.handed_in for each in several}
+        if len(times) == len(several) and (None not in times or len(several) == 1):
+            ordered += sorted(several, key=lambda each: each.handed_in or datetime.min)
+            continue
+        if _all_alike(several):
+            ordered.append(several[0])
+            rest += [Left(each.notebook, 'the same again', matters=False) for each in several[1:]]
+            continue
+        others = f'one of {len(several)} notebooks for {assignment} by {student}'
+        reason = f'{others}, and nothing tells which is the latest'
+        rest += [Left(each.notebook, reason) for each in several]
+    return ordered
+
+
+def _all_alike(several: list[HandIn]) -> bool:
+    """Whether they hold the same; not where that can't be read."""
+    try:
+        return len({_content(each) for each in several}) == 1
+    except OSError:
+        return False  # each of them is left to a person, with its path
+
+
+def _content(each: HandIn) -> bytes:
+    """Return a digest of the files of a submission."""
+    digest = sha256()
+    for name, path in [('', each.notebook.file), *sorted(each.extra.items())]:
+        digest.update(f'{name} {path.stat().st_size} '.encode())
+        digest.update(path.read_bytes())
+    return digest.digest()

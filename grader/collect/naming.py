@@ -1,0 +1,200 @@
+"""What names of files and folders tell of a notebook: its student, its assignment and its time.
+
+The outermost folder, archive or file that a person or a course management system named decides.
+What lies in it was named by the student: that may agree, and never makes it somebody else's.
+"""
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+
+from grader.collect.name_forms import Forms, bare, stem_of
+from grader.collect.uploads import Incoming
+from grader.common.dates import date_in
+from grader.common.student_names import (
+    Label,
+    Unclear,
+    is_nobody,
+    label_in,
+    same_person,
+    student_in,
+)
+
+_AGAIN = re.compile(r'-\d+(?=$|\.(zip|tar|tgz|tbz2|txz)\b)', re.IGNORECASE)
+"""What Canvas puts behind the name of what is handed in again."""
+EXPECTED = (
+    'expected STUDENT_ASSIGNMENT.ipynb, STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb or an archive named '
+    'after the student'
+)
+
+
+@dataclass(frozen=True)
+class Owner:
+    """Whose a notebook is, as far as names tell."""
+
+    student_id: str
+    assignment: str
+    by_folder: bool
+    """Whether all that lies in its folder is theirs."""
+    handed_in: datetime | None = None
+    """In UTC; None where its name tells no time."""
+    label: Label | None = None
+    """What Moodle or Canvas said of the student."""
+    above: tuple[str, ...] = ()
+    """What the folder, archive or file that decided lies in."""
+    inside: tuple[str, ...] = ()
+    """The folders and archives in that one, down to the notebook."""
+
+
+class Naming:
+    """How the files and folders of what came in are named."""
+
+    def __init__(
+        self,
+        found: Sequence[Incoming],
+        assignments: Iterable[str],
+        students: Iterable[str] = (),
+    ) -> None:
+        """Look at all that came in; `students` are those who are known from before."""
+        self._known = frozenset(assignments)
+        self._forms = Forms(self._known)
+        notebooks = [each for each in found if is_notebook(each)]
+        self._by_platform = self._all_by_platform(notebooks, list(students))
+        self._shared = len(shared_folders([each.parts[:-1] for each in notebooks]))
+        named = (self._forms.named(stem_of(each.parts[-1])) for each in notebooks)
+        self._several = len({name.who for name in named if name}) > 1
+
+    def owner(self, each: Incoming) -> Owner:
+        """Return whose notebook it is. Raises Unclear."""
+        at = self._decides(each)
+        if at is None:
+            return self._owner_by_file_name(each)
+        name, above, inside = each.parts[at], each.parts[:at], each.parts[at + 1 : -1]
+        label = label_in(name)
+        stem = stem_of(each.parts[-1])
+        if at == len(each.parts) - 1:  # no folder, and the file's name begins with the label
+            stem = stem_of(label.rest)
+        elif label and label.rest:  # what the student called that folder or archive
+            inside = (_AGAIN.sub('', label.rest), *inside)
+        if label and label.platform == 'canvas':
+            stem = _AGAIN.sub('', stem)
+        if exchanged := self._forms.exchanged(name):
+            if stem != exchanged.what or inside:
+                raise Unclear(f'in the exchange, {exchanged.what}.ipynb was expected here')
+            when = date_in(re.sub(r'(\d\d)_(\d\d)_(\d\d)', r'\1:\2:\3', exchanged.when))
+            return Owner(student_in(exchanged.who), stem, True, when, above=above)
+        assignment = self._assignment(stem, each.parts[:-1])
+        student = student_in(self._forms.who(name))
+        if (named := self._forms.named(stem)) and not same_person(named.who, student):
+            where = f'in the archive of {student}' if each.archive else f'in a folder {student}'
+            raise Unclear(
+                f"it is named after {named.who}, and {where}: rename it if it is {student}'s, "
+                'or else collect it by itself'
+            )
+        return Owner(
+            student,
+            assignment,
+            by_folder=at < len(each.parts) - 1,
+            label=label,
+            above=above,
+            inside=inside,
+        )
+
+    def claims(self, owner: Owner) -> Iterator[tuple[str, bool]]:
+        """Yield whom else the names inside an upload may name, and whether that is their form."""
+        for name in owner.inside:
+            who = self._forms.who(name)
+            ours = who in self._known or is_nobody(who) or same_person(who, owner.student_id)
+            if not ours:
+                yield who, who != bare(name)
+
+    def _decides(self, each: Incoming) -> int | None:
+        """Return which part of its path says whose it is; None where only the file's name does.
+
+        Raises Unclear where there may be several.
+        """
+        if self._by_platform:
+            return self._first_by_platform(each)
+        folders = each.parts[: each.archive] or each.parts[:-1]
+        candidates = self._candidates(folders, self._shared)
+        if not candidates and not (self._several and not each.archive):
+            candidates = self._candidates(folders, 0)  # all that came in may be one student's
+        if not candidates:
+            if each.archive:
+                raise Unclear(f'nothing says whose it is: {EXPECTED}')
+            return len(folders) if label_in(each.parts[-1]) else None
+        first, *others = candidates
+        if label_in(folders[first]) or self._forms.exchanged(folders[first]):
+            return first
+        names = [self._forms.who(folders[at]) for at in (first, *others)]
+        if not all(same_person(name, names[0]) for name in names):
+            raise Unclear(
+                f'it may be of {" or of ".join(names)}: collect the folder by itself in which the '
+                "students' folders lie, or rename it"
+            )
+        return first
+
+    def _candidates(self, folders: Sequence[str], start: int) -> list[int]:
+        """Return which folders may be named after a student, from one of them on."""
+        names = [(at, bare(folder)) for at, folder in enumerate(folders) if at >= start]
+        return [at for at, name in names if name not in self._known and not is_nobody(name)]
+
+    def _owner_by_file_name(self, each: Incoming) -> Owner:
+        stem = stem_of(each.parts[-1])
+        assignment = self._assignment(stem, each.parts[:-1])
+        if stem in self._known:
+            raise Unclear(f'nothing says whose it is: {EXPECTED}')
+        student = student_in(self._forms.named(stem).who)
+        return Owner(student, assignment, by_folder=False, above=each.parts[:-1])
+
+    def _assignment(self, stem: str, folders: Sequence[str]) -> str:
+        """Return the assignment that a file is named after. Raises Unclear."""
+        named = self._forms.named(stem)
+        if stem not in self._known and not named:
+            known = ', '.join(sorted(self._known))
+            raise Unclear(f'named after no assignment: {EXPECTED}, with {known}')
+        assignment = named.what if named else stem
+        for folder in reversed(folders):
+            name = bare(folder)
+            of = self._forms.named(name)
+            other = name if name in self._known else of.what if of else assignment
+            if other != assignment:
+                raise Unclear(f'it lies in a folder of another assignment, {other}')
+        return assignment
+
+    def _all_by_platform(self, notebooks: Sequence[Incoming], students: Sequence[str]) -> bool:
+        """Whether Moodle, Canvas or the exchange made all of it, in folders of the teacher's.
+
+        Folders of students, in which they may imitate that, would lie beside others' or be known.
+        """
+        decides = [self._first_by_platform(each) for each in notebooks]
+        if None in decides:
+            return False
+        above = {each.parts[:at] for each, at in zip(notebooks, decides, strict=True)}
+        names = {name for folders in above for name in folders if not is_nobody(name)}
+        return not (
+            any(folders[:n] in above for folders in above for n in range(len(folders)))
+            or any(same_person(name, student) for name in names for student in students)
+        )
+
+    def _first_by_platform(self, each: Incoming) -> int | None:
+        """Return which part Moodle, Canvas or nbgrader's exchange named, the outermost one."""
+        for at, part in enumerate(each.parts[: each.archive] or each.parts):
+            if label_in(part) or (at < len(each.parts) - 1 and self._forms.exchanged(part)):
+                return at
+        return None
+
+
+def is_notebook(each: Incoming) -> bool:
+    """Whether a file is a notebook that can be read."""
+    return not each.problem and each.parts[-1].lower().endswith('.ipynb')
+
+
+def shared_folders(folders: Sequence[tuple[str, ...]]) -> tuple[str, ...]:
+    """Return the folders in which everything lies."""
+    if not folders:
+        return ()
+    low, high = min(folders), max(folders)
+    alike = [a == b for a, b in zip(low, high, strict=False)]
+    return low[: alike.index(False) if False in alike else len(alike)]

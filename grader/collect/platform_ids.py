@@ -1,0 +1,100 @@
+"""The numbers that course management systems give students: kept for what goes back to them.
+
+gradebook/numbers.json holds {student: {assignment: {'moodle': '8001'}}}. Moodle numbers a student
+anew in each assignment, Canvas once.
+"""
+
+import json
+from collections import defaultdict
+from collections.abc import Sequence
+
+from grader.collect.matching import HandIn
+from grader.common.errors import CourseError
+from grader.common.files import write_whole
+from grader.course import Course
+
+FILE = 'numbers.json'
+
+
+class Numbers:
+    """What is known of the students' numbers; whoever keeps one has the gradebook's turn."""
+
+    def __init__(self, course: Course) -> None:
+        """Read them. Raises CourseError where the file is damaged."""
+        self._path = course.gradebook / FILE
+        self._kept: dict[str, dict[str, dict[str, str]]] = {}
+        if self._path.exists():
+            try:
+                self._kept = _checked(json.loads(self._path.read_text(encoding='utf-8')))
+            except (ValueError, RecursionError):
+                raise CourseError(
+                    f'{self._path} is damaged: put a copy of it back, or remove it; then equal '
+                    'names are told apart no more by the numbers of earlier downloads'
+                ) from None
+
+    def of(self, student_id: str, assignment: str) -> dict[str, str]:
+        """Return a student's numbers in an assignment, by platform."""
+        return self._kept.get(student_id, {}).get(assignment, {})
+
+    def take(self, hand_ins: Sequence[HandIn]) -> list[str]:
+        """Write the students' numbers down; return for each why it is left to a person, or ''.
+
+        That is where students of one name have several numbers: nobody's work may be replaced by
+        that of a namesake.
+        """
+        came = defaultdict(set)
+        for each in hand_ins:
+            if each.label:
+                came[_same(each)].add(each.label.number)
+        problems = [_problem(each, came[_same(each)] | self._known(each)) for each in hand_ins]
+        changed = False
+        for each, problem in zip(hand_ins, problems, strict=True):
+            if each.label and not problem:
+                theirs = self._kept.setdefault(each.student_id, {}).setdefault(each.assignment, {})
+                changed |= theirs.get(each.label.platform) != each.label.number
+                theirs[each.label.platform] = each.label.number
+        if changed:
+            text = json.dumps(self._kept, ensure_ascii=False, indent=1, sort_keys=True)
+            write_whole(self._path, text + '\n')
+        return problems
+
+    def _known(self, each: HandIn) -> set[str]:
+        """Return the numbers that the student of that name had before."""
+        if each.label is None:
+            return set()
+        platform, theirs = each.label.platform, self._kept.get(each.student_id, {})
+        if platform == 'moodle':
+            theirs = {each.assignment: self.of(each.student_id, each.assignment)}
+        return {numbers[platform] for numbers in theirs.values() if platform in numbers}
+
+
+def _same(each: HandIn) -> tuple[str, ...]:
+    """Return what equal numbers are expected of."""
+    if each.label is None:
+        return ()
+    of = each.assignment if each.label.platform == 'moodle' else ''
+    return each.label.platform, each.student_id, of
+
+
+def _problem(each: HandIn, numbers: set[str]) -> str:
+    if each.label is None or numbers == {each.label.number}:
+        return ''
+    platform, who = each.label.platform.capitalize(), each.student_id
+    others = ', '.join(sorted(numbers - {each.label.number}))
+    return (
+        f"the name {who} has {platform}'s number {each.label.number} here and {others} elsewhere: "
+        f'if it is one person, rename the folder to {who}, without the number; if not, give each '
+        'folder a name of its own'
+    )
+
+
+def _checked(kept: object) -> dict[str, dict[str, dict[str, str]]]:
+    """Return what was read. Raises ValueError where it has another form."""
+    fits = isinstance(kept, dict) and all(
+        isinstance(numbers, dict) and all(isinstance(n, str) for n in numbers.values())
+        for of_student in kept.values()
+        for numbers in (of_student.values() if isinstance(of_student, dict) else [None])
+    )
+    if not fits:
+        raise ValueError('it has another form')
+    return kept

@@ -1,0 +1,209 @@
+"""What comes in: each file of a folder or an archive, and of the archives in it."""
+
+import os
+import re
+import shutil
+import stat
+import tempfile
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass, replace
+from datetime import UTC, datetime
+from pathlib import Path
+
+from grader.collect.archive_entries import ARCHIVE, MAX_PARTS
+from grader.collect.archives import MAX_FILE_BYTES, Allowance, unpack
+from grader.common.errors import CourseError
+from grader.common.parsing import Limits, TooHard, parse
+from grader.common.student_names import label_in
+from grader.notebook.submission import TIMESTAMP
+
+ALL = {'files': 100_000, 'bytes': 8_000_000_000}
+"""A class of 500 with all its lessons and pictures."""
+ONE = {'files': 5_000, 'bytes': 200_000_000}
+"""One student's archive, with all that the course's own bundle holds."""
+MAX_NESTED = 3
+"""Archives within archives: a course management system's, a student's, and one more."""
+LIMITS_OF_ALL = Limits(cpu_sec=900, wall_sec=3_600)
+LIMITS_OF_ONE = Limits(cpu_sec=20, wall_sec=300)
+"""What reading them may take: a student's largest one takes two seconds of processor time."""
+
+OTHER_ARCHIVE = re.compile(r'\.(rar|7z|gz|bz2|xz|zst|lzh|cab|iso|dmg)$', re.IGNORECASE)
+"""How names of archives end that can't be read here."""
+LITTER = {'__MACOSX', '__pycache__', 'Thumbs.db', 'desktop.ini'}
+
+
+@dataclass(frozen=True)
+class Incoming:
+    """A file that came in, wherever it lay."""
+
+    parts: tuple[str, ...]
+    """Its path within what was collected; archives are folders here."""
+    file: Path | None = None
+    """Where it can be read; None where it is not wanted, or has a problem."""
+    modified: datetime | None = None
+    """When it, or the archive it came in, was written."""
+    problem: str = ''
+    """Why it can't be read."""
+    archive: int = 0
+    """How many of its parts lead to a student's archive and name it; 0 where there is none."""
+
+    @property
+    def path(self) -> str:
+        """Return its path as one text."""
+        return '/'.join(self.parts)
+
+    @property
+    def litter(self) -> bool:
+        """Whether an editor or a desktop left it there, not a person."""
+        hidden = any(part.startswith('.') or part in LITTER for part in self.parts)
+        return hidden and not self.problem
+
+
+def look_into(source: Path, aside: Path) -> Iterator[Incoming]:
+    """Yield all files in a folder or an archive; `aside` is an empty folder for what is unpacked.
+
+    Links are not followed. An archive in it is taken for a student's. Raises CourseError where
+    there is nothing of the kind.
+    """
+    left = Allowance(**ALL)
+    # the name of one student's upload says whose it is; a class's may look like one of Canvas's
+    name = source.resolve().name
+    upload = (name,) if (label := label_in(name)) and label.platform == 'moodle' else ()
+    if source.is_dir():
+        found: Iterator[Incoming] = _walk(source, upload)
+    elif upload and source.is_file():
+        found = iter([_on_disk(source, upload)])
+    elif source.is_file() and ARCHIVE.search(source.name):
+        found = _apart('inside', Incoming((), source), source.name, aside, left, LIMITS_OF_ALL)
+    elif source.is_file() and source.suffix == '.ipynb':
+        found = iter([_on_disk(source, (source.name,))])
+    else:
+        raise CourseError(
+            f'{source} is {"another kind of file" if source.exists() else "not there"}: expected '
+            'a folder, a notebook or an archive (.zip, .tar, .tar.gz)'
+        )
+    for each in found:
+        if each.problem or each.litter or not ARCHIVE.search(each.parts[-1]):
+            yield from _opened(each, aside, left, nested=1)
+        else:
+            part = left.part(**ONE)
+            before = replace(part)
+            yield from _apart('opened', each, each.parts[-1], aside, part, LIMITS_OF_ONE)
+            left.less(before, part)
+
+
+def read_apart(way: str, outer: dict, name: str, aside: str, left: dict) -> dict:
+    """Do in a process of its own what `_apart` asks for: JSON comes, and JSON goes."""
+    allowance, archive = Allowance(**left), _unpacked(outer)
+    if way == 'inside':
+        found = _inside(archive, name, Path(aside), allowance)
+    else:
+        found = _opened(archive, Path(aside), allowance, nested=1)
+    return {'found': [_packed(each) for each in found], 'left': asdict(allowance)}
+
+
+def _apart(
+    way: str, outer: Incoming, name: str, aside: Path, left: Allowance, limits: Limits
+) -> Iterator[Incoming]:
+    """Yield what is in an archive, 'inside' alone or 'opened' with the archives in it."""
+    own = tempfile.mkdtemp(dir=aside)
+    arguments = (way, _packed(outer), name, own, asdict(left))
+    try:
+        said = parse('grader.collect.uploads:read_apart', *arguments, limits=limits)
+    except TooHard as why:
+        shutil.rmtree(own)
+        yield replace(
+            outer,
+            parts=outer.parts or (name,),
+            file=None,
+            problem=f'it is not read, for {why}: ask for a new one, or unpack it by hand',
+        )
+        return
+    vars(left).update(said['left'])
+    yield from map(_unpacked, said['found'])
+
+
+def _packed(each: Incoming) -> dict:
+    """Return a file that came in as JSON."""
+    return vars(each) | {
+        'file': each.file and str(each.file),
+        'modified': each.modified and each.modified.isoformat(),
+    }
+
+
+def _unpacked(said: dict) -> Incoming:
+    return Incoming(
+        parts=tuple(said['parts']),
+        file=said['file'] and Path(said['file']),
+        modified=said['modified'] and datetime.fromisoformat(said['modified']),
+        problem=said['problem'],
+        archive=said['archive'],
+    )
+
+
+def wanted(name: str) -> bool:
+    """Whether a file of that name is read at all."""
+    return (
+        name.endswith(('.ipynb', '.py')) or name == TIMESTAMP or ARCHIVE.search(name) is not None
+    )
+
+
+def _opened(each: Incoming, aside: Path, left: Allowance, *, nested: int) -> Iterator[Incoming]:
+    """Yield a file; of an archive, what is in it."""
+    if each.problem or each.litter:
+        yield each
+    elif OTHER_ARCHIVE.search(each.parts[-1]) and not ARCHIVE.search(each.parts[-1]):
+        yield replace(each, problem='an archive of another kind: ask for a .zip or .tar.gz')
+    elif not ARCHIVE.search(each.parts[-1]):
+        yield each
+    elif nested > MAX_NESTED:
+        yield replace(each, problem=f'more than {MAX_NESTED} archives within each other')
+    else:
+        part = left.part(**ONE)
+        before = replace(part)
+        for inner in _inside(each, each.parts[-1], aside, part):
+            yield from _opened(inner, aside, part, nested=nested + 1)
+        left.less(before, part)
+
+
+def _inside(outer: Incoming, name: str, aside: Path, left: Allowance) -> Iterator[Incoming]:
+    for member in unpack(outer.file, name=name, aside=aside, left=left, wanted=wanted):
+        parts = outer.parts + member.parts
+        yield Incoming(
+            parts=parts or (name,),
+            file=member.file,
+            modified=outer.modified if outer.parts else member.modified,
+            problem=member.problem,
+            archive=outer.archive or len(outer.parts),
+        )
+
+
+def _walk(folder: Path, above: tuple[str, ...]) -> Iterator[Incoming]:
+    for path in sorted(folder.iterdir()):
+        parts = (*above, path.name)
+        try:
+            each = _on_disk(path, parts)
+            if each.problem or each.litter or not path.is_dir():
+                yield each
+            elif len(parts) > MAX_PARTS:
+                yield Incoming(parts, problem=f'it lies more than {MAX_PARTS} folders deep')
+            else:
+                yield from _walk(path, parts)
+        except OSError as error:  # it is gone meanwhile, or the disk is damaged
+            yield Incoming(parts, problem=f'it can not be read: {error.strerror}')
+
+
+def _on_disk(path: Path, parts: tuple[str, ...]) -> Incoming:
+    """Describe a file or folder as it lies there."""
+    status = path.lstat()
+    problem = ''
+    if stat.S_ISLNK(status.st_mode):
+        problem = 'a link: only files are taken'
+    elif not stat.S_ISREG(status.st_mode) and not stat.S_ISDIR(status.st_mode):
+        problem = 'a device or the like: only files are taken'
+    elif status.st_size > MAX_FILE_BYTES and path.suffix in ('.ipynb', '.py'):
+        problem = f'over {MAX_FILE_BYTES / 1e6:.0f} MB: ask for it without outputs'
+    elif not os.access(path, os.R_OK | (os.X_OK if path.is_dir() else 0)):
+        problem = 'it must not be read: see its permissions'
+    modified = datetime.fromtimestamp(status.st_mtime, UTC)
+    return Incoming(parts, None if problem else path, modified, problem)

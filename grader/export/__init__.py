@@ -1,0 +1,1 @@
+"""What leaves the gradebook as files: scores, totals, sample solutions."""

@@ -1,0 +1,97 @@
+"""The whole course in one table: a row for each student, a column for each assignment."""
+
+from collections import defaultdict
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from grader.common.files import write_whole
+from grader.common.text import spreadsheet_table
+from grader.course import Course
+from grader.storage.records import Record, records
+
+
+@dataclass(frozen=True)
+class StudentTotal:
+    """What one student has earned so far."""
+
+    student_id: str
+    scores: tuple[float | None, ...]
+    """For each assignment, late penalties taken off; None where nothing was handed in."""
+    waiting: int
+    """How many graded cells wait for a person; they count nothing yet."""
+
+    @property
+    def total(self) -> float:
+        """Return the sum over all assignments."""
+        return sum(score for score in self.scores if score is not None)
+
+
+@dataclass(frozen=True)
+class Totals:
+    """Students times assignments."""
+
+    assignments: tuple[str, ...]
+    max_scores: tuple[float, ...]
+    """The most that each assignment gives."""
+    students: tuple[StudentTotal, ...]
+
+    @property
+    def max_score(self) -> float:
+        """Return the most that the whole course gives."""
+        return sum(self.max_scores)
+
+
+def add_up(found: Iterable[Record]) -> Totals:
+    """Add up graded cells, those of assignments that a student did not hand in among them."""
+    by_student: dict[str, dict[str, list[Record]]] = defaultdict(lambda: defaultdict(list))
+    for record in found:
+        by_student[record.student_id][record.assignment].append(record)
+    max_scores = {
+        assignment: sum(cell.max_score for cell in cells)
+        for lessons in by_student.values()
+        for assignment, cells in lessons.items()
+    }
+    assignments = sorted(max_scores)
+    return Totals(
+        assignments=tuple(assignments),
+        max_scores=tuple(max_scores[each] for each in assignments),
+        students=tuple(
+            StudentTotal(
+                student_id=student,
+                scores=tuple(_score(lessons[each]) for each in assignments),
+                waiting=sum(_waits(cell) for cells in lessons.values() for cell in cells),
+            )
+            for student, lessons in sorted(by_student.items())
+        ),
+    )
+
+
+def write_totals(course: Course) -> Path:
+    """Write gradebook/totals.csv, a row for each student; return its path.
+
+    A score is empty where nothing was handed in; `waiting` counts what a person has to decide.
+    """
+    path = course.gradebook / 'totals.csv'
+    write_whole(path, as_csv(add_up(records(course))))
+    return path
+
+
+def as_csv(totals: Totals) -> str:
+    """Return the table for a spreadsheet."""
+    most = zip(totals.assignments, totals.max_scores, strict=True)
+    heads = [f'{assignment} (of {points:g})' for assignment, points in most]
+    rows = [['student_id', *heads, f'total (of {totals.max_score:g})', 'waiting']]
+    for each in totals.students:
+        scores = ['' if score is None else score for score in each.scores]
+        rows.append([each.student_id, *scores, each.total, each.waiting])
+    return spreadsheet_table(rows)
+
+
+def _score(cells: list[Record]) -> float | None:
+    handed_in = [cell for cell in cells if cell.submitted]
+    return sum(cell.score or 0.0 for cell in handed_in) if handed_in else None
+
+
+def _waits(cell: Record) -> bool:
+    return cell.submitted and cell.score is None

@@ -1,0 +1,1 @@
+"""Run the exercises of one submission and give each grade cell its verdict."""

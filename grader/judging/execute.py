@@ -1,0 +1,128 @@
+"""Student cells run in the one kernel, grade cells in the other; each exercise is judged alone."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
+
+import nbformat
+from my_robot_basics.validate.cells import KEY, grade_id, role
+from my_robot_basics.validate.exercises import find_exercises
+from my_robot_basics.validate.judging import Budget, judge_exercise
+from my_robot_basics.validate.limits import MAX_NOTEBOOK_OUTPUT_CHARACTERS
+from my_robot_basics.validate.verdict import Verdict, refuse, write_verdict
+from nbformat import NotebookNode
+
+from grader.common.pool import Pool
+from grader.judging.local_paths import hide_local_paths
+from grader.kernels.isolation import isolated
+from grader.kernels.rooms import Rooms
+
+
+@dataclass(frozen=True)
+class Execution:
+    """A graded notebook."""
+
+    notebook: NotebookNode
+    """With the outputs of the student's cells, and a verdict in each grade cell."""
+    verdicts: tuple[Verdict, ...]
+    notes: tuple[str, ...]
+    """What was mended in the notebook before it ran."""
+
+
+@dataclass
+class _Room:
+    """What is left for the outputs of all cells of a notebook."""
+
+    characters: int = MAX_NOTEBOOK_OUTPUT_CHARACTERS
+
+    def fit(self, outputs: list[NotebookNode]) -> list[NotebookNode]:
+        """Return a cell's outputs while there is room for them, or a word that there is none."""
+        size = len(str(outputs))
+        if size <= self.characters:
+            self.characters -= size
+            return outputs
+        most = f'{MAX_NOTEBOOK_OUTPUT_CHARACTERS:,}'
+        text = f'[not kept: all cells together put out more than {most} characters]\n'
+        return [nbformat.v4.new_output('stream', name='stdout', text=text)]
+
+
+@dataclass(frozen=True)
+class _Task:
+    """What all exercises of a notebook are judged with."""
+
+    notebook: NotebookNode
+    files: tuple[Path, ...]
+    seed: str
+    isolated: bool
+    budget: Budget
+    room: _Room = field(default_factory=_Room)
+
+    def rooms(self, doubts: list[str]) -> Rooms:
+        return Rooms(extra_files=self.files, seed=self.seed, isolated=self.isolated, doubts=doubts)
+
+    def write(self, index: int, verdict: Verdict, outputs: Sequence[NotebookNode]) -> Verdict:
+        write_verdict(self.notebook.cells[index], verdict, outputs)
+        return verdict
+
+
+def execute(
+    notebook: NotebookNode,
+    *,
+    extra_files: Sequence[Path] = (),
+    seed: str = '',
+    trust_students: bool = False,
+) -> Execution:
+    """Run a healed notebook's exercises, each in rooms of its own, and judge them.
+
+    `seed` decides the inputs that hidden tests choose. May be called inside a running event loop.
+    Nothing that a notebook does raises here; what the grader itself fails in is `ungraded`.
+    Raises CourseError where there is no sandbox, unless told to `trust_students`.
+    """
+    options = {'extra_files': extra_files, 'seed': seed, 'trust_students': trust_students}
+    with Pool(in_flight=1) as pool:
+        return pool.submit(executed, notebook, **options).result()
+
+
+async def executed(
+    notebook: NotebookNode,
+    *,
+    extra_files: Sequence[Path] = (),
+    seed: str = '',
+    trust_students: bool = False,
+) -> Execution:
+    """Do what `execute` does, on the running event loop."""
+    graded = nbformat.from_dict(notebook)
+    graded.metadata.setdefault(KEY, nbformat.from_dict({'notes': []})).seed = seed
+    if problem := graded.metadata.get(KEY, {}).get('problem'):
+        verdicts = refuse(graded, problem)
+    else:
+        in_sandbox = isolated(trust_students=trust_students)
+        graded.metadata[KEY].in_sandbox = in_sandbox
+        verdicts = await _execute(_Task(graded, tuple(extra_files), seed, in_sandbox, Budget()))
+    hide_local_paths(graded)
+    by_hand = [_by_hand(c) for c in graded.cells if role(c) == 'answer' and _points(c)]
+    return Execution(
+        notebook=graded,
+        verdicts=tuple(verdicts + by_hand),
+        notes=tuple(graded.metadata.get(KEY, {}).get('notes', ())),
+    )
+
+
+async def _execute(task: _Task) -> list[Verdict]:
+    verdicts = []
+    for exercise in find_exercises(task.notebook):
+        rooms = partial(task.rooms, [])
+        judged = await judge_exercise(task.notebook, exercise, rooms, task.budget)
+        for index, run in judged.runs.items():
+            task.notebook.cells[index].outputs = task.room.fit(run.outputs)
+        verdicts += [task.write(index, *check) for index, check in judged.checks.items()]
+    return verdicts
+
+
+def _by_hand(cell: NotebookNode) -> Verdict:
+    return Verdict(grade_id(cell), outcome='manual', points=_points(cell), reason='')
+
+
+def _points(cell: NotebookNode) -> float:
+    return float(cell.metadata.nbgrader.get('points', 0)) if cell.metadata.nbgrader.grade else 0.0

@@ -1,0 +1,175 @@
+"""Check what a worker says came of a submission: nothing else of it reaches the gradebook.
+
+A worker runs strangers' code, perhaps on another machine. What it sends is text, and is believed
+only as far as its shape says what a grading can come to.
+"""
+
+import json
+from collections.abc import Iterator
+from typing import Any
+
+import jsonschema
+import nbformat
+from my_robot_basics.validate.cells import KEY, grade_id, role
+from nbformat import NotebookNode
+from nbgrader.utils import determine_grade
+
+from grader.common.errors import TaskFailed
+from grader.sandbox.limits import (
+    MAX_NOTE_CHARACTERS,
+    MAX_NOTES,
+    MAX_REASON_CHARACTERS,
+    MAX_RESULT_BYTES,
+)
+
+_MOST_SECONDS = 1e6
+"""Eleven days: longer than any worker lives."""
+_MADE_BY_A_RUN = ('outputs', 'execution_count', 'metadata')
+"""What a run may change in a cell; in `metadata`, only what stands under KEY."""
+
+_NOTES = {
+    'type': 'array',
+    'maxItems': MAX_NOTES,
+    'items': {'type': 'string', 'maxLength': MAX_NOTE_CHARACTERS},
+}
+_RESULT = jsonschema.Draft202012Validator(
+    {
+        'oneOf': [
+            {
+                'properties': {
+                    'notebook': {'type': 'object', 'required': ['cells', 'metadata']},
+                    'seconds': {'type': 'number', 'minimum': 0, 'maximum': _MOST_SECONDS},
+                },
+                'required': ['notebook', 'seconds'],
+                'additionalProperties': False,
+            },
+            {
+                'properties': {
+                    'failed': {'type': 'string', 'maxLength': MAX_REASON_CHARACTERS},
+                    'traceback': {'type': 'string', 'maxLength': 10 * MAX_REASON_CHARACTERS},
+                },
+                'required': ['failed', 'traceback'],
+                'additionalProperties': False,
+            },
+        ],
+        'type': 'object',
+    }
+)
+_VERDICT = jsonschema.Draft202012Validator(
+    {
+        'type': 'object',
+        'properties': {
+            'role': {'const': 'grade'},
+            'outcome': {'enum': ['passed', 'partial', 'failed', 'ungraded']},
+            'reason': {'type': 'string', 'maxLength': MAX_REASON_CHARACTERS},
+            'notes': _NOTES,
+            'details': {'type': 'string', 'maxLength': MAX_REASON_CHARACTERS},
+            'earned': {'type': 'number', 'minimum': 0},
+            'failed_at_grading': {'type': 'boolean'},
+        },
+        'required': ['role', 'outcome', 'reason', 'notes'],
+        'additionalProperties': False,
+        # what has no points has its reason
+        'if': {'properties': {'outcome': {'const': 'passed'}}},
+        'then': {'properties': {'reason': {'const': ''}}},
+        'else': {'properties': {'reason': {'minLength': 1}}},
+    }
+)
+
+
+def read_result(text: str, asked: NotebookNode, *, seed: str) -> tuple[NotebookNode, float]:
+    """Return the graded notebook and the seconds that a worker's answer holds.
+
+    `asked` is the notebook that was to be graded, with the inputs of `seed`. Raises TaskFailed
+    where the worker says that it failed, and where the answer is not what grading can come to.
+    """
+    if len(text) > MAX_RESULT_BYTES:
+        raise TaskFailed(
+            f'what came back is not a result: it has {len(text) / 1e6:.0f} MB, more than '
+            f'{MAX_RESULT_BYTES / 1e6:.0f} MB'
+        )
+    try:
+        found = json.loads(text, parse_constant=_refuse_constant)
+        _RESULT.validate(found)
+    except (ValueError, RecursionError, jsonschema.ValidationError) as error:
+        raise TaskFailed(f'what came back is not a result: {_first_line(error)}') from None
+    if 'failed' in found:
+        raise TaskFailed(found['failed'], found['traceback'])
+    try:
+        notebook = nbformat.from_dict(found['notebook'])
+        nbformat.validate(notebook, relax_add_props=True)
+        same = _unchanged(notebook) == _unchanged(asked)
+    except (nbformat.ValidationError, AttributeError, RecursionError) as error:
+        raise TaskFailed(f'what came back is not a notebook: {_first_line(error)}') from None
+    if not same:
+        raise TaskFailed('what came back is another notebook')
+    if problem := next(_problems(notebook, asked, seed), ''):
+        raise TaskFailed(f'what came back is no verdict: {problem}')
+    return notebook, float(found['seconds'])
+
+
+def _problems(notebook: NotebookNode, asked: NotebookNode, seed: str) -> Iterator[str]:
+    """Yield what is wrong with what a run has written into a notebook."""
+    ours, given = (dict(each.metadata.get(KEY, {})) for each in (notebook, asked))
+    if not isinstance(ours.pop('in_sandbox', True), bool):
+        yield 'whether it had a sandbox is no yes or no'
+    if ours != {'notes': []} | given | {'seed': seed}:
+        yield 'it tells of another healing, or of another seed'
+    for cell, before in zip(notebook.cells, asked.cells, strict=True):
+        if cell.cell_type == 'code' and role(before) == 'grade':
+            yield from _problems_of_check(cell)
+        elif cell.metadata.get(KEY) != before.metadata.get(KEY):
+            yield f'a cell that grades nothing has one: `{grade_id(cell) or cell.get("id")}`'
+
+
+def _problems_of_check(cell: NotebookNode) -> Iterator[str]:
+    """Yield what is wrong with the verdict in a grade cell, and with the score read off it."""
+    name, verdict = grade_id(cell), cell.metadata.get(KEY)
+    for error in _VERDICT.iter_errors(verdict):
+        yield f'`{name}`: {error.json_path}: {_first_line(error)}'
+        return
+    errors = [output for output in cell.outputs if output.output_type == 'error']
+    is_partial = verdict['outcome'] == 'partial'
+    points_kind = ['execute_result'] if is_partial else []
+    results = [output for output in cell.outputs if output.output_type in points_kind]
+    others = [out for out in cell.outputs if out.output_type not in ('error', *points_kind)]
+    if not all(_tells_only(output) for output in others):
+        yield f'`{name}`: an output that a check cannot have'
+        return
+    wanted = [verdict['reason']] if verdict['outcome'] == 'failed' else []
+    if [error.evalue for error in errors] != wanted:
+        yield f'`{name}`: its outputs do not say what its verdict does'
+        return
+    points, earned = cell.metadata.nbgrader.points, verdict.get('earned', 0.0)
+    if is_partial != (0.0 < earned < points) or len(results) != is_partial:
+        yield f'`{name}`: {earned:g} of {points:g} points for the outcome {verdict["outcome"]}'
+        return
+    score = {'passed': points, 'partial': earned, 'failed': 0.0}.get(verdict['outcome'])
+    if score is not None and determine_grade(cell) != (score, points):
+        yield f'`{name}`: nbgrader would read another score off its outputs'
+
+
+def _tells_only(output: NotebookNode) -> bool:
+    """Whether an output is words or a picture: a result of a cell would be read as points."""
+    if output.output_type == 'stream':
+        return output.name == 'stdout'
+    return output.output_type == 'display_data'
+
+
+def _unchanged(notebook: NotebookNode) -> list[Any]:
+    """Return what a run leaves as it is."""
+    found: list[Any] = [{k: v for k, v in notebook.metadata.items() if k != KEY}]
+    found += [notebook.nbformat, notebook.nbformat_minor]
+    for cell in notebook.cells:
+        marks = {k: v for k, v in cell.metadata.items() if k != KEY}
+        found.append(({k: v for k, v in cell.items() if k not in _MADE_BY_A_RUN}, marks))
+    return found
+
+
+def _refuse_constant(name: str) -> float:
+    raise ValueError(f'{name} is no number of JSON')
+
+
+def _first_line(error: Exception) -> str:
+    said = getattr(error, 'message', '') or str(error)
+    return said.partition('\n')[0][:300]

@@ -1,0 +1,95 @@
+"""Grade one submission: a pure function of text, which may run anywhere, twice, after a crash."""
+
+import asyncio
+import base64
+import json
+import tempfile
+import time
+import traceback
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import nbformat
+from nbformat import NotebookNode
+
+from grader.common.errors import CourseError
+from grader.judging.execute import executed
+from grader.judging.result_schema import read_result
+from grader.sandbox.limits import MAX_REASON_CHARACTERS, SUBMISSION_TIMEOUT_SEC
+from grader.sandbox.temporary_folders import own_folder
+
+
+@dataclass(frozen=True)
+class Task:
+    """All that the grading of one submission depends on."""
+
+    notebook: NotebookNode
+    """Healed and prepared: the lesson's cells with the student's answers."""
+    seed: str
+    """Decides the inputs that hidden tests choose."""
+    files: Mapping[str, bytes] = field(default_factory=dict)
+    """The student's own Python files, by name."""
+    trust_students: bool = False
+
+
+@dataclass(frozen=True)
+class Result:
+    """What came of a task."""
+
+    notebook: NotebookNode
+    """With a verdict in each grade cell."""
+    seconds: float
+    """How long that took, from the first kernel's start to the last one's end."""
+
+
+def packed(task: Task) -> str:
+    """Return a task as JSON, in ASCII."""
+    files = {name: base64.b64encode(raw).decode('ascii') for name, raw in task.files.items()}
+    return json.dumps(
+        {
+            'notebook': task.notebook,
+            'seed': task.seed,
+            'files': files,
+            'trust_students': task.trust_students,
+        }
+    )
+
+
+async def graded(text: str) -> str:
+    """Do a packed task; return what came of it as JSON, in ASCII. Nothing is raised."""
+    try:
+        return json.dumps(await _graded(json.loads(text)))
+    except Exception as error:  # told to whoever has sent it
+        said = f'{type(error).__name__}: {error}'[:MAX_REASON_CHARACTERS]
+        trace = traceback.format_exc()[-MAX_REASON_CHARACTERS:]
+        return json.dumps({'failed': said, 'traceback': trace})
+
+
+def unpacked(text: str, task: Task) -> Result:
+    """Check what came of a task, and return it.
+
+    Raises TaskFailed where it failed, and where what came back is no result of it.
+    """
+    return Result(*read_result(text, task.notebook, seed=task.seed))
+
+
+async def _graded(task: dict) -> dict:
+    start = time.monotonic()
+    with tempfile.TemporaryDirectory(prefix='files-', dir=own_folder()) as folder:
+        paths = []
+        for name, text in task['files'].items():
+            paths.append(Path(folder, Path(name).name))
+            paths[-1].write_bytes(base64.b64decode(text))
+        try:
+            async with asyncio.timeout(SUBMISSION_TIMEOUT_SEC):
+                execution = await executed(
+                    nbformat.from_dict(task['notebook']),
+                    extra_files=paths,
+                    seed=task['seed'],
+                    trust_students=task['trust_students'],
+                )
+        except TimeoutError:
+            limit = f'{SUBMISSION_TIMEOUT_SEC / 60:.0f} minutes'
+            raise CourseError(f'it had not come to its end after {limit}') from None
+    return {'notebook': execution.notebook, 'seconds': time.monotonic() - start}

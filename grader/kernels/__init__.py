@@ -1,0 +1,1 @@
+"""Jupyter kernels inside of sandboxes: started or forked, spoken to, and how each one ended."""

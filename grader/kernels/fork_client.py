@@ -1,0 +1,134 @@
+"""Fork a kernel into a room: build the room, send the order for it, and wait for the answer.
+
+The order goes, as an errand, through a server of `servers` to a process that this has forked.
+"""
+
+import asyncio
+import contextlib
+import json
+import os
+import socket
+import subprocess
+
+from grader.common.errors import RoomFailure
+from grader.common.file_wait import readable
+from grader.kernels.fork_servers import MAX_ANSWER, Server, expect_fit, send
+from grader.kernels.forked_kernel import Forked
+from grader.sandbox.kernel_paths import Place
+from grader.sandbox.limits import OUT_OF_MEMORY_SCORE, process_limits
+from grader.sandbox.seccomp import seccomp_filter
+from grader.sandbox.seccomp_notify import signals_filter
+
+_TIMEOUT_SEC = 60.0
+_NAMESPACES = ('user', 'mnt', 'net', 'pid', 'ipc', 'uts', 'cgroup')
+
+
+async def fork_into(place: Place, *, room: str, environment: dict[str, str]) -> Forked:
+    """Build the room of a place, and fork a kernel of the 'student' or 'test' kind into it.
+
+    Raises NoWarmKernel where none can be forked, and RoomFailure where the room can't be built.
+    """
+    expect_fit(room)
+    keeper = subprocess.Popen(
+        place.keeper.command,
+        bufsize=0,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        start_new_session=True,
+        pass_fds=place.keeper.pass_fds,
+        env={'PATH': f'{os.defpath}:/usr/sbin:/sbin'},
+    )
+    try:
+        async with asyncio.timeout(_TIMEOUT_SEC):
+            first = await _built(keeper, place.keeper.told)
+            return Forked(keeper, *await _forked(place, room, environment, first))
+    except BaseException:
+        keeper.kill()
+        keeper.wait()
+        raise
+    finally:
+        keeper.stdout.close()
+
+
+async def _built(keeper: subprocess.Popen, told: int) -> int:
+    """Wait until a room is built; return the process ID of its first process."""
+    await readable(keeper.stdout.fileno())
+    said = keeper.stdout.read(MAX_ANSWER)
+    if said != b'\n':
+        raise RoomFailure(f'the room could not be built: {said.decode(errors="replace").strip()}')
+    return json.loads(os.read(told, MAX_ANSWER))['child-pid']
+
+
+async def _forked(
+    place: Place, room: str, environment: dict[str, str], first: int
+) -> tuple[int, int, socket.socket]:
+    """Fork a kernel into the room of a first process.
+
+    Return its pidfd, the listener of its signals (-1 for none), and where its end is told.
+    """
+    order = json.dumps(_order(place, environment, first)).encode()
+    ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    ours.setblocking(False)
+    try:
+        with contextlib.ExitStack() as opened:
+            files = [os.pidfd_open(first)]
+            opened.callback(os.close, files[0])
+            for path in place.keeper.entrances:
+                files.append(os.open(path, os.O_WRONLY))
+                opened.callback(os.close, files[-1])
+            socket.send_fds(ours, [order], files)
+            with theirs:
+                server = await asyncio.to_thread(send, theirs, room=room)
+        return *await _answer(ours, server), ours
+    except BaseException:
+        ours.close()
+        raise
+
+
+def _order(place: Place, environment: dict[str, str], first: int) -> dict:
+    """Return what a forked process must know to become a kernel in the room of a first process."""
+    folder = str(place.inside / 'home' / 'work')
+    return {
+        'user': place.keeper.user,
+        'namespaces': [k for k in _NAMESPACES if _namespace(first, k) != _namespace('self', k)],
+        'folder': folder,
+        'limits': list(process_limits().items()),
+        'oom_score_adj': OUT_OF_MEMORY_SCORE,
+        'environment': environment | {'PWD': folder},
+        'seccomp': seccomp_filter(counted=bool(place.keeper.entrances)).hex(),
+        'signals': signals_filter().hex(),
+        'command': place.kernel_command(),
+    }
+
+
+async def _answer(errand: socket.socket, server: Server) -> tuple[int, int]:
+    """Return the pidfd and the listener that come over an errand, when the kernel is ready."""
+    found: dict[bytes, int] = {}
+    problem = ''
+    try:
+        while not problem and set(found) != {b'kernel', b'ready'}:
+            await readable(errand.fileno())
+            try:
+                text, files, _, _ = socket.recv_fds(errand, MAX_ANSWER, 1)
+            except ConnectionResetError:  # nobody has read what was sent
+                text, files = b'', []
+            if not text:
+                raise server.failure()
+            if text in (b'kernel', b'ready'):
+                found[text] = files[0] if files else -1
+            else:
+                problem = text.decode(errors='replace')
+        if problem:
+            raise RoomFailure(f'the forked kernel could not enter its room: {problem}')
+    except BaseException:
+        for file in found.values():
+            if file >= 0:
+                os.close(file)
+        raise
+    server.settle()
+    return found[b'kernel'], found[b'ready']
+
+
+def _namespace(pid: int | str, kind: str) -> str:
+    return os.readlink(f'/proc/{pid}/ns/{kind}')

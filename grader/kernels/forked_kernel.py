@@ -1,0 +1,88 @@
+"""A kernel that was forked into a room, as the process that Jupyter looks after."""
+
+import asyncio
+import contextlib
+import json
+import os
+import select
+import signal
+import socket
+import subprocess
+
+from grader.common.file_wait import readable
+from grader.kernels.fork_servers import MAX_ANSWER
+from grader.kernels.kernel_exits import Ending
+from grader.sandbox.signals import Signals
+
+_TOLD_SEC = 5.0
+"""How long its parent may take to tell how a kernel ended."""
+
+
+class Forked:
+    """A kernel that was forked into a room, as subprocess.Popen would be it."""
+
+    stdin = stdout = stderr = None
+
+    def __init__(
+        self, room: subprocess.Popen, kernel: int, listener: int, told: socket.socket
+    ) -> None:
+        """Take the process that keeps the room, and a pidfd of the kernel; both end together.
+
+        `told` is where the kernel's parent tells how it ended, `listener` where Linux tells of
+        signals that are sent in the room, or -1.
+        """
+        self._room, self._kernel, self._told = room, kernel, told
+        self.signals = Signals(kernel, listener)
+        self.pid = room.pid
+
+    def poll(self) -> int | None:
+        """Return None while it runs."""
+        if self._kernel >= 0:
+            if not _ended(self._kernel) and self._room.poll() is None:
+                return None
+            self.kill()
+            if not _ended(self._kernel):
+                return None
+            os.close(self._kernel)
+            self._kernel = -1
+        return self._room.poll()
+
+    def wait(self, timeout: float | None = None) -> int:
+        """Wait for its end. Raises subprocess.TimeoutExpired after `timeout` seconds."""
+        if self._kernel >= 0:
+            select.select([self._kernel], [], [], timeout)
+            self.poll()
+        return self._room.wait(timeout)
+
+    def kill(self) -> None:
+        """End it, and all in its room."""
+        self._room.kill()
+        if self._kernel >= 0:
+            with contextlib.suppress(ProcessLookupError):
+                signal.pidfd_send_signal(self._kernel, signal.SIGKILL)
+
+    async def ending(self) -> Ending:
+        """Return how it ended; to be called once when it has."""
+        try:
+            async with asyncio.timeout(_TOLD_SEC):
+                await readable(self._told.fileno())
+            status, cpu_sec = json.loads(self._told.recv(MAX_ANSWER))
+        except (TimeoutError, OSError, ValueError):  # its parent was ended, too
+            return Ending()
+        number = os.WTERMSIG(status) if os.WIFSIGNALED(status) else 0
+        return Ending(number, sent=self.signals.explain(number), cpu_sec=cpu_sec)
+
+    def close(self) -> None:
+        """Forget it, ended or not."""
+        self.signals.close()
+        self._told.close()
+
+    def send_signal(self, number: int) -> None:
+        """End it, whatever the signal: for an interrupt there are messages."""
+        self.kill()
+
+    terminate = kill
+
+
+def _ended(process: int) -> bool:
+    return bool(select.select([process], [], [], 0)[0])

@@ -1,0 +1,210 @@
+"""Whether this machine can keep student code in a sandbox; and if not, what is missing."""
+
+import os
+import platform
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from grader.common.errors import CourseError
+from grader.common.pool import Pool
+from grader.kernels.fork_client import fork_into
+from grader.kernels.fork_servers import NoWarmKernel
+from grader.sandbox.cgroup_hierarchies import scoped
+from grader.sandbox.sandbox import Sandbox
+
+TRUST = 'MY_ROBOT_BASICS_TRUST_STUDENTS'
+"""Set to 1, it says to nbgrader's own commands what `--trust-students` says to `./course`."""
+NO_SANDBOX = 'graded without a sandbox: this machine has none'
+"""Stands once in each feedback, in the scores and above the table of what was graded so."""
+OLDEST_BWRAP = (0, 8)
+
+_TOOLS = {
+    'bwrap': 'bubblewrap', 'nsenter': 'util-linux', 'setpriv': 'util-linux',
+    'prlimit': 'util-linux', 'choom': 'util-linux', 'mount': 'mount',
+}  # fmt: skip
+"""Programs, and the packages of Debian and Ubuntu that bring them."""
+_ROOM = ['bwrap', '--unshare-user', '--ro-bind', '/', '/']
+_TRIED = {
+    'files and rights of its own (user and mount namespaces)': [*_ROOM, 'true'],
+    'a network of its own (network namespace)': [*_ROOM, '--unshare-net', 'true'],
+    'processes of its own (PID namespace)': [
+        *_ROOM, '--unshare-pid', '--unshare-ipc', '--unshare-uts', '--proc', '/proc', 'true',
+    ],
+    'no namespaces of a student\'s making (bwrap --disable-userns)': [
+        *_ROOM, '--disable-userns', 'true',
+    ],
+}  # fmt: skip
+_CGROUPS = (
+    'Memory is counted twice a second instead, without what the kernel keeps for a submission. A '
+    'cgroup can be had by root, of systemd (in a session of your own, with cgroups of version 2), '
+    'and in a container whose /sys/fs/cgroup can be written to'
+)
+_WHOLE = 'all of it together, with limits and a filter of system calls'
+
+
+@dataclass(frozen=True)
+class Protection:
+    """One of the things that keep student code in."""
+
+    name: str
+    problem: str = ''
+    """Why it is missing; empty where it is there."""
+    remedy: str = ''
+    """How to get it."""
+
+
+@cache
+def protections() -> tuple[Protection, ...]:
+    """Try what a sandbox needs, one by one; what can't be tried for want of others is left out."""
+    found = []
+    for protection in _try_all():
+        found.append(protection)
+        if protection.problem:
+            break
+    return tuple(found)
+
+
+def missing() -> str:
+    """Return what is missing and how to get it, in sentences; '' where nothing is."""
+    for protection in protections():
+        if protection.problem:
+            return (
+                f'student code has no sandbox on this machine. Missing: {protection.name}: '
+                f'{protection.problem}. {protection.remedy}'
+            )
+    return ''
+
+
+def isolated(*, trust_students: bool = False) -> bool:
+    """Return whether student code runs in a sandbox.
+
+    Raises CourseError where it can't and nobody said that it need not.
+    """
+    problem = missing()
+    if problem and not (trust_students or os.environ.get(TRUST) == '1'):
+        raise CourseError(
+            f'nothing was run: {problem}. Or, if you would give everyone in the class your own '
+            'account: ./course grade --trust-students. It will stand in each feedback.'
+        )
+    return not problem
+
+
+def accounting() -> Protection:
+    """Return who counts what rooms use, as the processes that grade find it."""
+    command = scoped((sys.executable, '-P', '-m', 'grader.sandbox.cgroup_hierarchies'))
+    told = subprocess.run(command, capture_output=True, text=True)
+    if told.returncode == 0:
+        return Protection(f'a cgroup for each room ({told.stdout.strip()})')
+    why = told.stderr.strip().rpartition('\n')[2]
+    return Protection('a cgroup for each room', why, _CGROUPS)
+
+
+def slow() -> str:
+    """Return why kernels have to be started one by one on this machine; '' where they are forked.
+
+    They are as closed in, and take longer.
+    """
+    with Pool(in_flight=1) as pool:
+        return pool.submit(_fork_one).result()
+
+
+async def _fork_one() -> str:
+    sandbox = Sandbox(slot=0)
+    try:
+        await sandbox.open()
+        place = sandbox.place('student')
+        (await fork_into(place, room='student', environment=place.environment)).kill()
+    except NoWarmKernel as problem:
+        return str(problem)
+    finally:
+        await sandbox.close()
+    return ''
+
+
+def _try_all() -> Iterator[Protection]:
+    packages = {package for tool, package in _TOOLS.items() if shutil.which(tool) is None}
+    yield Protection(
+        'the programs that build it',
+        f'not installed: {", ".join(sorted(packages))}' if packages else '',
+        f'On Debian and Ubuntu: sudo apt install {" ".join(sorted(packages))}',
+    )
+    said = subprocess.run(['bwrap', '--version'], capture_output=True, text=True).stdout
+    version = tuple(int(part) for part in re.findall(r'\d+', said))
+    yield Protection(
+        'bubblewrap 0.8 or newer',
+        f'this one is {said.strip() or "broken"}' if version < OLDEST_BWRAP else '',
+        'Debian 12 and Ubuntu 24.04 bring it',
+    )
+    for name, command in _TRIED.items():
+        tried = subprocess.run(command, capture_output=True, text=True)
+        yield Protection(name, tried.stderr.strip() if tried.returncode else '', _remedy())
+    yield Protection(_WHOLE, _try_the_whole(), _remedy())
+
+
+def _try_the_whole() -> str:
+    """Return why nothing could be run in a sandbox, or ''."""
+    with Pool(in_flight=1) as pool:
+        try:
+            return pool.submit(_run_nothing).result()
+        except (CourseError, OSError) as error:
+            return str(error)
+
+
+async def _run_nothing() -> str:
+    sandbox = Sandbox(slot=0)
+    try:
+        await sandbox.open()
+        place = sandbox.place('student')
+        tried = subprocess.run(
+            [*place.prefix, sys.executable, '-c', ''],
+            env=place.environment,
+            pass_fds=place.pass_fds,
+            capture_output=True,
+            text=True,
+        )
+        return (tried.stderr.strip() or 'it ended') if tried.returncode else ''
+    finally:
+        await sandbox.close()
+
+
+def _remedy() -> str:
+    """Return what to do about namespaces that are refused, by what is known of this machine."""
+    for setting, value, wanted in (
+        ('kernel/apparmor_restrict_unprivileged_userns', '1', '0'),
+        ('kernel/unprivileged_userns_clone', '0', '1'),
+        ('user/max_user_namespaces', '0', '10000'),
+        ('user/max_net_namespaces', '0', '10000'),
+    ):
+        if _setting(setting) == value:
+            assignment = f'{setting.replace("/", ".")}={wanted}'
+            return (
+                f'This system forbids it to ordinary programs: sudo sysctl -w {assignment}, and '
+                f'put the line {assignment} into /etc/sysctl.d/60-sandbox.conf to keep it so'
+            )
+    if _in_container():
+        return (
+            'This is a container, and its guard forbids it: grade outside of it, or start it with '
+            '--security-opt seccomp=unconfined --security-opt apparmor=unconfined '
+            '--security-opt systempaths=unconfined (Docker and Podman), or --privileged'
+        )
+    if 'microsoft' in platform.release().lower() and 'wsl2' not in platform.release().lower():
+        return 'This is WSL 1, which has no namespaces: wsl --set-version <distribution> 2'
+    return 'User namespaces are needed, in Linux 5.14 or newer: another machine may have them'
+
+
+def _setting(name: str) -> str:
+    try:
+        return Path('/proc/sys', name).read_text(encoding='ascii').strip()
+    except OSError:
+        return ''
+
+
+def _in_container() -> bool:
+    marks = ('/.dockerenv', '/run/.containerenv', '/run/systemd/container')
+    return any(Path(mark).exists() for mark in marks)

@@ -1,0 +1,75 @@
+"""How a kernel ended, and whose doing that can be shown to be."""
+
+import resource
+import signal
+from dataclasses import dataclass
+from enum import Enum
+
+from grader.sandbox.cgroups import MemoryEvents
+from grader.sandbox.limits import PROCESS_LIMITS, ROOM_MEMORY_BYTES
+
+_CRASHES = {'SIGSEGV', 'SIGBUS', 'SIGILL', 'SIGFPE', 'SIGABRT', 'SIGSYS', 'SIGTRAP', 'SIGXFSZ'}
+"""What Linux sends a process for what that did itself."""
+_OWN = {'SIGALRM', 'SIGVTALRM', 'SIGPROF', 'SIGIO', 'SIGPIPE', 'SIGXCPU'}
+"""What Linux sends a process that has set a timer, or uses a file or a processor so."""
+_TERMINALS = {'SIGHUP', 'SIGINT', 'SIGQUIT'}
+"""What Linux sends whoever was started in a terminal that is closed, or where such keys come."""
+
+
+class Doing(Enum):
+    """Whose doing the end of a kernel is."""
+
+    STUDENTS = 'their code did it'
+    DOUBTFUL = 'their code seems to have done it: it would do it again'
+    NOT_SHOWN = 'nothing shows that their code did it'
+
+
+@dataclass(frozen=True)
+class Ending:
+    """How a kernel ended, as far as its parent and its room know."""
+
+    signal: int | None = None
+    """What ended it: 0 where it exited, None where nobody knows."""
+    sent: bool = False
+    """Whether somebody in its room sent that signal to it, or may have."""
+    cpu_sec: float = 0.0
+    """The time that it kept a processor busy."""
+
+    def whose(self, memory: MemoryEvents) -> tuple[Doing, str]:
+        """Return whose doing it is, and what to say of it; '' for an ordinary exit."""
+        if self.signal is None:
+            return Doing.NOT_SHOWN, 'nobody knows how it ended'
+        if self.signal == 0:
+            return Doing.STUDENTS, ''
+        name = signal_name(self.signal)
+        if self.sent:
+            return Doing.STUDENTS, f'your code sent it {name}'
+        if self.signal == signal.SIGKILL and memory.killed:
+            return whose_memory(memory)
+        if self.cpu_sec >= (most := PROCESS_LIMITS[resource.RLIMIT_CPU]):
+            return Doing.STUDENTS, f'it kept a processor busy for more than {most} s'
+        if name in _CRASHES:
+            return Doing.DOUBTFUL, f'it crashed with {name}'
+        if name in _OWN:
+            return Doing.DOUBTFUL, f'{name} ended it, which Linux sends for what a process does'
+        return Doing.NOT_SHOWN, f'{name} ended it, and nothing in its room had sent that'
+
+
+def whose_memory(memory: MemoryEvents) -> tuple[Doing, str]:
+    """Return whose doing it is that a process was ended for want of memory, and what to say."""
+    if memory.limit_reached:
+        return Doing.DOUBTFUL, f'your code used more than {ROOM_MEMORY_BYTES / 2**20:,.0f} MB'
+    return Doing.NOT_SHOWN, 'Linux ended it, because memory ran out outside of its room'
+
+
+def is_from_outside(number: int) -> bool:
+    """Whether a signal is none that Linux sends a program for what it, or its terminal, did."""
+    return signal_name(number) not in _CRASHES | _OWN | _TERMINALS
+
+
+def signal_name(number: int) -> str:
+    """Return what a signal is called."""
+    try:
+        return signal.Signals(number).name
+    except ValueError:
+        return f'signal {number}'

@@ -1,0 +1,182 @@
+"""Two kernels that share nothing but a ROS domain: the student's and the test's."""
+
+import asyncio
+import shutil
+from collections.abc import Awaitable, Sequence
+from pathlib import Path
+
+from my_robot_basics.live.domain import Claim, claim
+from my_robot_basics.live.errors import LiveError
+from my_robot_basics.validate.limits import CHECK_TIMEOUT_SEC, REPLY_TIMEOUT_SEC
+from my_robot_basics.validate.outputs import CellRun
+from my_robot_basics.validate.questions import (
+    STUDENT_COMES,
+    STUDENT_GOES,
+    TEST_HEARS,
+    as_expression,
+    reply_of,
+)
+
+from grader.common.errors import RoomFailure
+from grader.kernels.kernel_exits import Doing, signal_name, whose_memory
+from grader.kernels.kernels import Kernel
+from grader.sandbox.cgroups import MemoryEvents
+from grader.sandbox.sandbox import Sandbox
+
+SETUP_TIMEOUT_SEC = 60.0
+
+
+class Rooms:
+    """A student room and a test room for one exercise; `async with` starts and ends them."""
+
+    def __init__(
+        self,
+        *,
+        extra_files: Sequence[Path] = (),
+        seed: str = '',
+        isolated: bool = True,
+        doubts: list[str] | None = None,
+    ) -> None:
+        """Prepare two rooms; the student's gets a copy of the submission's own modules.
+
+        Unless `isolated`, what runs in them has the rights of whoever grades. `doubts` is shared
+        by all rooms of an exercise: what its code seems to have done. The first time counts as
+        a failure of the room, the second one as its own doing.
+        """
+        self._extra_files = tuple(extra_files)
+        self._seed = seed
+        self._isolated = isolated
+        self._sandbox: Sandbox | None = None
+        self._claim: Claim | None = None
+        self._kernels: list[Kernel] = []
+        self._doubts = [] if doubts is None else doubts
+
+    async def __aenter__(self) -> 'Rooms':
+        """Start both kernels, and see a message cross from one to the other."""
+        try:
+            await self._open()
+            await _together(self._prepare_student(), self._prepare_test())
+            files = str(self._student.place.inside / 'given' / 'files')
+            await self._prepare(self._student, STUDENT_GOES.format(files=files))
+        except BaseException as error:
+            await self.__aexit__()
+            if isinstance(error, OSError | LiveError):
+                raise RoomFailure(f'the rooms could not be opened: {error}') from error
+            raise
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        """End both kernels, whatever state they are in, and give the domain back."""
+        try:
+            await self._stop_kernels()
+        finally:
+            if self._sandbox is not None:
+                await self._sandbox.close()
+            if self._claim is not None:
+                self._claim.release()
+
+    @property
+    def student_alive(self) -> bool:
+        """Whether the student's kernel still runs."""
+        return self._student.alive
+
+    async def run_student_cell(self, source: str, *, timeout_sec: float) -> CellRun:
+        """Run one of the student's cells.
+
+        Raises RoomFailure where their kernel ended and nothing shows that they did it.
+        """
+        run = await self._student.run(source, timeout_sec=timeout_sec)
+        if run.died:
+            run.ending = await self._expect_fair()
+        return run
+
+    async def run_check(self, source: str) -> CellRun:
+        """Run a grade cell, passing its questions on to the student's kernel.
+
+        Raises RoomFailure where it failed and something ended a process of the student's that
+        nothing shows to be their doing.
+        """
+        run = await self._test.run(
+            source, timeout_sec=CHECK_TIMEOUT_SEC, on_input=self._ask_student
+        )
+        if not run.ran_to_end:
+            run.ending = await self._expect_fair()
+        return run
+
+    async def _expect_fair(self) -> str:
+        """Return what of the student's doing ended a process of theirs; '' where nothing is told.
+
+        Raises RoomFailure where nothing shows that it was theirs.
+        """
+        memory = self._sandbox.memory_events('student') if self._sandbox else MemoryEvents()
+        doing, why = Doing.STUDENTS, ''
+        if ending := await self._student.ending():
+            doing, why = ending.whose(memory)
+        elif memory.killed:
+            doing, why = whose_memory(memory)
+        elif number := self._student.strangers_signal():
+            doing = Doing.NOT_SHOWN
+            why = f'{signal_name(number)} ended a process in it that nothing in it had sent'
+        first = not self._doubts
+        if doing is not Doing.STUDENTS:
+            self._doubts.append(why)
+        if doing is Doing.NOT_SHOWN or (doing is Doing.DOUBTFUL and first):
+            raise RoomFailure(f'the student room came to an end that is no verdict: {why}')
+        return why
+
+    async def _ask_student(self, request: str) -> str:
+        """Take one question of a check over, and text of a bounded size back."""
+        run = await self._student.run(
+            '', timeout_sec=REPLY_TIMEOUT_SEC, expressions=as_expression(request)
+        )
+        return reply_of(run, within_sec=REPLY_TIMEOUT_SEC)
+
+    async def _open(self) -> None:
+        self._claim = claim()
+        if self._isolated:
+            self._sandbox = Sandbox(slot=self._claim.domain_id)
+            await self._sandbox.open()
+        self._student = self._kernel('student')
+        self._test = self._kernel('test', seed=self._seed)
+
+    def _kernel(self, room: str, *, seed: str = '') -> Kernel:
+        place = self._sandbox.place(room) if self._sandbox else None
+        kernel = Kernel(room=room, domain_id=self._claim.domain_id, seed=seed, place=place)
+        self._kernels.append(kernel)
+        return kernel
+
+    async def _stop_kernels(self) -> None:
+        # a check has closed its nodes itself; an interpreter with rclpy may be slow to end
+        polite = 'student' if self._sandbox is None else None
+        stops = [kernel.stop(politely=kernel.room == polite) for kernel in self._kernels]
+        failed = [e for e in await asyncio.gather(*stops, return_exceptions=True) if e]
+        if failed:
+            raise failed[0]
+
+    async def _prepare_student(self) -> None:
+        place = self._student.place
+        for file in self._extra_files:
+            shutil.copyfile(file, place.files / file.name)
+        await self._student.start()
+        await self._prepare(self._student, STUDENT_COMES)
+
+    async def _prepare_test(self) -> None:
+        await self._test.start()
+        await self._prepare(self._test, TEST_HEARS)
+
+    async def _prepare(self, kernel: Kernel, code: str) -> None:
+        run = await kernel.run(code, timeout_sec=SETUP_TIMEOUT_SEC)
+        if not run.ran_to_end:
+            seen = run.error.evalue if run.error else 'it did not end'
+            raise RoomFailure(f'the {kernel.room} room could not be made ready: {seen}')
+
+
+async def _together(*work: Awaitable[None]) -> None:
+    """Wait for all of it; when some fails the rest is called off: nothing goes on alone."""
+    tasks = [asyncio.ensure_future(each) for each in work]
+    try:
+        await asyncio.gather(*tasks)
+    finally:
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)

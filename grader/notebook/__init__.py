@@ -1,0 +1,1 @@
+"""A submitted notebook: read it, and put it back into the shape of its source."""

@@ -1,0 +1,82 @@
+"""Read a notebook that nobody vouches for, in a process with limits; check what that says."""
+
+from pathlib import Path
+
+import jsonschema
+import nbformat
+from my_robot_basics.validate.pictures import KINDS
+from nbformat import NotebookNode
+
+from grader.common.errors import CourseError, UnreadableSubmission
+from grader.common.parsing import TooHard, parse
+from grader.notebook import raw_notebook
+from grader.notebook.raw_notebook import MAX_CELLS, MAX_CHARACTERS, MAX_PICTURES
+
+_EMPTY = {'nbformat': 4, 'nbformat_minor': 5, 'metadata': {}, 'cells': []}
+"""A notebook; nbformat's own functions check it, cell by cell, against all of their schema."""
+
+_CELL = {
+    'type': 'object',
+    'properties': {
+        'id': {'type': 'string', 'pattern': '^[a-zA-Z0-9_-]{1,64}\\Z'},
+        'cell_type': {'enum': ['code', 'markdown', 'raw']},
+        'metadata': {
+            'type': 'object',
+            'properties': {
+                'nbgrader': {
+                    'type': 'object',
+                    'properties': {'grade_id': {'type': 'string'}},
+                    'additionalProperties': False,
+                }
+            },
+            'additionalProperties': False,
+        },
+        'source': {'type': 'string', 'maxLength': MAX_CHARACTERS},
+        'attachments': {
+            'type': 'object',
+            'maxProperties': MAX_PICTURES,
+            'additionalProperties': {
+                'type': 'object',
+                'properties': {kind: {'type': 'string'} for kind in KINDS},
+                'additionalProperties': False,
+            },
+        },
+        'outputs': {'const': []},
+        'execution_count': {'const': None},
+    },
+    'required': ['id', 'cell_type', 'metadata', 'source'],
+    'additionalProperties': False,
+}
+_READ = jsonschema.Draft202012Validator(
+    {
+        'type': 'object',
+        'properties': {
+            'cells': {'type': 'array', 'minItems': 1, 'maxItems': MAX_CELLS, 'items': _CELL},
+            'problem': {'type': 'string', 'minLength': 1, 'maxLength': 2_000},
+        },
+        'minProperties': 1,
+        'maxProperties': 1,
+        'additionalProperties': False,
+    }
+)
+"""What the process that reads a notebook may say of it."""
+
+
+def read_notebook(path: Path) -> NotebookNode:
+    """Read a notebook that nobody vouches for, keeping only what grading needs.
+
+    It is read in a process with limits; what that says is checked. Raises UnreadableSubmission
+    with a sentence for the student.
+    """
+    try:
+        said = parse(f'{raw_notebook.__name__}:read', str(path))
+    except TooHard as why:
+        raise UnreadableSubmission(
+            f'{path.name} is not read, for {why}: choose "Clear All Outputs" in JupyterLab, save, '
+            'and submit again.'
+        ) from None
+    for error in _READ.iter_errors(said):
+        raise CourseError(f'what read {path.name} came to no notebook: {error.json_path}')
+    if problem := said.get('problem'):
+        raise UnreadableSubmission(problem)
+    return nbformat.from_dict(_EMPTY | {'cells': said['cells']})

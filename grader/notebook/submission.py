@@ -1,0 +1,94 @@
+"""Read what a student handed in; refuse what cannot be read, by name and reason."""
+
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+
+from nbformat import NotebookNode
+
+from grader.common.dates import date_of
+from grader.common.errors import UnreadableSubmission
+from grader.notebook.reading import read_notebook
+
+MAX_PYTHON_FILES, MAX_PYTHON_BYTES = 50, 2_000_000
+"""Of the student's own modules together: twenty times what the whole course has."""
+_MOST_NOTES = 10
+TIMESTAMP = 'timestamp.txt'
+"""Beside a notebook: when it was handed in, as nbgrader writes it."""
+
+
+@dataclass(frozen=True)
+class Submission:
+    """One notebook of one student, as it was handed in."""
+
+    student_id: str
+    assignment: str
+    path: Path
+    """Where the notebook is, or was expected."""
+    notebook: NotebookNode | None
+    """Cell types, sources and grade ids only; None when it could not be read."""
+    extra_files: tuple[Path, ...] = ()
+    """The student's own Python files beside the notebook."""
+    problem: str | None = None
+    """Why the notebook could not be read."""
+    notes: tuple[str, ...] = ()
+    """What of it is not taken, and why."""
+
+
+def read_submission(folder: Path, *, student_id: str, assignment: str) -> Submission:
+    """Read `folder`/`assignment`.ipynb; what is wrong with it ends up in `problem`."""
+    path = folder / f'{assignment}.ipynb'
+    taken, notes = _python_files(folder)
+    try:
+        notebook, problem = read_notebook(path), None
+    except UnreadableSubmission as error:
+        notebook, problem = None, str(error)
+    return Submission(
+        student_id=student_id,
+        assignment=assignment,
+        path=path,
+        notebook=notebook,
+        extra_files=tuple(taken),
+        problem=problem,
+        notes=tuple(notes),
+    )
+
+
+def extra_python_files(folder: Path) -> list[Path]:
+    """Return the plain .py files that lie directly in `folder`, sorted; links don't count.
+
+    Of many, or large ones, those come that fit within MAX_PYTHON_FILES and MAX_PYTHON_BYTES.
+    """
+    return _python_files(folder)[0]
+
+
+def _python_files(folder: Path) -> tuple[list[Path], list[str]]:
+    """Return the files that are taken, and a note for each other one."""
+    taken, notes, left = [], [], MAX_PYTHON_BYTES
+    for path in sorted(p for p in folder.glob('*.py') if p.is_file() and not p.is_symlink()):
+        size = path.stat().st_size
+        if size <= left and len(taken) < MAX_PYTHON_FILES:
+            taken.append(path)
+            left -= size
+        elif len(notes) < _MOST_NOTES:
+            notes.append(
+                f'the file `{path.name}` of {size / 1e6:.1f} MB was left out: at most '
+                f'{MAX_PYTHON_FILES} Python files of {MAX_PYTHON_BYTES / 1e6:.0f} MB together '
+                'are taken'
+            )
+    return taken, notes
+
+
+def timestamps(submission: Submission) -> list[Path]:
+    """Return nbgrader's timestamp.txt, if it lies beside the notebook."""
+    path = submission.path.with_name(TIMESTAMP)
+    return [path] if path.is_file() and not path.is_symlink() else []
+
+
+def handed_in(submission: Submission) -> tuple[datetime | None, list[str]]:
+    """Read when it was handed in (UTC, without a zone) and what is wrong with that file."""
+    if not (found := timestamps(submission)):
+        return None, []
+    if when := date_of(found[0]):
+        return when.replace(tzinfo=None), []
+    return None, [f'{TIMESTAMP} holds no date: counted as handed in on time']

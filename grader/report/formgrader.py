@@ -1,0 +1,94 @@
+"""What nbgrader's formgrader shows of a submission: it runs nothing, asks nobody, and ends.
+
+The formgrader's template leaves nbconvert's `sanitize_html` out for markdown cells. It shows pages
+in the server's own process: what students wrote is turned into HTML in one with limits.
+"""
+
+from functools import lru_cache
+
+import bleach
+from jinja2 import pass_context
+from jinja2.runtime import Context
+from markupsafe import Markup
+from nbconvert import HTMLExporter
+from nbconvert import filters as nbconvert_filters
+
+from grader.common.parsing import Limits, TooHard, parse
+from grader.common.text import visible
+
+LIMITS = Limits(cpu_sec=5)
+"""For one cell, or one output; an ordinary one takes some milliseconds of processor time."""
+FILTERS = {
+    'markdown2html': 'grader.report.formgrader.harmless_markdown',
+    'highlight_code': 'grader.report.formgrader.highlighted',
+    'clean_html': 'grader.report.formgrader.cleaned',
+    'strip_files_prefix': 'grader.report.formgrader.without_files_prefix',
+}
+"""For nbconvert's HTMLExporter, in the place of its own."""
+_TAGS = {'p', 'em', 'strong', 'del', 'code', 'pre', 'ul', 'ol', 'li', 'blockquote', 'br', 'hr'}
+_TAGS |= {'table', 'thead', 'tbody', 'tr', 'th', 'td'}
+_TAGS |= {'h1', 'h2', 'h3', 'h4', 'h5', 'h6', 'a', 'img', 'span', 'div'}
+_PASTED = ('data:image/png;base64,', 'data:image/jpeg;base64,')
+
+
+def _allowed(tag: str, name: str, value: str) -> bool:
+    """Whether a tag may have an attribute; bleach itself sees to it that links lead to pages."""
+    if tag == 'img':
+        return name == 'alt' or (name == 'src' and value.startswith(_PASTED))
+    return tag == 'a' and name == 'href' and not value.lower().startswith('data:')
+
+
+@pass_context
+def harmless_markdown(context: Context, text: str) -> Markup:
+    """Turn markdown into the harmless part of its HTML, with pasted pictures: a Jinja filter."""
+    attachments = context.get('cell', {}).get('attachments', {})
+    return Markup(_apart('grader.report.formgrader:markdown_apart', text, attachments))
+
+
+def highlighted(source: str, language: str | None = None, metadata: object = None) -> Markup:
+    """Colour code: a Jinja filter in the place of nbconvert's Highlight2HTML."""
+    return Markup(_apart('grader.report.formgrader:code_apart', source))
+
+
+def cleaned(html: str | bytes) -> Markup:
+    """Keep the harmless part of HTML: a Jinja filter in the place of nbconvert's clean_html."""
+    text = html.decode(errors='replace') if isinstance(html, bytes) else str(html)
+    return Markup(_apart('nbconvert.filters:clean_html', text))
+
+
+def without_files_prefix(html: str) -> Markup:
+    """Do what nbconvert's strip_files_prefix does: a Jinja filter."""
+    if 'files/' not in html:
+        return Markup(html)
+    return Markup(_apart('nbconvert.filters:strip_files_prefix', str(html)))
+
+
+def markdown_apart(text: str, attachments: dict) -> str:
+    """Return the harmless part of what markdown means, as HTML."""
+    html = HTMLExporter().markdown2html({'cell': {'attachments': attachments}}, text)
+    protocols = {'http', 'https', 'mailto', 'data'}
+    return bleach.clean(html, tags=_TAGS, attributes=_allowed, protocols=protocols)
+
+
+def code_apart(source: str) -> str:
+    """Return Python code in colours, as HTML."""
+    return nbconvert_filters.Highlight2HTML()(source)
+
+
+def _apart(function: str, text: str, *more: object) -> str:
+    """Return HTML that is made in a process with limits; the text itself where that can't be."""
+    return _once(function, text) if not more else _limited(function, text, *more)
+
+
+@lru_cache(maxsize=1_000)
+def _once(function: str, text: str) -> str:
+    """Do that once for the cells that all submissions have."""
+    return _limited(function, text)
+
+
+def _limited(function: str, text: str, *more: object) -> str:
+    try:
+        return parse(function, text, *more, limits=LIMITS)
+    except TooHard as why:
+        shown = Markup('<p><strong>Shown as it was typed: {}.</strong></p><pre>{}</pre>')
+        return shown.format(f'{why}', visible(text))

@@ -1,0 +1,127 @@
+"""Print a row for each submission as it is graded, and a progress bar on a terminal."""
+
+import shutil
+import sys
+import threading
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+
+from tqdm import tqdm
+
+from grader.common.text import columns, pad, printable, shorten
+from grader.grade import Row
+from grader.storage.submitted import HandedIn
+
+MAX_NAME_COLUMNS = 40
+TICK_SEC = 1.0
+_OUTCOMES = ('with all points', 'with fewer', 'for a person', 'not graded')
+
+
+def print_rows(
+    rows: Iterable[Row], submissions: Sequence[HandedIn], *, expected: dict[str, str] | None = None
+) -> Iterator[Row]:
+    """Print each row as it comes, and pass it on.
+
+    `expected` adds a column: what should come of each student.
+    """
+    student = _widest('student', (found.student_id for found in submissions))
+    assignment = _widest('assignment', (found.assignment for found in submissions))
+    extra = _widest('expected', expected.values()) if expected else 0
+
+    def line(*fields: str) -> str:
+        widths = (student, assignment, *([extra] if expected else []), 9)
+        padded = [pad(shorten(field, w), w) for field, w in zip(fields[:-1], widths, strict=True)]
+        return _fit('  '.join([*padded, fields[-1]]).rstrip())
+
+    more = ['expected'] if expected else []
+    print(line('student', 'assignment', *more, 'score', 'reason'), flush=True)
+    bar = tqdm(rows, total=len(submissions), disable=None, leave=False, unit='notebook')
+    outcomes: Counter[str] = Counter()
+    with bar, _ticking(bar):
+        for row in bar:
+            outcomes[_outcome(row)] += 1
+            counted = (f'{outcomes[said]} {said}' for said in _OUTCOMES if outcomes[said])
+            bar.set_postfix_str(', '.join(counted), refresh=False)
+            more = [expected.get(row.student_id, '')] if expected else []
+            text = line(
+                printable(row.student_id),
+                printable(row.assignment),
+                *more,
+                score_of(row),
+                why(row),
+            )
+            tqdm.write(text)
+            sys.stdout.flush()
+            yield row
+
+
+@contextmanager
+def _ticking(bar: tqdm) -> Iterator[None]:
+    """Draw a bar each second: a slow submission lets others wait, and time goes on."""
+    done = threading.Event()
+
+    def draw() -> None:
+        while not done.wait(TICK_SEC):
+            bar.refresh()
+
+    if bar.disable:  # no terminal
+        yield
+        return
+    thread = threading.Thread(target=draw, name='bar', daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        done.set()
+        thread.join()
+
+
+def _outcome(row: Row) -> str:
+    if row.stored is None:
+        return 'not graded'
+    if row.stored.pending:
+        return 'for a person'
+    return 'with all points' if row.stored.score >= row.stored.max_score else 'with fewer'
+
+
+def score_of(row: Row) -> str:
+    """Return a row's score as text: '2/5', '2/5 …' where some of it waits for a person."""
+    if row.stored is None:
+        return '–'
+    waits = ' …' if row.stored.pending else ''
+    return f'{row.stored.score:g}/{row.stored.max_score:g}{waits}'
+
+
+def why(row: Row) -> str:
+    """Return the reason of a row as one line, and what is new about it, or that nothing is."""
+    stored, text = row.stored, printable(row.reason)
+    if stored and stored.pending and not text:
+        text = 'the rest is graded by hand'
+    if stored and stored.late:
+        text = f'(late: -{stored.late:g}) {text}'
+    if stored and stored.former is not None and stored.former != stored.score:
+        text = f'(was {stored.former:g}) {text}'
+    elif row.reused:
+        text = f'(unchanged) {text}'
+    return text
+
+
+def changes(rows: Iterable[Row]) -> list[str]:
+    """Return a line for each score that is not what it was before."""
+    return [
+        f'{printable(row.student_id)}  {printable(row.assignment)}  '
+        f'{row.stored.former:g} → {row.stored.score:g} '
+        f'({row.stored.score - row.stored.former:+g})'
+        for row in rows
+        if row.stored and row.stored.former not in (None, row.stored.score)
+    ]
+
+
+def _widest(title: str, names: Iterable[str]) -> int:
+    return min(MAX_NAME_COLUMNS, max(columns(printable(name)) for name in (title, *names)))
+
+
+def _fit(line: str) -> str:
+    """Cut a line to the terminal's width; where nobody sees columns, keep all of it."""
+    return shorten(line, shutil.get_terminal_size().columns) if sys.stdout.isatty() else line

@@ -1,0 +1,138 @@
+"""The report of one run, for whoever teaches: a page and the same as JSON."""
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from datetime import datetime
+from functools import cache
+from pathlib import Path
+
+from jinja2 import Template
+from my_robot_basics.validate.cells import title_of
+
+from grader.common.files import make_folder_for, write_whole
+from grader.common.text import printable
+from grader.common.versions import versions
+from grader.course import Course
+from grader.export.totals import Totals, add_up
+from grader.grade import Row
+from grader.kernels.isolation import isolated
+from grader.report.charts import distribution, share
+from grader.report.message_groups import Reason
+from grader.report.progress_table import changes, score_of
+from grader.report.statistics import Tally, tally
+from grader.report.templates import template
+from grader.storage.records import records
+
+SLOWEST = 10
+MOST_SHOWN = 20
+"""Reasons on the page; the JSON has all."""
+HARDEST = 8
+"""Checks that are named first; all of them come with their assignments."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """One call of `./course grade`."""
+
+    began: datetime
+    """With its time zone."""
+    seed: str = ''
+    """The seed that was replayed; '' for each student's own."""
+
+
+def write_report(course: Course, run: Run, rows: Sequence[Row]) -> Path:
+    """Write report.html and report.json into gradebook/runs/<time>/; return the page's path."""
+    counted = tally(course, rows)
+    facts = _facts(run, rows, counted) | {'totals': _totals(add_up(records(course)))}
+    folder = make_folder_for(run.began, course.gradebook / 'runs')
+    write_whole(folder / 'report.json', json.dumps(facts, indent=2, ensure_ascii=False) + '\n')
+    page = folder / 'report.html'
+    write_whole(
+        page,
+        _template().render(
+            facts, titles=_titles(course, counted), tally=counted, most=MOST_SHOWN, hardest=HARDEST
+        ),
+    )
+    return page
+
+
+def _facts(run: Run, rows: Sequence[Row], counted: Tally) -> dict:
+    """Return all that the report says, as plain values."""
+    seconds = (datetime.now().astimezone() - run.began).total_seconds()
+    timed = [row for row in rows if row.seconds is not None]
+    return {
+        'began': run.began.isoformat(timespec='seconds'),
+        'seconds': round(seconds, 1),
+        'counts': {
+            'submissions': len(rows),
+            'graded now': len(timed),
+            'unchanged': sum(row.reused for row in rows),
+            'wait for a person': sum(bool(row.stored and row.stored.pending) for row in rows),
+            'could not be graded': sum(row.stored is None for row in rows),
+        },
+        'per_minute': round(60 * len(timed) / seconds, 1) if seconds else None,
+        'looks': [_reason(each) for each in counted.looks],
+        'changes': changes(rows),
+        'assignments': [
+            asdict(each) | {'mean': each.mean, 'median': each.median}
+            for each in counted.assignments
+        ],
+        'reasons': [_reason(each) for each in counted.reasons],
+        'slowest': [
+            _submission(row) for row in sorted(timed, key=lambda row: -row.seconds)[:SLOWEST]
+        ],
+        'environment': versions()
+        | {
+            'isolation': 'each submission in a sandbox'
+            if isolated(trust_students=True)
+            else 'none: --trust-students',
+            'inputs of hidden tests': f'replayed from seed {run.seed}'
+            if run.seed
+            else "each student's own",
+        },
+        'submissions': [_submission(row) for row in rows],
+    }
+
+
+def _titles(course: Course, counted: Tally) -> dict[str, str]:
+    return {each.name: title_of(course.source(each.name)) for each in counted.assignments}
+
+
+def _totals(totals: Totals) -> dict:
+    return {
+        'max_scores': dict(zip(totals.assignments, totals.max_scores, strict=True)),
+        'max_score': totals.max_score,
+        'students': [
+            {
+                'student_id': printable(each.student_id),
+                'scores': each.scores,
+                'total': each.total,
+                'waiting': each.waiting,
+            }
+            for each in totals.students
+        ],
+    }
+
+
+def _reason(reason: Reason) -> dict:
+    return asdict(reason) | {'count': len(reason.students)}
+
+
+def _submission(row: Row) -> dict:
+    return {
+        'student_id': printable(row.student_id),
+        'assignment': printable(row.assignment),
+        'points': score_of(row),
+        'score': row.stored.score if row.stored else None,
+        'max_score': row.stored.max_score if row.stored else None,
+        'former': row.stored.former if row.stored else None,
+        'unchanged': row.reused,
+        'seconds': None if row.seconds is None else round(row.seconds, 2),
+        'reason': printable(row.reason),
+    }
+
+
+@cache
+def _template() -> Template:
+    return template('report.html.j2', values={'distribution': distribution, 'share': share})

@@ -1,0 +1,175 @@
+"""What one run says of a class: scores, checks, reasons, and what a person should look at."""
+
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from statistics import mean, median
+
+from my_robot_basics.validate.titles import title_of_check
+from nbformat import NotebookNode
+
+from grader.course import Course
+from grader.grade import Row
+from grader.notebook.restore import KEY, grade_id
+from grader.report.message_groups import Reason, Said, grouped
+from grader.storage.records import Record, graded_notebook, records, verdicts_in
+
+WRITTEN = 'a written answer that a person reads'
+
+
+@dataclass(frozen=True)
+class Check:
+    """How a class did in one graded cell."""
+
+    grade_id: str
+    title: str
+    points: float
+    passed: int
+    """Students with all of its points."""
+    missed: int
+    waiting: int
+    """Students whose score a person has to decide."""
+    why: Reason | None = None
+    """What most of those who missed it were told."""
+
+    @property
+    def rate(self) -> float:
+        """Return the share of those with a score who got all points, 0 to 1."""
+        return self.passed / max(1, self.passed + self.missed)
+
+    @property
+    def students(self) -> int:
+        """Return how many handed in."""
+        return self.passed + self.missed + self.waiting
+
+
+@dataclass(frozen=True)
+class Assignment:
+    """How a class did in one assignment."""
+
+    name: str
+    version: str
+    """Of the lesson's text."""
+    max_score: float
+    scores: tuple[float, ...]
+    """Of each student, the lowest first; what waits for a person counts 0."""
+    checks: tuple[Check, ...]
+
+    @property
+    def mean(self) -> float:
+        """Return the mean score."""
+        return mean(self.scores)
+
+    @property
+    def median(self) -> float:
+        """Return the median score."""
+        return median(self.scores)
+
+
+@dataclass(frozen=True)
+class Tally:
+    """What one run says of a class; everything that students wrote is printable text."""
+
+    assignments: tuple[Assignment, ...]
+    reasons: tuple[Reason, ...]
+    """Why points are missing, the most common reason first."""
+    looks: tuple[Reason, ...]
+    """Why a person should look, and at whose submissions; what is only to be read comes last."""
+
+    @property
+    def hardest(self) -> list[tuple[str, Check]]:
+        """Return assignment and check where anybody missed points, most of the class first."""
+        missed = [
+            (each.name, check)
+            for each in self.assignments
+            for check in each.checks
+            if check.missed
+        ]
+        return sorted(missed, key=lambda found: -found[1].missed / found[1].students)
+
+
+def tally(course: Course, rows: Sequence[Row]) -> Tally:
+    """Count what came of the submissions of one run."""
+    whose = {(row.student_id, row.assignment): row for row in rows if row.stored}
+    of_cells = defaultdict(list)
+    for record in records(course, only=whose.keys()):
+        of_cells[record.student_id, record.assignment].append(record)
+    notebooks = {each: graded_notebook(course, *each) for each in whose}
+    failures = list(_failures(notebooks))
+    looks = grouped(_looks(rows, of_cells, notebooks))
+    return Tally(
+        assignments=tuple(_assignments(course, whose, of_cells, failures)),
+        reasons=tuple(grouped(failures)),
+        looks=tuple(sorted(looks, key=lambda each: each.words == WRITTEN)),
+    )
+
+
+def _assignments(
+    course: Course,
+    whose: dict[tuple, Row],
+    of_cells: dict[tuple, list[Record]],
+    failures: list[Said],
+) -> Iterable[Assignment]:
+    for name in sorted({assignment for _, assignment in whose}):
+        stored = [row.stored for (_, assignment), row in whose.items() if assignment == name]
+        cells = [
+            r for (_, assignment), found in of_cells.items() if assignment == name for r in found
+        ]
+        titles = {grade_id(c): title_of_check(c.source) for c in course.source(name).cells}
+        said = defaultdict(list)
+        for failure in failures:
+            if failure.assignment == name:
+                said[failure.grade_id].append(failure)
+        ids = dict.fromkeys(r.grade_id for r in cells if r.max_score)
+        yield Assignment(
+            name=name,
+            version=course.version(name)[:12],
+            max_score=max(each.max_score for each in stored),
+            scores=tuple(sorted(each.score for each in stored)),
+            checks=tuple(
+                _check([r for r in cells if r.grade_id == each], titles.get(each), said[each])
+                for each in ids
+            ),
+        )
+
+
+def _check(cells: list[Record], title: str | None, failures: list[Said]) -> Check:
+    scored = [record for record in cells if record.score is not None]
+    passed = sum(record.score >= record.max_score for record in scored)
+    return Check(
+        grade_id=cells[0].grade_id,
+        title=title or '',
+        points=cells[0].max_score,
+        passed=passed,
+        missed=len(scored) - passed,
+        waiting=len(cells) - len(scored),
+        why=next(iter(grouped(failures)), None),
+    )
+
+
+def _failures(notebooks: dict[tuple[str, str], NotebookNode]) -> Iterable[Said]:
+    for whose, notebook in notebooks.items():
+        for name, verdict in verdicts_in(notebook).items():
+            if verdict.get('outcome') in ('partial', 'failed'):
+                yield Said(*whose, name, verdict.get('details') or verdict.get('reason', ''))
+
+
+def _looks(
+    rows: Sequence[Row],
+    of_cells: dict[tuple, list[Record]],
+    notebooks: dict[tuple[str, str], NotebookNode],
+) -> Iterable[Said]:
+    for row in rows:
+        whose = row.student_id, row.assignment
+        if row.stored is None:
+            yield Said(*whose, '', row.reason)
+            continue
+        notebook = notebooks[whose]
+        if problem := notebook.metadata.get(KEY, {}).get('problem'):
+            yield Said(*whose, '', f'unreadable, so it earned nothing: {problem}')
+            continue
+        verdicts = verdicts_in(notebook)
+        for record in of_cells[whose]:
+            if record.score is None:
+                reason = verdicts.get(record.grade_id, {}).get('reason') or WRITTEN
+                yield Said(*whose, record.grade_id, reason)

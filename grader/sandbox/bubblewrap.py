@@ -1,0 +1,157 @@
+"""The commands that build a sandbox: its holder, and the rooms beside it."""
+
+import os
+import sys
+from pathlib import Path
+
+from grader.sandbox.bind_mounts import shown, sources
+from grader.sandbox.limits import (
+    OUT_OF_MEMORY_SCORE,
+    ROOM_DISK_BYTES,
+    ROOM_FILES,
+    ROOM_TERMINALS,
+    limited,
+)
+
+ROOMS = ('student', 'test')
+INSIDE = Path('/room')
+"""Where a room finds what is its own."""
+FIRST_USER = 1_879_048_192
+"""Users from here on are nobody's, says systemd."""
+KEEPER = ['sh', '-c', "trap '' CHLD; echo; exec sleep infinity >/dev/null 2>&1"]
+"""Keeps a room that is built, says so, and leaves no orphan a zombie."""
+
+_SEEN, DISKS = '/tmp/seen', '/tmp/disks'
+"""Where the holder keeps what the rooms see of the machine, and what they write to."""
+_TERMINALS = f'newinstance,ptmxmode=0666,mode=620,max={ROOM_TERMINALS}'
+_HOLD = f"""
+for room in {' '.join(ROOMS)}; do
+    mount -t tmpfs -o size={ROOM_DISK_BYTES},nr_inodes={ROOM_FILES} room {DISKS}/$room || exit 1
+    (cd {DISKS}/$room && mkdir -p kernel home/work tmp shm pts) || exit 1
+    mount -t devpts -o {_TERMINALS} room {DISKS}/$room/pts || exit 1
+done
+echo $$
+exec cat
+"""
+ENVIRONMENT = {
+    'HOME': f'{INSIDE}/home',
+    'PATH': f'{sys.prefix}/bin:/usr/local/bin:/usr/bin:/bin:/usr/sbin:/sbin',
+    'AMENT_PREFIX_PATH': sys.prefix,
+    'MPLCONFIGDIR': f'{INSIDE}/home/matplotlib',
+    # shared memory does not cross from one room to the other
+    'FASTDDS_BUILTIN_TRANSPORTS': 'UDPv4',
+    # LOCALHOST would bring it back; the network ends with this submission anyway
+    'ROS_AUTOMATIC_DISCOVERY_RANGE': 'SUBNET',
+    # memory that is asked for counts, used or not
+    'MALLOC_ARENA_MAX': '2',
+    'OPENBLAS_NUM_THREADS': '1',
+}
+_MACHINE = ('bwrap', '--die-with-parent', '--dev-bind', '/', '/')
+_NETWORK = ['--unshare-user', '--uid', '0', '--gid', '0', '--unshare-net']
+_NETWORK += ['--cap-add', 'CAP_SYS_ADMIN']  # to mount the disks
+_ROOM = [
+    '--die-with-parent', '--new-session', '--hostname', 'room', '--uid', '1000', '--gid', '1000',
+    '--unshare-user', '--unshare-pid', '--unshare-ipc', '--unshare-uts', '--unshare-cgroup-try',
+    '--disable-userns', '--cap-drop', 'ALL',
+]  # fmt: skip
+_USER = 'student:x:1000:1000:student:/room/home:/bin/sh\n'
+ACCOUNTS = {'passwd': _USER, 'group': 'student:x:1000:\n', 'hosts': '127.0.0.1 localhost room\n'}
+
+
+def holder_command(user: int | None, given: dict[str, Path]) -> list[str]:
+    """Return the command of the holder: it prints its process ID when network and disks are there.
+
+    `given` names for each room the folder that it is shown. It ends with its standard input.
+    """
+    seen = [
+        '--tmpfs', '/tmp', '--dir', _SEEN,
+        *_bound(dict(enumerate(sources()))),
+        *_bound(given),
+        '--dir', DISKS,
+    ]  # fmt: skip
+    disks = ['--tmpfs', DISKS]
+    for room in ROOMS:
+        disks += ['--dir', f'{DISKS}/{room}']
+    hold = [*disks, *_NETWORK, '--', 'sh', '-c', _HOLD]
+    if user is None:
+        return [*_MACHINE, *seen, *hold]
+    # root first makes reachable what its own slots may not reach, then becomes one of them
+    become = ['--cap-add', 'CAP_SETUID', '--cap-add', 'CAP_SETGID', '--', *_drop(user)]
+    return [*_MACHINE, *seen, *become, *_MACHINE, *hold]
+
+
+def room_command(
+    user: int | None,
+    *,
+    holder: int,
+    room: str,
+    seccomp: int,
+    told: int | None = None,
+    counted: bool = True,
+) -> list[str]:
+    """Return how a command begins that runs in a room.
+
+    `holder` is the holder's process ID, `seccomp` the file descriptor of a filter. Where there is
+    one to be `told` on, the command is the room's first process, and it is told which that is.
+    Unless a cgroup has what it uses `counted`, there is no /dev/zero, which makes memory to share.
+    """
+    first = [] if told is None else ['--as-pid-1', '--info-fd', str(told)]
+    disk = f'{DISKS}/{room}'
+    accounts = []
+    for name in ACCOUNTS:
+        accounts += ['--symlink', f'{INSIDE}/given/{name}', f'/etc/{name}']
+    enter = ['nsenter', '--target', str(holder), '--user', '--net', '--mount']
+    return [
+        # before the room: there /proc is read-only, else a student would take it back
+        'choom', '-n', str(OUT_OF_MEMORY_SCORE), '--',
+        *_drop(user),
+        *enter, '--preserve-credentials', '--',
+        'bwrap', *_ROOM, *first,
+        '--proc', '/proc',
+        '--dev', '/dev', *([] if counted else ['--dev-bind', '/dev/null', '/dev/zero']),
+        '--dev-bind', f'{disk}/pts', '/dev/pts',
+        '--bind', f'{disk}/shm', '/dev/shm',
+        '--bind', f'{disk}/tmp', '/tmp',
+        '--bind', f'{disk}/kernel', f'{INSIDE}/kernel',
+        '--bind', f'{disk}/home', f'{INSIDE}/home',
+        '--ro-bind', f'{_SEEN}/{room}', f'{INSIDE}/given',
+        *shown(_SEEN, configuration=ENVIRONMENT['MPLCONFIGDIR']),
+        *accounts,
+        '--remount-ro', '/proc',
+        '--remount-ro', '/dev',
+        '--remount-ro', '/',
+        '--chdir', f'{INSIDE}/home/work',
+        '--unsetenv', 'JPY_PARENT_PID',  # a kernel that does not find its parent ends
+        '--seccomp', str(seccomp),
+        '--', *limited(),
+    ]  # fmt: skip
+
+
+def _drop(user: int | None) -> list[str]:
+    if user is None:
+        return []
+    return f'setpriv --reuid {user} --regid {user} --clear-groups --'.split()
+
+
+def slot_user(slot: int) -> int | None:
+    """Return the user that root becomes for a slot; None where we are no root, or root alone."""
+    first, mapped = _mapped_users()
+    if os.geteuid() != 0 or mapped <= slot:
+        return None
+    if first + mapped > FIRST_USER + slot:
+        return FIRST_USER + slot
+    return first + mapped - 1 - slot  # in a container: the last ones that there are
+
+
+def _mapped_users() -> tuple[int, int]:
+    """Return the first of the longest range of users of this user namespace, and its length."""
+    ranges = [line.split() for line in Path('/proc/self/uid_map').read_text().splitlines()]
+    first, _, count = max(ranges, key=lambda each: int(each[2]))
+    return int(first), int(count)
+
+
+def _bound(sources_by_name: dict) -> list[str]:
+    options = []
+    for name, source in sources_by_name.items():
+        options += ['--ro-bind', str(source), f'{_SEEN}/{name}']
+    return options

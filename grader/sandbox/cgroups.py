@@ -1,0 +1,188 @@
+"""A cgroup for each room: Linux itself counts what all of the room's processes use together.
+
+It counts memory that no process is seen to have, too: shared, of files in memory, and of the
+kernel's for pipes, sockets, semaphores. Each room has limits of its own, so none of what a student
+uses up is the test's. Where no cgroup can be had, `hierarchies` says why.
+
+Who wants to know why a kernel ended asks its room, while the sandbox is open or afterwards:
+
+    cgroup = sandbox.cgroup('student')      # None where this machine gives us none
+    cgroup.memory_limit_bytes               # what all its processes may use together
+    events = cgroup.memory_events()
+    events.killed                           # processes of the room that were killed for memory…
+    events.limit_reached                    # …because of its own limit, if this is true
+
+`killed` without `limit_reached` is memory that ran out elsewhere: in the machine, or in the
+container around the grader. After the sandbox they stay as they were last.
+"""
+
+import contextlib
+import os
+import shlex
+import signal
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from grader.sandbox.cgroup_hierarchies import Hierarchies, hierarchies
+from grader.sandbox.limits import CPU_WEIGHT, ROOM_MEMORY_BYTES, ROOM_PROCESSES, ROOM_SOCKET_BYTES
+
+_KEEPERS = 16
+"""Processes of a room that are ours: they keep it."""
+_ROUNDING_BYTES = 2**20
+"""Version 1 tells the most that was used; each processor takes some pages in advance."""
+_SHARES = 1_024
+"""Of the processor in version 1, for a weight of 100 in version 2."""
+
+
+@dataclass(frozen=True)
+class MemoryEvents:
+    """Whether the memory of a room ran out."""
+
+    limit_reached: bool = False
+    """Whether its processes asked for more than its own limit allows."""
+    killed: int = 0
+    """How many of its processes Linux has killed for want of memory, whoever wanted it."""
+
+
+@dataclass
+class RoomCgroup:
+    """The cgroup of one room: one folder in version 2, one for each controller in version 1."""
+
+    version: int
+    folders: dict[str, Path]
+    memory_limit_bytes: int
+    _events: MemoryEvents = field(default=MemoryEvents())
+
+    @property
+    def entrances(self) -> tuple[Path, ...]:
+        """The files into which a process writes 0 to join, with all that it starts later."""
+        return tuple(dict.fromkeys(path / 'cgroup.procs' for path in self.folders.values()))
+
+    def memory_events(self) -> MemoryEvents:
+        """Return how often memory ran out, as last seen where the cgroup is gone already."""
+        with contextlib.suppress(FileNotFoundError):
+            self._events = self._read_events()
+        return self._events
+
+    def make(self) -> None:
+        """Make it, with its limits. Raises OSError."""
+        for path in dict.fromkeys(self.folders.values()):
+            path.mkdir()
+        for controller, settings in _limits(self.version, self.memory_limit_bytes).items():
+            for name, value in settings.items() if controller in self.folders else ():
+                file = self.folders[controller] / name
+                if file.exists():  # swap, and version 1's own count of sockets, may be left out
+                    file.write_text(str(value), encoding='ascii')
+
+    def _read_events(self) -> MemoryEvents:
+        memory = self.folders['memory']
+        if self.version == 1:
+            killed = _numbers(memory / 'memory.oom_control').get('oom_kill', 0)
+            most = int((memory / 'memory.max_usage_in_bytes').read_text('ascii'))
+            return MemoryEvents(most > self.memory_limit_bytes - _ROUNDING_BYTES, killed)
+        numbers = _numbers(memory / 'memory.events')
+        return MemoryEvents(numbers['oom'] > 0, numbers['oom_kill'])
+
+
+class SandboxCgroups:
+    """The cgroups of a sandbox: make() first, remove() when all of its processes have ended."""
+
+    def __init__(self, name: str, rooms: Iterable[str]) -> None:
+        """Prepare, by a name that nobody else on this machine uses. Raises NoCgroups."""
+        where = hierarchies()
+        self.name = name
+        self._where = Hierarchies(where.version, {k: f / name for k, f in where.folders.items()})
+        self.rooms = {
+            room: RoomCgroup(
+                where.version,
+                {k: f / room for k, f in self._where.folders.items()},
+                memory_limit_bytes=ROOM_MEMORY_BYTES,
+            )
+            for room in rooms
+        }
+
+    @property
+    def folders(self) -> list[Path]:
+        """The folders that hold all of it."""
+        return list(dict.fromkeys(self._where.folders.values()))
+
+    def make(self) -> None:
+        """Make those of all rooms. Raises OSError."""
+        for folder in self.folders:
+            folder.mkdir()
+            if self._where.version == 2:
+                switched = ' '.join(f'+{controller}' for controller in self._where.folders)
+                (folder / 'cgroup.subtree_control').write_text(switched, encoding='ascii')
+        if 'cpu' in self._where.folders:
+            name, weight = _weight(self._where.version, 2 * CPU_WEIGHT)
+            (self._where.folders['cpu'] / name).write_text(weight, encoding='ascii')
+        for room in self.rooms.values():
+            room.make()
+
+    def remove(self) -> bool:
+        """End what is left in them, and remove them; return whether they are gone."""
+        for room in self.rooms.values():
+            room.memory_events()
+        gone = [remove_cgroup(folder) for folder in self.folders]
+        return all(gone)
+
+
+def joining(cgroup: RoomCgroup | None) -> list[str]:
+    """Return the beginning of a command that runs the rest in a room's cgroup."""
+    if cgroup is None:
+        return []
+    join = ''.join(f'echo 0 >{shlex.quote(str(path))} && ' for path in cgroup.entrances)
+    return ['sh', '-c', f'{join}exec "$@"', 'sh']
+
+
+def remove_cgroup(folder: Path) -> bool:
+    """End all processes in a cgroup and in those below it; return whether it could be removed.
+
+    A killed process takes a moment to leave: call it again until it is gone.
+    """
+    with contextlib.suppress(FileNotFoundError):
+        for below in [path for path in folder.iterdir() if path.is_dir()]:
+            remove_cgroup(below)
+        _kill_all(folder)
+        with contextlib.suppress(OSError):  # busy: somebody has not left yet
+            folder.rmdir()
+    return not folder.exists()
+
+
+def _kill_all(folder: Path) -> None:
+    for pid in map(int, (folder / 'cgroup.procs').read_text('ascii').split()):
+        if pid > 0:  # 0 is in another PID namespace, and would be all of ours
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(pid, signal.SIGKILL)
+
+
+def _limits(version: int, memory_bytes: int) -> dict[str, dict[str, object]]:
+    """Return what is written into the files of each controller."""
+    if version == 1:
+        memory = {
+            'memory.limit_in_bytes': memory_bytes,
+            'memory.memsw.limit_in_bytes': memory_bytes,
+            'memory.kmem.tcp.limit_in_bytes': ROOM_SOCKET_BYTES,  # of all sockets, counted aside
+        }
+    else:
+        memory = {'memory.max': memory_bytes, 'memory.swap.max': 0}
+    return {
+        'memory': memory,
+        'pids': {'pids.max': ROOM_PROCESSES + _KEEPERS},
+        'cpu': dict([_weight(version, CPU_WEIGHT)]),
+    }
+
+
+def _weight(version: int, weight: int) -> tuple[str, str]:
+    """Return the name and the text of the file that says how much of the processor is due."""
+    return (
+        ('cpu.shares', str(weight * _SHARES // 100))
+        if version == 1
+        else ('cpu.weight', str(weight))
+    )
+
+
+def _numbers(path: Path) -> dict[str, int]:
+    lines = path.read_text('ascii').splitlines()
+    return {name: int(number) for name, number in map(str.split, lines)}

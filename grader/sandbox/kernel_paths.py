@@ -1,0 +1,141 @@
+"""Where a kernel lives: its folders, what its process is told, and how its command begins."""
+
+import json
+import os
+import shutil
+import sys
+import tempfile
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from grader.sandbox.temporary_folders import own_folder
+
+_PASSED_ON = ('LANG', 'LC_ALL', 'TZ')
+# the ROS wheels start an interpreter anew to set the one, unless they find the other
+_PASSED_ON += ('LD_LIBRARY_PATH', '_ROS_WHEELS_BOOTSTRAP_COMPLETE')
+_ALWAYS = {
+    'MPLBACKEND': 'module://matplotlib_inline.backend_inline',
+    'PYTHONSAFEPATH': '1',
+    'PYTHONDONTWRITEBYTECODE': '1',
+}
+
+
+_LAUNCHER = (
+    Path(__file__).parents[1].joinpath('kernels', 'forkserver', 'offline.py').read_text('utf-8')
+    + """
+
+keep_off_the_network()
+import runpy
+runpy.run_module('ipykernel_launcher', run_name='__main__', alter_sys=True)
+"""
+)
+
+
+@dataclass(frozen=True)
+class Keeper:
+    """A process that keeps a room, so that one which was forked elsewhere can join it there."""
+
+    command: tuple[str, ...]
+    """Says a line when the room is built."""
+    pass_fds: tuple[int, ...]
+    told: int
+    """The file descriptor where bubblewrap tells about it."""
+    user: int | None
+    """Whom root becomes before it joins."""
+    entrances: tuple[Path, ...] = ()
+    """Where it joins the room's cgroup, before all else."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """The place of one kernel: what it is `given`, its sockets in `kernel`, its own in `home`."""
+
+    folder: Path
+    """The grader's folder for it; it holds `given`."""
+    sockets: Path
+    """The kernel's sockets as the grader reaches them."""
+    inside: Path
+    """What holds `given`, `kernel` and `home`, as the kernel's process knows it."""
+    prefix: tuple[str, ...] = ()
+    """How a command begins that runs there."""
+    environment: dict[str, str] = field(default_factory=dict)
+    """What its process is told, beside what every kernel is."""
+    pass_fds: tuple[int, ...] = ()
+    """What `prefix` reads."""
+    made: Path | None = None
+    """Where a room's kernel makes its sockets, and may make something else of them later."""
+    keeper: Keeper | None = None
+    """Where a forked kernel can join."""
+
+    @property
+    def closed(self) -> bool:
+        """Whether what runs there has neither the rights nor the network of whoever grades."""
+        return bool(self.prefix)
+
+    @property
+    def files(self) -> Path:
+        """The folder of modules that are given to it."""
+        return self.folder / 'given' / 'files'
+
+    def kernel_command(self) -> list[str]:
+        """Return the command of a kernel, as its process knows it."""
+        launcher = [sys.executable, '-c', _LAUNCHER, '-f']
+        options = ['--InteractiveShellApp.ignore_cwd=True', '--HistoryManager.enabled=False']
+        connection = str(self.inside / 'given' / 'connection.json')
+        return [*launcher, connection, *options]
+
+    def command(self) -> list[str]:
+        """Return the command of a kernel that lives there."""
+        return [*self.prefix, *self.kernel_command()]
+
+    def tell(self, connection_file: Path) -> None:
+        """Write the kernel's own connection file: it may know its sockets by another path."""
+        told = json.loads(connection_file.read_text(encoding='utf-8'))
+        told['ip'] = str(self.inside / 'kernel' / 'zmq')
+        (self.folder / 'given' / 'connection.json').write_text(json.dumps(told), encoding='utf-8')
+
+    def remove(self) -> None:
+        """Remove the grader's folder."""
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+
+def make_folder(name: str) -> Path:
+    """Make a temporary folder that nobody else can enter, with an empty `given` in it."""
+    folder = Path(tempfile.mkdtemp(prefix=f'{name}-', dir=own_folder()))
+    (folder / 'given' / 'files').mkdir(parents=True)
+    return folder
+
+
+def open_place(room: str) -> Place:
+    """Return a place with the rights and the network of whoever grades."""
+    folder = make_folder(room)
+    (folder / 'kernel').mkdir()
+    (folder / 'home' / 'work').mkdir(parents=True)
+    names = ('PATH', 'HOME', 'TMPDIR', 'AMENT_PREFIX_PATH')
+    environment = {name: os.environ[name] for name in names if name in os.environ}
+    return Place(folder, folder / 'kernel', inside=folder, environment=environment)
+
+
+def passed_on() -> dict[str, str]:
+    """Return what every Python of the grader's is told, wherever it lives."""
+    environment = {name: os.environ[name] for name in _PASSED_ON if name in os.environ}
+    return environment | _ALWAYS
+
+
+def environment_of(place: Place, *, room: str, domain_id: int, seed: str = '') -> dict[str, str]:
+    """Return what a kernel's process is told: nothing of the caller's own, but where things are.
+
+    Only the test room is told the seed.
+    """
+    home = place.inside / 'home'
+    environment = passed_on()
+    environment |= place.environment | {
+        'MY_ROBOT_BASICS_ROOM': room,
+        'MY_ROBOT_BASICS_DOMAIN_ID': str(domain_id),
+        'RCUTILS_LOGGING_USE_STDOUT': '1',
+        'ROS_LOG_DIR': str(home / 'ros_log'),
+        'IPYTHONDIR': str(home / 'ipython'),
+    }
+    if room == 'test':
+        environment['MY_ROBOT_BASICS_SEED'] = seed
+    return environment

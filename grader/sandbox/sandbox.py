@@ -1,0 +1,220 @@
+"""Two rooms that nothing gets out of: one network of their own, and a system for each.
+
+A holder keeps the network and the rooms' disks while an exercise is judged. bubblewrap builds
+each room beside it, and everything in a room dies with its first process.
+"""
+
+import asyncio
+import contextlib
+import itertools
+import os
+import shutil
+import signal
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+
+from grader.common.errors import RoomFailure
+from grader.sandbox.bubblewrap import (
+    ACCOUNTS,
+    DISKS,
+    ENVIRONMENT,
+    INSIDE,
+    KEEPER,
+    ROOMS,
+    holder_command,
+    room_command,
+    slot_user,
+)
+from grader.sandbox.cgroup_hierarchies import NoCgroups
+from grader.sandbox.cgroups import MemoryEvents, RoomCgroup, SandboxCgroups, joining
+from grader.sandbox.kernel_paths import Keeper, Place, make_folder
+from grader.sandbox.limits import let_us_open_more
+from grader.sandbox.memory_watch import watch_memory
+from grader.sandbox.seccomp import seccomp_filter
+from grader.sandbox.temporary_folders import note_cgroups, own_folder
+
+OPEN_TIMEOUT_SEC = 30.0
+CLOSE_TIMEOUT_SEC = 10.0
+_numbers = itertools.count(1)
+
+
+class Sandbox:
+    """The rooms of one exercise: open() first and close() last, whatever happens between."""
+
+    def __init__(self, *, slot: int) -> None:
+        """Prepare; `slot` is a small number that nobody else on this machine uses meanwhile."""
+        let_us_open_more()
+        self._user = slot_user(slot)
+        self._holder: subprocess.Popen | None = None
+        self._network = -1
+        self._watch: asyncio.Future | None = None
+        self._killed: set[int] = set()
+        self._files: list[int] = []
+        self._cgroups = _sandbox_cgroups()
+        self._note: Path | None = None
+        self._folders = {room: make_folder(room) for room in ROOMS}
+        for folder in self._folders.values():
+            for name, text in ACCOUNTS.items():
+                (folder / 'given' / name).write_text(text)
+
+    async def open(self) -> None:
+        """Make the cgroups, the network and the disks. Raises RoomFailure."""
+        self._make_cgroups()
+        self._holder = subprocess.Popen(
+            holder_command(self._user, {r: f / 'given' for r, f in self._folders.items()}),
+            bufsize=0,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            start_new_session=True,
+            env={'PATH': f'{os.defpath}:/usr/sbin:/sbin'},
+        )
+        os.set_blocking(self._holder.stdout.fileno(), False)
+        line = b''
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(OPEN_TIMEOUT_SEC):
+                while not line.endswith(b'\n') and self._holder.poll() is None:
+                    line += self._holder.stdout.read(100) or b''
+                    await asyncio.sleep(0.002)
+        if not line.strip().isdigit():
+            ended = self._holder.poll()
+            silent = 'it did not answer' if ended is None else f'it ended with {ended}, silently'
+            self._kill_holder()
+            said = self._holder.stderr.read(10_000).decode(errors='replace').strip()
+            raise RoomFailure(f'the sandbox could not be made: {said or silent}')
+        self._pid = int(line)
+        self._network = os.open(f'/proc/{self._pid}/ns/net', os.O_RDONLY)
+        if self._cgroups is None:
+            self._watch = asyncio.ensure_future(watch_memory(self._inhabitants, self._killed))
+
+    def cgroup(self, room: str) -> RoomCgroup | None:
+        """Return the cgroup of a room; None where this machine gives us none."""
+        return self._cgroups and self._cgroups.rooms[room]
+
+    def memory_events(self, room: str) -> MemoryEvents:
+        """Return whether the memory of a room ran out, and what was ended for it.
+
+        Without cgroups our own watch ends processes, and does not tell the rooms apart.
+        """
+        if cgroup := self.cgroup(room):
+            return cgroup.memory_events()
+        return MemoryEvents(limit_reached=bool(self._killed), killed=len(self._killed))
+
+    def place(self, room: str) -> Place:
+        """Return the place of the 'student' or the 'test' kernel, for one command."""
+        seccomp = self._filter()
+        prefix = self._room_command(room, seccomp)
+        return Place(
+            self._folders[room],
+            self._folders[room],
+            inside=INSIDE,
+            made=Path(f'/proc/{self._pid}/root{DISKS}/{room}/kernel'),
+            prefix=tuple(prefix),
+            environment=ENVIRONMENT,
+            pass_fds=(seccomp,),
+            keeper=self._keeper(room),
+        )
+
+    def _keeper(self, room: str) -> Keeper:
+        seccomp = self._filter()
+        told, tell = os.pipe()
+        self._files += [told, tell]
+        cgroup = self.cgroup(room)
+        return Keeper(
+            (*self._room_command(room, seccomp, told=tell), *KEEPER),
+            (seccomp, tell),
+            told=told,
+            user=self._user,
+            entrances=cgroup.entrances if cgroup else (),
+        )
+
+    def _room_command(self, room: str, seccomp: int, told: int | None = None) -> list[str]:
+        command = room_command(
+            self._user,
+            holder=self._pid,
+            room=room,
+            seccomp=seccomp,
+            told=told,
+            counted=self._cgroups is not None,
+        )
+        return [*joining(self.cgroup(room)), *command]
+
+    def _make_cgroups(self) -> None:
+        if self._cgroups is not None:
+            self._note = note_cgroups(self._cgroups.name, self._cgroups.folders)
+            try:
+                self._cgroups.make()
+            except OSError as problem:
+                raise RoomFailure(
+                    f'the cgroups of a sandbox could not be made: {problem}'
+                ) from problem
+
+    def _filter(self) -> int:
+        """Return a file with the filter of system calls: bubblewrap reads it up."""
+        seccomp = os.memfd_create('seccomp')
+        self._files.append(seccomp)
+        os.write(seccomp, seccomp_filter(counted=self._cgroups is not None))
+        os.lseek(seccomp, 0, os.SEEK_SET)
+        return seccomp
+
+    async def close(self) -> None:
+        """End whatever still runs in it, and wait until it has gone."""
+        try:
+            async with asyncio.timeout(CLOSE_TIMEOUT_SEC):
+                if self._holder is not None:
+                    await self._end()
+                await self._remove_cgroups()
+        except TimeoutError:
+            raise RoomFailure('processes of a sandbox could not be ended') from None
+        finally:
+            for file in (*self._files, self._network):
+                if file >= 0:
+                    os.close(file)
+            self._files, self._network, self._holder = [], -1, None
+            for folder in self._folders.values():
+                shutil.rmtree(folder, ignore_errors=True)
+
+    async def _remove_cgroups(self) -> None:
+        if self._note is not None:
+            while not self._cgroups.remove():
+                await asyncio.sleep(0.005)
+            self._note.unlink()
+            self._note = None
+
+    async def _end(self) -> None:
+        if self._watch is not None:
+            self._watch.cancel()
+        self._kill_holder()
+        while left := list(self._inhabitants()):
+            for pid in left:
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(pid, signal.SIGKILL)
+            await asyncio.sleep(0.01)
+        while self._holder.poll() is None:
+            await asyncio.sleep(0.005)
+        for pipe in (self._holder.stdin, self._holder.stdout, self._holder.stderr):
+            pipe.close()
+
+    def _kill_holder(self) -> None:
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(self._holder.pid, signal.SIGKILL)
+
+    def _inhabitants(self) -> Iterator[int]:
+        """Yield the processes that have this sandbox's network."""
+        if self._network < 0:
+            return
+        ours = os.fstat(self._network)
+        for name in os.listdir('/proc'):
+            if name.isdigit():
+                # other users' are not ours; others end while we look
+                with contextlib.suppress(OSError):
+                    if os.path.samestat(os.stat(f'/proc/{name}/ns/net'), ours):
+                        yield int(name)
+
+
+def _sandbox_cgroups() -> SandboxCgroups | None:
+    try:
+        return SandboxCgroups(f'{own_folder().name}-{next(_numbers)}', ROOMS)
+    except NoCgroups:
+        return None

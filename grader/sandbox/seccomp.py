@@ -1,0 +1,111 @@
+"""The filter that Linux runs for each system call of a room: what is not allowed is not there.
+
+What is unknown here ends with ENOSYS, as on a Linux too old to have it, so that the C library and
+Python take another way. Some that are allowed are looked at more closely, by their arguments.
+
+libseccomp would write such a program, too. But pyseccomp, its binding on PyPI, had its last
+release in 2021, and Debian's is for Debian's own Python alone; both want the C library, which
+whoever is not root can't install. The program is short, for one kind of machine, and
+`tests/test_seccomp.py` runs it instruction by instruction.
+"""
+
+import struct
+
+from grader.sandbox.system_calls import ALLOWED
+
+ENOSYS, EPERM, EAFNOSUPPORT = 38, 1, 97
+
+AF_UNIX, AF_INET, AF_INET6, AF_NETLINK = 1, 2, 10, 16
+PROTOCOLS = {
+    AF_UNIX: (0, 1),
+    AF_INET: (0, 6, 17),  # the usual one, TCP, UDP: no MPTCP, SCTP or ICMP
+    AF_INET6: (0, 6, 17),
+    AF_NETLINK: (0,),  # NETLINK_ROUTE tells which network interfaces there are
+}
+"""Sockets that stay, by family. Others, such as AF_VSOCK, know of no network namespace."""
+
+_ARCHITECTURE = 0xC000003E  # AUDIT_ARCH_X86_64
+_NAMESPACES = 0x7E020000  # the flags of clone that make new ones
+_MAP_SHARED, _MAP_ANONYMOUS = 0x01, 0x20
+_KILL, _ERROR, _ALLOW = 0x80000000, 0x00050000, 0x7FFF0000
+_LOAD, _EQUAL, _AT_LEAST, _ANY_BIT, _RETURN = 0x20, 0x15, 0x35, 0x45, 0x06
+_NEW_LISTENER = 8
+_NUMBER_AT, _ARCHITECTURE_AT, _ARGUMENTS_AT = 0, 4, 16
+
+Instruction = tuple[int, int, int, int]
+"""What to do, how many to jump over where it is so and where not, and a number."""
+
+
+def seccomp_filter(*, counted: bool = True) -> bytes:
+    """Return the filter as `bwrap --seccomp` reads it: struct sock_filter, one after the other.
+
+    Unless what a room uses is `counted` by a cgroup, it gets no shared memory without a file:
+    that can be hidden from who looks at its processes.
+    """
+    program: list[Instruction] = [
+        (_LOAD, 0, 0, _ARCHITECTURE_AT),
+        (_EQUAL, 1, 0, _ARCHITECTURE),
+        (_RETURN, 0, 0, _KILL),
+        (_LOAD, 0, 0, _NUMBER_AT),
+    ]
+    closer = {'socket': _sockets(), 'socketpair': _pairs(), 'clone': _no_namespaces()}
+    closer['seccomp'] = _a_listener()
+    if not counted:
+        closer['mmap'] = _no_hidden_memory()
+    for name, instructions in closer.items():
+        program += [(_EQUAL, 0, len(instructions), ALLOWED[name]), *instructions]
+    for first, last in _ranges(set(ALLOWED.values())):
+        program += [
+            (_AT_LEAST, 0, 2, first),
+            (_AT_LEAST, 1, 0, last + 1),
+            (_RETURN, 0, 0, _ALLOW),
+        ]
+    program.append((_RETURN, 0, 0, _ERROR | ENOSYS))
+    return b''.join(struct.pack('=HBBI', *instruction) for instruction in program)
+
+
+def _sockets() -> list[Instruction]:
+    found: list[Instruction] = []
+    for family, protocols in PROTOCOLS.items():
+        of_family = [_argument(2), *_one_of(protocols)]
+        found += [_argument(0), (_EQUAL, 0, len(of_family), family), *of_family]
+    return [*found, (_RETURN, 0, 0, _ERROR | EAFNOSUPPORT)]
+
+
+def _pairs() -> list[Instruction]:
+    return [_argument(0), *_one_of([AF_UNIX])]
+
+
+def _one_of(values: tuple[int, ...] | list[int]) -> list[Instruction]:
+    """Allow what is loaded if it is one of these."""
+    tests = [(_EQUAL, len(values) - i, 0, value) for i, value in enumerate(values)]
+    return [*tests, (_RETURN, 0, 0, _ERROR | EAFNOSUPPORT), (_RETURN, 0, 0, _ALLOW)]
+
+
+def _no_namespaces() -> list[Instruction]:
+    refused, fine = (_RETURN, 0, 0, _ERROR | EPERM), (_RETURN, 0, 0, _ALLOW)
+    return [_argument(0), (_ANY_BIT, 0, 1, _NAMESPACES), refused, fine]
+
+
+def _a_listener() -> list[Instruction]:
+    """Allow a filter with a listener: `signals` sets one, and Linux takes no second one."""
+    refused, fine = (_RETURN, 0, 0, _ERROR | EPERM), (_RETURN, 0, 0, _ALLOW)
+    return [_argument(1), (_EQUAL, 1, 0, _NEW_LISTENER), refused, fine]
+
+
+def _no_hidden_memory() -> list[Instruction]:
+    refused, fine = (_RETURN, 0, 0, _ERROR | EPERM), (_RETURN, 0, 0, _ALLOW)
+    shared = (_ANY_BIT, 0, 2, _MAP_SHARED)
+    return [_argument(3), shared, (_ANY_BIT, 0, 1, _MAP_ANONYMOUS), refused, fine]
+
+
+def _argument(number: int) -> Instruction:
+    """Load the lower half of an argument: Linux takes no more of those that we look at."""
+    return (_LOAD, 0, 0, _ARGUMENTS_AT + 8 * number)
+
+
+def _ranges(numbers: set[int]) -> list[tuple[int, int]]:
+    """Return the first and the last of each row of numbers without a gap."""
+    firsts = sorted(number for number in numbers if number - 1 not in numbers)
+    lasts = sorted(number for number in numbers if number + 1 not in numbers)
+    return list(zip(firsts, lasts, strict=True))

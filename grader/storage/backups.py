@@ -1,0 +1,62 @@
+"""Copies of the database, made before each run that writes into it."""
+
+import os
+import sqlite3
+from contextlib import closing
+from datetime import UTC, datetime
+from pathlib import Path
+
+from grader.course import Course
+from grader.storage.database import in_sentences, wait_until_free
+from grader.storage.gradebook import recover
+
+KEPT = 10
+"""So many backups; the oldest goes when there is one more."""
+
+
+def bring_in_order(course: Course) -> None:
+    """Finish what a run that was killed had begun, and back the database up, before a run."""
+    recover(course)
+    with in_sentences(course):
+        if course.database.exists():
+            wait_until_free(course)
+            back_up(course)
+
+
+def back_up(course: Course) -> Path | None:
+    """Copy the database into gradebook/backups/, unless the newest copy holds the same.
+
+    Returns the newest copy, or None where there is nothing to copy. Raises sqlite3.DatabaseError,
+    and leaves the copies as they are, when the database is damaged.
+    """
+    if not course.database.exists():
+        return None
+    folder = course.gradebook / 'backups'
+    folder.mkdir(exist_ok=True)
+    written = course.database.stat().st_mtime_ns
+    backups = sorted(folder.glob('gradebook-*.db'))
+    if backups and backups[-1].stat().st_mtime_ns == written:
+        return backups[-1]
+    aside = folder / '.new.db'
+    try:
+        _copy(course.database, aside)
+        os.utime(aside, ns=(written, written))
+        backup = folder / f'gradebook-{datetime.now(UTC):%Y-%m-%dT%H-%M-%S.%fZ}.db'
+        os.replace(aside, backup)
+    finally:
+        for left in folder.glob(f'{aside.name}*'):
+            left.unlink()
+    for old in [*backups, backup][:-KEPT]:
+        old.unlink()
+    return backup
+
+
+def _copy(database: Path, copy: Path) -> None:
+    copy.unlink(missing_ok=True)
+    with closing(sqlite3.connect(database)) as source, closing(sqlite3.connect(copy)) as target:
+        source.backup(target)
+        [verdict] = target.execute('PRAGMA quick_check(1)').fetchone()
+    if verdict != 'ok':
+        error = sqlite3.DatabaseError(verdict)
+        error.sqlite_errorcode = sqlite3.SQLITE_CORRUPT
+        raise error

@@ -1,0 +1,123 @@
+"""Set due dates and extensions in gradebook/deadlines.toml, and list them."""
+
+from collections.abc import Iterator
+from datetime import UTC, datetime, time
+
+import tomlkit
+
+from grader.common.errors import CourseError
+from grader.common.files import write_whole
+from grader.common.text import printable
+from grader.course import Course
+from grader.storage.late_penalties import FILE, Deadlines, deadlines, read_deadlines
+
+END_OF_DAY = time(23, 59)
+"""What a date without a time stands for."""
+
+
+def local_time(text: str) -> datetime:
+    """Read '2026-11-30', '2026-11-30 18:00' or a time with its zone; ours is taken without one.
+
+    Raises ValueError on anything else.
+    """
+    found = datetime.fromisoformat(text)
+    if len(text) <= len('2026-11-30'):
+        found = datetime.combine(found, END_OF_DAY)
+    return found if found.tzinfo else found.astimezone()
+
+
+def set_due(
+    course: Course, assignment: str, when: datetime | None, *, student_id: str | None = None
+) -> None:
+    """Set, or with None remove, an assignment's due date, or one student's extension of it.
+
+    The rest of the file stays as it is, comments too. Raises CourseError, and writes nothing,
+    where the file would say something wrong then.
+    """
+    path = course.gradebook / FILE
+    before = path.read_bytes() if path.exists() else b''
+    now = read_deadlines(before, path, course.assignments())
+    if assignment not in course.assignments():
+        raise CourseError(
+            f'there is no assignment {assignment!r}; there are: {", ".join(course.assignments())}'
+        )
+    _refuse_pointless(now, assignment, when, student_id)
+    document = tomlkit.parse(before.decode())
+    if student_id is None:
+        _put(document, ('due',), assignment, when)
+    else:
+        _put(document, ('extended', assignment), student_id, when)
+    after = tomlkit.dumps(document).encode()
+    read_deadlines(after, path, course.assignments())
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_whole(path, after)
+
+
+def describe_deadlines(course: Course) -> Iterator[str]:
+    """Yield a line for each due date, extension and rule, in this machine's time zone."""
+    found = deadlines(course.gradebook, course.assignments()) or Deadlines()
+    for assignment in course.assignments():
+        due = found.due.get(assignment)
+        yield f'{assignment}  {"due " + _shown(due) if due else "no due date"}'
+        for (extended, student), until in sorted(found.extended.items()):
+            if extended == assignment:
+                yield f'  extended for {printable(student)} until {_shown(until)}'
+    if found.per_day:
+        yield (
+            f'Each day late costs {found.per_day:.0%} of the score, {found.at_most:.0%} at most; '
+            f'the first {found.grace_minutes:g} minutes cost nothing.'
+        )
+    else:
+        yield (
+            f'Lateness costs nothing: [late] in {FILE} can change that '
+            '(see grader/storage/late_penalties.py)'
+        )
+
+
+def _refuse_pointless(
+    now: Deadlines, assignment: str, when: datetime | None, student_id: str | None
+) -> None:
+    due = now.due.get(assignment)
+    extended = sorted(student for name, student in now.extended if name == assignment)
+    if student_id is None and when is None and extended:
+        raise CourseError(
+            f'{assignment} keeps its due date: it is extended for '
+            f'{printable(", ".join(extended))}. Remove these extensions first: '
+            f'./course due {assignment} none --student ID'
+        )
+    if student_id is None or when is None:
+        return
+    if due is None:
+        raise CourseError(
+            f'{assignment} has no due date to extend: ./course due {assignment} DATE sets one'
+        )
+    if when.astimezone(UTC).replace(tzinfo=None) <= due:
+        raise CourseError(
+            f'an extension until {_shown(when)} gives nobody more time: {assignment} is due '
+            f'{_shown(due)}'
+        )
+
+
+def _put(
+    document: tomlkit.TOMLDocument, tables: tuple[str, ...], key: str, when: datetime | None
+) -> None:
+    around = [document]
+    for name in tables:
+        if name not in around[-1]:
+            if when is None:
+                return
+            around[-1].add(name, tomlkit.table(is_super_table=name == 'extended'))
+        around.append(around[-1][name])
+    if when is not None:
+        around[-1][key] = when
+        return
+    around[-1].pop(key, None)
+    for outer, name in reversed(list(zip(around, tables, strict=False))):
+        if not outer[name]:
+            del outer[name]
+
+
+def _shown(when: datetime) -> str:
+    """Show a time in this machine's zone; without a zone it is UTC."""
+    when = when if when.tzinfo else when.replace(tzinfo=UTC)
+    return f'{when.astimezone():%Y-%m-%d %H:%M %Z}'

@@ -1,0 +1,207 @@
+"""The only writer of nbgrader's database: lessons, scores, executed notebooks."""
+
+import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import nbformat
+from nbformat import NotebookNode
+from nbgrader.api import Grade, Gradebook, MissingEntry, SubmittedNotebook
+
+from grader.authoring.release import PASSES
+from grader.common.errors import CourseError, GradebookError
+from grader.common.files import write_whole
+from grader.common.text import printable
+from grader.course import Course
+from grader.notebook.restore import KEY, grade_id
+from grader.notebook.submission import Submission, extra_python_files, handed_in, timestamps
+from grader.storage.database import connected, in_sentences, make_database, wait_until_free
+from grader.storage.lock import Turn
+from grader.storage.pipeline import apply, finish, first_reason, resources_of
+
+SAVE_CELLS = 'nbgrader.preprocessors.SaveCells'
+_BEGUN = '.{}.ipynb.begun'
+"""An executed notebook lies beside its place until all of it is stored."""
+
+
+@dataclass(frozen=True)
+class Stored:
+    """What the gradebook holds for a submission, once it was graded."""
+
+    score: float
+    max_score: float
+    former: float | None
+    """The score before, if there was one."""
+    pending: bool
+    """Whether some of it waits for a person."""
+    reason: str
+    """Why points are missing: the first reason, or ''."""
+    late: float = 0.0
+    """What lateness took off the score."""
+
+
+def register(course: Course, assignment: str) -> bool:
+    """Tell the database what an assignment consists of; return whether that was news to it.
+
+    Raises CourseError when cells came or went although submissions are graded already.
+    """
+    resources = resources_of(course, assignment)
+    tidied = apply(PASSES[: PASSES.index(SAVE_CELLS)], course.source(assignment), resources)
+    make_database(course)
+    with connected(course.db_url) as book:
+        known = _checksums_in(book, assignment)
+        wanted = {
+            grade_id(cell): cell.metadata['nbgrader']['checksum']
+            for cell in tidied.cells
+            if 'checksum' in cell.metadata.get('nbgrader', {})
+        }
+        if known == wanted:
+            return False
+        came, went = (
+            sorted(wanted.keys() - (known or wanted)),
+            sorted((known or {}).keys() - wanted),
+        )
+        if (came or went) and book.assignment_submissions(assignment):
+            raise CourseError(
+                f"{assignment} can't be changed like this after submissions were graded "
+                f'(new cells: {", ".join(came) or "none"}; gone: {", ".join(went) or "none"}): '
+                'give the cells their former grade ids, or keep this gradebook/ elsewhere and '
+                'begin a new one.'
+            )
+        book.update_or_create_assignment(assignment)
+    apply((SAVE_CELLS,), tidied, resources)
+    return True
+
+
+def register_before_autograde(*, assignment: str, **_: object) -> None:
+    """Register what `nbgrader autograde`, which runs in the course's folder, is going to grade."""
+    course = Course.at(Path.cwd())
+    recover(course)
+    for name in course.assignments() if assignment == '*' else [assignment]:
+        register(course, name)
+
+
+def store(course: Course, submission: Submission, graded: NotebookNode) -> Stored:
+    """Store an executed notebook: its scores, and the notebook itself under autograded/.
+
+    The same nbgrader passes do it as in `nbgrader autograde`. Manual scores stay, the submitted
+    files are only read, and storing twice is the same as once.
+    Whenever it is ended, `recover` finishes it. Raises GradebookError, and changes nothing, where
+    the disk is full or the database can't be had.
+    """
+    begun = _begun(course, submission)
+    try:
+        with in_sentences(course):
+            wait_until_free(course)
+            former = _find(course, submission)
+            begun.parent.mkdir(parents=True, exist_ok=True)
+            write_whole(begun, nbformat.writes(graded))
+            saved = _finish(course, submission, graded)
+            now = _find(course, submission)
+    except (GradebookError, OSError):
+        raise  # that can be mended, and then `recover` goes on
+    except Exception:
+        begun.unlink(missing_ok=True)
+        raise
+    return Stored(
+        score=now[0],
+        max_score=now[1],
+        former=former[0] if former else None,
+        pending=now[2],
+        reason=first_reason(saved),
+        late=now[3],
+    )
+
+
+def recover(course: Course) -> None:
+    """Store the rest of what was being stored when a run was killed."""
+    found = sorted(course.folder('autograded', '', '').glob(f'*/*/{_BEGUN.format("*")}'))
+    if not found:
+        return
+    turn = Turn.take(course.gradebook)
+    make_database(course)
+    for begun in filter(Path.exists, found):
+        student, assignment = begun.parts[-3:-1]
+        folder = course.folder('submitted', student, assignment)
+        extra = tuple(extra_python_files(folder))
+        submission = Submission(student, assignment, folder / f'{assignment}.ipynb', None, extra)
+        try:
+            with in_sentences(course):
+                wait_until_free(course)
+                _finish(course, submission, nbformat.read(begun, as_version=4))
+        except GradebookError:
+            raise
+        except Exception:  # the lesson has changed since, for instance: it is graded again
+            logging.exception('%s of %s is not stored', assignment, printable(student))
+            begun.unlink()
+    del turn  # whoever had it before keeps it
+
+
+def _finish(course: Course, submission: Submission, graded: NotebookNode) -> NotebookNode:
+    """Store what has begun to be stored: doing it again is the same as doing it once."""
+    student, assignment = submission.student_id, submission.assignment
+    at = resources_of(course, assignment, student)
+    at['nbgrader']['timestamp'], notes = handed_in(submission)
+    graded = nbformat.from_dict(graded)
+    graded.metadata.setdefault(KEY, nbformat.from_dict({'notes': []})).notes += notes
+    folder = course.folder('autograded', student, assignment)
+    saved = finish(graded, at)
+    for extra in (*submission.extra_files, *timestamps(submission)):
+        write_whole(folder / extra.name, extra.read_bytes())
+    write_whole(folder / f'{assignment}.ipynb', nbformat.writes(saved))
+    _begun(course, submission).unlink()
+    return saved
+
+
+def _begun(course: Course, submission: Submission) -> Path:
+    folder = course.folder('autograded', submission.student_id, submission.assignment)
+    return folder / _BEGUN.format(submission.assignment)
+
+
+@contextmanager
+def opened(course: Course) -> Iterator[Gradebook]:
+    """Open the database to read in it; every assignment of the course is known to it then."""
+    recover(course)
+    for assignment in course.assignments():
+        register(course, assignment)
+    with connected(course.db_url) as book:
+        yield book
+
+
+def submitted_notebook(
+    book: Gradebook, student_id: str, assignment: str
+) -> SubmittedNotebook | None:
+    """Return what the database holds of a submission, if there is one."""
+    try:
+        return book.find_submission_notebook(assignment, assignment, student_id)
+    except MissingEntry:
+        return None
+
+
+def waits_for_a_person(grade: Grade) -> bool:
+    """Whether nobody has given a score yet."""
+    return grade.auto_score is None and grade.manual_score is None
+
+
+def _checksums_in(book: Gradebook, assignment: str) -> dict[str, str] | None:
+    try:
+        cells = book.find_notebook(assignment, assignment).source_cells
+    except MissingEntry:
+        return None
+    return {cell.name: cell.checksum for cell in cells}
+
+
+def _find(course: Course, submission: Submission) -> tuple[float, float, bool, float] | None:
+    """Return score, most that can be had, whether a person has to look, and the late penalty.
+
+    None if it is not graded.
+    """
+    with connected(course.db_url) as book:
+        found = submitted_notebook(book, submission.student_id, submission.assignment)
+        if found is None:
+            return None
+        waits = any(waits_for_a_person(grade) for grade in found.grades)
+        late = found.late_submission_penalty or 0.0
+        return found.score - late, found.max_score, waits, late

@@ -1,0 +1,116 @@
+"""The passes that a submission goes through, the same for `nbgrader autograde` and for us."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import nbformat
+from my_robot_basics.validate.verdict import refuse
+from nbconvert.exporters import Exporter
+from nbformat import NotebookNode
+from traitlets.config import Config
+
+from grader.authoring.release import CODE_STUB
+from grader.course import Course
+from grader.notebook.restore import KEY, NO_ANSWERS, Master, heal
+
+SANITIZE_PASSES = (
+    'grader.autograde.preprocessors.HealSubmission',
+    'grader.storage.lock.TakeTurns',
+    'nbgrader.preprocessors.OverwriteKernelspec',
+    'nbgrader.preprocessors.OverwriteCells',
+    'nbgrader.preprocessors.CheckCellMetadata',
+)
+"""What nbgrader does with a submitted notebook before it runs."""
+
+AUTOGRADE_PASSES = (
+    'grader.autograde.preprocessors.ExecuteRooms',
+    'grader.storage.lock.TakeTurns',
+    'nbgrader.preprocessors.LimitOutput',
+    'grader.storage.save_grades.SaveGrades',
+    'grader.storage.late_penalties.LatePenalties',
+    'nbgrader.preprocessors.CheckCellMetadata',
+)
+"""What nbgrader does with it then."""
+
+
+def apply(passes: Sequence[str], notebook: NotebookNode, resources: dict) -> NotebookNode:
+    """Put a notebook through passes, given by name, as nbgrader would; return the result."""
+    exporter = Exporter(
+        config=Config(
+            {
+                'Exporter': {'default_preprocessors': []},
+                'ClearSolutions': {'code_stub': CODE_STUB},
+                'ClearMarkScheme': {'enforce_metadata': False},
+            }
+        )
+    )
+    for name in passes:
+        exporter.register_preprocessor(name)
+    return exporter.from_notebook_node(notebook, resources)[0]
+
+
+def resources_of(course: Course, assignment: str, student_id: str = '.') -> dict:
+    """Return what nbgrader's passes want to know of the notebook that they get."""
+    return {
+        'nbgrader': {
+            'notebook': assignment,
+            'assignment': assignment,
+            'student': student_id,
+            'db_url': course.db_url,
+        }
+    }
+
+
+def prepare(course: Course, assignment: str, healed: NotebookNode) -> NotebookNode:
+    """Do with a healed notebook what nbgrader does before it runs: checksums, kernel, metadata."""
+    return apply(
+        _after('grader.autograde.preprocessors.HealSubmission', SANITIZE_PASSES),
+        healed,
+        resources_of(course, assignment),
+    )
+
+
+def prepared_master(course: Course, assignment: str) -> Master:
+    """Return what submissions are healed from with all done to it that `prepare` does.
+
+    What is healed from it need not be prepared: whatever nbgrader changes is the master's.
+    """
+    master = course.master(assignment)
+    return replace(master, notebook=prepare(course, assignment, master.notebook))
+
+
+def finish(executed: NotebookNode, resources: dict) -> NotebookNode:
+    """Do with an executed notebook what nbgrader does then: it stores the scores."""
+    passes = _after('grader.autograde.preprocessors.ExecuteRooms', AUTOGRADE_PASSES)
+    return apply(passes, executed, resources)
+
+
+def unanswered(master: Master, reason: str) -> NotebookNode:
+    """Return what stands for a submission that can't be graded: nothing answered, and why.
+
+    The master is a prepared one.
+    """
+    notebook = heal(nbformat.v4.new_notebook(), master).notebook
+    notebook.metadata[KEY] |= {'notes': [reason], 'problem': reason}
+    refuse(notebook, reason)
+    return notebook
+
+
+def first_reason(graded: NotebookNode) -> str:
+    """Return the first reason why points are missing in an executed notebook, or ''.
+
+    What went wrong in the student's own cells comes before what the check then saw.
+    """
+    healed = graded.metadata.get(KEY, {})
+    if problem := healed.get('problem'):
+        return problem
+    for cell in graded.cells:
+        verdict = cell.metadata.get(KEY, {})
+        if verdict.get('outcome') in ('partial', 'failed', 'ungraded') and verdict.get('reason'):
+            causes = [note for note in healed.get('notes', ()) if note == NO_ANSWERS]
+            return '; '.join([*causes, *verdict.get('notes', ())[:1], verdict.reason])
+    return ''
+
+
+def _after(name: str, passes: tuple[str, ...]) -> tuple[str, ...]:
+    return passes[passes.index(name) + 1 :]

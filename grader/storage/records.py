@@ -1,0 +1,95 @@
+"""What the gradebook and the executed notebooks say, cell by cell."""
+
+from collections.abc import Callable, Collection, Iterator
+from dataclasses import dataclass
+from functools import cache, partial
+
+import nbformat
+from nbformat import NotebookNode
+from nbgrader.api import Gradebook
+
+from grader.course import Course
+from grader.notebook.restore import KEY, grade_id
+from grader.storage.gradebook import opened, submitted_notebook, waits_for_a_person
+
+
+@dataclass(frozen=True)
+class Record:
+    """One graded cell of one student."""
+
+    student_id: str
+    assignment: str
+    grade_id: str
+    score: float | None
+    """None where nothing was handed in, or where a person has to decide."""
+    max_score: float
+    submitted: bool = True
+    by_hand: bool = False
+    """Whether a person gave the score."""
+    comment: str = ''
+    """What a person wrote."""
+
+
+def records(course: Course, *, only: Collection[tuple[str, str]] | None = None) -> list[Record]:
+    """Return all graded cells of all students, in a stable order; registers what is new.
+
+    `only` asks for some submissions that were graded, as pairs of student and assignment.
+    """
+    place_in = cache(partial(_place_in, course))
+    with opened(course) if only is None else Gradebook(course.db_url) as book:
+        return [
+            record
+            for student in sorted(student.id for student in book.students)
+            for assignment in sorted(assignment.name for assignment in book.assignments)
+            if only is None or (student, assignment) in only
+            for record in _records(book, student, assignment, place_in(assignment))
+        ]
+
+
+def verdicts(course: Course, student_id: str, assignment: str) -> dict[str, NotebookNode]:
+    """Return what the executed notebook says of each graded cell, by grade id."""
+    return verdicts_in(graded_notebook(course, student_id, assignment))
+
+
+def verdicts_in(graded: NotebookNode) -> dict[str, NotebookNode]:
+    """Return what an executed notebook says of each graded cell, by grade id."""
+    return {grade_id(cell): cell.metadata.get(KEY, {}) for cell in graded.cells if grade_id(cell)}
+
+
+def graded_notebook(course: Course, student_id: str, assignment: str) -> NotebookNode:
+    """Return the executed notebook of a submission; one without cells where there is none."""
+    path = course.folder('autograded', student_id, assignment) / f'{assignment}.ipynb'
+    return nbformat.read(path, as_version=4) if path.exists() else nbformat.v4.new_notebook()
+
+
+def _records(
+    book: Gradebook, student: str, assignment: str, place: Callable[[object], tuple[int, str]]
+) -> Iterator[Record]:
+    known = [cell for nb in book.find_assignment(assignment).notebooks for cell in nb.grade_cells]
+    found = submitted_notebook(book, student, assignment)
+    grades = {grade.name: grade for grade in found.grades} if found else {}
+    comments = (
+        {comment.name: comment.manual_comment for comment in found.comments} if found else {}
+    )
+    for cell in sorted(known, key=place):
+        grade = grades.get(cell.name)
+        yield Record(
+            student_id=student,
+            assignment=assignment,
+            grade_id=cell.name,
+            score=grade.score if grade and not waits_for_a_person(grade) else None,
+            max_score=cell.max_score,
+            submitted=found is not None,
+            by_hand=bool(grade and grade.manual_score is not None),
+            comment=comments.get(cell.name) or '',
+        )
+    if found and found.late_submission_penalty:
+        yield Record(student, assignment, 'late_penalty', -found.late_submission_penalty, 0.0)
+
+
+def _place_in(course: Course, assignment: str) -> Callable[[object], tuple[int, str]]:
+    """Return a sort key that puts graded cells in the lesson's order; strangers come last."""
+    order = []
+    if course.source_path(assignment).exists():
+        order = [grade_id(cell) for cell in course.source(assignment).cells]
+    return lambda cell: (order.index(cell.name) if cell.name in order else len(order), cell.name)

@@ -1,0 +1,120 @@
+"""Results that need not be made again: nothing that they depend on has changed since."""
+
+import hashlib
+import json
+from pathlib import Path
+
+import nbformat
+from my_robot_basics.validate.verdict import SCORED
+from nbformat import NotebookNode
+from nbgrader.api import SubmittedNotebook
+
+from grader.common.versions import machinery
+from grader.course import Course
+from grader.notebook.restore import KEY, grade_id, role
+from grader.notebook.submission import TIMESTAMP, Submission
+from grader.storage.database import connected
+from grader.storage.gradebook import Stored, submitted_notebook, waits_for_a_person
+from grader.storage.pipeline import apply, first_reason, resources_of
+
+LATE = ('grader.storage.late_penalties.LatePenalties',)
+"""A due date may have moved, which the result does not depend on."""
+_UNDER = 'graded_under'
+
+
+def conditions(course: Course, assignment: str, *, isolated: bool) -> str:
+    """Return a hash of all that the results of an assignment depend on, whoever has handed in."""
+    lesson = [_said(course.source(assignment)), _said(course.release(assignment))]
+    return _digest(json.dumps([lesson, isolated, machinery()], sort_keys=True).encode())
+
+
+def key_of(submission: Submission, given: str, *, seed: str) -> str:
+    """Return a hash of a submission's files, its seed, and the conditions of its assignment."""
+    files = [submission.path.with_name(TIMESTAMP), *submission.extra_files]
+    if submission.problem is None:
+        files.append(submission.path)
+    parts = [given, seed, submission.assignment, submission.problem or '']
+    parts += [f'{path.name} {_digest(_content(path))}' for path in files]
+    return _digest(json.dumps(parts).encode())
+
+
+def remember(graded: NotebookNode, key: str) -> None:
+    """Write into a graded notebook what it was graded under; it is stored with its result."""
+    graded.metadata.setdefault(KEY, nbformat.from_dict({'notes': []}))[_UNDER] = key
+
+
+def kept(course: Course, submission: Submission, key: str) -> NotebookNode | None:
+    """Return the graded notebook that is stored under a key, if each check came to a verdict."""
+    folder = course.folder('autograded', submission.student_id, submission.assignment)
+    try:
+        text = (folder / f'{submission.assignment}.ipynb').read_text(encoding='utf-8')
+        notebook = nbformat.reads(text, as_version=4) if key in text else None
+    except (OSError, ValueError, nbformat.ValidationError):
+        return None  # none yet, or damaged: it is graded again
+    if notebook is None or notebook.metadata.get(KEY, {}).get(_UNDER) != key:
+        return None
+    return notebook if all(_outcomes(notebook).values()) else None
+
+
+def held(course: Course, submission: Submission, graded: NotebookNode) -> Stored | None:
+    """Return what the gradebook holds for a kept notebook, the late penalty counted anew.
+
+    Manual scores are left as they are. None where the gradebook holds anything else for it.
+    """
+    student, assignment = submission.student_id, submission.assignment
+    with connected(course.db_url) as book:
+        found = submitted_notebook(book, student, assignment)
+        if found is None or not _agree(found.grades, graded):
+            return None
+        former = _score(found)
+    apply(LATE, graded, resources_of(course, assignment, student))
+    with connected(course.db_url) as book:
+        found = submitted_notebook(book, student, assignment)
+        return Stored(
+            score=_score(found),
+            max_score=found.max_score,
+            former=former,
+            pending=any(waits_for_a_person(grade) for grade in found.grades),
+            reason=first_reason(graded),
+            late=found.late_submission_penalty or 0.0,
+        )
+
+
+def _score(found: SubmittedNotebook) -> float:
+    return found.score - (found.late_submission_penalty or 0)
+
+
+def _agree(grades: list, graded: NotebookNode) -> bool:
+    """Whether the scores are those of the notebook's verdicts."""
+    outcomes = _outcomes(graded)
+    scores = {grade.name: grade.auto_score for grade in grades if grade.name in outcomes}
+    cells = {grade_id(cell): cell.metadata for cell in _checks(graded)}
+    return scores == {
+        name: cells[name].nbgrader.points
+        if outcome == 'passed'
+        else cells[name][KEY].get('earned', 0.0)
+        for name, outcome in outcomes.items()
+    }
+
+
+def _outcomes(notebook: NotebookNode) -> dict[str, str]:
+    """Return the outcome of each check, or '' where it has no score, by its grade id."""
+    found = {grade_id(c): c.metadata.get(KEY, {}).get('outcome') for c in _checks(notebook)}
+    return {name: said if said in SCORED else '' for name, said in found.items()}
+
+
+def _checks(notebook: NotebookNode) -> list[NotebookNode]:
+    return [cell for cell in notebook.cells if role(cell) == 'grade' and cell.cell_type == 'code']
+
+
+def _said(notebook: NotebookNode) -> list:
+    """Return what a lesson says and asks; its outputs don't count."""
+    return [(c.cell_type, c.source, c.get('id'), c.metadata) for c in notebook.cells]
+
+
+def _content(path: Path) -> bytes:
+    return path.read_bytes() if path.is_file() and not path.is_symlink() else b''
+
+
+def _digest(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()

@@ -1,0 +1,48 @@
+"""The pass that puts the verdicts of a notebook into nbgrader's database."""
+
+import nbformat
+from my_robot_basics.validate.verdict import SCORED
+from nbformat import NotebookNode
+from nbgrader.preprocessors import SaveAutoGrades
+
+from grader.notebook.restore import KEY, grade_id
+from grader.storage.database import transaction
+
+NO_ANSWER = 'there is no answer'
+"""Why a text that a person would have graded earns nothing."""
+
+
+class SaveGrades(SaveAutoGrades):
+    """Store the verdicts of one notebook, all of them or none.
+
+    nbgrader reads a score off a cell's outputs, and a cell without any would earn its points. So a
+    verdict is wanted too: without one the cell has no score and waits for a person.
+    """
+
+    def preprocess(self, nb: NotebookNode, resources: dict) -> tuple[NotebookNode, dict]:
+        """Store the scores of a notebook that was executed."""
+        at = resources['nbgrader']
+        self.notebook_id, self.assignment_id = at['notebook'], at['assignment']
+        self.student_id, self.db_url = at['student'], at['db_url']
+        dated = {'timestamp': at['timestamp']} if at.get('timestamp') else {}
+        with transaction(self.db_url) as self.gradebook:
+            self.gradebook.update_or_create_student(self.student_id)
+            with self.gradebook.db.no_autoflush:  # it warns of what is half built meanwhile
+                self.gradebook.update_or_create_submission(
+                    self.assignment_id, self.student_id, **dated
+                )
+            for index, cell in enumerate(nb.cells):
+                self.preprocess_cell(cell, resources, index)
+        return nb, resources
+
+    def _add_score(self, cell: NotebookNode, resources: dict) -> None:
+        super()._add_score(cell, resources)
+        grade = self.gradebook.find_grade(
+            grade_id(cell), self.notebook_id, self.assignment_id, self.student_id
+        )
+        verdict = cell.metadata.setdefault(KEY, nbformat.from_dict({}))
+        if cell.cell_type == 'code' and verdict.get('outcome') not in SCORED:
+            grade.auto_score, grade.needs_manual_grade = None, True
+        elif cell.cell_type != 'code' and grade.auto_score is not None:
+            # nobody has to read what nobody wrote
+            verdict |= {'outcome': 'failed', 'reason': NO_ANSWER, 'notes': []}

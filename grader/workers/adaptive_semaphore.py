@@ -1,0 +1,55 @@
+"""How many submissions at a time the processors can take, as Linux tells how busy they are."""
+
+import asyncio
+from typing import Self
+
+from my_robot_basics.checks import pressure
+
+from grader.sandbox.limits import BUSY_SHARE, IDLE_SHARE
+
+LOOK_SEC = 5.0
+"""What came of a change has to show before the next one."""
+
+
+class Gate:
+    """An `async with` of it lets in `least` at a time, and more while processors stand idle.
+
+    It looks when one leaves, every LOOK_SEC: for which share of that time did some process wait
+    for a processor? Where it is small, `step` more get in, up to `most`; where it is large, so
+    many fewer. Where Linux does not tell, it stays at `least`. To be used on one event loop.
+    """
+
+    def __init__(self, *, least: int, most: int, step: int) -> None:
+        self.allowed = least
+        self._least, self._most, self._step = least, most, step
+        self._places = asyncio.Semaphore(least)
+        self._too_many = 0
+        self._watch = pressure.Stopwatch()
+
+    async def __aenter__(self) -> Self:
+        """Wait for a place."""
+        await self._places.acquire()
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        """Leave it to the next, and look how busy the machine is."""
+        if self._watch.wall_sec() >= LOOK_SEC and pressure.crowded_sec():
+            self._follow(1.0 - self._watch.free_sec() / self._watch.wall_sec())
+            self._watch = pressure.Stopwatch()
+        self._give(1)
+
+    def _follow(self, crowded_share: float) -> None:
+        before = self.allowed
+        if crowded_share < IDLE_SHARE:
+            self.allowed = min(before + self._step, self._most)
+            self._give(self.allowed - before)
+        elif crowded_share > BUSY_SHARE:
+            self.allowed = max(before - self._step, self._least)
+            self._too_many += before - self.allowed
+
+    def _give(self, places: int) -> None:
+        """Let in so many more; those who were too many are not replaced."""
+        kept = min(self._too_many, places)
+        self._too_many -= kept
+        for _ in range(places - kept):
+            self._places.release()

@@ -1,0 +1,146 @@
+"""Many machines that grade: a Dask cluster does what worker processes do on this one."""
+
+import json
+import sys
+import threading
+from concurrent.futures import Future
+from contextlib import suppress
+from typing import Any, Self
+
+from grader.common.errors import ClusterError, TaskFailed
+from grader.common.versions import machinery, versions
+from grader.judging.task import Result, Task, packed, unpacked
+from grader.workers.dask_client import PATIENCE_SEC, Certificates, check_address, connected
+
+_START = 'Start workers from the same checkout, set up by ./course: .venv/bin/dask worker ADDRESS'
+LOOK_SEC = 5.0
+"""How often we look whether the scheduler is still there."""
+
+
+class Cluster:
+    """Grades tasks on the workers of a Dask scheduler; leaving the `with` calls the rest off."""
+
+    def __init__(self, address: str, certificates: Certificates | None = None) -> None:
+        """Raise ClusterError where the address can't be had safely."""
+        check_address(address)
+        self._address = address
+        self._certificates = certificates or Certificates()
+        self._asked: dict[Any, Future[Result]] = {}
+        self._left = threading.Event()
+        self.room = 0
+
+    def __enter__(self) -> Self:
+        """Connect, and look at each worker: ClusterError where one would not grade as we do."""
+        self._client = connected(self._address, self._certificates)
+        try:
+            self.room = self._look_at_workers()
+        except BaseException:
+            self._client.close()
+            raise
+        self._watch = threading.Thread(target=self._look_after, name='cluster', daemon=True)
+        self._watch.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Call off what is not done; what a worker is at, it ends for nothing."""
+        self._left.set()
+        self._watch.join()
+        if self._client.status == 'running':
+            self._client.cancel(list(self._asked))
+        self._client.close()
+
+    def isolated(self, *, trust_students: bool = False) -> bool:
+        """Return True: a worker without a sandbox grades nothing."""
+        return True
+
+    def submit(self, task: Task) -> 'Future[Result]':
+        """Have a task graded.
+
+        The future raises TaskFailed for no result, and ClusterError where the cluster is lost.
+        """
+        from grader.workers import dask_worker  # needs Dask, which one machine does without
+
+        work: Future[Result] = Future()
+        asked = self._client.submit(dask_worker.grade, packed(task), machinery(), pure=False)
+        self._asked[asked] = work
+        asked.add_done_callback(lambda done: self._settle(done, task))
+        return work
+
+    def _settle(self, asked: Any, task: Task) -> None:
+        """Pass on what came of a task; called by Dask, in a thread of its own."""
+        work = self._asked.pop(asked)
+        try:
+            if asked.status == 'cancelled':
+                raise ClusterError(
+                    f'the connection to {self._address} is lost. What was stored before is kept: '
+                    'once the scheduler runs again, run the same command again, and it goes on.'
+                )
+            answer = asked.result()
+            if refused := _refused(answer):
+                raise ClusterError(f'a worker of {self._address} {_difference(refused)}')
+            work.set_result(unpacked(answer, task))
+        except ClusterError as error:
+            work.set_exception(error)
+        except Exception as error:  # Dask has lost several workers over it, for instance
+            work.set_exception(
+                error
+                if isinstance(error, TaskFailed)
+                else TaskFailed(f'{type(error).__name__}: {error}')
+            )
+
+    def _look_at_workers(self) -> int:
+        """Return how many submissions all workers have room for; refuse one that won't do."""
+        from grader.workers import dask_worker
+
+        with suppress(TimeoutError):
+            self._client.wait_for_workers(1, timeout=PATIENCE_SEC)
+        room = 0
+        for address, said in self._client.run(dask_worker.describe, on_error='return').items():
+            check_address(address)
+            if isinstance(said, OSError):
+                continue  # it has gone meanwhile
+            if isinstance(said, BaseException):
+                raise ClusterError(
+                    f"the worker {address} can't grade: {type(said).__name__}: {said}. {_START}"
+                )
+            about = json.loads(said)
+            if about['missing'] or about['machinery'] != machinery():
+                raise ClusterError(f'the worker {address} {_difference(about)}')
+            room += about['room']
+        if not room:
+            raise ClusterError(f'{self._address} has no workers. {_START}')
+        return room
+
+    def _look_after(self) -> None:
+        """Say so while there is no worker; whatever was being graded waits for one."""
+        told = False
+        while not self._left.wait(LOOK_SEC):
+            try:
+                workers = self._client.scheduler_info()['workers']
+            except (OSError, ValueError, KeyError):  # no scheduler any more, as its futures tell
+                return
+            if not workers and not told:
+                print(f'waiting: {self._address} has lost all workers', file=sys.stderr)
+            told = not workers
+
+
+def _refused(answer: str) -> dict | None:
+    try:
+        found = json.loads(answer)
+    except ValueError:
+        return None
+    return found.get('refused') if isinstance(found, dict) else None
+
+
+def _difference(about: dict) -> str:
+    """Say in a sentence why a worker won't do."""
+    if about['missing']:
+        return f'refuses: {about["missing"]}'
+    ours = versions()
+    others = [
+        f'{name} {its}, and {ours[name]} here'
+        for name, its in about['versions'].items()
+        if name != 'system' and its != ours.get(name)
+    ]
+    listed = '; '.join(others) or 'other packages are installed there'
+    return f'would not grade as this machine does: {listed}. {_START}'

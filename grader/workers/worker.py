@@ -1,0 +1,80 @@
+"""A process that grades: tasks come in over a socket, results go back, until it is closed.
+
+`python -m grader.workers.worker HANDLE` is started by grader.workers, and is of no use otherwise.
+"""
+
+import asyncio
+import os
+import socket
+import struct
+import sys
+
+from grader.common.logs import log_visibly
+from grader.judging.task import graded
+from grader.sandbox.limits import MAX_TASK_BYTES
+
+BEAT_SEC = 5.0
+"""How often a worker says that it is alive, whatever it is at."""
+_HEAD = struct.Struct('>QQ')
+"""The number of a task, and how many bytes of JSON follow."""
+BEAT = 0
+"""Stands for the number of a task: nothing follows."""
+
+
+async def receive(reader: asyncio.StreamReader, *, most: int) -> tuple[int, str] | None:
+    """Wait for a numbered text of at most `most` bytes.
+
+    None where the other end is gone, or claims to have more to say.
+    """
+    try:
+        number, size = _HEAD.unpack(await reader.readexactly(_HEAD.size))
+        if size > most:
+            return None
+        return number, (await reader.readexactly(size)).decode('ascii')
+    except (asyncio.IncompleteReadError, ConnectionError):
+        return None
+
+
+async def send(writer: asyncio.StreamWriter, number: int, text: str = '') -> None:
+    """Send a numbered text. Raises ConnectionError where the other end is gone."""
+    writer.write(_HEAD.pack(number, len(text)) + text.encode('ascii'))
+    await writer.drain()
+
+
+async def serve(connection: socket.socket) -> None:
+    """Grade whatever comes as soon as it comes; end everything once the other end is gone."""
+    reader, writer = await asyncio.open_connection(sock=connection)
+    under_way = {asyncio.create_task(_beat(writer))}
+    try:
+        while asked := await receive(reader, most=MAX_TASK_BYTES):
+            task = asyncio.create_task(_answer(writer, *asked))
+            under_way.add(task)
+            task.add_done_callback(under_way.discard)
+    finally:
+        left = list(under_way)
+        for task in left:
+            task.cancel()
+        await asyncio.gather(*left, return_exceptions=True)
+        writer.close()
+
+
+async def _answer(writer: asyncio.StreamWriter, number: int, text: str) -> None:
+    await send(writer, number, await graded(text))
+
+
+async def _beat(writer: asyncio.StreamWriter) -> None:
+    while True:
+        await send(writer, BEAT)
+        await asyncio.sleep(BEAT_SEC)
+
+
+def main(handle: str) -> None:
+    """Serve the socket of that number; nothing that is started from here inherits it."""
+    log_visibly()
+    connection = socket.socket(fileno=int(handle))
+    os.set_inheritable(connection.fileno(), False)
+    asyncio.run(serve(connection))
+
+
+if __name__ == '__main__':
+    main(sys.argv[1])

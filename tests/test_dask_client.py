@@ -1,0 +1,75 @@
+import sys
+
+import pytest
+
+from grader.__main__ import main
+from grader.common.errors import ClusterError
+from grader.workers.dask_client import Certificates, check_address, connected
+
+
+@pytest.mark.parametrize(
+    'address',
+    [
+        'tcp://127.0.0.1:8786',
+        'tcp://127.8.8.8:8786',
+        'tcp://[::1]:8786',
+        'tcp://localhost:8786',
+        'tls://10.0.0.1:8786',
+        'tls://scheduler.example.org:8786',
+    ],
+)
+def test_an_address_nobody_else_can_listen_at_is_taken(address):
+    check_address(address)
+
+
+@pytest.mark.parametrize(
+    'address',
+    [
+        'tcp://10.0.0.1:8786',
+        'tcp://0.0.0.0:8786',
+        'tcp://scheduler:8786',
+        'tcp://localhost.example.org:8786',
+        'tcp://[fe80::1]:8786',
+    ],
+)
+def test_another_machine_needs_tls_and_says_how(address):
+    with pytest.raises(ClusterError, match='--tls-ca-file, --tls-cert and --tls-key'):
+        check_address(address)
+
+
+@pytest.mark.parametrize(
+    'address', ['8786', 'localhost:8786', 'ws://127.0.0.1:8786', 'tcp://', 'inproc://x', '']
+)
+def test_what_is_no_address_is_told(address):
+    with pytest.raises(ClusterError, match='expected tls://HOST:8786'):
+        check_address(address)
+
+
+def test_tls_needs_certificates(tmp_path):
+    with pytest.raises(ClusterError, match='needs certificates'):
+        connected('tls://127.0.0.1:1', Certificates(ca_file='ca.pem', cert='cert.pem'))
+
+
+def test_no_scheduler_is_told(monkeypatch):
+    monkeypatch.setattr('grader.workers.dask_client.PATIENCE_SEC', 0.1)
+    with pytest.raises(ClusterError, match=r'no scheduler at tcp://127.0.0.1:1 that answers'):
+        connected('tcp://127.0.0.1:1', Certificates())
+
+
+def test_a_missing_dask_says_how_to_get_it(monkeypatch):
+    monkeypatch.setitem(sys.modules, 'distributed', None)
+    with pytest.raises(ClusterError, match=r'pip install -c environment.txt'):
+        connected('tcp://127.0.0.1:1', Certificates())
+
+
+@pytest.mark.parametrize(
+    ('options', 'said'),
+    [
+        (['--dask', 'tcp://10.0.0.1:8786'], 'use tls:// there'),
+        (['--dask', 'tcp://127.0.0.1:8786', '--trust-students'], 'do not go together'),
+        (['--tls-cert', 'cert.pem'], 'go with --dask'),
+    ],
+)
+def test_what_does_not_go_together_is_told_first(options, said, capsys):
+    assert main(['grade', *options]) == 1
+    assert said in capsys.readouterr().err

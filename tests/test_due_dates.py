@@ -1,0 +1,112 @@
+import os
+import time
+from datetime import datetime, timedelta, timezone
+
+import pytest
+from course_maker import TOY, make_course
+
+from grader.__main__ import main
+from grader.storage.due_dates import local_time
+from grader.storage.late_penalties import FILE, deadlines
+
+
+@pytest.fixture
+def course(tmp_path, monkeypatch):
+    monkeypatch.setenv('TZ', 'Asia/Shanghai')
+    time.tzset()
+    yield make_course(tmp_path)
+    monkeypatch.undo()
+    time.tzset()
+
+
+def due(course, *arguments):
+    return main(['due', *arguments], course=course)
+
+
+@pytest.mark.parametrize(
+    ('text', 'hour', 'offset_hours'),
+    [
+        ('2026-11-30', (23, 59), 8),
+        ('20261130', (23, 59), 8),
+        ('2026-11-30 18:00', (18, 0), 8),
+        ('2026-11-30T18:00', (18, 0), 8),
+        ('2026-11-30T18:00+01:00', (18, 0), 1),
+    ],
+)
+def test_a_date_is_its_end_and_a_time_without_a_zone_is_ours(course, text, hour, offset_hours):
+    zone = timezone(timedelta(hours=offset_hours))
+    assert local_time(text) == datetime(2026, 11, 30, *hour, tzinfo=zone)
+
+
+def test_a_due_date_an_extension_and_their_end(course, capsys):
+    assert due(course, TOY, '2026-11-30') == 0
+    assert due(course, TOY, '2026-12-03 12:00', '--student', '小明 O"Neil') == 0
+    said = capsys.readouterr().out
+    assert f'{TOY}  due 2026-11-30 23:59 CST' in said
+    assert '  extended for 小明 O"Neil until 2026-12-03 12:00 CST' in said
+    assert 'who has handed in nothing: is that the name?' in said
+    found = deadlines(course.gradebook, course.assignments())
+    assert found.due == {TOY: datetime(2026, 11, 30, 15, 59)}
+    assert found.extended == {(TOY, '小明 O"Neil'): datetime(2026, 12, 3, 4, 0)}
+
+    assert due(course, TOY, 'none', '--student', '小明 O"Neil') == 0
+    assert due(course, TOY, 'none') == 0
+    assert f'{TOY}  no due date' in capsys.readouterr().out
+    assert deadlines(course.gradebook).due == {}
+
+
+def test_the_rest_of_the_file_stays_as_it_was_written(course):
+    course.gradebook.mkdir()
+    path = course.gradebook / FILE
+    path.write_text(
+        '# agreed with the dean\n[late]\nper_day = 0.10  # 10 %\n\n[due]\n'
+        f'{TOY} = 2026-01-10T23:59:00+01:00\n'
+    )
+    assert due(course, TOY, '2026-01-11') == 0
+    assert path.read_text() == (
+        '# agreed with the dean\n[late]\nper_day = 0.10  # 10 %\n\n[due]\n'
+        f'{TOY} = 2026-01-11T23:59:00+08:00\n'
+    )
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'said'),
+    [
+        (['99_other', '2026-11-30'], f"no assignment '99_other'; there are: {TOY}"),
+        ([TOY], f'say until when: ./course due {TOY} 2026-11-30'),
+        ([TOY, '2026-11-29', '--student', 'ada'], 'gives nobody more time'),
+        ([TOY, 'none'], 'it is extended for ada. Remove these extensions first'),
+    ],
+)
+def test_what_cannot_be_is_said_and_changes_nothing(course, capsys, arguments, said):
+    assert due(course, TOY, '2026-11-30') == 0
+    assert due(course, TOY, '2026-12-01', '--student', 'ada') == 0
+    before = (course.gradebook / FILE).read_bytes()
+    assert due(course, *arguments) == 1
+    assert said in capsys.readouterr().err
+    assert (course.gradebook / FILE).read_bytes() == before
+
+
+def test_an_extension_needs_a_due_date(course, capsys):
+    assert due(course, TOY, '2026-12-01', '--student', 'ada') == 1
+    assert f'./course due {TOY} DATE sets one' in capsys.readouterr().err
+    assert not os.path.exists(course.gradebook / FILE)
+
+
+def test_a_broken_file_is_not_written_over(course, capsys):
+    course.gradebook.mkdir()
+    (course.gradebook / FILE).write_text('[due')
+    assert due(course, TOY, '2026-12-01') == 1
+    assert 'see the example' in capsys.readouterr().err
+    assert (course.gradebook / FILE).read_text() == '[due'
+
+
+def test_a_date_that_is_none_is_refused(course, capsys):
+    with pytest.raises(SystemExit):
+        due(course, TOY, 'tomorrow')
+    assert 'invalid date value' in capsys.readouterr().err
+
+
+def test_without_a_date_all_of_them_are_listed(course, capsys):
+    assert due(course) == 0
+    assert capsys.readouterr().out.splitlines()[0] == f'{TOY}  no due date'

@@ -1,0 +1,214 @@
+"""What kernels are forked from: what it holds, how long it lives, and where it can't be."""
+
+import asyncio
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import psutil
+import pytest
+from forked_kernels import (
+    DOMAIN,
+    SLOTS,
+    closed,
+    kernel_of,
+    opened,
+    printed,
+    process_of,
+    server_of,
+)
+
+from grader.course import ROOT
+from grader.kernels import fork_servers
+from grader.kernels.kernels import Kernel
+from grader.sandbox import bubblewrap
+from grader.sandbox.sandbox import Sandbox
+
+pytestmark = pytest.mark.isolation
+
+
+@pytest.fixture(scope='module')
+def loop():
+    with asyncio.Runner() as runner:
+        yield runner
+
+
+@pytest.fixture
+def forked(loop):
+    yield from kernel_of(loop)
+
+
+@pytest.fixture
+def no_servers():
+    """No server yet, and none left."""
+    fork_servers.close_servers()
+    fork_servers._unfit.clear()
+    yield
+    fork_servers.close_servers()
+    fork_servers._unfit.clear()
+
+
+def test_a_server_holds_nothing_of_the_grader(forked):
+    server = server_of(forked)
+    assert server.num_threads() == 1
+    held = [
+        os.readlink(f'/proc/{server.pid}/fd/{fd}') for fd in os.listdir(f'/proc/{server.pid}/fd')
+    ]
+    assert {re.sub(r'\d+', '', link) for link in held} <= {'/dev/null', 'socket:[]'}
+    assert len(held) <= 4  # three of them are the standard ones
+    assert server.cwd() == '/'
+    assert set(server.environ()) <= {
+        *bubblewrap.ENVIRONMENT,
+        *('MPLBACKEND', 'PYTHONSAFEPATH', 'PYTHONDONTWRITEBYTECODE', 'LD_LIBRARY_PATH'),
+        *('_ROS_WHEELS_BOOTSTRAP_COMPLETE', 'LANG', 'LC_ALL', 'TZ'),
+    }
+    maps = Path(f'/proc/{server.pid}/maps').read_text().splitlines()
+    shared = [line for line in maps if line.split()[1].endswith('s')]
+    assert [line for line in shared if '/dev/shm' in line or 'w' in line.split()[1]] == []
+
+
+def test_students_and_tests_kernels_lie_differently_in_memory(loop, forked):
+    sandbox, test = loop.run(opened(room='test'))
+    try:
+        assert server_of(test) != server_of(forked)
+    finally:
+        loop.run(closed(sandbox, test))
+
+
+def test_a_server_that_has_died_is_replaced(loop, forked):
+    former = server_of(forked)
+    former.kill()
+    while former.is_running() and former.status() != psutil.STATUS_ZOMBIE:
+        time.sleep(0.01)
+    sandbox, kernel = loop.run(opened())
+    try:
+        assert server_of(kernel).is_running()
+        assert forked.alive  # what it had forked lives on
+        assert loop.run(forked.run('1', timeout_sec=60.0)).ran_to_end
+    finally:
+        loop.run(closed(sandbox, kernel))
+
+
+def test_many_are_forked_at_a_time_and_by_several_threads():
+    kernels = []
+
+    async def some():
+        opened_ones = await asyncio.gather(*(opened() for _ in range(3)))
+        try:
+            runs = [kernel.run('print(1)', timeout_sec=60.0) for _, kernel in opened_ones]
+            kernels.extend(run.ran_to_end for run in await asyncio.gather(*runs))
+        finally:
+            await asyncio.gather(*(closed(*each) for each in opened_ones))
+
+    threads = [threading.Thread(target=lambda: asyncio.run(some())) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert kernels == [True] * 6
+
+
+GRADER = """
+import asyncio, time, sys
+sys.path[:0] = [{root!r}, {root!r} + '/tests']
+from forked_kernels import opened, server_of
+async def main():
+    kept = await opened()
+    print(server_of(kept[1]).pid, flush=True)
+    {then}
+asyncio.run(main())
+"""
+
+
+@pytest.mark.parametrize('then', ['time.sleep(1000)', 'return'], ids=['killed', 'ended'])
+def test_no_server_outlives_its_grader(then):
+    code = GRADER.format(root=str(ROOT), then=then)
+    grader = subprocess.Popen([sys.executable, '-c', code], stdout=subprocess.PIPE, text=True)
+    server = psutil.Process(int(grader.stdout.readline()))
+    if then != 'return':
+        grader.send_signal(signal.SIGKILL)
+    grader.wait(60)
+    assert psutil.wait_procs([server], timeout=60)[1] == []
+
+
+def test_a_process_forked_from_a_grader_does_not_keep_its_servers(forked):
+    if os.fork() == 0:
+        os._exit(len(fork_servers._servers))
+    assert os.waitstatus_to_exitcode(os.wait()[1]) == 0
+    assert fork_servers._servers
+
+
+PROCESSES = "import os; print(sorted(p for p in os.listdir('/proc') if p.isdigit()))"
+FAULTS = {
+    'a thread': (
+        'import threading, time; threading.Thread(target=time.sleep, args=(1e6,)).start()',
+        'started threads',
+    ),
+    'shared memory': ('import mmap, sys; sys.kept = mmap.mmap(-1, 4096)', 'made shared memory'),
+    'an import that fails': ('import nothing_of_that_name', 'nothing_of_that_name'),
+    'its end': ('import os; os._exit(1)', 'has ended'),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(('fault', 'why'), FAULTS.values(), ids=FAULTS)
+def test_what_can_not_be_forked_is_started_and_says_why(
+    loop, monkeypatch, tmp_path, no_servers, fault, why
+):
+    program = Path(shutil.copytree(fork_servers._PROGRAM, tmp_path / 'forkserver'))
+    with (program / 'imports.py').open('a') as imports:
+        imports.write(f'\n_load_type_supports = lambda: exec({fault!r})\n')
+    monkeypatch.setattr(fork_servers, '_PROGRAM', program)
+    sandbox = Sandbox(slot=next(SLOTS))
+    loop.run(sandbox.open())
+    kernel = Kernel(room='student', domain_id=DOMAIN, place=sandbox.place('student'))
+    loop.run(kernel.start())
+    try:
+        assert why in kernel.why_not_warm
+        commands = [process.info['cmdline'] for process in psutil.process_iter(['cmdline'])]
+        assert [command for command in commands if command and str(program) in command] == []
+        assert printed(loop, kernel, 'print(1)') == '1\n'
+        assert printed(loop, kernel, PROCESSES) == "['1', '2']\n"
+    finally:
+        loop.run(closed(sandbox, kernel))
+
+
+def test_a_python_of_ones_own_is_copied_first(loop, monkeypatch, no_servers):
+    """Its file could be changed through /proc/self/exe: the room's user would be its owner."""
+    python = Path('/proc/self/exe')
+    monkeypatch.setattr(fork_servers, '_python', lambda: fork_servers._sealed_copy(python))
+    sandbox, kernel = loop.run(opened())
+    try:
+        link = printed(loop, kernel, "import os; print(os.readlink('/proc/self/exe'))")
+        assert link.startswith('/memfd:python')
+        assert process_of(kernel).status() != psutil.STATUS_ZOMBIE
+    finally:
+        loop.run(closed(sandbox, kernel))
+
+
+def test_the_copy_of_python_can_not_be_changed(tmp_path):
+    (tmp_path / 'python').write_bytes(b'python')
+    with fork_servers._sealed_copy(tmp_path / 'python') as copy:
+        path = f'/proc/self/fd/{copy.fileno()}'
+        assert Path(path).read_bytes() == b'python'
+        with pytest.raises(PermissionError):
+            os.truncate(path, 3)
+        with pytest.raises(PermissionError):
+            Path(path).write_bytes(b'x')
+        with Path(path).open('r+b', buffering=0) as again, pytest.raises(PermissionError):
+            again.write(b'x')
+
+
+@pytest.mark.parametrize(
+    ('user', 'owner', 'copied'), [(0, 0, False), (1000, 0, False), (1000, 1000, True)]
+)
+def test_only_a_python_of_ones_own_is_copied(monkeypatch, user, owner, copied):
+    monkeypatch.setattr(Path, 'stat', lambda path: type('Found', (), {'st_uid': owner}))
+    monkeypatch.setattr(os, 'geteuid', lambda: user)
+    with fork_servers._python() as python:
+        assert (python.name != '/proc/self/exe') is copied

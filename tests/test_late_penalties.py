@@ -1,0 +1,143 @@
+import shutil
+from datetime import datetime
+
+import pytest
+from course_maker import TOY, answered, executed, released_course, submit
+from nbgrader.api import Gradebook
+
+from grader.common.errors import CourseError
+from grader.course import Course
+from grader.grade import grade_all
+from grader.notebook.restore import heal
+from grader.notebook.submission import read_submission
+from grader.storage.gradebook import store
+from grader.storage.late_penalties import FILE, Deadlines, deadlines, extended_for_nobody
+from grader.storage.pipeline import prepare
+from grader.storage.records import records
+
+RULES = f"""
+[due]
+{TOY} = 2026-01-10T23:59:00+01:00
+
+[extended.{TOY}]
+ada = 2026-01-12T23:59:00+01:00
+'小明' = 2026-01-01T00:00:00Z
+
+[late]
+per_day = 0.1
+at_most = 0.5
+grace_minutes = 15
+"""
+
+
+@pytest.fixture(scope='module')
+def released(tmp_path_factory):
+    return released_course(tmp_path_factory.mktemp('late'))
+
+
+@pytest.fixture
+def course(released, tmp_path):
+    shutil.copytree(released.gradebook, tmp_path / 'gradebook')  # making a database takes long
+    return Course(root=released.root, gradebook=tmp_path / 'gradebook')
+
+
+def grade(course, student, handed_in):
+    """Store a submission that earns 3 points; return its score, which lateness makes less."""
+    path = submit(course, student, answered(course, 'def double(x):\n    return 2 * x'))
+    if handed_in:
+        path.with_name('timestamp.txt').write_text(handed_in)
+    submission = read_submission(path.parent, student_id=student, assignment=TOY)
+    healed = heal(submission.notebook, course.master(TOY)).notebook
+    stored = store(course, submission, executed(prepare(course, TOY, healed), {}))
+    assert stored.score + stored.late == pytest.approx(3.0)
+    return stored.score
+
+
+@pytest.mark.parametrize(
+    ('student', 'handed_in', 'score'),
+    [
+        ('bob', '2026-01-10 22:59:00 UTC', 3.0),
+        ('bob', '2026-01-10 23:14:00 UTC', 3.0),  # in the minutes of grace
+        ('bob', '2026-01-10 23:14:01 UTC', 2.7),
+        ('bob', '2026-01-11 22:59:01 UTC', 2.4),
+        ('bob', '2026-06-01 00:00:00 UTC', 1.5),
+        ('bob', None, 3.0),
+        ('ada', '2026-01-12 22:59:00 UTC', 3.0),
+        ('ada', '2026-01-12 23:30:00 UTC', 2.7),
+        ('小明', '2026-01-10 22:00:00 UTC', 3.0),  # no extension makes the time shorter
+    ],
+)
+def test_lateness_costs_what_the_file_says(student, handed_in, score, course):
+    (course.gradebook / FILE).write_text(RULES)
+    assert grade(course, student, handed_in) == pytest.approx(score)
+
+
+def test_the_gradebook_knows_what_is_due_and_what_it_cost(course):
+    (course.gradebook / FILE).write_text(RULES)
+    grade(course, 'ada', '2026-01-13 22:59:00 UTC')
+    with Gradebook(course.db_url) as book:
+        assert book.find_assignment(TOY).duedate == datetime(2026, 1, 10, 22, 59)
+        submission = book.find_submission(TOY, 'ada')
+        assert (submission.extension.days, submission.total_seconds_late) == (2, 86_400)
+    found = {record.grade_id: record.score for record in records(course)}
+    assert found['late_penalty'] == pytest.approx(-0.3)
+
+
+def test_what_is_taken_out_of_the_file_counts_no_more(course):
+    for rules, score in ((RULES, 2.7), (RULES.partition('[late]')[0], 3.0), (RULES, 2.7), ('', 3)):
+        (course.gradebook / FILE).write_text(rules)
+        assert grade(course, 'bob', '2026-01-11 22:59:00 UTC') == pytest.approx(score)
+
+
+def test_without_a_file_nbgraders_own_due_date_stays_and_costs_nothing(course):
+    assert deadlines(course.gradebook) is None
+    with Gradebook(course.db_url) as book:
+        book.find_assignment(TOY).duedate = datetime(2026, 1, 1)
+        book.db.commit()
+    assert grade(course, 'bob', '2026-01-11 22:59:00 UTC') == 3.0
+    with Gradebook(course.db_url) as book:
+        assert book.find_submission(TOY, 'bob').total_seconds_late > 0
+
+
+@pytest.mark.parametrize(
+    ('rules', 'wrong'),
+    [
+        ('[due', 'at end of document'),
+        ('[dues]', "'dues' is not known"),
+        ('due = 1', r'\[due\] is no table'),
+        ('[due]\n99_other = 2026-01-01T00:00:00Z', "there is no assignment '99_other'"),
+        (f'[due]\n{TOY} = 2026-01-01T00:00:00', 'has no time with its zone'),
+        (f'[due]\n{TOY} = 2026-01-01', 'has no time with its zone'),
+        (f'[due]\n{TOY} = "tomorrow"', 'has no time with its zone'),
+        (f'[extended.{TOY}]\nada = 2026-01-01T00:00:00Z', 'extended, and has no due date'),
+        ('[late]\nper_week = 0.1', "'per_week' is not known"),
+        ('[late]\nper_day = "10 %"', 'per_day is no number'),
+        ('[late]\nper_day = 10', 'per_day = 10 is out of range'),
+        ('[late]\nat_most = -1', 'at_most = -1 is out of range'),
+        ('[late]\nper_day = nan', 'per_day = nan is out of range'),
+    ],
+)
+def test_what_is_wrong_in_the_file_is_said_before_anything_is_graded(rules, wrong, course):
+    (course.gradebook / FILE).write_text(rules)
+    with pytest.raises(CourseError, match=f'{FILE}: .*{wrong}.*: see the example'):
+        list(grade_all(course, [], trust_students=True))
+
+
+def test_days_that_have_begun_count():
+    rules = Deadlines(per_day=0.2)
+    assert [rules.penalty(10, days * 86_400) for days in (0, 0.01, 1, 1.01, 9)] == [
+        None,
+        *(2.0, 2.0, 4.0, 10.0),
+    ]
+
+
+def test_an_extension_of_somebody_who_has_handed_in_nothing_is_told(course):
+    (course.gradebook / FILE).write_text(RULES)
+    submit(course, 'ada', '')
+    assert extended_for_nobody(course) == [
+        f'{FILE} extends {TOY} for 小明, who has handed in nothing: is that the name?'
+    ]
+    submit(course, '小明', '')
+    assert extended_for_nobody(course) == []
+    (course.gradebook / FILE).unlink()
+    assert extended_for_nobody(course) == []

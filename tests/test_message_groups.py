@@ -1,0 +1,50 @@
+import pytest
+
+from grader.report.message_groups import Said, grouped, numberless
+
+
+@pytest.mark.parametrize(
+    ('reason', 'words'),
+    [
+        ('saw 23.5 at joint1: -4e-05 rad', 'saw … at joint1: … rad'),
+        ('saw (1, 2.0, -3) and 7', 'saw (…) and …'),
+        ('03_publisher.ipynb has no number, nor has joint1', None),
+    ],
+)
+def test_reasons_are_grouped_by_their_words_without_the_numbers(reason, words):
+    assert numberless(reason) == (words or reason)
+
+
+def test_what_differs_in_numbers_alone_is_one_reason_of_each_assignment():
+    said = [
+        Said('ada', 'one', 'a', 'saw 1'),
+        Said('bob', 'one', 'b', 'saw 2'),
+        Said('bob', 'one', 'a', 'saw 3'),
+        Said('eve', 'two', '', 'saw 1'),
+        Said('\x1b', 'two', '', 'saw 1'),
+        Said('zoe', 'two', 'a', 'heard 1'),
+    ]
+    found = [(r.assignment, r.words, r.example, r.students, r.checks) for r in grouped(said)]
+    assert found == [
+        ('one', 'saw …', 'saw 1', ('ada', 'bob'), ('a', 'b')),
+        ('two', 'saw 1', 'saw 1', ('eve', '\\x1b'), ()),
+        ('two', 'heard 1', 'heard 1', ('zoe',), ('a',)),
+    ]
+
+
+@pytest.mark.parametrize(
+    ('one', 'other', 'words'),
+    [
+        (
+            'saw 4.0 Hz: period = 1 / rate',
+            'saw 6.0 Hz: period = 1 / rate',
+            'saw … Hz: period = 1 / rate',
+        ),
+        ('saw 1, 2, 3 of 4', 'saw 1, 5, 6 of 4', 'saw 1, … of 4'),
+        ('saw (1, 2)', 'saw (1, 2, 3)', 'saw (…)'),
+        ('saw 7', 'saw 7', 'saw 7'),
+    ],
+)
+def test_a_number_that_is_the_same_for_all_is_told(one, other, words):
+    [reason] = grouped([Said('ada', 'one', 'a', one), Said('bob', 'one', 'a', other)])
+    assert reason.words == words

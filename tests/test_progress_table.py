@@ -1,0 +1,78 @@
+import io
+import sys
+import threading
+import time
+from dataclasses import replace
+
+from grader.grade import Row
+from grader.report import progress_table
+from grader.report.progress_table import print_rows, why
+from grader.storage.gradebook import Stored
+from grader.storage.submitted import HandedIn
+
+SAID = {
+    'ada': Stored(score=5.0, max_score=5.0, former=None, pending=False, reason=''),
+    'bob': Stored(score=2.0, max_score=5.0, former=None, pending=False, reason='?'),
+    'eve': Stored(score=5.0, max_score=5.0, former=None, pending=True, reason='?'),
+}
+
+
+class Terminal(io.StringIO):
+    def isatty(self):
+        return True
+
+
+def slowly(names):
+    for name in names:
+        time.sleep(0.2)  # the bar is drawn ten times a second at most
+        yield Row(name, '00_toy', SAID.get(name), 'no room')
+
+
+def test_a_terminal_sees_how_many_are_done_how_fast_and_how_long_it_will_take(
+    monkeypatch, tmp_path
+):
+    monkeypatch.setattr(sys, 'stderr', Terminal())
+    names = ['ada', 'bob', 'eve', 'kim']
+    submissions = [HandedIn(name, '00_toy', tmp_path) for name in names]
+    list(print_rows(slowly(names), submissions))
+    drawn = [line for line in sys.stderr.getvalue().split('\r') if '3/4' in line]
+    assert drawn
+    done, _, rate = drawn[-1].partition('[')[2].partition('<')
+    assert done.startswith('00:')
+    assert rate.startswith('00:')  # and not ?, as before the first one
+    assert 'notebook/s' in rate
+    assert '1 with all points, 1 with fewer, 1 for a person' in rate
+
+
+def test_time_goes_on_while_one_submission_takes_long(monkeypatch, tmp_path):
+    monkeypatch.setattr(sys, 'stderr', Terminal())
+    monkeypatch.setattr(progress_table, 'TICK_SEC', 0.01)
+
+    def one_long():
+        deadline = time.monotonic() + 60
+        while sys.stderr.getvalue().count('0/1') < 5:
+            assert time.monotonic() < deadline
+            time.sleep(0.01)
+        yield Row('ada', '00_toy', None, 'no room')
+
+    list(print_rows(one_long(), [HandedIn('ada', '00_toy', tmp_path)]))
+    assert not [thread for thread in threading.enumerate() if thread.name == 'bar']
+
+
+def test_a_log_sees_rows_alone(monkeypatch, tmp_path, capsys):
+    list(print_rows(slowly(['zoe']), [HandedIn('zoe', '00_toy', tmp_path)]))
+    printed = capsys.readouterr()
+    assert printed.err == ''
+    assert [line.split() for line in printed.out.splitlines()] == [
+        ['student', 'assignment', 'score', 'reason'],
+        ['zoe', '00_toy', '–', 'no', 'room'],
+    ]
+
+
+def test_a_row_says_what_lateness_cost_and_that_nothing_is_new():
+    late = replace(SAID['bob'], former=2.0, late=0.3)
+    row = Row('bob', '00_toy', late, 'count again', reused=True)
+    assert why(row) == '(unchanged) (late: -0.3) count again'
+    assert why(replace(row, stored=replace(late, former=2.3))) == (
+        '(was 2.3) (late: -0.3) count again'
+    )

@@ -1,0 +1,376 @@
+"""Healing: whatever became of a notebook, it has its source's cells again, and the answers."""
+
+import nbformat
+import pytest
+from course_maker import TOY, answered, released_course
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
+
+from grader.notebook.restore import KEY, grade_id, heal, make_master, role
+
+ANSWER = 'def double(x):\n    return 2 * x'
+ANSWERS = ('double', 'explain')
+KEPT = ('grade', 'locked', 'setup')
+"""Roles of cells whose text is the master's, come what may."""
+
+
+@pytest.fixture(scope='module')
+def course(tmp_path_factory):
+    return released_course(tmp_path_factory.mktemp('course'))
+
+
+@pytest.fixture(scope='module')
+def master(course):
+    return course.master(TOY)
+
+
+@pytest.fixture
+def submitted(course):
+    return answered(course, ANSWER, explained='Because.')
+
+
+def at(notebook, name):
+    return next(i for i, c in enumerate(notebook.cells) if c.id == name)
+
+
+def by_grade_id(notebook):
+    found = [c for c in notebook.cells if grade_id(c)]
+    assert len({grade_id(c) for c in found}) == len(found)
+    return {grade_id(c): c for c in found}
+
+
+def assert_whole(healed, master):
+    """Every cell of the master once, in its order, with its own text where that counts."""
+    names = [grade_id(c) for c in master.notebook.cells if grade_id(c)]
+    assert [grade_id(c) for c in healed.notebook.cells if grade_id(c)] == names
+    cells = by_grade_id(healed.notebook)
+    for original in master.notebook.cells:
+        if role(original) in KEPT and grade_id(original):
+            cell = cells[grade_id(original)]
+            assert cell == original | {'id': cell.id}
+        elif role(original) == 'answer':
+            cell = cells[grade_id(original)]
+            assert (cell.cell_type, cell.metadata) == (original.cell_type, original.metadata)
+    kept = [c.source for c in master.notebook.cells if role(c) in (*KEPT, 'text')]
+    texts = iter([c.source for c in healed.notebook.cells if role(c) in (*KEPT, 'text')])
+    assert all(source in texts for source in kept)  # in this order
+    nbformat.validate(nbformat.from_dict(healed.notebook))
+
+
+def test_an_untouched_submission_needs_no_mending(submitted, master):
+    healed = heal(submitted, master)
+    assert_whole(healed, master)
+    assert healed.notes == ()
+    assert [c.id for c in healed.notebook.cells] == [c.id for c in submitted.cells]
+    assert by_grade_id(healed.notebook)['double'].source == ANSWER
+    assert by_grade_id(healed.notebook)['explain'].source == 'Because.'
+
+
+def test_roles_come_from_the_marks_and_the_place(master):
+    assert {c.id: role(c) for c in master.notebook.cells} == {
+        'title': 'text',
+        'setup': 'setup',
+        'shown': 'demo',
+        'double-reset': 'locked',
+        'double': 'answer',
+        'try-it': 'free',
+        'double-check': 'grade',
+        'double-hidden': 'grade',
+        'explain': 'answer',
+    }
+
+
+def test_a_master_holds_the_tests_and_no_answer(master):
+    text = nbformat.writes(master.notebook)
+    assert 'hidden canary' in text
+    assert 'the secret answer' not in text
+
+
+def delete(name):
+    def mutate(cells, i):
+        del cells[i(name)]
+
+    return mutate
+
+
+def edit(name, source):
+    def mutate(cells, i):
+        cells[i(name)].source = source
+
+    return mutate
+
+
+def duplicate(name, **changes):
+    def mutate(cells, i):
+        cells.insert(i(name) + 1, nbformat.from_dict(cells[i(name)] | {'id': 'copy'} | changes))
+
+    return mutate
+
+
+def retype(name, new):
+    def mutate(cells, i):
+        old = cells[i(name)]
+        cells[i(name)] = new(old.source, id=old.id, metadata=old.metadata)
+
+    return mutate
+
+
+def reverse(cells, i):
+    cells.reverse()
+
+
+def other_editor(cells, i):
+    for number, cell in enumerate(cells):
+        cell.id = f'vscode-{number}'
+
+
+def drop_metadata(name):
+    def mutate(cells, i):
+        del cells[i(name)].metadata['nbgrader']
+
+    return mutate
+
+
+MENDED = {
+    'a check is deleted': (delete('double-check'), 'double-check', 'missing'),
+    'a hidden check is deleted': (delete('double-hidden'), 'double-hidden', 'missing'),
+    'a check is edited': (edit('double-check', 'pass'), 'double-check', 'changed'),
+    'a check is emptied': (edit('double-hidden', ''), 'double-hidden', 'changed'),
+    'a check is duplicated': (duplicate('double-check'), 'double-check', 'there 2 times'),
+    'a check is split': (duplicate('double-check', source='1'), 'double-check', 'there 2 times'),
+    'a check became text': (retype('double-check', new_markdown_cell), 'double-check', 'changed'),
+    'a check lost its marks': (drop_metadata('double-check'), 'double-check', 'missing'),
+    'a reset is deleted': (delete('double-reset'), 'double-reset', 'missing'),
+    'a reset is edited': (edit('double-reset', 'pass'), 'double-reset', 'changed'),
+}
+HOW = {
+    'missing': 'was missing: it was put back',
+    'changed': 'was changed: the original counts',
+    'there 2 times': 'was there 2 times: the original counts',
+}
+
+
+@pytest.mark.parametrize(('mutate', 'name', 'how'), MENDED.values(), ids=MENDED)
+def test_locked_and_grade_cells_are_the_originals_whatever_became_of_them(
+    submitted, master, mutate, name, how
+):
+    mutate(submitted.cells, lambda name: at(submitted, name))
+    healed = heal(submitted, master)
+    assert_whole(healed, master)
+    assert healed.notes == (f'the cell `{name}` {HOW[how]}',)
+    assert healed.notebook.metadata[KEY].notes == list(healed.notes)
+    assert by_grade_id(healed.notebook)['double'].source == ANSWER
+
+
+UNHARMED = {
+    'cells in another order': reverse,
+    'ids of another editor': other_editor,
+    'a demo is deleted': delete('shown'),
+    'a setup is deleted': delete('setup'),
+    'the title is edited': edit('title', '# Mine'),
+    'the "try it" cell is deleted': delete('try-it'),
+}
+
+
+@pytest.mark.parametrize('mutate', UNHARMED.values(), ids=UNHARMED)
+def test_other_changes_cost_no_word(submitted, master, mutate):
+    mutate(submitted.cells, lambda name: at(submitted, name))
+    healed = heal(submitted, master)
+    assert_whole(healed, master)
+    assert healed.notes == ()
+    assert by_grade_id(healed.notebook)['double'].source == ANSWER
+
+
+def split_with_marks(cells, i):
+    place = i('double')
+    cells.insert(place + 1, nbformat.from_dict(cells[place] | {'id': 'second'}))
+    cells[place].source, cells[place + 1].source = 'def half(x):', '    return x / 2'
+
+
+def copy_left_over(first):
+    """A student who wrote into a copy of the answer cell, before or after the released text."""
+
+    def mutate(cells, i):
+        place = i('double')
+        stub = nbformat.from_dict(cells[place] | {'id': 'stub', 'source': mutate.released})
+        cells.insert(place + (0 if first else 1), stub)
+
+    return mutate
+
+
+ANSWERED = {
+    'deleted': (delete('double'), None, 'was missing: it was put back, without an answer'),
+    'emptied': (edit('double', ''), '', None),
+    'split': (split_with_marks, 'def half(x):\n\n    return x / 2', 'came in 2 parts'),
+    'duplicated as it is': (duplicate('double'), ANSWER, 'came in 2 parts'),
+    'duplicated and gone on with': (
+        duplicate('double', source='x = 1'),
+        f'{ANSWER}\n\nx = 1',
+        'came in 2 parts',
+    ),
+    'a copy of the stub before it': (copy_left_over(True), ANSWER, None),
+    'a copy of the stub after it': (copy_left_over(False), ANSWER, None),
+    'an empty copy': (duplicate('double', source=' \n'), ANSWER, None),
+    'another type': (retype('double', new_markdown_cell), ANSWER, 'had another type'),
+}
+
+
+@pytest.mark.parametrize(('mutate', 'source', 'note'), ANSWERED.values(), ids=ANSWERED)
+def test_an_answer_keeps_all_that_was_written(submitted, master, mutate, source, note):
+    stub = by_grade_id(master.notebook)['double'].source
+    mutate.released = stub
+    mutate(submitted.cells, lambda name: at(submitted, name))
+    healed = heal(submitted, master)
+    assert_whole(healed, master)
+    assert by_grade_id(healed.notebook)['double'].source == (stub if source is None else source)
+    if note is None:
+        assert healed.notes == ()
+    else:
+        assert [n for n in healed.notes if note in n], healed.notes
+
+
+def test_the_second_part_of_an_answer_stays_behind_it_without_marks(submitted, master):
+    place = at(submitted, 'double')
+    submitted.cells.insert(place + 1, new_code_cell('helper = 1', id='double'))
+    cells = heal(submitted, master).notebook.cells
+    at_answer = next(i for i, c in enumerate(cells) if grade_id(c) == 'double')
+    assert (cells[at_answer + 1].source, role(cells[at_answer + 1])) == ('helper = 1', 'free')
+    assert cells[at_answer + 1].id != cells[at_answer].id
+
+
+OWN = {'setup': 'import math\nk = 2', 'shown': 'print(2)', 'try-it': 'double(5)'}
+
+
+@pytest.mark.parametrize(('name', 'source'), OWN.items(), ids=OWN)
+def test_what_a_student_wrote_elsewhere_stays_as_a_free_cell(submitted, master, name, source):
+    original = submitted.cells[at(submitted, name)].source
+    submitted.cells[at(submitted, name)].source = source
+    cells = heal(submitted, master).notebook.cells
+    texts = [c.source for c in cells]
+    place = texts.index(source)
+    assert cells[place].metadata == {KEY: {'role': 'free'}}
+    # the original is still there only where other cells build on it
+    assert (texts[place - 1] == original) == (name == 'setup')
+    assert texts.count(original) == (name == 'setup')
+
+
+def test_own_cells_stay_after_the_cell_they_followed(submitted, master):
+    submitted.cells.insert(0, new_code_cell('first'))
+    submitted.cells.insert(at(submitted, 'double-check') + 1, new_markdown_cell('a thought'))
+    submitted.cells.append(new_code_cell('last'))
+    submitted.cells.append(new_code_cell('  '))
+    cells = heal(submitted, master).notebook.cells
+    texts = [c.source for c in cells]
+    assert (texts[0], texts[-1]) == ('first', 'last')
+    assert grade_id(cells[texts.index('a thought') - 1]) == 'double-check'
+    assert role(cells[texts.index('a thought')]) == 'text'
+
+
+STRANGE = new_code_cell('', metadata={'nbgrader': {'grade_id': 'other'}})
+
+
+@pytest.mark.parametrize('cells', [[], [new_code_cell('x = 1')], [STRANGE]])
+def test_a_notebook_of_another_assignment_says_so_first(master, cells):
+    healed = heal(new_notebook(cells=cells), master)
+    assert_whole(healed, master)
+    first = healed.notes[0]
+    assert first == 'the notebook holds none of the answer cells of this assignment'
+
+
+def test_attachments_of_a_manual_answer_are_kept(submitted, master):
+    pictures = {'arm.png': {'image/png': 'AAAA'}}
+    submitted.cells[at(submitted, 'explain')].attachments = pictures
+    assert by_grade_id(heal(submitted, master).notebook)['explain'].attachments == pictures
+
+
+FORGED = {
+    'tags': ['skip-execution', 'raises-exception', 'demo'],
+    'nbgrader': {'points': 99, 'schema_version': 1, 'solution': True, 'grade': False},
+    KEY: {'role': 'setup', 'outcome': 'passed', 'reason': 'forged', 'notes': ['forged']},
+    'deletable': False,
+    'jupyter': {'source_hidden': True},
+}
+
+
+def test_nothing_that_a_student_wrote_into_metadata_lives_on(submitted, master):
+    untouched = heal(submitted, master)
+    submitted.cells.insert(3, new_code_cell('mine = 1'))
+    expected = heal(submitted, master).notebook
+    for cell in submitted.cells:
+        marks = {'grade_id': grade_id(cell)} if grade_id(cell) else {}
+        cell.metadata = nbformat.from_dict(FORGED | {'nbgrader': FORGED['nbgrader'] | marks})
+        if cell.cell_type == 'code':
+            cell.outputs = [nbformat.v4.new_output('stream', text='forged')]
+            cell.execution_count = 3
+    submitted.metadata = nbformat.from_dict({KEY: {'problem': 'forged'}, 'kernelspec': 'forged'})
+    healed = heal(submitted, master)
+    mine = [c for c in expected.cells if c.source == 'mine = 1']
+    assert [c.metadata for c in mine] == [{KEY: {'role': 'free'}}]
+    assert [c.metadata for c in healed.notebook.cells] == [c.metadata for c in expected.cells]
+    assert [c.get('outputs') for c in healed.notebook.cells] == [
+        c.get('outputs') for c in expected.cells
+    ]
+    assert healed.notebook.metadata == untouched.notebook.metadata
+
+
+def test_healing_changes_neither_the_submission_nor_the_master(submitted, master):
+    before = (nbformat.writes(submitted), nbformat.writes(master.notebook))
+    heal(submitted, master).notebook.cells[3].metadata.nbgrader.points = 7
+    assert (nbformat.writes(submitted), nbformat.writes(master.notebook)) == before
+
+
+def test_healing_twice_changes_nothing_more(submitted, master):
+    reverse(submitted.cells, None)
+    del submitted.cells[2]
+    once = heal(submitted, master).notebook
+    twice = heal(once, master)
+    assert twice.notes == ()
+    assert twice.notebook.cells == once.cells
+
+
+TEXTS = st.sampled_from(['', ' ', 'pass', ANSWER, '%%bash\nrm', 'raise SystemExit', 'a\n\nb'])
+IDS = st.sampled_from(['double', 'double-check', 'double-reset', 'explain', 'other', ''])
+MUTATIONS = st.lists(
+    st.tuples(
+        st.sampled_from(['delete', 'copy', 'move', 'edit', 'retype', 'unmark', 'mark', 'forge']),
+        st.integers(0, 30),
+        st.integers(0, 30),
+        TEXTS,
+        IDS,
+    ),
+    max_size=15,
+)
+
+
+@settings(max_examples=150, deadline=None)
+@given(mutations=MUTATIONS)
+def test_heal_always_yields_every_cell_of_the_source_once_and_in_order(course, mutations):
+    master = make_master(course.source(TOY), course.release(TOY))
+    notebook = answered(course, ANSWER)
+    for what, which, other, text, name in mutations:
+        if not notebook.cells:
+            break
+        mutated(notebook.cells, what, which % len(notebook.cells), other, text, name)
+    assert_whole(heal(notebook, master), master)
+
+
+def mutated(cells, what, place, other, text, name):
+    cell = cells[place]
+    if what == 'delete':
+        del cells[place]
+    elif what == 'copy':
+        cells.insert(other % len(cells), nbformat.from_dict(cell))
+    elif what == 'move':
+        cells.insert(other % len(cells), cells.pop(place))
+    elif what == 'edit':
+        cell.source = text
+    elif what == 'retype':
+        new = new_markdown_cell if cell.cell_type == 'code' else new_code_cell
+        cells[place] = new(cell.source, metadata=cell.metadata)
+    elif what == 'unmark':
+        cell.metadata.pop('nbgrader', None)
+    elif what == 'mark':
+        cell.metadata['nbgrader'] = nbformat.from_dict({'grade_id': name, 'points': 50})
+    elif what == 'forge':
+        cell.metadata = nbformat.from_dict(FORGED | {'nbgrader': {'grade_id': name}})

@@ -1,0 +1,258 @@
+import copy
+import json
+
+import nbformat
+import pytest
+from course_maker import executed as judged
+from course_maker import toy_lesson
+
+from grader.common.errors import TaskFailed
+from grader.judging.result_schema import read_result
+from grader.notebook.restore import KEY, make_master
+from grader.sandbox.limits import (
+    MAX_NOTE_CHARACTERS,
+    MAX_NOTES,
+    MAX_REASON_CHARACTERS,
+    MAX_RESULT_BYTES,
+)
+
+WHY = 'expected 2, saw 3: add it to itself'
+CHECK = 6
+"""Where the check stands that fails; behind it is one that passes."""
+
+
+@pytest.fixture
+def asked():
+    notebook = make_master(toy_lesson(), toy_lesson()).notebook
+    notebook.metadata[KEY] = {'notes': ['the cell `double-check` was changed']}
+    return notebook
+
+
+@pytest.fixture
+def answer(asked):
+    """What an honest worker sends; tests spoil it."""
+    notebook = judged(nbformat.from_dict(asked), {'double-check': WHY})
+    notebook.metadata[KEY].seed = 'abc'
+    return {'notebook': notebook, 'seconds': 1.5}
+
+
+def read(answer, asked):
+    text = answer if isinstance(answer, str) else json.dumps(answer)
+    return read_result(text, asked, seed='abc')
+
+
+def verdict(answer, cell=CHECK):
+    return answer['notebook'].cells[cell].metadata[KEY]
+
+
+def test_an_honest_result_is_taken_as_it_is(asked, answer):
+    notebook, seconds = read(answer, asked)
+    assert (notebook, seconds) == (answer['notebook'], 1.5)
+    assert isinstance(notebook.cells[0].metadata, nbformat.NotebookNode)
+
+
+def test_a_result_for_a_person_is_taken_too(asked, answer):
+    answer['notebook'] = judged(answer['notebook'], {'double-check': '?'})
+    assert verdict({'notebook': read(answer, asked)[0]})['outcome'] == 'ungraded'
+
+
+@pytest.mark.parametrize('seconds', ['1', -1, None, True, float('nan'), float('inf'), 1e300])
+def test_seconds_are_a_time(asked, answer, seconds):
+    answer['seconds'] = seconds
+    with pytest.raises(TaskFailed, match='what came back is not a result'):
+        read(answer, asked)
+
+
+def test_a_number_too_large_for_json_is_no_time(asked, answer):
+    text = json.dumps(answer).replace('"seconds": 1.5', '"seconds": 1e999')
+    with pytest.raises(TaskFailed, match='what came back is not a result'):
+        read(text, asked)
+
+
+@pytest.mark.parametrize('text', ['', '{', '[' * 100_000, 'NaN', '[]', '{}', '{"failed": "x"}'])
+def test_what_is_no_result_is_refused(asked, text):
+    with pytest.raises(TaskFailed, match='what came back is not a result'):
+        read(text, asked)
+
+
+def test_what_is_larger_than_any_result_is_not_even_read(asked):
+    with pytest.raises(TaskFailed, match='it has 100 MB, more than 100 MB'):
+        read(' ' * (MAX_RESULT_BYTES + 1), asked)
+
+
+SPOILED_VERDICTS = {
+    'a number for an outcome': {'outcome': 7},
+    'an unknown outcome': {'outcome': 'excellent'},
+    'an outcome that no check has': {'outcome': 'manual'},
+    'a list for an outcome': {'outcome': ['passed']},
+    'no outcome': {'outcome': None},
+    'a number for a reason': {'reason': 7},
+    'a reason of megabytes': {'reason': 'x' * (MAX_REASON_CHARACTERS + 1)},
+    'no reason for a zero': {'reason': ''},
+    'another reason than its outputs tell': {'reason': 'somebody else failed'},
+    'a reason for full points': {'outcome': 'passed'},
+    'full points beside an error': {'outcome': 'passed', 'reason': ''},
+    'a person asked for beside an error': {'outcome': 'ungraded'},
+    'a text for notes': {'notes': 'a note'},
+    'numbers for notes': {'notes': [1]},
+    'a note of megabytes': {'notes': ['x' * (MAX_NOTE_CHARACTERS + 1)]},
+    'notes without end': {'notes': [''] * (MAX_NOTES + 1)},
+    'points of its own': {'points': 99},
+    'a score of its own': {'score': -1},
+    'a grade id of its own': {'grade_id': 'double-hidden'},
+    'another role': {'role': 'answer'},
+}
+
+
+@pytest.mark.parametrize('changes', SPOILED_VERDICTS.values(), ids=SPOILED_VERDICTS)
+def test_a_verdict_has_the_shape_of_one(asked, answer, changes):
+    verdict(answer).update(changes)
+    with pytest.raises(TaskFailed, match='what came back is no verdict: `double-check`'):
+        read(answer, asked)
+
+
+def result_of(text):
+    return nbformat.v4.new_output('execute_result', {'text/plain': text})
+
+
+@pytest.mark.parametrize('points', ['-1', '0.5', '99', 'nan', 'inf', 'x'])
+@pytest.mark.parametrize('place', [CHECK, CHECK + 1])
+def test_no_output_is_read_as_points(asked, answer, place, points):
+    """nbgrader takes the result of a grade cell for partial points."""
+    answer['notebook'].cells[place].outputs.insert(0, result_of(points))
+    with pytest.raises(TaskFailed, match='an output that a check cannot have'):
+        read(answer, asked)
+
+
+def leave_points(answer, *, earned=0.5, shown='0.5', times=1):
+    cell = answer['notebook'].cells[CHECK + 1]
+    cell.metadata[KEY] |= {'outcome': 'partial', 'reason': '1 wrong', 'earned': earned}
+    cell.outputs = [result_of(shown) for _ in range(times)]
+
+
+def test_some_of_the_points_are_one_result(asked, answer):
+    leave_points(answer)
+    assert read(answer, asked)
+
+
+@pytest.mark.parametrize(
+    'spoiled',
+    [
+        {'earned': 0.0, 'shown': '0.0'},
+        {'earned': 2.0, 'shown': '2.0'},
+        {'earned': 99.0, 'shown': '2.0'},
+        {'earned': '1'},
+        {'shown': '1.0'},
+        {'shown': 'x'},
+        {'times': 0},
+        {'times': 2},
+    ],
+)
+def test_no_other_points_than_the_verdicts_are(asked, answer, spoiled):
+    leave_points(answer, **spoiled)
+    with pytest.raises(TaskFailed, match='what came back is no verdict: `double-hidden`'):
+        read(answer, asked)
+
+
+def test_what_fails_says_so_once(asked, answer):
+    cell = answer['notebook'].cells[CHECK]
+    cell.outputs.append(cell.outputs[-1])
+    with pytest.raises(TaskFailed, match='its outputs do not say what its verdict does'):
+        read(answer, asked)
+
+
+def test_what_was_printed_to_stderr_would_cost_the_points(asked, answer):
+    answer['notebook'].cells[CHECK + 1].outputs[0].name = 'stderr'
+    with pytest.raises(TaskFailed, match='an output that a check cannot have'):
+        read(answer, asked)
+
+
+def another_text(notebook):
+    notebook.cells[4].source += ' '
+
+
+def another_check(notebook):
+    notebook.cells[CHECK].source = 'pass'
+
+
+def more_points(notebook):
+    notebook.cells[CHECK].metadata.nbgrader.points = 99
+
+
+def negative_points(notebook):
+    notebook.cells[CHECK].metadata.nbgrader.points = -1
+
+
+def no_number_of_points(notebook):
+    notebook.cells[CHECK].metadata.nbgrader.points = '1'
+
+
+def an_unknown_grade_id(notebook):
+    notebook.cells[CHECK].metadata.nbgrader.grade_id = 'another'
+
+
+def one_more_check(notebook):
+    notebook.cells.append(copy.deepcopy(notebook.cells[CHECK]))
+
+
+def one_less(notebook):
+    notebook.cells.pop()
+
+
+def another_kernel(notebook):
+    notebook.metadata['kernelspec'] = {'name': 'mine', 'display_name': '<b>'}
+
+
+def a_picture_that_nobody_pasted(notebook):
+    notebook.cells[0]['attachments'] = {'x.png': {'image/png': 'aGk='}}
+
+
+def another_key_beside_the_verdict(notebook):
+    notebook.cells[CHECK].metadata['more'] = 1
+
+
+SPOILED_NOTEBOOKS = [
+    another_text, another_check, more_points, negative_points, no_number_of_points,
+    an_unknown_grade_id, one_more_check, one_less, another_kernel, a_picture_that_nobody_pasted,
+    another_key_beside_the_verdict,
+]  # fmt: skip
+
+
+@pytest.mark.parametrize('spoil', SPOILED_NOTEBOOKS)
+def test_nothing_but_verdicts_and_outputs_is_new_in_it(asked, answer, spoil):
+    spoil(answer['notebook'])
+    with pytest.raises(TaskFailed, match=r'what came back is (another|not a) notebook'):
+        read(answer, asked)
+
+
+@pytest.mark.parametrize(
+    ('place', 'changes'),
+    [
+        (None, {'seed': 'another'}),
+        (None, {'in_sandbox': 'so it was'}),
+        (None, {'notes': []}),
+        (None, {'problem': 'not submitted'}),
+        (4, {'outcome': 'passed'}),
+        (4, {'role': 'grade'}),
+        (0, {'role': 'answer'}),
+    ],
+)
+def test_what_healing_wrote_stays_as_it_was(asked, answer, place, changes):
+    notebook = answer['notebook']
+    (notebook if place is None else notebook.cells[place]).metadata[KEY].update(changes)
+    with pytest.raises(TaskFailed, match='what came back is no verdict'):
+        read(answer, asked)
+
+
+def test_no_verdict_at_all_is_none(asked, answer):
+    del answer['notebook'].cells[CHECK].metadata[KEY]
+    with pytest.raises(TaskFailed, match='what came back is no verdict'):
+        read(answer, asked)
+
+
+def test_a_worker_that_failed_says_why_in_bounds(asked):
+    with pytest.raises(TaskFailed, match='no room') as failed:
+        read({'failed': 'no room', 'traceback': 'in rooms.py'}, asked)
+    assert failed.value.trace == 'in rooms.py'
+    with pytest.raises(TaskFailed, match='what came back is not a result'):
+        read({'failed': 'x' * (MAX_REASON_CHARACTERS + 1), 'traceback': ''}, asked)

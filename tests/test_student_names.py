@@ -1,0 +1,58 @@
+from pathlib import Path
+
+import pytest
+
+from grader.common.student_names import Unclear, problem_of_id, student_in
+
+
+@pytest.mark.parametrize(
+    ('name', 'student'),
+    [
+        ('Ada Lovelace', 'Ada Lovelace'),
+        (' ada ', 'ada'),
+        ('Ada Lovelace_1815_assignsubmission_file_', 'Ada Lovelace'),
+        ('lovelaceada_18151_21012', 'lovelaceada'),
+        ('lovelaceada_LATE_18151_21012_ada', 'lovelaceada'),
+        ('group_1_2', 'group_1_2'),
+        ('Zoe\u0308', 'Zo\u00eb'),
+    ],
+)
+def test_what_a_course_management_system_adds_is_no_part_of_a_name(name, student):
+    assert student_in(name) == student
+
+
+def test_what_can_be_no_name_is_refused():
+    with pytest.raises(Unclear, match='no name of a student'):
+        student_in('..')
+
+
+@pytest.mark.parametrize(
+    'student', ['ada', '小明', "O'Neill", 'é' * 100, 'a.b', 'نگار\u200cمحمدی']
+)
+def test_an_id_that_can_be_a_folder_has_no_problem(student):
+    assert problem_of_id(student) == ''
+    assert Path(student).name == student
+
+
+NO_IDS = [
+    'a\u200db',
+    'ada\u3164',
+    'ada\u202e',
+    'a\nb',
+    'a\tb',
+    '',
+    '.',
+    '..',
+    '.git',
+    'a/b',
+    'a\0b',
+    '\u200c',
+    '小' * 70,
+    '<b>a',
+    'a" onclick="b',
+]
+
+
+@pytest.mark.parametrize('student', NO_IDS)
+def test_an_id_that_can_t_be_a_folder_has_one(student):
+    assert problem_of_id(student)

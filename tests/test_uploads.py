@@ -1,0 +1,179 @@
+import io
+import os
+import tarfile
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from grader.collect import uploads
+from grader.collect.archives import Allowance
+from grader.collect.uploads import look_into
+from grader.common.errors import CourseError
+
+
+@pytest.fixture
+def source(tmp_path):
+    folder = tmp_path / 'source'
+    folder.mkdir()
+    return folder
+
+
+def zip_of(**files):
+    """A zip in memory; `__` in a name stands for a slash, `_` before its ending for a dot."""
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, 'w') as box:
+        for name, content in files.items():
+            box.writestr('.'.join(name.replace('__', '/').rsplit('_', 1)), content)
+    return packed.getvalue()
+
+
+def seen(source, tmp_path):
+    aside = tmp_path / 'aside'
+    aside.mkdir(exist_ok=True)
+    found = list(look_into(source, aside))
+    return {each.path: each.problem or (each.file and each.file.read_bytes()) for each in found}
+
+
+def test_a_folder_is_read_as_it_lies_there(source, tmp_path):
+    (source / 'ada').mkdir()
+    (source / 'ada/a.ipynb').write_text('x')
+    (source / 'b.py').write_text('y')
+    assert seen(source, tmp_path) == {'ada/a.ipynb': b'x', 'b.py': b'y'}
+    assert list((tmp_path / 'aside').iterdir()) == []
+
+
+def test_one_notebook_is_a_folder_of_one(source, tmp_path):
+    (source / 'ada_a.ipynb').write_text('x')
+    assert seen(source / 'ada_a.ipynb', tmp_path) == {'ada_a.ipynb': b'x'}
+
+
+@pytest.mark.parametrize('name', ['nowhere', 'notes.txt', 'class.rar'])
+def test_another_kind_of_thing_is_refused_in_a_sentence(name, source, tmp_path):
+    if name != 'nowhere':
+        (source / name).touch()
+    with pytest.raises(CourseError, match='expected a folder, a notebook or an archive'):
+        seen(source / name, tmp_path)
+
+
+def test_archives_in_archives_are_opened_and_told_as_folders(source, tmp_path):
+    inner = zip_of(a_ipynb='x', notes_txt='never unpacked')
+    (source / 'class.zip').write_bytes(zip_of(ada_zip=inner, b_py='y'))
+    assert seen(source / 'class.zip', tmp_path) == {
+        'ada.zip/a.ipynb': b'x',
+        'ada.zip/notes.txt': None,
+        'b.py': b'y',
+    }
+    (found,) = (each for each in look_into(source, tmp_path) if each.parts[-1] == 'a.ipynb')
+    assert found.parts[: found.archive] == ('class.zip',)
+
+
+def test_what_is_broken_inside_leaves_the_rest(source, tmp_path):
+    (source / 'class.zip').write_bytes(
+        zip_of(ada_zip='no zip', bob_zip=zip_of(a_ipynb='x'), c_rar='', d_7z='')
+    )
+    found = seen(source / 'class.zip', tmp_path)
+    assert found.pop('ada.zip').startswith('broken')
+    assert (
+        found.pop('c.rar')
+        == found.pop('d.7z')
+        == ('an archive of another kind: ask for a .zip or .tar.gz')
+    )
+    assert found == {'bob.zip/a.ipynb': b'x'}
+
+
+def test_archives_end_somewhere(source, tmp_path):
+    packed = zip_of(a_ipynb='x')
+    for _ in range(6):
+        packed = zip_of(in_zip=packed)
+    (source / 'x.zip').write_bytes(packed)
+    ((path, problem),) = seen(source, tmp_path).items()
+    assert path == 'x.zip/in.zip/in.zip/in.zip'
+    assert problem == 'more than 3 archives within each other'
+
+
+def test_one_students_bomb_leaves_room_for_the_next(source, tmp_path, monkeypatch):
+    monkeypatch.setattr(uploads, 'ONE', {'files': 20, 'bytes': 1_000})
+    for student in ('ada', 'bob'):
+        files = {f'f{i}_py': 'x' * 100 for i in range(30)}
+        (source / f'{student}.zip').write_bytes(zip_of(**files))
+    (source / 'eve.zip').write_bytes(zip_of(a_ipynb='x'))
+    found = seen(source, tmp_path)
+    assert found['eve.zip/a.ipynb'] == b'x'
+    for student in ('ada', 'bob'):
+        assert 'more files in it than are unpacked' in found[f'{student}.zip']
+
+
+def test_what_one_archive_used_up_is_gone_for_all(source, tmp_path, monkeypatch):
+    monkeypatch.setattr(uploads, 'ALL', {'files': 100, 'bytes': 1_000})
+    for student in ('ada', 'bob'):
+        (source / f'{student}.zip').write_bytes(zip_of(a_py='x' * 600))
+    found = seen(source, tmp_path)
+    assert found['ada.zip/a.py'] == b'x' * 600
+    assert 'a bomb?' in found['bob.zip/a.py']
+    whole = Allowance(10, 10)
+    part = whole.part(files=4, bytes=40)
+    assert (part.files, part.bytes) == (4, 10)
+
+
+def test_links_devices_and_what_is_too_large_are_named(source, tmp_path, monkeypatch):
+    monkeypatch.setattr(uploads, 'MAX_FILE_BYTES', 10)
+    secret = tmp_path / 'secret.ipynb'
+    secret.write_text('secret')
+    (source / 'link.ipynb').symlink_to(secret)
+    (source / 'folder').symlink_to(tmp_path)
+    os.mkfifo(source / 'pipe.ipynb')
+    (source / 'large.ipynb').write_text('x' * 11)
+    found = seen(source, tmp_path)
+    assert found['link.ipynb'] == found['folder'] == 'a link: only files are taken'
+    assert found['pipe.ipynb'] == 'a device or the like: only files are taken'
+    assert found['large.ipynb'].startswith('over 0 MB')
+    assert len(found) == 4
+
+
+def test_folders_end_somewhere(source, tmp_path):
+    deep = source.joinpath(*'abcdefghijklmnopqrstuvwxyz')
+    deep.mkdir(parents=True)
+    ((path, problem),) = seen(source, tmp_path).items()
+    assert path.count('/') == 20
+    assert 'more than 20 folders deep' in problem
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason='root may read anything')
+def test_what_must_not_be_read_is_said(source, tmp_path):
+    (source / 'a.ipynb').touch(mode=0)
+    (source / 'folder').mkdir(mode=0)
+    assert set(seen(source, tmp_path).values()) == {'it must not be read: see its permissions'}
+
+
+def test_leftovers_are_no_files_and_refused_paths_are(source, tmp_path):
+    with tarfile.open(source / 'ada.tar', 'w') as box:
+        for name in ('.ipynb_checkpoints/a.ipynb', '__MACOSX/._a.ipynb', 'a.ipynb', '../a.ipynb'):
+            box.addfile(tarfile.TarInfo(name))
+    (source / '.git').mkdir()
+    (source / '.git/a.ipynb').touch()
+    found = list(look_into(source, tmp_path))
+    assert [each.path for each in found if not each.litter] == [
+        'ada.tar/a.ipynb',
+        'ada.tar/../a.ipynb',
+    ]
+    assert next(each.path for each in found if each.litter) == '.git'
+
+
+def test_one_upload_of_moodle_is_known_by_its_own_name(source, tmp_path, monkeypatch):
+    name = 'Mallory Evil_666_assignsubmission_file_'
+    (source / name / 'Ada Lovelace').mkdir(parents=True)
+    (source / name / 'Ada Lovelace/a.ipynb').write_text('x')
+    wanted = {f'{name}/Ada Lovelace/a.ipynb': b'x'}
+    assert seen(source / name, tmp_path) == wanted
+    monkeypatch.chdir(source / name)
+    assert seen(Path('.'), tmp_path) == wanted
+    archive = source / f'{name}Ada Lovelace.zip'
+    archive.write_bytes(zip_of(a_ipynb='x'))
+    assert seen(archive, tmp_path) == {f'{archive.name}/a.ipynb': b'x'}
+
+
+def test_a_class_of_some_year_is_no_upload_of_canvas(source, tmp_path):
+    (source / 'ros_2026_2027/ada').mkdir(parents=True)
+    (source / 'ros_2026_2027/ada/a.ipynb').write_text('x')
+    assert seen(source / 'ros_2026_2027', tmp_path) == {'ada/a.ipynb': b'x'}
