@@ -260,6 +260,16 @@ def test_what_each_plan_runs():
     ]  # fmt: skip
 
 
+@pytest.mark.parametrize('magic', ['%%bash', '%%write_node x.py'])
+def test_no_plan_writes_or_runs_a_program_of_the_lesson(magic):
+    notebook = lesson()
+    shown = next(cell for cell in notebook.cells if cell.source == 'shown = 1')
+    shown.source = f'{magic}\nx = 1'
+    for exercise in find_exercises(notebook):
+        for plan in plans(notebook, exercise):
+            assert shown.source not in sources(notebook, plan), plan.why
+
+
 def test_a_lent_cell_from_below_does_not_bring_the_other_exercises_along():
     notebook = lesson(area='area = h', node='rate_hz = 1', at_end='h = 2')
     lent = next(plans(notebook, find_exercises(notebook)[0]))

@@ -55,6 +55,35 @@ def test_without_a_workspace_it_names_the_cell_to_run(folder):
         node_file.write_node('greeter.py', NODE)
 
 
+OPEN = 'class NoSuchClass: ...\n'
+
+
+def test_what_is_not_answered_is_told_and_writes_nothing(modules, capsys):
+    node_file.write_node('own.py', OPEN)
+    said = capsys.readouterr().out
+    assert said.startswith('not written: there is no class NoSuchClass yet: run the cell in which')
+    assert not (modules / 'own.py').exists()
+    (modules / 'own.py').write_text('mine')
+    node_file.write_node('own.py', OPEN)
+    assert '(own.py stays as it was)' in ' '.join(capsys.readouterr().out.split())
+    assert (modules / 'own.py').read_text() == 'mine'
+
+
+def test_a_class_of_the_notebook_is_copied_and_the_file_is_shown(modules, capsys, monkeypatch):
+    monkeypatch.setattr(node_file.program, 'fill_in', lambda cell: cell.replace('...', 'pass'))
+    node_file.write_node('own.py', OPEN)
+    assert (modules / 'own.py').read_text() == 'class NoSuchClass: pass\n'
+    _, _, shown = capsys.readouterr().out.partition('\n')
+    assert shown == '\nclass NoSuchClass: pass\n'
+
+
+def test_what_is_no_program_changes_nothing(modules):
+    (modules / 'own.py').write_text('mine')
+    with pytest.raises(node_file.program.NotAProgram, match='not valid Python'):
+        node_file.write_node('own.py', 'def main(:\n')
+    assert (modules / 'own.py').read_text() == 'mine'
+
+
 def test_the_tree_shows_what_is_there_and_which_files_are_the_students(folder, modules, capsys):
     node_file.write_node('greeter.py', NODE)
     (folder / 'build').mkdir()

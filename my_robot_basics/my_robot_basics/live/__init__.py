@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from my_robot_basics.live.camera import send_pictures
     from my_robot_basics.live.classroom import show_domain
     from my_robot_basics.live.doctor import why
+    from my_robot_basics.live.entry_points import add_entry_point
     from my_robot_basics.live.exercise import reset, run_answer
     from my_robot_basics.live.follow import follow_arm
     from my_robot_basics.live.graph_picture import show_graph
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from my_robot_basics.live.workspace import make_workspace
 
 __all__ = [
+    'add_entry_point',
     'classroom',
     'domain',
     'drag_target',
@@ -81,6 +83,7 @@ _MODULES = {
     'why': 'doctor',
     'wait_until': 'waiting',
     'make_workspace': 'workspace',
+    'add_entry_point': 'entry_points',
     'show_workspace': 'node_file',
 }
 

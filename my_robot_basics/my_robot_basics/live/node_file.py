@@ -3,8 +3,8 @@
 import shutil
 from pathlib import Path
 
-from my_robot_basics.live import kernel, workspace
-from my_robot_basics.live.errors import LiveError
+from my_robot_basics.live import kernel, program, workspace
+from my_robot_basics.live.errors import LiveError, in_lines
 
 ROOM_FOR_NAMES = 34
 """Columns of the tree; the words stand behind them."""
@@ -20,7 +20,12 @@ def register() -> None:
 
 
 def write_node(line: str, cell: str) -> None:
-    """Write the cell into the workspace's package; a file that differs is kept beside it."""
+    """Write the cell into the workspace's package; a file that differs is kept beside it.
+
+    A class whose body is `...` is the notebook's own class of that name: its text is copied there,
+    and the whole file is printed. Where that is still to be written, this is printed, and a file
+    that is there stays. Raises NotWritten or NotAProgram.
+    """
     name = line.strip()
     if not (name.endswith('.py') and name.removesuffix('.py').isidentifier()):
         raise NotWritten(f'expected a name such as greeter.py behind %%write_node, saw {name!r}')
@@ -28,10 +33,18 @@ def write_node(line: str, cell: str) -> None:
     if not modules.is_dir():
         raise NotWritten('there is no workspace yet: run the cell with make_workspace() first')
     target = modules / name
-    if target.exists() and target.read_text(encoding='utf-8') != cell:
+    try:
+        text = program.fill_in(cell)
+    except program.NotAnswered as error:  # not an error: *Run All* goes on
+        stays = f' ({name} stays as it was)' if target.exists() else ''
+        print(*in_lines(f'not written: {error}{stays}'), sep='\n')
+        return
+    if target.exists() and target.read_text(encoding='utf-8') != text:
         print(f'moved    {workspace.shown(_kept(target))}: the file as it was')
-    target.write_text(cell, encoding='utf-8')
+    target.write_text(text, encoding='utf-8')
     print(f'written  {workspace.shown(target)}')
+    if text != cell:
+        print(f'\n{text}', end='')
 
 
 def _kept(target: Path) -> Path:

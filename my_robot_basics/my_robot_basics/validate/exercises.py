@@ -70,7 +70,7 @@ def plans(notebook: NotebookNode, exercise: Exercise) -> Iterator[Plan]:
         yield _with_what_is_shown(cells, exercise, alone, why='the answer alone')
     if lent:
         yield _with_what_is_shown(cells, exercise, alone | {*lent}, why='with your other cells')
-    whole = [i for i, cell in enumerate(cells) if _is_code(cell)]
+    whole = [i for i, cell in enumerate(cells) if _is_code(cell) and not _is_apart(cell)]
     yield Plan(
         cells=tuple(i for i in whole if role(cells[i]) not in ('grade', 'locked') or i in own),
         why='the whole lesson',
@@ -166,6 +166,11 @@ def _bound(cells: list[NotebookNode], indexes: Iterable[int]) -> set[str]:
 
 def _is_students(cell: NotebookNode) -> bool:
     return _is_code(cell) and role(cell) in ('free', 'answer')
+
+
+def _is_apart(cell: NotebookNode) -> bool:
+    """Whether the lesson writes or runs a program in this cell: it binds no name."""
+    return role(cell) in ('demo', 'setup') and cell.source.startswith(('%%bash', '%%write_node'))
 
 
 def _is_code(cell: NotebookNode) -> bool:

@@ -130,6 +130,8 @@ class Rooms:
             'MY_ROBOT_BASICS_ADVICE': '1',
             'MY_ROBOT_BASICS_DOMAIN_ID': str(self._claim.domain_id),
             'RCUTILS_LOGGING_USE_STDOUT': '1',
+            # the student's own stays as it is, whichever cells are run
+            'MY_ROBOT_BASICS_WORKSPACE': str(self._folder / room / 'ros_ws'),
             'ROS_LOG_DIR': str(self._folder / room / 'ros_log'),
             'MPLBACKEND': 'module://matplotlib_inline.backend_inline',
             'PYTHONSAFEPATH': '1',

@@ -1,0 +1,106 @@
+"""An entry point makes a function of the student's package a command of `ros2 run`."""
+
+import ast
+import re
+from pathlib import Path
+
+from my_robot_basics.live import workspace
+from my_robot_basics.live.errors import LiveError, in_lines
+
+_FORM = re.compile(r'(?P<command>[\w-]+) *= *(?P<package>\w+)\.(?P<module>\w+):(?P<function>\w+)')
+
+
+class NotAdded(LiveError):
+    """An entry point does not fit the package, or `setup.py` was changed beyond recognition."""
+
+
+def add_entry_point(entry_point: str) -> None:
+    """Add a line such as 'greeter = my_robot_basics.greeter:main' to `setup.py`; show the list.
+
+    What else is in `setup.py` stays as it is. Where the module is still to be written, this is
+    printed. Raises NotAdded where it lacks the function, another function has the command, or the
+    list is not found.
+    """
+    command, module, name = _parts(entry_point)
+    if not module.is_file():  # not an error: *Run All* goes on
+        said = f'not added: there is no {workspace.shown(module)} yet: run the cell with'
+        print(*in_lines(f'{said} %%write_node {module.name} first'), sep='\n')
+        return
+    _see_that_it_has(module, name)
+    setup_file = workspace.copy() / 'setup.py'
+    if not setup_file.is_file():
+        raise NotAdded(
+            f'there is no {workspace.shown(setup_file)}: run the cell with make_workspace() first'
+        )
+    text = setup_file.read_text(encoding='utf-8')
+    listed = _list_in(_parsed(setup_file))
+    if listed is None:
+        raise NotAdded(
+            f"{workspace.shown(setup_file)} has no list 'console_scripts' any more: add "
+            f"'{entry_point}' yourself where it belongs (reference/ has the file as it was)"
+        )
+    entries = [e.value for e in listed.elts if isinstance(e, ast.Constant)]
+    taken = [entry for entry in entries if entry.partition('=')[0].strip() == command]
+    if not taken:
+        setup_file.write_text(_with_line(text, listed, entry_point), encoding='utf-8')
+        entries = [entry_point, *entries]
+    elif [_parts(entry)[1:] for entry in taken] != [(module, name)]:
+        raise NotAdded(
+            f'setup.py has another line for {command}: {taken[0]!r}. Change it there yourself, or '
+            'choose another name'
+        )
+    print(f'{"kept" if taken else "added":8} {entry_point!r} in {workspace.shown(setup_file)}:')
+    print("'console_scripts': [", *(f'    {entry!r},' for entry in entries), ']', sep='\n')
+
+
+def _parts(entry_point: str) -> tuple[str, Path, str]:
+    """Return a command, the module in the student's package, and the function in it."""
+    found = _FORM.fullmatch(entry_point.strip())
+    if found is None or found['package'] != workspace.NAME:
+        raise NotAdded(
+            f"expected an entry point such as 'greeter = {workspace.NAME}.greeter:main', saw "
+            f'{entry_point!r}'
+        )
+    module = workspace.copy() / workspace.NAME / f'{found["module"]}.py'
+    return found['command'], module, found['function']
+
+
+def _see_that_it_has(module: Path, name: str) -> None:
+    if name not in [n.name for n in _parsed(module).body if isinstance(n, ast.FunctionDef)]:
+        raise NotAdded(
+            f'{workspace.shown(module)} has no function {name}: write it there, or run the cell '
+            f'with %%write_node {module.name} again'
+        )
+
+
+def _parsed(file: Path) -> ast.Module:
+    try:
+        return ast.parse(file.read_text(encoding='utf-8'))
+    except SyntaxError as error:
+        raise NotAdded(
+            f'{workspace.shown(file)} is not valid Python (line {error.lineno}: {error.msg}): fix '
+            'that line, then run this cell again'
+        ) from None
+
+
+def _list_in(tree: ast.Module) -> ast.List | None:
+    """Return the list of `console_scripts` in a setup.py."""
+    dicts = [node for node in ast.walk(tree) if isinstance(node, ast.Dict)]
+    pairs = [pair for node in dicts for pair in zip(node.keys, node.values, strict=True)]
+    for key, value in pairs:
+        if getattr(key, 'value', None) == 'console_scripts' and isinstance(value, ast.List):
+            return value
+    return None
+
+
+def _with_line(text: str, listed: ast.List, entry_point: str) -> str:
+    """Return the text with one more entry, the first of its list; all else stays."""
+    lines = text.encode().splitlines(keepends=True)  # ast counts bytes
+    line, column = lines[listed.lineno - 1], listed.col_offset + 1
+    new = f"'{entry_point}',"
+    if listed.elts and listed.elts[0].lineno > listed.lineno:
+        new = f'\n{" " * listed.elts[0].col_offset}{new}'
+    elif listed.elts:
+        new += ' '
+    lines[listed.lineno - 1] = line[:column] + new.encode() + line[column:]
+    return b''.join(lines).decode()

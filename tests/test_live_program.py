@@ -1,0 +1,186 @@
+"""A node class of the notebook becomes part of a program, or a sentence says what is missing."""
+
+import ast
+import linecache
+import sys
+
+import pytest
+from answered import read
+from my_robot_basics.live import program
+from my_robot_basics.live.errors import COLUMNS
+
+CELL = """\
+import rclpy
+from rclpy.node import Node
+
+
+class MyNode(Node): ...  # your class goes here
+
+
+def main():
+    rclpy.init()
+    rclpy.spin(MyNode())
+"""
+ANSWER = """\
+class MyNode(Node):
+    # what I think of it
+    def __init__(self):
+        super().__init__('my_node')
+        self.create_timer(1.0, self.tick)
+
+    def tick(self):
+        self.get_logger().info(f"it's {np.pi}")
+"""
+
+
+@pytest.fixture
+def notebook(monkeypatch):
+    """A function that runs a cell as a notebook does; what it makes goes after the test."""
+    main = sys.modules['__main__']
+    made = []
+
+    def run(cell):
+        name = f'<cell {len(made)}>'
+        linecache.cache[name] = len(cell), None, cell.splitlines(keepends=True), name
+        names = {'__name__': '__main__'}
+        made.append(name)
+        exec(compile('from rclpy.node import Node', name, 'exec'), names)
+        exec(compile(cell, name, 'exec'), names)
+        for key, value in names.items():
+            if not key.startswith('__'):
+                monkeypatch.setattr(main, key, value, raising=False)
+
+    yield run
+    for name in made:
+        del linecache.cache[name]
+
+
+def refusal(cell=CELL):
+    with pytest.raises(program.NotAProgram) as caught:
+        program.fill_in(cell)
+    lines = caught.value._render_traceback_()
+    assert max(map(len, lines)) <= COLUMNS
+    return lines
+
+
+def test_a_cell_without_an_open_class_stays_as_it_is():
+    text = CELL.replace('...', 'pass')
+    assert program.fill_in(text) == text
+
+
+def test_the_class_is_copied_as_it_was_typed(notebook):
+    notebook(f'before = 1\n\n{ANSWER}\nafter = 2\n')
+    cell = f'import numpy as np\n{CELL}'
+    expected = cell.replace('class MyNode(Node): ...  # your class goes here\n', ANSWER)
+    assert program.fill_in(cell) == expected
+
+
+def test_the_class_that_was_run_last_counts_with_its_decorators(notebook):
+    notebook(ANSWER.replace('1.0', '2.0'))
+    twice = f'def same(x):\n    return x\n\n{ANSWER}\n@same\n{ANSWER.replace("1.0", "3.0")}'
+    notebook(twice)
+    filled = program.fill_in(f'import numpy as np\nfrom x import same\n{CELL}')
+    assert '@same\nclass MyNode' in filled
+    assert '3.0' in filled
+    assert '2.0' not in filled
+
+
+def test_names_of_other_cells_are_told_with_what_to_add(notebook):
+    notebook('import numpy as np\nfrom sensor_msgs.msg import JointState as State\nLIMIT = 90\n')
+    names = 'State, LIMIT, display, nowhere, np'
+    notebook(ANSWER.replace('np.pi', names))
+    first, *lines = refusal()
+    assert first.startswith('NotAProgram: the program would not know these names')
+    assert lines[-5:] == [
+        '  LIMIT: copy its definition to a line above the class',
+        '  State: add the line   from sensor_msgs.msg import JointState as State',
+        '  display: only a notebook has it; leave it out, as well as ! and %',
+        '  nowhere: no cell defines it; correct the name',
+        '  np: add the line   import numpy as np',
+    ]
+
+
+@pytest.mark.parametrize(
+    'line',
+    [
+        'import math',
+        'import numpy as np',
+        'import os.path as p',
+        'from math import radians',
+        'from random import uniform',
+        'from time import sleep as nap',
+        'from rclpy.node import Node',
+        'from rclpy.qos import QoSProfile',
+        'from sensor_msgs.msg import JointState',
+        'from builtin_interfaces.msg import Time',
+    ],
+)
+def test_an_import_line_gives_the_thing_itself(line):
+    names, again = {}, {}
+    exec(line, names)
+    name = ast.parse(line).body[0].names[0]
+    name = name.asname or name.name
+    proposed = program.import_line(name, names[name])
+    exec(proposed, again)
+    assert again[name] is names[name]
+    if 'os.path' not in line:
+        assert proposed == line
+
+
+def test_what_no_import_gives_has_no_import_line(notebook):
+    notebook(ANSWER)
+    for thing in (90, [1], sys.modules['__main__'].MyNode, lambda: None):
+        assert program.import_line('thing', thing) == ''
+
+
+def test_without_the_class_it_names_the_cell_to_run():
+    said = 'there is no class MyNode yet: run the cell in which you write it, then'
+    with pytest.raises(program.NotAnswered, match=said):
+        program.fill_in(CELL)
+
+
+def test_a_class_from_elsewhere_is_not_taken(notebook):
+    notebook('from rclpy.node import Node as MyNode\n')
+    assert 'MyNode is not a class of this notebook' in ' '.join(refusal())
+
+
+def test_the_released_answer_does_nothing_yet(notebook):
+    released = {cell.id: cell.source for cell in read('notebooks', '03_publisher').cells}
+    notebook(released['five_hz'])
+    with pytest.raises(program.NotAnswered, match='KinematicsPublisher does nothing yet: answer'):
+        program.fill_in(released['own_file'].partition('\n')[2])
+
+
+def test_a_class_may_leave_all_to_what_it_derives_from(notebook):
+    notebook(f'import numpy as np\n{ANSWER}\nBase = MyNode\n')
+    notebook('class MyNode(__import__("__main__").Base):\n    def own(self):\n        pass\n')
+    assert 'def own(self)' in program.fill_in(CELL.replace('rclpy.node', 'x'))
+
+
+def test_a_class_whose_text_is_nowhere_is_asked_for(notebook):
+    notebook(ANSWER)
+    for name in [n for n in linecache.cache if n.startswith('<cell')]:
+        linecache.cache[name] = 0, None, [], name
+    assert 'put the class itself' in ' '.join(refusal())
+
+
+def test_what_is_no_python_is_told_with_its_line_in_the_cell():
+    [line] = refusal('import rclpy\n\ndef main(:\n')
+    # the magic is line 1
+    assert 'not valid Python (line 4: ' in line
+
+
+def test_names_are_known_however_they_are_bound():
+    text = """
+import a.b
+from c import d as e
+def f(g=1, *h, **i): global j; j = [k for k in h]; return g, i, __name__
+class K:
+    l = 1
+    m = l
+try: n = 1
+except OSError as o: o
+"""
+    assert program.names_missing_in(text) == []
+    assert program.names_missing_in(f'{text}\nprint(d, j, l)') == ['d', 'l']
+    assert program.names_missing_in(f'from x import *\n{text}\nprint(d, l)') == []
