@@ -24,7 +24,8 @@ from my_robot_basics.validate.verdict import judge
 from nbformat.v4 import new_code_cell
 
 from grader.common.errors import RoomFailure
-from grader.kernels.kernels import Kernel, kernels
+from grader.kernels import kernels
+from grader.kernels.kernels import Kernel
 
 DOMAIN = 0
 """No kernel of this module makes a node."""

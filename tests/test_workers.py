@@ -16,7 +16,8 @@ from grader.judging.task import Task
 from grader.sandbox.limits import SUBMISSION_MEMORY_BYTES
 from grader.storage.records import records
 from grader.storage.submitted import find_submissions
-from grader.workers.workers import Workers, workers
+from grader.workers import workers
+from grader.workers.workers import Workers
 
 COMMAND = (sys.executable, str(Path(__file__).with_name('toy_worker.py')))
 RIGHT = 'def double(x):\n    return 2 * x'
