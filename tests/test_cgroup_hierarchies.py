@@ -6,8 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from grader.autograde import preprocessors
 from grader.sandbox import cgroup_hierarchies as module
 from grader.sandbox.cgroup_hierarchies import GRADERS, NoCgroups, scoped
+from grader.workers import dask_worker, workers
 
 OFF = 'cpu io memory pids'
 
@@ -212,3 +214,33 @@ def test_where_systemd_refuses_the_command_is_as_it_was(nowhere):
 def test_where_cgroups_can_be_had_no_scope_is_asked_for(monkeypatch):
     monkeypatch.setattr(module, '_found', lambda proc: module.Hierarchies(1, {}))
     assert scoped(('python', 'x')) == ('python', 'x')
+
+
+@pytest.mark.parametrize(
+    ('options', 'said'),
+    [
+        ('quiet', ''),
+        ('cgroup.memory=nosocket quiet', 'sockets'),
+        ('cgroup.memory=nokmem,nosocket', 'sockets and objects of the kernel'),
+        ('xcgroup_memory=nosocket', ''),
+    ],
+)
+def test_what_linux_was_told_not_to_count_is_told(tmp_path, monkeypatch, options, said):
+    (tmp_path / 'cmdline').write_text(f'ro {options}\n')
+    assert module._uncounted(tmp_path / 'cmdline') == said
+    monkeypatch.setattr(module, '_uncounted', lambda: said)
+    told = str(module.Hierarchies(2, {'memory': tmp_path}))
+    assert told.endswith(f'; without what {said} hold' if said else f'; in {tmp_path}')
+
+
+@pytest.mark.parametrize(
+    'begin',
+    [lambda: preprocessors._workers.__wrapped__(), lambda: dask_worker._workers.__wrapped__(1)],
+    ids=['nbgrader autograde', 'dask worker'],
+)
+def test_whoever_grades_has_it_done_in_a_scope(monkeypatch, begin):
+    monkeypatch.setattr(workers, 'scoped', lambda command: ('a scope', *command))
+    monkeypatch.setattr('atexit.register', lambda end: None)
+    begun = begin()
+    begun.__exit__()
+    assert begun._command == ('a scope', *workers.COMMAND)

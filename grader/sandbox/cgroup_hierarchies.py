@@ -7,6 +7,7 @@ systemd's delegation (`scoped` asks for it), in a container, or to root where no
 
 import contextlib
 import os
+import re
 import shutil
 import subprocess
 import uuid
@@ -43,7 +44,8 @@ class Hierarchies:
     def __str__(self) -> str:
         """Return what the doctor says of it."""
         controllers = ', '.join(self.folders)
-        return f'version {self.version}: {controllers}; in {self.folders["memory"]}'
+        said = f'version {self.version}: {controllers}; in {self.folders["memory"]}'
+        return f'{said}; without what {uncounted} hold' if (uncounted := _uncounted()) else said
 
 
 def hierarchies() -> Hierarchies:
@@ -102,6 +104,14 @@ def _found(proc: Path) -> Hierarchies | NoCgroups:
         return problem
     except OSError as problem:
         return NoCgroups(f'{problem.strerror}: {problem.filename}')
+
+
+def _uncounted(command_line: Path = Path('/proc/cmdline')) -> str:
+    """Return whose memory Linux was told not to count when it was started."""
+    found = re.findall(r'\bcgroup\.memory=(\S+)', command_line.read_text(errors='replace'))
+    options = {option for each in found for option in each.split(',')}
+    names = {'nosocket': 'sockets', 'nokmem': 'objects of the kernel'}
+    return ' and '.join(name for option, name in names.items() if option in options)
 
 
 def _own_paths(proc: Path) -> dict[str, str]:
