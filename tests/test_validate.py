@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -115,6 +116,9 @@ def test_a_broken_cell_is_named_as_the_grader_names_it(tmp_path, answers, said):
     (part,) = report['parts']
     assert {check['outcome'] for check in part['checks']} == {'failed'}
     told = [*part['troubles'], *(check['message'] for check in part['checks'])]
+    cells = read('notebooks', '02_joint_state').cells
+    number = next(i for i, cell in enumerate(cells, start=1) if cell.id == 'to_joint_state')
+    said = f'your cell {number} (the answer to `to_joint_state`) {said}'
     assert any(said in line for line in told), told
     assert 'Traceback' not in str(report)
 
@@ -145,7 +149,9 @@ def test_a_cell_that_does_not_return_is_given_up_sooner_and_not_called_wrong(
     (part,) = report['parts']
     assert {check['outcome'] for check in part['checks']} == {'not checked'}
     (trouble,) = part['troubles']
+    assert re.match(r'your cell \d+ \((the answer|it runs the answer) to `\w+`\) did not', trouble)
     assert ' did not return within ' in trouble
+    assert any('waiting for cell ' in line for line in progress)
     assert trouble.endswith(said)
     assert not any('checking' in line for line in progress)
     assert report['summary'].endswith('could not be checked.')
@@ -238,11 +244,14 @@ def take_the_answer_away(notebook, cells):
 
 
 DAMAGE = {
-    change_a_check: ('the cell `joint_names` was changed: the original counts at grading', False),
+    change_a_check: (
+        '(the check “name holds joint1 and joint2”) was changed: the original counts at grading',
+        False,
+    ),
     take_the_answer_away: ('the cell `to_joint_state` is missing: it comes back', False),
     take_a_check_away: ('the cell `joint_names` is missing: it comes back at grading', False),
-    split_the_answer: ('the answer cell `to_joint_state` came in parts: they are joined', True),
-    make_the_answer_text: ('the cell `to_joint_state` had another type', True),
+    split_the_answer: ('(the answer to `to_joint_state`) came in parts: they are joined', True),
+    make_the_answer_text: ('(the answer to `to_joint_state`) had another type', True),
 }
 
 

@@ -10,6 +10,7 @@ from typing import Any, Protocol
 from nbformat import NotebookNode
 
 from my_robot_basics.checks import hidden
+from my_robot_basics.validate.cell_names import number_of
 from my_robot_basics.validate.cells import grade_id
 from my_robot_basics.validate.errors import RoomFailure
 from my_robot_basics.validate.exercises import (
@@ -186,7 +187,7 @@ async def _told_in_full(notebook: NotebookNode, rooms: Rooms, cut: Checks) -> Ch
 
 
 def _name(cells: list[NotebookNode], index: int) -> str:
-    return f'`{name}`' if (name := grade_id(cells[index])) else f'{index + 1}'
+    return f'`{name}`' if (name := grade_id(cells[index])) else f'{number_of(cells, index)}'
 
 
 def _lacks_a_name(runs: dict[int, CellRun], exercise: Exercise, plan: Plan) -> bool:

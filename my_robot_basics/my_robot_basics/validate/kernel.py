@@ -96,7 +96,7 @@ class Kernel:
                 self._is_alive,
                 lambda: result.flooded or watch.free_sec() >= free_sec,
             )
-            if result.timed_out and not result.flooded and watch.wall_sec() < timeout_sec:
+            if result.timed_out and not result.flooded and free_sec < math.inf:
                 result.cut_after_sec = watch.wall_sec()
             if result.timed_out and self.alive:
                 await self._manager.interrupt_kernel()

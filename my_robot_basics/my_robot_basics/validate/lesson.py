@@ -29,6 +29,7 @@ def read_lesson(path: Path) -> Lesson:
     """Read a notebook. Raises CourseError where there is none, or it holds no exercise."""
     notebook, notes = _read(path), []
     record = _record(notebook)
+    numbers = {id(cell): number for number, cell in enumerate(notebook.cells, start=1)}
     for cell in notebook.cells:
         cell.metadata.pop(KEY, None)
         _change_back(cell, notes)
@@ -36,7 +37,8 @@ def read_lesson(path: Path) -> Lesson:
             cell.outputs, cell.execution_count = [], None
     notebook.cells = _one_for_each_id(notebook.cells, notes)
     for cell, given in zip(notebook.cells, roles(notebook), strict=True):
-        cell.metadata[KEY] = {'role': _role(cell, given, record)}
+        number = numbers[id(cell)]
+        cell.metadata[KEY] = {'role': _role(cell, given, record), 'number': number}
     graded = [c for c in notebook.cells if c.metadata[KEY].role in ('answer', 'grade')]
     if not graded:
         raise CourseError(f'{path} holds no exercise: name the notebook of a lesson')

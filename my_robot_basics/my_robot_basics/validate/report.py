@@ -1,7 +1,7 @@
 """What *Validate* says of each exercise and check: data that any front end can show."""
 
-from collections.abc import Iterable
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Iterable
+from dataclasses import asdict, dataclass, replace
 from typing import Literal
 
 from nbformat import NotebookNode
@@ -60,6 +60,25 @@ class Report:
     def checks(self) -> list[Check]:
         """All checks, in order."""
         return [check for part in self.parts for check in part.checks]
+
+    def with_words(self, put: Callable[[str], str]) -> 'Report':
+        """Return the same report with each of its sentences put otherwise."""
+
+        def put_all(lines: tuple[str, ...]) -> tuple[str, ...]:
+            return tuple(put(line) for line in lines)
+
+        parts = [
+            replace(
+                part,
+                troubles=put_all(part.troubles),
+                checks=tuple(
+                    replace(check, message=put(check.message), notes=put_all(check.notes))
+                    for check in part.checks
+                ),
+            )
+            for part in self.parts
+        ]
+        return replace(self, parts=tuple(parts), notes=put_all(self.notes))
 
     @property
     def passed(self) -> bool:

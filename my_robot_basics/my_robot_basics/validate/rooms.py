@@ -28,6 +28,8 @@ from my_robot_basics.validate.questions import (
 from my_robot_basics.validate.titles import title_of_check
 
 SETUP_TIMEOUT_SEC = 60.0
+SLOW_SEC = 1.0
+"""A cell that takes longer is named while it is waited for."""
 MOST_PATH = 60
 """A socket's path has room for about 100 characters."""
 
@@ -85,11 +87,19 @@ class Rooms:
         return self._student.alive
 
     async def run_student_cell(
-        self, source: str, *, timeout_sec: float, free_sec: float = math.inf
+        self, source: str, *, timeout_sec: float, free_sec: float = math.inf, number: int = 0
     ) -> CellRun:
-        """Run one of the student's cells; give it up after `free_sec` with a free processor."""
-        self.say('running your cells')
-        return await self._student.run(source, timeout_sec=timeout_sec, free_sec=free_sec)
+        """Run one of the student's cells; give it up after `free_sec` with a free processor.
+
+        `number` is which cell of the notebook it is.
+        """
+        self.say(f'running your cells ({number})')
+        waits = f'waiting for cell {number}, which has not returned yet'
+        later = asyncio.get_running_loop().call_later(SLOW_SEC, self.say, waits)
+        try:
+            return await self._student.run(source, timeout_sec=timeout_sec, free_sec=free_sec)
+        finally:
+            later.cancel()
 
     async def run_check(self, source: str) -> CellRun:
         """Run a grade cell, passing its questions on to the student's kernel."""

@@ -8,6 +8,7 @@ from pathlib import Path
 from nbformat import NotebookNode
 
 from my_robot_basics.validate.ahead import Ahead
+from my_robot_basics.validate.cell_names import in_words
 from my_robot_basics.validate.cells import grade_id, role
 from my_robot_basics.validate.exercises import Exercise, find_exercises
 from my_robot_basics.validate.judging import Judged, judge_exercise
@@ -44,7 +45,8 @@ async def validate(path: Path, *, say: Say = lambda line: None) -> Report:
             parts.append(_part(lesson, exercise, judged))
     told = {check.name for part in parts for check in part.checks}
     parts += [*_by_hand(lesson), *_without_exercise(lesson, told), *_missing(lesson)]
-    return Report(path.name, tuple(parts), lesson.notes)
+    report = Report(path.name, tuple(parts), lesson.notes)
+    return report.with_words(lambda text: in_words(text, lesson.notebook))
 
 
 def _can_run(lesson: Lesson, index: int) -> bool:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from nbformat import NotebookNode
 
-from my_robot_basics.validate.cells import role
+from my_robot_basics.validate.cells import KEY, role
 from my_robot_basics.validate.judging import Budget
 from my_robot_basics.validate.limits import VALIDATE_NEXT_TIMEOUT_SEC, VALIDATE_TIMEOUT_SEC
 from my_robot_basics.validate.outputs import CellRun
@@ -24,7 +24,12 @@ class ShortBudget(Budget):
     async def run_within(self, timeout_sec: float, rooms: Rooms, cell: NotebookNode) -> CellRun:
         """Run one of the student's cells for so long at most."""
         free_sec = self.free_sec if role(cell) in _STUDENTS else math.inf
-        run = await rooms.run_student_cell(cell.source, timeout_sec=timeout_sec, free_sec=free_sec)
+        run = await rooms.run_student_cell(
+            cell.source,
+            timeout_sec=timeout_sec,
+            free_sec=free_sec,
+            number=cell.metadata[KEY].number,
+        )
         if run.cut_after_sec:
             self.free_sec = VALIDATE_NEXT_TIMEOUT_SEC
         return run

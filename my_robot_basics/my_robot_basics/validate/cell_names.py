@@ -1,0 +1,44 @@
+"""Name a cell as students find it: by its number from the top, and by what it is for.
+
+The ids by which nbgrader knows cells are shown nowhere in JupyterLab.
+"""
+
+import re
+
+from nbformat import NotebookNode
+
+from my_robot_basics.validate.cells import KEY, grade_id, is_reset, role
+from my_robot_basics.validate.titles import title_of_check
+
+_NAMED = re.compile(r'\b(?:the )?(?:answer )?(?:cell|check) `([^`]+)`')
+
+
+def number_of(cells: list[NotebookNode], index: int) -> int:
+    """Return which cell from the top it is, text and code, in the notebook as it was read."""
+    return cells[index].metadata.get(KEY, {}).get('number', index + 1)
+
+
+def in_words(text: str, notebook: NotebookNode) -> str:
+    """Return a sentence with cells named so instead of by their ids; others stay as they are."""
+    places = {grade_id(cell): i for i, cell in enumerate(notebook.cells) if grade_id(cell)}
+
+    def name(found: re.Match[str]) -> str:
+        index = places.get(found[1])
+        return found[0] if index is None else _name(notebook.cells, index)
+
+    return _NAMED.sub(name, text)
+
+
+def _name(cells: list[NotebookNode], index: int) -> str:
+    cell = cells[index]
+    name, kind = grade_id(cell), role(cell)
+    exercise = name.rpartition('-')[0]
+    if kind == 'answer':
+        what = f'the answer to `{name}`'
+    elif kind == 'grade':
+        what = f'the check “{title_of_check(cell.source) or name}”'
+    else:
+        what = (
+            f'it begins `{exercise}`' if is_reset(cell) else f'it runs the answer to `{exercise}`'
+        )
+    return f'cell {number_of(cells, index)} ({what})'
