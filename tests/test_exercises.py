@@ -260,9 +260,10 @@ def test_what_each_plan_runs():
     ]  # fmt: skip
 
 
+@pytest.mark.parametrize('area', ['def area(r): return r', 'area = eval("abs")'])
 @pytest.mark.parametrize('magic', ['%%bash', '%%write_node x.py'])
-def test_no_plan_writes_or_runs_a_program_of_the_lesson(magic):
-    notebook = lesson()
+def test_no_plan_writes_or_runs_a_program_of_the_lesson(magic, area):
+    notebook = lesson(area=area)
     shown = next(cell for cell in notebook.cells if cell.source == 'shown = 1')
     shown.source = f'{magic}\nx = 1'
     for exercise in find_exercises(notebook):

@@ -198,6 +198,21 @@ def test_names_of_demonstrations_are_there_and_no_other_demonstration_runs(tmp_p
     assert not (tmp_path / 'ran').exists()
 
 
+def test_a_students_workspace_is_left_alone_whatever_runs(tmp_path):
+    right = next(c for c in read('solutions', '03_publisher').cells if c.id == 'five_hz')
+    make = f'make_workspace()\nopen({str(tmp_path / "ran")!r}, "w").close()\n'
+    path = answered('03_publisher', tmp_path, five_hz=f'{make}{right.source}')
+    clean = {k: v for k, v in os.environ.items() if not k.startswith(NOT_A_STUDENTS)}
+    subprocess.run(
+        [sys.executable, '-P', '-m', 'my_robot_basics.validate', str(path)],
+        env=clean | {'MY_ROBOT_BASICS_WORKSPACE': str(tmp_path / 'ros_ws')},
+        capture_output=True,
+        check=True,
+    )
+    assert (tmp_path / 'ran').exists()
+    assert not (tmp_path / 'ros_ws').exists()
+
+
 def test_a_module_beside_the_notebook_is_found_and_cells_of_ones_own_are_lent(tmp_path):
     (tmp_path / 'helper.py').write_text('from math import radians as to_rad\n')
     right = next(c for c in read('solutions', '02_joint_state').cells if c.id == 'to_joint_state')

@@ -98,8 +98,8 @@ def _with_all_shown(cells: list[NotebookNode], exercise: Exercise) -> Plan:
 
     So it is where a text looks names up by other means: which it will need, nobody can know.
     """
-    before = cells[: exercise.reset]
-    shown = [i for i, c in enumerate(before) if _is_code(c) and role(c) in ('demo', 'setup')]
+    before = [i for i in range(exercise.reset) if role(cells[i]) in ('demo', 'setup')]
+    shown = [i for i in before if _is_code(cells[i]) and not _is_apart(cells[i])]
     own = (exercise.reset, exercise.answer, *exercise.run)
     return Plan((*shown, *own), why='with all that the lesson shows')
 
