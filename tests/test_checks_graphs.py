@@ -39,7 +39,7 @@ def picture(nodes=('/a',), publishers=None, subscriptions=None):
                 publishers={'/s/joint_states': ('/a', '/b')},
                 subscriptions={'/t/joint_states': ('/a',)},
             ),
-            '/a is at the other end of this topic, so look',
+            '/a is at the other end of this topic, so check',
         ),
         (picture(), '/a runs, so look at the topic name in create_publisher'),
         (
@@ -51,7 +51,7 @@ def picture(nodes=('/a',), publishers=None, subscriptions=None):
         (picture(publishers={'/joint_states': ('/a',)}), '/a uses /joint_states, so compare'),
         (
             picture(publishers={'/n/t/joint_states': ('/n/a',)}, nodes=('/n/a',)),
-            '/n/a uses /n/t/joint_states: a name without / in front is put into the namespace',
+            '/n/a uses /n/t/joint_states: a name without a leading / is relative to',
         ),
         (picture(publishers={'/n/t/joint_states': ('/a',)}), '/a uses /n/t/joint_states, so'),
         (picture(publishers={'/rosout': ('/a',)}), '/a runs, so look at the topic name'),

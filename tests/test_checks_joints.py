@@ -27,7 +27,7 @@ def test_joints_agree_in_any_order():
         (
             message(-1.5708, 0.5236),
             {'joint1': -1.5708, 'joint2': 0.5236},
-            'the joints have changed',
+            'the joints are swapped',
         ),
         (message(30.0, -90.0), {'joint1': 30.0, 'joint2': -90.0}, 'these are degrees'),
         (message(0.5236, -90.0), {'joint1': 0.5236, 'joint2': -90.0}, 'joint2 is still in degr'),
@@ -59,9 +59,9 @@ def test_another_pose_is_shown_with_advice(wrong, seen, advice):
 @pytest.mark.parametrize(
     ('position', 'advice'),
     [
-        ([0.5236, math.nan], 'no finite number'),
-        ([math.nan, -1.5708], 'no finite number'),
-        ([math.inf, -1.5708], 'no finite number'),
+        ([0.5236, math.nan], 'not a finite number'),
+        ([math.nan, -1.5708], 'not a finite number'),
+        ([math.inf, -1.5708], 'not a finite number'),
         ([0.5236], 'one position for each joint'),
         ([0.5236, -1.57], 'do not round'),
     ],

@@ -46,7 +46,7 @@ def test_any_dict_will_do_with_keys_of_ones_own(monkeypatch):
     concluded(Predictions('answer', KEYS), arrives, is_lost)
 
 
-EXPECTED = 'expected each prediction to be what happens when the check runs it'
+EXPECTED = 'expected each prediction to match what happens when the check runs it'
 
 
 def test_each_wrong_prediction_is_named_with_its_why(monkeypatch):

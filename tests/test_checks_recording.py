@@ -137,7 +137,7 @@ def test_what_comes_by_turns_is_no_rate(turns, late_sec):
     for seconds in 4.0, 8.0:
         gaps = itertools.islice(itertools.cycle(turns), round(5 * seconds))
         times = [time + late_sec * seed.random() ** 2 for time in itertools.accumulate(gaps)]
-        with pytest.raises(CheckFailed, match='so use one timer, and leave its period as it is'):
+        with pytest.raises(CheckFailed, match='so use one timer, and do not change its period'):
             recording(times, clock='wall', seconds=seconds).assert_rate(hz=5.0)
 
 

@@ -111,7 +111,7 @@ def test_a_new_stamp_does_no_harm(run):
         (PROFILES['BEST_EFFORT TRANSIENT_LOCAL'], r'LOCAL \(incompatible: DURABILITY\)'),
         (
             QoSProfile(depth=1, reliability=BEST_EFFORT, deadline=Duration(seconds=1)),
-            r'saw BEST_EFFORT/VOLATILE \(incompatible: DEADLINE\): the publisher promises',
+            r'saw BEST_EFFORT/VOLATILE \(incompatible: DEADLINE\): the publisher offers',
         ),
     ],
 )
@@ -124,7 +124,7 @@ def test_a_subscription_that_asks_for_too_much_is_named(run, asked, reason):
 @pytest.mark.parametrize('reliability', [RELIABLE, BEST_EFFORT])
 def test_a_volatile_subscription_is_named(run, reliability):
     run(monitor.JointStateMonitor, description=QoSProfile(depth=10, reliability=reliability))
-    with pytest.raises(CheckFailed, match='with durability TRANSIENT_LOCAL, saw VOLATILE: what'):
+    with pytest.raises(CheckFailed, match='TRANSIENT_LOCAL, saw VOLATILE: request'):
         check_late_joiner()
 
 
@@ -136,13 +136,13 @@ def test_a_promise_that_nobody_gives_is_named_to_a_late_joiner(run, impatient):
         deadline=Duration(seconds=1),
     )
     run(monitor.JointStateMonitor, description=asked)
-    with pytest.raises(CheckFailed, match='the publisher promises no deadline, so leave that'):
+    with pytest.raises(CheckFailed, match='the publisher offers no deadline, so leave that'):
         check_late_joiner()
 
 
 def test_best_effort_hears_nothing_of_what_was_said_before(run, impatient):
     run(monitor.JointStateMonitor, description=PROFILES['BEST_EFFORT TRANSIENT_LOCAL'])
-    with pytest.raises(CheckFailed, match='joined comes only to a RELIABLE subscr'):
+    with pytest.raises(CheckFailed, match='request RELIABLE, too: only then'):
         check_late_joiner()
 
 
@@ -153,7 +153,7 @@ def test_a_message_that_was_changed_does_not_pass(run, impatient):
 
     run(Constant)
     for check in check_delivery, check_late_joiner:
-        with pytest.raises(CheckFailed, match='only others in 1 s: publish the very message'):
+        with pytest.raises(CheckFailed, match='only others in 1 s: publish exactly the message'):
             check()
 
 
@@ -210,11 +210,14 @@ class SwapsPairs(Counts):
 @pytest.mark.parametrize(
     ('node_class', 'reason'),
     [
-        (DropsEverySecond, 'saw messages that do not come out: publish in every call'),
-        (DropsEveryTenth, 'saw messages that do not come out: publish in every call'),
-        (Lags, 'saw a message that comes out only when the next one is sent: publish the message'),
-        (SwapsPairs, 'saw a message that comes out only when the next one is sent'),
-        (Doubles, 'saw a message that comes out 2 times: subscribe once'),
+        (DropsEverySecond, 'saw messages that are not republished: publish in every call'),
+        (DropsEveryTenth, 'saw messages that are not republished: publish in every call'),
+        (
+            Lags,
+            'a message that is republished only when the next one arrives: publish the message',
+        ),
+        (SwapsPairs, 'saw a message that is republished only when the next one arrives'),
+        (Doubles, 'saw a message that is republished 2 times: subscribe once'),
     ],
 )
 def test_each_message_comes_out_at_once_and_once(run, node_class, reason):
@@ -225,7 +228,9 @@ def test_each_message_comes_out_at_once_and_once(run, node_class, reason):
 
 def test_a_description_that_comes_out_twice_is_one_too_many(run):
     run(Doubles)
-    with pytest.raises(CheckFailed, match='saw a message that comes out 2 times: subscribe once'):
+    with pytest.raises(
+        CheckFailed, match='saw a message that is republished 2 times: subscribe once'
+    ):
         check_late_joiner()
 
 

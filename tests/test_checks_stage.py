@@ -86,7 +86,7 @@ def test_without_a_meeting_there_is_no_verdict(monkeypatch):
     with Watcher() as senders, Watcher(domain_id=elsewhere) as receivers:
         stage = Stage(senders, receivers)
         publisher, subscription = stage.publisher('/pose'), stage.subscription('/pose')
-        with pytest.raises(DidNotRun, match='it is not your answer'):
+        with pytest.raises(DidNotRun, match='your answer is not the cause'):
             publisher.publish()
         with pytest.raises(DidNotRun):
             subscription.heard()

@@ -177,7 +177,7 @@ def test_the_c_library_says_nothing_of_corrupt_bytes(capfd):
     whole = bytearray(serialize_message(joint_state()))
     whole[28:32] = b'\xff\xff\xff\x7f'
     cdr = base64.b64encode(bytes(whole)).decode()
-    with pytest.raises(values.WireError, match='bytes that are no sensor_msgs/msg/JointState'):
+    with pytest.raises(values.WireError, match='bytes that are not a sensor_msgs/msg/JointState'):
         values.decode({'ros': 'sensor_msgs/msg/JointState', 'cdr': cdr})
     assert capfd.readouterr() == ('', '')
 

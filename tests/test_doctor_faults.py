@@ -106,7 +106,7 @@ FAULTS = {
     ),
     'no stamp': (TALKER, STAMP, 'pass', 'stamps missing or old'),
     'old stamp': (TALKER, STAMP, f'{STAMP}; message.header.stamp.sec -= 5', 'stamps missing'),
-    'degrees': (TALKER, CONVERT, 'pass', 'degrees where radians are meant'),
+    'degrees': (TALKER, CONVERT, 'pass', 'degrees instead of radians'),
 }
 
 
@@ -145,7 +145,7 @@ def test_a_clock_that_nobody_drives_is_named_and_given_back():
 def test_a_publisher_that_nobody_spins():
     listener = run(node_class(LISTENER))
     with process(program(TALKER, (SPIN, DEAD))):
-        found = wait_for_finding('nobody spins the node', listen_sec=2.0)
+        found = wait_for_finding('the node is not spinning', listen_sec=2.0)
     with process(program(TALKER, (SPIN, found.code))):
         assert wait_for(lambda: listener.heard)
 
@@ -178,7 +178,7 @@ def test_a_subscription_that_nobody_spins(tmp_path):
     note = tmp_path / 'heard'
     write = (RECEIVE, f"open({str(note)!r}, 'w').close()")
     with process(program(LISTENER, write, (SPIN, DEAD))):
-        found = wait_for_finding('nobody spins the node')
+        found = wait_for_finding('the node is not spinning')
     assert not note.exists()
     with process(program(LISTENER, write, (SPIN, found.code))):
         assert wait_for(note.exists)
@@ -252,7 +252,7 @@ def test_a_remapped_publisher():
     ('environment', 'title'),
     [
         ({'ROS_DOMAIN_ID': '{neighbour}'}, 'another domain ID'),
-        ({'ROS_AUTOMATIC_DISCOVERY_RANGE': 'OFF'}, 'a process that is out of reach'),
+        ({'ROS_AUTOMATIC_DISCOVERY_RANGE': 'OFF'}, 'a process that cannot be discovered'),
     ],
 )
 def test_a_publisher_out_of_reach(environment, title):

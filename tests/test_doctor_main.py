@@ -35,9 +35,9 @@ def test_a_fault_and_then_all_is_well(capfd):
     ('words', 'complaint'),
     [
         ([], 'the following arguments are required: topic_name'),
-        (['/a b'], "'/a b' is no topic name"),
-        ([''], "'' is no topic name"),
-        (['/a//b'], "'/a//b' is no topic name"),
+        (['/a b'], "'/a b' is not a topic name"),
+        ([''], "'' is not a topic name"),
+        (['/a//b'], "'/a//b' is not a topic name"),
         ([TOPIC, '--seconds', 'x'], "invalid time in seconds value: 'x'"),
         ([TOPIC, '--seconds', '-1'], "invalid time in seconds value: '-1'"),
         ([TOPIC, '--seconds', 'nan'], "invalid time in seconds value: 'nan'"),
@@ -71,9 +71,9 @@ def test_help_needs_no_ros():
 
 
 def test_a_notebook_asks_for_a_topic_with_an_impossible_name():
-    with pytest.raises(NoTopicName, match='is no topic name'):
+    with pytest.raises(NoTopicName, match='is not a topic name'):
         why('/joint states')
-    with pytest.raises(NoTopicName, match='is no text: expected the name of a topic'):
+    with pytest.raises(NoTopicName, match='is not a text: expected the name of a topic'):
         why(why)
 
 
@@ -107,4 +107,4 @@ def test_a_notebook_shows_the_answer_and_a_picture_as_often_as_it_is_asked(cell)
         assert shown['metadata']['image/png']['alt'] == shown['data']['text/plain']
         assert 'broken: no publisher' in shown['data']['text/plain']
     (error,) = cell("live.why('a b')")
-    assert ' '.join(error['traceback']).startswith("NoTopicName: 'a b' is no topic name (")
+    assert ' '.join(error['traceback']).startswith("NoTopicName: 'a b' is not a topic name (")

@@ -159,7 +159,7 @@ SILENT = {'heard': (), 'listened_sec': 6.0}
         (replaced(**SILENT), ['the timer never fires']),
         (
             replaced(endpoints=(LISTENER,), unheard=1, **SILENT),
-            ['a process that is out of reach', 'no publisher'],
+            ['a process that cannot be discovered', 'no publisher'],
         ),
         (replaced(unheard=1), []),
         (
@@ -184,12 +184,12 @@ SILENT = {'heard': (), 'listened_sec': 6.0}
         ),
         (
             replaced(nodes={'/listener': NodeState(answers=False)}),
-            ['nobody spins the node'],
+            ['the node is not spinning'],
         ),
         (replaced(nodes={'/talker': NodeState(answers=False)}), []),
         (
             replaced(nodes={'/talker': NodeState(answers=False)}, **SILENT),
-            ['nobody spins the node'],
+            ['the node is not spinning'],
         ),
         (
             replaced(nodes={'/talker': NodeState(answers=True, use_sim_time=True)}, **SILENT),

@@ -258,7 +258,7 @@ executor = rclpy.executors.SingleThreadedExecutor(context=context)
 executor.add_node(elsewhere)
 thread = threading.Thread(target=executor.spin, daemon=True); thread.start()
 talker = run(Talker)""")
-    assert 'a node named /talker already lives outside live' in cell.stdout
+    assert 'a node named /talker already runs outside live' in cell.stdout
     assert cell.displays == []
     assert lesson.value('talker, publishers()') == '(None, [])'
     lesson.run('executor.shutdown(); thread.join(); elsewhere.destroy_node(); context.shutdown()')
@@ -283,7 +283,7 @@ other.stdout.readline()''')
     try:
         heard = "_neighbours._hears_of('/talker')"
         assert lesson.wait_for(lambda: lesson.value(heard) == 'True')
-        assert 'already lives outside live' in lesson.run('talker = run(Talker)').stdout
+        assert 'already runs outside live' in lesson.run('talker = run(Talker)').stdout
         assert lesson.value('talker') == 'None'
     finally:
         lesson.run(r"other.communicate(b'\n')")

@@ -71,7 +71,7 @@ def test_who_else_is_on_its_topic_is_named():
         'start_unknown_robot()'
     )
     assert said[1].startswith(
-        f'note: kinematics_publisher is on {unknown_robot.TOPIC} and no part of it'
+        f'note: kinematics_publisher is on {unknown_robot.TOPIC} and is not part of it'
     )
 
 

@@ -54,7 +54,9 @@ def test_it_returns_when_the_condition_becomes_true():
 
 
 def test_after_the_limit_it_raises_one_short_readable_error():
-    with pytest.raises(TimeoutError, match=r'waited 0\.05 s, .*: does the node still run') as info:
+    with pytest.raises(
+        TimeoutError, match=r'waited 0\.05 s, .*: is the node still running'
+    ) as info:
         wait_until(lambda: False, timeout_sec=0.05)
     assert isinstance(info.value, LiveError)
 

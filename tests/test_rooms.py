@@ -347,7 +347,7 @@ def test_rooms_that_do_not_open_are_the_graders_failure(
 PROBE = 'import sys; from my_robot_basics.checks import probe'
 NOT_READY = {
     'a room that cannot be prepared': ('import nothing', 'student room .* No module named'),
-    'a probe that nobody hears': (PROBE, 'test room .* no message crossed'),
+    'a probe that nobody receives': (PROBE, 'test room .* no message went from'),
     'a student room that dies': ('import os; os._exit(1)', 'student room could not be made ready'),
 }  # fmt: skip
 
@@ -435,7 +435,7 @@ def test_only_the_literal_of_one_string_is_read(text, is_string):
 def test_the_probe_hears_only_what_is_announced(loop):
     from my_robot_basics.checks import probe
 
-    with pytest.raises(TimeoutError, match='no message crossed between the rooms in 0 s'):
+    with pytest.raises(TimeoutError, match='no message went from kernel to kernel in 0 s'):
         probe.hear(0.3)
     probe.announce()
     try:

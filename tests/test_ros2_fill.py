@@ -85,7 +85,7 @@ def test_values_that_fit(message, values, expected):
         (Bool(), {'data': 2}, 'data: wants true or false, got 2'),
         (String(), {'data': {'a': 1}}, "data: wants a string, got {'a': 1}"),
         (String(), {'data': '\0'}, "data: a string holds no zero character, got '\\x00'"),
-        (String(), {'data': '\ud800'}, "data: is no text in UTF-8: '\\ud800'"),
+        (String(), {'data': '\ud800'}, "data: is not text in UTF-8: '\\ud800'"),
     ],
 )  # fmt: skip
 def test_a_mistake_is_named_with_its_path_and_what_is_wanted(message, values, complaint):

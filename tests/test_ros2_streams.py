@@ -81,7 +81,7 @@ REFUSED = [
     (f'echo {TOPIC} --field header.sec', '',
      "Invalid field 'header.sec': 'Header' object has no attribute 'sec'\n"),
     (f'echo {TOPIC} --filter m.', '',
-     "--filter: no Python expression: 'm.' (invalid syntax (--filter, line 1))\n"),
+     "--filter: not Python: 'm.' (invalid syntax (--filter, line 1))\n"),
     (f'hz {TOPIC} --filter m.x', '', "--filter: 'm.x' failed on a message: AttributeError: "
      "'JointState' object has no attribute 'x'\n"),
     ('bw //x', '', 'Invalid topic name: topic name must not contain repeated \'/\':\n'
@@ -91,7 +91,7 @@ REFUSED = [
     ('pub /x std_msgs/msg/String [1]', '',
      'The passed value needs to be a dictionary in YAML format\n'),
     ('pub /x std_msgs/msg/String {data}:', '',
-     'The passed value is no YAML: while constructing a mapping\n'),
+     'The passed value is not YAML: while constructing a mapping\n'),
     ('pub /x std_msgs/msg/String {date:1}', '', 'Failed to populate field: date:1: std_msgs/msg/'
      "String has no field 'date:1': did you mean data?\n"),
     ('pub /x std_msgs/msg/String --max-wait-time-secs 1', '', '--max-wait-time-secs option is '

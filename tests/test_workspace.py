@@ -116,7 +116,7 @@ def test_what_the_student_wrote_is_kept_and_named(package, capsys):
 
 def test_a_workspace_that_nobody_has_edited_is_said_to_be_so(package, capsys):
     make_workspace()
-    assert 'as the course has it' in capsys.readouterr().out
+    assert 'the package, unchanged' in capsys.readouterr().out
     make_workspace(refresh=True)
     assert not (package.parents[1] / 'kept').exists()
 

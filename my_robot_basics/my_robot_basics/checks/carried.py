@@ -30,14 +30,14 @@ class Carried:
         """What was seen, and what to try."""
         lost = self.counts.count(0)
         if lost > 1 or (lost and self.late == lost):
-            return 'messages that do not come out', (
+            return 'messages that are not republished', (
                 'publish in every call of the callback: some messages are left out'
             )
         if self.late:
-            return 'a message that comes out only when the next one is sent', (
-                'publish the message that your callback is given, and not the one before'
+            return 'a message that is republished only when the next one arrives', (
+                'publish the message that your callback is given, not the one before'
             )
-        return f'a message that comes out {max(self.counts)} times', (
+        return f'a message that is republished {max(self.counts)} times', (
             'subscribe once, and publish once in each call of the callback'
         )
 

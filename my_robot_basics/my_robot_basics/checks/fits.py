@@ -39,14 +39,14 @@ def brief(qos_profile: QoSProfile) -> str:
 
 
 def leave_out(policies: Iterable[str]) -> str:
-    """What to do about policies that nobody promises."""
+    """What to do about policies that no publisher offers."""
     if 'LIVELINESS' in policies:
         return (
-            'nobody promises such a liveliness: leave it out; in place of BEST_AVAILABLE, which'
-            ' asks for the most while no publisher is there, name reliability and durability'
+            'no publisher offers such a liveliness: leave it out; instead of BEST_AVAILABLE, which'
+            ' requests the most while there is no publisher, set reliability and durability'
         )
     named = ' and '.join(sorted(policies)).lower()
-    return f'the publisher promises no {named}, so leave that out of the profile'
+    return f'the publisher offers no {named}, so leave that out of the profile'
 
 
 def _sec(duration: object) -> str:

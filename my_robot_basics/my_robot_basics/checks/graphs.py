@@ -101,15 +101,15 @@ class Graph:
         # it may be the one that was meant, with its two ends mixed up
         if mixed := sorted({*names.get(similar, others if not runs else ())} & {*others}):
             return (
-                f'{theirs(", ".join(mixed))} is at the other end of this topic, so look which name'
-                f' goes into {maker}(…); if another node is missing, run the cell that starts it'
+                f'{theirs(", ".join(mixed))} is at the other end of this topic, so check the'
+                f' name in {maker}(…); if another node is missing, run the cell that starts it'
             )
         if not runs:
-            return 'the node is not running, so run the cell that starts it and read what it says'
+            return 'the node is not running, so run the cell that starts it and read its output'
         if similar:
             uses = theirs(f'{", ".join(names[similar])} uses {similar}')
             if similar in {name.rpartition('/')[0] + topic_name for name in names[similar]}:
-                return f'{uses}: a name without / in front is put into the namespace of its node'
+                return f"{uses}: a name without a leading / is relative to its node's namespace"
             return f'{uses}, so compare the spelling'
         if raised := what_raised(runs):
             return f'{theirs(", ".join(runs))} runs, and {raised}, so fix that first'

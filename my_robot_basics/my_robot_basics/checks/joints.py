@@ -72,10 +72,10 @@ def _why_off(seen: Sequence[float], pose_deg: Sequence[float]) -> str:
     if len(seen) != len(right):
         return 'put one position for each joint into the list'
     if not all(map(math.isfinite, seen)):
-        return 'a position is no finite number (nan or inf), so look how it is computed'
+        return 'a position is not a finite number (nan or inf), so check how it is computed'
     causes = {
         'these are degrees: convert both with radians()': pose_deg,
-        'the joints have changed places: θ1 belongs to joint1, and comes first': right[::-1],
+        'the joints are swapped: θ1 belongs to joint1, and comes first': right[::-1],
         'radians() is called twice': [math.radians(angle) for angle in right],
         'degrees() converts the other way: call radians()': [math.degrees(a) for a in pose_deg],
         'joint2 is still in degrees: convert both with radians()': [right[0], pose_deg[1]],
@@ -92,7 +92,7 @@ def _why_off(seen: Sequence[float], pose_deg: Sequence[float]) -> str:
     found = [cause for cause, wrong in causes.items() if _are_near(seen, wrong)]
     to_one_decimal = [round(angle, 1) for angle in right]
     if not found and (_are_near(seen, right, CLOSE_RAD) or _are_near(seen, to_one_decimal)):
-        return 'close: take radians() itself, and do not round'
+        return 'close: use radians() itself, and do not round'
     return next(iter(found), 'convert both angles with radians(), θ1 for joint1, θ2 for joint2')
 
 

@@ -118,8 +118,8 @@ class Log:
             fail(
                 expected=f'θ1 and θ2 of one solution together in the log of {self._node_name}',
                 seen=self._shown('INFO'),
-                hint='θ1 stands with the θ2 of the other branch: both signs of θ2 are right, so'
-                ' look at the sign with which θ1 takes it',
+                hint='θ1 is paired with the θ2 of the other branch: both signs of θ2 are right, so'
+                ' check the sign of θ2 in the formula for θ1',
             )
         return had_warning
 
@@ -162,7 +162,7 @@ class Log:
                 expected=f'no warning from {self._node_name} for {what}, which is in reach',
                 seen=self._shown('WARN'),
                 hint=WARN_ONLY,
-                cause='a warning comes for a target in reach',
+                cause='there is a warning for a target in reach',
             )
         self._forms |= answers.forms_with(wanted, self._texts('INFO'))
         self._answer = wanted
@@ -181,7 +181,7 @@ class Log:
                 expected=f'a warning in the log of {self._node_name}',
                 seen=self._shown('WARN'),
                 hint=self._why_unwarned(),
-                cause='no warning comes for a target out of reach',
+                cause='there is no warning for a target out of reach',
             )
         levels = [record.level for record in self.records]
         count = levels[: levels.index('WARN')].count('INFO')
@@ -204,8 +204,8 @@ class Log:
             fail(
                 expected=f'no angles from {self._node_name} for a target out of reach',
                 seen=self._shown('INFO'),
-                hint='log angles only when inverse_kinematics returns some: leave the callback '
-                'after the warning',
+                hint='log angles only when inverse_kinematics returns some: return from the '
+                'callback after the warning',
                 cause='angles are logged for a target out of reach',
             )
 
@@ -235,7 +235,7 @@ class Log:
 
     def _why_absent(self, others: Sequence[str]) -> str:
         if not others:
-            return 'the node is not running, so run the cell that starts it and read what it says'
+            return 'the node is not running, so run the cell that starts it and read its output'
         name = self._node_name.strip('/')
         if any(other.endswith(self._node_name) for other in others):
             return f'the name {name} is right, so leave the namespace out of super().__init__(…)'
@@ -255,7 +255,7 @@ class Log:
         if raised and 'ValueError' not in raised:
             return f'{raised}, so fix that first'
         if self.records:
-            return 'a target out of reach asks for the level WARN: self.get_logger().warning(…)'
+            return 'a target out of reach needs the level WARN: self.get_logger().warning(…)'
         return (
             f'catch ValueError each time and log it with self.get_logger().warning(…) {angles.HOW}'
         )
@@ -266,7 +266,7 @@ class Log:
             fail(
                 expected=f'the angles of one target in the INFO log of {self._node_name}',
                 seen=f'{count:,} different numbers',
-                hint='log the solutions of each target, and not every angle that there is',
+                hint='log the solutions of each target, and not all possible angles',
                 cause=f'over {answers.MOST_NUMBERS:,} different numbers for one target',
             )
 

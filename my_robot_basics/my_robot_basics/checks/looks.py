@@ -208,4 +208,4 @@ def _tick_to_message(ears: Ears, clock: SimulatedClock, *, step_ns: int) -> int:
         clock.tick(step_ns)
         if len(ears.heard) > before:
             return ticks
-    raise Silent(f"no message came in {FIRST_MESSAGE_SEC:g} s of the robot's time")
+    raise Silent(f"no message arrived in {FIRST_MESSAGE_SEC:g} s of the robot's time")

@@ -69,7 +69,7 @@ class Predictions:
         # it tells what happens on the check's own stage, and the student's own yes and no
         with said_in_full():
             fail(
-                expected='each prediction to be what happens when the check runs it',
+                expected='each prediction to match what happens when the check runs it',
                 seen=f'{len(self._wrong)}{rest} wrong{leaves}',
                 hint='; '.join(told),
                 earned=earned,

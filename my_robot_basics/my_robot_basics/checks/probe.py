@@ -45,7 +45,7 @@ def hear(timeout_sec: float = TIMEOUT_SEC) -> None:
     try:
         while not heard.is_set():
             if node.get_clock().now().nanoseconds > deadline:
-                raise TimeoutError(f'no message crossed between the rooms in {timeout_sec:.0f} s')
+                raise TimeoutError(f'no message went from kernel to kernel in {timeout_sec:.0f} s')
             executor.spin_once(timeout_sec=0.1)
     finally:
         executor.shutdown()

@@ -110,10 +110,10 @@ def fail_rate(recording: 'Recording', hz: float) -> NoReturn:
     elif near and recording.clock == 'wall' and _is_uneven(recording, recording.rate_hz):
         gaps = np.diff(_times(recording))
         seen = f'{np.min(gaps):.2f} to {np.max(gaps):.2f} s between messages {over}'
-        cause = 'messages come too early and too late by turns'
-        hint = 'the messages are unevenly spaced, so use one timer, and leave its period as it is'
+        cause = 'messages alternate between too early and too late'
+        hint = 'the messages are unevenly spaced, so use one timer, and do not change its period'
         if np.min(gaps) < AT_ONCE_SEC:
-            cause, hint = 'several messages come at once', ONCE
+            cause, hint = 'several messages arrive at once', ONCE
     else:
         seen = f'{_hz(_measured_hz(recording, hz))} {over}'
         hint, cause = 'the timer period is in seconds, and period = 1 / rate', 'another rate'

@@ -136,7 +136,7 @@ class Relay:
         if unpromised := policies - {'RELIABILITY', 'DURABILITY'}:
             hint = leave_out(unpromised)
         fail(
-            expected=f'a subscription on {self.source} that asks for no more than'
+            expected=f'a subscription on {self.source} that requests no more than'
             f' {brief(offered)}, which is what the publisher offers',
             seen=f'{" and ".join(sorted(asked))} (incompatible: {" and ".join(sorted(policies))})',
             hint=hint,
@@ -154,7 +154,7 @@ class Relay:
             fail(
                 expected=f'a subscription on {self.source} with durability TRANSIENT_LOCAL',
                 seen=' and '.join(sorted(asked())),
-                hint='what was said before you joined comes only to those who ask for it',
+                hint='request TRANSIENT_LOCAL: only then do you receive earlier messages',
             )
 
     def _expect_one_profile(self, watcher: Watcher) -> None:
@@ -177,7 +177,7 @@ class Relay:
     def _fail_carried(self, carried: Carried) -> NoReturn:
         seen, hint = carried.fault()
         fail(
-            expected=f'each message of {self.source} to come out on {self.to} at once, and once',
+            expected=f'each message on {self.source} to be republished on {self.to} once, at once',
             seen=seen,
             hint=hint,
             cause=seen,
@@ -198,10 +198,10 @@ class Relay:
                 return
         has_others = len(ears.messages()) > before
         fail(
-            expected=f'a message from {self.source} to come out on {self.to}, unchanged',
+            expected=f'a message from {self.source} to be republished on {self.to}, unchanged',
             seen=f'{"only others" if has_others else "none"} in {TIMEOUT_SEC:g} s',
             hint=self._why_lost(watcher, is_latched=again is None, has_others=has_others),
-            cause=f'{"only other messages come" if has_others else "no message comes"} out on'
+            cause=f'{"only other messages arrive" if has_others else "no message arrives"} on'
             f' {self.to}',
         )
 
@@ -212,7 +212,7 @@ class Relay:
             if asked.durability == DurabilityPolicy.TRANSIENT_LOCAL
         ]
         if is_latched and {each.reliability for each in asked} == {ReliabilityPolicy.BEST_EFFORT}:
-            return 'what was said before you joined comes only to a RELIABLE subscription'
+            return 'request RELIABLE, too: only then do you receive earlier messages'
         offers = watcher.node.get_publishers_info_by_topic(self.source)
         gaps = [incompatible(offer.qos_profile, each) for offer in offers for each in asked]
         if is_latched and gaps and all(gaps):
@@ -221,7 +221,7 @@ class Relay:
         if raised := graphs.what_raised(map(graphs.full_name, listeners)):
             return f'{raised}, so fix that first'
         if has_others:
-            return 'publish the very message that your callback is given'
+            return 'publish exactly the message that your callback is given'
         return 'see that your callback publishes each message, and that it raises nothing'
 
     def _expect_type(self, watcher: Watcher, type_: type) -> None:

@@ -84,8 +84,8 @@ class Stage:
         """Receive messages until `done()`. Raises DidNotRun."""
         if not self._receivers.spin_until(done, timeout_sec=TIMEOUT_SEC):
             raise DidNotRun(
-                f'expected the nodes of this check to meet, saw no end of it in {TIMEOUT_SEC:g} s:'
-                ' it is not your answer; run the cell again'
+                'expected the nodes of this check to discover each other, saw that they did not in'
+                f' {TIMEOUT_SEC:g} s: your answer is not the cause; run the cell again'
             )
 
     def _own(self, name: str) -> str:

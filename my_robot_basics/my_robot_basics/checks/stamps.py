@@ -40,10 +40,10 @@ ATTEMPTS = 3
 """How often to try where the clock could not be driven: a busy machine may be slow just now."""
 EXPECTED = "stamps of the node's clock at publication"
 AT_ONCE_SEC = 0.02
-COMPUTERS = "they have the computer's clock"
+COMPUTERS = "they are the time of the computer's clock"
 ONCE = 'publish one message each time the timer fires'
 HOW = 'set message.header.stamp = self.get_clock().now().to_msg() before each publish'
-WHY = 'it is another one than that of the computer where a simulation, or this check, drives it'
+WHY = "it differs from the computer's clock when a simulation, or this check, drives it"
 
 
 def check_stamps(recording: 'Recording', messages: Sequence) -> None:

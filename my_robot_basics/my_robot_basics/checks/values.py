@@ -143,7 +143,7 @@ def _decode_message(name: str, cdr: str) -> object:
             return deserialize_message(data, wanted)
     except Exception as error:
         # The bytes come from a student: whatever the C library says of them, they are wrong.
-        raise WireError(f'bytes that are no {name}') from error
+        raise WireError(f'bytes that are not a {name}') from error
 
 
 @contextlib.contextmanager

@@ -148,6 +148,6 @@ class Watcher:
             fail(
                 expected=f'at most {MOST_ENDPOINTS:,} publishers, subscriptions and services',
                 seen=f'{count:,}',
-                hint='create each of them once, and none in a loop that goes on or in a callback',
+                hint='create each of them once, not in an endless loop or a callback',
             )
         self._next_count = time.monotonic() + COUNT_EVERY_SEC

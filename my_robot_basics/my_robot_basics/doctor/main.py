@@ -15,8 +15,8 @@ def main(argv: list[str] | None = None) -> int:
     """Say why nothing arrives on a topic; 0: all is well, 1: a fault was named, 2: usage."""
     parser = argparse.ArgumentParser(
         'topic_doctor',
-        description='Says why no messages arrive on a topic, and what to do about it.',
-        epilog='Exit status: 0 when all is well, 1 when a fault was named, 2 on wrong usage.',
+        description='Find out why no messages arrive on a topic, and how to fix it.',
+        epilog='Exit status: 0 when all is well, 1 when a fault was found, 2 on wrong usage.',
     )
     parser.add_argument(
         'topic_name', help='for example /kinematics/joint_states'

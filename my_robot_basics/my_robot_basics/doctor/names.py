@@ -8,7 +8,7 @@ def full_topic_name(text: str) -> str:
 
     if not isinstance(text, str):
         raise ValueError(
-            f'{text!r:.60} is no text: expected the name of a topic, such as '
+            f'{text!r:.60} is not a text: expected the name of a topic, such as '
             "'/kinematics/joint_states'"
         )
     name = text if text.startswith('/') else f'/{text}'
@@ -17,6 +17,7 @@ def full_topic_name(text: str) -> str:
     except InvalidTopicNameException as error:
         reason = str(error).splitlines()[0].rstrip(':. ')
         raise ValueError(
-            f'{text!r} is no topic name ({reason}): expected one such as /kinematics/joint_states'
+            f'{text!r} is not a topic name ({reason}): expected one'
+            ' such as /kinematics/joint_states'
         ) from None
     return name

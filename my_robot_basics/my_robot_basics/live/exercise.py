@@ -28,7 +28,7 @@ def run_answer(name: str, *args: Any, **kwargs: Any) -> Node | None:
     answer = _notebook().get(name)
     where = 'write it in the answer cell: only the notebook is submitted'
     if answer is None:
-        first = 'run the answer cell, and where that ends in an error, fix that first'
+        first = 'run the answer cell, and if that ends in an error, fix that first'
         raise NotRunnable(f'expected a class {name}, saw nothing of that name: {first}')
     if not (isinstance(answer, type) and issubclass(answer, Node)):
         is_class, type_name = isinstance(answer, type), type(answer).__name__

@@ -74,7 +74,7 @@ def launch(
             raise NotRunnable(no_node_yet(NodeClass))
     except _LivesElsewhere as found:
         print(
-            f'a node named {found} already lives outside live: no second one was started. '
+            f'a node named {found} already runs outside live: no second one was started. '
             'Stop that one first, or give yours another name.'
         )
         return None

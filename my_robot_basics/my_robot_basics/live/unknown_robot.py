@@ -92,7 +92,7 @@ def start_unknown_robot() -> None:
     print(f'the unknown robot runs: {_robot.size} nodes')
     if strangers := _robot.strangers():
         print(
-            f'note: {", ".join(strangers)} is on {TOPIC} and no part of it: '
+            f'note: {", ".join(strangers)} is on {TOPIC} and is not part of it: '
             'stop it (Ctrl-C in its terminal), then look again'
         )
 

@@ -32,7 +32,7 @@ def wait_until(condition: Callable[[], object], timeout_sec: float = 5.0) -> Non
             waited_sec = time.monotonic() - start
             if waited_sec >= timeout_sec:
                 raise WaitedInVain(
-                    f'waited {timeout_sec:g} s, and it did not happen: does the node still run, '
+                    f'waited {timeout_sec:g} s, and it did not happen: is the node still running, '
                     'and did you run the cells above?'
                 )
             progress.show(waited_sec)

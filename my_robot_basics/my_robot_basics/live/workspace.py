@@ -47,17 +47,17 @@ def make_workspace(*, refresh: bool = False) -> None:
     _write_reference(workspace / 'reference')
     changes = _differences(package)
     if refresh and changes:
-        print(f'moved    {shown(_move_aside(package))}: the files as you had them')
+        print(f'moved    {shown(_move_aside(package))}: your files as they were')
     if not package.exists():
         _copy_package(package)
         print(f'made     {shown(package)}: the package, yours to edit')
     elif changes:
-        print(f'kept     {shown(package)}: it is yours, and not as the course has it:')
+        print(f'kept     {shown(package)}: you have changed it:')
         for change in changes:
             print(f'           {change}')
-        print('           (./course workspace --refresh moves it aside and begins anew)')
+        print('           (./course workspace --refresh moves it aside and starts again)')
     else:
-        print(f'kept     {shown(package)}: the package, as the course has it')
+        print(f'kept     {shown(package)}: the package, unchanged')
     print(f'written  {shown(workspace / "reference")}: files to copy from')
     _show_in_file_browser(workspace)
     print(f"build it in JupyterLab's terminal or in ./course ros-shell:\n           {BUILD}")
@@ -144,7 +144,7 @@ def main(argv: list[str] | None = None) -> str | None:
     parser.add_argument(
         '--refresh',
         action='store_true',
-        help='move your files aside, and begin anew with those of the course',
+        help='move your files aside, and start again with those of the course',
     )
     args = parser.parse_args(argv)
     print(f'ROS_WS is {classroom.workspace()}')

@@ -16,7 +16,7 @@ def message_filter(expression: str | None) -> Callable[[Any], bool]:
     try:
         code = compile(expression, '--filter', 'eval')
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
-        raise CommandError(f'--filter: no Python expression: {expression!r} ({error})') from None
+        raise CommandError(f'--filter: not Python: {expression!r} ({error})') from None
 
     def passes(message: Any) -> bool:
         try:

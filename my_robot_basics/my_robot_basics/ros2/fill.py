@@ -109,7 +109,7 @@ def _string(value: Any, slot_type: Any, path: str) -> str:
     try:
         text.encode()
     except UnicodeEncodeError:
-        raise BadValue(f'{path}: is no text in UTF-8: {text!a}') from None
+        raise BadValue(f'{path}: is not text in UTF-8: {text!a}') from None
     if '\0' in text:
         raise BadValue(f'{path}: a string holds no zero character, got {text!r}')
     return text

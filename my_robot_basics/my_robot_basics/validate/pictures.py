@@ -23,7 +23,7 @@ def why_not_shown(encoded: str) -> str:
     """
     size = _size(encoded)
     if size is None:
-        return 'something that is no PNG or JPEG'
+        return 'something that is not a PNG or JPEG'
     width, height = size
     if not 0 < width * height <= MAX_PIXELS:
         return f'a picture of {width:,} × {height:,} pixels, of {MAX_PIXELS:,} at most,'

@@ -70,7 +70,7 @@ class ValidateHandler(APIHandler):
         trace = (await errors).decode(errors='replace')
         if not {'report', 'failed'} & json.loads(said).keys():
             self.log.error('Validate failed: %s', trace)
-            why = (trace.strip().splitlines() or ['it ended without a word'])[-1]
+            why = (trace.strip().splitlines() or ['it ended without a message'])[-1]
             self.write(json.dumps({'failed': f'Validate itself failed: {why}'}) + '\n')
 
 

@@ -1,4 +1,4 @@
-"""Messages arrive, and angles look like degrees where radians are meant."""
+"""Messages arrive, and angles look like degrees instead of radians."""
 
 import math
 from collections.abc import Iterator
@@ -19,8 +19,8 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
         return
     shown = max(angles, key=lambda angle: abs(angle) if math.isfinite(angle) else 0.0)
     yield Finding(
-        title='degrees where radians are meant',
-        expected='angles in radians in message.position (a whole turn is 6.283)',
+        title='degrees instead of radians',
+        expected='angles in radians in message.position (a full turn is 6.283)',
         seen=f'{shown:.1f}, which looks like degrees:'
         f' as radians it is {abs(shown) / math.tau:.1f} turns',
         mend='convert before you publish',

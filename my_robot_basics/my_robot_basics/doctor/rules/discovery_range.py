@@ -12,11 +12,11 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
         return
     many = evidence.unheard > 1
     yield Finding(
-        title='a process that is out of reach',
+        title='a process that cannot be discovered',
         expected=f'every process of ROS domain {evidence.domain_id} on this machine to be found',
         seen=f'{evidence.unheard} {"are" if many else "is"} running in it and not on the graph:'
         f' {"their" if many else "its"} discovery range may be OFF',
-        mend='start that node again in a terminal in which this was said',
+        mend='restart that node in a terminal in which this line was run',
         code='$ export ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST',
         missing=missing,
     )

@@ -9,7 +9,7 @@ from my_robot_basics.doctor.evidence import Evidence, Finding
 
 
 def examine(evidence: Evidence) -> Iterator[Finding]:
-    """Name VOLATILE subscriptions to a topic on which all was said before the doctor came."""
+    """Name VOLATILE subscriptions to a topic whose messages were all sent before the look."""
     if evidence.fresh or not evidence.heard:
         return
     ago_sec = evidence.began_sec - evidence.heard[-1].sent_sec
@@ -23,11 +23,11 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
         )
         yield Finding(
             title='joined too late',
-            expected=f'{subscription.node_name} to ask for what was said before it came'
-            ' (durability TRANSIENT_LOCAL)',
-            seen='it asks for VOLATILE, and the last message was sent'
-            f' {ago_sec:.1f} s before the doctor came',
-            mend=f'ask for the kept messages in {subscription.node_name}',
+            expected=f'{subscription.node_name} to request messages published before it'
+            ' joined (durability TRANSIENT_LOCAL)',
+            seen='it requests VOLATILE, and the last message was sent'
+            f' {ago_sec:.1f} s before the doctor started',
+            mend=f'request the kept messages in {subscription.node_name}',
             code=code.create(
                 'subscription',
                 type_name=subscription.type_name,

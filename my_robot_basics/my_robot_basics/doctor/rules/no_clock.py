@@ -6,16 +6,16 @@ from my_robot_basics.doctor.evidence import Evidence, Finding
 
 
 def examine(evidence: Evidence) -> Iterator[Finding]:
-    """Name each publisher's node with use_sim_time, where nobody publishes /clock."""
+    """Name each publisher's node with use_sim_time, where no node publishes /clock."""
     if evidence.heard or evidence.has_clock:
         return
     for publisher in evidence.publishers:
         if evidence.state(publisher.node_name).use_sim_time:
             yield Finding(
                 title='use_sim_time without a /clock',
-                expected=f'a /clock, by which {publisher.node_name} goes (use_sim_time is true)',
-                seen='nobody publishes /clock: its time stands at 0, and no timer fires',
-                mend='start the simulator, or give the node the wall clock back',
+                expected=f'a /clock, which {publisher.node_name} needs (use_sim_time is true)',
+                seen='no node publishes /clock: its time stays at 0, and no timer fires',
+                mend='start the simulator, or let the node use the wall clock',
                 code=f'$ ros2 param set {publisher.node_name} use_sim_time false',
                 broken=(publisher,),
             )

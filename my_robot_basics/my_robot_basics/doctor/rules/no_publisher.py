@@ -12,7 +12,7 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
         return
     running = ', '.join(evidence.nodes)
     types = [end.type_name for end in evidence.subscriptions]
-    mend = 'start the node that publishes there, and see that its constructor has this line'
+    mend = 'start the node that publishes there, and check that its constructor has this line'
     if not running and not evidence.elsewhere:
         mend = (
             'if it runs already, look into the other ROS domains of this machine, too (--domains,'

@@ -7,7 +7,7 @@ from my_robot_basics.doctor.evidence import Evidence, Finding
 
 
 def examine(evidence: Evidence) -> Iterator[Finding]:
-    """Name the publisher that nobody hears."""
+    """Name the publisher without a subscription."""
     if evidence.subscriptions:
         return
     senders = ' and '.join(end.node_name for end in evidence.publishers)
@@ -15,8 +15,8 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
     yield Finding(
         title='no subscription',
         expected=f'a subscription on {evidence.topic_name}',
-        seen=f'none; the publisher is that of {senders}' if senders else 'none',
-        mend='start the node that listens, and see that its constructor has this line',
+        seen=f'none; the publisher belongs to {senders}' if senders else 'none',
+        mend='start the node that subscribes, and check that its constructor has this line',
         code=code.create(
             'subscription', type_name=(types or [''])[0], topic_name=evidence.topic_name
         ),

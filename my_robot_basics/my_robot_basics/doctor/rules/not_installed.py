@@ -14,8 +14,8 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
         yield Finding(
             title='message type not installed here',
             expected=f'{type_name}, which {senders} publishes, to be installed here',
-            seen='no such type in this environment: no node of it can subscribe, and whether'
-            ' messages arrive at nodes of another environment cannot be seen from here',
+            seen='this environment does not have the type: its nodes cannot subscribe, and the'
+            ' doctor cannot see whether messages arrive at nodes of another environment',
             mend=f'install the package {package} here, or source the workspace in which it was'
             ' built, and start again from there',
             code='$ source install/setup.bash',

@@ -13,11 +13,11 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
             continue
         job = 'its timers fire' if end.kind == 'publisher' else 'the callback is called'
         yield Finding(
-            title='nobody spins the node',
+            title='the node is not spinning',
             expected=f'{end.node_name} to be spun, so that {job}',
-            seen='it is on the graph and answers no question',
-            mend='spin it; in a notebook, start it with live.run(…). If it was spun, an exception'
-            ' in a callback has ended that, or a callback does not return: read its output',
+            seen='it is on the graph and does not answer requests',
+            mend='spin it; in a notebook, start it with live.run(…). If it was spinning, an'
+            ' exception in a callback has ended that, or a callback does not return: read its log',
             code='rclpy.spin(node)',
             broken=(end,),
         )

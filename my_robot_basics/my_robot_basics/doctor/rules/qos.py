@@ -22,13 +22,13 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
             names = ' and '.join(gaps)
             yield Finding(
                 title=f'QoS incompatible: {names}',
-                expected=f'{publisher.node_name} to offer what {subscription.node_name} asks for',
+                expected=f'{publisher.node_name} to offer what {subscription.node_name} requests',
                 seen='; '.join(
                     f'{policy}: {publisher.node_name} offers {has}, {subscription.node_name}'
-                    f' asks for {wants}'
+                    f' requests {wants}'
                     for policy, (has, wants) in gaps.items()
                 ),
-                mend=f'ask for no more than is offered, in {subscription.node_name}',
+                mend=f'request no more than is offered, in {subscription.node_name}',
                 code=code.create(
                     'subscription',
                     type_name=subscription.type_name,

@@ -38,7 +38,7 @@ def _misspelt_question(evidence: Evidence) -> Iterator[Finding]:
             title=f'a similar name: {how}',
             expected=f'a node that uses {evidence.topic_name}',
             seen=f'none, and {end.node_name} uses {end.topic_name} ({how})',
-            mend='ask about that topic, if it is the one you mean',
+            mend='run the doctor on that topic, if it is the one you mean',
             code=f'$ topic_doctor {end.topic_name}',
             broken=(end,),
             missing=end.kind,

@@ -16,8 +16,8 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
         yield Finding(
             title='types differ',
             expected='one message type at both ends',
-            seen=f'{sender} publishes {type_name}, {subscription.node_name} wants'
-            f' {subscription.type_name}: not one message crosses',
+            seen=f'{sender} publishes {type_name}, {subscription.node_name} expects'
+            f' {subscription.type_name}: no message arrives',
             mend=f'import and use the same type in {subscription.node_name}'
             f' (from {type_name.replace("/", ".").rpartition(".")[0]})',
             code=code.create('subscription', type_name=type_name, topic_name=evidence.topic_name),

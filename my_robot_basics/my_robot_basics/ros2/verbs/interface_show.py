@@ -69,7 +69,7 @@ def _parsed(package: str, line: str, comments: bool) -> tuple[str, str | None]:
     try:
         definition = parse_message_string(package, 'Line', line)
     except InvalidSpecification as error:
-        raise CommandError(f"'{line}' is no line of an interface definition: {error}") from None
+        raise CommandError(f"'{line}' is not a line of an interface definition: {error}") from None
     members = [*definition.fields, *definition.constants]
     if not comments:
         if definition.annotations['comment']:

@@ -39,7 +39,7 @@ def main(args: argparse.Namespace) -> str | None:
     try:
         pattern = re.compile(args.filter or '')
     except (re.error, RecursionError, OverflowError) as error:
-        raise CommandError(f'--filter: no regular expression: {args.filter!r} ({error})') from None
+        raise CommandError(f'--filter: not a regex: {args.filter!r} ({error})') from None
     with Graph(args) as graph:
         graph.settle()
         nodes = graph.nodes(include_hidden=args.include_hidden_nodes)

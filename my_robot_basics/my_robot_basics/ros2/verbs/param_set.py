@@ -23,7 +23,7 @@ def main(args: argparse.Namespace) -> None:
     try:
         value = get_parameter_value(args.value)
     except (yaml.YAMLError, ValueError, OverflowError, RecursionError) as error:
-        raise CommandError(f'The passed value is no YAML: {error}') from None
+        raise CommandError(f'The passed value is not YAML: {error}') from None
     with Graph(args) as graph:
         parameter = Parameter(name=args.parameter_name, value=value)
         result = parameters.services_of(graph, args).set(parameter)

@@ -136,7 +136,7 @@ def _values(text: str | bytes) -> dict:
     try:
         values = yaml.safe_load(text)
     except (yaml.YAMLError, ValueError, OverflowError, RecursionError) as error:
-        raise CommandError(f'The passed value is no YAML: {error}') from None
+        raise CommandError(f'The passed value is not YAML: {error}') from None
     if not isinstance(values, dict):
         raise CommandError('The passed value needs to be a dictionary in YAML format')
     return values
