@@ -3,6 +3,7 @@ import gzip
 import json
 import os
 import tarfile
+import tracemalloc
 import zipfile
 from datetime import datetime
 from pathlib import Path
@@ -388,12 +389,17 @@ def test_a_file_that_can_t_be_read_costs_only_itself(course, source, monkeypatch
     for student in ('ada', 'bob', 'zoe'):
         write(source / f'{student}_{TOY}.ipynb', student)
         write(source / f'{student}-{TOY}.ipynb', student)
-    lstat, read_bytes = Path.lstat, Path.read_bytes
+    lstat, read_bytes, open_file = Path.lstat, Path.read_bytes, Path.open
 
     def damaged(path):
         if path.name.startswith('ada'):
             raise OSError(5, 'Input/output error', str(path))
         return read_bytes(path)
+
+    def unopened(path, *arguments, **options):
+        if path.name.startswith('ada'):
+            raise OSError(5, 'Input/output error', str(path))
+        return open_file(path, *arguments, **options)
 
     def gone(path):
         if path.name.startswith('bob_'):
@@ -401,6 +407,7 @@ def test_a_file_that_can_t_be_read_costs_only_itself(course, source, monkeypatch
         return lstat(path)
 
     monkeypatch.setattr(Path, 'read_bytes', damaged)
+    monkeypatch.setattr(Path, 'open', unopened)
     monkeypatch.setattr(Path, 'lstat', gone)
     assert rows(course, source) == {
         f'ada_{TOY}.ipynb': LEFT,
@@ -474,3 +481,21 @@ def test_nbgrader_reads_the_time(course, source):
     rows(course, source)
     folder = course.folder('submitted', 'ada', TOY)
     assert CourseDirectory().get_existing_timestamp(str(folder)) == datetime(2026, 1, 1, 10)
+
+
+def test_large_files_of_a_submission_fill_no_memory(course, source):
+    """Each hand-in was held whole, and each earlier one beside it."""
+    folder = source / f'ada/{TOY}'
+    write(folder / NOTEBOOK, 'hers')
+    for number in range(4):
+        (folder / f'{number}.py').write_bytes(bytes(10_000_000))
+    assert NEW in rows(course, source).values()
+    write(folder / NOTEBOOK, 'hers again')
+    write(folder / 'timestamp.txt', '2026-01-02 03:04:05 UTC')
+    tracemalloc.start()
+    try:
+        assert AGAIN in rows(course, source).values()
+        most = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert most < 10_000_000

@@ -5,6 +5,7 @@ in gradebook/submitted_before/STUDENT/ASSIGNMENT/NUMBER/, with the grade that it
 """
 
 import errno
+import hashlib
 import shutil
 import tempfile
 from collections.abc import Callable, Iterator, Mapping
@@ -98,9 +99,10 @@ def _take(course: Course, each: HandIn, grades: Callable[[], list[Record]]) -> t
     """Put a submission in its place; return what became of it, and why."""
     place = course.folder('submitted', each.student_id, each.assignment)
     shelf = course.folder('submitted_before', each.student_id, each.assignment)
-    came = {name: path.read_bytes() for name, path in _files(each)}
+    files = dict(_files(each))
+    came = _digests(files)
     if not place.exists():
-        _put(_writer(came, each.handed_in), place)
+        _put(_writer(files, each.handed_in), place)
         return NEW, ''
     there, when = _contents(place), date_of(place / TIMESTAMP)
     if came == there:
@@ -109,11 +111,11 @@ def _take(course: Course, each: HandIn, grades: Callable[[], list[Record]]) -> t
     if not (both_known and each.handed_in > when) and came in _shelved(shelf):
         return KNOWN, 'as an earlier one, which was replaced since'
     if both_known and each.handed_in <= when:
-        kept = _shelve(_within('submitted', _writer(came, each.handed_in)), shelf)
+        kept = _shelve(_within('submitted', _writer(files, each.handed_in)), shelf)
         return EARLIER, f'a later one is there already; kept in {_shown(kept, course)}'
     if there not in _shelved(shelf):  # else an earlier run was ended right after that
         _shelve(lambda folder: _copy_all(course, each, folder, grades), shelf)
-    _put(_writer(came, each.handed_in), place)
+    _put(_writer(files, each.handed_in), place)
     return AGAIN, f'the one before and its grade are kept in {_shown(shelf, course)}'
 
 
@@ -123,21 +125,30 @@ def _files(each: HandIn) -> Iterator[tuple[str, Path]]:
 
 
 def _contents(folder: Path) -> dict[str, bytes]:
-    """Return the files of a submission, without the time."""
+    """Return the digests of a submission's files, without the time."""
     files = (path for path in folder.iterdir() if path.is_file() and path.name != TIMESTAMP)
-    return {path.name: path.read_bytes() for path in files}
+    return _digests({path.name: path for path in files})
+
+
+def _digests(files: Mapping[str, Path]) -> dict[str, bytes]:
+    """Return what tells contents apart: several submissions of 200 MB would fill the memory."""
+    found = {}
+    for name, path in files.items():
+        with path.open('rb') as file:
+            found[name] = hashlib.file_digest(file, 'sha256').digest()
+    return found
 
 
 def _shelved(shelf: Path) -> list[dict[str, bytes]]:
     return [_contents(folder) for folder in shelf.glob('*/submitted')]
 
 
-def _writer(files: Mapping[str, bytes], handed_in: datetime | None) -> Callable[[Path], None]:
+def _writer(files: Mapping[str, Path], handed_in: datetime | None) -> Callable[[Path], None]:
     """Return what writes a submission into an empty folder, its time as nbgrader does."""
 
     def write(folder: Path) -> None:
-        for name, content in files.items():
-            (folder / name).write_bytes(content)
+        for name, path in files.items():
+            shutil.copyfile(path, folder / name)
         if handed_in:
             time = handed_in.strftime('%Y-%m-%d %H:%M:%S.%f UTC')
             (folder / TIMESTAMP).write_text(time, encoding='ascii')
