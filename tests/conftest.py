@@ -10,6 +10,7 @@ from collections.abc import Iterator
 
 import _pytest.runner
 import pytest
+import tiers
 from hypothesis import HealthCheck, settings
 from my_robot_basics.live import classroom
 
@@ -35,7 +36,15 @@ LONG = (
 keep processors busy stand beside those that wait: all at once, each would take longer."""
 
 
+GUARD = pytest.StashKey[tiers.Guard]()
+
+
 def pytest_addoption(parser: pytest.Parser) -> None:
+    tier = parser.getgroup('tiers')
+    tier.addoption(
+        '--quick', action='store_true', help='no kernel, node, browser or sandbox: about a minute'
+    )
+    tier.addoption('--slow', action='store_true', help='everything, also what takes long')
     parser.addoption(
         '--no-isolation',
         action='store_true',
@@ -43,9 +52,11 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     )
 
 
+@pytest.hookimpl(tryfirst=True)  # pytest chooses by the marks afterwards
 def pytest_collection_modifyitems(config: pytest.Config, items: list) -> None:
     order = {f'test_{name}': place for place, name in enumerate(LONG)}
     items.sort(key=lambda item: order.get(item.path.stem, len(LONG)))
+    tiers.mark(items)
 
     if config.getoption('--no-isolation') and missing():
         config.stash[UNTESTED] = [item for item in items if item.get_closest_marker('isolation')]
@@ -53,7 +64,22 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list) -> None:
         config.hook.pytest_deselected(items=config.stash[UNTESTED])
 
 
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_call(item: pytest.Item) -> Iterator[None]:
+    yield
+    item.config.stash[GUARD].end()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_teardown(item: pytest.Item) -> Iterator[None]:
+    item.config.stash[GUARD].running = None  # what a test leaves may take what it takes to end
+    yield
+    item.config.stash[GUARD].end()
+
+
+@pytest.hookimpl(tryfirst=True)
 def pytest_runtest_setup(item: pytest.Item) -> None:
+    item.config.stash[GUARD].begin(item)
     if item.get_closest_marker('isolation') and missing():
         pytest.fail(f'{missing()}. Or leave these tests out: --no-isolation', pytrace=False)
 
@@ -67,6 +93,12 @@ def pytest_terminal_summary(terminalreporter: object, config: pytest.Config) -> 
 
 
 def pytest_configure(config: pytest.Config) -> None:
+    quick = config.getoption('--quick')
+    if config.getoption('--slow'):
+        config.option.markexpr = ''
+    elif quick:
+        config.option.markexpr = 'not slow and not starts'
+    config.stash[GUARD] = tiers.Guard(refuses=quick)
     if config.getoption('--no-isolation'):
         os.environ[TRUST] = '1'
     # a session in the background ignores Ctrl-C, and so would all that it starts
@@ -94,12 +126,15 @@ LEAVE_SEC = 10.0
 
 
 @pytest.fixture(scope='module', autouse=True)
-def nobody_stays() -> Iterator[None]:
+def nobody_stays(request: pytest.FixtureRequest) -> Iterator[None]:
     """See that a file of tests leaves no node to the next one in the same domain."""
+    guard = request.config.stash[GUARD]
+    before = guard.contexts
     yield
-    if 'rclpy' not in sys.modules:
+    here = (item for item in request.session.items if item.path == request.path)
+    if guard.contexts == before and not any(map(tiers.is_starting, here)):
         return
-    from my_robot_basics.checks import graph  # not before: most tests need no rclpy
+    from my_robot_basics.checks import graph
 
     deadline = time.monotonic() + LEAVE_SEC
     while (left := graph().nodes()) and time.monotonic() < deadline:

@@ -9,6 +9,7 @@ from std_msgs.msg import String
 from my_robot_basics import live
 
 
+@pytest.mark.starts
 def test_the_graph_lists_every_endpoint_and_no_hidden_node():
     talker, listener, hidden = (live.run(Node, n, key=n) for n in ('talker', 'listener', '_own'))
     for node in (talker, talker, hidden):
@@ -62,6 +63,7 @@ def test_silence_has_a_reason(seen, why):
     assert seen.why_silent('/t/joint_states').startswith(why)
 
 
+@pytest.mark.starts
 def test_a_subscription_that_is_missing_has_a_reason():
     seen = picture(subscriptions={'/target_points': ('/a',)})
     assert seen.why_unheard('/target_point') == '/a uses /target_points, so compare the spelling'

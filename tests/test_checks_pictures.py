@@ -39,6 +39,7 @@ def test_an_arm_with_more_joints_has_no_picture():
     assert pictures.misread([1.0, 2.0, 3.0]) is None
 
 
+@pytest.mark.starts
 def test_show_displays_in_a_notebook(monkeypatch, capsys):
     InteractiveShell.instance()
     errors.show(pictures.arrivals(recording(), hz=5.0), alt='five')

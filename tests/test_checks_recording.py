@@ -381,6 +381,7 @@ def test_another_type_is_named():
         made.assert_joint_names(('joint1', 'joint2'))
 
 
+@pytest.mark.starts
 @pytest.mark.parametrize('assertion', ['assert_joint_names', 'assert_frame_id', 'assert_stamps'])
 def test_no_message_proves_nothing(assertion):
     arguments = {'assert_joint_names': [('joint1',)], 'assert_frame_id': ['base_link']}

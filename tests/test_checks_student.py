@@ -176,6 +176,7 @@ def test_a_warning_of_the_function_stays_off_stderr(notebook, capsys):
     assert capsys.readouterr().err == ''
 
 
+@pytest.mark.starts
 def test_answering_loads_no_check():
     code = (
         'import sys; import my_robot_basics.checks.responder; '
@@ -206,6 +207,7 @@ class Still(Node):
         super().__init__('raises')
 
 
+@pytest.mark.starts
 def test_what_a_callback_raised_is_told_until_its_node_begins_anew(monkeypatch):
     monkeypatch.delenv('MY_ROBOT_BASICS_ROOM', raising=False)
     assert student.trouble('/raises') == ''

@@ -187,6 +187,7 @@ json_values = st.recursive(
 )
 
 
+@pytest.mark.starts
 @given(json_values | st.dictionaries(st.sampled_from(['ok', 'raised', 'missing']), json_values))
 def test_any_json_is_an_answer_or_a_refusal(value):
     try:

@@ -694,6 +694,7 @@ def test_in_a_bundle_only_the_students_package_is_installed(bundle):
     assert bundle.course('lab').stderr == ''
 
 
+@pytest.mark.starts
 @pytest.mark.parametrize('name', ['ros2', 'topic_doctor'])
 def test_the_tools_are_those_of_the_installed_package_wherever_it_lies(bundle, name):
     tools = bundle.root / 'my_robot_basics/my_robot_basics/ros2'

@@ -18,6 +18,7 @@ def _talker():
     stop()
 
 
+@pytest.mark.starts
 @pytest.mark.usefixtures('_talker')
 def test_a_fault_and_then_all_is_well(capfd):
     assert main([TOPIC]) == 1
@@ -58,6 +59,7 @@ def test_a_domain_that_cannot_be(monkeypatch, capsys):
     assert "ROS_DOMAIN_ID is 'mine'" in capsys.readouterr().err
 
 
+@pytest.mark.starts
 def test_help_needs_no_ros():
     program = (
         'import sys; from my_robot_basics.doctor.main import main\n'
@@ -97,6 +99,7 @@ def cell():
 WANTED = ('stream', 'display_data', 'error')
 
 
+@pytest.mark.starts
 def test_a_notebook_shows_the_answer_and_a_picture_as_often_as_it_is_asked(cell):
     ask = f"from my_robot_basics import live\nlive.why('{TOPIC}')"
     for _ in range(2):

@@ -45,6 +45,7 @@ def both_ends():
         yield sender, receiver
 
 
+@pytest.mark.starts
 @settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(offered=PROFILES, asked=PROFILES)
 def test_the_diagnosis_agrees_with_what_arrives(both_ends, offered, asked):
@@ -296,6 +297,7 @@ def test_the_report_names_rate_and_faults_in_order():
     assert max(len(line) for line in lines[2:] if 'self.' not in line) <= 90
 
 
+@pytest.mark.starts
 @pytest.mark.parametrize(
     ('evidence', 'text'),
     [

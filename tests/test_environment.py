@@ -92,6 +92,7 @@ def test_the_ament_index_knows_our_package_here(monkeypatch):
     assert all(os.access(path, os.X_OK) for path in executables.values())
 
 
+@pytest.mark.starts
 @pytest.mark.parametrize('version', PYTHONS)
 def test_a_resolver_adds_nothing_to_the_pins_and_finds_a_wheel_of_each(version):
     resolved = run(
@@ -128,6 +129,7 @@ def venv(tmp_path):
     shutil.rmtree(tmp_path / 'venv', ignore_errors=True)  # it is 0.9 GB
 
 
+@pytest.mark.starts
 def test_this_python_is_a_supported_one(found):
     assert THIS in found.keys() & set(PYTHONS)
 

@@ -65,6 +65,7 @@ print(spinning.is_alive(), len(asked) > 1, flush=True)
 """
 
 
+@pytest.mark.starts
 @pytest.mark.parametrize('waits_in_a_callback', [False, True])
 def test_spin_does_not_return_and_a_call_in_a_callback_never_does(waits_in_a_callback):
     """Lesson 7: `rclpy.spin` goes on for ever; the timer ticks on, unless a callback waits."""
@@ -76,6 +77,7 @@ def test_spin_does_not_return_and_a_call_in_a_callback_never_does(waits_in_a_cal
     assert (is_spinning, ticks_on) == ('True', str(not waits_in_a_callback)), done.stderr
 
 
+@pytest.mark.starts
 def test_the_callbacks_of_a_node_exclude_each_other_unless_told_otherwise():
     """Lesson 4; all of them are then in this one group."""
     with Watcher() as watcher:
@@ -98,6 +100,7 @@ def test_both_ends_get_an_event_when_more_is_requested_than_offered():
         assert watcher.spin_until(lambda: len(told) == 2, timeout_sec=10.0), told
 
 
+@pytest.mark.starts
 def test_two_types_on_one_topic_never_match_and_no_event_tells():
     """Lesson 1: in two programs (contexts) nobody warns; a third end shows that they have met."""
     told = []

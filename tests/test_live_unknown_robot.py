@@ -33,6 +33,7 @@ def told_by(source):
     return run.stdout.splitlines()[2:]
 
 
+@pytest.mark.starts
 def test_its_nodes_are_where_the_check_has_them():
     [said] = told_by(
         'print(json.dumps([graph().publishers(TOPIC), graph().subscriptions(TOPIC)]))'
@@ -51,6 +52,7 @@ def test_its_topics_carry_messages():
     ) == ["['joint1', 'joint2'] True"]
 
 
+@pytest.mark.starts
 def test_starting_it_again_keeps_its_nodes_and_after_a_stop_brings_them_back():
     names = 'print(len(graph().nodes()))\n'
     assert told_by(

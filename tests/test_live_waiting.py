@@ -66,6 +66,7 @@ def test_what_the_condition_raises_is_raised():
         wait_until(lambda: 1 / 0)
 
 
+@pytest.mark.starts
 def test_a_long_wait_says_so_and_leaves_nothing_to_compare():
     shown, outputs = run_cell(SLOW.format(seconds=2.5, timeout_sec=30))
     texts = [data['text/plain'] for data in shown if data]
@@ -84,6 +85,7 @@ def test_a_short_wait_shows_nothing(monkeypatch):
     wait_until(event.is_set, timeout_sec=60.0)
 
 
+@pytest.mark.starts
 def test_in_a_cell_an_error_takes_one_or_two_lines_and_the_progress_is_gone():
     shown, outputs = run_cell(SLOW.format(seconds=60, timeout_sec=1.2))
     assert shown[-1] == {}

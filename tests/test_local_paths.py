@@ -45,6 +45,7 @@ def test_pictures_stay_as_they_are_and_all_texts_are_shortened():
     assert cell.metadata[KEY] == {'reason': 'e', 'notes': ['f'], 'points': 1.0}
 
 
+@pytest.mark.starts
 def test_a_graded_notebook_does_not_say_where_the_course_lies(tmp_path):
     course = released_course(tmp_path)
     answer = 'import rclpy\nprint(rclpy.__file__)\nfrom my_robot_basics.live import nothing_such'

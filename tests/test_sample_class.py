@@ -153,6 +153,7 @@ def test_an_ordinary_run_grades_samples_that_fail_each_check_and_right_ones_of_e
         assert len({score for each, score in points if each == cell}) > 1, cell
 
 
+@pytest.mark.starts
 @pytest.mark.parametrize('name', sooner(EXPECTED, ORDINARY))
 def test_a_sample_earns_what_it_should_for_the_reason_that_it_should(graded, name):
     cells = EXPECTED[name]
@@ -173,11 +174,13 @@ def test_a_sample_earns_what_it_should_for_the_reason_that_it_should(graded, nam
     assert bool(row.reason) == ('-pass-' not in name)
 
 
+@pytest.mark.starts
 def test_the_row_of_a_broken_cell_names_the_cause_first(graded):
     for name, cause in BROKEN.items():
         assert graded(name)[1].reason.startswith(cause)
 
 
+@pytest.mark.starts
 @pytest.mark.parametrize(
     'name', sooner([name for name in PATHS if name not in (*NO_VERDICT, *CHANGED)], AT_ONCE)
 )

@@ -204,6 +204,7 @@ def built(first_build, monkeypatch):
     return folder / 'src/my_robot_basics'
 
 
+@pytest.mark.starts
 def test_the_build_says_what_it_says_on_a_robot(first_build):
     _, said = first_build
     seconds = r'\[[\d.]+s\]'
@@ -215,6 +216,7 @@ def test_the_build_says_what_it_says_on_a_robot(first_build):
     )
 
 
+@pytest.mark.starts
 def test_what_was_built_is_what_runs(built):
     installed = built.parents[1] / 'install/my_robot_basics'
     nodes = ['hello_node', 'kinematics_node', 'kinematics_publisher', 'kinematics_subscriber']
@@ -248,6 +250,7 @@ def main(args=None):
 """
 
 
+@pytest.mark.starts
 def test_a_new_node_and_its_line_are_found_after_the_next_build(package):
     shell(BUILD)
     run = SOURCE + ros2_run('my_node', until='new')
@@ -260,6 +263,7 @@ def test_a_new_node_and_its_line_are_found_after_the_next_build(package):
     assert '[my_node]: I am new' in shell(BUILD + run)
 
 
+@pytest.mark.starts
 def test_the_tools_are_never_those_of_the_copy(package):
     for name in ('__init__', 'two_link_kinematics'):
         (package / f'my_robot_basics/{name}.py').write_text('raise SystemExit("the copy")\n')
@@ -270,6 +274,7 @@ def test_the_tools_are_never_those_of_the_copy(package):
     assert said.startswith('the copy\nmy_robot_basics\nusage: topic_doctor')
 
 
+@pytest.mark.starts
 def test_a_terminal_that_sources_it_needs_nothing_else(built):
     bare = {'PATH': '/usr/bin:/bin', 'HOME': str(built), 'ROS_LOG_DIR': str(built / 'log')}
     if ' ' in sys.executable:
@@ -288,6 +293,7 @@ def test_a_terminal_that_sources_it_needs_nothing_else(built):
     assert (done.stdout, done.stderr) == (f'{install}\n{sys.prefix}\n', '')
 
 
+@pytest.mark.starts
 def test_in_a_cell_all_of_it_works_and_the_kernel_keeps_to_the_installed_package(folder):
     cells = [
         'from my_robot_basics.live import make_workspace\nmake_workspace()',

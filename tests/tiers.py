@@ -1,0 +1,128 @@
+"""The tiers of tests, and a guard: a test that starts something says so.
+
+`./course test --quick` takes no test that starts a kernel, a node, a browser or a sandbox. Such a
+test has the mark `starts`. It gets it here where another mark or a fixture says so, and otherwise
+has it by hand: a name in STARTING_FILES, a decorator, or `@starts` below `@pytest.fixture`. In
+that tier, any other test that starts one fails.
+"""
+
+import multiprocessing.util
+import os
+import re
+import sys
+from collections.abc import Callable
+
+import pytest
+from rclpy.context import Context
+
+HARMLESS = re.compile(
+    r'(?:\S*/)?(?:git|ruff|shellcheck|ldd|readelf|true|false|sleep|tar|unzip|alembic) .*'
+    r'|(?:\S*/)?(?:sh|bash|dash|busybox|unshare)\b.*|.*/(?:course|\.ci/run)\b.*|/nowhere/.*'
+    r'|bwrap --version |bwrap .* true '
+    r'|\S*/python\S* (?:-P )?-m (?:grader\.parsing|nbgrader generate_assignment)\b.*',
+    re.DOTALL,
+)
+"""Commands that any test may run: none of them starts a kernel, and each ends by itself."""
+STARTING = re.compile(r'\bcolcon build|(?:^|[\s/])ros2 |\brclpy\b|\bipykernel')
+"""Found in the line of a shell that starts something after all."""
+STARTING_FILES = frozenset(
+    """
+    checks_clock checks_settled checks_latched checks_logs checks_looks checks_predictions checks_relays
+    checks_stage checks_stamps checks_tick checks_topics checks_watcher cluster crowd
+    doctor_faults doctor_healthy executables execute grade interrupt isolation
+    isolation_everywhere kernels leftovers lessons_run live_camera live_classroom
+    live_domain live_kernel live_lessons live_neighbours live_qos_pairs live_refusals
+    live_runner live_sliders live_target logs main manual_grading nbgrader_commands
+    nbgrader_contract nodes ordinary_events package partial passes readme replay reuse
+    ros2_completion ros2_discovery ros2_graph ros2_interfaces ros2_notebook ros2_real
+    ros2_run ros2_shell ros2_streams same_scores survival synthetic_class validate
+    validate_server workers workspace_terminal
+    """.split()  # noqa: SIM905
+)
+"""Files, test_NAME.py, of which all tests, or nearly all, start something."""
+IMPLY = frozenset({'isolation', 'browser'})
+"""Marks of tests that start something."""
+
+
+def starts(fixture: Callable) -> Callable:
+    """Decorate the function of a fixture that starts something: so do all tests that use it."""
+    fixture.starts = True
+    return fixture
+
+
+def mark(items: list[pytest.Item]) -> None:
+    """Mark the tests that start something by a fixture, or by what another mark says."""
+    for item in items:
+        fixtures = getattr(item, '_fixtureinfo', None)
+        used = fixtures.name2fixturedefs.values() if fixtures else ()
+        by_fixture = any(getattr(each[-1].func, 'starts', False) for each in used)
+        by_file = item.path.stem.removeprefix('test_') in STARTING_FILES
+        if by_file or by_fixture or any(item.get_closest_marker(name) for name in IMPLY):
+            item.add_marker('starts')
+
+
+def is_starting(item: pytest.Item) -> bool:
+    """Whether a test says that it starts something."""
+    return item.get_closest_marker('starts') is not None
+
+
+class Guard:
+    """Refuses to start anything in the tier that starts nothing; counts ROS contexts in all."""
+
+    def __init__(self, *, refuses: bool) -> None:
+        """Guard this process; without `refuses`, only count."""
+        self.refuses = refuses
+        self.running: str | None = None
+        self.refused: list[str] = []
+        self.contexts = 0
+        """How many ROS contexts were begun so far."""
+        sys.addaudithook(self._see)
+        spawn = multiprocessing.util.spawnv_passfds  # it starts a process without an audit event
+
+        def spawn_guarded(path: str, arguments: list, descriptors: list) -> int:
+            self.refuse(f'a process of multiprocessing, {os.fsdecode(path)}')
+            return spawn(path, arguments, descriptors)
+
+        multiprocessing.util.spawnv_passfds = spawn_guarded
+        init = Context.init
+
+        def init_guarded(*arguments: object, **options: object) -> None:
+            self.refuse('a ROS context')
+            self.contexts += 1
+            init(*arguments, **options)
+
+        Context.init = init_guarded
+
+    def begin(self, item: pytest.Item) -> None:
+        """Guard a test from its setup on."""
+        self.running = item.nodeid
+        self.refused.clear()
+
+    def end(self) -> None:
+        """Fail a test where something was refused, whatever it made of that; guard no more."""
+        self.running = None
+        if self.refused:
+            what = self.refused[0]
+            self.refused.clear()
+            pytest.fail(
+                f'this test starts {what}, and has no mark that says so: '
+                'mark it, or the fixture, with `starts` (tests/tiers.py)',
+                pytrace=False,
+            )
+
+    def refuse(self, what: str) -> None:
+        """Refuse to start something for the test that runs."""
+        if self.running and self.refuses:
+            self.refused.append(what)
+            raise RuntimeError(f'{self.running} is not marked as a test that starts {what}')
+
+    def _see(self, event: str, arguments: tuple) -> None:
+        if not self.running:
+            return
+        if event == 'subprocess.Popen':
+            command = arguments[1] if isinstance(arguments[1], list | tuple) else [arguments[1]]
+            line = ' '.join(map(os.fsdecode, command)) + ' '
+            if not HARMLESS.fullmatch(line) or STARTING.search(line):
+                self.refuse(f'the process {line:.200}')
+        elif event in ('os.posix_spawn', 'os.system', 'os.forkpty', 'os.fork'):
+            self.refuse(f'a process, by {event}')
