@@ -11,8 +11,9 @@ from launcher.messages import say
 from launcher.unstable import MOST, add_unstable, read_failures, read_passes, unstable
 
 TIERS = ('--quick', '--slow')
-ALL_THE_SAME = (*TIERS, '--no-isolation')
-"""Options that leave it a check of everything."""
+SHARD = '--shard='
+ALL_THE_SAME = (*TIERS, '--no-isolation', SHARD)
+"""How the options begin that leave it a check of everything."""
 LESSONS = 'solutions/*/*.ipynb'
 RECORD = 'unstable_tests.txt'
 """In the course's root; one line for each test that failed beside others and passed alone."""
@@ -51,9 +52,9 @@ class Checks:
             ),
         )
 
-    def lessons(self) -> int:
+    def lessons(self, shard: list[str]) -> int:
         """Run the lessons against their stored outputs, and once more alone those that differ."""
-        options = ('-p', 'tests.conftest', '--nbval', '--nbval-cell-timeout', '60')
+        options = (*shard, '-p', 'tests.conftest', '--nbval', '--nbval-cell-timeout', '60')
 
         def again(report: str) -> int:
             # whole ones: a cell needs those before it
@@ -98,8 +99,9 @@ class Checks:
 
 def run(environment: Environment, variables: dict[str, str], arguments: list[str]) -> int:
     """Run everything even after a failure; return the last failure's exit status."""
-    options = [argument for argument in arguments if argument in ALL_THE_SAME]
-    named = [argument for argument in arguments if argument not in ALL_THE_SAME]
+    options = [argument for argument in arguments if argument.startswith(ALL_THE_SAME)]
+    named = [argument for argument in arguments if not argument.startswith(ALL_THE_SAME)]
+    shard = [option for option in options if option.startswith(SHARD)]
     with tempfile.TemporaryDirectory(prefix='reports-') as reports:
         checks = Checks(environment, variables, Path(reports))
         ruff = str(environment.venv / 'bin/ruff')
@@ -107,7 +109,7 @@ def run(environment: Environment, variables: dict[str, str], arguments: list[str
         statuses.append(checks.tests([*options, *named]))
         # unless single tests were asked for, or what starts no kernel
         if not named and '--quick' not in options and any(environment.root.glob(LESSONS)):
-            statuses.append(checks.lessons())
+            statuses.append(checks.lessons(shard))
     return next((status for status in reversed(statuses) if status), 0)
 
 

@@ -10,11 +10,11 @@ from collections.abc import Iterator
 
 import _pytest.runner
 import pytest
-import tiers
 from hypothesis import HealthCheck, settings
 from my_robot_basics.live import classroom
 
 from grader.kernels.isolation import TRUST, missing
+from tests import tiers  # also where nbval runs with this as a plugin
 
 # a busy machine fails no test
 settings.register_profile('busy', deadline=None, suppress_health_check=[HealthCheck.too_slow])
@@ -27,10 +27,10 @@ UNTESTED = pytest.StashKey[list]()
 LONG = (
     *('sample_class', 'lessons_run', 'checks_looks', 'browser', 'doctor_faults', 'attacks'),
     *('checks_topics', 'interrupt', 'checks_logs', 'workers', 'nbgrader_commands', 'survival'),
-    *('checks_clock', 'hidden', 'kernels', 'cluster', 'checks_stamps', 'accessibility'),
+    *('checks_clock', 'hidden', 'kernels', 'dask_backend', 'checks_stamps', 'accessibility'),
     *('full_disk', 'ros2_streams', 'doctor_healthy', 'formgrader', 'checks_relays', 'workspace'),
     *('same_scores', 'browser_hostile', 'ros2_graph', 'release', 'live_kernel', 'environment'),
-    *('servers', 'sandbox'),
+    *('fork_servers', 'sandbox'),
 )
 """Files that take longest come first: begun at the end, one would be waited for alone. Those that
 keep processors busy stand beside those that wait: all at once, each would take longer."""
@@ -44,6 +44,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     tier.addoption(
         '--quick', action='store_true', help='no kernel, node, browser or sandbox: about a minute'
     )
+    tier.addoption('--shard', metavar='K/N', help='of all files every Nth, from the Kth on')
     tier.addoption('--slow', action='store_true', help='everything, also what takes long')
     parser.addoption(
         '--no-isolation',
@@ -57,6 +58,8 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list) -> None:
     order = {f'test_{name}': place for place, name in enumerate(LONG)}
     items.sort(key=lambda item: order.get(item.path.stem, len(LONG)))
     tiers.mark(items)
+    if shard := config.getoption('--shard'):
+        config.hook.pytest_deselected(items=tiers.keep_shard(items, shard))
 
     if config.getoption('--no-isolation') and missing():
         config.stash[UNTESTED] = [item for item in items if item.get_closest_marker('isolation')]

@@ -1,4 +1,15 @@
+import multiprocessing
 import os
+import subprocess
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+import rclpy.context
+
+from tests import tiers
+from tests.conftest import GUARD
 
 
 def test_a_kernel_started_by_a_test_does_not_know_of_pytest():
@@ -7,3 +18,51 @@ def test_a_kernel_started_by_a_test_does_not_know_of_pytest():
 
 def test_a_test_session_has_a_domain_of_its_own():
     assert 1 <= int(os.environ['ROS_DOMAIN_ID']) <= 101
+
+
+@pytest.mark.parametrize('parts', [1, 2, 3])
+def test_each_file_is_in_one_shard(parts):
+    files = [Path(f'test_{letter}.py') for letter in 'aabbbcdde']
+    items = [SimpleNamespace(path=path) for path in files]
+    shards = []
+    for part in range(1, parts + 1):
+        mine = list(items)
+        others = tiers.keep_shard(mine, f'{part}/{parts}')
+        assert not {item.path for item in mine} & {item.path for item in others}
+        assert len(mine) + len(others) == len(items)
+        shards += mine
+    assert sorted(item.path for item in shards) == files
+
+
+@pytest.mark.parametrize('shard', ['0/2', '3/2', '1', '/', 'one/2'])
+def test_what_is_no_shard_is_refused(shard):
+    with pytest.raises(pytest.UsageError, match='expected K/N'):
+        tiers.keep_shard([], shard)
+
+
+def test_the_files_that_start_something_are_there():
+    folders = (Path(__file__).parent, Path(__file__).parents[1] / 'my_robot_basics/test')
+    there = {path.stem for folder in folders for path in folder.glob('test_*.py')}
+    assert {f'test_{name}' for name in tiers.STARTING_FILES} - there == set()
+
+
+@pytest.mark.parametrize(
+    'start',
+    [
+        lambda: subprocess.run([sys.executable, '-m', 'ipykernel_launcher', '--version']),
+        lambda: subprocess.run(['bash', '-c', 'ros2 --help']),
+        lambda: subprocess.run(['bwrap', '--help']),
+        lambda: subprocess.run(['chromium', '--version']),
+        lambda: multiprocessing.get_context('spawn').Process(target=print).start(),
+        os.fork,
+        rclpy.context.Context().init,
+    ],
+    ids=['kernel', 'ros2', 'sandbox', 'browser', 'process', 'fork', 'node'],
+)
+def test_a_quick_test_starts_nothing(start, monkeypatch, request):
+    guard = request.config.stash[GUARD]
+    monkeypatch.setattr(guard, 'refuses', True)
+    with pytest.raises(RuntimeError, match='is not marked as a test that starts'):
+        start()
+    with pytest.raises(pytest.fail.Exception, match='and has no mark that says so'):
+        guard.end()
