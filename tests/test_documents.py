@@ -1,0 +1,116 @@
+"""What the documents name exists: their paths, modules, links, and one version for all parts."""
+
+import json
+import re
+import tomllib
+from importlib.util import find_spec
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+PACKAGE = ROOT / 'my_robot_basics/my_robot_basics'
+DOCUMENTS = [*sorted(ROOT.glob('*.md')), *sorted(ROOT.glob('docs/*.md'))]
+FOLDERS = (ROOT, PACKAGE.parent, PACKAGE)
+"""A path may begin in the repository's root, or in the package that students import."""
+KNOWN = {path.name for folder in FOLDERS for path in folder.iterdir() if path.is_dir()} - {
+    '.git',
+    '.venv',
+    'gradebook',  # made by the grader
+    'ros_ws',
+}
+NEW = 'example'
+"""In the name of each file and folder that a document tells its reader to make."""
+PATH = re.compile(r'(?<![\w/.:~$-])([\w.]+)(/[\w./*-]*[\w/*])')
+MODULE = re.compile(r'(?<![\w/.@-])((?:grader|my_robot_basics|launcher)(?:\.[a-z_]\w*)+)')
+LINK = re.compile(r'\]\((?!https?:)([^)\s]+)\)|(?:src|href)="(?!https?:)([^"]+)"')
+
+
+def paths_in(text):
+    """Yield what looks like a path of ours: its first part is one of our folders."""
+    for first, rest in PATH.findall(re.sub(r'https?:\S+', '', text)):
+        if first in KNOWN and NEW not in rest:
+            yield first + rest
+
+
+def modules_in(text):
+    yield from (name for name in MODULE.findall(text) if NEW not in name)
+
+
+def is_there(path):
+    return any(any(folder.glob(path.rstrip('/'))) for folder in FOLDERS)
+
+
+def is_named(dotted):
+    """Whether that is a module, or a name that a module's text holds."""
+    if find_spec(dotted.partition('.')[0]) is None:
+        return False
+    try:
+        if find_spec(dotted):
+            return True
+    except ModuleNotFoundError:
+        pass
+    module, _, name = dotted.rpartition('.')
+    try:
+        spec = find_spec(module)
+    except ModuleNotFoundError:
+        return False
+    return bool(spec and spec.origin) and name in re.findall(r'\w+', Path(spec.origin).read_text())
+
+
+@pytest.fixture(params=DOCUMENTS, ids=lambda path: str(path.relative_to(ROOT)))
+def document(request):
+    return request.param
+
+
+def test_each_path_that_a_document_names_exists(document):
+    assert [path for path in paths_in(document.read_text()) if not is_there(path)] == []
+
+
+def test_each_module_that_a_document_names_exists(document):
+    assert [name for name in modules_in(document.read_text()) if not is_named(name)] == []
+
+
+def test_each_link_leads_to_a_file_or_a_heading(document):
+    broken = []
+    for link in (''.join(both) for both in LINK.findall(document.read_text())):
+        path, _, heading = link.partition('#')
+        target = document.parent / path if path else document
+        if not target.exists() or (heading and heading not in headings_of(target)):
+            broken.append(link)
+    assert broken == []
+
+
+def headings_of(path):
+    """Return the anchors that GitHub gives the headings of a page."""
+    titles = re.findall(r'^#+ (.+)$', path.read_text(), re.MULTILINE)
+    return {re.sub(r'[^\w\- ]', '', title.lower()).replace(' ', '-') for title in titles}
+
+
+def test_what_is_looked_for_is_found():
+    text = (ROOT / 'README.md').read_text()
+    assert 'tests/benchmarks/class_of_500.py' in {*paths_in(text)}
+    assert 'gradebook/scores.csv' not in {*paths_in(text)}
+    assert {*modules_in('see grader.cli.verbs and launcher.lab')} == {
+        'grader.cli.verbs',
+        'launcher.lab',
+    }
+    assert is_there('live/__init__.py')
+    assert not is_there('grader/never.py')
+    assert is_named('grader.course.Course')
+    assert not is_named('grader.course.Nothing')
+    assert not is_named('grader.never.Nothing')
+
+
+# --- one version ---------------------------------------------------------------------------------
+
+
+def test_all_parts_have_one_version():
+    project = tomllib.loads((ROOT / 'pyproject.toml').read_text())['project']['version']
+    manifest = ElementTree.parse(ROOT / 'my_robot_basics/package.xml').findtext('version')
+    (setup,) = re.findall(
+        r"^    version='(.+)',$", (ROOT / 'my_robot_basics/setup.py').read_text(), re.MULTILINE
+    )
+    extension = json.loads((PACKAGE / 'validate/labextension/package.json').read_text())['version']
+    assert {project, manifest, setup, extension} == {project}
