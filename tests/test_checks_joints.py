@@ -46,6 +46,11 @@ def test_joints_agree_in_any_order():
         (message(0.7, 0.1), {'joint1': 0.7, 'joint2': 0.1}, 'convert both angles with'),
         (message(0.5236, -1.5708, 0.0), '3 positions with 2 names', 'give each message two'),
         (message(0.5236, name=NAMES[:1]), {'joint1': 0.5236}, 'give each message two'),
+        (
+            message(0.5236, -1.5708, 0.5236, -1.5708, name=NAMES * 2),
+            '4 positions with 4 names',
+            'give each message two',
+        ),
         (message(name=[]), '0 positions with 0 names', 'give each message two'),
     ],
 )

@@ -4,6 +4,8 @@ import os
 import subprocess
 import sys
 import threading
+from contextlib import nullcontext
+from functools import partial
 
 import pytest
 from builtin_interfaces.msg import Time
@@ -246,6 +248,31 @@ def test_a_wrong_answer_beside_the_right_one_is_one_too_many(run, right):
             expected='only that',
             seen=lambda message: message.position[0],
             hint='leave it out',
+        )
+
+
+class Repeats(Echo):
+    """Answers a question again and again"""
+
+    def answer(self, question):
+        self.create_timer(0.1, lambda: super(Repeats, self).answer(question))
+
+
+@pytest.mark.parametrize('questions', [1, 2])
+def test_an_answer_that_is_wanted_once_comes_once(run, questions):
+    run(Echo, 10)
+    ask = partial(topic('/question').publish, *[Point(x=0.5)] * questions)
+    with nullcontext() if questions == 1 else pytest.raises(CheckFailed, match='saw 2 messages'):
+        topic('/answer').wait_for(lambda message: message.position[0] == 0.5, once=True, after=ask)
+
+
+def test_an_answer_that_is_repeated_by_a_timer_is_told(run):
+    run(Repeats, 10)
+    with pytest.raises(CheckFailed, match='expected one message for each that your node receives'):
+        topic('/answer').wait_for(
+            lambda message: message.position[0] == 0.5,
+            once=True,
+            after=lambda: topic('/question').publish(Point(x=0.5)),
         )
 
 

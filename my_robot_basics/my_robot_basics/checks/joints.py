@@ -19,8 +19,11 @@ def make(numbers: random.Random, *names: str) -> JointState:
 
 
 def pose(message: JointState) -> dict[str, float]:
-    """Return each joint's position, to four decimals; nothing where names and positions differ."""
-    if len(message.name) != len(message.position):
+    """Return each joint's position, to four decimals.
+
+    Nothing where names and positions differ in number, or a name is there twice.
+    """
+    if len(message.name) != len(message.position) or len({*message.name}) != len(message.name):
         return {}
     pairs = zip(message.name, message.position, strict=True)
     return {name: round(position, 4) for name, position in pairs}

@@ -21,7 +21,7 @@ ABSENT_SEC = 3.0
 """How long to wait for an endpoint that the notebook's own process says it has not got."""
 ACQUAINTANCE_SEC = 0.5
 """How long a BEST_EFFORT subscription is given to meet the publisher, and to read what it sent."""
-AFTERTHOUGHT_SEC = 0.2
+AFTERTHOUGHT_SEC = 0.3
 """How long to listen for what must not come beside the right message."""
 LATE_SEC = 0.02
 """A machine that keeps a check waiting so long may make an honest node miss a period."""
@@ -113,6 +113,7 @@ class Topic:
         seen: Callable[[Any], object] | None = None,
         hint: str | Callable[[Any], str] = 'print what your node publishes and compare',
         never: Callable[[Any], object] | None = None,
+        once: bool = False,
     ) -> Any:
         """The first message for which the predicate holds (the first of all without one).
 
@@ -120,7 +121,8 @@ class Topic:
         Raises CheckFailed when there is no publisher or no such message in time. Where there were
         others, it speaks of what was `expected`, of the last one, as `seen` puts it in words, and
         gives the `hint` (on that one, if it is a function); so it does where one comes for which
-        `never` holds, beside the right one.
+        `never` holds, beside the right one. With `once`, a second one for which the predicate
+        holds fails, too.
         """
         with Watcher() as watcher:
             ears = self.listen(watcher)
@@ -131,7 +133,7 @@ class Topic:
                 return [m for m in ears.messages() if predicate is None or predicate(m)]
 
             is_there = watcher.spin_until(lambda: bool(found()), timeout_sec=timeout_sec)
-            if is_there and never is not None:
+            if is_there and (once or never is not None):
                 watcher.spin_for(AFTERTHOUGHT_SEC)
             heard = ears.messages()
             wrong = [m for m in heard if never is not None and never(m)]
@@ -144,6 +146,12 @@ class Topic:
                     expected=expected or f'a message on {self.name} that answers',
                     seen=shorten(seen(last)) if seen else others,
                     hint=hint(last) if callable(hint) else hint,
+                )
+            if once and (times := len(found())) > 1:
+                fail(
+                    expected='one message for each that your node receives',
+                    seen=f'{times} messages',
+                    hint='publish once in each call of the callback, and in no timer',
                 )
             return found()[0]
 
