@@ -111,7 +111,7 @@ def pytest_configure(config: pytest.Config) -> None:
     # colcon's builds warn where somebody has set it
     os.environ.pop('PYTHONDONTWRITEBYTECODE', None)
     sys.dont_write_bytecode = False  # else each xdist worker would compile every test, every time
-    # once in each xdist worker, too: two workers do not hear each other's nodes
+    # once in each xdist worker, too: two workers do not discover each other's nodes
     os.environ['MY_ROBOT_BASICS_WORKSPACE'] = tempfile.mkdtemp(prefix='ros ws ')
     if not hasattr(config, 'workerinput'):  # what is made once, also for xdist's workers
         os.environ['MY_ROBOT_BASICS_TESTS'] = tempfile.mkdtemp(prefix='shared-')

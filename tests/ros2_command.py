@@ -43,7 +43,7 @@ def started(*words: str | Path, **options: object) -> Iterator[subprocess.Popen]
     try:
         yield process
     finally:
-        process.terminate()  # in good order: whoever is killed stays on the graph for a while
+        process.terminate()  # in good order: a killed process stays on the graph for a while
         try:
             process.wait(5)
         except subprocess.TimeoutExpired:

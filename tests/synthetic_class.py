@@ -4,7 +4,7 @@
 
 writes one as a course management system gives it out. What distinguishes two notebooks with the
 same answer decides nothing: remarks and prints behind it, prose and cells of the student's own,
-and what cells had put out when they were saved.
+and what cells had printed when they were saved.
 """
 
 import random

@@ -22,7 +22,7 @@ class Machine:
         self.inside = []
 
     async def fill(self):
-        """Let in whoever gets in; how many are there then."""
+        """Let in all that get in; how many are there then."""
         while True:
             waits = asyncio.ensure_future(self.gate.__aenter__())
             await asyncio.sleep(0)

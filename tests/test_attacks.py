@@ -97,7 +97,7 @@ def knocked(server):
 
 
 def order(student):
-    """An honest student comes right after the attack whose name it bears."""
+    """An honest student comes right after the attack that it is named after."""
     return student.removeprefix('honest-'), student.startswith('honest-')
 
 

@@ -118,7 +118,7 @@ def browser():
 
 @pytest.fixture(scope='module')
 def course(tmp_path_factory):
-    """One hostile submission, graded, stored and told of."""
+    """One hostile submission, graded, stored and reported."""
     course = make_course(tmp_path_factory.mktemp('hostile'))
     lesson = toy_lesson()
     del lesson.metadata['widgets']  # the state of no widget at all

@@ -1,4 +1,4 @@
-"""Many lessons on one machine at once: each hears its own nodes and nobody else's."""
+"""Many lessons on one machine at once: each discovers its own nodes and no others."""
 
 import json
 import subprocess

@@ -1,4 +1,4 @@
-"""Planted faults: each is named first, and its mend, applied literally, lets messages arrive."""
+"""Planted faults: each is named first, and its fix, applied literally, lets messages arrive."""
 
 import contextlib
 import shlex
@@ -120,7 +120,7 @@ def test_a_wrong_line_is_named_first_and_mended(fault):
     found = first_finding(listen_sec=1.5)
     assert title in found.title
     if found.code.startswith('self.subscription'):
-        # whichever end was planted: the mend may stand at the other one
+        # whichever end was planted: the fix may be for the other one
         source, line = LISTENER, SUBSCRIPTION
         run(node_class(TALKER, *edits[TALKER]))
         listener = run(node_class(LISTENER, (SUBSCRIPTION, found.code)))
@@ -231,7 +231,7 @@ def test_a_queue_that_is_shorter_than_a_burst(monkeypatch):
 
 
 def stamps(listener):
-    """How many messages of each burst were heard."""
+    """How many messages of each burst were received."""
     count = {}
     for message in tuple(listener.heard):
         stamp = message.header.stamp.sec, message.header.stamp.nanosec

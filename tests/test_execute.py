@@ -353,5 +353,5 @@ def test_a_notebook_keeps_so_much_output_and_says_so_of_the_rest():
     room, cell = module._Room(1_000), [new_output('stream', text='x' * 400)]
     assert room.fit(cell) == room.fit(cell) == cell
     [output] = room.fit(cell)
-    assert output.text.startswith('[not kept: all cells together put out more than 4,000,000')
+    assert output.text.startswith('[not kept: all cells together printed more than 4,000,000')
     assert room.fit([]) == []

@@ -96,7 +96,7 @@ def test_no_hidden_test_is_shown_but_its_open_part_is(course):
     assert 'canary' in graded
     assert 'canary' not in html
     assert 'HIDDEN' not in html
-    assert 'open to you' in html
+    assert 'The visible part of this check' in html
 
 
 def test_a_traceback_that_quotes_a_test_is_not_shown(course):
@@ -177,7 +177,7 @@ def test_what_a_person_has_to_read_waits_and_is_no_zero(course):
     html = feedback(course, 'ada', answered(course, RIGHT, explained='It **is** so.'))
     assert '<strong>is</strong>' in html
     assert '– of 2' in html
-    assert 'A person will read this.' in html
+    assert 'Your instructor will read this.' in html
 
 
 def test_writing_again_changes_no_page(course):

@@ -25,7 +25,7 @@ ANSWERS = {
 
 @pytest.fixture(scope='module')
 def left(tmp_path_factory):
-    """A course that was graded, told of and exported; what was printed and logged meanwhile."""
+    """A course that was graded, reported and exported; what was printed and logged meanwhile."""
     course = make_course(tmp_path_factory.mktemp('hidden'))
     lesson = toy_lesson()
     cells = {cell.id: cell for cell in lesson.cells}

@@ -110,7 +110,7 @@ def terminate(process):
 
 
 def kill_the_room(process):
-    """End the first process of its PID namespace, as whoever ends bubblewrap does."""
+    """End the first process of its PID namespace, as ending bubblewrap does."""
     space = os.readlink(f'/proc/{process.pid}/ns/pid')
     for other in psutil.process_iter():
         with contextlib.suppress(OSError):

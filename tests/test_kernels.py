@@ -257,7 +257,7 @@ def test_an_endless_flood_ends_long_before_the_time_limit(own, run):
     code = "from IPython.display import HTML\nwhile True: display(HTML('<b>' * 10_000))"
     result = run(own, code, timeout_sec=60.0)
     assert result.timed_out
-    # up to its time limit it would put out far more
+    # up to its time limit it would print far more
     [dropped] = re.findall(r'\[([\d,]+) more characters of output were not kept', text_of(result))
     assert FLOOD_CHARACTERS < int(dropped.replace(',', '')) < 10 * FLOOD_CHARACTERS
 
@@ -324,7 +324,7 @@ def test_a_message_that_is_too_large_ends_the_kernel_and_it_is_said(own, run, co
     verdict = judge(cell, None, [('double', result)])
     assert verdict.outcome == 'failed'
     assert verdict.reason.endswith(f'before the check: your cell `double` {CUT_OFF}')
-    assert 'put out over 64 MB at once' in CUT_OFF
+    assert 'sent over 64 MB at once' in CUT_OFF
     assert asyncio.run(own.ending()) is None  # we have ended it: that is nobody's doubt
 
 

@@ -118,7 +118,7 @@ def test_a_written_answer_waits_and_everything_says_so(course):
     assert (score_of(row), why(row)) == ('3/5 …', 'the rest is graded by hand')
     assert exported(course, 'ada') == ('', 'to be graded by hand')
     assert '… waiting' in page(course, 'ada')
-    assert 'A person will read this.' in page(course, 'ada')
+    assert 'Your instructor will read this.' in page(course, 'ada')
 
 
 def test_nobody_has_to_read_what_nobody_wrote(course):

@@ -146,7 +146,7 @@ def test_a_failure_tells_what_happened_in_the_students_own_cells(cell):
     assert first.isprintable()
     assert len(first) < 400
     assert second == 'your cell `five_hz-run` did not end and was interrupted'
-    assert third == 'your cell `prints` put out over 10,000,000 characters and was interrupted'
+    assert third == 'your cell `prints` printed over 10,000,000 characters and was interrupted'
     assert judge(cell, ended(), own).notes == ()
 
 

@@ -9,7 +9,7 @@ from nbformat import NotebookNode
 from grader.course import Course
 
 BROKEN = '### BROKEN: '
-"""Begins a line of code that is released broken, for students to mend (see release.py)."""
+"""Begins a line of code that is released broken, for students to fix (see release.py)."""
 MARKS = (
     *('BEGIN SOLUTION', 'END SOLUTION', 'BEGIN HIDDEN TESTS', 'END HIDDEN TESTS'),
     *('BEGIN MARK SCHEME', 'END MARK SCHEME'),

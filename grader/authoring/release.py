@@ -1,6 +1,6 @@
 """Make notebooks/ from solutions/: no answers, no hidden tests, but pictures of what is shown.
 
-An answer is released as a stub; or as broken code, where students are to mend something. The lines
+An answer is released as a stub; or as broken code, where students are to fix something. The lines
 of that stand as comments right behind the answer, and take the stub's place:
 
     ### BEGIN SOLUTION

@@ -29,13 +29,13 @@ def make_parser() -> argparse.ArgumentParser:
     )
     verb.set_defaults(run=verbs.run_bundle)
 
-    verb = subparsers.add_parser('collect', help='take in a folder or an archive of submissions')
+    verb = subparsers.add_parser('collect', help='collect a folder or an archive of submissions')
     text = 'what came in: notebooks named STUDENT_ASSIGNMENT.ipynb, and other names (README.md)'
     verb.add_argument('source', type=Path, metavar='FOLDER|ZIP|TAR', help=text)
     verb.add_argument(
         '--file-times',
         action='store_true',
-        help="take a file's own time for the time it was handed in, where nothing else tells",
+        help="use a file's modification time as the time of submission if nothing else gives it",
     )
     verb.set_defaults(run=verbs.run_collect)
 
@@ -51,7 +51,7 @@ def make_parser() -> argparse.ArgumentParser:
     verb.add_argument('--student', metavar='ID', help='extend it for this student alone')
     verb.set_defaults(run=verbs.run_due)
 
-    verb = subparsers.add_parser('grade', help='grade what lies in gradebook/submitted/')
+    verb = subparsers.add_parser('grade', help='grade what is in gradebook/submitted/')
     verb.add_argument('assignment', nargs='?', metavar='ASSIGNMENT', help='only this one')
     verb.add_argument('--student', metavar='ID', help='only this student')
     verb.add_argument(
@@ -60,7 +60,7 @@ def make_parser() -> argparse.ArgumentParser:
         metavar=f'HEX|{RECORDED}',
         help='grade once more with these inputs of hidden tests, and only compare',
     )
-    verb.add_argument('--store', action='store_true', help='store what --seed HEX comes to')
+    verb.add_argument('--store', action='store_true', help='store the scores of --seed HEX')
     verb.add_argument(
         '--trust-students',
         action='store_true',
@@ -96,14 +96,18 @@ def make_parser() -> argparse.ArgumentParser:
     verb = subparsers.add_parser('solutions', help='write the answers, for after the deadline')
     verb.add_argument('assignment', nargs='?', metavar='ASSIGNMENT', help='only this one')
     verb.add_argument(
-        '--early', action='store_true', help='even if somebody may still hand in (./course due)'
+        '--early', action='store_true', help='even if somebody may still submit (./course due)'
     )
     verb.set_defaults(run=verbs.run_solutions)
 
     for name, run, text in (
         ('feedback', verbs.run_feedback, 'write a page of feedback for each submission'),
         ('demo', verbs.run_demo, 'grade a sample class, to see all of it in about a minute'),
-        ('doctor', verbs.run_doctor, 'say what keeps student code in here, and what is missing'),
+        (
+            'doctor',
+            verbs.run_doctor,
+            'show what isolates student code on this machine, and what is missing',
+        ),
     ):
         subparsers.add_parser(name, help=text).set_defaults(run=run)
     return parser

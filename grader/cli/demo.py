@@ -74,5 +74,5 @@ def _as_named(course: Course, row: Row, outcome: str) -> bool:
 
 
 def _most_telling(pages: list[Path], expected: dict[str, str]) -> Path:
-    """Return a page of somebody who has something to mend."""
+    """Return a page of a student who has something to fix."""
     return next((p for p in pages if expected[p.parts[-3]] != 'pass'), pages[0])

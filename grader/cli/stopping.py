@@ -21,7 +21,7 @@ class Stop:
         return 128 + self._number
 
     def told(self, number: int, frame: FrameType | None) -> None:
-        """Pass a signal on to whoever answers Ctrl-C now."""
+        """Pass a signal on to the handler of Ctrl-C that is set now."""
         self._number = signal.Signals(number)
         answer = signal.getsignal(signal.SIGINT)
         # in the background Ctrl-C may be ignored, which says nothing of other signals

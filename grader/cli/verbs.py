@@ -86,7 +86,7 @@ def run_grade(course: Course, asked: argparse.Namespace) -> int:
     crew = _crew(asked)
     submissions = find_submissions(course, assignment=asked.assignment, student_id=asked.student)
     if asked.store and asked.seed == RECORDED:
-        raise CourseError('--store wants --seed HEX: what is recorded is stored already')
+        raise CourseError('--store needs --seed HEX: what is recorded is stored already')
     if asked.seed and not asked.store:
         return _replay(course, submissions, asked, crew)
     run = Run(datetime.now().astimezone(), seed=asked.seed or '')
@@ -197,8 +197,8 @@ def run_demo(course: Course, asked: argparse.Namespace) -> int:
 
 
 def run_doctor(course: Course, asked: argparse.Namespace) -> int:
-    """Say what keeps student code in on this machine. 1 where something is missing."""
-    print('What keeps student code in while it is graded:')
+    """Print what isolates student code on this machine. Return 1 if something is missing."""
+    print('What isolates student code while it is graded:')
     counted = accounting()
     for protection in (*protections(), counted):
         lacks = 'without' if protection is counted else 'MISSING'

@@ -17,7 +17,7 @@ FILE = 'numbers.json'
 
 
 class Numbers:
-    """What is known of the students' numbers; whoever keeps one has the gradebook's turn."""
+    """What is known of the students' numbers; who changes one holds the gradebook's lock."""
 
     def __init__(self, course: Course) -> None:
         """Read them. Raises CourseError where the file is damaged."""

@@ -5,7 +5,7 @@ from my_robot_basics.validate.errors import RoomFailure as RoomFailure
 
 
 class GradebookError(CourseError):
-    """The gradebook can't be written to: nothing more is graded before that is mended."""
+    """The gradebook can't be written to: nothing more is graded before that is fixed."""
 
 
 class UnreadableSubmission(CourseError):

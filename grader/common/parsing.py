@@ -83,7 +83,7 @@ class _Server:
         if self._process is None:
             self._process = subprocess.Popen(
                 COMMAND, stdin=subprocess.PIPE, stdout=subprocess.PIPE, start_new_session=True
-            )  # Ctrl-C is answered by whoever asks
+            )  # the process that asks handles Ctrl-C
         late = threading.Timer(limits.wall_sec + END_GRACE_SEC, self._process.kill)
         late.daemon = True
         late.start()

@@ -27,7 +27,7 @@ class Execution:
     """With the outputs of the student's cells, and a verdict in each grade cell."""
     verdicts: tuple[Verdict, ...]
     notes: tuple[str, ...]
-    """What was mended in the notebook before it ran."""
+    """What was restored in the notebook before it ran."""
 
 
 @dataclass
@@ -43,7 +43,7 @@ class _Room:
             self.characters -= size
             return outputs
         most = f'{MAX_NOTEBOOK_OUTPUT_CHARACTERS:,}'
-        text = f'[not kept: all cells together put out more than {most} characters]\n'
+        text = f'[not kept: all cells together printed more than {most} characters]\n'
         return [nbformat.v4.new_output('stream', name='stdout', text=text)]
 
 

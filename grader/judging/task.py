@@ -60,7 +60,7 @@ async def graded(text: str) -> str:
     """Do a packed task; return what came of it as JSON, in ASCII. Nothing is raised."""
     try:
         return json.dumps(await _graded(json.loads(text)))
-    except Exception as error:  # told to whoever has sent it
+    except Exception as error:  # reported to the process that sent it
         said = f'{type(error).__name__}: {error}'[:MAX_REASON_CHARACTERS]
         trace = traceback.format_exc()[-MAX_REASON_CHARACTERS:]
         return json.dumps({'failed': said, 'traceback': trace})

@@ -13,7 +13,7 @@ _CRASHES = {'SIGSEGV', 'SIGBUS', 'SIGILL', 'SIGFPE', 'SIGABRT', 'SIGSYS', 'SIGTR
 _OWN = {'SIGALRM', 'SIGVTALRM', 'SIGPROF', 'SIGIO', 'SIGPIPE', 'SIGXCPU'}
 """What Linux sends a process that has set a timer, or uses a file or a processor so."""
 _TERMINALS = {'SIGHUP', 'SIGINT', 'SIGQUIT'}
-"""What Linux sends whoever was started in a terminal that is closed, or where such keys come."""
+"""What Linux sends to a process whose terminal is closed, or where such keys come."""
 
 
 class Doing(Enum):

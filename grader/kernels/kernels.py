@@ -52,7 +52,7 @@ class Kernel:
     ) -> None:
         """Prepare a kernel of the 'student' or the 'test' room in a ROS domain.
 
-        It lives in `place`, or else has the rights of whoever grades.
+        It lives in `place`, or else has the grading user's rights.
         """
         self.room = room
         self.place = place or open_place(room)
@@ -88,7 +88,7 @@ class Kernel:
         return self._manager.provisioner.why_not_warm
 
     async def start(self) -> 'Kernel':
-        """Start the kernel and wait until its outputs are heard; raises RoomFailure."""
+        """Start the kernel and wait until its outputs are received; raises RoomFailure."""
         try:
             await self._launch()
             async with asyncio.timeout(START_TIMEOUT_SEC):
@@ -149,7 +149,7 @@ class Kernel:
     async def ending(self) -> Ending | None:
         """Look whether the kernel has ended, and return how; None where it lives, or we ended it.
 
-        Where it has the rights of whoever grades, nobody knows who sent a signal.
+        If it has the grading user's rights, nobody knows who sent a signal.
         """
         if self._ending is None and not self._ended_by_us and not await self._is_alive():
             provisioner = self._manager.provisioner

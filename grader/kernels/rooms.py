@@ -39,7 +39,7 @@ class Rooms:
     ) -> None:
         """Prepare two rooms; the student's gets a copy of the submission's own modules.
 
-        Unless `isolated`, what runs in them has the rights of whoever grades. `doubts` is shared
+        Unless `isolated`, what runs in them has the grading user's rights. `doubts` is shared
         by all rooms of an exercise: what its code seems to have done. The first time counts as
         a failure of the room, the second one as its own doing.
         """

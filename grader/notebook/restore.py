@@ -23,7 +23,7 @@ class Master:
 
 @dataclass(frozen=True)
 class Healed:
-    """A notebook with every cell of its source, in the source's order, and what was mended."""
+    """A notebook with every cell of its source, in the source's order, and what was restored."""
 
     notebook: NotebookNode
     notes: tuple[str, ...]

@@ -38,7 +38,7 @@ _BASE64 = re.compile(r'[A-Za-z0-9+/=\s]+')
 
 @dataclass(frozen=True)
 class Piece:
-    """Something that a cell put out."""
+    """Something that a cell printed or drew."""
 
     kind: str
     """'text', 'error', 'image/png' or 'image/jpeg'."""
@@ -71,7 +71,7 @@ class Check:
 
 @dataclass
 class Part:
-    """An answer, what it put out, and its checks."""
+    """An answer, its outputs, and its checks."""
 
     name: str
     answer: str = ''
@@ -157,14 +157,14 @@ def _title(cell: NotebookNode) -> str:
 
 def _missing_reason(status: str, *, is_answer: bool) -> str:
     if status == 'waiting':
-        return 'A person will read this.'
+        return 'Your instructor will read this.'
     if status == 'missed' and is_answer:
         return 'There was no answer.'
-    return 'No reason is known.' if status == 'missed' else ''
+    return 'The reason is unknown.' if status == 'missed' else ''
 
 
 def _pieces(cell: NotebookNode, *, about: str = '', reason: str | None = None) -> Iterator[Piece]:
-    """Yield what a cell put out, in forms that can do nothing: text, PNG and JPEG.
+    """Yield a cell's outputs, in forms that can do nothing: text, PNG and JPEG.
 
     Of a check, which has a `reason`, it is what stands beside that and the points.
     """

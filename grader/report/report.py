@@ -1,4 +1,4 @@
-"""The report of one run, for whoever teaches: a page and the same as JSON."""
+"""The report of one run, for instructors: a page and the same as JSON."""
 
 import json
 from collections.abc import Sequence

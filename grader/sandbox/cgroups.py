@@ -42,7 +42,7 @@ class MemoryEvents:
     limit_reached: bool = False
     """Whether its processes asked for more than its own limit allows."""
     killed: int = 0
-    """How many of its processes Linux has killed for want of memory, whoever wanted it."""
+    """How many of its processes Linux has killed because memory ran out."""
 
 
 @dataclass

@@ -69,7 +69,7 @@ class Place:
 
     @property
     def closed(self) -> bool:
-        """Whether what runs there has neither the rights nor the network of whoever grades."""
+        """Whether what runs there has neither the rights nor the network of the grading user."""
         return bool(self.prefix)
 
     @property
@@ -107,7 +107,7 @@ def make_folder(name: str) -> Path:
 
 
 def open_place(room: str) -> Place:
-    """Return a place with the rights and the network of whoever grades."""
+    """Return a place with the rights and the network of the grading user."""
     folder = make_folder(room)
     (folder / 'kernel').mkdir()
     (folder / 'home' / 'work').mkdir(parents=True)

@@ -8,7 +8,7 @@ SUBMISSION_TIMEOUT_SEC = 1_800.0
 MAX_REASON_CHARACTERS = 20_000
 """Of one reason; a check's own are a line or two, and an error's text is cut at half of that."""
 MAX_NOTES, MAX_NOTE_CHARACTERS = 1_000, 2_000
-"""What is told of one check, or of how a notebook was healed."""
+"""What is reported about one check, or about how a notebook was restored."""
 MAX_TASK_BYTES = 100_000_000
 """A notebook that is to be graded as JSON, with its pasted pictures and files."""
 MAX_RESULT_BYTES = 100_000_000

@@ -5,7 +5,7 @@ Python take another way. Some that are allowed are looked at more closely, by th
 
 libseccomp would write such a program, too. But pyseccomp, its binding on PyPI, had its last
 release in 2021, and Debian's is for Debian's own Python alone; both want the C library, which
-whoever is not root can't install. The program is short, for one kind of machine, and
+a process that is not root can't install. The program is short, for one kind of machine, and
 `tests/test_seccomp.py` runs it instruction by instruction.
 """
 

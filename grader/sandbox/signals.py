@@ -17,9 +17,9 @@ from pathlib import Path
 from grader.sandbox.seccomp_notify import EXIT_GROUP, PRCTL, SENDING
 
 EVERYONE = 0
-"""Stands for whoever may be meant."""
+"""Stands for any process that may be meant."""
 _MOST = 4_096
-"""Whoever sends more kinds of signals may have sent any."""
+"""A process that sends more kinds of signals may have sent any."""
 
 _RECEIVE, _SEND = 0xC0502100, 0xC0182101
 """SECCOMP_IOCTL_NOTIF_RECV and _SEND."""
@@ -71,7 +71,7 @@ class Signals:
         poll = select.poll()
         poll.register(self._listener, select.POLLIN)
         if not any(event & select.POLLIN for _, event in poll.poll(0)):
-            self._loop.remove_reader(self._listener)  # all whom it was told of have ended
+            self._loop.remove_reader(self._listener)  # all processes that it watched have ended
             return
         said = bytearray(_NOTIFICATION.size)
         try:
@@ -79,7 +79,7 @@ class Signals:
             number, sender, _, call, _, _, *arguments = _NOTIFICATION.unpack(said)
             self._note(sender, call, arguments)
             fcntl.ioctl(self._listener, _SEND, _ANSWER.pack(number, 0, 0, _CONTINUE))
-        except FileNotFoundError:  # whoever called has ended meanwhile
+        except FileNotFoundError:  # the process that called has ended meanwhile
             pass
         except OSError:  # all of them have
             self._loop.remove_reader(self._listener)
@@ -97,7 +97,7 @@ class Signals:
             return
         place, signal_place = SENDING[call]
         target = EVERYONE if place is None else _signed(arguments[place])
-        if target == 0:  # to the group of whoever sends it
+        if target == 0:  # to the sender's process group
             target = -_ids(sender)[1]
         self._sent.add((EVERYONE if target == -1 else target, _signed(arguments[signal_place])))
 

@@ -38,7 +38,7 @@ def make_ready(course: Course) -> None:
 
 
 def make_database(course: Course) -> None:
-    """Make the database where there is none: aside, for nbgrader would not mend half of one."""
+    """Make the database where there is none: aside, for nbgrader would not repair half of one."""
     make_ready(course)
     if course.database.exists() and course.database.stat().st_size:
         return

@@ -101,7 +101,7 @@ def store(course: Course, submission: Submission, graded: NotebookNode) -> Store
             saved = _finish(course, submission, graded)
             now = _find(course, submission)
     except (GradebookError, OSError):
-        raise  # that can be mended, and then `recover` goes on
+        raise  # that can be fixed, and then `recover` goes on
     except Exception:
         begun.unlink(missing_ok=True)
         raise
@@ -136,7 +136,7 @@ def recover(course: Course) -> None:
         except Exception:  # the lesson has changed since, for instance: it is graded again
             logging.exception('%s of %s is not stored', assignment, printable(student))
             begun.unlink()
-    del turn  # whoever had it before keeps it
+    del turn  # an outer holder keeps it
 
 
 def _finish(course: Course, submission: Submission, graded: NotebookNode) -> NotebookNode:

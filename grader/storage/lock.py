@@ -30,7 +30,7 @@ class Turn:
             os.ftruncate(handle, 0)
             os.pwrite(handle, str(os.getpid()).encode(), 0)
         except BaseException:
-            self.end()  # whoever keeps the error would keep the turn with it
+            self.end()  # an error that is kept would keep the lock with it
             raise
 
     @classmethod

@@ -23,7 +23,7 @@ _UNDER = 'graded_under'
 
 
 def conditions(course: Course, assignment: str, *, isolated: bool) -> str:
-    """Return a hash of all that the results of an assignment depend on, whoever has handed in."""
+    """Return a hash of all that the results of an assignment depend on, for every student."""
     lesson = [_said(course.source(assignment)), _said(course.release(assignment))]
     return _digest(json.dumps([lesson, isolated, machinery()], sort_keys=True).encode())
 

@@ -1,4 +1,4 @@
-"""Whoever grades: the worker processes of this machine, or those of a cluster."""
+"""What grades: the worker processes of this machine, or those of a cluster."""
 
 from concurrent.futures import Future
 from typing import Protocol, Self

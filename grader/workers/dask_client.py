@@ -28,14 +28,15 @@ def check_address(address: str) -> None:
     parts = urlsplit(address)
     if parts.scheme not in ('tcp', 'tls') or not parts.hostname:
         raise ClusterError(
-            f'{address} is no address of a scheduler: expected tls://HOST:8786, or on this '
+            f'{address} is not the address of a scheduler: expected tls://HOST:8786, or on this '
             'machine tcp://127.0.0.1:8786'
         )
     if parts.scheme == 'tcp' and not _is_loopback(parts.hostname):
         raise ClusterError(
-            f'{address} is another machine, and whoever can reach it could read the hidden tests '
-            'and run programs on the workers: use tls:// there. Start `dask scheduler` and `dask '
-            'worker` with --tls-ca-file, --tls-cert and --tls-key, and name the same three here.'
+            f'{address} is another machine, and anyone who can reach it could read the hidden '
+            'tests and run programs on the workers: use tls:// there. Start `dask scheduler` and '
+            '`dask worker` with --tls-ca-file, --tls-cert and --tls-key, and name the same three '
+            'here.'
         )
 
 

@@ -162,7 +162,7 @@ class _Worker:
                 pass_fds=[theirs.fileno()],
                 stdin=subprocess.DEVNULL,
                 stdout=2,  # whatever prints there, the table is not disturbed
-                start_new_session=True,  # Ctrl-C is answered by whoever started the run
+                start_new_session=True,  # the process that started the run handles Ctrl-C
             )
         watch = asyncio.create_task(self._watch(process))
         try:

@@ -91,7 +91,7 @@ def _compare(papers: Sequence[Paper], *, workers: Sequence[int], runs: int) -> N
     }
     found: dict[str, list[dict]] = {name: [] for name in ways}
     for run in range(runs):
-        # whoever comes first in a turn has colder caches
+        # the first one in a turn has colder caches
         for name in reversed(ways) if run % 2 else ways:
             found[name].append(one := ways[name]())
             print(f'  run {run + 1}, {name}: {one["cold"]:.1f} a minute', flush=True)

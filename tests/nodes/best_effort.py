@@ -1,4 +1,4 @@
-"""Offers BEST_EFFORT: a RELIABLE subscription would hear nothing."""
+"""Offers BEST_EFFORT: a RELIABLE subscription would receive nothing."""
 
 from five_hz import FiveHz, spin
 from rclpy.qos import QoSProfile, ReliabilityPolicy

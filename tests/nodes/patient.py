@@ -1,4 +1,4 @@
-"""A healthy publisher and subscription as source: a fault replaces a line, a mend puts one in."""
+"""A healthy publisher and subscription as source: a fault replaces a line, a fix puts one in."""
 
 import contextlib
 import os

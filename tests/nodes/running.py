@@ -28,7 +28,7 @@ def running(name: str) -> Iterator[None]:
             pass
         yield
     finally:
-        # first in good order: whoever is killed stays on the graph as a ghost for a while
+        # first in good order: a process that is killed stays on the graph as a ghost for a while
         process.terminate()
         try:
             process.wait(PATIENCE_SEC)

@@ -23,7 +23,7 @@ _PR_SET_CHILD_SUBREAPER = 36
 def main(control: socket.socket, room: str) -> None:
     """Import, then fork a kernel for each errand that comes; returns in the kernels alone.
 
-    Why it can't go on, it says over `control`. It ends when whoever holds the other end does.
+    Why it can't go on, it says over `control`. It ends when the process at the other end does.
     """
     _leave_no_names()
     privilege_drop.close_all_but(control.fileno())  # the file of Python may be open, too

@@ -71,7 +71,7 @@ def _tell_the_end(errand: socket.socket, child: int) -> NoReturn:
     _drop_capabilities()
     close_all_but(errand.fileno())
     _, status, used = os.wait4(child, 0)
-    with contextlib.suppress(OSError):  # whoever wanted to know has ended
+    with contextlib.suppress(OSError):  # the process that wanted to know has ended
         errand.send(json.dumps([status, used.ru_utime + used.ru_stime]).encode())
     os._exit(0)
 

@@ -1,4 +1,4 @@
-"""What is heard on a topic, and when it was sent."""
+"""What is received on a topic, and when it was sent."""
 
 from typing import Any
 
@@ -38,7 +38,7 @@ class Ears:
         return self._publishers
 
     def messages(self) -> list[Any]:
-        """The messages heard so far."""
+        """The messages received so far."""
         return [message for message, _ in self.heard]
 
     def count_since(self, wall_ns: int) -> int:

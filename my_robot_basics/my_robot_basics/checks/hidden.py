@@ -1,8 +1,8 @@
 """The part of a check that students are not given: what fails there is told by its cause alone.
 
 The grader runs a grade cell as `marked` writes it. From its hidden part on, `fail` names neither
-inputs nor what is right, and nothing that the student's code made: whoever builds a table from
-feedback has nothing to write into it. The whole sentence goes to whoever teaches.
+inputs nor what is right, and nothing that the student's code made: someone who builds a table from
+feedback has nothing to write into it. The whole sentence goes to the instructor.
 """
 
 import ast
@@ -125,7 +125,7 @@ def raised(said: str) -> str:
 
 
 def in_full(text: str) -> str:
-    """A sentence for whoever may read all of it."""
+    """A sentence for readers who may read all of it."""
     return text.replace(_OPEN, '').replace(_CLOSE, '')
 
 
@@ -135,7 +135,7 @@ def without_inputs(text: str) -> str:
 
 
 def tell_grader(details: str) -> None:
-    """Hand over what whoever teaches may read of a failure."""
+    """Hand over what an instructor may read of a failure."""
     _display(_DETAILS, details)
 
 

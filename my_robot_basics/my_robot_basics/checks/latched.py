@@ -1,4 +1,4 @@
-"""Messages that are said before anybody listens, and kept for whoever asks for them."""
+"""Messages that are published before anybody subscribes, and kept for late joiners."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -22,8 +22,8 @@ def said_to_nobody(
 ) -> Iterator[tuple[Any, Publisher]]:
     """Yield a message that was published when its publisher's participant knew of nobody.
 
-    The participant stays, to be met. Where discovery was faster, all begins anew: whoever had met
-    the publisher before it spoke gets the message without having asked for it.
+    The participant stays, to be met. Where discovery was faster, all begins again: a node that had
+    met the publisher before it spoke gets the message without having asked for it.
     """
     for _ in range(MOST_STRANGERS):
         with Watcher() as stranger:

@@ -89,7 +89,7 @@ class Log:
 
     @property
     def records(self) -> tuple[Record, ...]:
-        """The records that were heard since the mark, oldest first."""
+        """The records that were received since the mark, oldest first."""
         return tuple(record for sent_ns, record in self._heard if sent_ns > self._since_ns)
 
     def numbers(self, level: str = 'INFO', *, since: int = 0) -> tuple[float, ...]:

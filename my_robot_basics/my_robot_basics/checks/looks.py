@@ -138,7 +138,7 @@ def _drive(ears: Ears, clock: SimulatedClock, *, seconds: float, step_sec: float
 
 
 def _recorded(ears: Ears, clock: SimulatedClock, *, start_ns: int, step_ns: int) -> Recording:
-    """What was heard on the robot's clock since a message."""
+    """What was received on the robot's clock since a message."""
     samples = [
         Sample(message, (clock.time_ns(sent_ns) - start_ns) / 1e9, sent_ns / 1e9)
         for message, sent_ns in ears.heard

@@ -1,6 +1,6 @@
 """See that a message can cross between the rooms, before any student code runs.
 
-The student room announces, the test room hears: a zero then is never the network's doing.
+The student room announces, the test room receives: a zero then is never the network's doing.
 """
 
 import threading
@@ -22,7 +22,7 @@ _announced: list = []
 
 
 def announce() -> None:
-    """Publish one latched message that stays to be heard until `silence`."""
+    """Publish one latched message that stays available until `silence`."""
     context, node = _node('_probe_student_room')
     node.create_publisher(Empty, TOPIC_NAME, QOS).publish(Empty())
     _announced.append((context, node))

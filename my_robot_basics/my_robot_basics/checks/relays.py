@@ -1,4 +1,4 @@
-"""A node that passes on what it hears: send on one topic, listen on the other."""
+"""A node that republishes what it receives: send on one topic, subscribe to the other."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -102,7 +102,7 @@ class StagePublisher:
         self.control = node.create_publisher(String, stage.control_topic, DEPTH)
 
     def publish(self) -> Any:
-        """Publish a new message to whoever is there now, and return it."""
+        """Publish a new message to the subscriptions that exist now, and return it."""
         self._stage.settle()
         message = self._stage.message(self._type)
         self._publisher.publish(message)
@@ -116,7 +116,7 @@ class StagePublisher:
 
 
 class StageSubscription:
-    """A subscription with default QoS, which keeps what it hears."""
+    """A subscription with default QoS, which keeps what it receives."""
 
     def __init__(self, stage: Stage, node: Node, topic_name: str, type_: type) -> None:
         self._stage, self._node = stage, node

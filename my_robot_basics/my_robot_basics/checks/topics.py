@@ -67,7 +67,7 @@ class Topic:
         return self._to_look_again(recording, why, left_sec=left_sec, late_looks=LATE_LOOKS)
 
     def publish(self, *messages: Any, timeout_sec: float = 10.0) -> None:
-        """Publish messages, once a subscription is there to hear them; wait until they arrived.
+        """Publish messages, once a subscription is there to receive them; wait until they arrived.
 
         The publisher is RELIABLE and TRANSIENT_LOCAL, which every subscription is content with.
         """

@@ -1,4 +1,4 @@
-"""Asks nodes a question that whoever is spun answers."""
+"""Asks nodes a question that every node that is spun answers."""
 
 from rcl_interfaces.srv import GetParameters
 from rclpy.client import Client

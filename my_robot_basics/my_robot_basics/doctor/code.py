@@ -1,4 +1,4 @@
-"""The lines of Python that the mends show."""
+"""The lines of Python that the fixes show."""
 
 from my_robot_basics.doctor.evidence import Kind
 

@@ -33,7 +33,7 @@ class Endpoint:
 
 @dataclass(frozen=True, kw_only=True)
 class Heard:
-    """One message that the doctor has heard."""
+    """One message that the doctor has received."""
 
     message: Any
     sent_sec: float
@@ -61,7 +61,7 @@ class Remap:
 
 @dataclass(frozen=True, kw_only=True)
 class Evidence:
-    """The graph around one topic, and what was heard on it."""
+    """The graph around one topic, and what was received on it."""
 
     topic_name: str
     endpoints: tuple[Endpoint, ...]
@@ -105,7 +105,7 @@ class Evidence:
 
     @cached_property
     def fresh(self) -> tuple[Heard, ...]:
-        """The messages that were sent while the doctor listened: not those kept for latecomers."""
+        """The messages that were sent while the doctor looked: not those kept for late joiners."""
         return tuple(each for each in self.heard if each.sent_sec >= self.began_sec)
 
     @property
@@ -139,7 +139,7 @@ class Finding:
     mend: str
     """A sentence that says what to do."""
     code: str = ''
-    """The line that mends it: Python in the node, or a command where it starts with `$ `."""
+    """The line that fixes it: Python in the node, or a command where it starts with `$ `."""
     broken: tuple[Endpoint, ...] = ()
     """Ends whose way to the topic, or from it, is broken."""
     missing: Kind | None = None

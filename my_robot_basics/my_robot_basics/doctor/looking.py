@@ -26,7 +26,7 @@ MISSING_SEC = 4.0
 DOMAINS = (*range(domain.LAST + 1), *range(215, 233))
 """Those whose ports are not Linux's for outgoing connections."""
 DEPTH = 5000
-"""Of the doctor's own queue: more messages than it can hear in one look."""
+"""Of the doctor's own queue: more messages than it can receive in one look."""
 ANNOUNCEMENTS = 'ros_discovery_info'
 """DDS topic on which each ROS participant publishes the names of its nodes."""
 _PLUMBING = ('/clock', '/parameter_events', '/rosout')

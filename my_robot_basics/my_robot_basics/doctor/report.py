@@ -24,7 +24,7 @@ def tell(diagnosis: Diagnosis) -> str:
 
 
 def summary(evidence: Evidence) -> str:
-    """Who is there, and what was heard: one clause."""
+    """Which nodes are there, and what was received: one clause."""
     senders = _names(evidence, 'publisher', 'publishes', 'publish')
     listeners = _names(evidence, 'subscription', 'subscribes', 'subscribe')
     return f'{senders}, {listeners}{_heard(evidence)}'

@@ -23,7 +23,7 @@ class Background:
     ) -> None:
         """Start spinning.
 
-        `on_error` hears of each exception that a callback raises; `on_end` of the reason when
+        `on_error` gets each exception that a callback raises; `on_end` gets the reason when
         the node ends by itself; `before` is called first. All three run in the node's thread.
         """
         self.node = node

@@ -87,7 +87,7 @@ class ArmView:
         self._display.show(self._bundle())
 
     def _bundle(self) -> dict:
-        with self._drawing:  # whoever stops the node draws the last picture
+        with self._drawing:  # the thread that stops the node draws the last picture
             title = '\n'.join(filter(None, [self._topic_name, self._trouble]))
             if self._pose is None:
                 self._picture.title(title)

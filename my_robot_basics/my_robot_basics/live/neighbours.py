@@ -11,10 +11,10 @@ from rclpy.node import Node
 from my_robot_basics.live import classroom
 
 MEETING_SEC = 0.3
-"""How long a new observer needs, most often, to hear of the nodes of other processes."""
+"""How long a new observer needs, most often, to discover the nodes of other processes."""
 
 PARTING_SEC = 0.5
-"""How long it may take to hear that a node is gone."""
+"""How long it may take to notice that a node is gone."""
 
 
 class Neighbours:

@@ -138,7 +138,7 @@ def _ensure_rclpy() -> None:
 
 
 def shut_down() -> None:
-    """Stop every node, then rclpy's default context, whoever initialised it."""
+    """Stop every node, then rclpy's default context, no matter what initialised it."""
     stop()
     rclpy.try_shutdown()
 

@@ -28,7 +28,7 @@ def drag_target(
 ) -> None:
     """Show two sliders that publish a Point, and the arm that reaches for it, until `stop()`.
 
-    The arm moves with each message on the topic, whoever sent it: it is drawn as elbow_up, and
+    The arm moves with each message on the topic, from any node: it is drawn as elbow_up, and
     dashed as elbow_down. Lengths and coordinates are in metres. Outside a notebook kernel there
     are no sliders: the point is published once.
     """

@@ -36,7 +36,7 @@ def _domain_to_join() -> str:
 
 
 def say_where() -> None:
-    """Tell whoever sits at the shell which lesson was joined, unless the shell named a domain."""
+    """Tell the user of the shell which lesson was joined, unless the shell named a domain."""
     if _joined and '_ARGCOMPLETE' not in os.environ:
         print(
             f'joined the lesson {_joined.name}, which started last: '

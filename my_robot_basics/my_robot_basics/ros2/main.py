@@ -12,7 +12,7 @@ from my_robot_basics.ros2.errors import Stopped
 from my_robot_basics.ros2.table import COMMANDS, ELSEWHERE, Command
 
 PIPE_CLOSED = 128 + 13
-"""Exit status, as a shell gives it to whoever dies of SIGPIPE."""
+"""Exit status, as a shell reports it for a process killed by SIGPIPE."""
 USAGE = 2
 
 

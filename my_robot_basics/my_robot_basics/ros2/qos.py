@@ -50,7 +50,7 @@ def profile(args: argparse.Namespace) -> QoSProfile:
 
 
 def to_hear(publishers: Sequence[Any], args: argparse.Namespace) -> QoSProfile:
-    """The profile of the arguments, or one that hears every publisher (a TopicEndpointInfo).
+    """The profile of the arguments, or one that matches every publisher (a TopicEndpointInfo).
 
     Says so where it has to ask for less than some of them offer.
     """

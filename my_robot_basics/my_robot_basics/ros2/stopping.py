@@ -1,7 +1,7 @@
 """SIGINT and SIGTERM: the end of a command at any moment, with the exit status of ros2cli.
 
 Before a participant exists there is nothing to clean up, and the process ends on the spot.
-Afterwards the signal is noted, whoever waits looks for it often, and the participant leaves the
+Afterwards the signal is noted, waiting code checks for it often, and the participant leaves the
 graph in good order: one that is killed stays there as a ghost for seconds.
 """
 

@@ -45,7 +45,7 @@ def run(command: list[str]) -> int:
 
 
 def _prepare() -> None:
-    """In the child, before the executable: do not outlive us, and hear signals again."""
+    """In the child, before the executable: do not outlive us, and receive signals again."""
     ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {*FORWARDED, signal.SIGCHLD})
 

@@ -53,7 +53,7 @@ class Kernel:
         self.alive = False
 
     async def start(self) -> None:
-        """Start the kernel and wait until its outputs are heard. Raises RoomFailure."""
+        """Start the kernel and wait until its outputs are received. Raises RoomFailure."""
         try:
             async with asyncio.timeout(START_TIMEOUT_SEC):
                 await self._manager.start_kernel(

@@ -1,4 +1,4 @@
-"""How long a student's cell may take and how much it may put out, and why so much."""
+"""How long a student's cell may take and how much it may print, and why so much."""
 
 STUDENT_CELL_TIMEOUT_SEC = 10.0
 """No answer of the course takes a second; a loop that waits for messages takes a few."""
@@ -20,8 +20,8 @@ processor does not count, …"""
 INTERRUPT_MOST_SEC = 10.0
 """… within this: a crowded machine may take seconds to end a node."""
 FLOOD_CHARACTERS = 10_000_000
-"""A cell that puts out more is stopped as one that never ends: reading on would cost the class a
-processor. An answer puts out some lines, a picture is a tenth of a million."""
+"""A cell that prints more is stopped as one that never ends: reading on would cost the class a
+processor. An answer prints some lines, a picture is a tenth of a million."""
 MAX_MESSAGE_BYTES = 64_000_000
 """A kernel that sends more at once is cut off: nothing that it says on that channel comes any
 more. Pictures are far smaller."""

@@ -1,4 +1,4 @@
-"""What one cell put out: gathered from a kernel's messages, bounded in size.
+"""The outputs of one cell: gathered from a kernel's messages, bounded in size.
 
 The messages may be a student's forgeries: what does not have the shape of an output is none.
 """
@@ -17,7 +17,7 @@ MAX_ALT_CHARACTERS = 500
 MAX_ERROR_CHARACTERS = 10_000
 
 CUT_OFF = (
-    f'put out over {MAX_MESSAGE_BYTES / 1e6:.0f} MB at once, or closed a connection of its '
+    f'sent over {MAX_MESSAGE_BYTES / 1e6:.0f} MB at once, or closed a connection of its '
     'kernel, which was ended: nothing that it says could be received any more'
 )
 """What is said of a cell whose kernel was cut off."""
@@ -57,7 +57,7 @@ class CellRun:
 
     @property
     def flooded(self) -> bool:
-        """Whether it put out more than anybody wants to read."""
+        """Whether it printed more than anybody wants to read."""
         return self.cut_off or self._dropped + self._foreign > FLOOD_CHARACTERS
 
     def pass_over(self, content: dict) -> None:

@@ -43,7 +43,7 @@ class Verdict:
     """Why it did not earn all of them; empty when it passed."""
     notes: tuple[str, ...] = ()
     details: str = ''
-    """What only whoever teaches is told: what was expected and seen in a hidden part."""
+    """What only instructors are told: what was expected and seen in a hidden part."""
     earned: float = 0.0
     """The points of a `partial` outcome."""
     failed_at_grading: bool = False
@@ -160,7 +160,7 @@ def _trouble(name: str, run: CellRun) -> str | None:
     if run.cut_off:
         return f'{TROUBLE}`{name}` {CUT_OFF}'
     if run.timed_out:
-        what = f'put out over {FLOOD_CHARACTERS:,} characters' if run.flooded else 'did not end'
+        what = f'printed over {FLOOD_CHARACTERS:,} characters' if run.flooded else 'did not end'
         how = 'could not be' if run.died else 'was'
         return f'{TROUBLE}`{name}` {what} and {how} interrupted'
     if run.died:

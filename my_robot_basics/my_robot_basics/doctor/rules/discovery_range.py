@@ -6,7 +6,7 @@ from my_robot_basics.doctor.evidence import Evidence, Finding
 
 
 def examine(evidence: Evidence) -> Iterator[Finding]:
-    """Suspect the discovery range where an end is missing and somebody can't be heard."""
+    """Suspect the discovery range where an end is missing and a process can't be discovered."""
     missing = next((k for k in ('publisher', 'subscription') if not evidence.ends(k)), None)
     if missing is None or evidence.unheard <= 0:
         return

@@ -10,7 +10,7 @@ from my_robot_basics.doctor.evidence import Evidence, Finding
 
 
 def examine(evidence: Evidence) -> Iterator[Finding]:
-    """Name each pair of ends that does not match, the policies, and the subscription's mend."""
+    """Name each pair of ends that does not match, the policies, and the subscription's fix."""
     for subscription in evidence.subscriptions:
         for publisher in evidence.publishers:
             if publisher.type_name != subscription.type_name:

@@ -1,4 +1,4 @@
-"""Messages arrive, and whoever goes by their stamps throws them away."""
+"""Messages arrive, and nodes that use their stamps drop them."""
 
 from collections.abc import Iterator
 

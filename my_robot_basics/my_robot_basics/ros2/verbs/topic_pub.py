@@ -106,7 +106,7 @@ def main(args: argparse.Namespace) -> None:
 
         publisher = graph.advertise(type(message), args.topic_name, qos.profile(args))
         if wanted == 0:
-            graph.settle()  # whoever is there already gets the first message, too
+            graph.settle()  # subscriptions that exist already get the first message, too
         _wait_for_subscriptions(graph, publisher, wanted, args.max_wait_time_secs)
         print('publisher: beginning loop')
         count = 0
@@ -125,7 +125,7 @@ def main(args: argparse.Namespace) -> None:
         if times != 1:
             graph.node.create_timer(1.0 / args.rate, publish)
             graph.spin_until(lambda: 0 < times <= count)
-        # whoever we have met may not have met us yet, and what was not taken would go with us
+        # a node that we have met may not have met us yet, and what it has not taken is lost
         graph.wait_until(lambda: publisher.wait_for_all_acked(Duration()), timeout_sec=TAKEN_SEC)
         graph.sleep(args.keep_alive)
 
