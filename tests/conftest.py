@@ -14,7 +14,7 @@ from hypothesis import HealthCheck, settings
 from my_robot_basics.live import classroom
 
 from grader.kernels.isolation import TRUST, missing
-from tests import tiers  # also where nbval runs with this as a plugin
+from tests import ordinary, tiers  # also where nbval runs with this as a plugin
 
 # a busy machine fails no test
 settings.register_profile('busy', deadline=None, suppress_health_check=[HealthCheck.too_slow])
@@ -58,6 +58,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list) -> None:
     order = {f'test_{name}': place for place, name in enumerate(LONG)}
     items.sort(key=lambda item: order.get(item.path.stem, len(LONG)))
     tiers.mark(items)
+    ordinary.mark_slow(items)
     if shard := config.getoption('--shard'):
         config.hook.pytest_deselected(items=tiers.keep_shard(items, shard))
 

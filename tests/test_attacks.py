@@ -102,11 +102,15 @@ def order(student):
 
 
 @pytest.fixture(scope='module')
-def graded(tmp_path_factory):
+def graded(request, tmp_path_factory):
+    """Grade those attacks that this run takes: an ordinary one leaves some to --slow."""
+    here = (item for item in request.session.items if item.path == request.path)
+    asked = {item.callspec.params.get('name') for item in here if hasattr(item, 'callspec')}
+    names = [name for name in NAMES if name in asked] or NAMES
     for name in LEFT:
         Path('/tmp', name).unlink(missing_ok=True)
     crew = Workers(in_flight=6, command=BRIEF)
-    return grade_class(tmp_path_factory.mktemp('attacked'), NAMES, crew)
+    return grade_class(tmp_path_factory.mktemp('attacked'), names, crew)
 
 
 def test_each_attack_says_what_it_tries():
@@ -140,7 +144,7 @@ def test_an_attack_brings_nothing_hidden_back(graded, name):
 
 def test_the_honest_get_what_is_theirs(graded):
     theirs = {n: row.stored.score for n, row in graded.rows.items() if n.startswith('honest-')}
-    assert len(theirs) > len(NAMES) // EVERY
+    assert len(theirs) > (len(graded.rows) - len(theirs)) // EVERY
     assert theirs == {n: FULL[ROBOT if n == 'honest-robot' else TOY] for n in theirs}
 
 

@@ -1,0 +1,89 @@
+"""What `./course test` takes of tests that are many and alike; `./course test --slow` takes all.
+
+A row names a test, and the parameters with which an ordinary run takes it: a regular expression
+for what stands in its brackets. One right and one wrong case of each check, and one attack on each
+limit of the sandbox, stay in it.
+"""
+
+import re
+
+import pytest
+
+ATTACKS = (
+    # what the sandbox forbids or bounds, one attack for each
+    r'becomes_root|descriptor_bomb|disk_bomb|fork_bomb|inode_bomb|keeps_the_processor_busy'
+    r'|makes_namespaces|makes_rare_system_calls|memory_bomb|memory_of_the_kernel|network_(in|out)'
+    r'|one_huge_message|output_bomb|picture_bomb|thread_bomb|uses_rare_sockets'
+    # what it hides
+    r'|overwrites_a_neighbour|reads_the_(seed|tests_from_disk)|writes_into_the_gradebook'
+    # what the grader believes
+    r'|exits|forges_a_verdict|html_and_escapes|ignores_interrupts|kills_everything'
+    r'|leaves_a_daemon|patches_what_checks_use|returns_a_pickle|shadows_modules'
+    r'|robot_(forges_what_nodes_say|speaks_in_every_domain)'
+    r'|brings_(links|modules_of_ours)|edits_its_checks|skips_its_checks'
+)
+ORDINARY = {
+    # each lesson runs in nbval and in Validate, too
+    'test_lessons_run::test_a_lesson_runs_again_in_the_same_kernel_whatever_was_run_between': (
+        r'03_publisher.*'
+    ),
+    'test_lessons_run::test_an_unanswered_lesson_fails_in_its_checks_alone_and_says_what_is_missing': (  # noqa: E501
+        r'03_publisher'
+    ),
+    'test_browser::test_run_all_goes_through_an_unanswered_lesson_and_stops_at_no_check': (
+        r'03_publisher'
+    ),
+    'test_attacks::test_an_attack_earns_what_its_honest_work_does': ATTACKS,
+    'test_attacks::test_an_attack_brings_nothing_hidden_back': ATTACKS,
+    'test_kernel_exits::test_a_kernel_that_is_ended_from_outside_is_no_zero': (
+        r'forked-.*-kill|started-in a cell-kill'
+    ),
+    'test_kernel_exits::test_ended_once_it_is_graded_in_fresh_rooms': (
+        r'in a cell|while a check listens'
+    ),
+    'test_kernel_exits::test_who_ends_their_own_kernel_gets_a_zero_that_says_so': (
+        r'forked-(os\._exit|SIGKILL|a crash|an alarm|a system call)|started-SIGKILL'
+    ),
+    'test_kernel_exits::test_who_ends_their_own_node_gets_a_zero': (
+        r'(forked|started)-node\.kill.*|forked-import os.*'
+    ),
+    'test_checks_looks::test_a_wrong_rate_fails': r'(one_hz|a_little_slow|a_little_fast)-.*',
+    'test_checks_looks::test_a_near_miss_fails_on_the_wall_clock': (
+        r'(bursts|a_little_fast_loop|by_turns|too_busy)-.*'
+    ),
+    'test_checks_looks::test_honest_nodes_that_are_no_plain_timers_pass': (
+        r'(sleep_loop|multithreaded|create_rate|busy_callback)-.*'
+    ),
+    # the same commands with other options
+    'test_ros2_graph::test_prints_what_ros2cli_prints': r'[a-z]+ [a-z]+( [^-\s]\S*)*',
+    'test_ros2_graph::test_refuses_as_ros2cli_does': r'(topic info|node info|param list) .*',
+    'test_ros2_streams::test_it_ends_when_nobody_reads_any_more': r'echo|hz|pub',
+    'test_ros2_streams::test_a_signal_ends_it_quietly_with_the_status_of_ros2cli': r'echo|hz|pub',
+    'test_ros2_streams::test_echo_prints_what_ros2cli_prints': (
+        r'/kinematics/joint_states( --(csv|field position|include-message-info))?'
+    ),
+    'test_ros2_streams::test_what_cannot_be_done_is_said_in_a_sentence': r'(echo|hz|bw) .*',
+    'test_isolation_everywhere::test_nothing_runs_unasked': (
+        r'.*(course grade|nbgrader autograde)'
+    ),
+}
+
+
+def mark_slow(items: list[pytest.Item]) -> None:
+    """Mark as slow the tests that the table leaves to `--slow`.
+
+    Raises pytest.UsageError where it leaves nothing of a test to an ordinary run.
+    """
+    kept, left = set(), set()
+    for item in items:
+        name, _, parameters = item.name.partition('[')
+        row = f'{item.path.stem}::{name}'
+        if row not in ORDINARY or not parameters:
+            continue
+        if re.fullmatch(ORDINARY[row], parameters.removesuffix(']')):
+            kept.add(row)
+        else:
+            left.add(row)
+            item.add_marker('slow')
+    if len(items) > len(ORDINARY) and (lost := left - kept):
+        raise pytest.UsageError(f'tests/ordinary.py takes nothing of {", ".join(sorted(lost))}')
