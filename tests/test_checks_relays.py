@@ -1,9 +1,10 @@
 """A node that passes messages on is judged by what comes out, whatever its own QoS."""
 
 import itertools
+import time
 
 import pytest
-from my_robot_basics.checks import CheckFailed, relay, relays
+from my_robot_basics.checks import CheckFailed, relay, relay_ends
 from my_robot_basics.checks.latched import LATCHED
 from nodes.running import imported, running
 from rclpy.duration import Duration
@@ -44,7 +45,7 @@ def run():
 
 @pytest.fixture
 def impatient(monkeypatch):
-    monkeypatch.setattr(relays, 'TIMEOUT_SEC', 1.0)
+    monkeypatch.setattr(relay_ends, 'TIMEOUT_SEC', 1.0)
 
 
 def description():
@@ -52,7 +53,7 @@ def description():
 
 
 def pose():
-    return JointState(name=['joint1'], position=[float(next(numbers))])
+    return JointState(name=['joint1'], position=[float(next(numbers) % 1000 + 1)])
 
 
 def check_delivery():
@@ -192,6 +193,57 @@ class DropsEveryTenth(Counts):
         return heard[-1:] if len(heard) % 10 else []
 
 
+class DropsEveryEleventh(Counts):
+    def chosen(self, heard):
+        return heard[-1:] if len(heard) % 11 else []
+
+
+class DropsEveryHundredth(Counts):
+    def chosen(self, heard):
+        return heard[-1:] if len(heard) % 100 else []
+
+
+class DropsEqualOnes(Counts):
+    def chosen(self, heard):
+        return heard[-1:] if heard[-1:] != heard[-2:-1] else []
+
+
+class DropsZeros(Counts):
+    def chosen(self, heard):
+        return heard[-1:] if any(heard[-1].position) else []
+
+
+class DropsNegativeOnes(Counts):
+    def chosen(self, heard):
+        return heard[-1:] if min(heard[-1].position) >= 0.0 else []
+
+
+class DropsLargeOnes(Counts):
+    def chosen(self, heard):
+        return heard[-1:] if max(heard[-1].position) < 2000.0 else []
+
+
+class DropsEmptyTexts(Counts):
+    def chosen(self, heard):
+        return heard[-1:] if heard[-1].data else []
+
+
+class DropsWhatComesSoon(Counts):
+    def chosen(self, heard):
+        now, before = time.monotonic(), getattr(self, 'before', 0.0)
+        if now - before < 0.2:
+            return []
+        self.before = now
+        return heard[-1:]
+
+
+class DropsAfterAPause(Counts):
+    def chosen(self, heard):
+        now, before = time.monotonic(), getattr(self, 'before', 0.0)
+        self.before = now
+        return heard[-1:] if now - before < 1.0 else []
+
+
 class Lags(Counts):
     def chosen(self, heard):
         return heard[-2:-1]
@@ -212,12 +264,17 @@ class SwapsPairs(Counts):
     [
         (DropsEverySecond, 'saw messages that are not republished: publish in every call'),
         (DropsEveryTenth, 'saw messages that are not republished: publish in every call'),
-        (
-            Lags,
-            'a message that is republished only when the next one arrives: publish the message',
-        ),
+        (DropsEveryEleventh, 'saw messages that are not republished: publish in every call'),
+        (DropsEveryHundredth, 'saw messages that are not republished: publish in every call'),
+        (DropsEqualOnes, 'not republished: those equal to the one before: publish in every call'),
+        (DropsZeros, 'not republished: those with zeros, or empty: publish in every call'),
+        (DropsNegativeOnes, 'not republished: those with negative numbers: publish in every call'),
+        (DropsLargeOnes, 'not republished: those with large numbers: publish in every call'),
+        (DropsWhatComesSoon, 'saw messages that are not republished'),
+        (DropsAfterAPause, 'not republished when it is the first after a pause: publish'),
+        (Lags, 'is republished only when the next one arrives: publish the message'),
         (SwapsPairs, 'saw a message that is republished only when the next one arrives'),
-        (Doubles, 'saw a message that is republished 2 times: subscribe once'),
+        (Doubles, 'a message that is republished 2 times: subscribe once'),
     ],
 )
 def test_each_message_comes_out_at_once_and_once(run, node_class, reason):
@@ -228,10 +285,45 @@ def test_each_message_comes_out_at_once_and_once(run, node_class, reason):
 
 def test_a_description_that_comes_out_twice_is_one_too_many(run):
     run(Doubles)
-    with pytest.raises(
-        CheckFailed, match='saw a message that is republished 2 times: subscribe once'
-    ):
+    with pytest.raises(CheckFailed, match='a message that is republished 2 times: subscribe once'):
         check_late_joiner()
+
+
+@pytest.mark.parametrize(
+    ('node_class', 'reason'),
+    [
+        (DropsEqualOnes, 'not republished: those equal to the one before: publish in every call'),
+        (DropsEmptyTexts, 'not republished: those with zeros, or empty: publish in every call'),
+        (DropsEveryEleventh, 'saw messages that are not republished: publish in every call'),
+    ],
+)
+def test_each_description_that_follows_comes_out_too(run, node_class, reason):
+    run(node_class)
+    with pytest.raises(CheckFailed, match=reason):
+        check_late_joiner()
+
+
+def test_a_timer_that_has_only_the_latest_loses_one_of_two(run):
+    class Latest(Counts):
+        def __init__(self):
+            self.latest = {}
+            super().__init__()
+            self.create_timer(0.1, self.flush)
+
+        def changed(self, publish):
+            return lambda message: self.latest.update({publish: message})
+
+        def flush(self):
+            while self.latest:
+                publish, message = self.latest.popitem()
+                publish(message)
+
+    run(Latest)
+    for check in check_delivery, check_late_joiner:
+        with pytest.raises(
+            CheckFailed, match='saw two messages in quick succession of which only'
+        ):
+            check()
 
 
 def test_what_waits_for_a_timer_is_in_time(run):

@@ -1,0 +1,173 @@
+"""The two topics of a relay, and the node of the student between them: meet it on both."""
+
+from dataclasses import dataclass
+from typing import NoReturn
+
+from rclpy.event_handler import PublisherEventCallbacks
+from rclpy.node import Node
+from rclpy.publisher import Publisher
+from rclpy.qos import (
+    DurabilityPolicy,
+    QoSProfile,
+    ReliabilityPolicy,
+    qos_policy_name_from_kind,
+)
+
+from my_robot_basics.checks import graphs, values
+from my_robot_basics.checks.ears import Ears
+from my_robot_basics.checks.errors import expect, fail
+from my_robot_basics.checks.fits import brief, incompatible, leave_out
+from my_robot_basics.checks.topics import Topic
+from my_robot_basics.checks.watcher import Watcher
+
+TIMEOUT_SEC = 10.0
+REFUSED_SEC = 2.0
+"""How long another subscription of the node may come after one that asks for too much."""
+SECOND_SEC = 0.1
+"""How long a second subscription may come behind the first."""
+
+
+@dataclass(frozen=True)
+class Ends:
+    """What a relay subscribes to, and what it publishes on."""
+
+    source: str
+    to: str
+
+    def listen(self, watcher: Watcher, type_: type) -> Ears:
+        """Listen on `to`; a VOLATILE publisher is waited for until it knows of the listener."""
+        topic = Topic(self.to)
+        patience_sec = topic.patience_sec(watcher, TIMEOUT_SEC, end='publishers')
+        if not graphs.wait_for_publisher(watcher, self.to, timeout_sec=patience_sec):
+            fail(
+                expected=f'a publisher on {self.to}',
+                seen=graphs.none_in(patience_sec),
+                hint=self._graph(watcher).why_silent(self.to),
+            )
+        ears = topic.listen(watcher)
+        expect(
+            ears.type is type_,
+            expected=f'{type_.__name__} messages on {self.to}',
+            seen=ears.type.__name__,
+            hint=f'publish there the messages that arrive on {self.source}',
+        )
+        watcher.spin_until(ears.is_connected, timeout_sec=TIMEOUT_SEC)
+        return ears
+
+    def publish_to_node(self, watcher: Watcher, type_: type, offered: QoSProfile) -> Publisher:
+        """A publisher that has met a subscription which asks for no more than it offers."""
+        refused = set()
+        events = PublisherEventCallbacks(
+            incompatible_qos=lambda event: refused.add(event.last_policy_kind)
+        )
+        publisher = watcher.node.create_publisher(
+            type_, self.source, offered, event_callbacks=events
+        )
+
+        def is_there() -> bool:
+            return publisher.get_subscription_count() > 0
+
+        patience_sec = Topic(self.source).patience_sec(
+            watcher, TIMEOUT_SEC, end='subscriptions', type_=type_
+        )
+        watcher.spin_until(lambda: is_there() or bool(refused), timeout_sec=patience_sec)
+        if watcher.spin_until(is_there, timeout_sec=REFUSED_SEC if refused else 0.0):
+            return publisher
+        if not refused:
+            self.expect_type(watcher, type_)
+            self._fail_absent(watcher, patience_sec=patience_sec)
+        asked = {brief(asked) for asked in _requests(watcher.node, self.source)}
+        policies = {qos_policy_name_from_kind(kind) for kind in refused}
+        hint = 'give create_subscription a profile with reliability and durability as offered'
+        if unpromised := policies - {'RELIABILITY', 'DURABILITY'}:
+            hint = leave_out(unpromised)
+        fail(
+            expected=f'a subscription on {self.source} that requests no more than'
+            f' {brief(offered)}, which is what the publisher offers',
+            seen=f'{" and ".join(sorted(asked))} (incompatible: {" and ".join(sorted(policies))})',
+            hint=hint,
+        )
+
+    def expect_transient_local(self, watcher: Watcher) -> None:
+        """A subscription to `source` asks for what was published before."""
+
+        def asked() -> set[str]:
+            return {asked.durability.name for asked in _requests(watcher.node, self.source)}
+
+        patience_sec = Topic(self.source).patience_sec(watcher, TIMEOUT_SEC, end='subscriptions')
+        if not watcher.spin_until(lambda: bool(asked()), timeout_sec=patience_sec):
+            self._fail_absent(watcher, patience_sec=patience_sec)
+        # a second subscription may be a moment behind the first
+        if not watcher.spin_until(lambda: 'TRANSIENT_LOCAL' in asked(), timeout_sec=SECOND_SEC):
+            fail(
+                expected=f'a subscription on {self.source} with durability TRANSIENT_LOCAL',
+                seen=' and '.join(sorted(asked())),
+                hint='request TRANSIENT_LOCAL: only then do you receive earlier messages',
+            )
+
+    def expect_one_profile(self, watcher: Watcher) -> None:
+        """The node that publishes on `to` subscribes to `source` with one profile: it chose."""
+        offers = graphs.publisher_infos(watcher.node, self.to)
+        names = {graphs.full_name(offer) for offer in offers}
+        asked = {
+            brief(info.qos_profile)
+            for info in graphs.subscription_infos(watcher.node, self.source)
+            if graphs.full_name(info) in names
+        }
+        expect(
+            len(asked) <= 1,
+            expected=f'one subscription on {self.source}, with the profile that fits',
+            seen=' and '.join(sorted(asked)),
+            hint='choose one profile: with one subscription of each kind, some never receive'
+            ' anything, and others receive everything twice',
+        )
+
+    def why_lost(self, watcher: Watcher, *, is_latched: bool, has_others: bool) -> str:
+        """Advice where a message does not come out: what may have become of it."""
+        asked = [
+            asked
+            for asked in _requests(watcher.node, self.source)
+            if asked.durability == DurabilityPolicy.TRANSIENT_LOCAL
+        ]
+        if is_latched and {each.reliability for each in asked} == {ReliabilityPolicy.BEST_EFFORT}:
+            return 'request RELIABLE, too: only then do you receive earlier messages'
+        offers = watcher.node.get_publishers_info_by_topic(self.source)
+        gaps = [incompatible(offer.qos_profile, each) for offer in offers for each in asked]
+        if is_latched and gaps and all(gaps):
+            return leave_out(gaps[0])
+        listeners = graphs.subscription_infos(watcher.node, self.source)
+        if raised := graphs.what_raised(map(graphs.full_name, listeners)):
+            return f'{raised}, so fix that first'
+        if has_others:
+            return 'publish exactly the message that your callback is given'
+        return 'see that your callback publishes each message, and that it raises nothing'
+
+    def expect_type(self, watcher: Watcher, type_: type) -> None:
+        """Who subscribes to `source` does so with that type: another one never meets it."""
+        wanted = values.type_name(type_)
+        infos = graphs.subscription_infos(watcher.node, self.source)
+        found = {info.topic_type for info in infos}
+        expect(
+            not found or wanted in found,
+            expected=f'a subscription on {self.source} for {wanted}',
+            seen=f'one for {" and ".join(sorted(found))}',
+            hint='compare the message type in create_subscription(…)',
+        )
+
+    def _fail_absent(self, watcher: Watcher, *, patience_sec: float) -> NoReturn:
+        fail(
+            expected=f'a subscription on {self.source}',
+            seen=graphs.none_in(patience_sec),
+            hint=self._graph(watcher).why_unheard(self.source),
+        )
+
+    def _graph(self, watcher: Watcher) -> graphs.Graph:
+        """The graph without other publishers on `source`: it is not they who are at fault."""
+        everybody = graphs.take(watcher)
+        others = everybody.without(everybody.publishers(self.source))
+        return others if others.nodes() else everybody
+
+
+def _requests(node: Node, topic_name: str) -> list[QoSProfile]:
+    """What the student's subscriptions on a topic ask for."""
+    return [info.qos_profile for info in graphs.subscription_infos(node, topic_name)]
