@@ -20,7 +20,7 @@ TIMES = 120
 them. …"""
 FEWEST = 10
 """… So many will do for a node that is slow, …"""
-LONG_SEC, LONGEST_SEC = 4.0, 8.0
+LONG_SEC, LONGEST_SEC = 4.0, 6.0
 """… After so much time that was free, or in all."""
 MOST_LATE = 4
 """So many tell enough: each is waited for, and a BEST_EFFORT end may lose one now and then."""
