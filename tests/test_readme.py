@@ -70,7 +70,7 @@ def test_links_and_pictures_lead_somewhere(link):
 
 
 def test_what_lies_where_is_there():
-    rows = README.partition('## What lies where')[2].partition('\n## ')[0]
+    rows = README.partition('## What is where')[2].partition('\n## ')[0]
     named = re.findall(r'`([^`]+)`', ' '.join(re.findall(r'^\| (`.+?) \|', rows, re.MULTILINE)))
     assert len(named) > 5
     assert [name for name in named if not (ROOT / name).exists()] == []
