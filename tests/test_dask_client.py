@@ -58,7 +58,7 @@ def test_no_scheduler_is_told(monkeypatch):
 
 def test_a_missing_dask_says_how_to_get_it(monkeypatch):
     monkeypatch.setitem(sys.modules, 'distributed', None)
-    with pytest.raises(ClusterError, match=r'pip install -c environment.txt'):
+    with pytest.raises(ClusterError, match=r'pip install -r environment\.txt'):
         connected('tcp://127.0.0.1:1', Certificates())
 
 

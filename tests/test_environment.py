@@ -19,7 +19,8 @@ UV = Path(sys.prefix, 'bin/uv')
 PYTHONS = ['3.11', '3.12', '3.13']
 THIS = '{}.{}'.format(*sys.version_info)
 
-LINES = (ROOT / 'environment.txt').read_text().splitlines()
+TEXT = (ROOT / 'environment.txt').read_text()
+LINES = re.sub(r' \\\n +--hash=sha256:[0-9a-f]{64}', '', TEXT).splitlines()
 PROJECT = tomllib.loads((ROOT / 'pyproject.toml').read_text())['project']
 
 # what the wheels of ROS set for this Python must not reach another one's libraries
@@ -50,10 +51,31 @@ def test_every_line_is_one_exact_pin():
     assert len(PINS) == len(pins)
 
 
+def test_every_pin_has_hashes_of_its_files():
+    blocks = re.split(r'^(?=\w)', TEXT, flags=re.MULTILINE)[1:]
+    assert len(blocks) == len(PINS)
+    assert [
+        block for block in blocks if not re.search(r'--hash=sha256:[0-9a-f]{64}$', block, re.M)
+    ] == []
+
+
+def test_students_need_no_tools_of_the_developers():
+    students, _, course = TEXT.partition('\n# --- what only the whole course needs')
+    tools = [Requirement(text).name for text in PROJECT['optional-dependencies']['test']]
+    needed = pins_of(re.findall(r'^\S+==\S+', students, re.MULTILINE))
+    # colcon asks for pytest and its coverage itself
+    assert {name for name in tools if name in needed} == {'pytest', 'pytest-cov'}
+    assert {'playwright', 'ruff', 'hypothesis', 'nbval'} <= pins_of(
+        re.findall(r'^\S+==\S+', course, re.MULTILINE)
+    ).keys()
+    assert {'jupyterlab', 'ros-jazzy-rclpy', 'colcon-core'} <= needed.keys()
+
+
 def test_header_names_the_command_that_makes_the_file():
     header = ' '.join(line for line in LINES if line.startswith('#'))
     assert 'uv pip compile' in header
-    assert not re.search(r'https?:|file:|index|find-links', header)
+    assert '.ci/pin.py' in header
+    assert not re.search(r'https?:|file:|--index|find-links', TEXT)
 
 
 def test_every_direct_requirement_is_pinned_and_in_its_range():

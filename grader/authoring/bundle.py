@@ -21,6 +21,9 @@ README = 'students.md'
 AS_THEY_ARE = ('course', 'environment.txt', 'LICENSE', 'launcher/verbs.txt')
 LAUNCHER = 'launcher'
 """What `course` runs; of it, the modules."""
+PINS = 'environment.txt'
+OTHERS = '# --- what only the whole course needs'
+"""How the line of environment.txt begins at which a student's ends (.ci/pin.py writes it)."""
 SETTINGS = ('.jupyterlab/overrides.json', '.jupyterlab/page_config.json')
 """What `./course lab` shows JupyterLab."""
 PACKAGE = 'my_robot_basics'
@@ -79,7 +82,13 @@ def _contents(course: Course, faults: list[str]) -> Iterator[tuple[str, bytes]]:
             faults.append(f'{path} is {"a link" if file.is_symlink() else "missing"}')
             continue
         name = 'README.md' if path == f'solutions/{README}' else path
-        yield f'{FOLDER}/{name}', file.read_bytes()
+        content = file.read_bytes()
+        if path == PINS:
+            content, found, _ = content.partition(f'\n{OTHERS}'.encode())
+            if not found:
+                faults.append(f'{path} does not say what students need: run .ci/pin.py')
+            content += b'\n'
+        yield f'{FOLDER}/{name}', content
 
 
 def _paths(course: Course, faults: list[str]) -> Iterator[str]:

@@ -54,7 +54,7 @@ def connected(address: str, certificates: Certificates) -> 'Client':
     except ModuleNotFoundError as error:
         raise ClusterError(
             f'--dask needs Dask, which this Python lacks ({error}): install it with '
-            ".venv/bin/python -m pip install -c environment.txt 'distributed'"
+            '.venv/bin/python -m pip install -r environment.txt'
         ) from None
     security = Security()
     if address.startswith('tls:'):
