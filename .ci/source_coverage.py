@@ -1,15 +1,15 @@
 """Each heading of the lesson that this course grew out of is taught by a cell that is named here.
 
-The headings are told in our own words; a cell is named by lesson and id, with a word that it says.
+`.venv/bin/python .ci/source_coverage.py` prints which is not. The headings are told in our own
+words; a cell is named by lesson and id, with a word that it says.
 """
 
-from functools import cache
+import sys
 from pathlib import Path
 
 import nbformat
-import pytest
 
-ROOT = Path(__file__).parents[1]
+SOLUTIONS = Path(__file__).parents[1] / 'solutions'
 
 ARM, TOPICS, MESSAGE = '00_two_link_arm', '01_topics', '02_joint_state'
 PUBLISHER, SUBSCRIBER, COMMANDS = '03_publisher', '04_subscriber', '05_command_line'
@@ -59,12 +59,12 @@ TAUGHT = {
     '5.3.2 the whole publisher': [
         (PUBLISHER, 'publish_pose', 'KinematicsPublisher.publish_pose'),
         (PUBLISHER, 'full_node', 'oldest'),
-        (PUBLISHER, 'absolute', 'namespace'),
+        (PUBLISHER, 'whose_topic', '/joint_states'),
         (PUBLISHER, 'urdf', 'robot_state_publisher'),
     ],
     '5.3.3 its entry point': [
         (PUBLISHER, 'greeter', 'rclpy.spin'),
-        (PUBLISHER, 'entry_point', 'setup.py'),
+        (PUBLISHER, 'entry_point_words', 'setup.py'),
     ],
     '5.3.4 build it and run it': [
         (PUBLISHER, 'colcon', 'colcon build --packages-select my_robot_basics'),
@@ -86,7 +86,7 @@ TAUGHT = {
         (COMMANDS, 'topic_hz', 'ros2 topic hz /kinematics/joint_states'),
     ],
     '5.6 QoS': [(QOS, 'contract', 'promises')],
-    '5.6.1 why there is QoS': [(QOS, 'wishes', 'wish')],
+    '5.6.1 why there is QoS': [(QOS, 'wishes', 'requirements')],
     '5.6.2 two parameters to begin with': [
         (QOS, 'reliability', 'RELIABLE'),
         (QOS, 'busy', 'depth=depth'),
@@ -143,27 +143,18 @@ TAUGHT = {
 """Heading -> (lesson, cell, a word that the cell must say)."""
 
 
-@cache
-def sources(lesson):
-    notebook = nbformat.read(ROOT / 'solutions' / lesson / f'{lesson}.ipynb', as_version=4)
-    return {cell.id: cell.source for cell in notebook.cells}
+def main() -> int:
+    """Print what is not taught as the table says; return 1 where there is such a thing."""
+    gaps = 0
+    for heading, cells in TAUGHT.items():
+        for lesson, cell, word in cells:
+            notebook = nbformat.read(SOLUTIONS / lesson / f'{lesson}.ipynb', as_version=4)
+            said = {each.id: each.source for each in notebook.cells}.get(cell, '')
+            if word not in said:
+                gaps += 1
+                print(f'{heading}: {lesson}, {cell} does not say {word!r}')
+    return 1 if gaps else 0
 
 
-@pytest.mark.parametrize(('heading', 'cells'), TAUGHT.items(), ids=TAUGHT)
-def test_a_heading_is_taught_by_the_cells_that_are_named_for_it(heading, cells):
-    for lesson, cell, word in cells:
-        assert cell in sources(lesson), f'{lesson} has no cell {cell!r}'
-        assert word in sources(lesson)[cell], f'{lesson}, {cell} does not say {word!r}'
-
-
-def test_no_heading_is_left_out():
-    numbers = [heading.split()[0] for heading in TAUGHT if heading[0].isdigit()]
-    parts = {1: 3, 2: 3, 3: 4, 4: 3, 5: 0, 6: 3, 7: 3, 8: 3}
-    expected = [
-        number
-        for chapter, sections in parts.items()
-        for number in (f'5.{chapter}', *(f'5.{chapter}.{i + 1}' for i in range(sections)))
-    ]
-    assert numbers == expected
-    others = {heading.split(':')[0] for heading in TAUGHT if not heading[0].isdigit()}
-    assert others == {'preface', 'summary', 'reference code', 'preview'}
+if __name__ == '__main__':
+    sys.exit(main())
