@@ -27,6 +27,7 @@ stop()
 """
 
 
+@pytest.mark.starts
 def test_run_and_spin_use_a_single_threaded_executor():
     """Lesson 4; `rclpy.spin` takes the global one where it is given none."""
     done = subprocess.run(
@@ -87,6 +88,7 @@ def test_the_callbacks_of_a_node_exclude_each_other_unless_told_otherwise():
         assert isinstance(node.default_callback_group, MutuallyExclusiveCallbackGroup)
 
 
+@pytest.mark.starts
 def test_both_ends_get_an_event_when_more_is_requested_than_offered():
     """Lesson 6: incompatible QoS is an event for the publisher, too."""
     told = set()
@@ -123,6 +125,7 @@ def test_two_types_on_one_topic_never_match_and_no_event_tells():
         assert told == []
 
 
+@pytest.mark.starts
 def test_a_message_does_not_say_who_sent_it():
     """Lesson 1; nor does what rclpy tells a callback beside the message."""
     told = []

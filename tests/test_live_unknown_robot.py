@@ -43,6 +43,7 @@ def test_its_nodes_are_where_the_check_has_them():
     assert subscriptions == ['/motor_guard', '/pose_logger', '/self_test', '/tool_tracker']
 
 
+@pytest.mark.starts
 def test_its_topics_carry_messages():
     assert told_by(
         'listener, heard = run(Node, "listener"), []\n'
@@ -65,6 +66,7 @@ def test_starting_it_again_keeps_its_nodes_and_after_a_stop_brings_them_back():
     ]
 
 
+@pytest.mark.starts
 def test_who_else_is_on_its_topic_is_named():
     said = told_by(
         'other = run(Node, "kinematics_publisher")\n'
