@@ -29,17 +29,19 @@ STARTING_FILES = frozenset(
     """
     checks_clock checks_latched checks_logs checks_looks checks_predictions checks_relays
     checks_settled checks_stage checks_stamps checks_tick checks_topics checks_watcher
-    crowd dask_backend doctor_faults doctor_healthy executables execute grade interrupt
-    isolation isolation_everywhere kernels lessons_run live_camera live_classroom
-    live_domain live_kernel live_lessons live_neighbours live_qos_pairs live_refusals
-    live_runner live_sliders live_target logs main manual_grading nbgrader_commands
-    nbgrader_contract nodes ordinary_events package partial preprocessors readme replay
-    reuse rooms ros2_completion ros2_discovery ros2_graph ros2_interfaces ros2_main
-    ros2_notebook ros2_real ros2_run ros2_shell ros2_streams same_scores survival
-    synthetic_class temporary_folders validate validate_server workers workspace_terminal
+    crowd dask_backend doctor_faults doctor_healthy executables execute grade gradebook
+    interrupt isolation isolation_everywhere kernels lesson_own_program lessons_run
+    live_camera live_classroom live_domain live_kernel live_lessons live_neighbours
+    live_qos_pairs live_refusals live_runner live_sliders live_target logs main
+    manual_grading nbgrader_commands nbgrader_contract nodes ordinary_events package
+    partial preprocessors readme release replay reuse rooms ros2_completion ros2_discovery
+    ros2_graph ros2_interfaces ros2_main ros2_notebook ros2_real ros2_run ros2_shell
+    ros2_streams same_scores survival synthetic_class temporary_folders validate
+    validate_server workers workspace_terminal
     """.split()  # noqa: SIM905
 )
-"""Files, test_NAME.py, of which all tests, or nearly all, start something."""
+"""Files, test_NAME.py, of which all tests, or nearly all, start something: if not a kernel, then
+nbgrader's command so often that it takes too long for that tier."""
 IMPLY = frozenset({'isolation', 'browser'})
 """Marks of tests that start something."""
 
