@@ -85,7 +85,7 @@ def let_us_open_more() -> None:
     """Raise our own limit of open files, as far as rooms can't get.
 
     Linux counts what is on its way through sockets by user, and that may be a room's user, too:
-    who has more under way than its own limit can send no file any more, whoever's they are.
+    who has more under way than its own limit can send no file any more, no matter whose they are.
     """
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     wanted = OWN_FILES if hard == resource.RLIM_INFINITY else min(OWN_FILES, hard)

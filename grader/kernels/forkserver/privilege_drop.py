@@ -94,7 +94,7 @@ def _enter(room: int, order: dict) -> None:
 def _settle(order: dict, *, keep: int) -> int:
     """Give up all rights, and be as a new process is there; only the file `keep` stays open.
 
-    Return who is told of the signals that are sent from here on, -1 where Linux tells nobody.
+    Return the listener for signals that are sent from here on; -1 if Linux reports none.
     """
     null = os.open('/dev/null', os.O_RDWR)
     for standard in (0, 1, 2):

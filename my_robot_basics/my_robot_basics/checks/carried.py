@@ -34,7 +34,7 @@ FEWEST_COPIES = 2
 RECENT = 20
 """A copy is one of so many that came out last."""
 PAIR_GAP_SEC = 0.01
-"""Two messages so near to each other: whoever keeps only the latest for a timer loses one."""
+"""Two messages so near to each other: a node that keeps only the latest for a timer loses one."""
 WHOLE_PAIRS, MOST_TORN = 2, 6
 """So many pairs have to come out, before so many did not: a queue of depth 1 may lose one."""
 PAUSE_SEC = 1.1
@@ -165,7 +165,7 @@ class Passage:
         return True
 
     def _take(self) -> None:
-        """Sort what was heard: the first of those that are waited for, a copy, or another's."""
+        """Sort what was received: the first of those that are waited for, a copy, or another's."""
         heard = self._ears.messages()[self._seen :]
         self._seen += len(heard)
         for message in heard:
