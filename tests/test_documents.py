@@ -20,8 +20,8 @@ KNOWN = {path.name for folder in FOLDERS for path in folder.iterdir() if path.is
     'gradebook',  # made by the grader
     'ros_ws',
 }
-NEW = 'example'
-"""In the name of each file and folder that a document tells its reader to make."""
+NEW = re.compile('example|docs/reference/')
+"""Files and folders that a document tells its reader to make."""
 PATH = re.compile(r'(?<![\w/.:~$-])([\w.]+)(/[\w./*-]*[\w/*])')
 MODULE = re.compile(r'(?<![\w/.@-])((?:grader|my_robot_basics|launcher)(?:\.[a-z_]\w*)+)')
 LINK = re.compile(r'\]\((?!https?:)([^)\s]+)\)|(?:src|href)="(?!https?:)([^"]+)"')
@@ -30,12 +30,12 @@ LINK = re.compile(r'\]\((?!https?:)([^)\s]+)\)|(?:src|href)="(?!https?:)([^"]+)"
 def paths_in(text):
     """Yield what looks like a path of ours: its first part is one of our folders."""
     for first, rest in PATH.findall(re.sub(r'https?:\S+', '', text)):
-        if first in KNOWN and NEW not in rest:
+        if first in KNOWN and not NEW.search(first + rest):
             yield first + rest
 
 
 def modules_in(text):
-    yield from (name for name in MODULE.findall(text) if NEW not in name)
+    yield from (name for name in MODULE.findall(text) if not NEW.search(name))
 
 
 def is_there(path):

@@ -27,6 +27,8 @@ class PartlyRight(CheckFailed):
 def expect(condition: bool, *, expected: object, seen: object, hint: str, cause: str = '') -> None:
     """Raise CheckFailed('expected …, saw …: hint') unless the condition holds; see `fail`.
 
+    `hint` says what to try next, as a clause: 'convert both angles with radians()'.
+
     The condition is a bool; anything else is a mistake in the check and raises TypeError.
     """
     if not isinstance(condition, bool | np.bool_):

@@ -123,7 +123,7 @@ class Graph:
 
 
 def graph(*, after_publisher_on: str = '') -> Graph:
-    """The graph as it is now, once it has settled.
+    """The graph as it is now, once it has settled: `graph().publishers('/chatter')`.
 
     With the name of a topic, once somebody publishes there, or after PUBLISHER_SEC.
     """

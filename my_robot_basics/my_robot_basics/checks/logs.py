@@ -30,11 +30,20 @@ class Record:
     """One log record."""
 
     level: str
+    """'DEBUG', 'INFO', 'WARN', 'ERROR' or 'FATAL'."""
     text: str
+    """As the node logged it, without time and logger's name."""
 
 
 def rosout(node_name: str) -> 'Log':
-    """The log of a node and of its logger's children, to be opened by a `with` statement."""
+    """The log of a node and of its logger's children, to be opened by a `with` statement.
+
+    ```python
+    with rosout('ik_solver_node') as log:
+        log.ask('/target_point', Point(x=1.2, y=0.3))
+        log.expect_solutions(inverse_kinematics(1.2, 0.3), target=(1.2, 0.3))
+    ```
+    """
     return Log(node_name)
 
 
@@ -46,6 +55,7 @@ class Log:
     """
 
     def __init__(self, node_name: str) -> None:
+        """Use `with rosout(node_name) as log`; listening begins with the `with` statement."""
         self._logger = node_name.strip('/').replace('/', '.')
         self._node_name = f'/{node_name.strip("/")}'
         self._heard: list[tuple[int, Record]] = []

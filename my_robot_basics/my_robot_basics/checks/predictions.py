@@ -16,7 +16,19 @@ Its docstring is what to think of where the prediction is wrong.
 
 
 class Predictions:
-    """The notebook's dict of that name: for each key True (the message arrives) or False."""
+    """The notebook's dict of that name: for each key True (the message arrives) or False.
+
+    ```python
+    def late(stage):
+        '''a VOLATILE publisher keeps nothing for subscribers that come later'''
+        message = stage.publisher('/pose').publish()
+        return stage.subscription('/pose').heard(message)
+
+    predictions = Predictions('answers', ['late'])
+    predictions.run(late)
+    predictions.conclude({1: 2.0})
+    ```
+    """
 
     def __init__(self, name: str, keys: Sequence[str]) -> None:
         """Ask for the dict. Raises CheckFailed unless it holds a bool for each of the keys.

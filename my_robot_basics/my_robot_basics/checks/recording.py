@@ -21,6 +21,7 @@ class Sample:
     """One message and when it was sent."""
 
     message: Any
+    """As it arrived."""
     time_sec: float
     """On the recording's clock, since the recording began."""
     source_time_sec: float
@@ -33,7 +34,9 @@ class Recording:
 
     topic_name: str
     messages: tuple[Sample, ...]
+    """Oldest first; the one at which the recording began is not among them."""
     clock: Literal['simulated', 'wall']
+    """Which clock `seconds` and the samples' `time_sec` are of."""
     publishers: tuple[str, ...]
     """Full names of the nodes that publish on the topic, one for each publisher."""
     seconds: float

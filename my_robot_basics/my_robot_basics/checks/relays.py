@@ -21,7 +21,11 @@ AGAIN_SEC = 0.1
 
 
 def relay(source: str, *, to: str) -> 'Relay':
-    """What a node makes of the topic `source` when it publishes again on the topic `to`."""
+    """What a node makes of the topic `source` when it publishes again on the topic `to`.
+
+    `relay('/joints', to='/monitor').assert_carries(make_message, qos_profile=offered)`, where
+    `make_message` returns another message at each call.
+    """
     return Relay(source, to)
 
 
@@ -30,7 +34,9 @@ class Relay:
     """Two topics with a node of the student between them; any QoS will do on the second one."""
 
     source: str
+    """The topic on which the check publishes."""
     to: str
+    """The topic on which the node is to publish the same."""
 
     def assert_carries(self, make_message: Callable[[], Any], *, qos_profile: QoSProfile) -> None:
         """Each message that is offered with that profile on `source` comes out on `to`, once.

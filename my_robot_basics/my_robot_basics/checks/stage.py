@@ -97,6 +97,7 @@ class StagePublisher:
     """A publisher with default QoS."""
 
     def __init__(self, stage: Stage, node: Node, topic_name: str, type_: type) -> None:
+        """Use `Stage.publisher`."""
         self._stage, self._type = stage, type_
         self._publisher = node.create_publisher(type_, topic_name, DEPTH)
         self.control = node.create_publisher(String, stage.control_topic, DEPTH)
@@ -119,6 +120,7 @@ class StageSubscription:
     """A subscription with default QoS, which keeps what it receives."""
 
     def __init__(self, stage: Stage, node: Node, topic_name: str, type_: type) -> None:
+        """Use `Stage.subscription`."""
         self._stage, self._node = stage, node
         self._heard: list[Any] = []
         self._controls: list[Any] = []

@@ -11,16 +11,19 @@ from my_robot_basics.checks import hidden, responder, values, wire
 from my_robot_basics.checks.errors import fail, shorten
 from my_robot_basics.checks.hidden import is_in_test_room
 
+__all__ = ['call', 'value']
+
 _CLASS_OF_A_MESSAGE = 'Metaclass_'
 """How rosidl calls the class of a message's class."""
 _ANSWER_CELL = 'in the answer cell, and run the cell'
 
 
 def call(name: str, *args: object, returns: type | tuple[type, ...] | None = None) -> Any:
-    """Call the student's function and return what it returned.
+    """Call the student's function and return what it returned: `call('reach', 1.0, 0.5)`.
 
     Arguments and result are plain values or ROS messages (see values.py). With `returns`, any
-    other type fails the check; a bool is no int, an int will do for a float.
+    other type fails the check; a bool is no int, an int will do for a float. Raises CheckFailed
+    where there is no such function, or it raises, returns None, or does not end in 10 s.
     """
     shown = hidden.theirs(shorten(f'{name}({", ".join(_brief(argument) for argument in args)})'))
     kind, body = _ask(wire.request(op='call', name=name, args=args), shown)
@@ -48,7 +51,11 @@ def call(name: str, *args: object, returns: type | tuple[type, ...] | None = Non
 
 
 def value(name: str, *, type: builtins.type | tuple[builtins.type, ...] | None = None) -> Any:
-    """The value of a name of the notebook; with `type`, any other type fails the check."""
+    """The value of a name of the notebook; with `type`, any other type fails the check.
+
+    Values are plain ones (numbers, text, lists, tuples, sets, dicts) or ROS messages. Raises
+    CheckFailed where the notebook has no such name, or another value.
+    """
     kind, body = _ask(wire.request(op='value', name=name), name)
     if kind == 'missing':
         _fail_missing(name, what='value')

@@ -36,7 +36,10 @@ DEPTH = 5000
 
 
 def topic(name: str) -> 'Topic':
-    """The topic of that (absolute) name, to be recorded, published on or waited for."""
+    """The topic of that (absolute) name, to be recorded, published on or waited for.
+
+    `topic('/kinematics/joint_states').record(seconds=10.0).assert_rate(hz=5.0)`
+    """
     return Topic(name)
 
 
@@ -44,6 +47,7 @@ class Topic:
     """What a check may do with one topic; each call is a ROS node of its own while it lasts."""
 
     def __init__(self, name: str) -> None:
+        """Use `topic(name)`; nothing is done with the topic yet."""
         self.name = name
 
     def record(self, seconds: float = 10.0, step_sec: float = 0.1) -> Recording:

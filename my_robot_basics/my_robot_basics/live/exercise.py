@@ -24,7 +24,11 @@ def reset(*names: str) -> None:
 
 
 def run_answer(name: str, *args: Any, **kwargs: Any) -> Node | None:
-    """Run the node class `name` that the answer cell defines; see `run` for the rest."""
+    """Run the node class `name` that the answer cell defines; see `run` for the rest.
+
+    Raises NotRunnable where the notebook has no class of that name that derives from Node, and
+    where it was imported or taken from the course's own nodes.
+    """
     answer = _notebook().get(name)
     where = 'write it in the answer cell: only the notebook is submitted'
     if answer is None:

@@ -1,0 +1,41 @@
+"""The reference for instructors: everything public is documented, and the pages can be built."""
+
+import inspect
+
+import pytest
+
+from my_robot_basics import checks, live
+
+PUBLIC = [(page, name) for page in (checks, live) for name in page.__all__]
+
+
+def is_documented(thing):
+    return bool((inspect.getdoc(thing) or '').strip())
+
+
+def documented(thing):
+    """Return what a class or module has of its own that the reference documents, by name."""
+    names = getattr(thing, '__all__', [name for name in vars(thing) if name[:1] != '_'])
+    own = [(name, inspect.getattr_static(thing, name)) for name in names]
+    if inspect.isclass(thing):
+        return [(n, m) for n, m in own if inspect.isfunction(m) or isinstance(m, property)]
+    return [(n, m) for n, m in own if inspect.isfunction(m) and m.__module__ == thing.__name__]
+
+
+@pytest.mark.parametrize(
+    ('page', 'name'), PUBLIC, ids=lambda value: getattr(value, '__name__', value)
+)
+def test_everything_public_has_a_docstring_and_types(page, name):
+    thing = getattr(page, name)
+    assert is_documented(thing)
+    inner = documented(thing) if inspect.isclass(thing) or inspect.ismodule(thing) else []
+    assert [n for n, member in inner if not is_documented(member)] == []
+    functions = [thing, *(member for _, member in inner)]
+    untyped = [
+        f'{function.__qualname__}: {parameter}'
+        for function in functions
+        if inspect.isfunction(function)
+        for parameter in inspect.signature(function).parameters.values()
+        if parameter.name != 'self' and parameter.annotation is parameter.empty
+    ]
+    assert untyped == []
