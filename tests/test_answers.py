@@ -1,0 +1,75 @@
+"""Unusual answers, right and wrong: each earns what it should, and is told why it does not."""
+
+import nbformat
+import pytest
+from answer_table import Answer, all_answers, answers_to, in_class, paper
+from answered import LESSONS
+
+from grader.course import Course
+from grader.grade import grade_all
+from grader.storage.records import records, verdicts
+from grader.storage.submitted import find_submissions
+
+ORDINARY = {
+    *('reach-cosine', 'reach-equal_links', 'predict_delivery-experiments'),
+    *('predict_delivery-two_names', 'to_joint_state-method', 'to_joint_state-whole_degrees'),
+    *('five_hz-ticker_subclass', 'five_hz-drops_tenth', 'five_hz-default_argument'),
+    *('ik_solver_node-distance_and_bearing', 'ik_solver_node-gives_up'),
+    *('find_endpoints-by_command', 'find_endpoints-two_cross'),
+    *('compatible_qos-new_message', 'compatible_qos-best_effort_latched'),
+    *('fix_topic_name-remapped', 'fix_topic_name-lags', 'fix_units-joint2_first'),
+    *('fix_units-both_messages', 'fix_stamp-divmod', 'fix_stamp-after'),
+}
+"""Answers that an ordinary run grades; `./course test --slow` takes all."""
+
+
+def wrongly_judged(answers: list[Answer], course: Course) -> list[str]:
+    """Grade answers as one class; return which do not earn, or are not told, what they should."""
+    whose = {}
+    for number, together in enumerate(in_class(answers)):
+        student, lesson = f'student{number}', together[0].lesson
+        folder = course.folder('submitted', student, lesson)
+        folder.mkdir(parents=True)
+        nbformat.write(paper(together), folder / f'{lesson}.ipynb')
+        whose |= {each.id: (student, lesson) for each in together}
+    rows = list(grade_all(course, find_submissions(course)))
+    assert [row for row in rows if not row.stored] == []
+    scores = {(each.student_id, each.grade_id): each.score for each in records(course)}
+    wrong = []
+    for each in answers:
+        student, lesson = whose[each.id]
+        said = verdicts(course, student, lesson)
+        for check, points in each.points.items():
+            told = ' | '.join([said[check].reason, *said[check].notes])
+            score = scores[student, check]
+            if score != points or (each.lost(check) and (not told or each.says not in told)):
+                wrong.append(f'{each.id} ({each.why}), {check}: {score}, not {points:g}: {told}')
+    return wrong
+
+
+def test_each_answer_is_told_from_the_others():
+    answers = all_answers()
+    assert len({each.id for each in answers}) == len(answers) > 700
+    assert {each.id for each in answers} >= ORDINARY
+    for exercise in {each.exercise for each in answers}:
+        codes = [(each.code, *each.cells.items()) for each in answers_to(exercise)]
+        assert [code for code in codes if codes.count(code) > 1] == []
+
+
+def test_the_usual_answer_to_each_exercise_and_all_that_it_takes_are_there():
+    usual = [answers_to(exercise)[0] for exercise in {each.exercise for each in all_answers()}]
+    assert {each.lesson for each in usual} == set(LESSONS)
+    assert all(each.points == each.full for each in usual)
+
+
+@pytest.mark.starts
+def test_telling_answers_are_judged_as_they_should_be(tmp_path):
+    answers = [each for each in all_answers() if each.id in ORDINARY]
+    assert wrongly_judged(answers, Course(gradebook=tmp_path)) == []
+
+
+@pytest.mark.slow
+@pytest.mark.starts
+@pytest.mark.parametrize('exercise', sorted({each.exercise for each in all_answers()}))
+def test_every_answer_is_judged_as_it_should_be(exercise, tmp_path):
+    assert wrongly_judged(answers_to(exercise), Course(gradebook=tmp_path)) == []
