@@ -74,6 +74,7 @@ def in_this_process(monkeypatch):
             monkeypatch.setattr(module, 'Graph', BriefGraph)
 
 
+@pytest.mark.starts
 @settings(
     max_examples=300,
     deadline=None,
