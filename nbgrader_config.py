@@ -7,6 +7,7 @@ from pathlib import Path
 
 try:
     from grader.authoring.release import CODE_STUB, PASSES
+    from grader.autograde.locking import lock_while_grading
     from grader.autograde.submitted_files import read_timestamps_as_we_do
     from grader.common.logs import NBGRADER_LOGGING
     from grader.course import Course
@@ -18,6 +19,7 @@ try:
     course = Course.at(Path(__file__).parent)
     make_ready(course)
     read_timestamps_as_we_do()
+    lock_while_grading()
 except (ImportError, OSError) as error:
     # nbgrader would go on with its defaults, which let a submission choose its own score
     raise SystemExit(

@@ -14,7 +14,7 @@ import nbformat
 from nbformat import NotebookNode
 
 from grader.common.errors import CourseError
-from grader.notebook.restore import Master, make_master
+from grader.notebook.restore import AssignmentTemplate, make_template
 
 ROOT = Path(__file__).resolve().parents[1]
 """The checkout that this grader belongs to."""
@@ -82,9 +82,9 @@ class Course:
             otherwise=f'{assignment} is not released yet: run ./course release {assignment}',
         )
 
-    def master(self, assignment: str) -> Master:
-        """Return what submissions of an assignment are healed from."""
-        return make_master(self.source(assignment), self.release(assignment))
+    def template(self, assignment: str) -> AssignmentTemplate:
+        """Return what submissions of an assignment are restored from."""
+        return make_template(self.source(assignment), self.release(assignment))
 
     def seed(self, assignment: str, student_id: str) -> str:
         """Return the hexadecimal seed of the inputs that an assignment's hidden tests choose.

@@ -1,7 +1,6 @@
-"""The whole flow: read a submission, heal it, run it in its rooms, store what came of it."""
+"""The whole flow: read a submission, restore it, run and judge it, store what came of it."""
 
 import logging
-from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass
@@ -9,20 +8,27 @@ from dataclasses import dataclass
 from nbformat import NotebookNode
 
 from grader.common.errors import ClusterError, CourseError, GradebookError, TaskFailed
+from grader.common.futures import completed, run_ahead, then
 from grader.common.text import printable
 from grader.course import Course
 from grader.judging.task import Result
-from grader.notebook.restore import Master
+from grader.notebook.restore import AssignmentTemplate
 from grader.notebook.submission import Submission, read_submission
 from grader.storage.backups import bring_in_order
 from grader.storage.database import in_sentences, one_engine
 from grader.storage.gradebook import Stored, register, store
 from grader.storage.late_penalties import deadlines
-from grader.storage.lock import Turn
-from grader.storage.pipeline import prepared_master
-from grader.storage.reuse import conditions, held, kept, key_of, remember
-from grader.storage.submitted import HandedIn
-from grader.workers.backend import Crew, judged
+from grader.storage.lock import gradebook_lock
+from grader.storage.pipeline import prepared_template
+from grader.storage.reuse import (
+    conditions,
+    find_earlier_result,
+    key_of,
+    refresh_late_penalty,
+    remember,
+)
+from grader.storage.submitted import SubmissionFolder
+from grader.workers.backend import Backend, submit_for_grading
 from grader.workers.workers import Workers
 
 AHEAD = 4
@@ -37,22 +43,7 @@ class Graded:
     notebook: NotebookNode
     """With a verdict in each grade cell."""
     seconds: float | None = None
-    """How long that took where it ran; None where nothing was run, for it had been before."""
-
-
-@dataclass(frozen=True)
-class _Way:
-    """How the submissions of one run are graded."""
-
-    masters: dict[str, Master]
-    """By assignment; so are the next two."""
-    seeds: dict[str, Callable[[str], str]]
-    """Gives each student's seed."""
-    given: dict[str, str]
-    """What else a result depends on, as a hash."""
-    trust_students: bool
-    force: bool
-    """Whether to run what was run before, too."""
+    """How long that took where it ran; None for an earlier result that still holds."""
 
 
 @dataclass(frozen=True)
@@ -70,97 +61,96 @@ class Row:
     """Whether nothing has changed since, so that the stored result holds."""
 
 
+@dataclass(frozen=True)
+class _Assignment:
+    """What the submissions of one assignment have in common."""
+
+    template: AssignmentTemplate
+    seed_of: Callable[[str], str]
+    """Gives each student's seed."""
+    conditions: str
+    """What else a result depends on, as a hash."""
+
+
 def grade_all(
     course: Course,
-    submissions: Sequence[HandedIn],
+    submissions: Sequence[SubmissionFolder],
     *,
-    crew: Crew | None = None,
+    backend: Backend | None = None,
     seed: str = '',
     trust_students: bool = False,
     force: bool = False,
 ) -> Iterator[Row]:
-    """Let a crew grade submissions, and store them in their order, one after the other.
+    """Read, restore, run, judge and store submissions, many at a time, in their order.
 
-    Each gets its row, whatever becomes of it. The crew is this machine's worker processes unless
-    another is given. `seed` replays inputs that hidden tests choose; by default they are each
-    student's own. Doing it again gives the same; where nothing has changed the stored result
+    Each gets its row, whatever becomes of it. The backend is this machine's worker processes
+    unless another is given. `seed` replays inputs that hidden tests choose; by default they are
+    each student's own. Doing it again gives the same; where nothing has changed the stored result
     holds, unless told to `force` a new one. Raises CourseError, and runs nothing, where there is
     no sandbox, unless told to `trust_students`.
     """
-    with crew or Workers() as crew:
-        in_sandbox = crew.isolated(trust_students=trust_students)
-        way = _Way({}, {}, {}, trust_students=trust_students, force=force)
-        # what would be wrong with each submission is said now
-        deadlines(course.gradebook, course.assignments())
-        with in_sentences(course), Turn.take(course.gradebook):
-            bring_in_order(course)
-            for assignment in sorted(
-                {each.assignment for each in submissions if not each.problem}
-            ):
-                register(course, assignment)
-                way.masters[assignment] = prepared_master(course, assignment)
-                way.seeds[assignment] = (lambda _: seed) if seed else course.seeds(assignment)
-                way.given[assignment] = conditions(course, assignment, isolated=in_sandbox)
+    with backend or Workers() as backend:
+        isolated = backend.require_isolation(trust_students=trust_students)
+        assignments = _prepare(course, submissions, seed=seed, isolated=isolated)
+
+        def start(found: SubmissionFolder) -> 'Future[Graded]':
+            if found.problem:
+                raise CourseError(found.problem)
+            submission = read_submission(
+                found.folder, student_id=found.student_id, assignment=found.assignment
+            )
+            assignment = assignments[found.assignment]
+            its_seed = assignment.seed_of(submission.student_id)
+            key = key_of(submission, assignment.conditions, seed=its_seed)
+            if not force and (earlier := find_earlier_result(course, submission, key)):
+                return completed(Graded(submission, earlier))
+            judged = submit_for_grading(  # restores it here; runs and judges it in a worker
+                submission,
+                assignment.template,
+                backend=backend,
+                seed=its_seed,
+                trust_students=trust_students,
+            )
+            return then(judged, lambda result: _graded(submission, result, key))
+
         with one_engine(course.db_url):
-            under_way: deque[tuple[HandedIn, Future[Graded]]] = deque()
-            for found in submissions:
-                under_way.append((found, _begun(course, found, way, crew)))
-                while under_way and (
-                    len(under_way) >= AHEAD * crew.room or under_way[0][1].done()
-                ):
-                    yield _row(course, *under_way.popleft())
-            while under_way:
-                yield _row(course, *under_way.popleft())
+            for found, work in run_ahead(submissions, start, at_most=AHEAD * backend.capacity):
+                yield _store(course, found, work)
 
 
-def _begun(course: Course, found: HandedIn, way: _Way, crew: Crew) -> 'Future[Graded]':
-    """Have one submission graded, or find what came of it before; nothing is stored yet."""
-    graded: Future[Graded] = Future()
-    try:
-        if found.problem:
-            raise CourseError(found.problem)
-        assignment = found.assignment
-        submission = read_submission(
-            found.folder, student_id=found.student_id, assignment=assignment
-        )
-        its_seed = way.seeds[assignment](submission.student_id)
-        key = key_of(submission, way.given[assignment], seed=its_seed)
-        if not way.force and (before := kept(course, submission, key)):
-            graded.set_result(Graded(submission, before))
-            return graded
-        work = judged(
-            submission,
-            way.masters[assignment],
-            crew=crew,
-            seed=its_seed,
-            trust_students=way.trust_students,
-        )
-    except Exception as error:  # it is told in its turn
-        graded.set_exception(error)
-        return graded
-
-    def settle(done: 'Future[Result]') -> None:
-        try:
-            result = done.result()
-            remember(result.notebook, key)
-            graded.set_result(Graded(submission, result.notebook, seconds=result.seconds))
-        except BaseException as error:
-            graded.set_exception(error)
-
-    work.add_done_callback(settle)
-    return graded
+def _prepare(
+    course: Course, submissions: Sequence[SubmissionFolder], *, seed: str, isolated: bool
+) -> dict[str, _Assignment]:
+    """Bring the gradebook in order, and return what each assignment is graded by."""
+    deadlines(course.gradebook, course.assignments())  # what is wrong with them is said now
+    prepared = {}
+    with in_sentences(course), gradebook_lock(course.gradebook):
+        bring_in_order(course)
+        for name in sorted({each.assignment for each in submissions if not each.problem}):
+            register(course, name)
+            prepared[name] = _Assignment(
+                template=prepared_template(course, name),
+                seed_of=(lambda _: seed) if seed else course.seeds(name),
+                conditions=conditions(course, name, isolated=isolated),
+            )
+    return prepared
 
 
-def _row(course: Course, found: HandedIn, work: Future[Graded]) -> Row:
-    """Wait for a submission's turn to be stored, and store it."""
+def _graded(submission: Submission, result: Result, key: str) -> Graded:
+    remember(result.notebook, key)
+    return Graded(submission, result.notebook, seconds=result.seconds)
+
+
+def _store(course: Course, found: SubmissionFolder, work: 'Future[Graded]') -> Row:
+    """Wait until a submission is judged, and store it; say why where that can't be done."""
     stored, reason, seconds, reused = None, found.problem, None, False
     which = printable(f'{found.assignment} of {found.student_id}')
     try:
         graded = work.result()
         seconds = graded.seconds
-        with in_sentences(course), Turn.take(course.gradebook):
+        with in_sentences(course), gradebook_lock(course.gradebook):
             if seconds is None:
-                stored = held(course, graded.submission, graded.notebook)
+                stored = refresh_late_penalty(course, graded.submission, graded.notebook)
                 reused = stored is not None
             stored = stored or store(course, graded.submission, graded.notebook)
         reason = stored.reason

@@ -7,10 +7,10 @@ from grader.common.text import printable
 from grader.course import Course
 from grader.notebook.restore import KEY, grade_id, role
 from grader.notebook.submission import read_submission
-from grader.storage.pipeline import prepared_master
+from grader.storage.pipeline import prepared_template
 from grader.storage.records import graded_notebook, verdicts
-from grader.storage.submitted import HandedIn
-from grader.workers.backend import Crew, judged
+from grader.storage.submitted import SubmissionFolder
+from grader.workers.backend import Backend, submit_for_grading
 from grader.workers.workers import Workers
 
 RECORDED = 'recorded'
@@ -19,9 +19,9 @@ RECORDED = 'recorded'
 
 def replay(
     course: Course,
-    submissions: Sequence[HandedIn],
+    submissions: Sequence[SubmissionFolder],
     *,
-    crew: Crew | None = None,
+    backend: Backend | None = None,
     seed: str = RECORDED,
     trust_students: bool = False,
 ) -> Iterator[tuple[str, bool]]:
@@ -31,16 +31,18 @@ def replay(
     """
     found = [each for each in submissions if not each.problem]
     seeds = [recorded_seed(course, each) if seed == RECORDED else seed for each in found]
-    masters = {name: prepared_master(course, name) for name in {each.assignment for each in found}}
-    with crew or Workers() as crew:
-        crew.isolated(trust_students=trust_students)
+    templates = {
+        name: prepared_template(course, name) for name in {each.assignment for each in found}
+    }
+    with backend or Workers() as backend:
+        backend.require_isolation(trust_students=trust_students)
         work = [
-            judged(
+            submit_for_grading(
                 read_submission(
                     each.folder, student_id=each.student_id, assignment=each.assignment
                 ),
-                masters[each.assignment],
-                crew=crew,
+                templates[each.assignment],
+                backend=backend,
                 seed=its,
                 trust_students=trust_students,
             )
@@ -56,7 +58,7 @@ def replay(
                     yield _compared(grade_id(cell), cell.metadata[KEY], stored)
 
 
-def recorded_seed(course: Course, found: HandedIn) -> str:
+def recorded_seed(course: Course, found: SubmissionFolder) -> str:
     """Return the seed of a submission's stored result. Raises CourseError where there is none."""
     graded = graded_notebook(course, found.student_id, found.assignment)
     about = graded.metadata.get(KEY, {})

@@ -9,7 +9,7 @@ from pathlib import Path
 from grader.course import Course
 from grader.grade import Row, grade_all
 from grader.storage.submitted import find_submissions
-from grader.workers.backend import Crew
+from grader.workers.backend import Backend
 
 FOLDER = Path(__file__).parent / 'submissions'
 sys.path.insert(0, str(FOLDER))
@@ -37,7 +37,11 @@ def hand_in(course: Course, names: Iterable[str]) -> None:
         shutil.copyfile(PATHS[name], folder / f'{assignment}.ipynb')
 
 
-def grade(course: Course, names: Iterable[str], *, crew: Crew | None = None) -> dict[str, Row]:
+def grade(
+    course: Course, names: Iterable[str], *, backend: Backend | None = None
+) -> dict[str, Row]:
     """Grade samples as `./course grade` does; return the rows by the samples' names."""
     hand_in(course, names)
-    return {row.student_id: row for row in grade_all(course, find_submissions(course), crew=crew)}
+    return {
+        row.student_id: row for row in grade_all(course, find_submissions(course), backend=backend)
+    }

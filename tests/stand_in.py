@@ -1,4 +1,4 @@
-"""A crew without rooms: what a function says of a notebook stands in for running it."""
+"""A backend without rooms: what a function says of a notebook stands in for running it."""
 
 from collections.abc import Awaitable, Callable
 from typing import Any
@@ -10,34 +10,34 @@ from grader import grade, replay
 from grader.common.pool import Pool
 from grader.judging import task
 from grader.judging.execute import Execution
-from grader.kernels.isolation import isolated
+from grader.kernels.isolation import require_isolation
 from grader.notebook.restore import KEY
 
 
 class Here:
     """Does in this process what the workers do in theirs."""
 
-    room = 4
+    capacity = 4
 
     def __enter__(self):
-        self._pool = Pool(self.room).__enter__()
+        self._pool = Pool(self.capacity).__enter__()
         return self
 
     def __exit__(self, *exception):
         self._pool.__exit__(*exception)
 
-    def isolated(self, *, trust_students):
-        return isolated(trust_students=trust_students)
+    def require_isolation(self, *, trust_students):
+        return require_isolation(trust_students=trust_students)
 
     def submit(self, work):
         return self._pool.submit(self._graded, work)
 
     async def _graded(self, work):
-        return task.unpacked(await task.graded(task.packed(work)), work)
+        return task.unpack(await task.run_packed(task.pack(work)), work)
 
 
 def stand_in(look: Callable[..., Awaitable[Execution]], patch: pytest.MonkeyPatch) -> None:
-    """Let `look` stand in for `grader.judging.execute.executed`, in this process."""
+    """Let `look` stand in for `grader.judging.execute.execute_exercises`, in this process."""
 
     async def looked(notebook: NotebookNode, **options: Any) -> Execution:
         execution = await look(notebook, **options)
@@ -45,6 +45,6 @@ def stand_in(look: Callable[..., Awaitable[Execution]], patch: pytest.MonkeyPatc
         ours.setdefault('seed', options.get('seed', ''))
         return execution
 
-    patch.setattr(task, 'executed', looked)
+    patch.setattr(task, 'execute_exercises', looked)
     patch.setattr(grade, 'Workers', Here)
     patch.setattr(replay, 'Workers', Here)

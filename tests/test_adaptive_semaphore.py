@@ -7,7 +7,7 @@ import pytest
 from my_robot_basics.checks import pressure
 
 from grader.sandbox.limits import BUSY_SHARE, IDLE_SHARE
-from grader.workers.adaptive_semaphore import LOOK_SEC, Gate
+from grader.workers.adaptive_semaphore import LOOK_SEC, AdaptiveSemaphore
 
 
 class Machine:
@@ -18,7 +18,7 @@ class Machine:
         clock = types.SimpleNamespace(monotonic=lambda: self.now)
         monkeypatch.setattr(pressure, 'time', clock)
         monkeypatch.setattr(pressure, 'crowded_sec', lambda: self.crowded_sec)
-        self.gate = Gate(least=4, most=9, step=2)
+        self.gate = AdaptiveSemaphore(least=4, most=9, step=2)
         self.inside = []
 
     async def fill(self):

@@ -64,7 +64,7 @@ class Class:
     """How many of the machine's own servers got a connection."""
 
 
-def grade_class(root, names, crew):
+def grade_class(root, names, backend):
     """Grade attacks, several at a time, honest students in between."""
     course = released_course(root)
     add_robot_lesson(course)
@@ -81,7 +81,7 @@ def grade_class(root, names, crew):
                 hand_in_honestly(course, f'honest-{name}')
         hand_in_honestly(course, 'honest-robot', ROBOT)
         submissions = sorted(find_submissions(course), key=lambda each: order(each.student_id))
-        rows = {row.student_id: row for row in grade_all(course, submissions, crew=crew)}
+        rows = {row.student_id: row for row in grade_all(course, submissions, backend=backend)}
         knocks = sum(knocked(each) for each in (server, local))
     pages = {page.parts[-3]: page.read_text(encoding='utf-8') for page in write_feedback(course)}
     return Class(rows, course, pages, write_scores(course).read_text(encoding='utf-8-sig'), knocks)
@@ -109,8 +109,8 @@ def graded(request, tmp_path_factory):
     names = [name for name in NAMES if name in asked] or NAMES
     for name in LEFT:
         Path('/tmp', name).unlink(missing_ok=True)
-    crew = Workers(in_flight=6, command=BRIEF)
-    return grade_class(tmp_path_factory.mktemp('attacked'), names, crew)
+    backend = Workers(in_flight=6, command=BRIEF)
+    return grade_class(tmp_path_factory.mktemp('attacked'), names, backend)
 
 
 def test_each_attack_says_what_it_tries():

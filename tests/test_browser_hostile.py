@@ -19,7 +19,7 @@ from nbgrader.api import Gradebook
 
 from grader.authoring.release import release
 from grader.grade import Row
-from grader.notebook.restore import heal
+from grader.notebook.restore import restore
 from grader.notebook.submission import read_submission
 from grader.report.feedback import write_feedback
 from grader.report.report import Run, write_report
@@ -137,9 +137,9 @@ def course(tmp_path_factory):
     (path.parent / f'{BY_NAME}.py').write_text('x = 1')
     folder = course.folder('submitted', STUDENT, TOY)
     submission = read_submission(folder, student_id=STUDENT, assignment=TOY)
-    healed = heal(submission.notebook, course.master(TOY)).notebook
+    restored = restore(submission.notebook, course.template(TOY)).notebook
     said = f'expected {EVIL}, saw {EVIL}: {EVIL}'
-    graded = executed(prepare(course, TOY, healed), {'double-check': said, 'double-hidden': '?'})
+    graded = executed(prepare(course, TOY, restored), {'double-check': said, 'double-hidden': '?'})
     run = CellRun()
     for output in OUTPUTS:
         run.keep(output.output_type, output)

@@ -89,7 +89,7 @@ def test_a_check_waits_for_a_node_that_is_slow_to_return():
         assert node.returned
 
 
-class Gate(ReentrantCallbackGroup):
+class AdaptiveSemaphore(ReentrantCallbackGroup):
     """Lets no callback through while it is closed, as an executor whose threads are all busy."""
 
     is_closed = False
@@ -100,7 +100,7 @@ class Gate(ReentrantCallbackGroup):
 
 def test_a_timer_that_was_due_when_the_clock_was_given_back_is_not_left_in_the_future():
     # rcl carries over what is left of the period, unless that is exactly nothing
-    gate, fired = Gate(), threading.Event()
+    gate, fired = AdaptiveSemaphore(), threading.Event()
 
     def make_node(context):
         node = Node('late', context=context)

@@ -20,7 +20,7 @@ from grader.collect.collect import AGAIN, EARLIER, KNOWN, LEFT, NEW, UNUSED, col
 from grader.common.errors import CourseError
 from grader.common.parsing import Limits
 from grader.course import Course
-from grader.notebook.restore import heal
+from grader.notebook.restore import restore
 from grader.notebook.submission import read_submission
 from grader.storage.gradebook import register, store
 from grader.storage.pipeline import prepare
@@ -175,8 +175,8 @@ def test_the_earlier_one_keeps_its_grade(course, source):
         register(course, TOY)
         folder = course.folder('submitted', 'ada', TOY)
         submission = read_submission(folder, student_id='ada', assignment=TOY)
-        healed = heal(submission.notebook, course.master(TOY)).notebook
-        store(course, submission, executed(prepare(course, TOY, healed), reasons))
+        restored = restore(submission.notebook, course.template(TOY)).notebook
+        store(course, submission, executed(prepare(course, TOY, restored), reasons))
     kept = course.folder('submitted_before', 'ada', TOY) / '1'
     assert sorted(path.name for path in kept.iterdir()) == [
         'autograded',

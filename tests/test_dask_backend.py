@@ -84,11 +84,11 @@ def test_a_cluster_grades_as_this_machine_does_and_a_lost_worker_changes_nothing
     mark = tmp_path / 'go'
     waits = dict.fromkeys(('bob', 'eve', 'kim'), f'# wait {mark}')
     there = handed_in(course, tmp_path / 'there', waits)
-    with Cluster(scheduler.address) as crew:
-        failing = crew.submit(Task(notebook=answered(course, f'# fail\n{RIGHT}'), seed='abc'))
+    with Cluster(scheduler.address) as backend:
+        failing = backend.submit(Task(notebook=answered(course, f'# fail\n{RIGHT}'), seed='abc'))
         with pytest.raises(TaskFailed, match=r'^OSError: no room$'):
             failing.result()
-    rows = grade_all(there, find_submissions(there), crew=Cluster(scheduler.address))
+    rows = grade_all(there, find_submissions(there), backend=Cluster(scheduler.address))
     names = [next(rows).student_id]
     wait_for(lambda: grades(workers[0]))
     workers[0].send_signal(signal.SIGKILL)
@@ -96,7 +96,7 @@ def test_a_cluster_grades_as_this_machine_does_and_a_lost_worker_changes_nothing
     names += [row.student_id for row in rows]
     assert names == sorted(ANSWERS)
     here = handed_in(course, tmp_path / 'here', waits)
-    list(grade_all(here, find_submissions(here), crew=Workers(2, command=LOCALLY)))
+    list(grade_all(here, find_submissions(here), backend=Workers(2, command=LOCALLY)))
     assert scores(there) == scores(here)
     assert len(scores(there)) == 3 * len(ANSWERS)
 
@@ -107,7 +107,7 @@ def test_a_lost_scheduler_ends_the_run_which_goes_on_with_another_one(
     start_worker(start, scheduler.address)
     mark = tmp_path / 'go'
     there = handed_in(course, tmp_path / 'there', {'eve': f'# wait {mark}'})
-    rows = grade_all(there, find_submissions(there), crew=Cluster(scheduler.address))
+    rows = grade_all(there, find_submissions(there), backend=Cluster(scheduler.address))
     done = [next(rows).student_id, next(rows).student_id]
     scheduler.send_signal(signal.SIGKILL)
     with pytest.raises(ClusterError, match='run the same command again, and it goes on'):
@@ -136,10 +136,10 @@ def test_a_worker_that_is_not_as_we_are_grades_nothing(scheduler, start, environ
 
 def test_a_worker_that_comes_later_is_looked_at_too(course, scheduler, start):
     good = start_worker(start, scheduler.address)
-    with Cluster(scheduler.address) as crew:
+    with Cluster(scheduler.address) as backend:
         good.kill()
         start_worker(start, scheduler.address, TOY_MISSING='no bubblewrap here')
-        work = crew.submit(Task(notebook=answered(course, RIGHT), seed='abc'))
+        work = backend.submit(Task(notebook=answered(course, RIGHT), seed='abc'))
         with pytest.raises(ClusterError, match='refuses: no bubblewrap here'):
             work.result()
 
@@ -152,8 +152,8 @@ def test_leaving_calls_off_what_is_under_way_and_what_waits(course, scheduler, s
         def known():
             return onlooker.run_on_scheduler(lambda dask_scheduler: len(dask_scheduler.tasks))
 
-        with Cluster(scheduler.address) as crew:
-            works = [crew.submit(task) for _ in range(6)]
+        with Cluster(scheduler.address) as backend:
+            works = [backend.submit(task) for _ in range(6)]
             wait_for(lambda: known() == len(works))
         wait_for(lambda: known() == 0)
     assert all(isinstance(work.exception(timeout=60), ClusterError) for work in works)

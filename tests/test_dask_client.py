@@ -51,7 +51,7 @@ def test_tls_needs_certificates(tmp_path):
 
 
 def test_no_scheduler_is_told(monkeypatch):
-    monkeypatch.setattr('grader.workers.dask_client.PATIENCE_SEC', 0.1)
+    monkeypatch.setattr('grader.workers.dask_client.CONNECT_TIMEOUT_SEC', 0.1)
     with pytest.raises(ClusterError, match=r'no scheduler at tcp://127.0.0.1:1 that answers'):
         connected('tcp://127.0.0.1:1', Certificates())
 

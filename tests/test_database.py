@@ -68,7 +68,7 @@ def test_a_locked_database_is_waited_for_with_a_word(course, other):
 
 
 def test_a_database_that_stays_locked_is_told_in_the_end(course, other, monkeypatch, capsys):
-    monkeypatch.setattr(database, 'PATIENCE_SEC', 0.2)
+    monkeypatch.setattr(database, 'TIMEOUT_SEC', 0.2)
     with (
         pytest.raises(GradebookError, match=r'locked for 0 s.*run the same command again'),
         in_sentences(course),

@@ -22,14 +22,15 @@ import nbformat
 from grader.course import ROOT, Course
 from grader.judging.execute import execute
 from grader.storage.gradebook import register
-from grader.notebook.restore import heal
+from grader.notebook.restore import restore
 from grader.storage.pipeline import prepare
 if __name__ == '__main__':
     course = Course(gradebook=Path(tempfile.mkdtemp()))
     register(course, '02_joint_state')
     (path,) = ROOT.glob('tests/submissions/**/{SAMPLE}.ipynb')
-    healed = heal(nbformat.read(path, as_version=4), course.master('02_joint_state')).notebook
-    graded = execute(prepare(course, '02_joint_state', healed))
+    submitted = nbformat.read(path, as_version=4)
+    restored = restore(submitted, course.template('02_joint_state')).notebook
+    graded = execute(prepare(course, '02_joint_state', restored))
     assert not [note for verdict in graded.verdicts for note in verdict.notes]
     print(ROOT, sys.prefix, *[verdict.outcome for verdict in graded.verdicts], sep='\\n')
 """

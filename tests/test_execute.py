@@ -17,7 +17,7 @@ from grader.common.errors import RoomFailure
 from grader.judging import execute as module
 from grader.judging.execute import execute
 from grader.kernels import rooms as rooms_module
-from grader.notebook.restore import KEY, grade_id, heal, make_master
+from grader.notebook.restore import KEY, grade_id, make_template, restore
 
 CANARY = 'hidden canary'
 CHECK = f"""
@@ -50,14 +50,14 @@ def lesson(*exercises, check=CHECK, setup='from my_robot_basics.live import rese
 
 
 def handed_in(source, *, after=(), before=(), **answers):
-    """Return the healed notebook of a student who answered so, with own cells around."""
-    master = make_master(source, source)
+    """Return the restored notebook of a student who answered so, with own cells around."""
+    template = make_template(source, source)
     submitted = nbformat.from_dict(source)
     for cell in submitted.cells:
         if name := grade_id(cell):
             cell.source = answers.get(name, cell.source).replace('double', f'double_{name}')
     cells = [*map(new_code_cell, before), *submitted.cells, *map(new_code_cell, after)]
-    return heal(new_notebook(cells=cells), master).notebook
+    return restore(new_notebook(cells=cells), template).notebook
 
 
 def outcomes(execution):

@@ -9,7 +9,7 @@ from my_robot_basics.validate.exercises import (
 )
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
-from grader.notebook.restore import heal, make_master
+from grader.notebook.restore import make_template, restore
 
 
 def marked(name, source='', *, new=new_code_cell, **marks):
@@ -47,8 +47,8 @@ SOURCE = new_notebook(
 
 
 def lesson(area='def area(r): return r', node='class Talker: pass\nrate_hz = 5', **own):
-    """Return the healed lesson; `own` are cells of the student's, by the text they follow."""
-    master = make_master(nbformat.from_dict(SOURCE), nbformat.from_dict(SOURCE))
+    """Return the restored lesson; `own` are cells of the student's, by the text they follow."""
+    template = make_template(nbformat.from_dict(SOURCE), nbformat.from_dict(SOURCE))
     submitted = nbformat.from_dict(SOURCE)
     places = {'at_start': 0, 'before_area': 3, 'after_area': 8, 'at_end': 15}
     for cell in submitted.cells:
@@ -58,7 +58,7 @@ def lesson(area='def area(r): return r', node='class Talker: pass\nrate_hz = 5',
             cell.source = own.pop('try_it', cell.source)
     for place, source in sorted(own.items(), key=lambda item: -places[item[0]]):
         submitted.cells.insert(places[place], new_code_cell(source))
-    return heal(submitted, master).notebook
+    return restore(submitted, template).notebook
 
 
 def test_exercises_are_found_with_their_cells():
@@ -184,12 +184,12 @@ BORROWED = {
 
 @pytest.mark.parametrize(('area', 'expected'), BORROWED.values(), ids=BORROWED)
 def test_what_the_lesson_shows_is_run_for_the_names_that_an_answer_needs(area, expected):
-    master = make_master(nbformat.from_dict(SHOWN), nbformat.from_dict(SHOWN))
+    template = make_template(nbformat.from_dict(SHOWN), nbformat.from_dict(SHOWN))
     submitted = nbformat.from_dict(SHOWN)
     next(
         c for c in submitted.cells if c.metadata.get('nbgrader', {}).get('solution')
     ).source = area
-    notebook = heal(submitted, master).notebook
+    notebook = restore(submitted, template).notebook
     first = next(plans(notebook, find_exercises(notebook)[0]))
     assert [notebook.cells[i].source for i in first.borrowed] == expected
     own = ["reset('area')", area]

@@ -8,13 +8,13 @@ from nbformat.v4 import new_code_cell, new_output
 
 from grader.common.parsing import Limits, TooHard, parse
 from grader.course import Course
-from grader.notebook.restore import KEY, heal
+from grader.notebook.restore import KEY, restore
 from grader.notebook.submission import read_submission
 from grader.report import feedback as module
 from grader.report import page
 from grader.report.feedback import write_feedback
 from grader.storage.gradebook import store
-from grader.storage.pipeline import prepare, prepared_master, unanswered
+from grader.storage.pipeline import prepare, prepared_template, unanswered
 
 RIGHT = 'def double(x):\n    return 2 * x'
 SCRIPT = '<script>alert("from a student")</script>'
@@ -30,10 +30,10 @@ def feedback(course, student, notebook, *, reasons=None, outputs=None, notes=())
     folder = course.folder('submitted', student, TOY)
     submission = read_submission(folder, student_id=student, assignment=TOY)
     if submission.problem:
-        graded = unanswered(prepared_master(course, TOY), submission.problem)
+        graded = unanswered(prepared_template(course, TOY), submission.problem)
     else:
-        healed = heal(submission.notebook, course.master(TOY)).notebook
-        graded = executed(prepare(course, TOY, healed), reasons or {})
+        restored = restore(submission.notebook, course.template(TOY)).notebook
+        graded = executed(prepare(course, TOY, restored), reasons or {})
         for cell in graded.cells:
             if cell.id in (outputs or {}):
                 cell.outputs = [*outputs[cell.id], *cell.outputs]

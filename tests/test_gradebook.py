@@ -14,11 +14,11 @@ from nbgrader.api import Gradebook
 from grader.common.errors import CourseError
 from grader.course import Course
 from grader.export.scores import COLUMNS, write_scores
-from grader.notebook.restore import KEY, heal
+from grader.notebook.restore import KEY, restore
 from grader.notebook.submission import read_submission
 from grader.storage import gradebook
 from grader.storage.gradebook import register, store
-from grader.storage.pipeline import prepare, prepared_master, unanswered
+from grader.storage.pipeline import prepare, prepared_template, unanswered
 from grader.storage.records import records, verdicts
 
 RIGHT = 'def double(x):\n    return 2 * x'
@@ -41,8 +41,8 @@ def grade(course, student, reasons, *, notebook=None, **answer):
     folder = course.folder('submitted', student, TOY)
     submission = read_submission(folder, student_id=student, assignment=TOY)
     register(course, TOY)
-    healed = heal(submission.notebook, course.master(TOY)).notebook
-    return store(course, submission, executed(prepare(course, TOY, healed), reasons))
+    restored = restore(submission.notebook, course.template(TOY)).notebook
+    return store(course, submission, executed(prepare(course, TOY, restored), reasons))
 
 
 def by_cell(course, student):
@@ -114,7 +114,7 @@ def test_a_grade_cell_without_a_verdict_never_earns_points(course):
         course.folder('submitted', 'ada', TOY), student_id='ada', assignment=TOY
     )
     register(course, TOY)
-    silent = prepare(course, TOY, heal(submission.notebook, course.master(TOY)).notebook)
+    silent = prepare(course, TOY, restore(submission.notebook, course.template(TOY)).notebook)
     assert store(course, submission, silent).pending
     assert by_cell(course, 'ada')['double-check'].score is None
 
@@ -139,8 +139,8 @@ def test_submitted_files_are_only_read(course):
     before = {p: (p.read_bytes(), p.stat().st_mtime_ns) for p in path.parent.iterdir()}
     grade_again = read_submission(path.parent, student_id='ada', assignment=TOY)
     register(course, TOY)
-    healed = prepare(course, TOY, heal(grade_again.notebook, course.master(TOY)).notebook)
-    store(course, grade_again, executed(healed, {}))
+    restored = prepare(course, TOY, restore(grade_again.notebook, course.template(TOY)).notebook)
+    store(course, grade_again, executed(restored, {}))
     assert before == {p: (p.read_bytes(), p.stat().st_mtime_ns) for p in path.parent.iterdir()}
     kept = course.folder('autograded', 'ada', TOY)
     assert sorted(p.name for p in kept.iterdir()) == [f'{TOY}.ipynb', 'helper.py', 'timestamp.txt']
@@ -241,7 +241,7 @@ def test_names_from_any_alphabet_are_stored_under_themselves(course, student):
     submission = read_submission(folder, student_id=student, assignment=TOY)
     register(course, TOY)
     stored = store(
-        course, submission, unanswered(prepared_master(course, TOY), submission.problem)
+        course, submission, unanswered(prepared_template(course, TOY), submission.problem)
     )
     assert (stored.score, stored.pending) == (0.0, False)
     assert 'is not JSON' in stored.reason
@@ -317,7 +317,7 @@ def test_what_stands_for_an_unreadable_submission_is_a_notebook_with_its_reason(
     folder = course.folder('submitted', 'ada', TOY)
     submission = read_submission(folder, student_id='ada', assignment=TOY)
     register(course, TOY)
-    store(course, submission, unanswered(prepared_master(course, TOY), submission.problem))
+    store(course, submission, unanswered(prepared_template(course, TOY), submission.problem))
     kept = nbformat.read(course.folder('autograded', 'ada', TOY) / f'{TOY}.ipynb', as_version=4)
     nbformat.validate(kept)
     assert kept.metadata[KEY].problem == submission.problem

@@ -78,17 +78,18 @@ def course(tmp_path_factory):
 
 
 @pytest.fixture(scope='module')
-def crew():
+def backend():
     """Workers that are there for all of the hand-ins: beginning with each anew takes long."""
     with Workers() as workers:
         yield Standing(workers)
 
 
 class Standing:
-    """A crew that goes on when a run ends."""
+    """A backend that goes on when a run ends."""
 
-    def __init__(self, crew):
-        self.room, self.isolated, self.submit = crew.room, crew.isolated, crew.submit
+    def __init__(self, backend):
+        self.capacity, self.submit = backend.capacity, backend.submit
+        self.require_isolation = backend.require_isolation
 
     def __enter__(self):
         return self
@@ -97,23 +98,23 @@ class Standing:
         pass
 
 
-def handed_in(course, crew, way, *, table, later):
+def handed_in(course, backend, way, *, table, later):
     """Hand in and grade; return the score, and all that the student can read of it."""
     answer = ANSWER.replace('TABLE', repr(table)).replace('WAY', way)
     submit(course, 'eve', answered(course, answer.replace('SAY_IT_LATER', repr(later))))
-    (row,) = grade_all(course, find_submissions(course), crew=crew)
+    (row,) = grade_all(course, find_submissions(course), backend=backend)
     (page,) = write_feedback(course)
     scores = write_scores(course)
     return row, page.read_text(encoding='utf-8') + scores.read_text(encoding='utf-8')
 
 
 @pytest.mark.isolation
-def test_a_table_of_all_that_ten_pages_tell_earns_nothing(course, crew):
+def test_a_table_of_all_that_ten_pages_tell_earns_nothing(course, backend):
     numbers = random.Random(f'{course.seed(TOY, "eve")}:double')
     asked = {numbers.randrange(10_000, 60_000) for _ in range(4)}
     table, scores = {}, []
     for number, way in enumerate(WAYS):
-        row, told = handed_in(course, crew, way, table=table, later=number % 2)
+        row, told = handed_in(course, backend, way, table=table, later=number % 2)
         scores.append(row.stored.score)
         found = {int(text.replace(',', '')) for text in NUMBER.findall(told)}
         table |= {x: 2 * x for x in found} | {x // 2: x for x in found}
@@ -123,21 +124,21 @@ def test_a_table_of_all_that_ten_pages_tell_earns_nothing(course, crew):
 
 
 @pytest.mark.isolation
-def test_the_cause_is_told_and_whoever_teaches_reads_the_rest(course, crew):
-    handed_in(course, crew, 'return x + 1', table={}, later=False)
+def test_the_cause_is_told_and_whoever_teaches_reads_the_rest(course, backend):
+    handed_in(course, backend, 'return x + 1', table={}, later=False)
     found = verdicts(course, 'eve', TOY)['double-check']
     assert found.reason == f'{hidden.PLACE}add it to itself: …'
     assert re.fullmatch(r'expected (\d+) for (\d+), saw \d+: add it to itself: \2', found.details)
-    handed_in(course, crew, 'raise ValueError(x)', table={}, later=False)
+    handed_in(course, backend, 'raise ValueError(x)', table={}, later=False)
     found = verdicts(course, 'eve', TOY)['double-check']
     cause = '`double` raises ValueError: …: call … in a cell of your own to see where'
     assert found.reason == f'{hidden.PLACE}{cause}'
 
 
 @pytest.mark.isolation
-def test_a_visible_part_that_fails_later_is_told_in_full(course, crew):
+def test_a_visible_part_that_fails_later_is_told_in_full(course, backend):
     submit(course, 'eve', answered(course, 'def double(x):\n    return x + x if x else "none"'))
-    list(grade_all(course, find_submissions(course), crew=crew))
+    list(grade_all(course, find_submissions(course), backend=backend))
     found = verdicts(course, 'eve', TOY)
     assert found['double-check'].outcome == 'passed'
     assert found['double-hidden'].reason == 'expected 0, saw none: add it to itself'

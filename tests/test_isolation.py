@@ -16,7 +16,7 @@ from grader.common.errors import CourseError
 from grader.export.scores import write_scores
 from grader.kernels import fork_servers
 from grader.kernels import isolation as module
-from grader.kernels.isolation import NO_SANDBOX, TRUST, isolated, missing, protections
+from grader.kernels.isolation import NO_SANDBOX, TRUST, missing, protections, require_isolation
 from grader.report.feedback import write_feedback
 
 RIGHT = 'def double(x): return 2 * x'
@@ -67,7 +67,7 @@ def refusing(*options, says='Operation not permitted'):
 @pytest.mark.isolation
 def test_this_machine_can_isolate():
     assert missing() == ''
-    assert isolated()
+    assert require_isolation()
     assert len(protections()) == 7
 
 
@@ -155,7 +155,7 @@ def test_nothing_runs_where_there_is_no_sandbox(course, nowhere, capsys):
     assert missing() in said
     assert not os.path.exists('/tmp/it_ran')
     with pytest.raises(CourseError, match='nothing was run'):
-        isolated()
+        require_isolation()
 
 
 def test_trust_is_told_once_to_whoever_reads_the_grade(course, nowhere, capsys):
@@ -188,7 +188,7 @@ def test_the_demo_says_that_its_samples_had_no_sandbox(course, nowhere, capsys, 
 
 @pytest.mark.isolation
 def test_trust_changes_nothing_where_there_is_a_sandbox(course):
-    assert isolated(trust_students=True)
+    assert require_isolation(trust_students=True)
     submit(course, 'bob', answered(course, RIGHT))
     assert main(['grade', '--trust-students', '--student', 'bob'], course=course) == 0
     rows = write_scores(course).read_text(encoding='utf-8').splitlines()
@@ -197,12 +197,12 @@ def test_trust_changes_nothing_where_there_is_a_sandbox(course):
 
 def test_nbgraders_own_commands_can_be_told_to_trust(nowhere, monkeypatch):
     assert not ExecuteRooms().trust_students
-    assert not isolated(trust_students=True)
+    assert not require_isolation(trust_students=True)
     monkeypatch.setenv(TRUST, '1')
-    assert not isolated()
+    assert not require_isolation()
     monkeypatch.setenv(TRUST, '')
     with pytest.raises(CourseError):
-        isolated()
+        require_isolation()
 
 
 @pytest.mark.isolation
@@ -210,7 +210,7 @@ def test_it_can_be_asked_inside_a_running_event_loop():
     import asyncio
 
     async def formgrader():
-        return isolated()
+        return require_isolation()
 
     assert asyncio.run(formgrader())
     assert subprocess.run is BWRAP

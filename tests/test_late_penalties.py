@@ -8,7 +8,7 @@ from nbgrader.api import Gradebook
 from grader.common.errors import CourseError
 from grader.course import Course
 from grader.grade import grade_all
-from grader.notebook.restore import heal
+from grader.notebook.restore import restore
 from grader.notebook.submission import read_submission
 from grader.storage.gradebook import store
 from grader.storage.late_penalties import FILE, Deadlines, deadlines, extended_for_nobody
@@ -47,8 +47,8 @@ def grade(course, student, handed_in):
     if handed_in:
         path.with_name('timestamp.txt').write_text(handed_in)
     submission = read_submission(path.parent, student_id=student, assignment=TOY)
-    healed = heal(submission.notebook, course.master(TOY)).notebook
-    stored = store(course, submission, executed(prepare(course, TOY, healed), {}))
+    restored = restore(submission.notebook, course.template(TOY)).notebook
+    stored = store(course, submission, executed(prepare(course, TOY, restored), {}))
     assert stored.score + stored.late == pytest.approx(3.0)
     return stored.score
 

@@ -9,8 +9,8 @@ from nbformat.v4 import new_code_cell, new_notebook, new_output
 from grader.course import ROOT
 from grader.judging.execute import execute
 from grader.judging.local_paths import hide_local_paths, shorten_local_paths
-from grader.kernels.isolation import isolated
-from grader.notebook.restore import heal
+from grader.kernels.isolation import require_isolation
+from grader.notebook.restore import restore
 from grader.storage.pipeline import prepare
 
 
@@ -49,8 +49,10 @@ def test_pictures_stay_as_they_are_and_all_texts_are_shortened():
 def test_a_graded_notebook_does_not_say_where_the_course_lies(tmp_path):
     course = released_course(tmp_path)
     answer = 'import rclpy\nprint(rclpy.__file__)\nfrom my_robot_basics.live import nothing_such'
-    healed = heal(answered(course, answer), course.master('00_toy')).notebook
-    graded = execute(prepare(course, '00_toy', healed), trust_students=not isolated()).notebook
+    restored = restore(answered(course, answer), course.template('00_toy')).notebook
+    graded = execute(
+        prepare(course, '00_toy', restored), trust_students=not require_isolation()
+    ).notebook
     (said,) = [cell for cell in graded.cells if grade_id(cell) == 'double']
     assert '.venv/lib/python' in said.outputs[0].text
     assert 'cannot import name' in said.outputs[1].evalue

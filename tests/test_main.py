@@ -5,6 +5,7 @@ import sqlite3
 import subprocess
 import sys
 from contextlib import closing
+from pathlib import Path
 
 import pytest
 from course_maker import TOY, make_course, submit
@@ -14,6 +15,7 @@ from grader.common.errors import CourseError
 from grader.course import Course
 from grader.storage import database
 from grader.storage.database import make_database
+from grader.storage.lock import gradebook_lock
 
 
 def test_help_lists_every_verb(capsys):
@@ -88,7 +90,7 @@ def test_all_verbs_in_a_row(tmp_path, capsys):
 def test_a_database_in_use_is_waited_for_with_a_word(tmp_path, capsys, monkeypatch):
     course = make_course(tmp_path)
     make_database(course)
-    monkeypatch.setattr(database, 'PATIENCE_SEC', 0.2)
+    monkeypatch.setattr(database, 'TIMEOUT_SEC', 0.2)
     with closing(sqlite3.connect(course.database, isolation_level=None)) as other:
         other.execute('BEGIN EXCLUSIVE')
         for verb in ('scores', 'feedback'):
@@ -102,8 +104,8 @@ def test_a_second_writer_waits_for_the_first_and_says_so(tmp_path):
     hold = (
         'import sys, time\n'
         'from pathlib import Path\n'
-        'from grader.storage.lock import Turn\n'
-        'with Turn.take(Path(sys.argv[1])):\n'
+        'from grader.storage.lock import gradebook_lock\n'
+        'with gradebook_lock(Path(sys.argv[1])):\n'
         '    print("mine", flush=True)\n'
         '    sys.stdin.read()\n'
     )
@@ -115,35 +117,34 @@ def test_a_second_writer_waits_for_the_first_and_says_so(tmp_path):
             assert second.stdout.readline() == (
                 f'waiting: process {first.pid} is grading into {tmp_path}\n'
             )
-            first.send_signal(signal.SIGKILL)  # a turn ends with its holder
+            first.send_signal(signal.SIGKILL)  # a lock ends with its holder
             assert second.stdout.readline() == 'mine\n'
             second.communicate('')
 
 
-def test_a_turn_that_could_not_be_written_down_is_not_taken(tmp_path, monkeypatch):
-    from grader.storage.lock import Turn
-
-    def full(*_):
+def test_a_lock_whose_holder_could_not_be_written_down_is_let_go(tmp_path, monkeypatch):
+    def full(*_, **__):
         raise OSError(errno.ENOSPC, 'No space left on device')
 
     with monkeypatch.context() as patch:
-        patch.setattr(os, 'pwrite', full)
-        with pytest.raises(OSError, match='No space') as kept:
-            Turn.take(tmp_path)
-    with Turn.take(tmp_path, say=pytest.fail):
-        assert kept.value
+        patch.setattr(Path, 'write_text', full)
+        with pytest.raises(OSError, match='No space'), gradebook_lock(tmp_path):
+            pytest.fail('the lock was taken')
+    with gradebook_lock(tmp_path, say=pytest.fail):
+        assert (tmp_path / '.lock').read_text() == str(os.getpid())
 
 
-def test_a_turn_is_the_same_for_all_of_a_process_and_ends_with_its_last_holder(tmp_path):
-    from grader.storage.lock import Turn
+def test_a_lock_that_is_taken_again_is_free_only_at_the_end_of_the_outermost_block(tmp_path):
+    def is_free():
+        return not subprocess.run(
+            ['flock', '--nonblock', str(tmp_path / '.lock'), 'true'], check=False, env=os.environ
+        ).returncode
 
-    turn = Turn.take(tmp_path)
-    assert Turn.take(tmp_path) is turn
-    del turn
-    free = subprocess.run(
-        ['flock', '--nonblock', str(tmp_path / '.lock'), 'true'], check=False, env=os.environ
-    )
-    assert free.returncode == 0
+    with gradebook_lock(tmp_path):
+        with gradebook_lock(tmp_path):
+            assert not is_free()
+        assert not is_free()
+    assert is_free()
 
 
 def test_the_sample_class_is_what_demo_grades():

@@ -16,7 +16,7 @@ from course_maker import TOY, answered, executed, released_course, submit
 
 from grader.export.scores import write_scores
 from grader.grade import Row
-from grader.notebook.restore import heal
+from grader.notebook.restore import restore
 from grader.notebook.submission import read_submission
 from grader.report.feedback import write_feedback
 from grader.report.progress_table import score_of, why
@@ -92,8 +92,8 @@ def grade(course, student, explained):
     submit(course, student, answered(course, RIGHT, explained=explained))
     folder = course.folder('submitted', student, TOY)
     submission = read_submission(folder, student_id=student, assignment=TOY)
-    healed = heal(submission.notebook, course.master(TOY)).notebook
-    stored = store(course, submission, executed(prepare(course, TOY, healed), {}))
+    restored = restore(submission.notebook, course.template(TOY)).notebook
+    stored = store(course, submission, executed(prepare(course, TOY, restored), {}))
     return Row(student, TOY, stored, stored.reason)
 
 

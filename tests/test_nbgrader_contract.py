@@ -164,7 +164,7 @@ def test_the_configured_passes_are_registered_and_in_force(config):
 
 
 def test_healing_comes_first_and_running_before_the_scores_are_saved():
-    assert SANITIZE_PASSES[0] == 'grader.autograde.preprocessors.HealSubmission'
+    assert SANITIZE_PASSES[0] == 'grader.autograde.preprocessors.RestoreSubmission'
     assert 'nbgrader.preprocessors.Execute' not in AUTOGRADE_PASSES
     run = AUTOGRADE_PASSES.index('grader.autograde.preprocessors.ExecuteRooms')
     assert run < AUTOGRADE_PASSES.index('grader.storage.save_grades.SaveGrades')

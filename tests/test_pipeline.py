@@ -3,10 +3,10 @@ import pytest
 from sample_class import PATHS, assignment_of
 
 from grader.course import Course
-from grader.notebook.restore import heal
+from grader.notebook.restore import restore
 from grader.notebook.submission import read_submission
 from grader.storage.gradebook import register
-from grader.storage.pipeline import prepare, prepared_master
+from grader.storage.pipeline import prepare, prepared_template
 
 NAMES = (
     '02_joint_state-pass-helper_in_the_last_cell',
@@ -32,8 +32,8 @@ def test_what_is_healed_from_a_prepared_master_is_prepared(name, course, tmp_pat
     (tmp_path / f'{assignment}.ipynb').write_bytes(PATHS[name].read_bytes())
     submission = read_submission(tmp_path, student_id='ada', assignment=assignment)
     notebook = submission.notebook or nbformat.v4.new_notebook()
-    one = prepare(course, assignment, heal(notebook, course.master(assignment)).notebook)
-    other = heal(notebook, prepared_master(course, assignment)).notebook
+    one = prepare(course, assignment, restore(notebook, course.template(assignment)).notebook)
+    other = restore(notebook, prepared_template(course, assignment)).notebook
     assert one == other
     assert any('checksum' in cell.metadata.get('nbgrader', {}) for cell in other.cells)
     nbformat.validate(other)

@@ -9,7 +9,7 @@ from course_maker import TOY, answered, released_course, submit
 from nbformat.v4 import new_code_cell
 
 from grader.autograde import preprocessors
-from grader.autograde.preprocessors import ExecuteRooms, HealSubmission
+from grader.autograde.preprocessors import ExecuteRooms, RestoreSubmission
 from grader.judging.task import Result, Task
 from grader.notebook.restore import KEY, grade_id
 
@@ -33,11 +33,11 @@ def resources(course, step='submitted'):
     return {'nbgrader': at, 'metadata': {'path': str(folder), 'name': TOY}}
 
 
-def healed(course, content):
+def restored(course, content):
     path = submit(course, 'ada', content)
     before = path.read_bytes()
     read = nbformat.v4.new_notebook()  # what nbgrader has read does not count
-    notebook, _ = HealSubmission().preprocess(read, resources(course))
+    notebook, _ = RestoreSubmission().preprocess(read, resources(course))
     assert path.read_bytes() == before
     return notebook
 
@@ -45,7 +45,7 @@ def healed(course, content):
 def test_healing_puts_the_source_back_around_the_answers(course):
     submitted = answered(course, ANSWER)
     submitted.cells = [c for c in submitted.cells if c.id != 'double-check']
-    notebook = healed(course, submitted)
+    notebook = restored(course, submitted)
     sources = {grade_id(c): c.source for c in notebook.cells if grade_id(c)}
     assert sources['double'] == ANSWER
     assert 'hidden canary' in sources['double-hidden']
@@ -65,12 +65,12 @@ HOSTILE = {
 @pytest.mark.parametrize('metadata', HOSTILE.values(), ids=HOSTILE)
 def test_hostile_metadata_is_as_good_as_none(course, metadata):
     submitted = answered(course, ANSWER)
-    expected = healed(course, submitted)
+    expected = restored(course, submitted)
     for cell in submitted.cells:
         cell.metadata = nbformat.from_dict({'nbgrader': cell.metadata.get('nbgrader')} | metadata)
         if 'grade_id' not in str(cell.metadata):
             cell.metadata = nbformat.from_dict(metadata)
-    notebook = healed(course, nbformat.writes(submitted))
+    notebook = restored(course, nbformat.writes(submitted))
     assert marked(notebook) == marked(expected)
     assert {str(c.metadata) for c in notebook.cells if not grade_id(c)} == {
         str(c.metadata) for c in expected.cells if not grade_id(c)
@@ -89,7 +89,7 @@ def role_of(cell):
     'content', ['', '{}', b'\xff' * 100], ids=['empty', 'no notebook', 'binary']
 )
 def test_the_unreadable_is_healed_to_nothing_with_its_problem(course, content):
-    notebook = healed(course, content)
+    notebook = restored(course, content)
     assert TOY in notebook.metadata[KEY].problem
     executed, _ = ExecuteRooms().preprocess(notebook, resources(course, 'autograded'))
     graded = [c for c in executed.cells if role_of(c) == 'grade']
@@ -133,5 +133,5 @@ def test_running_takes_the_students_seed_and_the_students_files(course, tasks, i
 
 
 def test_both_passes_are_in_force():
-    assert HealSubmission().enabled
+    assert RestoreSubmission().enabled
     assert ExecuteRooms().enabled

@@ -8,7 +8,7 @@ from grader.grade import Row
 from grader.report import progress_table
 from grader.report.progress_table import print_rows, why
 from grader.storage.gradebook import Stored
-from grader.storage.submitted import HandedIn
+from grader.storage.submitted import SubmissionFolder
 
 SAID = {
     'ada': Stored(score=5.0, max_score=5.0, former=None, pending=False, reason=''),
@@ -33,7 +33,7 @@ def test_a_terminal_sees_how_many_are_done_how_fast_and_how_long_it_will_take(
 ):
     monkeypatch.setattr(sys, 'stderr', Terminal())
     names = ['ada', 'bob', 'eve', 'kim']
-    submissions = [HandedIn(name, '00_toy', tmp_path) for name in names]
+    submissions = [SubmissionFolder(name, '00_toy', tmp_path) for name in names]
     list(print_rows(slowly(names), submissions))
     drawn = [line for line in sys.stderr.getvalue().split('\r') if '3/4' in line]
     assert drawn
@@ -55,12 +55,12 @@ def test_time_goes_on_while_one_submission_takes_long(monkeypatch, tmp_path):
             time.sleep(0.01)
         yield Row('ada', '00_toy', None, 'no room')
 
-    list(print_rows(one_long(), [HandedIn('ada', '00_toy', tmp_path)]))
+    list(print_rows(one_long(), [SubmissionFolder('ada', '00_toy', tmp_path)]))
     assert not [thread for thread in threading.enumerate() if thread.name == 'bar']
 
 
 def test_a_log_sees_rows_alone(monkeypatch, tmp_path, capsys):
-    list(print_rows(slowly(['zoe']), [HandedIn('zoe', '00_toy', tmp_path)]))
+    list(print_rows(slowly(['zoe']), [SubmissionFolder('zoe', '00_toy', tmp_path)]))
     printed = capsys.readouterr()
     assert printed.err == ''
     assert [line.split() for line in printed.out.splitlines()] == [

@@ -9,12 +9,12 @@ from nbgrader.api import Gradebook
 from grader.cli.demo import demo
 from grader.course import Course
 from grader.grade import Row
-from grader.notebook.restore import heal
+from grader.notebook.restore import restore
 from grader.notebook.submission import read_submission
 from grader.report.report import Run, write_report
 from grader.report.statistics import WRITTEN, tally
 from grader.storage.gradebook import store
-from grader.storage.pipeline import prepare, prepared_master, unanswered
+from grader.storage.pipeline import prepare, prepared_template, unanswered
 
 ANSWER = 'def double(x):\n    return x + x'
 SCRIPT = '<script>alert("from a student")</script>'
@@ -41,10 +41,10 @@ def graded(course, student, reasons=None, *, explained='so', seconds=1.0, notebo
     folder = course.folder('submitted', student, TOY)
     submission = read_submission(folder, student_id=student, assignment=TOY)
     if submission.problem:
-        judged = unanswered(prepared_master(course, TOY), submission.problem)
+        judged = unanswered(prepared_template(course, TOY), submission.problem)
     else:
-        healed = heal(submission.notebook, course.master(TOY)).notebook
-        judged = executed(prepare(course, TOY, healed), reasons or {})
+        restored = restore(submission.notebook, course.template(TOY)).notebook
+        judged = executed(prepare(course, TOY, restored), reasons or {})
     stored = store(course, submission, judged)
     return Row(student, TOY, stored, stored.reason, seconds)
 
@@ -189,7 +189,9 @@ def test_the_report_says_whether_there_was_a_sandbox_and_which_inputs(course, mo
     rows = [graded(course, 'ada', {})]
     said = set()
     for sandbox in (True, False):
-        monkeypatch.setattr('grader.report.report.isolated', lambda trust_students, it=sandbox: it)
+        monkeypatch.setattr(
+            'grader.report.report.require_isolation', lambda trust_students, it=sandbox: it
+        )
         said.add(reported(course, rows)[0]['environment']['isolation'])
     assert said == {'each submission in a sandbox', 'none: --trust-students'}
     facts, _ = reported(course, rows, Run(RUN.began, seed='abc'))

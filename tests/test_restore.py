@@ -7,12 +7,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
-from grader.notebook.restore import KEY, grade_id, heal, make_master, role
+from grader.notebook.restore import KEY, grade_id, make_template, restore, role
 
 ANSWER = 'def double(x):\n    return 2 * x'
 ANSWERS = ('double', 'explain')
 KEPT = ('grade', 'locked', 'setup')
-"""Roles of cells whose text is the master's, come what may."""
+"""Roles of cells whose text is the template's, come what may."""
 
 
 @pytest.fixture(scope='module')
@@ -21,8 +21,8 @@ def course(tmp_path_factory):
 
 
 @pytest.fixture(scope='module')
-def master(course):
-    return course.master(TOY)
+def template(course):
+    return course.template(TOY)
 
 
 @pytest.fixture
@@ -40,35 +40,35 @@ def by_grade_id(notebook):
     return {grade_id(c): c for c in found}
 
 
-def assert_whole(healed, master):
-    """Every cell of the master once, in its order, with its own text where that counts."""
-    names = [grade_id(c) for c in master.notebook.cells if grade_id(c)]
-    assert [grade_id(c) for c in healed.notebook.cells if grade_id(c)] == names
-    cells = by_grade_id(healed.notebook)
-    for original in master.notebook.cells:
+def assert_whole(restored, template):
+    """Every cell of the template once, in its order, with its own text where that counts."""
+    names = [grade_id(c) for c in template.notebook.cells if grade_id(c)]
+    assert [grade_id(c) for c in restored.notebook.cells if grade_id(c)] == names
+    cells = by_grade_id(restored.notebook)
+    for original in template.notebook.cells:
         if role(original) in KEPT and grade_id(original):
             cell = cells[grade_id(original)]
             assert cell == original | {'id': cell.id}
         elif role(original) == 'answer':
             cell = cells[grade_id(original)]
             assert (cell.cell_type, cell.metadata) == (original.cell_type, original.metadata)
-    kept = [c.source for c in master.notebook.cells if role(c) in (*KEPT, 'text')]
-    texts = iter([c.source for c in healed.notebook.cells if role(c) in (*KEPT, 'text')])
+    kept = [c.source for c in template.notebook.cells if role(c) in (*KEPT, 'text')]
+    texts = iter([c.source for c in restored.notebook.cells if role(c) in (*KEPT, 'text')])
     assert all(source in texts for source in kept)  # in this order
-    nbformat.validate(nbformat.from_dict(healed.notebook))
+    nbformat.validate(nbformat.from_dict(restored.notebook))
 
 
-def test_an_untouched_submission_needs_no_mending(submitted, master):
-    healed = heal(submitted, master)
-    assert_whole(healed, master)
-    assert healed.notes == ()
-    assert [c.id for c in healed.notebook.cells] == [c.id for c in submitted.cells]
-    assert by_grade_id(healed.notebook)['double'].source == ANSWER
-    assert by_grade_id(healed.notebook)['explain'].source == 'Because.'
+def test_an_untouched_submission_needs_no_mending(submitted, template):
+    restored = restore(submitted, template)
+    assert_whole(restored, template)
+    assert restored.notes == ()
+    assert [c.id for c in restored.notebook.cells] == [c.id for c in submitted.cells]
+    assert by_grade_id(restored.notebook)['double'].source == ANSWER
+    assert by_grade_id(restored.notebook)['explain'].source == 'Because.'
 
 
-def test_roles_come_from_the_marks_and_the_place(master):
-    assert {c.id: role(c) for c in master.notebook.cells} == {
+def test_roles_come_from_the_marks_and_the_place(template):
+    assert {c.id: role(c) for c in template.notebook.cells} == {
         'title': 'text',
         'setup': 'setup',
         'shown': 'demo',
@@ -81,8 +81,8 @@ def test_roles_come_from_the_marks_and_the_place(master):
     }
 
 
-def test_a_master_holds_the_tests_and_no_answer(master):
-    text = nbformat.writes(master.notebook)
+def test_a_master_holds_the_tests_and_no_answer(template):
+    text = nbformat.writes(template.notebook)
     assert 'hidden canary' in text
     assert 'the secret answer' not in text
 
@@ -153,14 +153,14 @@ HOW = {
 
 @pytest.mark.parametrize(('mutate', 'name', 'how'), MENDED.values(), ids=MENDED)
 def test_locked_and_grade_cells_are_the_originals_whatever_became_of_them(
-    submitted, master, mutate, name, how
+    submitted, template, mutate, name, how
 ):
     mutate(submitted.cells, lambda name: at(submitted, name))
-    healed = heal(submitted, master)
-    assert_whole(healed, master)
-    assert healed.notes == (f'the cell `{name}` {HOW[how]}',)
-    assert healed.notebook.metadata[KEY].notes == list(healed.notes)
-    assert by_grade_id(healed.notebook)['double'].source == ANSWER
+    restored = restore(submitted, template)
+    assert_whole(restored, template)
+    assert restored.notes == (f'the cell `{name}` {HOW[how]}',)
+    assert restored.notebook.metadata[KEY].notes == list(restored.notes)
+    assert by_grade_id(restored.notebook)['double'].source == ANSWER
 
 
 UNHARMED = {
@@ -174,12 +174,12 @@ UNHARMED = {
 
 
 @pytest.mark.parametrize('mutate', UNHARMED.values(), ids=UNHARMED)
-def test_other_changes_cost_no_word(submitted, master, mutate):
+def test_other_changes_cost_no_word(submitted, template, mutate):
     mutate(submitted.cells, lambda name: at(submitted, name))
-    healed = heal(submitted, master)
-    assert_whole(healed, master)
-    assert healed.notes == ()
-    assert by_grade_id(healed.notebook)['double'].source == ANSWER
+    restored = restore(submitted, template)
+    assert_whole(restored, template)
+    assert restored.notes == ()
+    assert by_grade_id(restored.notebook)['double'].source == ANSWER
 
 
 def split_with_marks(cells, i):
@@ -217,23 +217,23 @@ ANSWERED = {
 
 
 @pytest.mark.parametrize(('mutate', 'source', 'note'), ANSWERED.values(), ids=ANSWERED)
-def test_an_answer_keeps_all_that_was_written(submitted, master, mutate, source, note):
-    stub = by_grade_id(master.notebook)['double'].source
+def test_an_answer_keeps_all_that_was_written(submitted, template, mutate, source, note):
+    stub = by_grade_id(template.notebook)['double'].source
     mutate.released = stub
     mutate(submitted.cells, lambda name: at(submitted, name))
-    healed = heal(submitted, master)
-    assert_whole(healed, master)
-    assert by_grade_id(healed.notebook)['double'].source == (stub if source is None else source)
+    restored = restore(submitted, template)
+    assert_whole(restored, template)
+    assert by_grade_id(restored.notebook)['double'].source == (stub if source is None else source)
     if note is None:
-        assert healed.notes == ()
+        assert restored.notes == ()
     else:
-        assert [n for n in healed.notes if note in n], healed.notes
+        assert [n for n in restored.notes if note in n], restored.notes
 
 
-def test_the_second_part_of_an_answer_stays_behind_it_without_marks(submitted, master):
+def test_the_second_part_of_an_answer_stays_behind_it_without_marks(submitted, template):
     place = at(submitted, 'double')
     submitted.cells.insert(place + 1, new_code_cell('helper = 1', id='double'))
-    cells = heal(submitted, master).notebook.cells
+    cells = restore(submitted, template).notebook.cells
     at_answer = next(i for i, c in enumerate(cells) if grade_id(c) == 'double')
     assert (cells[at_answer + 1].source, role(cells[at_answer + 1])) == ('helper = 1', 'free')
     assert cells[at_answer + 1].id != cells[at_answer].id
@@ -243,10 +243,10 @@ OWN = {'setup': 'import math\nk = 2', 'shown': 'print(2)', 'try-it': 'double(5)'
 
 
 @pytest.mark.parametrize(('name', 'source'), OWN.items(), ids=OWN)
-def test_what_a_student_wrote_elsewhere_stays_as_a_free_cell(submitted, master, name, source):
+def test_what_a_student_wrote_elsewhere_stays_as_a_free_cell(submitted, template, name, source):
     original = submitted.cells[at(submitted, name)].source
     submitted.cells[at(submitted, name)].source = source
-    cells = heal(submitted, master).notebook.cells
+    cells = restore(submitted, template).notebook.cells
     texts = [c.source for c in cells]
     place = texts.index(source)
     assert cells[place].metadata == {KEY: {'role': 'free'}}
@@ -255,12 +255,12 @@ def test_what_a_student_wrote_elsewhere_stays_as_a_free_cell(submitted, master, 
     assert texts.count(original) == (name == 'setup')
 
 
-def test_own_cells_stay_after_the_cell_they_followed(submitted, master):
+def test_own_cells_stay_after_the_cell_they_followed(submitted, template):
     submitted.cells.insert(0, new_code_cell('first'))
     submitted.cells.insert(at(submitted, 'double-check') + 1, new_markdown_cell('a thought'))
     submitted.cells.append(new_code_cell('last'))
     submitted.cells.append(new_code_cell('  '))
-    cells = heal(submitted, master).notebook.cells
+    cells = restore(submitted, template).notebook.cells
     texts = [c.source for c in cells]
     assert (texts[0], texts[-1]) == ('first', 'last')
     assert grade_id(cells[texts.index('a thought') - 1]) == 'double-check'
@@ -271,17 +271,17 @@ STRANGE = new_code_cell('', metadata={'nbgrader': {'grade_id': 'other'}})
 
 
 @pytest.mark.parametrize('cells', [[], [new_code_cell('x = 1')], [STRANGE]])
-def test_a_notebook_of_another_assignment_says_so_first(master, cells):
-    healed = heal(new_notebook(cells=cells), master)
-    assert_whole(healed, master)
-    first = healed.notes[0]
+def test_a_notebook_of_another_assignment_says_so_first(template, cells):
+    restored = restore(new_notebook(cells=cells), template)
+    assert_whole(restored, template)
+    first = restored.notes[0]
     assert first == 'the notebook holds none of the answer cells of this assignment'
 
 
-def test_attachments_of_a_manual_answer_are_kept(submitted, master):
+def test_attachments_of_a_manual_answer_are_kept(submitted, template):
     pictures = {'arm.png': {'image/png': 'AAAA'}}
     submitted.cells[at(submitted, 'explain')].attachments = pictures
-    assert by_grade_id(heal(submitted, master).notebook)['explain'].attachments == pictures
+    assert by_grade_id(restore(submitted, template).notebook)['explain'].attachments == pictures
 
 
 FORGED = {
@@ -293,10 +293,10 @@ FORGED = {
 }
 
 
-def test_nothing_that_a_student_wrote_into_metadata_lives_on(submitted, master):
-    untouched = heal(submitted, master)
+def test_nothing_that_a_student_wrote_into_metadata_lives_on(submitted, template):
+    untouched = restore(submitted, template)
     submitted.cells.insert(3, new_code_cell('mine = 1'))
-    expected = heal(submitted, master).notebook
+    expected = restore(submitted, template).notebook
     for cell in submitted.cells:
         marks = {'grade_id': grade_id(cell)} if grade_id(cell) else {}
         cell.metadata = nbformat.from_dict(FORGED | {'nbgrader': FORGED['nbgrader'] | marks})
@@ -304,27 +304,27 @@ def test_nothing_that_a_student_wrote_into_metadata_lives_on(submitted, master):
             cell.outputs = [nbformat.v4.new_output('stream', text='forged')]
             cell.execution_count = 3
     submitted.metadata = nbformat.from_dict({KEY: {'problem': 'forged'}, 'kernelspec': 'forged'})
-    healed = heal(submitted, master)
+    restored = restore(submitted, template)
     mine = [c for c in expected.cells if c.source == 'mine = 1']
     assert [c.metadata for c in mine] == [{KEY: {'role': 'free'}}]
-    assert [c.metadata for c in healed.notebook.cells] == [c.metadata for c in expected.cells]
-    assert [c.get('outputs') for c in healed.notebook.cells] == [
+    assert [c.metadata for c in restored.notebook.cells] == [c.metadata for c in expected.cells]
+    assert [c.get('outputs') for c in restored.notebook.cells] == [
         c.get('outputs') for c in expected.cells
     ]
-    assert healed.notebook.metadata == untouched.notebook.metadata
+    assert restored.notebook.metadata == untouched.notebook.metadata
 
 
-def test_healing_changes_neither_the_submission_nor_the_master(submitted, master):
-    before = (nbformat.writes(submitted), nbformat.writes(master.notebook))
-    heal(submitted, master).notebook.cells[3].metadata.nbgrader.points = 7
-    assert (nbformat.writes(submitted), nbformat.writes(master.notebook)) == before
+def test_healing_changes_neither_the_submission_nor_the_master(submitted, template):
+    before = (nbformat.writes(submitted), nbformat.writes(template.notebook))
+    restore(submitted, template).notebook.cells[3].metadata.nbgrader.points = 7
+    assert (nbformat.writes(submitted), nbformat.writes(template.notebook)) == before
 
 
-def test_healing_twice_changes_nothing_more(submitted, master):
+def test_healing_twice_changes_nothing_more(submitted, template):
     reverse(submitted.cells, None)
     del submitted.cells[2]
-    once = heal(submitted, master).notebook
-    twice = heal(once, master)
+    once = restore(submitted, template).notebook
+    twice = restore(once, template)
     assert twice.notes == ()
     assert twice.notebook.cells == once.cells
 
@@ -346,13 +346,13 @@ MUTATIONS = st.lists(
 @settings(max_examples=150, deadline=None)
 @given(mutations=MUTATIONS)
 def test_heal_always_yields_every_cell_of_the_source_once_and_in_order(course, mutations):
-    master = make_master(course.source(TOY), course.release(TOY))
+    template = make_template(course.source(TOY), course.release(TOY))
     notebook = answered(course, ANSWER)
     for what, which, other, text, name in mutations:
         if not notebook.cells:
             break
         mutated(notebook.cells, what, which % len(notebook.cells), other, text, name)
-    assert_whole(heal(notebook, master), master)
+    assert_whole(restore(notebook, template), template)
 
 
 def mutated(cells, what, place, other, text, name):

@@ -8,7 +8,7 @@ from course_maker import toy_lesson
 
 from grader.common.errors import TaskFailed
 from grader.judging.result_schema import read_result
-from grader.notebook.restore import KEY, make_master
+from grader.notebook.restore import KEY, make_template
 from grader.sandbox.limits import (
     MAX_NOTE_CHARACTERS,
     MAX_NOTES,
@@ -23,7 +23,7 @@ CHECK = 6
 
 @pytest.fixture
 def asked():
-    notebook = make_master(toy_lesson(), toy_lesson()).notebook
+    notebook = make_template(toy_lesson(), toy_lesson()).notebook
     notebook.metadata[KEY] = {'notes': ['the cell `double-check` was changed']}
     return notebook
 

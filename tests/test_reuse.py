@@ -144,7 +144,7 @@ def other_machinery(course, monkeypatch):
 
 
 def no_sandbox(course, monkeypatch):
-    monkeypatch.setattr(Here, 'isolated', lambda self, trust_students: False)
+    monkeypatch.setattr(Here, 'require_isolation', lambda self, trust_students: False)
 
 
 def a_notebook_of_nbgraders_own(course, monkeypatch):
@@ -177,7 +177,7 @@ def a_damaged_notebook(course, monkeypatch):
     ],
 )
 def test_whatever_a_result_depends_on_makes_it_new(course, looked, monkeypatch, change):
-    monkeypatch.setattr(Here, 'isolated', lambda self, trust_students: True)
+    monkeypatch.setattr(Here, 'require_isolation', lambda self, trust_students: True)
     submit(course, 'ada', answered(course, RIGHT))
     # a student's own seed is another one for other cells, which would hide what else counts
     rows_of(course, seed='abc')

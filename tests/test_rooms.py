@@ -14,7 +14,7 @@ from my_robot_basics.validate.outputs import CellRun
 
 from grader.common.errors import RoomFailure
 from grader.kernels import rooms as module
-from grader.kernels.isolation import isolated
+from grader.kernels.isolation import require_isolation
 from grader.kernels.rooms import Rooms
 
 IMPORT = 'from my_robot_basics.checks import student\n'
@@ -40,7 +40,9 @@ def shared(loop, tmp_path_factory):
     ):
         (folder / f'{name}.py').write_text('raise SystemExit("shadowed")')
     (folder / 'helper.py').write_text('WHERE = "my own helper"')
-    rooms = Rooms(extra_files=sorted(folder.glob('*.py')), seed='beef', isolated=isolated())
+    rooms = Rooms(
+        extra_files=sorted(folder.glob('*.py')), seed='beef', isolated=require_isolation()
+    )
     loop.run(rooms.__aenter__())
     yield rooms
     loop.run(rooms.__aexit__())
@@ -49,7 +51,7 @@ def shared(loop, tmp_path_factory):
 @pytest.fixture
 def rooms(loop):
     """Rooms of one test's own."""
-    rooms = Rooms(seed='beef', isolated=isolated())
+    rooms = Rooms(seed='beef', isolated=require_isolation())
     loop.run(rooms.__aenter__())
     yield rooms
     loop.run(rooms.__aexit__())
@@ -340,7 +342,7 @@ def test_rooms_that_do_not_open_are_the_graders_failure(
     (tmp_path / 'a.py').write_text('')
     monkeypatch.setattr(places[what], what, fail)
     with pytest.raises(RoomFailure, match=why):
-        loop.run(Rooms(extra_files=[tmp_path / 'a.py'], isolated=isolated()).__aenter__())
+        loop.run(Rooms(extra_files=[tmp_path / 'a.py'], isolated=require_isolation()).__aenter__())
     assert left() == NOTHING
 
 
@@ -361,7 +363,7 @@ def test_a_room_that_is_not_made_ready_closes_both(loop, monkeypatch, left, code
     monkeypatch.setattr(module, 'TEST_HEARS', hears)
     monkeypatch.setattr(module, 'SETUP_TIMEOUT_SEC', 3600.0)
     with pytest.raises(RoomFailure, match=why):
-        loop.run(Rooms(isolated=isolated()).__aenter__())
+        loop.run(Rooms(isolated=require_isolation()).__aenter__())
     assert left() == NOTHING
 
 
@@ -379,7 +381,7 @@ def test_a_student_who_prefers_shared_memory_is_heard_too(rooms, student, check)
 
 def test_cancelling_while_rooms_open_closes_them(loop, left):
     async def cancelled():
-        task = asyncio.ensure_future(Rooms(isolated=isolated()).__aenter__())
+        task = asyncio.ensure_future(Rooms(isolated=require_isolation()).__aenter__())
         while left()[0] < 2:
             await asyncio.sleep(0.05)
         task.cancel()

@@ -11,7 +11,7 @@ from stock_validator import validators
 
 from grader.course import Course
 from grader.judging.execute import execute
-from grader.notebook.restore import heal, make_master
+from grader.notebook.restore import make_template, restore
 from grader.storage.records import verdicts
 from grader.workers.workers import Workers
 
@@ -77,10 +77,11 @@ def sooner(names, these):
 
 
 class Standing:
-    """A crew that is there for several runs: beginning with each anew takes long."""
+    """A backend that is there for several runs: beginning with each anew takes long."""
 
-    def __init__(self, crew):
-        self.room, self.isolated, self.submit = crew.room, crew.isolated, crew.submit
+    def __init__(self, backend):
+        self.capacity, self.submit = backend.capacity, backend.submit
+        self.require_isolation = backend.require_isolation
 
     def __enter__(self):
         return self
@@ -97,7 +98,7 @@ def graded(tmp_path_factory):
     def grade_class(assignment, ordinary):
         names = [name for name in of_assignment(assignment) if (name in ORDINARY) == ordinary]
         course = Course(gradebook=tmp_path_factory.mktemp('gradebook'))
-        return course, grade(course, names, crew=crew)
+        return course, grade(course, names, backend=backend)
 
     def graded_sample(name):
         course, rows = grade_class(assignment_of(PATHS[name]), name in ORDINARY)
@@ -105,7 +106,7 @@ def graded(tmp_path_factory):
 
     # other tests run meanwhile
     with Workers(in_flight=4) as workers:
-        crew = Standing(workers)
+        backend = Standing(workers)
         yield graded_sample
 
 
@@ -232,7 +233,7 @@ def by_cell(notebook, found, name):
 def visible_parts_alone(notebook, assignment):
     """What the grader says of each grade cell as students see it."""
     release = Course().release(assignment)
-    execution = execute(heal(notebook, make_master(release, release)).notebook)
+    execution = execute(restore(notebook, make_template(release, release)).notebook)
     return {v.grade_id: v.reason for v in execution.verdicts if v.outcome != 'manual'}
 
 

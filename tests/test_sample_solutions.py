@@ -71,5 +71,5 @@ def test_a_mark_scheme_is_for_teachers_alone(course):
     release(course)
     cells = {cell.id: cell.source for cell in course.release(TOY).cells}
     assert cells['explain-text'] == '## Explain'
-    master = {cell.id: cell.source for cell in course.master(TOY).notebook.cells}
-    assert master['explain-text'] == MARK_SCHEME
+    template = {cell.id: cell.source for cell in course.template(TOY).notebook.cells}
+    assert template['explain-text'] == MARK_SCHEME

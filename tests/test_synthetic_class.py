@@ -15,7 +15,7 @@ from grader.collect.collect import NEW, collect
 from grader.course import Course
 from grader.grade import grade_all
 from grader.judging.execute import Execution
-from grader.notebook.restore import heal, role
+from grader.notebook.restore import restore, role
 from grader.storage import reuse
 from grader.storage.submitted import find_submissions
 
@@ -61,13 +61,13 @@ def test_what_is_varied_decides_nothing(name):
     if name == '03_publisher-zero-not_json':
         assert paper.text == PATHS[name].read_text(encoding='utf-8')
         return
-    master = Course().master(paper.assignment)
-    sample = heal(nbformat.read(PATHS[name], as_version=4), master)
-    varied = heal(nbformat.reads(paper.text, as_version=4), master)
+    template = Course().template(paper.assignment)
+    sample = restore(nbformat.read(PATHS[name], as_version=4), template)
+    varied = restore(nbformat.reads(paper.text, as_version=4), template)
     assert varied.notes == sample.notes
     graded, in_sample = (
-        [c for c in healed.notebook.cells if role(c) in ('setup', 'locked', 'answer', 'grade')]
-        for healed in (varied, sample)
+        [c for c in restored.notebook.cells if role(c) in ('setup', 'locked', 'answer', 'grade')]
+        for restored in (varied, sample)
     )
     assert len(graded) == len(in_sample)
     for cell, kept in zip(graded, in_sample, strict=True):

@@ -9,7 +9,7 @@ from course_maker import toy_lesson
 from grader.common.errors import TaskFailed
 from grader.judging import task
 from grader.judging.execute import Execution
-from grader.judging.task import Task, graded, packed, unpacked
+from grader.judging.task import Task, pack, run_packed, unpack
 from grader.notebook.restore import KEY
 
 ODD = 'lone \udcff, nul \0, ideographs 小明, escapes \x1b[31m, </script>'
@@ -32,20 +32,20 @@ def looked(monkeypatch):
         notebook.metadata[KEY] = {'notes': [], 'seed': seed}
         return Execution(notebook=notebook, verdicts=(), notes=())
 
-    monkeypatch.setattr(task, 'executed', look)
+    monkeypatch.setattr(task, 'execute_exercises', look)
     return seen
 
 
 def do(text):
-    return asyncio.run(graded(text))
+    return asyncio.run(run_packed(text))
 
 
 def test_it_goes_as_text_and_comes_back_the_same(work, looked):
-    text = packed(work)
+    text = pack(work)
     assert text.isascii()
     answer = do(text)
     assert answer.isascii()
-    result = unpacked(answer, work)
+    result = unpack(answer, work)
     assert result.notebook == graded_lesson(work, {'double-check': ODD})
     assert isinstance(result.notebook.cells[0].metadata, nbformat.NotebookNode)
     assert result.seconds >= 0
@@ -65,15 +65,15 @@ def graded_lesson(work, reasons):
 
 
 def test_doing_it_does_not_change_it(work, looked):
-    text = packed(work)
+    text = pack(work)
     assert do(text) != text
-    assert packed(work) == text
+    assert pack(work) == text
 
 
 def test_no_file_leaves_its_folder(work, looked):
-    sent = json.loads(packed(work))
+    sent = json.loads(pack(work))
     sent['files'] = {'../../up.py': ''}
-    unpacked(do(json.dumps(sent)), work)
+    unpack(do(json.dumps(sent)), work)
     assert looked['files'] == {'up.py': b''}
 
 
@@ -81,15 +81,15 @@ def test_what_takes_too_long_is_given_up(work, monkeypatch):
     async def endless(notebook, **_):
         await asyncio.Event().wait()
 
-    monkeypatch.setattr(task, 'executed', endless)
+    monkeypatch.setattr(task, 'execute_exercises', endless)
     monkeypatch.setattr(task, 'SUBMISSION_TIMEOUT_SEC', 0.01)
     with pytest.raises(TaskFailed, match='it had not come to its end after 0 minutes'):
-        unpacked(do(packed(work)), work)
+        unpack(do(pack(work)), work)
 
 
 def test_whatever_fails_is_an_answer_too(work):
     with pytest.raises(TaskFailed, match='JSONDecodeError') as failed:
-        unpacked(do('{'), work)
+        unpack(do('{'), work)
     assert 'Traceback' in failed.value.trace
 
 
@@ -132,12 +132,12 @@ def fewer_cells(work):
     ],
 )
 def test_what_is_no_result_of_it_is_refused(work, answer, why):
-    assert unpacked(json.dumps(result(work)), work).seconds == 1.0
+    assert unpack(json.dumps(result(work)), work).seconds == 1.0
     with pytest.raises(TaskFailed, match=f'what came back is {why}'):
-        unpacked(json.dumps(answer(work)), work)
+        unpack(json.dumps(answer(work)), work)
 
 
 @pytest.mark.parametrize('text', ['', '{', '[' * 100_000, 'NaN'])
 def test_what_is_no_json_is_refused(work, text):
     with pytest.raises(TaskFailed, match='what came back is not a result'):
-        unpacked(text, work)
+        unpack(text, work)

@@ -5,7 +5,7 @@ from course_maker import TOY, answered, executed, released_course, submit
 
 from grader.__main__ import main
 from grader.export.totals import add_up, as_csv, write_totals
-from grader.notebook.restore import heal
+from grader.notebook.restore import restore
 from grader.notebook.submission import read_submission
 from grader.storage.gradebook import store
 from grader.storage.pipeline import prepare
@@ -54,8 +54,8 @@ def test_the_totals_are_those_of_the_gradebook(course, capsys):
     submit(course, 'ada', answered(course, 'def double(x):\n    return x + x'))
     folder = course.folder('submitted', 'ada', TOY)
     submission = read_submission(folder, student_id='ada', assignment=TOY)
-    healed = heal(submission.notebook, course.master(TOY)).notebook
-    stored = store(course, submission, executed(prepare(course, TOY, healed), {}))
+    restored = restore(submission.notebook, course.template(TOY)).notebook
+    stored = store(course, submission, executed(prepare(course, TOY, restored), {}))
     assert main(['scores', '--totals'], course=course) == 0
     path = write_totals(course)
     assert str(path) in capsys.readouterr().out

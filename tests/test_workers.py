@@ -71,8 +71,8 @@ def wait_for(happened):
 
 def test_as_many_processes_grade_as_asked_for_and_end_with_the_run(course, tmp_path):
     mark = tmp_path / 'go'
-    with Workers(2, command=COMMAND) as crew:
-        under_way = [crew.submit(task(course, f'# wait {mark}')) for _ in range(6)]
+    with Workers(2, command=COMMAND) as backend:
+        under_way = [backend.submit(task(course, f'# wait {mark}')) for _ in range(6)]
         wait_for(lambda: len(team()) == 2)
         mark.touch()
         results = [work.result() for work in under_way]
@@ -87,11 +87,11 @@ def test_one_process_grades_as_many_as_it_takes_at_a_time_before_another_is_begu
     course, tmp_path
 ):
     mark, loads = tmp_path / 'go', []
-    with Workers(2, command=COMMAND) as crew:
+    with Workers(2, command=COMMAND) as backend:
         for number in (1, 2, 3):
-            crew.submit(task(course, f'# wait {mark}'))
-            wait_for(lambda number=number: sum(w.load for w in crew._team) == number)
-            loads.append([worker.load for worker in crew._team])
+            backend.submit(task(course, f'# wait {mark}'))
+            wait_for(lambda number=number: sum(w.load for w in backend._team) == number)
+            loads.append([worker.load for worker in backend._team])
         mark.touch()
     assert loads == [[1], [2], [2, 1]]
 
@@ -102,9 +102,9 @@ def test_no_process_is_started_where_there_is_nothing_to_do():
 
 
 def test_a_failure_comes_back_with_its_trace(course):
-    with Workers(1, command=COMMAND) as crew:
+    with Workers(1, command=COMMAND) as backend:
         with pytest.raises(TaskFailed, match=r'^OSError: no room$') as failed:
-            crew.submit(task(course, '# fail')).result()
+            backend.submit(task(course, '# fail')).result()
         assert "raise OSError('no room')" in failed.value.trace
 
 
@@ -112,21 +112,21 @@ def test_a_worker_that_is_killed_is_replaced_and_its_submissions_are_graded_else
     course, tmp_path
 ):
     mark = tmp_path / 'go'
-    with Workers(1, in_flight=3, command=COMMAND) as crew:
-        first = pid_of(crew.submit(task(course)).result())
-        under_way = [crew.submit(task(course, f'# wait {mark}')) for _ in range(3)]
+    with Workers(1, in_flight=3, command=COMMAND) as backend:
+        first = pid_of(backend.submit(task(course)).result())
+        under_way = [backend.submit(task(course, f'# wait {mark}')) for _ in range(3)]
         wait_for(lambda: team()[0].pid == first)
         team()[0].send_signal(signal.SIGKILL)
         mark.touch()
         pids = {pid_of(work.result()) for work in under_way}
         assert first not in pids
-        assert pid_of(crew.submit(task(course)).result()) not in pids | {first}
+        assert pid_of(backend.submit(task(course)).result()) not in pids | {first}
 
 
 def test_a_submission_that_kills_whoever_grades_it_costs_nobody_else(course, tmp_path):
-    with Workers(1, in_flight=3, command=COMMAND) as crew:
-        works = [crew.submit(task(course, line)) for line in ('', '# die', '')]
-        works.append(crew.submit(task(course, f'# die once {tmp_path / "mark"}')))
+    with Workers(1, in_flight=3, command=COMMAND) as backend:
+        works = [backend.submit(task(course, line)) for line in ('', '# die', '')]
+        works.append(backend.submit(task(course, f'# die once {tmp_path / "mark"}')))
         with pytest.raises(TaskFailed, match='ended before it was done, 3 times'):
             works.pop(1).result()
         for work in works:
@@ -137,11 +137,11 @@ def test_a_worker_that_hangs_is_replaced(course, tmp_path, monkeypatch):
     mark = tmp_path / 'stopped'
     monkeypatch.setattr(workers, 'BEAT_SEC', 0.1)
     monkeypatch.setattr(workers, 'MOST_MISSED', 10_000)
-    with Workers(1, command=COMMAND) as crew:
-        work = crew.submit(task(course, f'# stop {mark}'))
+    with Workers(1, command=COMMAND) as backend:
+        work = backend.submit(task(course, f'# stop {mark}'))
         wait_for(mark.exists)
         (hung,) = team()
-        (worker,) = crew._team
+        (worker,) = backend._team
         wait_for(lambda: worker._missed > 50)
         monkeypatch.setattr(workers, 'MOST_MISSED', 50)
         wait_for(lambda: worker.ended)
@@ -151,16 +151,16 @@ def test_a_worker_that_hangs_is_replaced(course, tmp_path, monkeypatch):
 
 
 def test_what_a_worker_starts_inherits_no_way_to_the_run(course):
-    with Workers(1, command=COMMAND) as crew:
-        result = crew.submit(task(course, '# child')).result()
+    with Workers(1, command=COMMAND) as backend:
+        result = backend.submit(task(course, '# child')).result()
     assert told(result)[1] == '0 1 2'
 
 
 def test_a_worker_that_says_it_has_more_to_say_than_any_result_is_given_up(course):
-    with Workers(1, command=COMMAND) as crew:
+    with Workers(1, command=COMMAND) as backend:
         with pytest.raises(TaskFailed, match='ended before it was done, 3 times'):
-            crew.submit(task(course, '# endless')).result()
-        assert outcomes(crew.submit(task(course)).result()) == ['passed', 'passed']
+            backend.submit(task(course, '# endless')).result()
+        assert outcomes(backend.submit(task(course)).result()) == ['passed', 'passed']
 
 
 @pytest.mark.parametrize(('crowded_share', 'allowed'), [(0.0, 3), (1.0, 2)])
@@ -171,19 +171,19 @@ def test_more_are_in_flight_while_processors_stand_idle(
     monkeypatch.setattr(pressure, 'Stopwatch', lambda: watch)
     monkeypatch.setattr(pressure, 'crowded_sec', lambda: 1.0)
     mark = tmp_path / 'go'
-    with Workers(1, command=COMMAND) as crew:
-        crew.submit(task(course)).result()
-        under_way = [crew.submit(task(course, f'# wait {mark}')) for _ in range(8)]
-        (worker,) = crew._team
-        wait_for(lambda: worker.load == allowed == crew._gate.allowed)
+    with Workers(1, command=COMMAND) as backend:
+        backend.submit(task(course)).result()
+        under_way = [backend.submit(task(course, f'# wait {mark}')) for _ in range(8)]
+        (worker,) = backend._team
+        wait_for(lambda: worker.load == allowed == backend._gate.allowed)
         mark.touch()
         assert [outcomes(work.result()) for work in under_way] == [['passed', 'passed']] * 8
 
 
 @pytest.mark.parametrize('in_flight', [1, 7])
 def test_no_more_are_in_flight_than_asked_for(in_flight):
-    crew = Workers(2, in_flight=in_flight)
-    assert crew.room == crew._gate.allowed == in_flight
+    backend = Workers(2, in_flight=in_flight)
+    assert backend.capacity == backend._gate.allowed == in_flight
 
 
 def test_memory_bounds_how_many_are_in_flight(monkeypatch):
@@ -191,8 +191,8 @@ def test_memory_bounds_how_many_are_in_flight(monkeypatch):
     for submissions in (0, 1, 2.5, 1000):
         left = int(submissions * SUBMISSION_MEMORY_BYTES)
         monkeypatch.setattr(workers, 'available_bytes', lambda left=left: left)
-        crew = Workers(2)
-        rooms.append((crew._gate.allowed, crew.room))
+        backend = Workers(2)
+        rooms.append((backend._gate.allowed, backend.capacity))
     assert rooms == [
         (1, 1),
         (1, 1),
@@ -212,7 +212,7 @@ def test_killed_workers_change_no_grade(course, tmp_path):
         for student, answer in (('ada', RIGHT), ('bob', WRONG), ('eve', RIGHT), ('kim', WRONG)):
             first = f'# wait {mark}\n' if student in ('bob', 'eve') else ''
             submit(its, student, answered(its, f'{first}{answer}'))
-        rows = grade_all(its, find_submissions(its), crew=Workers(2, command=COMMAND))
+        rows = grade_all(its, find_submissions(its), backend=Workers(2, command=COMMAND))
         names = [next(rows).student_id]
         if name == 'killed':
             for process in team():

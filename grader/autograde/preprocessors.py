@@ -1,4 +1,4 @@
-"""Our two passes among nbgrader's: heal a submission, and run it in two rooms."""
+"""Our two passes among nbgrader's: restore a submission, and run it in two rooms."""
 
 import atexit
 from functools import cache
@@ -11,19 +11,19 @@ from traitlets import Bool
 
 from grader.course import Course
 from grader.judging.task import Task
-from grader.kernels.isolation import isolated
-from grader.notebook.restore import KEY, heal
+from grader.kernels.isolation import require_isolation
+from grader.notebook.restore import KEY, restore
 from grader.notebook.submission import extra_python_files, read_submission
 from grader.workers.workers import Workers
 
 
-class HealSubmission(Preprocessor):
+class RestoreSubmission(Preprocessor):
     """Put a submitted notebook back into the shape of its source."""
 
     enabled = True
 
     def preprocess(self, nb: NotebookNode, resources: dict) -> tuple[NotebookNode, dict]:
-        """Return the healed notebook; the submitted file is not touched.
+        """Return the restored notebook; the submitted file is not touched.
 
         It is read anew, as strangers' files are: what nbgrader has read may hold anything.
         """
@@ -33,14 +33,14 @@ class HealSubmission(Preprocessor):
             student_id=at['student'],
             assignment=at['assignment'],
         )
-        healed = heal(
+        restored = restore(
             submission.notebook or nbformat.v4.new_notebook(),
-            Course.of_nbgrader(resources).master(at['assignment']),
+            Course.of_nbgrader(resources).template(at['assignment']),
         ).notebook
-        healed.metadata[KEY].notes += submission.notes
+        restored.metadata[KEY].notes += submission.notes
         if submission.problem:
-            healed.metadata[KEY] = {'notes': [submission.problem], 'problem': submission.problem}
-        return healed, resources
+            restored.metadata[KEY] = {'notes': [submission.problem], 'problem': submission.problem}
+        return restored, resources
 
 
 class ExecuteRooms(Preprocessor):
@@ -61,7 +61,7 @@ class ExecuteRooms(Preprocessor):
         Raises CourseError where there is no sandbox, and TaskFailed where there is no verdict.
         """
         at, folder = resources['nbgrader'], Path(resources['metadata']['path'])
-        isolated(trust_students=self.trust_students)
+        require_isolation(trust_students=self.trust_students)
         task = Task(
             notebook=nb,
             files={path.name: path.read_bytes() for path in extra_python_files(folder)},

@@ -13,19 +13,19 @@ import nbformat
 from nbconvert.exporters import NotebookExporter
 from nbgrader.coursedir import CourseDirectory
 
-from grader.autograde.preprocessors import HealSubmission
+from grader.autograde.preprocessors import RestoreSubmission
 from grader.common.dates import date_of
 from grader.notebook.submission import TIMESTAMP
 
 
 class AutogradeExporter(NotebookExporter):
-    """Reads what nbgrader itself has written, and leaves submitted notebooks to HealSubmission."""
+    """Reads what nbgrader itself wrote, and leaves submitted notebooks to RestoreSubmission."""
 
     def from_file(
         self, file_stream: IO[str], resources: dict | None = None, **options: object
     ) -> tuple[str, dict]:
         """Return a notebook that went through the passes, as JSON."""
-        if not any(isinstance(each, HealSubmission) for each in self._preprocessors):
+        if not any(isinstance(each, RestoreSubmission) for each in self._preprocessors):
             return super().from_file(file_stream, resources, **options)
         return self.from_notebook_node(nbformat.v4.new_notebook(), resources, **options)
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from grader.common.errors import CourseError
 from grader.course import ROOT, Course
 from grader.grade import Row, grade_all
-from grader.kernels.isolation import NO_SANDBOX, isolated
+from grader.kernels.isolation import NO_SANDBOX, require_isolation
 from grader.report.feedback import write_feedback
 from grader.report.progress_table import print_rows
 from grader.report.report import Run, write_report
@@ -41,7 +41,7 @@ def demo(samples: Path = SAMPLES, *, root: Path = ROOT) -> bool:
         folder.mkdir(parents=True)
         shutil.copyfile(sample, folder / f'{assignment}.ipynb')
     submissions = find_submissions(course)
-    if not isolated(trust_students=True):
+    if not require_isolation(trust_students=True):
         print(f'The samples are {NO_SANDBOX}. They are part of the course, and do no harm.')
     graded = grade_all(course, submissions, trust_students=True)
     run = Run(datetime.now().astimezone())

@@ -15,7 +15,14 @@ from grader.export.sample_solutions import write_solutions
 from grader.export.scores import write_scores
 from grader.export.totals import write_totals
 from grader.grade import grade_all
-from grader.kernels.isolation import NO_SANDBOX, accounting, isolated, missing, protections, slow
+from grader.kernels.isolation import (
+    NO_SANDBOX,
+    accounting,
+    missing,
+    protections,
+    require_isolation,
+    slow,
+)
 from grader.replay import RECORDED, replay
 from grader.report.feedback import write_feedback
 from grader.report.progress_table import changes, print_rows
@@ -24,8 +31,8 @@ from grader.storage.database import wait_until_free
 from grader.storage.due_dates import describe_deadlines, set_due
 from grader.storage.gradebook import register
 from grader.storage.late_penalties import extended_for_nobody
-from grader.storage.submitted import HandedIn, find_submissions
-from grader.workers.backend import Crew
+from grader.storage.submitted import SubmissionFolder, find_submissions
+from grader.workers.backend import Backend
 from grader.workers.dask_backend import Cluster
 from grader.workers.dask_client import Certificates
 from grader.workers.workers import Workers
@@ -83,23 +90,23 @@ def run_due(course: Course, asked: argparse.Namespace) -> int:
 
 def run_grade(course: Course, asked: argparse.Namespace) -> int:
     """Grade, a row for each submission, and write the report. 1 where one could not be graded."""
-    crew = _crew(asked)
+    backend = _crew(asked)
     submissions = find_submissions(course, assignment=asked.assignment, student_id=asked.student)
     if asked.store and asked.seed == RECORDED:
         raise CourseError('--store needs --seed HEX: what is recorded is stored already')
     if asked.seed and not asked.store:
-        return _replay(course, submissions, asked, crew)
+        return _replay(course, submissions, asked, backend)
     run = Run(datetime.now().astimezone(), seed=asked.seed or '')
     graded = grade_all(
         course,
         submissions,
-        crew=crew,
+        backend=backend,
         seed=asked.seed or '',
         trust_students=asked.trust_students,
         force=asked.force,
     )
     rows = []
-    if asked.trust_students and not isolated(trust_students=True):
+    if asked.trust_students and not require_isolation(trust_students=True):
         print(f'{NO_SANDBOX.capitalize()}, and student code has your rights (--trust-students).')
     try:
         for row in print_rows(graded, submissions):
@@ -124,7 +131,7 @@ def run_grade(course: Course, asked: argparse.Namespace) -> int:
     return 1 if failed else 0
 
 
-def _crew(asked: argparse.Namespace) -> Crew | None:
+def _crew(asked: argparse.Namespace) -> Backend | None:
     certificates = Certificates(asked.tls_ca_file, asked.tls_cert, asked.tls_key)
     if not asked.dask:
         if certificates != Certificates():
@@ -139,13 +146,16 @@ def _crew(asked: argparse.Namespace) -> Crew | None:
 
 
 def _replay(
-    course: Course, submissions: list[HandedIn], asked: argparse.Namespace, crew: Crew | None
+    course: Course,
+    submissions: list[SubmissionFolder],
+    asked: argparse.Namespace,
+    backend: Backend | None,
 ) -> int:
     same = True
     for line, as_stored in replay(
         course,
         submissions,
-        crew=crew,
+        backend=backend,
         seed=asked.seed,
         trust_students=asked.trust_students,
     ):

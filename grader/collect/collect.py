@@ -14,7 +14,7 @@ from datetime import datetime
 from functools import cache
 from pathlib import Path
 
-from grader.collect.matching import HandIn, match
+from grader.collect.matching import MatchedFile, match
 from grader.collect.platform_ids import Numbers
 from grader.collect.uploads import look_into
 from grader.common.dates import date_of
@@ -23,7 +23,7 @@ from grader.common.files import write_whole
 from grader.course import Course
 from grader.export.scores import as_csv
 from grader.notebook.submission import TIMESTAMP
-from grader.storage.lock import Turn
+from grader.storage.lock import gradebook_lock
 from grader.storage.records import Record, records
 from grader.storage.submitted import known_students
 
@@ -55,7 +55,7 @@ def collect(course: Course, source: Path, *, file_times: bool = False) -> Iterat
     tells. Raises CourseError where `source` is nothing of the kind, and where the disk is full.
     """
     grades = cache(lambda: records(course))
-    with Turn.take(course.gradebook), tempfile.TemporaryDirectory(prefix='collect-') as aside:
+    with gradebook_lock(course.gradebook), tempfile.TemporaryDirectory(prefix='collect-') as aside:
         try:
             found = list(look_into(source, Path(aside)))
             visible = [each for each in found if not each.litter]
@@ -82,7 +82,9 @@ def collect(course: Course, source: Path, *, file_times: bool = False) -> Iterat
                 yield Row(each.path, UNUSED, 'hidden, or left behind by a program')
 
 
-def _row(course: Course, each: HandIn, problem: str, grades: Callable[[], list[Record]]) -> Row:
+def _row(
+    course: Course, each: MatchedFile, problem: str, grades: Callable[[], list[Record]]
+) -> Row:
     try:
         outcome, reason = (LEFT, problem) if problem else _take(course, each, grades)
         if not problem and each.remark:
@@ -95,7 +97,9 @@ def _row(course: Course, each: HandIn, problem: str, grades: Callable[[], list[R
     return Row(each.notebook.path, outcome, reason, *whose, each.handed_in)
 
 
-def _take(course: Course, each: HandIn, grades: Callable[[], list[Record]]) -> tuple[str, str]:
+def _take(
+    course: Course, each: MatchedFile, grades: Callable[[], list[Record]]
+) -> tuple[str, str]:
     """Put a submission in its place; return what became of it, and why."""
     place = course.folder('submitted', each.student_id, each.assignment)
     shelf = course.folder('submitted_before', each.student_id, each.assignment)
@@ -119,7 +123,7 @@ def _take(course: Course, each: HandIn, grades: Callable[[], list[Record]]) -> t
     return AGAIN, f'the one before and its grade are kept in {_shown(shelf, course)}'
 
 
-def _files(each: HandIn) -> Iterator[tuple[str, Path]]:
+def _files(each: MatchedFile) -> Iterator[tuple[str, Path]]:
     yield f'{each.assignment}.ipynb', each.notebook.file
     yield from each.extra.items()
 
@@ -165,7 +169,7 @@ def _within(name: str, write: Callable[[Path], None]) -> Callable[[Path], None]:
 
 
 def _copy_all(
-    course: Course, each: HandIn, folder: Path, grades: Callable[[], list[Record]]
+    course: Course, each: MatchedFile, folder: Path, grades: Callable[[], list[Record]]
 ) -> None:
     """Copy what there is of a submission: its files, what came of them, and its scores."""
     for step in ('submitted', 'autograded', 'feedback'):

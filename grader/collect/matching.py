@@ -15,7 +15,7 @@ from grader.notebook.submission import TIMESTAMP
 
 
 @dataclass(frozen=True)
-class HandIn:
+class MatchedFile:
     """One assignment of one student, as it came in."""
 
     student_id: str
@@ -47,7 +47,7 @@ def match(
     *,
     students: Iterable[str] = (),
     file_times: bool = False,
-) -> tuple[list[HandIn], list[Left]]:
+) -> tuple[list[MatchedFile], list[Left]]:
     """Sort what came in: submissions, each student's in their order, and the rest with reasons.
 
     `students` are those who are known from before. `file_times` takes the time of a file for the
@@ -75,7 +75,7 @@ def match(
             if name.endswith('.py') and not problem_of_id(name)
         }
         hand_ins.append(
-            HandIn(
+            MatchedFile(
                 owner.student_id,
                 owner.assignment,
                 notebook,
@@ -171,9 +171,9 @@ def _not_taken(each: Incoming, *, in_upload: bool) -> Left:
     return Left(each, 'it lies beside no notebook of one student')
 
 
-def _in_order(hand_ins: list[HandIn], rest: list[Left]) -> list[HandIn]:
+def _in_order(hand_ins: list[MatchedFile], rest: list[Left]) -> list[MatchedFile]:
     """Sort by student, assignment and time; what can't be put in an order joins the rest."""
-    whose: dict[tuple[str, str], list[HandIn]] = defaultdict(list)
+    whose: dict[tuple[str, str], list[MatchedFile]] = defaultdict(list)
     for each in hand_ins:
         whose[each.student_id, each.assignment].append(each)
     ordered = []
@@ -192,7 +192,7 @@ def _in_order(hand_ins: list[HandIn], rest: list[Left]) -> list[HandIn]:
     return ordered
 
 
-def _all_alike(several: list[HandIn]) -> bool:
+def _all_alike(several: list[MatchedFile]) -> bool:
     """Whether they hold the same; not where that can't be read."""
     try:
         return len({_content(each) for each in several}) == 1
@@ -200,7 +200,7 @@ def _all_alike(several: list[HandIn]) -> bool:
         return False  # each of them is left to a person, with its path
 
 
-def _content(each: HandIn) -> bytes:
+def _content(each: MatchedFile) -> bytes:
     """Return a digest of the files of a submission."""
     digest = sha256()
     for name, path in [('', each.notebook.file), *sorted(each.extra.items())]:

@@ -8,7 +8,7 @@ import json
 from collections import defaultdict
 from collections.abc import Sequence
 
-from grader.collect.matching import HandIn
+from grader.collect.matching import MatchedFile
 from grader.common.errors import CourseError
 from grader.common.files import write_whole
 from grader.course import Course
@@ -36,7 +36,7 @@ class Numbers:
         """Return a student's numbers in an assignment, by platform."""
         return self._kept.get(student_id, {}).get(assignment, {})
 
-    def take(self, hand_ins: Sequence[HandIn]) -> list[str]:
+    def take(self, hand_ins: Sequence[MatchedFile]) -> list[str]:
         """Write the students' numbers down; return for each why it is left to a person, or ''.
 
         That is where students of one name have several numbers: nobody's work may be replaced by
@@ -58,7 +58,7 @@ class Numbers:
             write_whole(self._path, text + '\n')
         return problems
 
-    def _known(self, each: HandIn) -> set[str]:
+    def _known(self, each: MatchedFile) -> set[str]:
         """Return the numbers that the student of that name had before."""
         if each.label is None:
             return set()
@@ -68,7 +68,7 @@ class Numbers:
         return {numbers[platform] for numbers in theirs.values() if platform in numbers}
 
 
-def _same(each: HandIn) -> tuple[str, ...]:
+def _same(each: MatchedFile) -> tuple[str, ...]:
     """Return what equal numbers are expected of."""
     if each.label is None:
         return ()
@@ -76,7 +76,7 @@ def _same(each: HandIn) -> tuple[str, ...]:
     return each.label.platform, each.student_id, of
 
 
-def _problem(each: HandIn, numbers: set[str]) -> str:
+def _problem(each: MatchedFile, numbers: set[str]) -> str:
     if each.label is None or numbers == {each.label.number}:
         return ''
     platform, who = each.label.platform.capitalize(), each.student_id

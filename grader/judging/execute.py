@@ -15,7 +15,7 @@ from nbformat import NotebookNode
 
 from grader.common.pool import Pool
 from grader.judging.local_paths import hide_local_paths
-from grader.kernels.isolation import isolated
+from grader.kernels.isolation import require_isolation
 from grader.kernels.rooms import Rooms
 
 
@@ -73,7 +73,7 @@ def execute(
     seed: str = '',
     trust_students: bool = False,
 ) -> Execution:
-    """Run a healed notebook's exercises, each in rooms of its own, and judge them.
+    """Run a restored notebook's exercises, each in rooms of its own, and judge them.
 
     `seed` decides the inputs that hidden tests choose. May be called inside a running event loop.
     Nothing that a notebook does raises here; what the grader itself fails in is `ungraded`.
@@ -81,10 +81,10 @@ def execute(
     """
     options = {'extra_files': extra_files, 'seed': seed, 'trust_students': trust_students}
     with Pool(in_flight=1) as pool:
-        return pool.submit(executed, notebook, **options).result()
+        return pool.submit(execute_exercises, notebook, **options).result()
 
 
-async def executed(
+async def execute_exercises(
     notebook: NotebookNode,
     *,
     extra_files: Sequence[Path] = (),
@@ -97,7 +97,7 @@ async def executed(
     if problem := graded.metadata.get(KEY, {}).get('problem'):
         verdicts = refuse(graded, problem)
     else:
-        in_sandbox = isolated(trust_students=trust_students)
+        in_sandbox = require_isolation(trust_students=trust_students)
         graded.metadata[KEY].in_sandbox = in_sandbox
         verdicts = await _execute(_Task(graded, tuple(extra_files), seed, in_sandbox, Budget()))
     hide_local_paths(graded)

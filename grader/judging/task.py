@@ -14,7 +14,7 @@ import nbformat
 from nbformat import NotebookNode
 
 from grader.common.errors import CourseError
-from grader.judging.execute import executed
+from grader.judging.execute import execute_exercises
 from grader.judging.result_schema import read_result
 from grader.sandbox.limits import MAX_REASON_CHARACTERS, SUBMISSION_TIMEOUT_SEC
 from grader.sandbox.temporary_folders import own_folder
@@ -25,7 +25,7 @@ class Task:
     """All that the grading of one submission depends on."""
 
     notebook: NotebookNode
-    """Healed and prepared: the lesson's cells with the student's answers."""
+    """Restored and prepared: the lesson's cells with the student's answers."""
     seed: str
     """Decides the inputs that hidden tests choose."""
     files: Mapping[str, bytes] = field(default_factory=dict)
@@ -43,7 +43,7 @@ class Result:
     """How long that took, from the first kernel's start to the last one's end."""
 
 
-def packed(task: Task) -> str:
+def pack(task: Task) -> str:
     """Return a task as JSON, in ASCII."""
     files = {name: base64.b64encode(raw).decode('ascii') for name, raw in task.files.items()}
     return json.dumps(
@@ -56,7 +56,7 @@ def packed(task: Task) -> str:
     )
 
 
-async def graded(text: str) -> str:
+async def run_packed(text: str) -> str:
     """Do a packed task; return what came of it as JSON, in ASCII. Nothing is raised."""
     try:
         return json.dumps(await _graded(json.loads(text)))
@@ -66,7 +66,7 @@ async def graded(text: str) -> str:
         return json.dumps({'failed': said, 'traceback': trace})
 
 
-def unpacked(text: str, task: Task) -> Result:
+def unpack(text: str, task: Task) -> Result:
     """Check what came of a task, and return it.
 
     Raises TaskFailed where it failed, and where what came back is no result of it.
@@ -83,7 +83,7 @@ async def _graded(task: dict) -> dict:
             paths[-1].write_bytes(base64.b64decode(text))
         try:
             async with asyncio.timeout(SUBMISSION_TIMEOUT_SEC):
-                execution = await executed(
+                execution = await execute_exercises(
                     nbformat.from_dict(task['notebook']),
                     extra_files=paths,
                     seed=task['seed'],

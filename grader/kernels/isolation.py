@@ -81,7 +81,7 @@ def missing() -> str:
     return ''
 
 
-def isolated(*, trust_students: bool = False) -> bool:
+def require_isolation(*, trust_students: bool = False) -> bool:
     """Return whether student code runs in a sandbox.
 
     Raises CourseError where it can't and nobody said that it need not.

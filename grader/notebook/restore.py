@@ -12,8 +12,8 @@ NO_ANSWERS = 'the notebook holds none of the answer cells of this assignment'
 
 
 @dataclass(frozen=True)
-class Master:
-    """What every submission of an assignment is healed from."""
+class AssignmentTemplate:
+    """What every submission of an assignment is restored from."""
 
     notebook: NotebookNode
     """The instructor's cells, hidden tests included, with the released stubs for answers."""
@@ -22,7 +22,7 @@ class Master:
 
 
 @dataclass(frozen=True)
-class Healed:
+class Restored:
     """A notebook with every cell of its source, in the source's order, and what was restored."""
 
     notebook: NotebookNode
@@ -38,7 +38,7 @@ class _Found:
     """The student's own cells that follow it."""
 
 
-def make_master(source: NotebookNode, release: NotebookNode) -> Master:
+def make_template(source: NotebookNode, release: NotebookNode) -> AssignmentTemplate:
     """Join the instructor's notebook with the one that students were given."""
     released = {grade_id(cell): cell.source for cell in release.cells if grade_id(cell)}
     notebook = nbformat.from_dict(source)
@@ -48,36 +48,37 @@ def make_master(source: NotebookNode, release: NotebookNode) -> Master:
         if cell.cell_type == 'code':
             cell.outputs, cell.execution_count = [], None
         cell.metadata[KEY] = {'role': kind}
-    return Master(notebook=notebook, released=released)
+    return AssignmentTemplate(notebook=notebook, released=released)
 
 
-def heal(submitted: NotebookNode, master: Master) -> Healed:
-    """Build the notebook that is graded: the master's cells and the student's answers.
+def restore(submitted: NotebookNode, template: AssignmentTemplate) -> Restored:
+    """Build the notebook that is graded: the template's cells and the student's answers.
 
-    Locked and grade cells come from the master, whatever became of them; an answer that was split
-    or repeated keeps all its parts; a cell of the student's own stays after the cell it followed.
+    Locked and grade cells come from the template, whatever became of them. An answer that was
+    split or repeated keeps all its parts. A cell of the student's own stays after the cell that
+    it followed.
     Every change to a locked, grade or answer cell is noted.
     """
     notes: list[str] = []
-    found = _match(submitted, master.notebook)
+    found = _match(submitted, template.notebook)
     cells = [_from_student(cell) for cell in found[-1].after]
-    for index, cell in enumerate(master.notebook.cells):
-        cells.extend(_mend(cell, found[index].parts, master.released, notes))
+    for index, cell in enumerate(template.notebook.cells):
+        cells.extend(_mend(cell, found[index].parts, template.released, notes))
         cells.extend(_from_student(own) for own in found[index].after)
     _give_unique_ids(cells)
-    answers = [i for i, cell in enumerate(master.notebook.cells) if role(cell) == 'answer']
+    answers = [i for i, cell in enumerate(template.notebook.cells) if role(cell) == 'answer']
     if not any(found[i].parts for i in answers):
         notes = [NO_ANSWERS, *notes]
-    healed = nbformat.v4.new_notebook(cells=cells)
-    healed.metadata = nbformat.from_dict(master.notebook.metadata)
-    healed.metadata[KEY] = {'notes': notes, 'title': title_of(master.notebook)}
-    return Healed(notebook=healed, notes=tuple(notes))
+    restored = nbformat.v4.new_notebook(cells=cells)
+    restored.metadata = nbformat.from_dict(template.notebook.metadata)
+    restored.metadata[KEY] = {'notes': notes, 'title': title_of(template.notebook)}
+    return Restored(notebook=restored, notes=tuple(notes))
 
 
-def _match(submitted: NotebookNode, master: NotebookNode) -> dict[int, _Found]:
-    """Find each submitted cell's place in the master, by grade id, else by text or cell id."""
-    by_grade_id = {grade_id(c): i for i, c in enumerate(master.cells) if grade_id(c)}
-    plain = [(i, c) for i, c in enumerate(master.cells) if not grade_id(c)]
+def _match(submitted: NotebookNode, template: NotebookNode) -> dict[int, _Found]:
+    """Find each submitted cell's place in the template, by grade id, else by text or cell id."""
+    by_grade_id = {grade_id(c): i for i, c in enumerate(template.cells) if grade_id(c)}
+    plain = [(i, c) for i, c in enumerate(template.cells) if not grade_id(c)]
     by_id = {c.id: i for i, c in plain if 'id' in c}
     by_text = {(c.cell_type, c.source): i for i, c in plain}
     found: dict[int, _Found] = defaultdict(_Found)
@@ -98,7 +99,7 @@ def _match(submitted: NotebookNode, master: NotebookNode) -> dict[int, _Found]:
 def _mend(
     cell: NotebookNode, parts: list[NotebookNode], released: dict[str, str], notes: list[str]
 ) -> Iterator[NotebookNode]:
-    """Yield what stands for one cell of the master."""
+    """Yield what stands for one cell of the template."""
     kind, name = role(cell), grade_id(cell)
     original = nbformat.from_dict(cell)
     changed = bool(parts) and parts[0].source not in (cell.source, released.get(name))

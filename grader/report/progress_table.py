@@ -11,7 +11,7 @@ from tqdm import tqdm
 
 from grader.common.text import columns, pad, printable, shorten
 from grader.grade import Row
-from grader.storage.submitted import HandedIn
+from grader.storage.submitted import SubmissionFolder
 
 MAX_NAME_COLUMNS = 40
 TICK_SEC = 1.0
@@ -19,7 +19,10 @@ _OUTCOMES = ('with all points', 'with fewer', 'for a person', 'not graded')
 
 
 def print_rows(
-    rows: Iterable[Row], submissions: Sequence[HandedIn], *, expected: dict[str, str] | None = None
+    rows: Iterable[Row],
+    submissions: Sequence[SubmissionFolder],
+    *,
+    expected: dict[str, str] | None = None,
 ) -> Iterator[Row]:
     """Print each row as it comes, and pass it on.
 

@@ -16,7 +16,7 @@ from grader.common.versions import versions
 from grader.course import Course
 from grader.export.totals import Totals, add_up
 from grader.grade import Row
-from grader.kernels.isolation import isolated
+from grader.kernels.isolation import require_isolation
 from grader.report.charts import distribution, share
 from grader.report.message_groups import Reason
 from grader.report.progress_table import changes, score_of
@@ -85,7 +85,7 @@ def _facts(run: Run, rows: Sequence[Row], counted: Tally) -> dict:
         'environment': versions()
         | {
             'isolation': 'each submission in a sandbox'
-            if isolated(trust_students=True)
+            if require_isolation(trust_students=True)
             else 'none: --trust-students',
             'inputs of hidden tests': f'replayed from seed {run.seed}'
             if run.seed

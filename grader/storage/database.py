@@ -15,7 +15,7 @@ from nbgrader.api import Gradebook
 from grader.common.errors import CourseError, GradebookError
 from grader.course import Course
 
-PATIENCE_SEC = 60.0
+TIMEOUT_SEC = 60.0
 """How long another program may keep the database; the formgrader takes it for milliseconds."""
 
 # nbgrader prints a traceback of what it raises all the same
@@ -51,7 +51,7 @@ def make_database(course: Course) -> None:
 
 def wait_until_free(course: Course, say: Callable[[str], None] = print) -> None:
     """Wait while another program holds the database, and say so. Raises GradebookError at last."""
-    deadline, said = time.monotonic() + PATIENCE_SEC, False
+    deadline, said = time.monotonic() + TIMEOUT_SEC, False
     with closing(sqlite3.connect(course.database, timeout=0, isolation_level=None)) as database:
         while True:
             try:
@@ -130,7 +130,7 @@ def _sentence(error: BaseException | None, course: Course) -> str | None:
         )
     if code in _BUSY:
         return (
-            f'another program has kept {course.database} locked for {PATIENCE_SEC:.0f} s. What '
+            f'another program has kept {course.database} locked for {TIMEOUT_SEC:.0f} s. What '
             'was stored before is kept. Close what has it open (a database browser, a '
             'formgrader that hangs), then run the same command again: it goes on.'
         )

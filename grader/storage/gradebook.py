@@ -18,7 +18,7 @@ from grader.course import Course
 from grader.notebook.restore import KEY, grade_id
 from grader.notebook.submission import Submission, extra_python_files, handed_in, timestamps
 from grader.storage.database import connected, in_sentences, make_database, wait_until_free
-from grader.storage.lock import Turn
+from grader.storage.lock import gradebook_lock
 from grader.storage.pipeline import apply, finish, first_reason, resources_of
 
 SAVE_CELLS = 'nbgrader.preprocessors.SaveCells'
@@ -120,23 +120,24 @@ def recover(course: Course) -> None:
     found = sorted(course.folder('autograded', '', '').glob(f'*/*/{_BEGUN.format("*")}'))
     if not found:
         return
-    turn = Turn.take(course.gradebook)
-    make_database(course)
-    for begun in filter(Path.exists, found):
-        student, assignment = begun.parts[-3:-1]
-        folder = course.folder('submitted', student, assignment)
-        extra = tuple(extra_python_files(folder))
-        submission = Submission(student, assignment, folder / f'{assignment}.ipynb', None, extra)
-        try:
-            with in_sentences(course):
-                wait_until_free(course)
-                _finish(course, submission, nbformat.read(begun, as_version=4))
-        except GradebookError:
-            raise
-        except Exception:  # the lesson has changed since, for instance: it is graded again
-            logging.exception('%s of %s is not stored', assignment, printable(student))
-            begun.unlink()
-    del turn  # an outer holder keeps it
+    with gradebook_lock(course.gradebook):
+        make_database(course)
+        for begun in filter(Path.exists, found):
+            student, assignment = begun.parts[-3:-1]
+            folder = course.folder('submitted', student, assignment)
+            extra = tuple(extra_python_files(folder))
+            submission = Submission(
+                student, assignment, folder / f'{assignment}.ipynb', None, extra
+            )
+            try:
+                with in_sentences(course):
+                    wait_until_free(course)
+                    _finish(course, submission, nbformat.read(begun, as_version=4))
+            except GradebookError:
+                raise
+            except Exception:  # the lesson has changed since, for instance: it is graded again
+                logging.exception('%s of %s is not stored', assignment, printable(student))
+                begun.unlink()
 
 
 def _finish(course: Course, submission: Submission, graded: NotebookNode) -> NotebookNode:

@@ -1,73 +1,35 @@
-"""One at a time: the lock that keeps `nbgrader autograde` and `./course grade` apart."""
+"""The lock of a gradebook: one process at a time writes into it, `nbgrader autograde` included."""
 
-import fcntl
 import os
-import weakref
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
-from nbconvert.preprocessors import Preprocessor
-from nbformat import NotebookNode
-
-from grader.course import Course
+from filelock import FileLock, Timeout
 
 
-class Turn:
-    """The right to write into a gradebook, until `end` or until nobody refers to it any more."""
+@contextmanager
+def gradebook_lock(gradebook: Path, say: Callable[[str], None] = print) -> Iterator[None]:
+    """Hold the right to write into a gradebook for the block; wait for it first, and say so.
 
-    _taken: weakref.WeakValueDictionary = weakref.WeakValueDictionary()
-
-    def __init__(self, path: Path, say: Callable[[str], None]) -> None:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle = os.open(path, os.O_RDWR | os.O_CREAT, 0o644)
-        self.end = weakref.finalize(self, os.close, handle)
-        try:
-            try:
-                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
-                say(f'waiting: process {_text(handle)} is grading into {path.parent}')
-                fcntl.flock(handle, fcntl.LOCK_EX)
-            os.ftruncate(handle, 0)
-            os.pwrite(handle, str(os.getpid()).encode(), 0)
-        except BaseException:
-            self.end()  # an error that is kept would keep the lock with it
-            raise
-
-    @classmethod
-    def take(cls, gradebook: Path, say: Callable[[str], None] = print) -> 'Turn':
-        """Wait for the gradebook to be free, and say so if that takes waiting.
-
-        A process that has its turn already gets the same one again: it would wait for itself.
-        """
-        path = gradebook.resolve() / '.lock'
-        turn = cls._taken.get(path)
-        if turn is None or not turn.end.alive:
-            turn = cls._taken[path] = cls(path, say)
-        return turn
-
-    def __enter__(self) -> 'Turn':
-        """Hold the turn for the block."""
-        return self
-
-    def __exit__(self, *exception: object) -> None:
-        """Give the turn back."""
-        self.end()
-
-
-class TakeTurns(Preprocessor):
-    """Hold the turn while nbgrader converts and writes one notebook.
-
-    It ends with the resources of that conversion, however the conversion ends.
+    A process that holds it may take it again: the lock is free once the outermost block ends, or
+    the process does.
     """
+    gradebook = gradebook.resolve()
+    gradebook.mkdir(parents=True, exist_ok=True)
+    path = gradebook / '.lock'
+    lock = FileLock(path, is_singleton=True, thread_local=False, fallback_to_soft=False)
+    try:
+        lock.acquire(timeout=0)
+    except Timeout:
+        say(f'waiting: process {_holder(path)} is grading into {gradebook}')
+        lock.acquire(poll_interval=0.1)
+    try:
+        path.write_text(str(os.getpid()), encoding='ascii')
+        yield
+    finally:
+        lock.release()
 
-    enabled = True
 
-    def preprocess(self, nb: NotebookNode, resources: dict) -> tuple[NotebookNode, dict]:
-        """Wait for the turn; change nothing."""
-        course = Course.of_nbgrader(resources)
-        resources['my_robot_basics_turn'] = Turn.take(course.gradebook, self.log.warning)
-        return nb, resources
-
-
-def _text(handle: int) -> str:
-    return os.pread(handle, 20, 0).decode(errors='replace') or 'unknown'
+def _holder(path: Path) -> str:
+    return path.read_text(encoding='ascii', errors='replace')[:20] or 'unknown'

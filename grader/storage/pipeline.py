@@ -11,11 +11,10 @@ from traitlets.config import Config
 
 from grader.authoring.release import CODE_STUB
 from grader.course import Course
-from grader.notebook.restore import KEY, NO_ANSWERS, Master, heal
+from grader.notebook.restore import KEY, NO_ANSWERS, AssignmentTemplate, restore
 
 SANITIZE_PASSES = (
-    'grader.autograde.preprocessors.HealSubmission',
-    'grader.storage.lock.TakeTurns',
+    'grader.autograde.preprocessors.RestoreSubmission',
     'nbgrader.preprocessors.OverwriteKernelspec',
     'nbgrader.preprocessors.OverwriteCells',
     'nbgrader.preprocessors.CheckCellMetadata',
@@ -24,7 +23,6 @@ SANITIZE_PASSES = (
 
 AUTOGRADE_PASSES = (
     'grader.autograde.preprocessors.ExecuteRooms',
-    'grader.storage.lock.TakeTurns',
     'nbgrader.preprocessors.LimitOutput',
     'grader.storage.save_grades.SaveGrades',
     'grader.storage.late_penalties.LatePenalties',
@@ -61,22 +59,22 @@ def resources_of(course: Course, assignment: str, student_id: str = '.') -> dict
     }
 
 
-def prepare(course: Course, assignment: str, healed: NotebookNode) -> NotebookNode:
-    """Do with a healed notebook what nbgrader does before it runs: checksums, kernel, metadata."""
+def prepare(course: Course, assignment: str, restored: NotebookNode) -> NotebookNode:
+    """Do to a restored notebook what nbgrader does before it runs: checksums, kernel, metadata."""
     return apply(
-        _after('grader.autograde.preprocessors.HealSubmission', SANITIZE_PASSES),
-        healed,
+        _after('grader.autograde.preprocessors.RestoreSubmission', SANITIZE_PASSES),
+        restored,
         resources_of(course, assignment),
     )
 
 
-def prepared_master(course: Course, assignment: str) -> Master:
-    """Return what submissions are healed from with all done to it that `prepare` does.
+def prepared_template(course: Course, assignment: str) -> AssignmentTemplate:
+    """Return what submissions are restored from with all done to it that `prepare` does.
 
-    What is healed from it need not be prepared: whatever nbgrader changes is the master's.
+    What is restored from it need not be prepared: whatever nbgrader changes is the template's.
     """
-    master = course.master(assignment)
-    return replace(master, notebook=prepare(course, assignment, master.notebook))
+    template = course.template(assignment)
+    return replace(template, notebook=prepare(course, assignment, template.notebook))
 
 
 def finish(executed: NotebookNode, resources: dict) -> NotebookNode:
@@ -85,12 +83,12 @@ def finish(executed: NotebookNode, resources: dict) -> NotebookNode:
     return apply(passes, executed, resources)
 
 
-def unanswered(master: Master, reason: str) -> NotebookNode:
+def unanswered(template: AssignmentTemplate, reason: str) -> NotebookNode:
     """Return what stands for a submission that can't be graded: nothing answered, and why.
 
-    The master is a prepared one.
+    The template is a prepared one.
     """
-    notebook = heal(nbformat.v4.new_notebook(), master).notebook
+    notebook = restore(nbformat.v4.new_notebook(), template).notebook
     notebook.metadata[KEY] |= {'notes': [reason], 'problem': reason}
     refuse(notebook, reason)
     return notebook
@@ -101,13 +99,13 @@ def first_reason(graded: NotebookNode) -> str:
 
     What went wrong in the student's own cells comes before what the check then saw.
     """
-    healed = graded.metadata.get(KEY, {})
-    if problem := healed.get('problem'):
+    restored = graded.metadata.get(KEY, {})
+    if problem := restored.get('problem'):
         return problem
     for cell in graded.cells:
         verdict = cell.metadata.get(KEY, {})
         if verdict.get('outcome') in ('partial', 'failed', 'ungraded') and verdict.get('reason'):
-            causes = [note for note in healed.get('notes', ()) if note == NO_ANSWERS]
+            causes = [note for note in restored.get('notes', ()) if note == NO_ANSWERS]
             return '; '.join([*causes, *verdict.get('notes', ())[:1], verdict.reason])
     return ''
 

@@ -43,7 +43,7 @@ def remember(graded: NotebookNode, key: str) -> None:
     graded.metadata.setdefault(KEY, nbformat.from_dict({'notes': []}))[_UNDER] = key
 
 
-def kept(course: Course, submission: Submission, key: str) -> NotebookNode | None:
+def find_earlier_result(course: Course, submission: Submission, key: str) -> NotebookNode | None:
     """Return the graded notebook that is stored under a key, if each check came to a verdict."""
     folder = course.folder('autograded', submission.student_id, submission.assignment)
     try:
@@ -56,7 +56,9 @@ def kept(course: Course, submission: Submission, key: str) -> NotebookNode | Non
     return notebook if all(_outcomes(notebook).values()) else None
 
 
-def held(course: Course, submission: Submission, graded: NotebookNode) -> Stored | None:
+def refresh_late_penalty(
+    course: Course, submission: Submission, graded: NotebookNode
+) -> Stored | None:
     """Return what the gradebook holds for a kept notebook, the late penalty counted anew.
 
     Manual scores are left as they are. None where the gradebook holds anything else for it.

@@ -10,7 +10,7 @@ from grader.course import Course
 
 
 @dataclass(frozen=True)
-class HandedIn:
+class SubmissionFolder:
     """Something under gradebook/submitted/."""
 
     student_id: str
@@ -27,7 +27,7 @@ def known_students(course: Course) -> list[str]:
 
 def find_submissions(
     course: Course, *, assignment: str | None = None, student_id: str | None = None
-) -> list[HandedIn]:
+) -> list[SubmissionFolder]:
     """Return what lies under gradebook/submitted/, sorted; what is out of place has a problem.
 
     Raises CourseError when nothing fits the assignment and the student asked for.
@@ -53,11 +53,13 @@ def find_submissions(
     return found
 
 
-def _of_student(student: Path, known: list[str]) -> Iterator[HandedIn]:
+def _of_student(student: Path, known: list[str]) -> Iterator[SubmissionFolder]:
     where = f'expected {student.parent.name}/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb'
     name = student.name
     if not student.is_dir():
-        yield HandedIn(name, '', student, f"a file where a student's folder was expected: {where}")
+        yield SubmissionFolder(
+            name, '', student, f"a file where a student's folder was expected: {where}"
+        )
         return
     for folder in _visible(student):
         problem = ''
@@ -69,7 +71,7 @@ def _of_student(student: Path, known: list[str]) -> Iterator[HandedIn]:
             problem = f"a file where an assignment's folder was expected: {where}"
         elif folder.name not in known:
             problem = f'there is no such assignment: {where}, one of {", ".join(known)}'
-        yield HandedIn(name, folder.name, folder, problem)
+        yield SubmissionFolder(name, folder.name, folder, problem)
 
 
 def _visible(folder: Path) -> list[Path]:

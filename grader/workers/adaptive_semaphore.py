@@ -11,7 +11,7 @@ LOOK_SEC = 5.0
 """What came of a change has to show before the next one."""
 
 
-class Gate:
+class AdaptiveSemaphore:
     """An `async with` of it lets in `least` at a time, and more while processors stand idle.
 
     It looks when one leaves, every LOOK_SEC: for which share of that time did some process wait

@@ -6,15 +6,15 @@ from typing import Protocol, Self
 from nbformat import NotebookNode
 
 from grader.judging.task import Result, Task
-from grader.notebook.restore import KEY, Master, heal
+from grader.notebook.restore import KEY, AssignmentTemplate, restore
 from grader.notebook.submission import Submission
 from grader.storage.pipeline import unanswered
 
 
-class Crew(Protocol):
+class Backend(Protocol):
     """Takes tasks inside its `with`; what is not done when that is left is called off."""
 
-    room: int
+    capacity: int
     """How many submissions it works on at a time."""
 
     def __enter__(self) -> Self:
@@ -25,7 +25,7 @@ class Crew(Protocol):
         """End what still runs."""
         ...
 
-    def isolated(self, *, trust_students: bool) -> bool:
+    def require_isolation(self, *, trust_students: bool) -> bool:
         """Return whether student code runs in a sandbox; raises CourseError where it must."""
         ...
 
@@ -34,17 +34,22 @@ class Crew(Protocol):
         ...
 
 
-def judged(
-    submission: Submission, master: Master, *, crew: Crew, seed: str, trust_students: bool
+def submit_for_grading(
+    submission: Submission,
+    template: AssignmentTemplate,
+    *,
+    backend: Backend,
+    seed: str,
+    trust_students: bool,
 ) -> 'Future[Result]':
-    """Heal one submission from a prepared master, and have it run with the inputs of a seed."""
+    """Restore a submission from a prepared template, and have it run with the inputs of a seed."""
     if submission.problem:
         nothing: Future[Result] = Future()
-        nothing.set_result(Result(unanswered(master, submission.problem), 0.0))
+        nothing.set_result(Result(unanswered(template, submission.problem), 0.0))
         return nothing
-    return crew.submit(
+    return backend.submit(
         Task(
-            notebook=_healed(submission, master),
+            notebook=_restored(submission, template),
             files={path.name: path.read_bytes() for path in submission.extra_files},
             seed=seed,
             trust_students=trust_students,
@@ -52,7 +57,7 @@ def judged(
     )
 
 
-def _healed(submission: Submission, master: Master) -> NotebookNode:
-    notebook = heal(submission.notebook, master).notebook
+def _restored(submission: Submission, template: AssignmentTemplate) -> NotebookNode:
+    notebook = restore(submission.notebook, template).notebook
     notebook.metadata[KEY].notes += submission.notes
     return notebook

@@ -9,8 +9,8 @@ from typing import Any, Self
 
 from grader.common.errors import ClusterError, TaskFailed
 from grader.common.versions import machinery, versions
-from grader.judging.task import Result, Task, packed, unpacked
-from grader.workers.dask_client import PATIENCE_SEC, Certificates, check_address, connected
+from grader.judging.task import Result, Task, pack, unpack
+from grader.workers.dask_client import CONNECT_TIMEOUT_SEC, Certificates, check_address, connected
 
 _START = 'Start workers from the same checkout, set up by ./course: .venv/bin/dask worker ADDRESS'
 LOOK_SEC = 5.0
@@ -27,13 +27,13 @@ class Cluster:
         self._certificates = certificates or Certificates()
         self._asked: dict[Any, Future[Result]] = {}
         self._left = threading.Event()
-        self.room = 0
+        self.capacity = 0
 
     def __enter__(self) -> Self:
         """Connect, and look at each worker: ClusterError where one would not grade as we do."""
         self._client = connected(self._address, self._certificates)
         try:
-            self.room = self._look_at_workers()
+            self.capacity = self._look_at_workers()
         except BaseException:
             self._client.close()
             raise
@@ -49,7 +49,7 @@ class Cluster:
             self._client.cancel(list(self._asked))
         self._client.close()
 
-    def isolated(self, *, trust_students: bool = False) -> bool:
+    def require_isolation(self, *, trust_students: bool = False) -> bool:
         """Return True: a worker without a sandbox grades nothing."""
         return True
 
@@ -61,7 +61,7 @@ class Cluster:
         from grader.workers import dask_worker  # needs Dask, which one machine does without
 
         work: Future[Result] = Future()
-        asked = self._client.submit(dask_worker.grade, packed(task), machinery(), pure=False)
+        asked = self._client.submit(dask_worker.grade, pack(task), machinery(), pure=False)
         self._asked[asked] = work
         asked.add_done_callback(lambda done: self._settle(done, task))
         return work
@@ -78,7 +78,7 @@ class Cluster:
             answer = asked.result()
             if refused := _refused(answer):
                 raise ClusterError(f'a worker of {self._address} {_difference(refused)}')
-            work.set_result(unpacked(answer, task))
+            work.set_result(unpack(answer, task))
         except ClusterError as error:
             work.set_exception(error)
         except Exception as error:  # Dask has lost several workers over it, for instance
@@ -93,8 +93,8 @@ class Cluster:
         from grader.workers import dask_worker
 
         with suppress(TimeoutError):
-            self._client.wait_for_workers(1, timeout=PATIENCE_SEC)
-        room = 0
+            self._client.wait_for_workers(1, timeout=CONNECT_TIMEOUT_SEC)
+        capacity = 0
         for address, said in self._client.run(dask_worker.describe, on_error='return').items():
             check_address(address)
             if isinstance(said, OSError):
@@ -106,10 +106,10 @@ class Cluster:
             about = json.loads(said)
             if about['missing'] or about['machinery'] != machinery():
                 raise ClusterError(f'the worker {address} {_difference(about)}')
-            room += about['room']
-        if not room:
+            capacity += about['capacity']
+        if not capacity:
             raise ClusterError(f'{self._address} has no workers. {_START}')
-        return room
+        return capacity
 
     def _look_after(self) -> None:
         """Say so while there is no worker; whatever was being graded waits for one."""

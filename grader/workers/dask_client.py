@@ -10,7 +10,7 @@ from grader.common.errors import ClusterError
 if TYPE_CHECKING:
     from distributed import Client
 
-PATIENCE_SEC = 30.0
+CONNECT_TIMEOUT_SEC = 30.0
 """How long a scheduler may take to answer, or a first worker to come."""
 
 
@@ -73,7 +73,11 @@ def connected(address: str, certificates: Certificates) -> 'Client':
             )
     try:
         return Client(
-            address, security=security, timeout=PATIENCE_SEC, set_as_default=False, name='course'
+            address,
+            security=security,
+            timeout=CONNECT_TIMEOUT_SEC,
+            set_as_default=False,
+            name='course',
         )
     except (OSError, ValueError) as error:
         why = str(error).partition('\n')[0]

@@ -55,6 +55,6 @@ def _described(in_flight: int) -> str:
                 'machinery': machinery(),
                 'versions': versions(),
                 'missing': missing(),
-                'room': _workers(in_flight).room,
+                'capacity': _workers(in_flight).capacity,
             }
         )

@@ -10,7 +10,7 @@ import struct
 import sys
 
 from grader.common.logs import log_visibly
-from grader.judging.task import graded
+from grader.judging.task import run_packed
 from grader.sandbox.limits import MAX_TASK_BYTES
 
 BEAT_SEC = 5.0
@@ -59,7 +59,7 @@ async def serve(connection: socket.socket) -> None:
 
 
 async def _answer(writer: asyncio.StreamWriter, number: int, text: str) -> None:
-    await send(writer, number, await graded(text))
+    await send(writer, number, await run_packed(text))
 
 
 async def _beat(writer: asyncio.StreamWriter) -> None:

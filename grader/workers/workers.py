@@ -13,8 +13,8 @@ from typing import Self
 from grader.common.available_memory import available_bytes
 from grader.common.errors import TaskFailed
 from grader.common.pool import Pool
-from grader.judging.task import Result, Task, packed, unpacked
-from grader.kernels.isolation import isolated
+from grader.judging.task import Result, Task, pack, unpack
+from grader.kernels.isolation import require_isolation
 from grader.sandbox.cgroup_hierarchies import scoped
 from grader.sandbox.limits import (
     IN_FLIGHT_EACH,
@@ -23,7 +23,7 @@ from grader.sandbox.limits import (
     MOST_IN_FLIGHT_EACH,
     SUBMISSION_MEMORY_BYTES,
 )
-from grader.workers.adaptive_semaphore import Gate
+from grader.workers.adaptive_semaphore import AdaptiveSemaphore
 from grader.workers.worker import BEAT, BEAT_SEC, receive, send
 
 COMMAND = (sys.executable, '-P', '-m', 'grader.workers.worker')
@@ -55,12 +55,14 @@ class Workers:
         least = in_flight or IN_FLIGHT_EACH * self._number
         most = max(least, min(MOST_IN_FLIGHT_EACH * self._number, MOST_IN_FLIGHT))
         fit = max(1, available_bytes() // SUBMISSION_MEMORY_BYTES)
-        self.room = min(in_flight or most, fit)
-        self._gate = Gate(least=min(least, fit), most=self.room, step=self._number)
+        self.capacity = min(in_flight or most, fit)
+        self._gate = AdaptiveSemaphore(
+            least=min(least, fit), most=self.capacity, step=self._number
+        )
         self._each = -(-least // self._number)
         self._command = command or scoped(COMMAND)
         self._team: list[_Worker] = []
-        self._pool = Pool(self.room)
+        self._pool = Pool(self.capacity)
 
     def __enter__(self) -> Self:
         """Begin to take tasks."""
@@ -71,9 +73,9 @@ class Workers:
         """End what still runs."""
         self._pool.__exit__(*exception)
 
-    def isolated(self, *, trust_students: bool = False) -> bool:
+    def require_isolation(self, *, trust_students: bool = False) -> bool:
         """Return whether student code runs in a sandbox; raises CourseError where it must."""
-        return isolated(trust_students=trust_students)
+        return require_isolation(trust_students=trust_students)
 
     def submit(self, task: Task) -> 'Future[Result]':
         """Grade a task as soon as there is room. The future raises TaskFailed for no result."""
@@ -84,7 +86,7 @@ class Workers:
         return self._pool.submit(self._tried, text)
 
     async def _graded(self, task: Task) -> Result:
-        return unpacked(await self._tried(packed(task)), task)
+        return unpack(await self._tried(pack(task)), task)
 
     async def _tried(self, text: str) -> str:
         async with self._gate:

@@ -27,7 +27,7 @@ from grader.course import Course
 from grader.judging.execute import execute
 from grader.kernels.kernels import Kernel
 from grader.kernels.rooms import Rooms
-from grader.notebook.restore import heal, role
+from grader.notebook.restore import restore, role
 from grader.storage.gradebook import register
 from grader.storage.pipeline import prepare
 
@@ -101,15 +101,17 @@ def main(runs: int = 3) -> None:
     for name in NAMES:
         assignment = assignment_of(PATHS[name])
         submitted = nbformat.read(PATHS[name], as_version=4)
-        healed = prepare(course, assignment, heal(submitted, course.master(assignment)).notebook)
-        shorter = without_demonstrations(healed)
+        restored = prepare(
+            course, assignment, restore(submitted, course.template(assignment)).notebook
+        )
+        shorter = without_demonstrations(restored)
         times: dict[str, list[float]] = defaultdict(list)
         for _ in range(runs):
             spent.clear()
-            times['ours'].append(seconds(execute, healed))
+            times['ours'].append(seconds(execute, restored))
             for part, sec in parts_of_one().items():
                 parts[part].append(sec)
-            times['stock'].append(seconds(stock, healed))
+            times['stock'].append(seconds(stock, restored))
             times['shorter'].append(seconds(stock, shorter))
         rows.append((name, *(statistics.median(times[k]) for k in ('ours', 'stock', 'shorter'))))
         print_row(*rows[-1], first=len(rows) == 1)

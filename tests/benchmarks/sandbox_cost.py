@@ -21,8 +21,8 @@ from sample_class import PATHS, assignment_of
 
 from grader.course import Course
 from grader.judging import execute as module
-from grader.kernels.isolation import isolated
-from grader.notebook.restore import heal
+from grader.kernels.isolation import require_isolation
+from grader.notebook.restore import restore
 from grader.storage.gradebook import register
 from grader.storage.pipeline import prepare
 
@@ -36,7 +36,7 @@ NAMES = (
 
 def main(runs: int = 5) -> None:
     """Print the table."""
-    isolated()  # what this finds out costs every run once, and no submission
+    require_isolation()  # what this finds out costs every run once, and no submission
     course = Course(gradebook=Path(tempfile.mkdtemp(prefix='sandbox_cost-')))
     for assignment in course.assignments():
         register(course, assignment)
@@ -45,14 +45,16 @@ def main(runs: int = 5) -> None:
     for name in NAMES:
         assignment = assignment_of(PATHS[name])
         submitted = nbformat.read(PATHS[name], as_version=4)
-        healed = prepare(course, assignment, heal(submitted, course.master(assignment)).notebook)
+        restored = prepare(
+            course, assignment, restore(submitted, course.template(assignment)).notebook
+        )
         times: dict[bool, list[float]] = defaultdict(list)
         for run in range(runs):
             # what comes second in a turn has warmer caches
             for sandboxed in (True, False) if run % 2 else (False, True):
-                module.isolated = lambda *, trust_students, answer=sandboxed: answer
+                module.require_isolation = lambda *, trust_students, answer=sandboxed: answer
                 began = time.perf_counter()
-                module.execute(healed)
+                module.execute(restored)
                 times[sandboxed].append(time.perf_counter() - began)
         ours, bare = (statistics.median(times[kind]) for kind in (True, False))
         ratios.append(ours / bare)

@@ -19,14 +19,14 @@ from pathlib import Path
 from measuring import Course, new_course, table
 from sample_class import PATHS, assignment_of
 
-from grader.judging.execute import executed
-from grader.kernels.isolation import isolated
+from grader.judging.execute import execute_exercises
+from grader.kernels.isolation import require_isolation
 from grader.kernels.kernels import Kernel
-from grader.notebook.restore import heal
+from grader.notebook.restore import restore
 from grader.notebook.submission import read_submission
 from grader.storage.database import one_engine
 from grader.storage.gradebook import register, store
-from grader.storage.pipeline import prepared_master
+from grader.storage.pipeline import prepared_template
 
 NAMES = (
     '02_joint_state-pass-one_constructor',
@@ -81,12 +81,12 @@ def grade(course: Course, name: str, number: int) -> None:
     folder = course.folder('submitted', student, assignment)
     folder.mkdir(parents=True)
     (folder / f'{assignment}.ipynb').write_bytes(PATHS[name].read_bytes())
-    master = prepared_master(course, assignment)
+    template = prepared_template(course, assignment)
     parts = [time.process_time()]
     submission = read_submission(folder, student_id=student, assignment=assignment)
-    healed = heal(submission.notebook, master).notebook
+    restored = restore(submission.notebook, template).notebook
     parts.append(time.process_time())
-    graded = asyncio.run(executed(healed)).notebook
+    graded = asyncio.run(execute_exercises(restored)).notebook
     parts.append(time.process_time())
     store(course, submission, graded)
     parts.append(time.process_time())
@@ -97,7 +97,7 @@ def grade(course: Course, name: str, number: int) -> None:
 
 def main(runs: int = 3) -> None:
     """Print the table."""
-    isolated()
+    require_isolation()
     course = new_course('cpu')
     for assignment in {assignment_of(PATHS[name]) for name in NAMES}:
         register(course, assignment)

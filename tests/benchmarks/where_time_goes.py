@@ -24,11 +24,11 @@ from sample_class import PATHS, assignment_of
 from grader.course import Course
 from grader.judging import execute
 from grader.kernels import fork_client, fork_servers
-from grader.kernels.isolation import isolated
+from grader.kernels.isolation import require_isolation
 from grader.kernels.kernels import Kernel
 from grader.kernels.provisioner import SandboxProvisioner
 from grader.kernels.rooms import Rooms
-from grader.notebook.restore import heal
+from grader.notebook.restore import restore
 from grader.sandbox.sandbox import Sandbox
 from grader.storage.gradebook import register
 from grader.storage.pipeline import prepare
@@ -95,14 +95,16 @@ def judge(course: Course) -> list[dict[str, float]]:
     for name in NAMES:
         assignment = assignment_of(PATHS[name])
         submitted = nbformat.read(PATHS[name], as_version=4)
-        healed = prepare(course, assignment, heal(submitted, course.master(assignment)).notebook)
-        execute.execute(healed)
+        restored = prepare(
+            course, assignment, restore(submitted, course.template(assignment)).notebook
+        )
+        execute.execute(restored)
     return list(exercises)
 
 
 def main(runs: int = 3) -> None:
     """Print the table."""
-    isolated()  # what this finds out costs every run once, and no submission
+    require_isolation()  # what this finds out costs every run once, and no submission
     course = Course(gradebook=Path(tempfile.mkdtemp(prefix='where_time_goes-')))
     for assignment in course.assignments():
         register(course, assignment)
