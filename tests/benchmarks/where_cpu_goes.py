@@ -90,7 +90,7 @@ def grade(course: Course, name: str, number: int) -> None:
     parts.append(time.process_time())
     store(course, submission, graded)
     parts.append(time.process_time())
-    names = (('run', 'read and heal'), ('worker', 'rooms and messages'), ('run', 'store'))
+    names = (('run', 'read and restore'), ('worker', 'rooms and messages'), ('run', 'store'))
     for which, start, end in zip(names, parts, parts[1:], strict=False):
         used[which] += end - start
 
