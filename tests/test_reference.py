@@ -1,9 +1,12 @@
 """The reference for instructors: everything public is documented, and the pages can be built."""
 
 import inspect
+import subprocess
+import sys
 
 import pytest
 
+from grader.course import ROOT
 from my_robot_basics import checks, live
 
 PUBLIC = [(page, name) for page in (checks, live) for name in page.__all__]
@@ -39,3 +42,18 @@ def test_everything_public_has_a_docstring_and_types(page, name):
         if parameter.name != 'self' and parameter.annotation is parameter.empty
     ]
     assert untyped == []
+
+
+@pytest.mark.starts
+def test_the_pages_can_be_built(tmp_path):
+    command = [sys.executable, '-P', str(ROOT / 'docs/build_reference.py'), str(tmp_path)]
+    run = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
+    assert (run.returncode, run.stderr) == (0, '')
+    for page in checks, live:
+        text = (tmp_path / f'{page.__name__.replace(".", "/")}.html').read_text(encoding='utf-8')
+        names = [n for n in page.__all__ if not inspect.ismodule(getattr(page, n))]
+        assert [name for name in names if f'id="{name}"' not in text] == []
+    student = (tmp_path / 'my_robot_basics/checks/student.html').read_text(encoding='utf-8')
+    assert 'id="call"' in student
+    assert 'id="set_use_sim_time"' not in student
+    assert not (tmp_path / 'my_robot_basics/checks/wire.html').exists()
