@@ -6,7 +6,7 @@ Instructors open the formgrader with `.venv/bin/jupyter lab`, started in this fo
 from pathlib import Path
 
 try:
-    from grader.authoring.release import CODE_STUB, PASSES
+    from grader.authoring.release_passes import CODE_STUB, PASSES
     from grader.autograde.locking import lock_while_grading
     from grader.autograde.submitted_files import read_timestamps_as_we_do
     from grader.common.logs import NBGRADER_LOGGING

@@ -11,7 +11,7 @@ from grader.course import Course
 from grader.notebook.restore import KEY, restore
 from grader.notebook.submission import read_submission
 from grader.report import feedback as module
-from grader.report import page
+from grader.report import page_parts
 from grader.report.feedback import write_feedback
 from grader.storage.gradebook import store
 from grader.storage.pipeline import prepare, prepared_template, unanswered
@@ -83,11 +83,11 @@ def test_a_title_is_true_of_what_failed():
             KEY: {'role': 'grade', 'reason': '2 wrong', 'failed_at_grading': False},
         },
     )
-    assert page._check(cell).title == 'The first two are right'
+    assert page_parts._check(cell).title == 'The first two are right'
     cell.metadata[KEY].failed_at_grading = True
-    assert page._check(cell).title == 'Checked at grading, beyond “The first two are right”'
+    assert page_parts._check(cell).title == 'Checked at grading, beyond “The first two are right”'
     cell.source = '"""The others are right"""\nprint("checked at grading")'
-    assert page._check(cell).title == 'The others are right'
+    assert page_parts._check(cell).title == 'The others are right'
 
 
 def test_no_hidden_test_is_shown_but_its_open_part_is(course):

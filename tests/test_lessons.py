@@ -10,7 +10,7 @@ import nbformat
 import pytest
 from IPython.core.inputtransformer2 import TransformerManager
 
-from grader.authoring.release import broken
+from grader.authoring.release_passes import broken
 
 ROOT = Path(__file__).parents[1]
 SOURCES = sorted(ROOT.glob('solutions/*/*.ipynb'))

@@ -9,7 +9,8 @@ from nbgrader.utils import compute_checksum
 
 from grader.authoring.hidden_points import MarkHidden
 from grader.authoring.leaks import leaks_of
-from grader.authoring.release import broken, release, stale_or_leaking
+from grader.authoring.release import release, stale_or_leaking
+from grader.authoring.release_passes import broken
 from grader.common.errors import CourseError
 from grader.course import Course
 

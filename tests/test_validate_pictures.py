@@ -8,7 +8,7 @@ from my_robot_basics.validate.outputs import CellRun
 from my_robot_basics.validate.pictures import MAX_PIXELS, why_not_shown
 
 from grader.notebook.raw_notebook import _pictures
-from grader.report.page import _shown
+from grader.report.page_parts import show_data
 
 
 def png(width, height):
@@ -44,7 +44,7 @@ NOT_SHOWN = [
 
 
 @pytest.mark.parametrize('encoded', SHOWN)
-def test_ordinary_pictures_are_shown(encoded):
+def test_ordinary_pictures_areshow_data(encoded):
     assert why_not_shown(encoded) == ''
 
 
@@ -59,12 +59,12 @@ def test_a_small_file_can_be_a_large_picture():
     assert MAX_PIXELS < 16_000**2
 
 
-def test_it_is_left_out_wherever_it_would_be_shown():
+def test_it_is_left_out_wherever_it_would_beshow_data():
     run = CellRun()
     output = run.keep('display_data', {'data': {'image/png': BOMB, 'text/plain': 'x'}})
     said = '[a picture of 16,000 × 16,000 pixels, of 25,000,000 at most, was left out]'
     assert output.data == {'text/plain': said}
-    [piece] = _shown({'image/png': BOMB}, 'a plot')
+    [piece] = show_data({'image/png': BOMB}, 'a plot')
     assert (piece.kind, piece.content) == ('text', said)
     assert _pictures({'a.png': {'image/png': BOMB}, 'b.png': {'image/png': PIXEL}}) == {
         'b.png': {'image/png': PIXEL}

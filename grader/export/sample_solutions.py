@@ -17,10 +17,10 @@ from grader.storage.late_penalties import Deadlines, deadlines
 from grader.storage.pipeline import apply, resources_of
 
 PASSES = (
-    'grader.authoring.release.TidyMetadata',
+    'grader.authoring.release_passes.TidyMetadata',
     'nbgrader.preprocessors.LockCells',
     'grader.export.sample_solutions.ShowSolutions',
-    'grader.authoring.release.KeepDemoOutputs',
+    'grader.authoring.release_passes.KeepDemoOutputs',
     'nbgrader.preprocessors.ClearHiddenTests',
     'nbgrader.preprocessors.ClearMarkScheme',
     'nbgrader.preprocessors.ComputeChecksums',

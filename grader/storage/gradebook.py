@@ -10,7 +10,7 @@ import nbformat
 from nbformat import NotebookNode
 from nbgrader.api import Grade, Gradebook, MissingEntry, SubmittedNotebook
 
-from grader.authoring.release import PASSES
+from grader.authoring.release_passes import PASSES
 from grader.common.errors import CourseError, GradebookError
 from grader.common.files import write_whole
 from grader.common.text import printable

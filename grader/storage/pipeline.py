@@ -9,7 +9,7 @@ from nbconvert.exporters import Exporter
 from nbformat import NotebookNode
 from traitlets.config import Config
 
-from grader.authoring.release import CODE_STUB
+from grader.authoring.release_passes import CODE_STUB
 from grader.course import Course
 from grader.notebook.restore import KEY, NO_ANSWERS, AssignmentTemplate, restore
 
