@@ -113,4 +113,6 @@ def test_all_parts_have_one_version():
         r"^    version='(.+)',$", (ROOT / 'my_robot_basics/setup.py').read_text(), re.MULTILINE
     )
     extension = json.loads((PACKAGE / 'validate/labextension/package.json').read_text())['version']
-    assert {project, manifest, setup, extension} == {project}
+    changes = (ROOT / 'CHANGELOG.md').read_text(encoding='utf-8')
+    latest = re.search(r'^## \[(\d.*?)\]', changes, re.MULTILINE)[1]
+    assert {project, manifest, setup, extension, latest} == {project}
