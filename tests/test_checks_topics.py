@@ -139,7 +139,7 @@ def test_bytes_that_are_no_message_are_silence():
 
 def test_no_node_at_all_is_said(monkeypatch):
     monkeypatch.setattr(topics, 'PUBLISHER_SEC', 0.5)
-    with pytest.raises(CheckFailed, match=r'none in 0\.5 s: the node is not running'):
+    with pytest.raises(CheckFailed, match=r'saw none: the node is not running'):
         topic(TOPIC).record()
 
 

@@ -76,5 +76,5 @@ def _first(mark):
 
 
 if __name__ == '__main__':
-    task.executed, worker.send = look, claim
+    task.execute_exercises, worker.send = look, claim
     worker.main(sys.argv[1])
