@@ -1,7 +1,7 @@
 """The whole flow: read a submission, restore it, run and judge it, store what came of it."""
 
 import logging
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass
 
@@ -80,7 +80,7 @@ def grade_all(
     seed: str = '',
     trust_students: bool = False,
     force: bool = False,
-) -> Iterator[Row]:
+) -> Generator[Row, None, None]:
     """Read, restore, run, judge and store submissions, many at a time, in their order.
 
     Each gets its row, whatever becomes of it. The backend is this machine's worker processes

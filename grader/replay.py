@@ -55,7 +55,7 @@ def replay(
             stored = verdicts(course, each.student_id, each.assignment)
             for cell in result.result().notebook.cells:
                 if role(cell) == 'grade' and cell.cell_type == 'code':
-                    yield _compared(grade_id(cell), cell.metadata[KEY], stored)
+                    yield _compared(grade_id(cell) or '', cell.metadata[KEY], stored)
 
 
 def recorded_seed(course: Course, found: SubmissionFolder) -> str:

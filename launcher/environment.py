@@ -5,7 +5,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-FOREIGN = ('PYTHONPATH', 'PYTHONHOME', 'PYTHONSTARTUP', 'PYTHONUSERBASE', 'VIRTUAL_ENV')
+FOREIGN: tuple[str, ...] = (
+    'PYTHONPATH',
+    'PYTHONHOME',
+    'PYTHONSTARTUP',
+    'PYTHONUSERBASE',
+    'VIRTUAL_ENV',
+)
 FOREIGN += (
     'CONDA_PREFIX',
     'PIP_TARGET',

@@ -4,7 +4,7 @@ import errno
 import os
 import shutil
 import subprocess
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -15,7 +15,12 @@ from launcher.messages import CourseError, clear_progress, say, show_progress
 STEPS = ('Resolved ', 'Collecting ', 'Downloading ', 'Prepared ', 'Installed ')
 """How the lines of an installer begin that tell how far it is."""
 NO_DISK = ('No space left on device', 'os error 28', 'Disk quota exceeded', 'os error 122')
-NO_NETWORK = ('error sending request', 'Failed to fetch', 'dns error', 'NewConnectionError')
+NO_NETWORK: tuple[str, ...] = (
+    'error sending request',
+    'Failed to fetch',
+    'dns error',
+    'NewConnectionError',
+)
 NO_NETWORK += ('Failed to establish a new connection', 'Temporary failure in name resolution')
 NO_NETWORK += ('Network is unreachable', 'Max retries exceeded', 'ConnectTimeout', 'ReadTimeout')
 NO_NETWORK += ('Read timed out', 'ProxyError')
@@ -84,6 +89,7 @@ class Installer:
             names = ('UV_BUILD_CONSTRAINT', 'PIP_CONSTRAINT', 'PIP_BUILD_CONSTRAINT')
             pins = dict.fromkeys(names, constraints)
         python = self.environment.python
+        command: tuple[str | Path, ...]
         if self.uses_uv:
             command = ('uv', 'pip', 'install', '--compile-bytecode', '--python', python)
         else:
@@ -105,7 +111,8 @@ class Installer:
             text=True,
             errors='replace',
         )
-        said = []
+        said: list[str] = []
+        assert process.stdout is not None  # it is a pipe
         for line in process.stdout:
             said.append(line.rstrip('\n'))
             if step := progress(said[-1]):
@@ -152,7 +159,7 @@ def version_of(python: Path) -> str:
     return '' if run.returncode else run.stdout.strip()
 
 
-def _runs(command: list, variables: dict[str, str]) -> bool:
+def _runs(command: Sequence[str | Path], variables: dict[str, str]) -> bool:
     program = shutil.which(command[0], path=variables.get('PATH', os.defpath))
     if not program:
         return False

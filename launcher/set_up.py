@@ -89,7 +89,7 @@ def make_environment(installer: Installer, python: Path) -> None:
     """Make a new .venv with every package that is pinned."""
     environment = installer.environment
     if python.parent == environment.python.parent:  # .venv was activated in the caller's shell
-        python = Path(sys._base_executable)
+        python = Path(sys._base_executable)  # type: ignore[attr-defined]  # not in typeshed's sys
     installer.make_venv(python)
     installer.install('-r', PINS, constraints=PINS)
     with writing():

@@ -1,4 +1,4 @@
-"""`./course test`: ruff, the tests, and the lessons against their stored outputs."""
+"""`./course test`: ruff, mypy, the tests, and the lessons against their stored outputs."""
 
 import subprocess
 import tempfile
@@ -106,6 +106,7 @@ def run(environment: Environment, variables: dict[str, str], arguments: list[str
         checks = Checks(environment, variables, Path(reports))
         ruff = str(environment.venv / 'bin/ruff')
         statuses = [checks.call(ruff, 'check', '.'), checks.call(ruff, 'format', '--check', '.')]
+        statuses.append(checks.call(str(environment.venv / 'bin/mypy')))
         statuses.append(checks.tests([*options, *named]))
         # unless single tests were asked for, or what starts no kernel
         if not named and '--quick' not in options and any(environment.root.glob(LESSONS)):

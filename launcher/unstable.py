@@ -12,7 +12,7 @@ BAD = ('failure', 'error')
 
 def read_failures(report: Path) -> dict[str, str]:
     """Return the tests that failed and why, in a line, from what `pytest --junitxml` wrote."""
-    failures = {}
+    failures: dict[str, str] = {}
     for name, case in _cases(report):
         for bad in case.iter():
             if bad.tag not in BAD:

@@ -11,7 +11,7 @@ setup(
     # Installed editable, this makes a plain path entry. Else `import my_robot_basics`, from the
     # folder above, would find this folder instead of the package in it.
     package_dir={'': '.'},
-    package_data={'': ['*.xml', 'labextension/*.json', 'labextension/static/*.js']},
+    package_data={'': ['py.typed', '*.xml', 'labextension/*.json', 'labextension/static/*.js']},
     data_files=[
         ('share/ament_index/resource_index/packages', ['resource/' + package_name]),
         ('share/' + package_name, ['package.xml']),

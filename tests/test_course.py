@@ -579,13 +579,14 @@ def test_lab_without_lessons_says_what_to_do(machine):
     assert './course release' in the_one_sentence(machine.course('lab'))
 
 
-def checks(machine, *arguments, ruff=0, pytest=0, again=None):
+def checks(machine, *arguments, ruff=0, mypy=0, pytest=0, again=None):
     """Run ./course test with checks that end so; return its exit code and its calls of pytest."""
     again = pytest if again is None else again
     machine.course('scores')
     bin_folder = machine.root / '.venv/bin'
-    (bin_folder / 'ruff').write_text(f'#!/bin/sh\nexit {ruff}\n')
-    (bin_folder / 'ruff').chmod(0o755)
+    for tool, ends in (('ruff', ruff), ('mypy', mypy)):
+        (bin_folder / tool).write_text(f'#!/bin/sh\nexit {ends}\n')
+        (bin_folder / tool).chmod(0o755)
     (bin_folder / 'python').write_text(
         f'#!/bin/sh\n{PYTHON}\n'
         f'case $* in *--last-failed*) exit {again} ;; *pytest*) exit {pytest} ;; esac\n'
@@ -595,10 +596,19 @@ def checks(machine, *arguments, ruff=0, pytest=0, again=None):
 
 
 @pytest.mark.parametrize(
-    ('ruff', 'pytest', 'code'), [(0, 0, 0), (1, 0, 1), (0, 1, 1), (0, 5, 5), (1, 3, 3)]
+    ('ruff', 'mypy', 'pytest', 'code'),
+    [
+        (0, 0, 0, 0),
+        (1, 0, 0, 1),
+        (0, 2, 0, 2),
+        (1, 2, 0, 2),
+        (0, 0, 1, 1),
+        (0, 0, 5, 5),
+        (1, 2, 3, 3),
+    ],
 )
-def test_test_ends_with_the_last_failure(machine, ruff, pytest, code):
-    seen, calls = checks(machine, ruff=ruff, pytest=pytest)
+def test_test_ends_with_the_last_failure(machine, ruff, mypy, pytest, code):
+    seen, calls = checks(machine, ruff=ruff, mypy=mypy, pytest=pytest)
     assert seen == code
     assert len(calls) == (2 if pytest == 1 else 1)
 
@@ -627,8 +637,9 @@ def test_a_lesson_that_differed_beside_others_is_judged_alone_and_whole(machine,
     failed = dict.fromkeys(['tests/test_x.py::test_y', *cells], True)
     remembered.write_text(json.dumps(failed, indent=2))
     machine.course('scores')
-    (machine.root / '.venv/bin/ruff').write_text('#!/bin/sh\n')
-    (machine.root / '.venv/bin/ruff').chmod(0o755)
+    for tool in ('ruff', 'mypy'):
+        (machine.root / '.venv/bin' / tool).write_text('#!/bin/sh\n')
+        (machine.root / '.venv/bin' / tool).chmod(0o755)
     ends = f'*--nbval*-n\\ 0*) exit {again} ;; *--nbval*) exit 1 ;;'
     python = machine.root / '.venv/bin/python'
     python.write_text(f'#!/bin/sh\n{PYTHON}\ncase $* in {ends} esac\n')

@@ -65,7 +65,7 @@ def test_students_need_no_tools_of_the_developers():
     needed = pins_of(re.findall(r'^\S+==\S+', students, re.MULTILINE))
     # colcon asks for pytest and its coverage itself
     assert {name for name in tools if name in needed} == {'pytest', 'pytest-cov'}
-    assert {'playwright', 'ruff', 'hypothesis', 'nbval'} <= pins_of(
+    assert {'playwright', 'ruff', 'mypy', 'hypothesis', 'nbval'} <= pins_of(
         re.findall(r'^\S+==\S+', course, re.MULTILINE)
     ).keys()
     assert {'jupyterlab', 'ros-jazzy-rclpy', 'colcon-core'} <= needed.keys()

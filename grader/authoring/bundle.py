@@ -27,8 +27,19 @@ OTHERS = '# --- what only the whole course needs'
 SETTINGS = ('.jupyterlab/overrides.json', '.jupyterlab/page_config.json')
 """What `./course lab` shows JupyterLab."""
 PACKAGE = 'my_robot_basics'
-IN_PACKAGE = ('package.xml', 'setup.py', 'setup.cfg', 'resource/my_robot_basics', 'test/*.py')
-IN_PACKAGE += ('my_robot_basics/*.py', 'my_robot_basics/*.xml', 'my_robot_basics/*.bash')
+IN_PACKAGE: tuple[str, ...] = (
+    'package.xml',
+    'setup.py',
+    'setup.cfg',
+    'resource/my_robot_basics',
+    'test/*.py',
+)
+IN_PACKAGE += (
+    'my_robot_basics/*.py',
+    'my_robot_basics/py.typed',
+    'my_robot_basics/*.xml',
+    'my_robot_basics/*.bash',
+)
 IN_PACKAGE += ('my_robot_basics/validate/labextension/*.js*',)
 """What a package consists of; `*` stands for folders, too."""
 MADE_BY_TOOLS = ('*__pycache__*', '*.egg-info*', 'build/*', 'install/*', 'log/*')

@@ -85,7 +85,7 @@ def _needs(opening: str) -> tuple[str, str]:
     found = re.search(
         r'^\| you need \| time \|\n.*\n\| (.+) \| about (\d+) minutes \|$', opening, re.M
     )
-    return found.groups() if found else ('', '')
+    return (found[1], found[2]) if found else ('', '')
 
 
 def _points(lesson: NotebookNode) -> float:

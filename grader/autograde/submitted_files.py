@@ -21,12 +21,12 @@ from grader.notebook.submission import TIMESTAMP
 class AutogradeExporter(NotebookExporter):
     """Reads what nbgrader itself wrote, and leaves submitted notebooks to RestoreSubmission."""
 
-    def from_file(
+    def from_file(  # type: ignore[override]  # nbconvert's own exporter of notebooks returns text
         self, file_stream: IO[str], resources: dict | None = None, **options: object
     ) -> tuple[str, dict]:
         """Return a notebook that went through the passes, as JSON."""
         if not any(isinstance(each, RestoreSubmission) for each in self._preprocessors):
-            return super().from_file(file_stream, resources, **options)
+            return super().from_file(file_stream, resources, **options)  # type: ignore[return-value]
         return self.from_notebook_node(nbformat.v4.new_notebook(), resources, **options)
 
 

@@ -20,7 +20,9 @@ SAMPLES = ROOT / 'tests' / 'submissions'
 
 OUTCOMES: dict[str, Callable[[list[str]], bool]] = {
     'pass': lambda outcomes: set(outcomes) == {'passed'},
-    'fail': lambda outcomes: {'partial', 'failed'} & {*outcomes} and 'ungraded' not in outcomes,
+    'fail': lambda outcomes: (
+        bool({'partial', 'failed'} & {*outcomes}) and 'ungraded' not in outcomes
+    ),
     'mixed': lambda outcomes: set(outcomes) == {'passed', 'failed'},
     'zero': lambda outcomes: set(outcomes) == {'failed'},
 }
@@ -69,7 +71,7 @@ def _parts(sample: Path, course: Course) -> tuple[str, str, str]:
 
 def _as_named(course: Course, row: Row, outcome: str) -> bool:
     said = verdicts(course, row.student_id, row.assignment).values()
-    outcomes = [verdict.outcome for verdict in said if 'outcome' in verdict]
+    outcomes = [verdict['outcome'] for verdict in said if 'outcome' in verdict]
     return row.stored is not None and OUTCOMES[outcome](outcomes)
 
 

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
-from typing import BinaryIO
+from typing import IO, Any, cast
 
 MAX_PARTS, MAX_NAME_BYTES = 20, 255
 """Folders within folders, and what a file system takes as a name."""
@@ -23,7 +23,7 @@ MAX_READ_BYTES = 8_000_000
 """A zip's table of contents and a tar's headers are read at once: so much names 50,000 files."""
 CHUNK = 1 << 20
 
-TAR_READERS = {'.tar': open, '.gz': gzip.open, '.tgz': gzip.open}
+TAR_READERS: dict[str, Callable[..., Any]] = {'.tar': open, '.gz': gzip.open, '.tgz': gzip.open}
 TAR_READERS |= {'.bz2': bz2.open, '.tbz2': bz2.open, '.xz': lzma.open, '.txz': lzma.open}
 ARCHIVE = re.compile(r'\.(zip|tar|tgz|tbz2|txz|tar\.(gz|bz2|xz))$', re.IGNORECASE)
 """How names of archives end that can be read."""
@@ -39,7 +39,7 @@ class Entry:
     """In UTC; None where that is no time."""
     problem: str
     """Why it must not be unpacked."""
-    content: Callable[[], BinaryIO]
+    content: Callable[[], IO[bytes]]
     """Open it; what is read then, and whether it can be, is up to the archive."""
 
 
@@ -59,7 +59,7 @@ def entries(archive: Path, *, name: str, aside: Path, most: int) -> Iterator[Ent
         yield from _tarred(archive, name=name, aside=aside, most=most)
 
 
-def copy(source: BinaryIO, target: BinaryIO, *, most: int) -> bool:
+def copy(source: IO[bytes], target: IO[bytes], *, most: int) -> bool:
     """Copy `most` bytes at most; return whether that was all."""
     while chunk := source.read(min(CHUNK, most + 1)):
         most -= len(chunk)
@@ -72,8 +72,8 @@ def copy(source: BinaryIO, target: BinaryIO, *, most: int) -> bool:
 class _Careful(io.FileIO):
     """A file of which nobody reads much at once, whatever lengths it claims to have."""
 
-    def read(self, size: int = -1) -> bytes:
-        if size > MAX_READ_BYTES:
+    def read(self, size: int | None = -1) -> bytes:
+        if size is not None and size > MAX_READ_BYTES:
             raise Refused(f'broken: its table of contents claims {size / 1e6:.0f} MB')
         return super().read(size)
 
@@ -105,7 +105,7 @@ def _decoded(info: zipfile.ZipInfo) -> str:
     return name
 
 
-def _local(date: tuple[int, ...]) -> datetime | None:
+def _local(date: tuple[int, int, int, int, int, int]) -> datetime | None:
     """Return a zip's time, which is that of a wall clock, taken to be this machine's."""
     try:
         return datetime(*date).astimezone(UTC)
@@ -122,7 +122,7 @@ def _tarred(archive: Path, *, name: str, aside: Path, most: int) -> Iterator[Ent
                 raise Refused(f'over {most / 1e6:.0f} MB once unpacked: a bomb?')
         with _Careful(plain) as raw, tarfile.open(fileobj=raw, mode='r:') as box:
             while (info := box.next()) is not None:
-                box.members.clear()  # a million headers need no memory
+                box.members.clear()  # type: ignore[attr-defined]  # typeshed has no such attribute; a million headers need no memory
                 if info.isdir():
                     continue
                 parts, problem = _parts(info.name)
@@ -130,7 +130,9 @@ def _tarred(archive: Path, *, name: str, aside: Path, most: int) -> Iterator[Ent
                     problem = 'a link: only files are taken'
                 elif not info.isreg() or info.issparse():
                     problem = 'a device or the like: only files are taken'
-                yield Entry(parts, _utc(info.mtime), problem, partial(box.extractfile, info))
+                # it returns None for what is no file, which has a problem
+                content = cast('partial[IO[bytes]]', partial(box.extractfile, info))
+                yield Entry(parts, _utc(info.mtime), problem, content)
             raw.seek(box.offset)
             end = raw.read(tarfile.BLOCKSIZE)
             if len(end) < tarfile.BLOCKSIZE or any(end):

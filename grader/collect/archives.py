@@ -22,7 +22,14 @@ from grader.common.text import shorten
 MAX_FILE_BYTES = 50_000_000
 """A notebook with all its pictures has a few; one of over 20 MB is refused at grading."""
 
-_BROKEN = (zipfile.BadZipFile, tarfile.TarError, zlib.error, lzma.LZMAError, EOFError, OSError)
+_BROKEN: tuple[type[Exception], ...] = (
+    zipfile.BadZipFile,
+    tarfile.TarError,
+    zlib.error,
+    lzma.LZMAError,
+    EOFError,
+    OSError,
+)
 _BROKEN += (ValueError, OverflowError, RuntimeError, struct.error, KeyError, IndexError)
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EMFILE)
 

@@ -77,9 +77,9 @@ def collect(course: Course, source: Path, *, file_times: bool = False) -> Iterat
             ) from None
         for left in sorted(rest, key=lambda left: left.incoming.parts):
             yield Row(left.incoming.path, LEFT if left.matters else UNUSED, left.reason)
-        for each in found:
-            if each.litter:
-                yield Row(each.path, UNUSED, 'hidden, or left behind by a program')
+        for incoming in found:
+            if incoming.litter:
+                yield Row(incoming.path, UNUSED, 'hidden, or left behind by a program')
 
 
 def _row(
@@ -111,10 +111,10 @@ def _take(
     there, when = _contents(place), date_of(place / TIMESTAMP)
     if came == there:
         return KNOWN, 'nothing new'
-    both_known = each.handed_in is not None and when is not None
-    if not (both_known and each.handed_in > when) and came in _shelved(shelf):
+    both = (each.handed_in, when) if each.handed_in and when else None
+    if not (both and both[0] > both[1]) and came in _shelved(shelf):
         return KNOWN, 'as an earlier one, which was replaced since'
-    if both_known and each.handed_in <= when:
+    if both and both[0] <= both[1]:
         kept = _shelve(_within('submitted', _writer(files, each.handed_in)), shelf)
         return EARLIER, f'a later one is there already; kept in {_shown(kept, course)}'
     if there not in _shelved(shelf):  # else an earlier run was ended right after that
@@ -124,7 +124,7 @@ def _take(
 
 
 def _files(each: MatchedFile) -> Iterator[tuple[str, Path]]:
-    yield f'{each.assignment}.ipynb', each.notebook.file
+    yield f'{each.assignment}.ipynb', each.notebook.readable
     yield from each.extra.items()
 
 

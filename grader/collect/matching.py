@@ -66,11 +66,11 @@ def match(
     for notebook, owner in owners.items():
         files = beside[notebook.parts[:-1]] if owner.by_folder or notebook.archive else {}
         stamp = files.get(TIMESTAMP) if not (notebook.archive or owner.label) else None
-        when = owner.handed_in or (date_of(stamp.file) if stamp else None)
+        when = owner.handed_in or (date_of(stamp.readable) if stamp else None)
         if when is None and file_times:
             when = notebook.modified
         extra = {
-            name: each.file
+            name: each.readable
             for name, each in files.items()
             if name.endswith('.py') and not problem_of_id(name)
         }
@@ -86,7 +86,7 @@ def match(
             )
         )
         used |= {files[name] for name in extra}
-        used |= {stamp} if stamp and date_of(stamp.file) else set()
+        used |= {stamp} if stamp and date_of(stamp.readable) else set()
     uploads = {notebook.parts[:-1] for notebook, owner in owners.items() if owner.label}
     for folder, files in beside.items():
         left = (each for each in files.values() if each not in used)
@@ -136,6 +136,7 @@ def _namesakes(owner: Owner) -> tuple:
 
 
 def _of_several(owner: Owner) -> str:
+    assert owner.label is not None  # it has the number
     return (
         f'there are several {owner.student_id} with different numbers, this one is '
         f'{owner.label.number}: rename the folders so that each has a name of its own'
@@ -166,7 +167,7 @@ def _not_taken(each: Incoming, *, in_upload: bool) -> Left:
     if each.archive or in_upload:
         where = 'archive' if each.archive else 'upload'
         return Left(each, f"a time in a student's own {where} is not believed")
-    if date_of(each.file) is None:
+    if date_of(each.readable) is None:
         return Left(each, 'it holds no date')
     return Left(each, 'it lies beside no notebook of one student')
 
@@ -203,7 +204,7 @@ def _all_alike(several: list[MatchedFile]) -> bool:
 def _content(each: MatchedFile) -> bytes:
     """Return a digest of the files of a submission."""
     digest = sha256()
-    for name, path in [('', each.notebook.file), *sorted(each.extra.items())]:
+    for name, path in [('', each.notebook.readable), *sorted(each.extra.items())]:
         digest.update(f'{name} {path.stat().st_size} '.encode())
         digest.update(path.read_bytes())
     return digest.digest()

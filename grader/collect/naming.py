@@ -74,6 +74,7 @@ class Naming:
         label = label_in(name)
         stem = stem_of(each.parts[-1])
         if at == len(each.parts) - 1:  # no folder, and the file's name begins with the label
+            assert label is not None
             stem = stem_of(label.rest)
         elif label and label.rest:  # what the student called that folder or archive
             inside = (_AGAIN.sub('', label.rest), *inside)
@@ -145,7 +146,9 @@ class Naming:
         assignment = self._assignment(stem, each.parts[:-1])
         if stem in self._known:
             raise Unclear(f'nothing says whose it is: {EXPECTED}')
-        student = student_in(self._forms.named(stem).who)
+        named = self._forms.named(stem)
+        assert named is not None  # else it had no assignment
+        student = student_in(named.who)
         return Owner(student, assignment, by_folder=False, above=each.parts[:-1])
 
     def _assignment(self, stem: str, folders: Sequence[str]) -> str:

@@ -7,6 +7,7 @@ anew in each assignment, Canvas once.
 import json
 from collections import defaultdict
 from collections.abc import Sequence
+from typing import Any
 
 from grader.collect.matching import MatchedFile
 from grader.common.errors import CourseError
@@ -88,7 +89,7 @@ def _problem(each: MatchedFile, numbers: set[str]) -> str:
     )
 
 
-def _checked(kept: object) -> dict[str, dict[str, dict[str, str]]]:
+def _checked(kept: Any) -> dict[str, dict[str, dict[str, str]]]:
     """Return what was read. Raises ValueError where it has another form."""
     fits = isinstance(kept, dict) and all(
         isinstance(numbers, dict) and all(isinstance(n, str) for n in numbers.values())

@@ -53,6 +53,12 @@ class Incoming:
         return '/'.join(self.parts)
 
     @property
+    def readable(self) -> Path:
+        """Where it can be read; only of what is wanted and has no problem."""
+        assert self.file is not None
+        return self.file
+
+    @property
     def litter(self) -> bool:
         """Whether an editor or a desktop left it there, not a person."""
         hidden = any(part.startswith('.') or part in LITTER for part in self.parts)
@@ -167,7 +173,7 @@ def _opened(each: Incoming, aside: Path, left: Allowance, *, nested: int) -> Ite
 
 
 def _inside(outer: Incoming, name: str, aside: Path, left: Allowance) -> Iterator[Incoming]:
-    for member in unpack(outer.file, name=name, aside=aside, left=left, wanted=wanted):
+    for member in unpack(outer.readable, name=name, aside=aside, left=left, wanted=wanted):
         parts = outer.parts + member.parts
         yield Incoming(
             parts=parts or (name,),

@@ -14,9 +14,9 @@ import subprocess
 import sys
 import threading
 import traceback
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 from grader.common.errors import CourseError
 
@@ -41,7 +41,7 @@ class TooHard(Exception):
     """Says in a few words why a text was not read to its end."""
 
 
-def parse(function: str, *arguments: object, limits: Limits | None = None) -> object:
+def parse(function: str, *arguments: object, limits: Limits | None = None) -> Any:
     """Call `module:function` on JSON in a process with limits; return its answer.
 
     Raises TooHard where it does not come to one, OSError where that is the disk's fault, and
@@ -57,7 +57,7 @@ class _Server:
         self._lock = threading.Lock()
         self._process: subprocess.Popen | None = None
 
-    def ask(self, function: str, arguments: Sequence[object], limits: Limits) -> object:
+    def ask(self, function: str, arguments: Sequence[object], limits: Limits) -> Any:
         question = json.dumps([function, arguments, asdict(limits)]).encode('ascii') + b'\n'
         with self._lock:
             try:
@@ -84,6 +84,8 @@ class _Server:
             self._process = subprocess.Popen(
                 COMMAND, stdin=subprocess.PIPE, stdout=subprocess.PIPE, start_new_session=True
             )  # the process that asks handles Ctrl-C
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
         late = threading.Timer(limits.wall_sec + END_GRACE_SEC, self._process.kill)
         late.daemon = True
         late.start()
@@ -103,7 +105,7 @@ class _Server:
 
 _SERVER = _Server()
 atexit.register(_SERVER.end)
-os.register_at_fork(after_in_child=lambda: _SERVER.__init__())
+os.register_at_fork(after_in_child=lambda: _Server.__init__(_SERVER))
 
 
 def serve(questions: BinaryIO, answers: BinaryIO) -> None:
@@ -116,7 +118,7 @@ def serve(questions: BinaryIO, answers: BinaryIO) -> None:
         answers.flush()
 
 
-def _forked(call: object, arguments: list, limits: Limits) -> bytes:
+def _forked(call: Callable[..., object], arguments: list, limits: Limits) -> bytes:
     """Return what a process of its own comes to, as JSON."""
     ours, theirs = os.pipe()
     process = os.fork()
@@ -134,7 +136,9 @@ def _forked(call: object, arguments: list, limits: Limits) -> bytes:
     return _packed({'why': _why(-os.waitstatus_to_exitcode(status), limits)})
 
 
-def _answer_and_exit(call: object, arguments: list, limits: Limits, pipe: int) -> None:
+def _answer_and_exit(
+    call: Callable[..., object], arguments: list, limits: Limits, pipe: int
+) -> None:
     status = 1
     try:
         # each of them ends the process when it is reached
@@ -153,7 +157,7 @@ def _answer_and_exit(call: object, arguments: list, limits: Limits, pipe: int) -
         os._exit(status)
 
 
-def _come_to(call: object, arguments: list) -> bytes:
+def _come_to(call: Callable[..., object], arguments: list) -> bytes:
     try:
         return _packed({'answer': call(*arguments)})
     except OSError as error:

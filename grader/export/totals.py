@@ -81,7 +81,9 @@ def as_csv(totals: Totals) -> str:
     """Return the table for a spreadsheet."""
     most = zip(totals.assignments, totals.max_scores, strict=True)
     heads = [f'{assignment} (of {points:g})' for assignment, points in most]
-    rows = [['student_id', *heads, f'total (of {totals.max_score:g})', 'waiting']]
+    rows: list[list[object]] = [
+        ['student_id', *heads, f'total (of {totals.max_score:g})', 'waiting']
+    ]
     for each in totals.students:
         scores = ['' if score is None else score for score in each.scores]
         rows.append([each.student_id, *scores, each.total, each.waiting])

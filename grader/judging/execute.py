@@ -121,7 +121,7 @@ async def _execute(task: _Task) -> list[Verdict]:
 
 
 def _by_hand(cell: NotebookNode) -> Verdict:
-    return Verdict(grade_id(cell), outcome='manual', points=_points(cell), reason='')
+    return Verdict(grade_id(cell) or '', outcome='manual', points=_points(cell), reason='')
 
 
 def _points(cell: NotebookNode) -> float:

@@ -14,7 +14,7 @@ from grader.common.errors import RoomFailure
 from grader.common.file_wait import readable
 from grader.kernels.fork_servers import MAX_ANSWER, Server, expect_fit, send
 from grader.kernels.forked_kernel import Forked
-from grader.sandbox.kernel_paths import Place
+from grader.sandbox.kernel_paths import Keeper, Place
 from grader.sandbox.limits import OUT_OF_MEMORY_SCORE, process_limits
 from grader.sandbox.seccomp import seccomp_filter
 from grader.sandbox.seccomp_notify import signals_filter
@@ -29,30 +29,39 @@ async def fork_into(place: Place, *, room: str, environment: dict[str, str]) -> 
     Raises NoWarmKernel where none can be forked, and RoomFailure where the room can't be built.
     """
     expect_fit(room)
+    ordered = keeper_of(place)
     keeper = subprocess.Popen(
-        place.keeper.command,
+        ordered.command,
         bufsize=0,
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         start_new_session=True,
-        pass_fds=place.keeper.pass_fds,
+        pass_fds=ordered.pass_fds,
         env={'PATH': f'{os.defpath}:/usr/sbin:/sbin'},
     )
     try:
         async with asyncio.timeout(_TIMEOUT_SEC):
-            first = await _built(keeper, place.keeper.told)
+            first = await _built(keeper, ordered.told)
             return Forked(keeper, *await _forked(place, room, environment, first))
     except BaseException:
         keeper.kill()
         keeper.wait()
         raise
     finally:
+        assert keeper.stdout is not None  # it is a pipe
         keeper.stdout.close()
+
+
+def keeper_of(place: Place) -> Keeper:
+    """Return the keeper of a place in a sandbox: no other place is forked into."""
+    assert place.keeper is not None
+    return place.keeper
 
 
 async def _built(keeper: subprocess.Popen, told: int) -> int:
     """Wait until a room is built; return the process ID of its first process."""
+    assert keeper.stdout is not None  # it is a pipe
     await readable(keeper.stdout.fileno())
     said = keeper.stdout.read(MAX_ANSWER)
     if said != b'\n':
@@ -74,7 +83,7 @@ async def _forked(
         with contextlib.ExitStack() as opened:
             files = [os.pidfd_open(first)]
             opened.callback(os.close, files[0])
-            for path in place.keeper.entrances:
+            for path in keeper_of(place).entrances:
                 files.append(os.open(path, os.O_WRONLY))
                 opened.callback(os.close, files[-1])
             socket.send_fds(ours, [order], files)
@@ -90,13 +99,13 @@ def _order(place: Place, environment: dict[str, str], first: int) -> dict:
     """Return what a forked process must know to become a kernel in the room of a first process."""
     folder = str(place.inside / 'home' / 'work')
     return {
-        'user': place.keeper.user,
+        'user': keeper_of(place).user,
         'namespaces': [k for k in _NAMESPACES if _namespace(first, k) != _namespace('self', k)],
         'folder': folder,
         'limits': list(process_limits().items()),
         'oom_score_adj': OUT_OF_MEMORY_SCORE,
         'environment': environment | {'PWD': folder},
-        'seccomp': seccomp_filter(counted=bool(place.keeper.entrances)).hex(),
+        'seccomp': seccomp_filter(counted=bool(keeper_of(place).entrances)).hex(),
         'signals': signals_filter().hex(),
         'command': place.kernel_command(),
     }

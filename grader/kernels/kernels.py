@@ -6,11 +6,13 @@ import queue
 import time
 from pathlib import Path
 from subprocess import DEVNULL
+from typing import cast
 
 import psutil
 import zmq.asyncio
-from jupyter_client import AsyncKernelManager
+from jupyter_client import AsyncKernelClient, AsyncKernelManager
 from jupyter_client.kernelspec import KernelSpec, KernelSpecManager
+from jupyter_client.provisioning import LocalProvisioner
 from my_robot_basics.validate.limits import MAX_MESSAGE_BYTES, MAX_MESSAGES_WAITING
 from my_robot_basics.validate.messages import Messages, OnInput, unpacked
 from my_robot_basics.validate.outputs import CellRun
@@ -18,7 +20,7 @@ from my_robot_basics.validate.patience import finished, finished_in_grace
 
 from grader.common.errors import RoomFailure
 from grader.kernels.kernel_exits import Ending, is_from_outside
-from grader.kernels.provisioner import NAME
+from grader.kernels.provisioner import NAME, SandboxProvisioner
 from grader.sandbox.kernel_paths import Place, environment_of, open_place
 from grader.sandbox.signals import killed_processes
 
@@ -71,7 +73,7 @@ class Kernel:
             ip=str(self.place.sockets / 'zmq'),
             connection_file=str(self.place.folder / 'connection.json'),
         )
-        self._client = None
+        self._client: AsyncKernelClient | None = None
         self._monitors: list[zmq.asyncio.Socket] = []
         self._ending: Ending | None = None
         self._ended_by_us = False
@@ -85,7 +87,7 @@ class Kernel:
     @property
     def why_not_warm(self) -> str:
         """Why a kernel in a sandbox was started and not forked; '' where it was."""
-        return self._manager.provisioner.why_not_warm
+        return self._in_sandbox().why_not_warm
 
     async def start(self) -> 'Kernel':
         """Start the kernel and wait until its outputs are received; raises RoomFailure."""
@@ -116,6 +118,7 @@ class Kernel:
         if not self.alive:
             result.died = True
             return result
+        assert self._client is not None  # it is alive
         request = self._client.execute(
             code,
             store_history=False,
@@ -152,10 +155,11 @@ class Kernel:
         If it has the grading user's rights, nobody knows who sent a signal.
         """
         if self._ending is None and not self._ended_by_us and not await self._is_alive():
-            provisioner = self._manager.provisioner
             if self.place.closed:
-                self._ending = await provisioner.ending()
+                self._ending = await self._in_sandbox().ending()
             else:
+                provisioner = cast(LocalProvisioner, self._manager.provisioner)
+                assert provisioner.process is not None  # it was started
                 self._ending = Ending(max(0, -(provisioner.process.returncode or 0)))
         return self._ending
 
@@ -164,8 +168,10 @@ class Kernel:
 
         They are known while nobody in the room has asked how they ended.
         """
-        signals = self._manager.provisioner.signals if self.place.closed and self.alive else None
-        for number, ids in killed_processes(signals.pid) if signals else ():
+        signals = self._in_sandbox().signals if self.place.closed and self.alive else None
+        if signals is None:
+            return 0
+        for number, ids in killed_processes(signals.pid):
             if signals.known and is_from_outside(number) and not signals.explain(number, ids):
                 return number
         return 0
@@ -173,6 +179,7 @@ class Kernel:
     async def stop(self, *, politely: bool = True) -> None:
         """End the kernel and its folder; politely first where nodes of its hold shared memory."""
         if politely and self.alive and self._manager.has_kernel:
+            assert self._client is not None  # it is alive
             self._client.shutdown()
             with contextlib.suppress(TimeoutError):
                 await asyncio.wait_for(self._exited(), STOP_GRACE_SEC)
@@ -181,6 +188,10 @@ class Kernel:
             self._client.stop_channels()
         self._context.destroy(linger=0)
         self.place.remove()
+
+    def _in_sandbox(self) -> SandboxProvisioner:
+        """Return what runs the kernel of a closed place: its kernelspec names that."""
+        return cast(SandboxProvisioner, self._manager.provisioner)
 
     async def _launch(self) -> None:
         if self.place.closed:
@@ -206,17 +217,17 @@ class Kernel:
         while not Path(f'{self._manager.ip}-{self._manager.iopub_port}').exists():
             await self._expect_alive()
             await asyncio.sleep(0.01)
-        self._client = self._manager.client(context=self._context)
-        self._client.session.unpack = unpacked
-        self._client.start_channels(hb=False)
-        self._messages = Messages(self._client)
-        for channel in (self._client.iopub_channel, self._client.shell_channel):
+        self._client = client = self._manager.client(context=self._context)
+        client.session.unpack = unpacked
+        client.start_channels(hb=False)
+        self._messages = Messages(client)
+        for channel in (client.iopub_channel, client.shell_channel):
             self._monitors.append(channel.socket.get_monitor_socket(zmq.EVENT_DISCONNECTED))
         kind = None
         while kind != 'iopub_welcome':
             await self._expect_alive()
             with contextlib.suppress(queue.Empty):
-                kind = (await self._client.get_iopub_msg(timeout=0.5))['msg_type']
+                kind = (await client.get_iopub_msg(timeout=0.5))['msg_type']
 
     @property
     def _is_cut_off(self) -> bool:
@@ -224,7 +235,7 @@ class Kernel:
 
         ZMQ ends one whose message is larger than MAX_MESSAGE_BYTES; nothing comes on it any more.
         """
-        return any(monitor.get(zmq.EVENTS) & zmq.POLLIN for monitor in self._monitors)
+        return any(cast(int, monitor.get(zmq.EVENTS)) & zmq.POLLIN for monitor in self._monitors)
 
     async def _lives_on(self) -> bool:
         """Whether the kernel did not end with its connection; what ends takes a moment for it."""
@@ -242,12 +253,13 @@ class Kernel:
     async def _kill(self) -> None:
         """Kill the kernel's process group, and what left the group but kept its environment."""
         self.alive = False
-        if self._manager.has_kernel:
-            await self._manager.provisioner.kill()
+        provisioner = self._manager.provisioner
+        if self._manager.has_kernel and provisioner is not None:
+            await provisioner.kill()
             with contextlib.suppress(TimeoutError):
                 await asyncio.wait_for(self._exited(), STOP_GRACE_SEC)
                 # else it would be sent an interrupt, and that be waited for
-                await self._manager.provisioner.wait()
+                await provisioner.wait()
             await self._manager.shutdown_kernel(now=True)
         deadline = time.monotonic() + STOP_GRACE_SEC
         while (

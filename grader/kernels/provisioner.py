@@ -34,6 +34,12 @@ NAME = 'my_robot_basics_sandbox'
 """Of the kernelspec, and of this provisioner's entry point."""
 
 
+def made_in(place: Place) -> Path:
+    """Return where a room's kernel makes its sockets."""
+    assert place.made is not None  # every room says it
+    return place.made
+
+
 class SandboxProvisioner(LocalProvisioner):
     """Runs one kernel in a room, forked warm where this machine can."""
 
@@ -47,6 +53,11 @@ class SandboxProvisioner(LocalProvisioner):
     _sandbox: Sandbox | None = None
     _claim: Claim | None = None
 
+    @property
+    def _manager(self) -> Any:
+        """The kernel's manager, which made this provisioner."""
+        return self.parent
+
     async def pre_launch(
         self, *, place: Place | None = None, room: str = 'student', **kwargs: Any
     ) -> dict[str, Any]:
@@ -54,32 +65,36 @@ class SandboxProvisioner(LocalProvisioner):
 
         In one of its own a kernel is told nothing of the caller's environment. Raises RoomFailure.
         """
-        self._room, self._pins, manager = room, {}, self.parent
+        self._room, self._pins, manager = room, {}, self._manager
         if place is None:
             place = await self._open()
+            assert self._claim is not None  # from _open
             kwargs['env'] = environment_of(place, room=room, domain_id=self._claim.domain_id)
             manager.transport, manager.ip = 'ipc', str(place.sockets / 'zmq')
         self._place = place
         kwargs = await super().pre_launch(**kwargs)
         for port in manager.ports:  # of a former kernel, on a restart
-            (place.made / f'zmq-{port}').unlink(missing_ok=True)
+            (made_in(place) / f'zmq-{port}').unlink(missing_ok=True)
         place.tell(Path(manager.connection_file))
         return kwargs | {'cmd': place.command()}
 
     async def launch_kernel(self, cmd: list[str], **kwargs: Any) -> KernelConnectionInfo:
         """Fork the kernel, or start it: in the same room, and with no more rights."""
         try:
-            self.process = await fork_into(self._place, room=self._room, environment=kwargs['env'])
+            forked = await fork_into(self._place, room=self._room, environment=kwargs['env'])
         except NoWarmKernel as problem:
             self.why_not_warm = str(problem)
             return await self._started(kwargs['env'])
-        self.pid, self.signals = self.process.pid, self.process.signals
+        # it has what jupyter_client asks of a process
+        self.process = forked  # type: ignore[assignment]
+        self.pid, self.signals = forked.pid, forked.signals
         return self.connection_info
 
     async def ending(self) -> Ending:
         """Return how the kernel ended; to be called once when it has, before its cleanup."""
         if isinstance(self.process, Forked):
             return await self.process.ending()
+        assert self.process is not None  # it was started
         status = self.process.returncode
         if status is None or status < 0 or self.signals is None:
             return Ending()  # what ended the room's keeper was outside of it
@@ -116,14 +131,14 @@ class SandboxProvisioner(LocalProvisioner):
         Raises RoomFailure.
         """
         await super().post_launch(**kwargs)
-        names = [f'zmq-{port}' for port in self.parent.ports]
+        names = [f'zmq-{port}' for port in self._manager.ports]
         async with asyncio.timeout(START_TIMEOUT_SEC):
-            while not all((self._place.made / name).exists() for name in names):
+            while not all((made_in(self._place) / name).exists() for name in names):
                 if await self.poll() is not None:
                     raise RoomFailure('its process ended')
                 await asyncio.sleep(0.01)
         for name in names:
-            pin = os.open(self._place.made / name, os.O_PATH | os.O_NOFOLLOW)
+            pin = os.open(made_in(self._place) / name, os.O_PATH | os.O_NOFOLLOW)
             self._pins[name] = pin
             (self._place.sockets / name).symlink_to(f'/proc/self/fd/{pin}')
 
@@ -156,6 +171,8 @@ class SandboxProvisioner(LocalProvisioner):
         return self._sandbox.place('student')
 
     async def _close(self) -> None:
+        assert self._sandbox is not None
+        assert self._claim is not None
         try:
             await self._sandbox.close()
         finally:

@@ -141,6 +141,7 @@ class Rooms:
 
     def _kernel(self, room: str, *, seed: str = '') -> Kernel:
         place = self._sandbox.place(room) if self._sandbox else None
+        assert self._claim is not None  # from _open
         kernel = Kernel(room=room, domain_id=self._claim.domain_id, seed=seed, place=place)
         self._kernels.append(kernel)
         return kernel

@@ -6,7 +6,6 @@
 import json
 import re
 import secrets
-from collections.abc import Iterable
 from pathlib import Path
 
 from my_robot_basics.validate.pictures import KINDS, why_not_shown
@@ -131,7 +130,7 @@ def _pictures(attachments: object) -> dict[str, dict[str, str]]:
     return kept
 
 
-def _dicts(value: object) -> Iterable[dict]:
+def _dicts(value: object) -> list[dict]:
     return [v for v in value if isinstance(v, dict)] if isinstance(value, list) else []
 
 

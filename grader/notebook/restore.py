@@ -40,11 +40,11 @@ class _Found:
 
 def make_template(source: NotebookNode, release: NotebookNode) -> AssignmentTemplate:
     """Join the instructor's notebook with the one that students were given."""
-    released = {grade_id(cell): cell.source for cell in release.cells if grade_id(cell)}
+    released = {name: cell.source for cell in release.cells if (name := grade_id(cell))}
     notebook = nbformat.from_dict(source)
     for cell, kind in zip(notebook.cells, roles(notebook), strict=True):
         if kind == 'answer':
-            cell.source = released.get(grade_id(cell), '')
+            cell.source = released.get(grade_id(cell) or '', '')
         if cell.cell_type == 'code':
             cell.outputs, cell.execution_count = [], None
         cell.metadata[KEY] = {'role': kind}
@@ -102,7 +102,7 @@ def _mend(
     """Yield what stands for one cell of the template."""
     kind, name = role(cell), grade_id(cell)
     original = nbformat.from_dict(cell)
-    changed = bool(parts) and parts[0].source not in (cell.source, released.get(name))
+    changed = bool(parts) and parts[0].source not in (cell.source, released.get(name or ''))
     if changed and kind in ('demo', 'free'):
         yield _from_student(parts[0])
         return

@@ -64,7 +64,9 @@ def extra_python_files(folder: Path) -> list[Path]:
 
 def _python_files(folder: Path) -> tuple[list[Path], list[str]]:
     """Return the files that are taken, and a note for each other one."""
-    taken, notes, left = [], [], MAX_PYTHON_BYTES
+    taken: list[Path] = []
+    notes: list[str] = []
+    left = MAX_PYTHON_BYTES
     for path in sorted(p for p in folder.glob('*.py') if p.is_file() and not p.is_symlink()):
         size = path.stat().st_size
         if size <= left and len(taken) < MAX_PYTHON_FILES:

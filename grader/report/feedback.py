@@ -54,7 +54,7 @@ class FeedbackPage(Exporter):
     file_extension = '.html'
     output_mimetype = 'text/html'
 
-    def from_notebook_node(
+    def from_notebook_node(  # type: ignore[override]  # other exporters return text, too
         self, nb: NotebookNode, resources: dict | None = None, **options: object
     ) -> tuple[str, dict]:
         """Return the page of a graded notebook as HTML."""

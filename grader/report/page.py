@@ -27,13 +27,13 @@ _FIRST_WORD = re.compile(r'\A[a-z]+(?=[ ,:;]|\Z)')
 _ENTITY = re.compile(r'&(#\d+|#x[0-9a-f]+|\w+);?', re.IGNORECASE)
 
 
-def page(notebook: dict, about: dict, plain: str = '') -> str:
+def page(as_json: dict, about: dict, plain: str = '') -> str:
     """Return the page; `about` is nbgrader's: student, assignment, score, max_score, late_penalty.
 
     Grade cells hold what students may see, and scores: see feedback.GatherVerdicts. `plain` says
     why text and code are shown as they were typed. All of it is JSON.
     """
-    notebook = nbformat.from_dict(notebook)
+    notebook = nbformat.from_dict(as_json)
     parts, others = find_parts(notebook)
     ours = notebook.metadata.get(KEY, {})
     problem = ours.get('problem', '')

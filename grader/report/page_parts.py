@@ -88,7 +88,7 @@ def find_parts(notebook: NotebookNode) -> tuple[list[Part], list[tuple[str, list
 def _check(cell: NotebookNode) -> CheckedCell:
     marks, verdict = cell.metadata.nbgrader, cell.metadata.get(KEY, {})
     score, points = marks.get('score') or 0.0, marks.get('points') or 0.0
-    name, is_answer = grade_id(cell), role(cell) == 'answer'
+    name, is_answer = grade_id(cell) or '', role(cell) == 'answer'
     status = 'passed' if score >= points else 'partly' if score > 0.0 else 'missed'
     status = 'waiting' if verdict.get('waits') else 'by hand' if verdict.get('by_hand') else status
     reason = verdict.get('reason') or _missing_reason(status, is_answer=is_answer)

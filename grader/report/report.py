@@ -80,7 +80,8 @@ def _facts(run: Run, rows: Sequence[Row], counted: Tally) -> dict:
         ],
         'reasons': [_reason(each) for each in counted.reasons],
         'slowest': [
-            _submission(row) for row in sorted(timed, key=lambda row: -row.seconds)[:SLOWEST]
+            _submission(row)
+            for row in sorted(timed, key=lambda row: -(row.seconds or 0.0))[:SLOWEST]
         ],
         'environment': versions()
         | {

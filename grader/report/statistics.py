@@ -111,7 +111,11 @@ def _assignments(
     failures: list[Said],
 ) -> Iterable[Assignment]:
     for name in sorted({assignment for _, assignment in whose}):
-        stored = [row.stored for (_, assignment), row in whose.items() if assignment == name]
+        stored = [
+            row.stored
+            for (_, assignment), row in whose.items()
+            if assignment == name and row.stored
+        ]
         cells = [
             r for (_, assignment), found in of_cells.items() if assignment == name for r in found
         ]
@@ -135,7 +139,9 @@ def _assignments(
 
 def _check(cells: list[Record], title: str | None, failures: list[Said]) -> Check:
     scored = [record for record in cells if record.score is not None]
-    passed = sum(record.score >= record.max_score for record in scored)
+    passed = sum(
+        record.score is not None and record.score >= record.max_score for record in scored
+    )
     return Check(
         grade_id=cells[0].grade_id,
         title=title or '',

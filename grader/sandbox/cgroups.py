@@ -20,7 +20,7 @@ import contextlib
 import os
 import shlex
 import signal
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -157,7 +157,7 @@ def _kill_all(folder: Path) -> None:
                 os.kill(pid, signal.SIGKILL)
 
 
-def _limits(version: int, memory_bytes: int) -> dict[str, dict[str, object]]:
+def _limits(version: int, memory_bytes: int) -> dict[str, Mapping[str, object]]:
     """Return what is written into the files of each controller."""
     if version == 1:
         memory = {

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from grader.sandbox.temporary_folders import own_folder
 
-_PASSED_ON = ('LANG', 'LC_ALL', 'TZ')
+_PASSED_ON: tuple[str, ...] = ('LANG', 'LC_ALL', 'TZ')
 # the ROS wheels start an interpreter anew to set the one, unless they find the other
 _PASSED_ON += ('LD_LIBRARY_PATH', '_ROS_WHEELS_BOOTSTRAP_COMPLETE')
 _ALWAYS = {

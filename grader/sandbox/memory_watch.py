@@ -29,7 +29,7 @@ async def watch_memory(inhabitants: Callable[[], Iterable[int]], killed: set[int
                 rooms[os.stat(f'/proc/{pid}/ns/pid').st_ino][pid] = _own_memory(pid)
         for used in rooms.values():
             while sum(used.values()) > ROOM_MEMORY_BYTES:
-                largest = max(used, key=used.get)
+                largest = max(used, key=lambda pid: used[pid])
                 del used[largest]
                 killed.add(largest)
                 with contextlib.suppress(ProcessLookupError):

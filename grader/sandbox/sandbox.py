@@ -70,6 +70,8 @@ class Sandbox:
             start_new_session=True,
             env={'PATH': f'{os.defpath}:/usr/sbin:/sbin'},
         )
+        assert self._holder.stdout is not None
+        assert self._holder.stderr is not None
         os.set_blocking(self._holder.stdout.fileno(), False)
         line = b''
         with contextlib.suppress(TimeoutError):
@@ -90,7 +92,7 @@ class Sandbox:
 
     def cgroup(self, room: str) -> RoomCgroup | None:
         """Return the cgroup of a room; None where this machine gives us none."""
-        return self._cgroups and self._cgroups.rooms[room]
+        return None if self._cgroups is None else self._cgroups.rooms[room]
 
     def memory_events(self, room: str) -> MemoryEvents:
         """Return whether the memory of a room ran out, and what was ended for it.
@@ -177,6 +179,7 @@ class Sandbox:
 
     async def _remove_cgroups(self) -> None:
         if self._note is not None:
+            assert self._cgroups is not None  # the note is about them
             while not self._cgroups.remove():
                 await asyncio.sleep(0.005)
             self._note.unlink()
@@ -191,12 +194,15 @@ class Sandbox:
                 with contextlib.suppress(ProcessLookupError):
                     os.kill(pid, signal.SIGKILL)
             await asyncio.sleep(0.01)
+        assert self._holder is not None
         while self._holder.poll() is None:
             await asyncio.sleep(0.005)
         for pipe in (self._holder.stdin, self._holder.stdout, self._holder.stderr):
-            pipe.close()
+            if pipe is not None:
+                pipe.close()
 
     def _kill_holder(self) -> None:
+        assert self._holder is not None
         with contextlib.suppress(ProcessLookupError):
             os.killpg(self._holder.pid, signal.SIGKILL)
 

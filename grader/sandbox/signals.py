@@ -107,7 +107,8 @@ def killed_processes(kernel: int) -> list[tuple[int, tuple[int, int]]]:
 
     They are known while the process that started them has not asked how they ended.
     """
-    found, todo = [], [kernel]
+    found: list[tuple[int, tuple[int, int]]] = []
+    todo = [kernel]
     while todo:
         for pid in _children(todo.pop()):
             todo.append(pid)
@@ -121,7 +122,7 @@ def killed_processes(kernel: int) -> list[tuple[int, tuple[int, int]]]:
 
 
 def _children(pid: int) -> list[int]:
-    found = []
+    found: list[int] = []
     for path in Path(f'/proc/{pid}/task').glob('*/children'):
         try:
             found += map(int, path.read_text('ascii').split())

@@ -53,7 +53,7 @@ def register(course: Course, assignment: str) -> bool:
     with connected(course.db_url) as book:
         known = _checksums_in(book, assignment)
         wanted = {
-            grade_id(cell): cell.metadata['nbgrader']['checksum']
+            grade_id(cell) or '': cell.metadata['nbgrader']['checksum']
             for cell in tidied.cells
             if 'checksum' in cell.metadata.get('nbgrader', {})
         }
@@ -105,6 +105,7 @@ def store(course: Course, submission: Submission, graded: NotebookNode) -> Store
     except Exception:
         begun.unlink(missing_ok=True)
         raise
+    assert now is not None  # it was stored
     return Stored(
         score=now[0],
         max_score=now[1],

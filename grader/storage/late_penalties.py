@@ -166,8 +166,10 @@ class LatePenalties(AssignLatePenalties):
             submission = book.find_submission(assignment, student)
             if found:  # else whatever nbgrader was told stays
                 due = found.due.get(assignment)
-                later = found.extended.get((assignment, student), due)
-                extension = max(later - due, timedelta()) if due else None
+                extension = None
+                if due:
+                    later = found.extended.get((assignment, student), due)
+                    extension = max(later - due, timedelta())
                 submission.assignment.duedate = due
                 submission.extension = extension or None
                 book.db.commit()

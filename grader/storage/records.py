@@ -6,7 +6,7 @@ from functools import cache, partial
 
 import nbformat
 from nbformat import NotebookNode
-from nbgrader.api import Gradebook
+from nbgrader.api import Gradebook, GradeCell
 
 from grader.course import Course
 from grader.notebook.restore import KEY, grade_id
@@ -46,14 +46,14 @@ def records(course: Course, *, only: Collection[tuple[str, str]] | None = None) 
         ]
 
 
-def verdicts(course: Course, student_id: str, assignment: str) -> dict[str, NotebookNode]:
+def verdicts(course: Course, student_id: str, assignment: str) -> dict[str, dict]:
     """Return what the executed notebook says of each graded cell, by grade id."""
     return verdicts_in(graded_notebook(course, student_id, assignment))
 
 
-def verdicts_in(graded: NotebookNode) -> dict[str, NotebookNode]:
+def verdicts_in(graded: NotebookNode) -> dict[str, dict]:
     """Return what an executed notebook says of each graded cell, by grade id."""
-    return {grade_id(cell): cell.metadata.get(KEY, {}) for cell in graded.cells if grade_id(cell)}
+    return {name: cell.metadata.get(KEY, {}) for cell in graded.cells if (name := grade_id(cell))}
 
 
 def graded_notebook(course: Course, student_id: str, assignment: str) -> NotebookNode:
@@ -63,7 +63,7 @@ def graded_notebook(course: Course, student_id: str, assignment: str) -> Noteboo
 
 
 def _records(
-    book: Gradebook, student: str, assignment: str, place: Callable[[object], tuple[int, str]]
+    book: Gradebook, student: str, assignment: str, place: Callable[[GradeCell], tuple[int, str]]
 ) -> Iterator[Record]:
     known = [cell for nb in book.find_assignment(assignment).notebooks for cell in nb.grade_cells]
     found = submitted_notebook(book, student, assignment)
@@ -87,7 +87,7 @@ def _records(
         yield Record(student, assignment, 'late_penalty', -found.late_submission_penalty, 0.0)
 
 
-def _place_in(course: Course, assignment: str) -> Callable[[object], tuple[int, str]]:
+def _place_in(course: Course, assignment: str) -> Callable[[GradeCell], tuple[int, str]]:
     """Return a sort key that puts graded cells in the lesson's order; strangers come last."""
     order = []
     if course.source_path(assignment).exists():

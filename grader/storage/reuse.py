@@ -72,6 +72,7 @@ def refresh_late_penalty(
     apply(LATE, graded, resources_of(course, assignment, student))
     with connected(course.db_url) as book:
         found = submitted_notebook(book, student, assignment)
+        assert found is not None  # as before
         return Stored(
             score=_score(found),
             max_score=found.max_score,
@@ -101,7 +102,7 @@ def _agree(grades: list, graded: NotebookNode) -> bool:
 
 def _outcomes(notebook: NotebookNode) -> dict[str, str]:
     """Return the outcome of each check, or '' where it has no score, by its grade id."""
-    found = {grade_id(c): c.metadata.get(KEY, {}).get('outcome') for c in _checks(notebook)}
+    found = {grade_id(c) or '': c.metadata.get(KEY, {}).get('outcome') for c in _checks(notebook)}
     return {name: said if said in SCORED else '' for name, said in found.items()}
 
 

@@ -58,6 +58,7 @@ def submit_for_grading(
 
 
 def _restored(submission: Submission, template: AssignmentTemplate) -> NotebookNode:
+    assert submission.notebook is not None  # else it has a problem
     notebook = restore(submission.notebook, template).notebook
     notebook.metadata[KEY].notes += submission.notes
     return notebook

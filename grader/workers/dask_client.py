@@ -66,7 +66,7 @@ def connected(address: str, certificates: Certificates) -> 'Client':
         security = Security(
             require_encryption=True, **{name: file for name, file in named.items() if file}
         )
-        if not (security.tls_ca_file and security.tls_client_cert and security.tls_client_key):
+        if not all(getattr(security, name) for name in named):  # Dask's configuration counts
             raise ClusterError(
                 f'{address} needs certificates: name them with --tls-ca-file, --tls-cert and '
                 "--tls-key, or in Dask's own configuration"

@@ -144,6 +144,7 @@ class _Worker:
             await self._connected.wait()
             if self.ended:
                 return None
+            assert self._writer is not None  # it is connected and has not ended
             await send(self._writer, number, text)
             return await answer
         except ConnectionError:

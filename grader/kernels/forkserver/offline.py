@@ -13,8 +13,9 @@ def keep_off_the_network() -> None:
     """Let what forked processes print come over a Unix socket beside the kernel's own."""
     from ipykernel.iostream import IOPubThread
 
-    IOPubThread._setup_pipe_in = _listen
-    IOPubThread._setup_pipe_out = _connect
+    # methods of a library, replaced on purpose
+    IOPubThread._setup_pipe_in = _listen  # type: ignore[method-assign]
+    IOPubThread._setup_pipe_out = _connect  # type: ignore[method-assign]
 
 
 def _listen(self: Any) -> None:
