@@ -5,17 +5,21 @@ from dataclasses import dataclass
 from typing import Any, NoReturn
 
 from rclpy.publisher import Publisher
-from rclpy.qos import QoSProfile
+from rclpy.qos import QoSProfile, ReliabilityPolicy
 
 from my_robot_basics.checks import relay_ends
-from my_robot_basics.checks.carried import QUIET_SEC, Carried, Passage
+from my_robot_basics.checks.callbacks import Raised
+from my_robot_basics.checks.carried import Carried
 from my_robot_basics.checks.ears import Ears
 from my_robot_basics.checks.errors import fail
 from my_robot_basics.checks.latched import said_to_nobody
+from my_robot_basics.checks.passage import QUIET_SEC, Passage
 from my_robot_basics.checks.relay_ends import Ends
-from my_robot_basics.checks.variety import varied
+from my_robot_basics.checks.variety import filled, varied
 from my_robot_basics.checks.watcher import Watcher
 
+EVERYTHING = QoSProfile(depth=5000, reliability=ReliabilityPolicy.BEST_EFFORT)
+"""How to listen to all that is published on the source."""
 AGAIN_SEC = 0.1
 """How long to wait for a message to come out before it is sent once more."""
 
@@ -41,20 +45,24 @@ class Relay:
     def assert_carries(self, make_message: Callable[[], Any], *, qos_profile: QoSProfile) -> None:
         """Each message that is offered with that profile on `source` comes out on `to`, once.
 
-        `make_message` makes each another one; some are sent twice in a row, or with zeros,
-        negative and large numbers in place of theirs. The first is sent again and again until it
-        comes out. The others are sent one at a time: over a hundred in a row have to come out
-        before the next one, and once. So have one after a pause, and two right after each other.
+        Nothing else does, and all that it holds is the same. `make_message` makes each another
+        one; some are sent twice in a row, or with zeros, negative and large numbers in place of
+        theirs. The first is sent again and again until it comes out. The others are sent one at a
+        time: over a hundred in a row (fewer where that takes long) have to come out before the
+        next one, and once. So have one after a pause, and two right after each other. No callback
+        raises.
         """
+        make_message = filled(make_message)
         with Watcher() as watcher:
             ends = Ends(self.source, self.to)
             first = make_message()
             ears = ends.listen(watcher, type(first))
+            raised = Raised(ears.publishers())
             publisher = ends.publish_to_node(watcher, type(first), qos_profile)
             ends.expect_one_profile(watcher)
             self._expect_out(watcher, ears, first, again=publisher)
             watcher.spin_for(QUIET_SEC)
-            self._expect_passage(watcher, ears, publisher, make_message)
+            self._expect_passage(watcher, ears, publisher, make_message, raised)
 
     def assert_carries_latched(self, make_message: Callable[[], Any], *, times: int = 1) -> None:
         """A message that was published before anybody subscribed comes out on `to`, once.
@@ -63,10 +71,12 @@ class Relay:
         `make_message`, before it has met anybody. And the graph says that the node asks for it:
         TRANSIENT_LOCAL. What the last participant publishes then comes out, too.
         """
+        make_message = filled(make_message)
         with Watcher() as watcher:
             ends = Ends(self.source, self.to)
             message_type = type(make_message())
             ears = ends.listen(watcher, message_type)
+            raised = Raised(ears.publishers())
             ends.expect_transient_local(watcher)
             ends.expect_type(watcher, message_type)
             ends.expect_one_profile(watcher)
@@ -77,9 +87,9 @@ class Relay:
                     watcher.spin_for(QUIET_SEC)
                     count = sum(_says(heard, message) for heard in ears.messages())
                     if count > 1:
-                        self._fail_carried(Carried(copies=count))
+                        self._fail(*Carried(copies=count).fault())
                     if number + 1 == times:
-                        self._expect_passage(watcher, ears, publisher, make_message)
+                        self._expect_passage(watcher, ears, publisher, make_message, raised)
 
     def _expect_passage(
         self,
@@ -87,25 +97,36 @@ class Relay:
         ears: Ears,
         publisher: Publisher,
         make_message: Callable[[], Any],
+        raised: Raised,
     ) -> None:
+        source_ears = Ears(
+            watcher, topic_name=self.source, type_=ears.type, qos_profile=EVERYTHING
+        )
+        watcher.spin_until(source_ears.is_connected, timeout_sec=relay_ends.TIMEOUT_SEC)
+        watcher.spin_for(QUIET_SEC)
         passage = Passage(watcher, ears, publish=publisher.publish, is_same=_says)
         messages = varied(make_message)
         carried = passage.carry(messages)
         if not carried.is_whole():
-            self._fail_carried(carried)
+            seen, hint = carried.fault()
+            self._fail(seen, raised.hint() or hint)
         if passage.loses_after_a_pause(messages):
             self._fail(
                 'a message that is not republished when it is the first after a pause',
-                'publish in every call of the callback, whenever it comes',
+                raised.hint() or 'publish in every call of the callback, whenever it comes',
             )
         if passage.loses_one_of_two(messages):
             self._fail(
                 'two messages in quick succession of which only one is republished',
-                'publish each in the callback itself, or keep all of them until then',
+                raised.hint()
+                or 'publish each in the callback itself, or keep all of them until then',
             )
-
-    def _fail_carried(self, carried: Carried) -> NoReturn:
-        self._fail(*carried.fault())
+        if passage.invents(source_ears.messages()):
+            self._fail(
+                f'messages that nobody published on {self.source}',
+                'publish in that callback alone, and only the message that it is given',
+            )
+        raised.expect_none()
 
     def _fail(self, seen: str, hint: str) -> NoReturn:
         fail(
@@ -128,25 +149,30 @@ class Relay:
                 timeout_sec=AGAIN_SEC,
             ):
                 return
-        has_others = len(ears.messages()) > before
+        others = ears.messages()[before:]
+        has_others = bool(others)
         fail(
             expected=f'a message from {self.source} to be republished on {self.to}, unchanged',
             seen=f'{"only others" if has_others else "none"} in {relay_ends.TIMEOUT_SEC:g} s',
             hint=Ends(self.source, self.to).why_lost(
                 watcher, is_latched=again is None, has_others=has_others
-            ),
+            )
+            + _what_differs(others, message),
             cause=f'{"only other messages arrive" if has_others else "no message arrives"} on'
             f' {self.to}',
         )
 
 
 def _says(heard: Any, sent: Any) -> bool:
-    """Whether a message has all that was filled in in the other; its stamp may be a new one."""
-    blank = type(sent)()
-    if sent == blank:
-        return heard == sent
-    return all(
-        getattr(heard, field) == getattr(sent, field)
-        for field in sent.get_fields_and_field_types()
-        if getattr(sent, field) != getattr(blank, field)
-    )
+    """Whether it is that very message, with all of its fields."""
+    return heard == sent
+
+
+def _what_differs(others: list[Any], sent: Any) -> str:
+    """Which fields are others where some are right, as a clause; or ''."""
+    names = sent.get_fields_and_field_types()
+    for heard in others:
+        wrong = [name for name in names if getattr(heard, name) != getattr(sent, name)]
+        if 0 < len(wrong) < len(names):
+            return f'; not the same: {", ".join(wrong)}'
+    return ''

@@ -9,7 +9,7 @@ import sys
 
 from my_robot_basics.checks import settled, values, wire
 
-_PROTOCOL = ('call', 'value', 'endpoint', 'settled', 'trouble', 'clock')
+_PROTOCOL = ('call', 'value', 'endpoint', 'settled', 'trouble', 'raised', 'clock')
 
 
 def answer(request_text: str) -> str:
@@ -27,6 +27,8 @@ def answer(request_text: str) -> str:
         return _reply(settled.settled_nodes(*args))
     if op == 'trouble':
         return _reply(_trouble(name))
+    if op == 'raised':
+        return _reply(_times_raised(name))
     if op == 'clock':
         return _reply(_set_use_sim_time(name, *args))
     namespace = vars(sys.modules['__main__'])
@@ -67,6 +69,12 @@ def _trouble(node_name: str) -> str:
     """What a callback of a node raised last that live spins, or ''."""
     troubles = sys.modules.get('my_robot_basics.live.troubles')
     return troubles.last(node_name) if troubles else ''
+
+
+def _times_raised(node_name: str) -> int:
+    """How often a callback of a node raised that live spins."""
+    troubles = sys.modules.get('my_robot_basics.live.troubles')
+    return troubles.times(node_name) if troubles else 0
 
 
 def _set_use_sim_time(node_name: str, value: bool) -> bool | None:

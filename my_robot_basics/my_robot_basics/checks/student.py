@@ -90,11 +90,8 @@ def settled_nodes() -> list[str] | None:
     It saves waiting for what can't come; the verdict stays with the graph.
     """
     question = wire.request(op='settled', name='', args=(hidden.checked_for_sec(),))
-    try:
-        kind, body = wire.parse_reply(_send(question))
-    except values.WireError:
-        return None
-    is_told = kind == 'ok' and isinstance(body, list) and all(isinstance(n, str) for n in body)
+    body = _told(question)
+    is_told = isinstance(body, list) and all(isinstance(name, str) for name in body)
     return body if is_told else None
 
 
@@ -103,11 +100,14 @@ def trouble(node_name: str) -> str:
 
     It tells students where to look; the verdict stays with what was seen.
     """
-    try:
-        kind, body = wire.parse_reply(_send(wire.request(op='trouble', name=node_name)))
-    except values.WireError:
-        return ''
-    return shorten(body) if kind == 'ok' and isinstance(body, str) else ''
+    body = _told(wire.request(op='trouble', name=node_name))
+    return shorten(body) if isinstance(body, str) else ''
+
+
+def times_raised(node_name: str) -> int:
+    """How often a callback of that node raised, where the notebook's process knows; or 0."""
+    body = _told(wire.request(op='raised', name=node_name))
+    return body if type(body) is int else 0
 
 
 def set_use_sim_time(node_name: str, value: bool) -> bool | None:
@@ -116,12 +116,17 @@ def set_use_sim_time(node_name: str, value: bool) -> bool | None:
     None where that process has no such node, or does not answer. It drives a node that nothing
     else can drive; the verdict stays with what the node publishes.
     """
+    body = _told(wire.request(op='clock', name=node_name, args=(value,)))
+    return body if isinstance(body, bool) else None
+
+
+def _told(question: str) -> Any:
+    """What the notebook's process answers, or None."""
     try:
-        question = wire.request(op='clock', name=node_name, args=(value,))
         kind, body = wire.parse_reply(_send(question))
     except values.WireError:
         return None
-    return body if kind == 'ok' and isinstance(body, bool) else None
+    return body if kind == 'ok' else None
 
 
 def _send(question: str) -> str:

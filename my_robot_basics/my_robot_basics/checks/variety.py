@@ -14,6 +14,7 @@ BLOCK = (PLAIN, PLAIN, AGAIN, ZERO, NEGATIVE, LARGE)
 meets every kind."""
 LARGE_FACTOR = 100.0
 SHUFFLED = 2026
+FRAME_ID = 'base_link'
 
 
 @dataclass(frozen=True)
@@ -35,6 +36,27 @@ def varied(make_message: Callable[[], Any]) -> Iterator[Sent]:
                 yield Sent(message, AGAIN)
             else:
                 yield Sent(changed(make_message(), kind), kind)
+
+
+def filled(make_message: Callable[[], Any]) -> Callable[[], Any]:
+    """Make its messages with a stamp, a frame, velocities and efforts where these are empty.
+
+    Each stamp is another one, and older than now: a copy has it, and a new one does not.
+    """
+    numbers = random.Random(SHUFFLED)
+
+    def make_filled() -> Any:
+        message = make_message()
+        if hasattr(message, 'header'):
+            message.header.frame_id = message.header.frame_id or FRAME_ID
+            message.header.stamp.sec = numbers.randrange(1, 1_000_000_000)
+            message.header.stamp.nanosec = numbers.randrange(1_000_000_000)
+        for field in ('velocity', 'effort'):
+            if hasattr(message, field) and not getattr(message, field):
+                setattr(message, field, [numbers.random() for _ in message.position])
+        return message
+
+    return make_filled
 
 
 def changed(message: Any, kind: str) -> Any:

@@ -7,6 +7,8 @@ import rclpy
 
 _last: dict[str, str] = {}
 """What a callback of a node raised last, by the node's full name."""
+_times: dict[str, int] = {}
+"""How often one has raised."""
 _NOT_THEIRS = (str(Path(rclpy.__file__).parent), str(Path(__file__).parent))
 
 
@@ -29,16 +31,29 @@ def remember(node_name: str, error: BaseException) -> None:
     where, what = where_and_what(error)
     place = where.rpartition('\n')[2].strip()
     _last[node_name] = f'{what} ({place})' if place else what
+    _times[node_name] = times(node_name) + 1
 
 
 def forget(node_name: str) -> None:
     """Forget it: a new node of that name begins."""
     _last.pop(node_name, None)
+    _times.pop(node_name, None)
+
+
+def forget_all() -> None:
+    """Forget what the nodes of all names raised: an exercise begins."""
+    _last.clear()
+    _times.clear()
 
 
 def last(node_name: str) -> str:
     """Return what a callback of the node raised last, or ''."""
     return _last.get(node_name, '')
+
+
+def times(node_name: str) -> int:
+    """Return how often a callback of the node has raised."""
+    return _times.get(node_name, 0)
 
 
 def _place(filename: str) -> str:

@@ -1,0 +1,42 @@
+"""What the callbacks of a node raised: `rclpy.spin` would have ended there."""
+
+from collections.abc import Iterable
+
+from my_robot_basics.checks import graphs, student
+from my_robot_basics.checks.errors import fail
+
+FIX_FIRST = 'so fix that first: rclpy.spin would have ended there'
+
+
+class Raised:
+    """The exceptions of nodes' callbacks since this was made, where live spins them."""
+
+    def __init__(self, node_names: Iterable[str]) -> None:
+        """`node_names`: the nodes' full names."""
+        self._before = {name: student.times_raised(name) for name in node_names}
+
+    def hint(self) -> str:
+        """A clause that names one of them, and what to do; or ''."""
+        names = [n for n, times in self._before.items() if student.times_raised(n) > times]
+        raised = graphs.what_raised(names)
+        return f'{raised}, {FIX_FIRST}' if raised else ''
+
+    def expect_none(self) -> None:
+        """Raise CheckFailed where there was one."""
+        if hint := self.hint():
+            _fail(hint)
+
+
+def expect_none_so_far(node_names: Iterable[str]) -> None:
+    """No callback of the nodes has raised since they were started. Raises CheckFailed."""
+    if raised := graphs.what_raised(node_names):
+        _fail(f'{raised}, {FIX_FIRST}')
+
+
+def _fail(hint: str) -> None:
+    fail(
+        expected='callbacks that raise nothing',
+        seen='an exception',
+        hint=hint,
+        cause='a callback raised an exception',
+    )

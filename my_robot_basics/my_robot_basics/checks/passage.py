@@ -1,0 +1,190 @@
+"""What becomes of messages that go through a node one at a time: each comes out at once, once."""
+
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any
+
+from rclpy.serialization import serialize_message
+
+from my_robot_basics.checks.carried import Carried
+from my_robot_basics.checks.ears import Ears
+from my_robot_basics.checks.pressure import Stopwatch
+from my_robot_basics.checks.variety import Sent
+from my_robot_basics.checks.watcher import Watcher
+
+ON_TIME_SEC = 1.0
+"""How long a message may take. Who passes it on by a timer is in time, too."""
+PATIENCE_TIMES, LEAST_SEC = 10.0, 0.2
+"""Once some came out, no more than so many times as long as the slowest of them, and that."""
+QUIET_SEC = 0.1
+"""How long to listen for a second copy."""
+TIMES = 120
+"""Messages in a row that have to come out: one that is left out each hundredth time is among
+them. …"""
+FEWEST = 24
+"""… So many will do after SOME_SEC, …"""
+SOME_SEC = 2.5
+FEWEST_SLOW = 12
+"""… So many of a slow node, or on a slow machine, after LONG_SEC, which finds each eleventh, too.
+…"""
+LONG_SEC = 4.0
+MOST_SEC, LAST_SEC = 12.0, 20.0
+"""… After so long, of wall time, what was seen decides, and then pairs and pauses end, too:
+*Validate* gives a cell 30 s."""
+FEWEST_LOST = 2
+"""So many that never came out are no chance then, where later ones did."""
+MOST_LATE = 4
+"""So many tell enough: each is waited for, and a BEST_EFFORT end may lose one now and then."""
+CROWD = 50
+"""With so many messages of others while one is waited for, the queue overflows without anybody's
+fault: …"""
+MOST_CROWDED_OUT = 20
+"""… So many such losses are no chance, either."""
+FEWEST_COPIES = 2
+"""Messages of which there are copies."""
+FEWEST_INVENTED = 3
+"""Messages that nobody sent: one or two may have been on their way before the check listened."""
+RECENT = 20
+"""A copy is one of so many that came out last."""
+PAIR_GAP_SEC = 0.01
+"""Two messages so near to each other: a node that keeps only the latest for a timer loses one."""
+MOST_GAP_SEC, MOST_APART = 0.015, 20
+"""A busy machine lets more time pass between them: so many such pairs prove nothing."""
+WHOLE_PAIRS, MOST_TORN = 2, 6
+"""So many pairs have to come out, before so many did not: a queue of depth 1 may lose one."""
+PAUSE_SEC = 1.1
+PAUSES = 3
+
+
+class Passage:
+    """Publishes on one topic and sees what comes out on another one."""
+
+    def __init__(
+        self,
+        watcher: Watcher,
+        ears: Ears,
+        *,
+        publish: Callable[[Any], None],
+        is_same: Callable[[Any, Any], bool],
+    ) -> None:
+        """`is_same(heard, sent)` tells whether one is the other. Only what comes now counts."""
+        self._watcher, self._ears = watcher, ears
+        self._publish, self._is_same = publish, is_same
+        self._seen = len(ears.heard)
+        self._waiting: list[Sent] = []
+        self._out: list[Sent] = []
+        self._copies: list[int] = []
+        """How often each of those came out."""
+        self._others: list[Any] = []
+        self._slowest_sec = 0.0
+        self._watch = Stopwatch()
+
+    def carry(self, messages: Iterator[Sent]) -> Carried:
+        """Publish each once the one before has come out or is late, until enough came in a row.
+
+        The others of a crowd may push one out of a queue: such a loss counts for nothing.
+        """
+        late = in_a_row = crowded_out = 0
+        row = Stopwatch()
+        while in_a_row < _fewest(row) and late < MOST_LATE:
+            # who swaps two has one in time, and none in a row
+            if in_a_row > 1 and self._is_over():
+                break
+            others, sent = len(self._others), next(messages)
+            if self._send(sent):
+                in_a_row += 1
+            elif len(self._others) - others >= CROWD and crowded_out < MOST_CROWDED_OUT:
+                crowded_out += 1
+                self._waiting.remove(sent)
+            else:
+                late, in_a_row, row = late + 1, 0, Stopwatch()
+        self._watcher.spin_for(QUIET_SEC)
+        self._take()
+        doubled = [number for number in self._copies if number > 1]
+        copies = min(doubled) if len(doubled) >= FEWEST_COPIES else 1
+        is_enough = in_a_row >= _fewest(row) or len(self._waiting) < FEWEST_LOST
+        if late < MOST_LATE and is_enough:
+            return Carried(copies=copies)
+        return Carried(late=late, lost=tuple(sent.kind for sent in self._waiting), copies=copies)
+
+    def invents(self, sent: Iterable[Any]) -> bool:
+        """Whether messages came out that are not among those that anybody `sent`."""
+        known = {serialize_message(message) for message in sent}
+        invented = [each for each in self._others if serialize_message(each) not in known]
+        return len(invented) >= FEWEST_INVENTED
+
+    def loses_one_of_two(self, messages: Iterator[Sent]) -> bool:
+        """Whether of two messages in quick succession mostly one alone comes out."""
+        whole = torn = apart = 0
+        while whole < WHOLE_PAIRS and torn < MOST_TORN and not self._is_over(LAST_SEC):
+            first, gap = next(messages), Stopwatch()
+            self._waiting = [first]
+            self._publish(first.message)
+            self._watcher.spin_for(PAIR_GAP_SEC)
+            is_apart = gap.wall_sec() > MOST_GAP_SEC
+            self._send(next(messages))
+            if self._waiting:
+                torn += 1
+            elif is_apart and apart < MOST_APART:
+                apart += 1
+            else:
+                whole += 1
+        return torn >= MOST_TORN
+
+    def loses_after_a_pause(self, messages: Iterator[Sent]) -> bool:
+        """Whether a message that comes after a pause never comes out."""
+        for number in range(PAUSES):
+            if number >= FEWEST_LOST and self._is_over(LAST_SEC):
+                break
+            self._watcher.spin_for(PAUSE_SEC)
+            if self._send(next(messages)):
+                return False
+        return True
+
+    def _is_over(self, most_sec: float = MOST_SEC) -> bool:
+        return self._watch.wall_sec() >= most_sec
+
+    def _send(self, sent: Sent) -> bool:
+        """Publish it; whether it has come out in time."""
+        self._waiting.append(sent)
+        self._publish(sent.message)
+
+        def is_out() -> bool:
+            self._take()
+            return not any(each is sent for each in self._waiting)
+
+        patience_sec, watch = ON_TIME_SEC, Stopwatch()
+        if self._slowest_sec:
+            patience_sec = max(LEAST_SEC, PATIENCE_TIMES * self._slowest_sec)
+        if not self._watcher.spin_until_free(is_out, free_sec=min(patience_sec, ON_TIME_SEC)):
+            return False
+        self._slowest_sec = max(self._slowest_sec, watch.wall_sec())
+        return True
+
+    def _take(self) -> None:
+        """Sort what was received: the first of those that are waited for, a copy, or another's."""
+        heard = self._ears.messages()[self._seen :]
+        self._seen += len(heard)
+        for message in heard:
+            for place, sent in enumerate(self._waiting):
+                if self._is_same(message, sent.message):
+                    del self._waiting[place]
+                    self._out.append(sent)
+                    self._copies.append(1)
+                    break
+            else:
+                self._count(message)
+
+    def _count(self, message: Any) -> None:
+        for place in reversed(range(max(0, len(self._out) - RECENT), len(self._out))):
+            if self._is_same(message, self._out[place].message):
+                self._copies[place] += 1
+                return
+        self._others.append(message)
+
+
+def _fewest(row: Stopwatch) -> int:
+    """How many messages in a row are enough after so long."""
+    wall_sec = row.wall_sec()
+    if wall_sec < SOME_SEC:
+        return TIMES
+    return FEWEST if wall_sec < LONG_SEC else FEWEST_SLOW
