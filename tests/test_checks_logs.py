@@ -32,6 +32,27 @@ def test_an_answer_is_an_answer_in_any_layout(node):
         assert log.numbers('INFO') == ()
 
 
+class WarnsAndRaises(IKSolver):
+    def solve(self, point):
+        super().solve(point)
+        if point.x > 2.0:
+            raise ValueError('out of reach')
+
+
+def test_a_callback_that_warns_and_raises_does_not_go_on():
+    live.run(WarnsAndRaises)
+    try:
+        with rosout('ik_solver_node') as log:
+            ask(log, TOO_FAR)
+            with pytest.raises(CheckFailed, match=r'raised ValueError: out of reach .*fix that'):
+                log.expect_warning()
+        with rosout('ik_solver_node') as log:  # what it raised before is no answer's fault
+            ask(log, TARGET)
+            log.expect_angles(ANGLES)
+    finally:
+        live.stop()
+
+
 def test_another_level_is_named_as_such():
     with running('ik_solver'), rosout('ik_solver_node') as log:
         ask(log, TARGET)

@@ -7,7 +7,7 @@ import random
 import pytest
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import Point
-from my_robot_basics.checks import CheckFailed, periods, rates
+from my_robot_basics.checks import CheckFailed, periods, rates, student
 from my_robot_basics.checks.recording import Recording, Sample
 from sensor_msgs.msg import JointState
 
@@ -35,6 +35,16 @@ def recording(times=None, *, clock='simulated', message=joint_state, **changes):
 
 def every(period_sec, count=50):
     return [period_sec * i for i in range(1, count + 1)]
+
+
+@pytest.mark.parametrize('period_sec', [0.2, 0.4])
+def test_a_callback_that_raised_fails_at_any_rate(monkeypatch, period_sec):
+    made = recording(every(period_sec))
+    monkeypatch.setattr(student, 'trouble', lambda name: {'/a': 'ValueError: no pose'}[name])
+    with pytest.raises(
+        CheckFailed, match='callback raised ValueError: no pose, so fix that first'
+    ):
+        made.assert_rate(hz=5.0)
 
 
 @pytest.mark.parametrize(

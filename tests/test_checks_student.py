@@ -218,8 +218,18 @@ def test_what_a_callback_raised_is_told_until_its_node_begins_anew(monkeypatch):
     assert graphs.what_raised(['/other', '/raises']).startswith('its callback raised ZeroDiv')
     assert graphs.what_raised(['/other']) == ''
     live.run(Still, key='Raises')
-    assert student.trouble('/raises') == ''
+    assert (student.trouble('/raises'), student.times_raised('/raises')) == ('', 0)
     live.stop()
+
+
+@pytest.mark.starts
+@pytest.mark.parametrize('end', [live.stop, live.reset])
+def test_how_often_a_callback_raised_is_told_until_its_node_ends(monkeypatch, end):
+    monkeypatch.delenv('MY_ROBOT_BASICS_ROOM', raising=False)
+    live.run(Raises)
+    live.wait_until(lambda: student.times_raised('/raises') > 2)
+    end()
+    assert (student.trouble('/raises'), student.times_raised('/raises')) == ('', 0)
 
 
 def test_a_stamp_that_is_no_message_is_told_what_makes_one(monkeypatch):

@@ -10,6 +10,7 @@ from rclpy.publisher import Publisher
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
 from my_robot_basics.checks import angles, answers, graphs
+from my_robot_basics.checks.callbacks import Raised
 from my_robot_basics.checks.errors import fail, shorten
 from my_robot_basics.checks.topics import Topic
 from my_robot_basics.checks.watcher import Watcher
@@ -76,6 +77,7 @@ class Log:
             self._watcher.__exit__()
             raise
         self.mark()
+        self._raised = Raised([self._node_name])
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -174,6 +176,7 @@ class Log:
                 hint=WARN_ONLY,
                 cause='there is a warning for a target in reach',
             )
+        self._raised.expect_none()
         self._forms |= answers.forms_with(wanted, self._texts('INFO'))
         self._answer = wanted
         return before > 0
@@ -218,6 +221,7 @@ class Log:
                 'callback after the warning',
                 cause='angles are logged for a target out of reach',
             )
+        self._raised.expect_none()
 
     def _meet(self) -> None:
         node = self._watcher.node

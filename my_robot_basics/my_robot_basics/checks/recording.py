@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from my_robot_basics.checks import pictures, rates, stamps
+from my_robot_basics.checks import callbacks, pictures, rates, stamps
 from my_robot_basics.checks.errors import CheckFailed, expect, fail, shorten, show
 
 SECOND_LOOK_SEC = 4.0
@@ -70,8 +70,10 @@ class Recording:
         Before it fails it looks a second time, on the wall clock, unless the robot's clock has
         shown a plain timer of another period; and some times more where the machine is too busy
         for a node to keep its rate. Where the wall clock leaves a doubt it looks for longer.
+        A callback that has raised fails, too: `rclpy.spin` would have ended there.
         """
         self._expect_one_publisher()
+        callbacks.expect_none_so_far(self.publishers)
         is_right, is_doubtful = rates.has_rate(self, hz), rates.is_doubtful(self, hz)
         seconds, second = LONGER_LOOK_SEC if is_doubtful else SECOND_LOOK_SEC, None
         if not is_right or is_doubtful:

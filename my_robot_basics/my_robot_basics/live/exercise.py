@@ -5,7 +5,7 @@ from typing import Any
 
 from rclpy.node import Node
 
-from my_robot_basics.live import classroom, course_nodes, runner
+from my_robot_basics.live import classroom, course_nodes, runner, troubles
 from my_robot_basics.live.errors import NotRunnable
 
 
@@ -16,6 +16,7 @@ def reset(*names: str) -> None:
     the notebook is graded, nor can the course's own nodes.
     """
     runner.shut_down()
+    troubles.forget_all()
     if classroom.in_grading_room():
         course_nodes.close()
     for name in names:

@@ -81,6 +81,8 @@ class Panel:
 
         Of a node that was stopped and has said nothing, nothing stays.
         """
+        if reason == STOPPED:
+            troubles.forget(self._name)  # the next node of that name may be another's
         notebook.sync()
         notebook.listen_no_more(self.log)
         with self._lock:
