@@ -37,6 +37,20 @@ def every(period_sec, count=50):
     return [period_sec * i for i in range(1, count + 1)]
 
 
+def test_a_period_of_0_is_named():
+    made = recording(every(0.003, 1400), clock='wall', seconds=4.0)
+    with pytest.raises(CheckFailed, match=r'333.*Hz .*: the timer period is 0, or nearly'):
+        made.assert_rate(hz=5.0)
+
+
+def test_pauses_are_named_below_nine_tenths_of_the_rate_too():
+    times = [0.2 * number for number in range(1, 21) if number % 6]
+    made = recording(times, clock='wall', seconds=4.0)
+    assert made.rate_hz < 4.5
+    with pytest.raises(CheckFailed, match=r'saw pauses of 0\.4 s over'):
+        made.assert_rate(hz=5.0)
+
+
 @pytest.mark.parametrize('period_sec', [0.2, 0.4])
 def test_a_callback_that_raised_fails_at_any_rate(monkeypatch, period_sec):
     made = recording(every(period_sec))

@@ -20,6 +20,10 @@ LARGEST_GAP_PERIODS = 1.75
 GAP_SLACK_SEC = 0.05
 UNEVEN_PART = 0.25
 """So much of a period may most messages be off: 0.1 s and 0.3 s by turns are no 5 Hz."""
+MOSTLY_PART = 0.1
+"""So near to the period are most messages of a node that only pauses now and then."""
+TOO_FAST_TIMES = 20.0
+"""So many times too fast is no wrong number of seconds: a timer's period of 0."""
 AT_ONCE_SEC = 0.02
 """Nobody's timer means two messages so near to each other."""
 ONCE = 'publish one message each time the timer fires'
@@ -104,7 +108,12 @@ def fail_rate(recording: 'Recording', hz: float) -> NoReturn:
     if every := leaves_out(recording):
         seen, cause = f'one message of {every} missing each time {over}', 'messages are left out'
         hint = 'publish in every call of the timer'
-    elif near and recording.largest_gap_sec > LARGEST_GAP_PERIODS / hz:
+    elif recording.rate_hz > TOO_FAST_TIMES * hz:
+        seen, cause = f'{_hz(recording.rate_hz)} {over}', 'far too many messages'
+        hint = 'the timer period is 0, or nearly: period = 1 / rate, and 1 // rate is 0'
+    elif (near or _is_mostly(recording, hz)) and (
+        recording.largest_gap_sec > LARGEST_GAP_PERIODS / hz
+    ):
         seen, cause = f'pauses of {recording.largest_gap_sec:.1f} s {over}', 'there are pauses'
         hint = ONCE
     elif near and recording.clock == 'wall' and _is_uneven(recording, recording.rate_hz):
@@ -119,6 +128,12 @@ def fail_rate(recording: 'Recording', hz: float) -> NoReturn:
         hint, cause = 'the timer period is in seconds, and period = 1 / rate', 'another rate'
     picture = pictures.arrivals(recording, hz=hz)
     fail(expected=_hz(hz), seen=seen, hint=hint, cause=cause, picture=picture)
+
+
+def _is_mostly(recording: 'Recording', hz: float) -> bool:
+    """Whether most messages came one period behind the one before."""
+    gaps = np.diff(_times(recording))
+    return bool(len(gaps)) and bool(abs(np.median(gaps) * hz - 1.0) <= MOSTLY_PART)
 
 
 def _measured_hz(recording: 'Recording', hz: float) -> float:
