@@ -11,7 +11,7 @@ from collections.abc import Iterator
 import _pytest.runner
 import pytest
 from hypothesis import HealthCheck, settings
-from my_robot_basics.live import classroom
+from my_robot_basics.session import classroom
 
 from grader.kernels.isolation import TRUST, missing
 from tests import ordinary, tiers  # also where nbval runs with this as a plugin
@@ -25,7 +25,7 @@ UNTESTED = pytest.StashKey[list]()
 """The tests that a machine without a sandbox leaves out."""
 
 LONG = (
-    *('sample_class', 'lessons_run', 'checks_looks', 'browser', 'doctor_faults', 'attacks'),
+    *('sample_class', 'lessons_run', 'checks_sampling', 'browser', 'doctor_faults', 'attacks'),
     *('checks_topics', 'interrupt', 'checks_logs', 'workers', 'nbgrader_commands', 'survival'),
     *('checks_clock', 'hidden', 'kernels', 'dask_backend', 'checks_stamps', 'accessibility'),
     *('full_disk', 'ros2_streams', 'doctor_healthy', 'formgrader', 'checks_relays', 'workspace'),

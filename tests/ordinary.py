@@ -47,11 +47,11 @@ ORDINARY = {
     'test_kernel_exits::test_who_ends_their_own_node_gets_a_zero': (
         r'(forked|started)-node\.kill.*|forked-import os.*'
     ),
-    'test_checks_looks::test_a_wrong_rate_fails': r'(one_hz|a_little_slow|a_little_fast)-.*',
-    'test_checks_looks::test_a_near_miss_fails_on_the_wall_clock': (
+    'test_checks_sampling::test_a_wrong_rate_fails': r'(one_hz|a_little_slow|a_little_fast)-.*',
+    'test_checks_sampling::test_a_near_miss_fails_on_the_wall_clock': (
         r'(bursts|a_little_fast_loop|by_turns|too_busy)-.*'
     ),
-    'test_checks_looks::test_honest_nodes_that_are_no_plain_timers_pass': (
+    'test_checks_sampling::test_honest_nodes_that_are_no_plain_timers_pass': (
         r'(sleep_loop|multithreaded|create_rate|busy_callback)-.*'
     ),
     # the same commands with other options

@@ -4,7 +4,7 @@ import asyncio
 import types
 
 import pytest
-from my_robot_basics.checks import pressure
+from my_robot_basics.session import pressure
 
 from grader.sandbox.limits import BUSY_SHARE, IDLE_SHARE
 from grader.workers.adaptive_semaphore import LOOK_SEC, AdaptiveSemaphore

@@ -199,7 +199,7 @@ PLACES = [
     in_a_file('.jupyterlab/overrides.json'),
     in_a_file('my_robot_basics/my_robot_basics/hello_node.py'),
     in_a_file('my_robot_basics/test/test_nodes.py'),
-    in_a_file('my_robot_basics/my_robot_basics/live/fast_discovery.xml'),
+    in_a_file('my_robot_basics/my_robot_basics/session/fast_discovery.xml'),
 ]
 
 

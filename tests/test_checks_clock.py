@@ -6,8 +6,9 @@ import time
 import types
 
 import pytest
-from my_robot_basics.checks import CheckFailed, clock, looks, pressure, topic
-from my_robot_basics.checks.watcher import Watcher
+from my_robot_basics.checks import CheckFailed, clock, sampling, topic
+from my_robot_basics.graph.watcher import Watcher
+from my_robot_basics.session import pressure
 from nodes.running import imported, running
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.clock import Clock as RclpyClock
@@ -58,7 +59,7 @@ def test_a_node_is_alive_after_a_check_that_was_cut_short(monkeypatch, error):
         raise error
 
     with running('five_hz'):
-        monkeypatch.setattr(looks, '_find_step', interrupt)
+        monkeypatch.setattr(sampling, '_find_step', interrupt)
         with pytest.raises(error):
             topic(TOPIC).record()
         topic(TOPIC).wait_for(timeout_sec=5.0)
@@ -174,12 +175,12 @@ def look_at_counter(calls_each):
 
     with spinning(make), Watcher() as watcher:
         ears = topic('/counted').listen(watcher)
-        return looks.simulated(watcher, ears, seconds=10.0, step_sec=0.1)
+        return sampling.simulated(watcher, ears, seconds=10.0, step_sec=0.1)
 
 
 @pytest.mark.usefixtures('patient')
 def test_steps_prove_no_period_that_they_have_made():
-    assert look_at_counter(100) == looks.COUNTS
+    assert look_at_counter(100) == sampling.COUNTS
 
 
 @pytest.mark.usefixtures('patient')
@@ -198,7 +199,7 @@ def test_coarse_steps_prove_a_slow_period_in_little_time(monkeypatch):
             steps_ns.add(step_ns)
             super().tick(step_ns)
 
-    monkeypatch.setattr(looks, 'SimulatedClock', Ticks)
+    monkeypatch.setattr(sampling, 'SimulatedClock', Ticks)
     with running('fifth_hz'):
         assert topic(TOPIC).record().clock == 'simulated'
     assert steps_ns == {10**8, 5 * 10**8}

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from IPython.core.interactiveshell import InteractiveShell
 from my_robot_basics.checks import CheckFailed, expect, fail
-from my_robot_basics.checks.errors import shorten
+from my_robot_basics.feedback.errors import shorten
 
 WORDS = {'expected': '5.0 Hz', 'seen': '1.0 Hz', 'hint': 'period = 1 / rate'}
 SENTENCE = 'expected 5.0 Hz, saw 1.0 Hz: period = 1 / rate'

@@ -2,7 +2,7 @@
 
 import pytest
 from my_robot_basics.checks import graph
-from my_robot_basics.checks.graphs import Graph
+from my_robot_basics.graph.graphs import Graph
 from rclpy.node import Node
 from std_msgs.msg import String
 

@@ -2,7 +2,8 @@
 
 import pytest
 from IPython.core.interactiveshell import InteractiveShell
-from my_robot_basics.checks import CheckFailed, errors, pictures
+from my_robot_basics.checks import CheckFailed, pictures
+from my_robot_basics.feedback import errors
 from test_checks_recording import every, joint_state, recording
 
 PNG = b'\x89PNG\r\n\x1a\n'

@@ -6,9 +6,10 @@ from collections import OrderedDict
 
 import numpy as np
 import pytest
-from my_robot_basics.checks import CheckFailed, Predictions, hidden
-from my_robot_basics.checks import watcher as stage_watchers
-from my_robot_basics.checks.errors import PartlyRight
+from my_robot_basics.checks import CheckFailed, Predictions
+from my_robot_basics.feedback import hidden
+from my_robot_basics.feedback.errors import PartlyRight
+from my_robot_basics.graph import watcher as stage_watchers
 
 KEYS = 'arrives', 'is_lost'
 

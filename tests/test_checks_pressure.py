@@ -3,7 +3,7 @@
 import types
 
 import pytest
-from my_robot_basics.checks import pressure
+from my_robot_basics.session import pressure
 
 TOLD = (
     'some avg10=0.00 avg60=6.91 avg300=53.17 total=28759600458\n'

@@ -39,7 +39,7 @@ SOMETHING_MAY = {
 }
 ASK = """
 import json, os
-from my_robot_basics.checks.settled import settled_nodes
+from my_robot_basics.exchange.settled import settled_nodes
 os.write(2, json.dumps(settled_nodes({lived_sec})).encode())
 os._exit(0)
 """

@@ -10,7 +10,8 @@ from functools import partial
 import pytest
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import Point
-from my_robot_basics.checks import CheckFailed, graph, settled, student, topic, topics
+from my_robot_basics.checks import CheckFailed, graph, student, topic, topics
+from my_robot_basics.exchange import settled
 from nodes.running import imported, running
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy

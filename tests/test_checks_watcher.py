@@ -1,8 +1,9 @@
 """A check's own node among more endpoints than a lesson can have."""
 
 import pytest
-from my_robot_basics.checks import CheckFailed, graphs, topic, watcher
-from my_robot_basics.checks.watcher import Watcher
+from my_robot_basics.checks import CheckFailed, topic
+from my_robot_basics.graph import graphs, watcher
+from my_robot_basics.graph.watcher import Watcher
 from rclpy.node import Node
 from std_msgs.msg import Empty, String
 

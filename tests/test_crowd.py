@@ -9,7 +9,8 @@ import pytest
 LESSON = """
 import json, sys, time
 import rclpy
-from my_robot_basics.live import classroom, run, stop
+from my_robot_basics.live import run, stop
+from my_robot_basics.session import classroom
 from rclpy.node import Node
 from std_msgs.msg import String
 

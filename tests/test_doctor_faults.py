@@ -9,7 +9,8 @@ import time
 import pytest
 from my_robot_basics.doctor import looking
 from my_robot_basics.doctor.looking import diagnose
-from my_robot_basics.live import classroom, run, stop
+from my_robot_basics.live import run, stop
+from my_robot_basics.session import classroom
 from nodes.patient import (
     CONVERT,
     LISTENER,
@@ -268,7 +269,7 @@ def test_a_publisher_out_of_reach(environment, title):
 
 @contextlib.contextmanager
 def neighbouring_domain():
-    from my_robot_basics.live import domain
+    from my_robot_basics.session import domain
 
     claim = domain.claim()
     yield claim.domain_id

@@ -8,7 +8,8 @@ import pytest
 from builtin_interfaces.msg import Time
 from my_robot_basics.doctor.looking import diagnose
 from my_robot_basics.doctor.report import tell
-from my_robot_basics.live import classroom, run, stop
+from my_robot_basics.live import run, stop
+from my_robot_basics.session import classroom
 from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.parameter import Parameter

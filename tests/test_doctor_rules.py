@@ -6,12 +6,12 @@ import time
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from my_robot_basics.checks.watcher import Watcher
 from my_robot_basics.doctor import picture, report
 from my_robot_basics.doctor.evidence import Endpoint, Evidence, Heard, NodeState
 from my_robot_basics.doctor.remaps import of_command
 from my_robot_basics.doctor.rules import RULES, judge, qos
-from my_robot_basics.live import classroom
+from my_robot_basics.graph.watcher import Watcher
+from my_robot_basics.session import classroom
 from rclpy.duration import Duration
 from rclpy.qos import DurabilityPolicy, LivelinessPolicy, QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState

@@ -250,7 +250,7 @@ def test_what_a_test_room_is_told_is_in_no_server_and_in_no_later_kernel(loop, s
 
 HOSTILE = """
 import builtins, gc, os, random, sys
-import numpy, rclpy, my_robot_basics.live.classroom
+import numpy, rclpy, my_robot_basics.session.classroom
 random.random = lambda: 4
 builtins.hostile = rclpy.hostile = numpy.hostile = sys.hostile = True
 sys.modules['my_robot_basics.two_link_kinematics'] = None

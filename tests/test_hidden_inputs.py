@@ -5,7 +5,8 @@ import re
 
 import pytest
 from course_maker import TOY, answered, make_course, submit, toy_lesson, write_source
-from my_robot_basics.checks import CheckFailed, expect, fail, hidden
+from my_robot_basics.checks import CheckFailed, expect, fail
+from my_robot_basics.feedback import hidden
 from my_robot_basics.validate.cells import role
 
 from grader.__main__ import main
@@ -194,7 +195,7 @@ def test_the_first_line_of_a_hidden_part_says_so_wherever_it_stands():
     titled = hidden.marked(f'"""A title\n\nand more"""\n{source}', quiet=True).split('\n')
     assert titled[3].endswith('.start(quiet=True)')
     assert titled[4:6] == lines[1:3]
-    assert lines[2].startswith("    __import__('my_robot_basics.checks.hidden'")
+    assert lines[2].startswith("    __import__('my_robot_basics.feedback.hidden'")
     assert lines[3:] == source.split('\n')[2:]
     assert hidden.visible(source) == 'for i in [1]:\nx = 1'
 

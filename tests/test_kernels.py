@@ -11,7 +11,7 @@ from pathlib import Path
 import psutil
 import pytest
 import zmq
-from my_robot_basics.validate import patience
+from my_robot_basics.validate import timeouts
 from my_robot_basics.validate.limits import (
     FLOOD_CHARACTERS,
     MAX_MESSAGE_BYTES,
@@ -189,14 +189,14 @@ def test_a_crowded_machine_gives_an_interrupted_cell_more_time(
     monkeypatch, own, run, is_crowded, died
 ):
     crowded_sec = time.monotonic if is_crowded else lambda: 0.0
-    monkeypatch.setattr(patience.pressure, 'crowded_sec', crowded_sec)
+    monkeypatch.setattr(timeouts.pressure, 'crowded_sec', crowded_sec)
     result = run(own, SLOW_TO_END, timeout_sec=1.5)
     assert (result.timed_out, result.died) == (True, died)
 
 
 def test_no_crowd_gives_more_than_its_limit(monkeypatch, own, run):
-    monkeypatch.setattr(patience.pressure, 'crowded_sec', time.monotonic)
-    monkeypatch.setattr(patience, 'INTERRUPT_MOST_SEC', 1.0)
+    monkeypatch.setattr(timeouts.pressure, 'crowded_sec', time.monotonic)
+    monkeypatch.setattr(timeouts, 'INTERRUPT_MOST_SEC', 1.0)
     assert run(own, IGNORES, timeout_sec=0.5).died
 
 

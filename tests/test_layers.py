@@ -6,7 +6,10 @@ import re
 from functools import cache
 from pathlib import Path
 
+import pytest
+
 import grader
+import my_robot_basics
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = {
@@ -71,26 +74,29 @@ def test_what_a_module_keeps_to_itself_is_imported_nowhere():
     assert taken == []
 
 
-def layer(module):
-    """Return the part of the grader that a module belongs to, or ''."""
-    return module.split('.')[1] if module.startswith('grader.') else ''
+def layer(module, package):
+    """Return the part of a package that a module belongs to, or ''."""
+    return module.split('.')[1] if module.startswith(f'{package.__name__}.') else ''
 
 
-def test_parts_of_the_grader_import_only_from_lower_ones():
+@pytest.mark.parametrize('package', [grader, my_robot_basics], ids=lambda p: p.__name__)
+def test_parts_of_a_package_import_only_from_lower_ones(package):
     upward = [
         f'{module} imports {other}'
         for module in modules()
         for other, _ in imported(module)
-        if layer(module) and layer(other)
-        if grader.LAYERS.index(layer(module)) < grader.LAYERS.index(layer(other))
+        if layer(module, package) and layer(other, package)
+        if package.LAYERS.index(layer(module, package))
+        < package.LAYERS.index(layer(other, package))
     ]
     assert upward == []
 
 
-def test_each_part_of_the_grader_has_its_line_in_the_map():
-    parts = {layer(module) for module in modules()} - {''}
-    assert sorted(parts) == sorted(grader.LAYERS)
-    assert sorted(re.findall(r'`(\w+)`', grader.__doc__)) == sorted(parts - {'__main__'})
+@pytest.mark.parametrize('package', [grader, my_robot_basics], ids=lambda p: p.__name__)
+def test_each_part_of_a_package_has_its_line_in_the_map(package):
+    parts = {layer(module, package) for module in modules()} - {''}
+    assert sorted(parts) == sorted(package.LAYERS)
+    assert set(re.findall(r'`(\w+)`', package.__doc__)) == parts - {'__main__'}
 
 
 RANKS = (
@@ -118,7 +124,7 @@ def test_parts_of_what_students_get_import_only_from_lower_ones_or_their_equals(
         for other, _ in imported(module)
         if rank(module) is not None and other in modules() and rank(other) is not None
     ]
-    assert ('my_robot_basics.validate.judging', 'my_robot_basics.checks.hidden') in seen
+    assert ('my_robot_basics.validate.judging', 'my_robot_basics.feedback.hidden') in seen
     assert [f'{m} imports {o}' for m, o in seen if rank(m) < rank(o)] == []
 
 

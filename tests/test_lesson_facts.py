@@ -8,7 +8,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
-from my_robot_basics.checks.watcher import Watcher
+from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.ros2.verbs.topic_hz import Rate
 from rclpy.action.client import ClientGoalHandle
 from rclpy.action.server import ServerGoalHandle

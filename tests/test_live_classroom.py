@@ -10,7 +10,7 @@ import pytest
 
 ENTER = """
 import json, os
-from my_robot_basics.live import classroom
+from my_robot_basics.session import classroom
 before = set(os.environ)
 domain_id = classroom.enter()
 assert classroom.enter() == domain_id

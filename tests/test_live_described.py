@@ -2,7 +2,7 @@
 
 import base64
 
-from my_robot_basics.live.described import described
+from my_robot_basics.drawing.described import described
 
 PNG = b'\x89PNG and so on'
 

@@ -7,8 +7,8 @@ import sys
 import time
 
 import pytest
-from my_robot_basics.live import domain
-from my_robot_basics.live.errors import NoFreeDomain
+from my_robot_basics.session import domain
+from my_robot_basics.session.errors import NoFreeDomain
 
 
 @pytest.fixture(autouse=True)
@@ -29,7 +29,7 @@ def test_each_claim_gets_the_first_free_domain(few_domains):
 
 
 def test_the_real_range_leaves_out_everybodys_domain_and_the_ports_of_others():
-    code = 'from my_robot_basics.live import domain; print(domain.FIRST, domain.LAST)'
+    code = 'from my_robot_basics.session import domain; print(domain.FIRST, domain.LAST)'
     assert _python(code).split() == ['1', '101']
 
 
@@ -55,7 +55,7 @@ def test_a_killed_holder_lets_go_though_its_child_lives(few_domains, child):
     }[child]
     code = f"""
 import os, subprocess, time
-from my_robot_basics.live import domain
+from my_robot_basics.session import domain
 domain.FIRST, domain.LAST = {few_domains}, {few_domains + 2}
 claim = domain.claim()
 child = {start}
@@ -92,7 +92,8 @@ def test_a_forked_child_does_not_give_its_parents_domain_away(few_domains):
 
 def test_claiming_needs_no_rclpy():
     code = (
-        'import sys; from my_robot_basics.live.domain import claim; print("rclpy" in sys.modules)'
+        'import sys; from my_robot_basics.session.domain import claim\n'
+        'print("rclpy" in sys.modules)'
     )
     assert _python(code) == 'False\n'
 

@@ -17,7 +17,7 @@ from rclpy.node import Node
 
 TALKER = """
 from my_robot_basics.live import follow_arm, reset, run, run_answer, show_arm, stop
-from my_robot_basics.live import classroom
+from my_robot_basics.session import classroom
 import rclpy
 from rclpy.node import Node
 from std_msgs.msg import String

@@ -8,7 +8,7 @@ import time
 
 import pytest
 from jupyter_client.manager import start_new_kernel
-from my_robot_basics.live import domain, lessons
+from my_robot_basics.session import domain, lessons
 from ros2_command import PATIENCE_SEC, ros2
 
 TALK = """
@@ -76,7 +76,7 @@ def test_a_terminal_joins_the_lesson_that_started_last_and_says_so(tmp_path):
         run_cell(TALK.format(name='latest'))
         for _ in range(20):
             # lessons of other tests start meanwhile
-            run_cell('from my_robot_basics.live import classroom, lessons')
+            run_cell('from my_robot_basics.session import classroom, lessons')
             assert run_cell('lessons.announce(classroom.enter())') == ''
             listed = ros2('topic', 'list', **PLAIN_TERMINAL)
             if ' latest, ' in listed.err:
@@ -111,7 +111,7 @@ def test_no_lesson_is_running_in_a_grading_room(tmp_path):
 
 def test_a_process_that_is_no_kernel_is_no_lesson():
     code = (
-        'import os; from my_robot_basics.live import classroom, lessons; classroom.enter()\n'
+        'import os; from my_robot_basics.session import classroom, lessons; classroom.enter()\n'
         'print([lesson for lesson in lessons.running() if lesson.pid == os.getpid()])'
     )
     said = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True)

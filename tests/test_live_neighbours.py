@@ -4,7 +4,7 @@ import sys
 import threading
 
 import rclpy
-from my_robot_basics.live.neighbours import nodes_here
+from my_robot_basics.session.neighbours import nodes_here
 from rclpy.context import Context
 from rclpy.node import Node
 

@@ -2,7 +2,7 @@
 
 import pytest
 from my_robot_basics.live import measure_pairs, qos_pairs, run, stop, wait_until
-from my_robot_basics.live.errors import WaitedInVain
+from my_robot_basics.session.errors import WaitedInVain
 from rclpy.node import Node
 from rclpy.qos import QoSCompatibility, QoSProfile, ReliabilityPolicy, qos_check_compatible
 

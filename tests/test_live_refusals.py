@@ -4,7 +4,7 @@ import math
 
 import pytest
 from my_robot_basics.live import run, stop
-from my_robot_basics.live.errors import NotRunnable
+from my_robot_basics.session.errors import NotRunnable
 from rclpy.node import Node
 from std_msgs.msg import String
 

@@ -5,7 +5,7 @@ import threading
 import nbformat
 import pytest
 from my_robot_basics.live import wait_until, waiting
-from my_robot_basics.live.errors import LiveError
+from my_robot_basics.session.errors import LiveError
 from nbclient import NotebookClient
 
 SLOW = """

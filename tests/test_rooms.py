@@ -8,8 +8,8 @@ from pathlib import Path
 
 import psutil
 import pytest
-from my_robot_basics.live import domain
-from my_robot_basics.live.errors import NoFreeDomain
+from my_robot_basics.session import domain
+from my_robot_basics.session.errors import NoFreeDomain
 from my_robot_basics.validate.outputs import CellRun
 
 from grader.common.errors import RoomFailure
@@ -157,14 +157,14 @@ REPLIES = {
     'exits': ('exec("raise SystemExit")', 'no usable answer'),
 }
 SHOWN = """
-from my_robot_basics.checks import responder
+from my_robot_basics.exchange import responder
 x = 1
 class Shown:
     def __init__(self, text): self.text = text
     def __repr__(self): return self.text
 """
 PATCHES = {
-    'no module': 'import sys; sys.modules["my_robot_basics.checks.responder"] = None',
+    'no module': 'import sys; sys.modules["my_robot_basics.exchange.responder"] = None',
     'other expressions': 'ip = get_ipython(); ip.user_expressions = lambda e: {"reply": {}}',
     'expressions of another shape': 'ip.user_expressions = lambda e: [7]',
 }
@@ -186,7 +186,7 @@ ATTACKS = """
 import builtins, sys
 builtins.AssertionError = builtins.print
 builtins.input = lambda p: '{"ok": 1}'
-import rclpy, rclpy.node, my_robot_basics.checks.errors as errors
+import rclpy, rclpy.node, my_robot_basics.feedback.errors as errors
 errors.CheckFailed.__init__ = errors.expect = errors.fail = lambda *a, **k: None
 rclpy.node.Node = object
 ip = get_ipython()
@@ -346,7 +346,7 @@ def test_rooms_that_do_not_open_are_the_graders_failure(
     assert left() == NOTHING
 
 
-PROBE = 'import sys; from my_robot_basics.checks import probe'
+PROBE = 'import sys; from my_robot_basics.exchange import probe'
 NOT_READY = {
     'a room that cannot be prepared': ('import nothing', 'student room .* No module named'),
     'a probe that nobody receives': (PROBE, 'test room .* no message went from'),
@@ -435,7 +435,7 @@ def test_only_the_literal_of_one_string_is_read(text, is_string):
 
 
 def test_the_probe_hears_only_what_is_announced(loop):
-    from my_robot_basics.checks import probe
+    from my_robot_basics.exchange import probe
 
     with pytest.raises(TimeoutError, match='no message went from kernel to kernel in 0 s'):
         probe.hear(0.3)

@@ -3,7 +3,8 @@
 from types import SimpleNamespace
 
 import pytest
-from my_robot_basics.ros2 import discovery, environment, participants
+from my_robot_basics.graph import participants
+from my_robot_basics.ros2 import discovery, environment
 from ros2_command import on_the_graph, own_domain
 
 TABLE = """\

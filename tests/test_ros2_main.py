@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pexpect
 import pytest
-from my_robot_basics.live import lessons
 from my_robot_basics.ros2 import arguments, environment, main, stopping
 from my_robot_basics.ros2.table import COMMANDS, ELSEWHERE
+from my_robot_basics.session import lessons
 from ros2_command import SCRIPT, ros2
 
 REAL = """

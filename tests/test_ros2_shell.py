@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pexpect
 import pytest
-from my_robot_basics.live import lessons
 from my_robot_basics.ros2 import shell
 from my_robot_basics.ros2.errors import CommandError
+from my_robot_basics.session import lessons
 
 PATIENCE_SEC = 60
 RUNNING = [

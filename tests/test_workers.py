@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import psutil
 import pytest
 from course_maker import answered, released_course, submit
-from my_robot_basics.checks import pressure
+from my_robot_basics.session import pressure
 
 from grader.common.errors import TaskFailed
 from grader.course import Course

@@ -9,8 +9,9 @@ from pathlib import Path
 
 import pytest
 from jupyter_client.manager import start_new_kernel
-from my_robot_basics.live import classroom, workspace
+from my_robot_basics.live import workspace
 from my_robot_basics.live.workspace import make_workspace
+from my_robot_basics.session import classroom
 from ros2_command import own_domain
 
 ROOT = Path(__file__).parents[1]

@@ -16,7 +16,7 @@ from jupyter_client.provisioning import LocalProvisioner
 from my_robot_basics.validate.limits import MAX_MESSAGE_BYTES, MAX_MESSAGES_WAITING
 from my_robot_basics.validate.messages import Messages, OnInput, unpacked
 from my_robot_basics.validate.outputs import CellRun
-from my_robot_basics.validate.patience import finished, finished_in_grace
+from my_robot_basics.validate.timeouts import finished, finished_in_grace
 
 from grader.common.errors import RoomFailure
 from grader.kernels.kernel_exits import Ending, is_from_outside

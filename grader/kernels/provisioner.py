@@ -14,7 +14,7 @@ from typing import Any
 
 from jupyter_client.connect import KernelConnectionInfo
 from jupyter_client.provisioning import LocalProvisioner
-from my_robot_basics.live.domain import Claim, claim
+from my_robot_basics.session.domain import Claim, claim
 
 from grader.common.errors import RoomFailure
 from grader.common.file_wait import readable

@@ -5,8 +5,8 @@ import shutil
 from collections.abc import Awaitable, Sequence
 from pathlib import Path
 
-from my_robot_basics.live.domain import Claim, claim
-from my_robot_basics.live.errors import LiveError
+from my_robot_basics.session.domain import Claim, claim
+from my_robot_basics.session.errors import LiveError
 from my_robot_basics.validate.limits import CHECK_TIMEOUT_SEC, REPLY_TIMEOUT_SEC
 from my_robot_basics.validate.outputs import CellRun
 from my_robot_basics.validate.questions import (

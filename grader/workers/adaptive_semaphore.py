@@ -3,7 +3,7 @@
 import asyncio
 from typing import Self
 
-from my_robot_basics.checks import pressure
+from my_robot_basics.session import pressure
 
 from grader.sandbox.limits import BUSY_SHARE, IDLE_SHARE
 

@@ -1,6 +1,6 @@
 import pytest
 from hypothesis import HealthCheck, settings
-from my_robot_basics.live import domain
+from my_robot_basics.session import domain
 
 # a busy machine fails no test
 settings.register_profile('busy', deadline=None, suppress_health_check=[HealthCheck.too_slow])

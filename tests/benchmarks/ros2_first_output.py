@@ -15,7 +15,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from my_robot_basics.live import classroom
+from my_robot_basics.session import classroom
 from ros2_command import SCRIPT, on_the_graph
 
 TOPIC = '/kinematics/joint_states'

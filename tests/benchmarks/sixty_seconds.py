@@ -13,7 +13,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / 'nodes'))
 
 from my_robot_basics.checks import topic
-from my_robot_basics.live import classroom
+from my_robot_basics.session import classroom
 from running import running
 
 TOPIC = '/kinematics/joint_states'

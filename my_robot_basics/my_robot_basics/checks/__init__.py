@@ -18,39 +18,39 @@ without an error has passed.
 import importlib
 
 _HOMES = {
-    'topic': 'topics',
-    'relay': 'relays',
-    'rosout': 'logs',
-    'graph': 'graphs',
-    'inputs': 'seeds',
-    'expect': 'errors',
-    'fail': 'errors',
-    'Predictions': 'predictions',
-    'CheckFailed': 'errors',
+    'topic': 'checks.topics',
+    'relay': 'checks.relays',
+    'rosout': 'checks.logs',
+    'graph': 'graph.graphs',
+    'inputs': 'checks.seeds',
+    'expect': 'feedback.errors',
+    'fail': 'feedback.errors',
+    'Predictions': 'checks.predictions',
+    'CheckFailed': 'feedback.errors',
     # what these return, or are given
-    'Topic': 'topics',
-    'Recording': 'recording',
-    'Sample': 'recording',
-    'Relay': 'relays',
-    'Log': 'logs',
-    'Record': 'logs',
-    'Graph': 'graphs',
-    'Stage': 'stage',
-    'StagePublisher': 'stage',
-    'StageSubscription': 'stage',
+    'Topic': 'checks.topics',
+    'Recording': 'checks.recording',
+    'Sample': 'checks.recording',
+    'Relay': 'checks.relays',
+    'Log': 'checks.logs',
+    'Record': 'checks.logs',
+    'Graph': 'graph.graphs',
+    'Stage': 'checks.delivery_experiment',
+    'StagePublisher': 'checks.delivery_experiment',
+    'StageSubscription': 'checks.delivery_experiment',
 }
-_MODULES = ('joints', 'student')
+_MODULES = {'joints': 'checks.joints', 'student': 'exchange.student'}
 
 __all__ = [*_HOMES, *_MODULES]
 
 
 def __getattr__(name: str) -> object:
-    # On demand: a student's kernel that only answers questions (responder.py) loads no check.
+    # on demand: a check that needs no recording loads none
     if name in _MODULES:
-        return importlib.import_module(f'my_robot_basics.checks.{name}')
+        return importlib.import_module(f'my_robot_basics.{_MODULES[name]}')
     if name not in _HOMES:
         raise AttributeError(f'module {__name__!r} has no attribute {name!r}')
-    return getattr(importlib.import_module(f'my_robot_basics.checks.{_HOMES[name]}'), name)
+    return getattr(importlib.import_module(f'my_robot_basics.{_HOMES[name]}'), name)
 
 
 importlib.import_module('my_robot_basics.checks.tick').watch()

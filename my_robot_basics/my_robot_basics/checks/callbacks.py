@@ -2,8 +2,9 @@
 
 from collections.abc import Iterable
 
-from my_robot_basics.checks import graphs, student
-from my_robot_basics.checks.errors import fail
+from my_robot_basics.exchange import student
+from my_robot_basics.feedback.errors import fail
+from my_robot_basics.graph import graphs
 
 FIX_FIRST = 'so fix that first: rclpy.spin would have ended there'
 

@@ -18,8 +18,8 @@ from rclpy.task import Future
 from rclpy.time import Time
 from rosgraph_msgs.msg import Clock
 
-from my_robot_basics.checks.pressure import Stopwatch
-from my_robot_basics.checks.watcher import HIDDEN, Watcher
+from my_robot_basics.graph.watcher import HIDDEN, Watcher
+from my_robot_basics.session.pressure import Stopwatch
 
 BUDGET_SEC = 15.0
 """How long the clock is driven at most, and *Validate* gives a cell 30 s in all."""

@@ -4,8 +4,8 @@ from typing import Any
 
 from rclpy.qos import QoSProfile
 
-from my_robot_basics.checks import graphs
-from my_robot_basics.checks.watcher import Watcher
+from my_robot_basics.graph import graphs
+from my_robot_basics.graph.watcher import Watcher
 
 
 class Ears:

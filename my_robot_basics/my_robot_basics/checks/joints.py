@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from sensor_msgs.msg import JointState
 
-from my_robot_basics.checks.errors import expect
+from my_robot_basics.feedback.errors import expect
 
 EXACT_RAD = 2e-4
 CLOSE_RAD = 0.02

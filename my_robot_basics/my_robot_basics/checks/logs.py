@@ -9,11 +9,12 @@ from rcl_interfaces.msg import Log as LogMessage
 from rclpy.publisher import Publisher
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
-from my_robot_basics.checks import angles, answers, graphs
+from my_robot_basics.checks import angles, answers
 from my_robot_basics.checks.callbacks import Raised
-from my_robot_basics.checks.errors import fail, shorten
 from my_robot_basics.checks.topics import Topic
-from my_robot_basics.checks.watcher import Watcher
+from my_robot_basics.feedback.errors import fail, shorten
+from my_robot_basics.graph import graphs
+from my_robot_basics.graph.watcher import Watcher
 
 LEVELS = {10: 'DEBUG', 20: 'INFO', 30: 'WARN', 40: 'ERROR', 50: 'FATAL'}
 DEPTH = 1000

@@ -7,9 +7,9 @@ from rclpy.serialization import serialize_message
 
 from my_robot_basics.checks.carried import Carried
 from my_robot_basics.checks.ears import Ears
-from my_robot_basics.checks.pressure import Stopwatch
 from my_robot_basics.checks.variety import Sent
-from my_robot_basics.checks.watcher import Watcher
+from my_robot_basics.graph.watcher import Watcher
+from my_robot_basics.session.pressure import Stopwatch
 
 ON_TIME_SEC = 1.0
 """How long a message may take. Who passes it on by a timer is in time, too."""

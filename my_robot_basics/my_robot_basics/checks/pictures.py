@@ -49,7 +49,7 @@ def misread(position: Sequence[float]) -> bytes | None:
     """Where the two-link arm goes when these numbers are read as radians; None for other arms."""
     if len(position) != 2:
         return None
-    from my_robot_basics.live.arm import ArmPicture
+    from my_robot_basics.drawing.arm import ArmPicture
 
     picture = ArmPicture()
     picture.move(*map(math.degrees, position), title='your numbers, read as radians')

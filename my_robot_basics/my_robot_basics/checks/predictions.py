@@ -3,10 +3,10 @@
 import difflib
 from collections.abc import Callable, Mapping, Sequence
 
-from my_robot_basics.checks import student
-from my_robot_basics.checks.errors import fail, shorten
-from my_robot_basics.checks.hidden import is_quiet, said_in_full, tell_failed_already
-from my_robot_basics.checks.stage import Stage, watchers
+from my_robot_basics.checks.delivery_experiment import Stage, watchers
+from my_robot_basics.exchange import student
+from my_robot_basics.feedback.errors import fail, shorten
+from my_robot_basics.feedback.hidden import is_quiet, said_in_full, tell_failed_already
 
 Situation = Callable[[Stage], bool]
 """Runs on an empty stage, and returns whether the message arrived; named as its prediction is.

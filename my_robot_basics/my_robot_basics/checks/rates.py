@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, NoReturn
 import numpy as np
 
 from my_robot_basics.checks import periods, pictures
-from my_robot_basics.checks.errors import fail
+from my_robot_basics.feedback.errors import fail
 
 if TYPE_CHECKING:
     from my_robot_basics.checks.recording import Recording

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from my_robot_basics.checks import callbacks, pictures, rates, stamps
-from my_robot_basics.checks.errors import CheckFailed, expect, fail, shorten, show
+from my_robot_basics.feedback.errors import CheckFailed, expect, fail, shorten, show
 
 SECOND_LOOK_SEC = 4.0
 LONGER_LOOK_SEC = 8.0

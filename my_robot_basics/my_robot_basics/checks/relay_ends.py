@@ -13,12 +13,13 @@ from rclpy.qos import (
     qos_policy_name_from_kind,
 )
 
-from my_robot_basics.checks import graphs, values
 from my_robot_basics.checks.ears import Ears
-from my_robot_basics.checks.errors import expect, fail
-from my_robot_basics.checks.fits import brief, incompatible, leave_out
 from my_robot_basics.checks.topics import Topic
-from my_robot_basics.checks.watcher import Watcher
+from my_robot_basics.exchange import values
+from my_robot_basics.feedback.errors import expect, fail
+from my_robot_basics.graph import graphs
+from my_robot_basics.graph.qos_compatibility import brief, incompatible, leave_out
+from my_robot_basics.graph.watcher import Watcher
 
 TIMEOUT_SEC = 10.0
 REFUSED_SEC = 2.0

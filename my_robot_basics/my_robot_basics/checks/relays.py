@@ -11,12 +11,12 @@ from my_robot_basics.checks import relay_ends
 from my_robot_basics.checks.callbacks import Raised
 from my_robot_basics.checks.carried import Carried
 from my_robot_basics.checks.ears import Ears
-from my_robot_basics.checks.errors import fail
 from my_robot_basics.checks.latched import said_to_nobody
 from my_robot_basics.checks.passage import QUIET_SEC, Passage
 from my_robot_basics.checks.relay_ends import Ends
 from my_robot_basics.checks.variety import filled, varied
-from my_robot_basics.checks.watcher import Watcher
+from my_robot_basics.feedback.errors import fail
+from my_robot_basics.graph.watcher import Watcher
 
 EVERYTHING = QoSProfile(depth=5000, reliability=ReliabilityPolicy.BEST_EFFORT)
 """How to listen to all that is published on the source."""

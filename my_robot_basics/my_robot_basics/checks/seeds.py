@@ -3,7 +3,7 @@
 import os
 import random
 
-from my_robot_basics.checks import hidden
+from my_robot_basics.feedback import hidden
 
 
 def inputs(label: str) -> random.Random:

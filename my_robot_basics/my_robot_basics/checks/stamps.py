@@ -15,10 +15,10 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.time import Time
 from rosgraph_msgs.msg import Clock
 
-from my_robot_basics.checks import student
 from my_robot_basics.checks.clock import Inconclusive, SimulatedClock
-from my_robot_basics.checks.errors import fail
-from my_robot_basics.checks.watcher import Watcher
+from my_robot_basics.exchange import student
+from my_robot_basics.feedback.errors import fail
+from my_robot_basics.graph.watcher import Watcher
 
 if TYPE_CHECKING:
     from my_robot_basics.checks.recording import Recording

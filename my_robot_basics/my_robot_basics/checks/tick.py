@@ -7,7 +7,7 @@ import ast
 import os
 from typing import Any
 
-from my_robot_basics.live import kernel
+from my_robot_basics.session import kernel
 
 PASSED = '✓ All checks in this cell pass.'
 

@@ -9,12 +9,14 @@ from rclpy.duration import Duration
 from rclpy.publisher import Publisher
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
-from my_robot_basics.checks import graphs, looks, student, values
+from my_robot_basics.checks import sampling
 from my_robot_basics.checks.ears import Ears
-from my_robot_basics.checks.errors import CheckFailed, fail, shorten
-from my_robot_basics.checks.hidden import theirs
 from my_robot_basics.checks.recording import Recording
-from my_robot_basics.checks.watcher import Watcher
+from my_robot_basics.exchange import student, values
+from my_robot_basics.feedback.errors import CheckFailed, fail, shorten
+from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.graph import graphs
+from my_robot_basics.graph.watcher import Watcher
 
 PUBLISHER_SEC = 10.0
 ABSENT_SEC = 3.0
@@ -62,9 +64,9 @@ class Topic:
         began = time.monotonic()
         with Watcher() as watcher:
             ears = self.listen(watcher)
-            found = looks.simulated(watcher, ears, seconds=seconds, step_sec=step_sec)
+            found = sampling.simulated(watcher, ears, seconds=seconds, step_sec=step_sec)
             why = found if isinstance(found, str) else ''
-            recording = looks.wall(watcher, ears, why=why) if why else found
+            recording = sampling.wall(watcher, ears, why=why) if why else found
             if not recording.messages:
                 self._fail_silent(watcher, seen=f'no message in {recording.seconds:g} s')
         left_sec = _looks_sec() - (time.monotonic() - began)
@@ -220,7 +222,9 @@ class Topic:
             began = time.monotonic()
             with Watcher() as watcher:
                 ears = self.listen(watcher)
-                again = looks.wall(watcher, ears, why=why, seconds=seconds, patience_sec=seconds)
+                again = sampling.wall(
+                    watcher, ears, why=why, seconds=seconds, patience_sec=seconds
+                )
             if again.late_sec < LATE_SEC or not late_looks:
                 return again
             left = left_sec - (time.monotonic() - began)

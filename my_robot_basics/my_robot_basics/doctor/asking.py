@@ -4,8 +4,8 @@ from rcl_interfaces.srv import GetParameters
 from rclpy.client import Client
 from rclpy.task import Future
 
-from my_robot_basics.checks.watcher import Watcher
 from my_robot_basics.doctor.evidence import NodeState
+from my_robot_basics.graph.watcher import Watcher
 
 READY_SEC = 1.0
 ANSWER_SEC = 3.0

@@ -7,15 +7,14 @@ from collections.abc import Iterator
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
-from my_robot_basics.checks import graphs
-from my_robot_basics.checks.watcher import HIDDEN, Watcher
 from my_robot_basics.doctor import remaps, rules
 from my_robot_basics.doctor.asking import Questions
 from my_robot_basics.doctor.evidence import Diagnosis, Endpoint, Evidence, Heard, Kind
-from my_robot_basics.live import domain
-from my_robot_basics.live.neighbours import nodes_here
-from my_robot_basics.ros2 import participants
+from my_robot_basics.graph import graphs, participants
+from my_robot_basics.graph.watcher import HIDDEN, Watcher
 from my_robot_basics.ros2.interfaces import message_class
+from my_robot_basics.session import domain
+from my_robot_basics.session.neighbours import nodes_here
 
 LISTEN_SEC = 6.0
 """How long to wait for messages at most."""

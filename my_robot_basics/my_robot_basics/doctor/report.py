@@ -3,7 +3,7 @@
 import textwrap
 
 from my_robot_basics.doctor.evidence import Diagnosis, Evidence, Finding
-from my_robot_basics.live.errors import COLUMNS
+from my_robot_basics.session.errors import COLUMNS
 
 INDENT = ' ' * 13
 """Below the words of a paragraph, whose labels stand before them."""

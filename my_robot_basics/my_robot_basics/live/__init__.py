@@ -7,13 +7,13 @@ Importing a name from here enters the classroom (see `classroom.enter`); importi
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from my_robot_basics.live import classroom, domain
+from my_robot_basics.session import classroom, domain
+from my_robot_basics.session.classroom import show_domain
 
 if TYPE_CHECKING:
     from my_robot_basics.live.arm import show_arm
     from my_robot_basics.live.branches import show_branches
     from my_robot_basics.live.camera import send_pictures
-    from my_robot_basics.live.classroom import show_domain
     from my_robot_basics.live.doctor import why
     from my_robot_basics.live.entry_points import add_entry_point
     from my_robot_basics.live.exercise import reset, run_answer
@@ -72,7 +72,6 @@ _MODULES = {
     'drag_target': 'target',
     'move_arm': 'sliders',
     'follow_arm': 'follow',
-    'show_domain': 'classroom',
     'show_graph': 'graph_picture',
     'show_queues': 'queue_picture',
     'show_offers': 'qos_offers',

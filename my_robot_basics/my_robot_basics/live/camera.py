@@ -9,8 +9,8 @@ import subprocess
 import sys
 import time
 
-from my_robot_basics.live import classroom
-from my_robot_basics.live.errors import LiveError
+from my_robot_basics.session import classroom
+from my_robot_basics.session.errors import LiveError
 
 TOPIC_NAME = '/camera'
 WIDTH, HEIGHT = 480, 320

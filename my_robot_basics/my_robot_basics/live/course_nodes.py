@@ -11,7 +11,7 @@ from types import FunctionType
 
 from rclpy.node import Node
 
-from my_robot_basics.live.errors import NotRunnable
+from my_robot_basics.session.errors import NotRunnable
 
 MODULES = tuple(
     f'my_robot_basics.{name}'

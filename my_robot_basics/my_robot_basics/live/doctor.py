@@ -3,8 +3,9 @@
 import html
 
 from my_robot_basics.doctor import looking, names, picture, report
-from my_robot_basics.live import classroom, notebook
-from my_robot_basics.live.errors import LiveError
+from my_robot_basics.live import notebook
+from my_robot_basics.session import classroom
+from my_robot_basics.session.errors import LiveError
 
 STYLE = 'margin:0;font-size:13px;word-break:normal'
 """As large as other outputs, and broken between words: a line of code may be a long one."""

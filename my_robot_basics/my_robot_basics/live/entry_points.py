@@ -5,7 +5,7 @@ import re
 from pathlib import Path
 
 from my_robot_basics.live import workspace
-from my_robot_basics.live.errors import LiveError, in_lines
+from my_robot_basics.session.errors import LiveError, in_lines
 
 _FORM = re.compile(r'(?P<command>[\w-]+) *= *(?P<package>\w+)\.(?P<module>\w+):(?P<function>\w+)')
 

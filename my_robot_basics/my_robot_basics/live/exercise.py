@@ -5,8 +5,9 @@ from typing import Any
 
 from rclpy.node import Node
 
-from my_robot_basics.live import classroom, course_nodes, runner, troubles
-from my_robot_basics.live.errors import NotRunnable
+from my_robot_basics.live import course_nodes, runner, troubles
+from my_robot_basics.session import classroom
+from my_robot_basics.session.errors import NotRunnable
 
 
 def reset(*names: str) -> None:

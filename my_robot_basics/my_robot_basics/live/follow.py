@@ -8,8 +8,8 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
 
+from my_robot_basics.drawing.arm import ArmPicture
 from my_robot_basics.live import notebook, runner
-from my_robot_basics.live.arm import ArmPicture
 from my_robot_basics.live.troubles import where_and_what
 from my_robot_basics.two_link_kinematics import L1, L2
 

@@ -6,11 +6,11 @@ from graphlib import TopologicalSorter
 from statistics import fmean
 from typing import NamedTuple
 
-from my_robot_basics.checks import graphs
-from my_robot_basics.checks.watcher import Watcher
 from my_robot_basics.doctor import picture
 from my_robot_basics.doctor.evidence import Endpoint
 from my_robot_basics.doctor.looking import endpoints_of
+from my_robot_basics.graph import graphs
+from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.live import notebook
 
 COLUMN_INCHES, ROW_INCHES = 2.5, 0.75

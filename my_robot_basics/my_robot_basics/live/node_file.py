@@ -3,8 +3,9 @@
 import shutil
 from pathlib import Path
 
-from my_robot_basics.live import kernel, program, workspace
-from my_robot_basics.live.errors import LiveError, in_lines
+from my_robot_basics.live import program, workspace
+from my_robot_basics.session import kernel
+from my_robot_basics.session.errors import LiveError, in_lines
 
 ROOM_FOR_NAMES = 34
 """Columns of the tree; the words stand behind them."""

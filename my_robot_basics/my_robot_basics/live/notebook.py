@@ -8,10 +8,10 @@ from collections.abc import Callable
 
 import rclpy.logging
 
-from my_robot_basics.live import kernel
-from my_robot_basics.live.described import Bundle, described
+from my_robot_basics.drawing.described import Bundle, described
 from my_robot_basics.live.log_lines import CONSOLE_FORMAT, LogRecord
 from my_robot_basics.live.stdout_tap import StdoutTap
+from my_robot_basics.session import kernel
 
 PAUSE_SEC = 0.25
 """Between two updates: a flood of messages must not become a flood of displays."""

@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from types import FunctionType, ModuleType
 from typing import Any
 
-from my_robot_basics.live.errors import LiveError, in_lines
+from my_robot_basics.session.errors import LiveError, in_lines
 
 ONLY_IN_NOTEBOOKS = {'display', 'get_ipython'}
 """IPython puts them among the builtins; a `!` or `%` line needs the second one."""

@@ -12,13 +12,14 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
-from my_robot_basics.live import classroom, node_file, notebook, spinning
+from my_robot_basics.live import node_file, notebook, spinning
 from my_robot_basics.live.background import Background
-from my_robot_basics.live.errors import NotRunnable
 from my_robot_basics.live.naming import announce_name
-from my_robot_basics.live.neighbours import Neighbours, bury_the_dead
 from my_robot_basics.live.panel import STOPPED, Panel
 from my_robot_basics.live.refusals import is_made, no_node_yet, not_a_class
+from my_robot_basics.session import classroom
+from my_robot_basics.session.errors import NotRunnable
+from my_robot_basics.session.neighbours import Neighbours, bury_the_dead
 
 _running: dict[str, Background] = {}
 _panels: dict[str, Panel] = {}

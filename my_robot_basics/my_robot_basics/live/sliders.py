@@ -3,8 +3,8 @@
 import ipywidgets
 from IPython.display import display
 
+from my_robot_basics.drawing.arm import ArmPicture, describe
 from my_robot_basics.live import notebook
-from my_robot_basics.live.arm import ArmPicture, describe
 from my_robot_basics.two_link_kinematics import L1, L2
 
 WITHOUT_WIDGETS = 'Run this cell: two sliders, for θ1 and θ2, appear here and move the arm.'

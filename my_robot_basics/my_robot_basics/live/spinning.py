@@ -15,7 +15,7 @@ from rclpy.context import Context
 from rclpy.executors import Executor, TimeoutException, TimeoutObject
 from rclpy.node import Node
 
-from my_robot_basics.live.errors import LiveError, in_lines
+from my_robot_basics.session.errors import LiveError, in_lines
 
 POLL_SEC = 0.1
 """How long a cell may take to notice that it is interrupted."""

@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable
 
 from my_robot_basics.live import notebook
-from my_robot_basics.live.errors import NotRunnable, WaitedInVain
+from my_robot_basics.session.errors import NotRunnable, WaitedInVain
 
 PAUSE_SEC = 0.01
 """Between two looks at the condition."""

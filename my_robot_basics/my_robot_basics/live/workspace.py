@@ -10,8 +10,8 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from my_robot_basics.live import classroom
-from my_robot_basics.live.errors import LiveError
+from my_robot_basics.session import classroom
+from my_robot_basics.session.errors import LiveError
 
 NAME = 'my_robot_basics'
 PACKAGE = classroom.PACKAGE

@@ -8,7 +8,8 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 
-from my_robot_basics.ros2 import environment, participants
+from my_robot_basics.graph import participants
+from my_robot_basics.ros2 import environment
 
 if TYPE_CHECKING:
     from rclpy.node import Node

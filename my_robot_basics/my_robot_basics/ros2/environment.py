@@ -3,9 +3,9 @@
 import os
 import sys
 
-from my_robot_basics.live import lessons
-from my_robot_basics.live.classroom import FAST_DISCOVERY, HIGHEST_DOMAIN
 from my_robot_basics.ros2.errors import CommandError
+from my_robot_basics.session import lessons
+from my_robot_basics.session.classroom import FAST_DISCOVERY, HIGHEST_DOMAIN
 
 _joined: lessons.Lesson | None = None
 

@@ -6,9 +6,9 @@ import sys
 import time
 from pathlib import Path
 
-from my_robot_basics.live import classroom, lessons
 from my_robot_basics.ros2 import environment
 from my_robot_basics.ros2.errors import CommandError
+from my_robot_basics.session import classroom, lessons
 
 STARTUP = Path(__file__).with_name('terminal.bash')
 SHOWN = (

@@ -2,7 +2,7 @@
 
 - A notebook: `cells` says what each cell is for, `exercises` what to run of it, `names` which
   names a cell needs.
-- What came of its cells: `messages` and `outputs` gather it, `patience` waits for it, `questions`
+- What came of its cells: `messages` and `outputs` gather it, `timeouts` waits for it, `questions`
   are a check's to the student's kernel, `verdict` judges one check and `judging` an exercise.
 - *Validate* itself: `lesson` reads a student's notebook, `ahead`, `rooms` and `kernel` start what
   its cells run in, `short_budget` says how long each may take and `overdue` what was given up,

@@ -9,7 +9,7 @@ from typing import Any, Protocol
 
 from nbformat import NotebookNode
 
-from my_robot_basics.checks import hidden
+from my_robot_basics.feedback import hidden
 from my_robot_basics.validate.cell_names import number_of
 from my_robot_basics.validate.cells import grade_id
 from my_robot_basics.validate.errors import RoomFailure

@@ -14,11 +14,11 @@ import psutil
 from jupyter_client import AsyncKernelManager
 from jupyter_client.kernelspec import KernelSpec, KernelSpecManager
 
-from my_robot_basics.checks.pressure import Stopwatch
+from my_robot_basics.session.pressure import Stopwatch
 from my_robot_basics.validate.errors import RoomFailure
 from my_robot_basics.validate.messages import Messages, OnInput
 from my_robot_basics.validate.outputs import CellRun
-from my_robot_basics.validate.patience import finished, finished_in_grace
+from my_robot_basics.validate.timeouts import finished, finished_in_grace
 
 START_TIMEOUT_SEC = 60.0
 STOP_GRACE_SEC = 2.0

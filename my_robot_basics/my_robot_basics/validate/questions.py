@@ -13,11 +13,11 @@ from my_robot_basics.validate.limits import FLOOD_CHARACTERS, MAX_REPLY
 from my_robot_basics.validate.outputs import CUT_OFF, CellRun
 
 STUDENT_COMES = """
-from my_robot_basics.checks import probe
+from my_robot_basics.exchange import probe
 probe.announce()
 """
 TEST_HEARS = """
-from my_robot_basics.checks import probe
+from my_robot_basics.exchange import probe
 probe.hear()
 """
 STUDENT_GOES = 'import sys; probe.silence(); sys.path.append({files!r}); del probe, sys'
@@ -25,7 +25,7 @@ STUDENT_GOES = 'import sys; probe.silence(); sys.path.append({files!r}); del pro
 do without. Nothing of ours stays among the names of the notebook."""
 
 _RESPONDER = (
-    "__import__('my_robot_basics.checks.responder', fromlist=['answer']).answer({request!r})"
+    "__import__('my_robot_basics.exchange.responder', fromlist=['answer']).answer({request!r})"
 )
 _ESCAPE = r"""\\(?:[\\'"nrt]|[xuU][0-9a-f]+)"""
 _STRING = re.compile(rf"""'(?:[^'\\\n]|{_ESCAPE})*'|"(?:[^"\\\n]|{_ESCAPE})*\"""")

@@ -7,8 +7,8 @@ import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from my_robot_basics.live.domain import Claim, claim
-from my_robot_basics.live.errors import LiveError
+from my_robot_basics.session.domain import Claim, claim
+from my_robot_basics.session.errors import LiveError
 from my_robot_basics.validate.errors import RoomFailure
 from my_robot_basics.validate.kernel import Kernel
 from my_robot_basics.validate.limits import (

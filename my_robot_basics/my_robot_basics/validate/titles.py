@@ -2,7 +2,7 @@
 
 import ast
 
-from my_robot_basics.checks.hidden import visible
+from my_robot_basics.feedback.hidden import visible
 
 
 def title_of_failure(source: str) -> str:

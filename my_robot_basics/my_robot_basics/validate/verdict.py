@@ -8,7 +8,7 @@ from typing import Literal
 import nbformat
 from nbformat import NotebookNode
 
-from my_robot_basics.checks import hidden
+from my_robot_basics.feedback import hidden
 from my_robot_basics.validate.cells import KEY, grade_id, role
 from my_robot_basics.validate.errors import RoomFailure
 from my_robot_basics.validate.limits import FLOOD_CHARACTERS

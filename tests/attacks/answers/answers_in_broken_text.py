@@ -2,7 +2,7 @@
 
 import itertools
 
-from my_robot_basics.checks import responder
+from my_robot_basics.exchange import responder
 
 BROKEN = itertools.cycle(['\\ud800', '\0', '\\x', '\\N{none}', '\\U00110000', '\r'])
 

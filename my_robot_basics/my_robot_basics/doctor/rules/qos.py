@@ -4,9 +4,9 @@ from collections.abc import Iterator
 
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
-from my_robot_basics.checks.fits import incompatible
 from my_robot_basics.doctor import code
 from my_robot_basics.doctor.evidence import Evidence, Finding
+from my_robot_basics.graph.qos_compatibility import incompatible
 
 
 def examine(evidence: Evidence) -> Iterator[Finding]:

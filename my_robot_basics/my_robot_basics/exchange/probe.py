@@ -12,7 +12,7 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import Empty
 
-from my_robot_basics.live import classroom
+from my_robot_basics.session import classroom
 
 TOPIC_NAME = '/_probe'
 QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)

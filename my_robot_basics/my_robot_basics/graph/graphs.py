@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from rclpy.node import Node
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
-from my_robot_basics.checks import student
-from my_robot_basics.checks.hidden import raised as safely
-from my_robot_basics.checks.hidden import theirs
-from my_robot_basics.checks.watcher import HIDDEN, Watcher
+from my_robot_basics.exchange import student
+from my_robot_basics.feedback.hidden import raised as safely
+from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.graph.watcher import HIDDEN, Watcher
 
 SETTLE_SEC = 0.4
 """The graph counts as settled when it has not changed for so long."""

@@ -4,7 +4,7 @@ import json
 import math
 from typing import Any
 
-from my_robot_basics.checks.values import WireError, decode, encode
+from my_robot_basics.exchange.values import WireError, decode, encode
 
 PROTOCOL = 'my_robot_basics.student/1'
 MOST_BYTES = 64 * 1024

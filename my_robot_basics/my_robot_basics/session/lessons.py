@@ -11,7 +11,7 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from my_robot_basics.live import domain
+from my_robot_basics.session import domain
 
 SOCKETS = Path('/proc/net/unix')
 _PREFIX = 'my_robot_basics.lesson'

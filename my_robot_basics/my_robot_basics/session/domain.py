@@ -9,7 +9,7 @@ import socket
 import weakref
 from dataclasses import dataclass
 
-from my_robot_basics.live.errors import NoFreeDomain
+from my_robot_basics.session.errors import NoFreeDomain
 
 FIRST, LAST = 1, 101
 """Above 101 the ports of Linux's outgoing connections begin; 0 is everybody's."""

@@ -7,7 +7,7 @@ grading.
 import contextlib
 import sys
 
-from my_robot_basics.checks import settled, values, wire
+from my_robot_basics.exchange import settled, values, wire
 
 _PROTOCOL = ('call', 'value', 'endpoint', 'settled', 'trouble', 'raised', 'clock')
 
@@ -53,7 +53,7 @@ def _has_endpoint(topic_name: str, end: str = '', type_name: str = '') -> bool:
     """
     if 'rclpy' not in sys.modules:
         return False
-    from my_robot_basics.live.neighbours import nodes_here
+    from my_robot_basics.session.neighbours import nodes_here
 
     return any(
         endpoint.topic_name == topic_name
@@ -86,7 +86,7 @@ def _set_use_sim_time(node_name: str, value: bool) -> bool | None:
         return None
     from rclpy.parameter import Parameter
 
-    from my_robot_basics.live.neighbours import nodes_here
+    from my_robot_basics.session.neighbours import nodes_here
 
     for node in nodes_here():
         if node.get_fully_qualified_name() == node_name:

@@ -4,7 +4,7 @@ import asyncio
 import time
 from collections.abc import Awaitable, Callable
 
-from my_robot_basics.checks import pressure
+from my_robot_basics.session import pressure
 from my_robot_basics.validate.limits import INTERRUPT_GRACE_SEC, INTERRUPT_MOST_SEC
 
 LOOK_EVERY_SEC = 0.2

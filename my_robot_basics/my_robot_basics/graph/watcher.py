@@ -13,10 +13,10 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
 
-from my_robot_basics.checks.errors import fail
-from my_robot_basics.checks.hidden import is_in_test_room
-from my_robot_basics.checks.pressure import Stopwatch
-from my_robot_basics.live import classroom
+from my_robot_basics.feedback.errors import fail
+from my_robot_basics.feedback.hidden import is_in_test_room
+from my_robot_basics.session import classroom
+from my_robot_basics.session.pressure import Stopwatch
 
 TRANSPORTS = 'FASTDDS_BUILTIN_TRANSPORTS'
 HIDDEN = '_'

@@ -5,9 +5,9 @@ from typing import NoReturn
 
 import numpy as np
 
-from my_robot_basics.checks import hidden
-from my_robot_basics.live.described import described
-from my_robot_basics.live.errors import in_lines
+from my_robot_basics.drawing.described import described
+from my_robot_basics.feedback import hidden
+from my_robot_basics.session.errors import in_lines
 
 MOST_CHARACTERS = 200
 

@@ -15,7 +15,7 @@ from typing import Any
 from rclpy.node import Node
 from std_msgs.msg import String
 
-from my_robot_basics.checks.watcher import Watcher
+from my_robot_basics.graph.watcher import Watcher
 
 DEPTH = 10
 """The queue depth that the lessons use; all else is rclpy's default QoS."""

@@ -7,9 +7,9 @@ import os
 import sys
 from pathlib import Path
 
-from my_robot_basics.live import kernel, lessons
-from my_robot_basics.live.domain import Claim, claim
-from my_robot_basics.live.errors import BadDomain
+from my_robot_basics.session import kernel, lessons
+from my_robot_basics.session.domain import Claim, claim
+from my_robot_basics.session.errors import BadDomain
 
 HIGHEST_DOMAIN = 232
 PACKAGE = Path(__file__).parents[2]

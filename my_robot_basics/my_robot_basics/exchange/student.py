@@ -7,9 +7,10 @@ student's own kernel the same question is answered in place, in the same words.
 import builtins
 from typing import Any
 
-from my_robot_basics.checks import hidden, responder, values, wire
-from my_robot_basics.checks.errors import fail, shorten
-from my_robot_basics.checks.hidden import is_in_test_room
+from my_robot_basics.exchange import responder, values, wire
+from my_robot_basics.feedback import hidden
+from my_robot_basics.feedback.errors import fail, shorten
+from my_robot_basics.feedback.hidden import is_in_test_room
 
 __all__ = ['call', 'value']
 

@@ -30,7 +30,7 @@ def settled_nodes(lived_sec: float = 0.0) -> list[str] | None:
         return None
     if 'rclpy' not in sys.modules:
         return []
-    from my_robot_basics.live.neighbours import nodes_here
+    from my_robot_basics.session.neighbours import nodes_here
 
     nodes = [*nodes_here()]
     most_sec = max(0.0, lived_sec - _FIRED_SEC)

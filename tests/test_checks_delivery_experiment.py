@@ -1,10 +1,10 @@
 """What arrives on a stage, and that no message is called lost before it had its chance."""
 
 import pytest
-from my_robot_basics.checks import stage as stage_module
-from my_robot_basics.checks.stage import DidNotRun, Stage
-from my_robot_basics.checks.watcher import Watcher
-from my_robot_basics.live import classroom
+from my_robot_basics.checks import delivery_experiment as stage_module
+from my_robot_basics.checks.delivery_experiment import DidNotRun, Stage
+from my_robot_basics.graph.watcher import Watcher
+from my_robot_basics.session import classroom
 from std_msgs.msg import Int32
 
 

@@ -8,7 +8,7 @@ from rclpy.context import Context
 from rclpy.exceptions import InvalidHandle
 from rclpy.node import Node
 
-from my_robot_basics.live import classroom
+from my_robot_basics.session import classroom
 
 MEETING_SEC = 0.3
 """How long a new observer needs, most often, to discover the nodes of other processes."""

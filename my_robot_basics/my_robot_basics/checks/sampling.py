@@ -7,7 +7,7 @@ from my_robot_basics.checks import rates
 from my_robot_basics.checks.clock import Inconclusive, SimulatedClock
 from my_robot_basics.checks.ears import Ears
 from my_robot_basics.checks.recording import Recording, Sample
-from my_robot_basics.checks.watcher import Watcher
+from my_robot_basics.graph.watcher import Watcher
 
 HOLD_SEC = 1.0
 WALL_SEC = 4.0

@@ -3,10 +3,10 @@
 from dataclasses import replace
 
 import pytest
-from my_robot_basics.checks import CheckFailed, looks, topic, topics
+from my_robot_basics.checks import CheckFailed, sampling, topic, topics
 from my_robot_basics.checks import recording as recording_module
 from my_robot_basics.checks.clock import SimulatedClock
-from my_robot_basics.checks.watcher import Watcher
+from my_robot_basics.graph.watcher import Watcher
 from nodes.running import running
 
 TOPIC = '/kinematics/joint_states'
@@ -36,7 +36,7 @@ def test_a_wrong_rate_fails(node, seen):
 
 @pytest.mark.usefixtures('patient')
 def test_a_timer_that_leaves_every_twentieth_out_fails_without_another_look(monkeypatch):
-    monkeypatch.setattr(looks, 'wall', lambda *_, **__: pytest.fail('looked at the wall clock'))
+    monkeypatch.setattr(sampling, 'wall', lambda *_, **__: pytest.fail('looked at the wall clock'))
     with running('leaves_out'), pytest.raises(CheckFailed, match='one message of 20 missing each'):
         topic(TOPIC).record(seconds=60.0).assert_rate(hz=5.0)
 
@@ -73,8 +73,8 @@ def test_a_machine_that_is_late_itself_looks_again_while_there_is_time(
         recorded.append(replace(on_wall(*args, **options), late_sec=late_sec))
         return recorded[-1]
 
-    on_wall = looks.wall
-    monkeypatch.setattr(looks, 'wall', wall)
+    on_wall = sampling.wall
+    monkeypatch.setattr(sampling, 'wall', wall)
     monkeypatch.setattr(recording_module, 'SECOND_LOOK_SEC', 1.0)
     with running('unresponsive'):
         recording = topic(TOPIC).record()
@@ -130,7 +130,7 @@ def test_a_near_miss_fails_on_the_wall_clock(node, seen):
 def looked_at(node, *, patience_sec):
     with running(node), Watcher() as watcher:
         ears = topic(TOPIC).listen(watcher)
-        return looks.wall(watcher, ears, why='', seconds=0.1, patience_sec=patience_sec)
+        return sampling.wall(watcher, ears, why='', seconds=0.1, patience_sec=patience_sec)
 
 
 def test_the_wall_clock_waits_for_the_next_message_of_a_slow_node():

@@ -31,7 +31,7 @@ _POINTS = 'application/vnd.my_robot_basics.points'
 """… And of this one: the points that a check leaves which fails."""
 _BEGAN, _INPUTS, _ALREADY = 'began', 'inputs', 'already'
 
-_HERE = "__import__('my_robot_basics.checks.hidden', fromlist=['begin'])"
+_HERE = "__import__('my_robot_basics.feedback.hidden', fromlist=['begin'])"
 _OPEN, _CLOSE = '\u2068', '\u2069'
 """Around what a student's code made: no text that `shorten` has cleaned holds these."""
 _THEIRS = re.compile(f'{_OPEN}[^{_CLOSE}]*{_CLOSE}')

@@ -1,0 +1,1 @@
+"""What crosses between a notebook's kernel and a check's: a probe, questions and replies."""
