@@ -12,8 +12,10 @@ from pathlib import Path
 import pdoc
 
 PAGES = ('my_robot_basics.checks', 'my_robot_basics.live')
-NAMED = ('joints$', 'student$')
-"""Modules of which grade cells call the functions, such as `student.call`."""
+STUDENT = 'my_robot_basics.exchange.student'
+"""What `student` of the checks is: a page of its own."""
+NAMED = ('joints$',)
+"""Modules beside it of which grade cells call the functions."""
 OTHERS = rf'!my_robot_basics\.(?:checks|live)\.(?!{"|".join(NAMED)})'
 """The modules that hold all this, and much that is no one else's business."""
 
@@ -25,7 +27,7 @@ def build(folder: Path) -> None:
         for public in page.__all__:  # they are imported on demand, and pdoc looks at what is there
             setattr(page, public, getattr(page, public))
     pdoc.render.configure(show_source=False)
-    pdoc.pdoc(*PAGES, OTHERS, output_directory=folder)
+    pdoc.pdoc(*PAGES, STUDENT, OTHERS, output_directory=folder)
 
 
 if __name__ == '__main__':
