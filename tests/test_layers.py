@@ -99,35 +99,6 @@ def test_each_part_of_a_package_has_its_line_in_the_map(package):
     assert set(re.findall(r'`(\w+)`', package.__doc__)) == parts - {'__main__'}
 
 
-RANKS = (
-    {'two_link_kinematics'},
-    {'hello_node', 'kinematics_node', 'kinematics_publisher', 'kinematics_subscriber'},
-    {'live', 'checks', 'ros2', 'doctor'},
-    {'validate'},
-)
-"""The parts of my_robot_basics, from the lowest; those in the third set still need each other."""
-
-
-def rank(module):
-    """Return the place in RANKS of a module's part, or None where it is none of a part."""
-    package, _, rest = module.partition('.')
-    part = rest.partition('.')[0]
-    if package != 'my_robot_basics' or not part:
-        return None
-    return next(place for place, parts in enumerate(RANKS) if part in parts)
-
-
-def test_parts_of_what_students_get_import_only_from_lower_ones_or_their_equals():
-    seen = [
-        (module, other)
-        for module in modules()
-        for other, _ in imported(module)
-        if rank(module) is not None and other in modules() and rank(other) is not None
-    ]
-    assert ('my_robot_basics.validate.judging', 'my_robot_basics.feedback.hidden') in seen
-    assert [f'{m} imports {o}' for m, o in seen if rank(m) < rank(o)] == []
-
-
 def test_what_students_get_needs_no_grader():
     ours = [module for module in modules() if module.startswith('my_robot_basics')]
     assert [m for m in ours for other, _ in imported(m) if other.startswith('grader')] == []
