@@ -48,7 +48,7 @@ def test_jupyter_finds_the_kernel_and_what_starts_it():
     (entry,) = entry_points(group='jupyter_client.kernel_provisioners', name=NAME)
     assert entry.load() is SandboxProvisioner
     assert json.loads(SPEC.read_text()) == json.loads(
-        (ROOT / 'grader' / 'kernelspec' / 'kernel.json').read_text()
+        (ROOT / 'grader' / 'kernels' / 'kernelspec' / 'kernel.json').read_text()
     )
     spec = KernelSpecManager().get_kernel_spec(NAME)
     assert (spec.interrupt_mode, spec.language) == ('message', 'python')
