@@ -118,7 +118,7 @@ def test_honest_nodes_that_are_no_plain_timers_pass(capfd, node, out):
         ('a_little_fast_loop', r'5\.1\d Hz over'),
         ('nearly_by_turns', r'0\.\d+ to 0\.\d+ s between messages over .* unevenly spaced'),
         ('nearly_by_turns_on_its_clock', r'0\.\d+ s between messages over .* unevenly spaced'),
-        ('by_turns', r'0\.\d+ to 0\.\d+ s between messages over 4 s .* unevenly spaced'),
+        ('by_turns', r'0\.\d+ to 0\.\d+ s between messages over \d+ s .* unevenly spaced'),
         ('too_busy', r'[34]\.\d+ Hz over 4 s'),
     ],
 )

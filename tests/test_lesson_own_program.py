@@ -22,7 +22,8 @@ class KinematicsPublisher(Node):
         message.header.stamp = self.get_clock().now().to_msg()
         message.header.frame_id = 'base_link'
         self.publisher.publish(message)
-        self.get_logger().info(f'{__file__} in {getpid()}', once=True)
+        file = self.publish_pose.__code__.co_filename
+        self.get_logger().info(f'{file} in {getpid()}', once=True)
 """
 UNANSWERED = next(c.source for c in read('notebooks', LESSON).cells if c.id == 'five_hz')
 NEEDED = [
