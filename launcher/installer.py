@@ -82,21 +82,16 @@ class Installer:
             self.run(python, '-m', 'venv', '--without-pip', venv)
             self.run(self.environment.python, '-m', 'ensurepip')
 
-    def install(self, *arguments: str | Path, constraints: str = '') -> None:
-        """Install what the arguments name; constraints hold for what sources are built with."""
-        pins = {}
-        if constraints:
-            names = ('UV_BUILD_CONSTRAINT', 'PIP_CONSTRAINT', 'PIP_BUILD_CONSTRAINT')
-            pins = dict.fromkeys(names, constraints)
+    def install(self, *arguments: str | Path) -> None:
+        """Install what the arguments name."""
         python = self.environment.python
-        command: tuple[str | Path, ...]
         if self.uses_uv:
-            command = ('uv', 'pip', 'install', '--compile-bytecode', '--python', python)
+            self.run(
+                *('uv', 'pip', 'install', '--compile-bytecode', '--python', python), *arguments
+            )
         else:
-            pins['PIP_USER'] = '0'
             command = (python, '-m', 'pip', 'install', '--disable-pip-version-check')
-            command += ('--no-input', '--progress-bar', 'off')
-        self.run(*command, *arguments, **pins)
+            self.run(*command, '--no-input', '--progress-bar', 'off', *arguments, PIP_USER='0')
 
     def run(self, *command: str | Path, **variables: str) -> None:
         """Run a command and show its progress. Raises CourseError with why it failed."""

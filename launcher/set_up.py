@@ -6,6 +6,7 @@ or tells of something else, its part of the work is done again.
 
 import fcntl
 import os
+import re
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -17,8 +18,9 @@ from launcher.messages import CourseError, say
 from launcher.shares import TOOLS, UNDERLAY, make_tools, tell_ament, tell_jupyter
 
 PINS = 'environment.txt'
-"""In the course's root, where installers run; a path to it may hold a space, which ends a path in
-the variables that tell uv and pip of constraints."""
+"""In the course's root, where installers run."""
+BUILD_TOOLS = ('setuptools',)
+"""What the packages are built with that exist as sources alone."""
 
 
 def made_environment(environment: Environment) -> str:
@@ -91,9 +93,20 @@ def make_environment(installer: Installer, python: Path) -> None:
     if python.parent == environment.python.parent:  # .venv was activated in the caller's shell
         python = Path(sys._base_executable)  # type: ignore[attr-defined]  # not in typeshed's sys
     installer.make_venv(python)
-    installer.install('-r', PINS, constraints=PINS)
+    # pip's own environments for builds know of no hashes, so that the tools must be here before
+    pins = environment.venv / 'build_tools.txt'
+    with writing():
+        pins.write_text(build_tools(environment.root / PINS), encoding='utf-8')
+    installer.install('-r', pins)
+    installer.install('--no-deps', '--no-build-isolation', '-r', PINS)
     with writing():
         remember(environment, made_environment)
+
+
+def build_tools(pins: Path) -> str:
+    """Return the part of environment.txt that pins the tools, with its hashes."""
+    packages = re.split(r'^(?=\w)', pins.read_text(encoding='utf-8'), flags=re.MULTILINE)
+    return ''.join(package for package in packages if package.partition('==')[0] in BUILD_TOOLS)
 
 
 def install_packages(installer: Installer) -> None:
