@@ -133,6 +133,25 @@ def test_a_message_of_which_a_field_was_changed_does_not_pass(run, impatient, no
     check_late_joiner()
 
 
+def test_fields_that_a_task_does_not_name_may_be_others(run, impatient):
+    class Renames(Changes):
+        def other(self, message):
+            return JointState(name=['elbow'], position=message.position)
+
+    class Rebuilds(Changes):
+        def other(self, message):
+            return JointState(name=message.name, position=message.position)
+
+    kept = relay('/sensor/joint_states', to='/monitor/joint_states', fields=['name', 'position'])
+    run(Rebuilds)
+    kept.assert_carries(pose, qos_profile=qos_profile_sensor_data)
+    live.stop()
+    run(Renames)
+    with pytest.raises(CheckFailed, match='not the same: name$'):
+        kept.assert_carries(pose, qos_profile=qos_profile_sensor_data)
+
+
+
 def test_messages_that_nobody_sent_are_told(run):
     class Invents(monitor.JointStateMonitor):
         def __init__(self):

@@ -83,7 +83,7 @@ def left_out(times_sec: np.ndarray, slack_sec: float) -> int:
     missing evenly.
     """
     gaps = np.diff(times_sec)
-    if len(gaps) < FEWEST_GAPS:
+    if len(gaps) < FEWEST_GAPS or not np.median(gaps):  # messages of a burst have one time
         return 0
     steps = np.rint(gaps / np.median(gaps)).astype(int)
     missing_at = np.flatnonzero(steps > 1)

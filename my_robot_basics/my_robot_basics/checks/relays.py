@@ -1,6 +1,6 @@
 """A node that republishes what it receives: send on one topic, subscribe to the other."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, NoReturn
 
@@ -24,13 +24,14 @@ AGAIN_SEC = 0.1
 """How long to wait for a message to come out before it is sent once more."""
 
 
-def relay(source: str, *, to: str) -> 'Relay':
+def relay(source: str, *, to: str, fields: Sequence[str] = ()) -> 'Relay':
     """What a node makes of the topic `source` when it publishes again on the topic `to`.
 
     `relay('/joints', to='/monitor').assert_carries(make_message, qos_profile=offered)`, where
-    `make_message` returns another message at each call.
+    `make_message` returns another message at each call. Where the task does not say
+    "unchanged", `fields` names those that have to be the same: a new stamp is then allowed.
     """
-    return Relay(source, to)
+    return Relay(source, to, tuple(fields))
 
 
 @dataclass(frozen=True)
@@ -41,11 +42,13 @@ class Relay:
     """The topic on which the check publishes."""
     to: str
     """The topic on which the node is to publish the same."""
+    fields: tuple[str, ...] = ()
+    """The fields that have to be the same; by default, all of them."""
 
     def assert_carries(self, make_message: Callable[[], Any], *, qos_profile: QoSProfile) -> None:
         """Each message that is offered with that profile on `source` comes out on `to`, once.
 
-        Nothing else does, and all that it holds is the same. `make_message` makes each another
+        Nothing else does, and its `fields` are the same. `make_message` makes each another
         one; some are sent twice in a row, or with zeros, negative and large numbers in place of
         theirs. The first is sent again and again until it comes out. The others are sent one at a
         time: over a hundred in a row (fewer where that takes long) have to come out before the
@@ -85,7 +88,7 @@ class Relay:
                     self._expect_out(watcher, ears, message)
                     # one behind the other, should there be two
                     watcher.spin_for(QUIET_SEC)
-                    count = sum(_says(heard, message) for heard in ears.messages())
+                    count = sum(self._is_same(heard, message) for heard in ears.messages())
                     if count > 1:
                         self._fail(*Carried(copies=count).fault())
                     if number + 1 == times:
@@ -104,7 +107,7 @@ class Relay:
         )
         watcher.spin_until(source_ears.is_connected, timeout_sec=relay_ends.TIMEOUT_SEC)
         watcher.spin_for(QUIET_SEC)
-        passage = Passage(watcher, ears, publish=publisher.publish, is_same=_says)
+        passage = Passage(watcher, ears, publish=publisher.publish, is_same=self._is_same)
         messages = varied(make_message)
         carried = passage.carry(messages)
         if not carried.is_whole():
@@ -145,7 +148,7 @@ class Relay:
             if again is not None:
                 again.publish(message)
             if watcher.spin_until(
-                lambda: any(_says(heard, message) for heard in ears.messages()),
+                lambda: any(self._is_same(heard, message) for heard in ears.messages()),
                 timeout_sec=AGAIN_SEC,
             ):
                 return
@@ -157,22 +160,23 @@ class Relay:
             hint=Ends(self.source, self.to).why_lost(
                 watcher, is_latched=again is None, has_others=has_others
             )
-            + _what_differs(others, message),
+            + self._what_differs(others, message),
             cause=f'{"only other messages arrive" if has_others else "no message arrives"} on'
             f' {self.to}',
         )
 
+    def _is_same(self, received: Any, sent: Any) -> bool:
+        """Whether it is that very message."""
+        return not self._differing(received, sent)
 
-def _says(heard: Any, sent: Any) -> bool:
-    """Whether it is that very message, with all of its fields."""
-    return heard == sent
+    def _differing(self, received: Any, sent: Any) -> list[str]:
+        names = self.fields or sent.get_fields_and_field_types()
+        return [name for name in names if getattr(received, name) != getattr(sent, name)]
 
-
-def _what_differs(others: list[Any], sent: Any) -> str:
-    """Which fields are others where some are right, as a clause; or ''."""
-    names = sent.get_fields_and_field_types()
-    for heard in others:
-        wrong = [name for name in names if getattr(heard, name) != getattr(sent, name)]
-        if 0 < len(wrong) < len(names):
-            return f'; not the same: {", ".join(wrong)}'
-    return ''
+    def _what_differs(self, others: list[Any], sent: Any) -> str:
+        """Which fields are others where some are right, as a clause; or ''."""
+        for received in others:
+            wrong = self._differing(received, sent)
+            if 0 < len(wrong) < len(sent.get_fields_and_field_types()):
+                return f'; not the same: {", ".join(wrong)}'
+        return ''
