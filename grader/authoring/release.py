@@ -1,4 +1,7 @@
-"""Make notebooks/ from solutions/: no answers, no hidden tests, but pictures of what is shown."""
+"""Make notebooks/ from solutions/: no answers, no hidden tests, but pictures of what is shown.
+
+The pictures move: solutions/ is left with what nbval compares (see demo_outputs).
+"""
 
 import subprocess
 import sys
@@ -6,6 +9,10 @@ import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
+import nbformat
+from nbformat import NotebookNode
+
+from grader.authoring.demo_outputs import Sanitize, clean_source, keep_outputs, read_sanitizer
 from grader.authoring.index import write_pages
 from grader.authoring.leaks import files_in, leaks_of
 from grader.authoring.release_passes import METADATA
@@ -16,9 +23,16 @@ from grader.course import Course
 
 
 def release(
-    course: Course, assignment: str = '*', *, say: Callable[[str], None] = lambda line: None
+    course: Course,
+    assignment: str = '*',
+    *,
+    fresh_outputs: bool = False,
+    say: Callable[[str], None] = lambda line: None,
 ) -> list[str]:
     """Release an assignment, or all of them; return the names of the files that changed.
+
+    What a demonstration showed in the last release stays where it still holds, unless
+    `fresh_outputs` asks for all that the notebooks in solutions/ show.
 
     The index of all lessons is made anew in any case, and the page of terms copied. Everything is
     built aside first and then put in place file by file: whatever fails, notebooks/ holds whole
@@ -28,6 +42,8 @@ def release(
     """
     with tempfile.TemporaryDirectory() as folder:
         built = _build(course, assignment, Path(folder))
+        for line in _keep_outputs(course, built, fresh=fresh_outputs):
+            say(line)
         if leaks := [leak for name in _names(built) for leak in leaks_of(course, name, built)]:
             raise CourseError('nothing was released: ' + '; '.join(leaks))
         changed = [path for path in files_in(built) if _differs(built, course, path)]
@@ -37,6 +53,10 @@ def release(
             place = course.root / 'notebooks' / path
             place.parent.mkdir(parents=True, exist_ok=True)
             write_whole(place, (built / path).read_bytes())
+        for name in _names(built):
+            if (cleaned := _cleaned_source(course, name)) is not None:
+                write_whole(course.source_path(name), cleaned)
+                say(f'{_source_name(name)} keeps no pictures: notebooks/ has them now')
     return [str(path) for path in changed]
 
 
@@ -44,6 +64,7 @@ def stale_or_leaking(course: Course) -> list[str]:
     """Say what is wrong with notebooks/: not what solutions/ gives today, or telling too much."""
     with tempfile.TemporaryDirectory() as folder:
         built = _build(course, '*', Path(folder))
+        list(_keep_outputs(course, built))
         names = _names(built)
         stale = [
             f'notebooks/{path} is not what solutions/ gives: run ./course release'
@@ -51,6 +72,11 @@ def stale_or_leaking(course: Course) -> list[str]:
             if _differs(built, course, path)
         ]
         expected = set(files_in(built))
+    stale += [
+        f'{_source_name(name)} holds pictures, times or measured values: run ./course release'
+        for name in names
+        if _cleaned_source(course, name) is not None
+    ]
     released = course.root / 'notebooks'
     strange = [
         f'notebooks/{path} comes from no assignment: remove it'
@@ -80,6 +106,46 @@ def _build(course: Course, assignment: str, folder: Path) -> Path:
         )
     write_pages(course, folder, metadata=METADATA)
     return folder
+
+
+def _keep_outputs(course: Course, built: Path, *, fresh: bool = False) -> Iterator[str]:
+    """Give built notebooks the outputs that still hold; name the cells that should be run."""
+    sanitize = sanitizer_of(course)
+    for name in _names(built):
+        path = built / name / f'{name}.ipynb'
+        notebook = nbformat.read(path, as_version=4)
+        before = last_release(course, name)
+        doubtful = keep_outputs(notebook, before, sanitize, fresh=fresh)
+        write_whole(path, nbformat.writes(notebook) + '\n')
+        for cell in doubtful:
+            yield (
+                f'{_source_name(name)}, cell {cell!r}: its code has changed, and its picture has '
+                'not. Run the lesson in JupyterLab, save it, and release it again'
+            )
+
+
+def last_release(course: Course, name: str) -> NotebookNode:
+    """Return the notebook that stands in notebooks/, or an empty one."""
+    try:
+        return nbformat.read(course.release_path(name), as_version=4)
+    except (OSError, ValueError, nbformat.ValidationError):
+        return nbformat.v4.new_notebook()  # whatever stands there, it is replaced
+
+
+def _cleaned_source(course: Course, name: str) -> str | None:
+    """Return a source as it should be stored; None where it is already."""
+    source = course.source(name)
+    cleaned = clean_source(source, sanitizer_of(course))
+    return None if cleaned == source else nbformat.writes(cleaned) + '\n'
+
+
+def sanitizer_of(course: Course) -> Sanitize:
+    """Return what nbval takes out of outputs before it compares them."""
+    return read_sanitizer(course.root / 'solutions/nbval_sanitize.cfg')
+
+
+def _source_name(name: str) -> str:
+    return f'solutions/{name}/{name}.ipynb'
 
 
 def _keep_work(course: Course, changed: Sequence[Path]) -> Iterator[str]:

@@ -16,6 +16,12 @@ def make_parser() -> argparse.ArgumentParser:
 
     verb = subparsers.add_parser('release', help="make the students' notebooks/ from solutions/")
     verb.add_argument('assignment', nargs='?', metavar='ASSIGNMENT', help='only this one')
+    verb.add_argument(
+        '--fresh-outputs',
+        action='store_true',
+        help='take all outputs that solutions/ holds; by default, outputs that nbval would call '
+        'the same as those of the last release stay',
+    )
     verb.set_defaults(run=verbs.run_release)
 
     verb = subparsers.add_parser('bundle', help='make the zip that students get')

@@ -47,7 +47,9 @@ def run_release(course: Course, asked: argparse.Namespace) -> int:
     if course.database.exists():
         for assignment in wanted:
             register(course, assignment)  # refuses what graded submissions can't follow
-    changed = release(course, asked.assignment or '*', say=print)
+    changed = release(
+        course, asked.assignment or '*', fresh_outputs=asked.fresh_outputs, say=print
+    )
     for path in changed:
         print(f'notebooks/{path}')
     print(f'{len(changed)} files changed.' if changed else 'Nothing has changed.')

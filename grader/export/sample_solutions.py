@@ -9,7 +9,9 @@ import nbformat
 from nbconvert.preprocessors import Preprocessor
 from nbformat import NotebookNode
 
+from grader.authoring.demo_outputs import keep_outputs
 from grader.authoring.leaks import BROKEN
+from grader.authoring.release import last_release, sanitizer_of
 from grader.common.errors import CourseError
 from grader.common.files import write_whole
 from grader.course import Course
@@ -57,6 +59,7 @@ def write_solutions(
     paths = []
     for assignment, source in sources.items():
         solved = apply(PASSES, source, resources_of(course, assignment))
+        keep_outputs(solved, last_release(course, assignment), sanitizer_of(course))
         paths.append(folder / f'{assignment}.ipynb')
         write_whole(paths[-1], nbformat.writes(solved) + '\n')
     return paths
