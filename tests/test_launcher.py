@@ -10,9 +10,9 @@ from grader.cli.arguments import make_parser
 from grader.course import ROOT
 from launcher.environment import Environment, without_foreign
 from launcher.installer import DISK_IS_FULL, FAILED, NETWORK_IS_AWAY, progress, reason_of
+from launcher.set_up import BUILD_TOOLS, build_tools
 from launcher.shares import executables_of
 from launcher.testing import Checks
-from launcher.set_up import BUILD_TOOLS, build_tools
 from launcher.unstable import add_unstable, read_failures, read_passes, unstable
 from launcher.verbs import read_verbs
 
@@ -174,7 +174,7 @@ def test_more_than_two_unstable_tests_fail_a_run(number, status, tmp_path, capsy
 
 
 def test_every_package_without_a_wheel_is_built_with_tools_that_are_pinned():
-    """pip's own environments for builds take no hashes: on a machine without its cache, it failed."""
+    """pip's own environments for builds take no hashes: on an empty cache, it failed."""
     pins = build_tools(ROOT / 'environment.txt')
     assert [line.split('==')[0] for line in pins.splitlines()[::2]] == list(BUILD_TOOLS)
     assert pins.count('--hash=sha256:') >= len(BUILD_TOOLS)
