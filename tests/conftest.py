@@ -7,8 +7,10 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator
+from functools import cache
 
 import _pytest.runner
+import nbgrader.api
 import pytest
 from hypothesis import HealthCheck, settings
 from my_robot_basics.session import classroom
@@ -20,6 +22,9 @@ from tests import ordinary, tiers  # also where nbval runs with this as a plugin
 settings.register_profile('busy', deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile('busy')
 
+
+# each new database asks a program, which takes 2 s, for what is always the same
+nbgrader.api.get_alembic_version = cache(nbgrader.api.get_alembic_version)
 
 UNTESTED = pytest.StashKey[list]()
 """The tests that a machine without a sandbox leaves out."""

@@ -152,6 +152,7 @@ def test_the_same_files_give_the_same_bytes(made, course, fresh_lessons, tmp_pat
     assert (tmp_path / 'one.zip').read_bytes() == (tmp_path / 'two.zip').read_bytes()
 
 
+@pytest.mark.starts  # to release takes long
 def test_the_command_tells_what_it_made_and_what_it_left_out(
     course, tmp_path, capsys, monkeypatch
 ):
@@ -263,6 +264,7 @@ def test_what_is_on_no_list_is_named(course, tmp_path):
         assert part in str(refusal.value)
 
 
+@pytest.mark.starts  # to release takes long
 def test_a_stale_or_telling_lesson_is_not_bundled(course, tmp_path):
     lesson_cell(course, CANARY)
     (course.root / f'notebooks/{TOY}/more.txt').touch()

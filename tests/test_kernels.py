@@ -46,6 +46,28 @@ def shared(loop):
     loop.run(kernel.stop())
 
 
+@pytest.fixture(scope='module')
+def spares(loop):
+    """The kernel that the last test has left, if one has."""
+    spares = []
+    yield spares
+    for kernel in spares:
+        loop.run(kernel.stop())
+
+
+@pytest.fixture
+def spare(loop, spares):
+    """A kernel for a cell that leaves nothing in it: where it lives on, the next test has it."""
+    kernel = spares.pop() if spares else Kernel(room='student', domain_id=DOMAIN)
+    if not kernel.alive:
+        loop.run(kernel.start())
+    yield kernel
+    if kernel.alive:
+        spares.append(kernel)
+    else:
+        loop.run(kernel.stop())
+
+
 @pytest.fixture
 def own(loop):
     """A kernel of one test's own."""
@@ -151,15 +173,15 @@ def test_a_display_is_updated_from_a_later_cell(shared, run):
     assert text_of(second) == 'done\n'
 
 
-def test_an_endless_cell_is_interrupted_and_costs_only_itself(own, run):
-    run(own, 'x = 5')
-    result = run(own, 'while True: pass', timeout_sec=1.5)
+def test_an_endless_cell_is_interrupted_and_costs_only_itself(spare, run):
+    run(spare, 'x = 5')
+    result = run(spare, 'while True: pass', timeout_sec=1.5)
     assert (result.timed_out, result.died, result.error.ename) == (
         True,
         False,
         'KeyboardInterrupt',
     )
-    assert text_of(run(own, 'print(x)')) == '5\n'
+    assert text_of(run(spare, 'print(x)')) == '5\n'
 
 
 IGNORES = """
@@ -186,11 +208,11 @@ except KeyboardInterrupt:
 
 @pytest.mark.parametrize(('is_crowded', 'died'), [(False, True), (True, False)])
 def test_a_crowded_machine_gives_an_interrupted_cell_more_time(
-    monkeypatch, own, run, is_crowded, died
+    monkeypatch, spare, run, is_crowded, died
 ):
     crowded_sec = time.monotonic if is_crowded else lambda: 0.0
     monkeypatch.setattr(timeouts.pressure, 'crowded_sec', crowded_sec)
-    result = run(own, SLOW_TO_END, timeout_sec=1.5)
+    result = run(spare, SLOW_TO_END, timeout_sec=1.5)
     assert (result.timed_out, result.died) == (True, died)
 
 
@@ -209,10 +231,10 @@ FATAL = {
 
 
 @pytest.mark.parametrize('code', FATAL.values(), ids=FATAL)
-def test_a_kernel_that_dies_is_noticed(own, run, code):
-    result = run(own, code, timeout_sec=600.0)
-    assert (result.died, result.timed_out, own.alive) == (True, False, False)
-    again = run(own, 'print(1)', timeout_sec=600.0)
+def test_a_kernel_that_dies_is_noticed(spare, run, code):
+    result = run(spare, code, timeout_sec=600.0)
+    assert (result.died, result.timed_out, spare.alive) == (True, False, False)
+    again = run(spare, 'print(1)', timeout_sec=600.0)
     assert (again.died, again.ran_to_end, again.outputs) == (True, False, [])
 
 
@@ -226,12 +248,12 @@ FLOODS = {
 
 
 @pytest.mark.parametrize('code', FLOODS.values(), ids=FLOODS)
-def test_a_flood_is_drained_and_bounded_and_the_kernel_goes_on(own, run, code):
-    result = run(own, code)
+def test_a_flood_is_drained_and_bounded_and_the_kernel_goes_on(spare, run, code):
+    result = run(spare, code)
     assert not result.died
     assert size_of(result) < 1.1 * MAX_OUTPUT_CHARACTERS
     # ZMQ drops what a full queue has no room for, and that may be the first words after the flood
-    after = [run(own, 'print("after")') for _ in range(4)]
+    after = [run(spare, 'print("after")') for _ in range(4)]
     assert all(each.ran_to_end for each in after)
     assert text_of(after[-1]) == 'after\n', [text_of(each) for each in after]
 
@@ -247,15 +269,15 @@ ENDLESS = {
 
 
 @pytest.mark.parametrize('code', ENDLESS.values(), ids=ENDLESS)
-def test_an_endless_flood_does_not_keep_the_time_limit_waiting(own, run, code):
-    result = run(own, code, timeout_sec=1.0)
+def test_an_endless_flood_does_not_keep_the_time_limit_waiting(spare, run, code):
+    result = run(spare, code, timeout_sec=1.0)
     assert result.timed_out
     assert size_of(result) < 1.1 * MAX_OUTPUT_CHARACTERS
 
 
-def test_an_endless_flood_ends_long_before_the_time_limit(own, run):
+def test_an_endless_flood_ends_long_before_the_time_limit(spare, run):
     code = "from IPython.display import HTML\nwhile True: display(HTML('<b>' * 10_000))"
-    result = run(own, code, timeout_sec=60.0)
+    result = run(spare, code, timeout_sec=60.0)
     assert result.timed_out
     # up to its time limit it would print far more
     [dropped] = re.findall(r'\[([\d,]+) more characters of output were not kept', text_of(result))
@@ -284,24 +306,24 @@ def test_a_flood_for_another_cell_fills_no_memory_of_the_graders_and_counts(own,
 
 
 @pytest.mark.parametrize('part', ['[],', '{},'])
-def test_a_message_of_a_million_parts_is_passed_over(own, run, part):
+def test_a_message_of_a_million_parts_is_passed_over(spare, run, part):
     forged = (
         'kernel = get_ipython().kernel\n'
-        f'content = {{"data": [{part * 300_000}]}}\n'
+        f'content = {{"data": [{part}] * 300_000}}\n'
         'parent = kernel.get_parent()\n'
         'kernel.session.send(kernel.iopub_socket, "display_data", content, parent=parent)\n'
         'print("after")'
     )
-    result = run(own, forged)
+    result = run(spare, forged)
     assert result.ran_to_end
     assert text_of(result) == 'after\n'
     with pytest.raises(ValueError, match='300,001 objects and lists'):
         unpacked(f'[{part * 300_000}0]'.encode())
 
 
-def test_the_limits_of_what_waits_are_those_of_the_sockets(own):
-    channels = (own._client.iopub_channel, own._client.shell_channel, own._client.stdin_channel)
-    for channel in channels:
+def test_the_limits_of_what_waits_are_those_of_the_sockets(spare):
+    client = spare._client
+    for channel in (client.iopub_channel, client.shell_channel, client.stdin_channel):
         limits = [channel.socket.getsockopt(each) for each in (zmq.RCVHWM, zmq.MAXMSGSIZE)]
         assert limits == [MAX_MESSAGES_WAITING, MAX_MESSAGE_BYTES]
 
@@ -314,9 +336,9 @@ TOO_LARGE = {
 
 
 @pytest.mark.parametrize(('code', 'asked'), TOO_LARGE.values(), ids=TOO_LARGE)
-def test_a_message_that_is_too_large_ends_the_kernel_and_it_is_said(own, run, code, asked):
+def test_a_message_that_is_too_large_ends_the_kernel_and_it_is_said(spare, run, code, asked):
     """Else nothing that the kernel says would be received any more, and nobody told why."""
-    result = run(own, code, expressions=asked)
+    result = run(spare, code, expressions=asked)
     assert (result.cut_off, result.flooded, result.died) == (True, True, True)
     reply = json.loads(reply_of(result, within_sec=10.0))
     assert reply == {'failed': f'no answer: your code {CUT_OFF}'}
@@ -325,17 +347,17 @@ def test_a_message_that_is_too_large_ends_the_kernel_and_it_is_said(own, run, co
     assert verdict.outcome == 'failed'
     assert verdict.reason.endswith(f'before the check: your cell `double` {CUT_OFF}')
     assert 'sent over 64 MB at once' in CUT_OFF
-    assert asyncio.run(own.ending()) is None  # we have ended it: that is nobody's doubt
+    assert asyncio.run(spare.ending()) is None  # we have ended it: that is nobody's doubt
 
 
-def test_a_kernel_that_ends_is_not_taken_for_one_that_was_cut_off(own, run):
-    result = run(own, 'import os; os._exit(3)')
+def test_a_kernel_that_ends_is_not_taken_for_one_that_was_cut_off(spare, run):
+    result = run(spare, 'import os; os._exit(3)')
     assert (result.cut_off, result.timed_out, result.died) == (False, False, True)
 
 
-def test_a_large_message_within_the_limit_cuts_nothing_off(own, run):
-    assert not run(own, "print('x' * 9_000_000)").cut_off
-    assert text_of(run(own, "print('after')")) == 'after\n'
+def test_a_large_message_within_the_limit_cuts_nothing_off(spare, run):
+    assert not run(spare, "print('x' * 9_000_000)").cut_off
+    assert text_of(run(spare, "print('after')")) == 'after\n'
 
 
 FORGE = """
@@ -357,8 +379,8 @@ print('done')
 """
 
 
-def test_what_is_not_a_message_is_passed_over(own, run):
-    result = run(own, FORGE)
+def test_what_is_not_a_message_is_passed_over(spare, run):
+    result = run(spare, FORGE)
     assert result.ran_to_end
     assert 'done\n' in text_of(result)
 
@@ -372,8 +394,8 @@ while True: pass
 """
 
 
-def test_a_forged_end_is_not_the_end(own, run):
-    result = run(own, FORGED_END, timeout_sec=1.0)
+def test_a_forged_end_is_not_the_end(spare, run):
+    result = run(spare, FORGED_END, timeout_sec=1.0)
     assert result.timed_out
 
 

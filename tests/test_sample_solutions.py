@@ -67,6 +67,7 @@ def test_nothing_is_written_while_somebody_may_still_hand_in(course, capsys):
     assert main(['solutions', TOY], course=course) == 0
 
 
+@pytest.mark.starts  # to release takes long
 def test_a_mark_scheme_is_for_teachers_alone(course):
     release(course)
     cells = {cell.id: cell.source for cell in course.release(TOY).cells}

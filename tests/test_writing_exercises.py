@@ -67,6 +67,7 @@ def test_the_page_has_every_cell_of_an_exercise():
     ]
 
 
+@pytest.mark.starts  # to release takes long
 def test_what_students_get_holds_no_answer_and_no_hidden_test(course):
     text = course.release_path(LESSON).read_text(encoding='utf-8')
     assert 'YOUR CODE HERE' in text

@@ -15,6 +15,8 @@ from collections.abc import Callable
 import pytest
 from rclpy.context import Context
 
+from grader.kernels import isolation
+
 HARMLESS = re.compile(
     r'(?:\S*/)?(?:git|ruff|shellcheck|ldd|readelf|true|false|sleep|tar|unzip|alembic) .*'
     r'|(?:\S*/)?(?:sh|bash|dash|busybox|unshare)\b.*|.*/(?:course|\.ci/run)\b.*|/nowhere/.*'
@@ -94,6 +96,8 @@ class Guard:
         self.refused: list[str] = []
         self.contexts = 0
         """How many ROS contexts were begun so far."""
+        if refuses:  # to look whether this machine has a sandbox would start one
+            isolation.protections = tuple
         sys.addaudithook(self._see)
         spawn = multiprocessing.util.spawnv_passfds  # it starts a process without an audit event
 

@@ -1,0 +1,23 @@
+"""Verdicts without rooms. A process that grades imports this sooner than what makes courses."""
+
+from nbformat import NotebookNode
+from nbformat.v4 import new_output
+
+from grader.notebook.restore import KEY
+
+
+def executed(notebook: NotebookNode, reasons: dict[str, str | None]) -> NotebookNode:
+    """Stand in for the rooms: give each grade cell a verdict; None is a pass, '?' is ungraded."""
+    for cell in notebook.cells:
+        marks = cell.metadata.get('nbgrader', {})
+        if marks.get('grade') and cell.cell_type == 'code':
+            reason = reasons.get(marks['grade_id'])
+            outcome = 'ungraded' if reason == '?' else 'failed' if reason else 'passed'
+            verdict = {'outcome': outcome, 'reason': reason or '', 'notes': []}
+            cell.metadata[KEY] = {'role': 'grade'} | verdict
+            cell.outputs = [new_output('stream', text='looked at it\n')]
+            if outcome == 'failed':
+                cell.outputs.append(
+                    new_output('error', ename='CheckFailed', evalue=reason, traceback=[reason])
+                )
+    return notebook
