@@ -3,6 +3,8 @@
 import subprocess
 import sys
 
+import pytest
+
 FORGET = """
 import weakref
 
@@ -26,6 +28,52 @@ careless = Careless()
 del careless
 rclpy.shutdown()
 """
+
+INTERRUPTED = """
+import os
+import signal
+import time
+
+import rclpy
+from my_robot_basics.live import run
+from rclpy.node import Node
+
+
+class Arm(Node):
+    def __init__(self):
+        super().__init__('arm')
+
+
+def main():
+    rclpy.init(args=[])
+    node = Arm()
+    try:
+        os.kill(os.getpid(), signal.SIGINT)
+        time.sleep(10.0)
+    except KeyboardInterrupt:
+        time.sleep({pause_sec})
+    finally:
+        node.destroy_node()
+        rclpy.try_shutdown()
+
+
+run(Arm)
+rclpy.shutdown()
+main()
+print('starts', run(Arm) is not None)
+time.sleep(0.5)
+print('lives', rclpy.ok())
+"""
+
+
+@pytest.mark.parametrize('pause_sec', [0.0, 0.5], ids=['at_once', 'later'])
+def test_a_node_starts_and_lives_after_a_main_that_was_interrupted(pause_sec):
+    # rclpy's own ear for Ctrl-C ends all contexts of the process, in a thread, sooner or later
+    script = INTERRUPTED.format(pause_sec=pause_sec)
+    run = subprocess.run(
+        [sys.executable, '-c', script], capture_output=True, text=True, check=False
+    )
+    assert run.stdout.splitlines()[-2:] == ['starts True', 'lives True'], run.stderr
 
 
 def test_a_race_of_rclpys_own_is_not_told_and_other_errors_are():

@@ -10,7 +10,7 @@ from typing import Any
 import rclpy
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
-from rclpy.signals import SignalHandlerOptions
+from rclpy.signals import SignalHandlerOptions, uninstall_signal_handlers
 
 from my_robot_basics.live import node_file, notebook, spinning
 from my_robot_basics.live.background import Background
@@ -125,6 +125,9 @@ def _stop_keys(keys: list[str]) -> None:
 def _ensure_rclpy() -> None:
     domain_of_lesson = classroom.enter()
     notebook.open_tap()
+    # rclpy.init() in a student's cell listens for Ctrl-C: after one, a thread of rclpy shuts down
+    # every context of this process, on a busy machine only when the next node has begun
+    uninstall_signal_handlers()
     bury_the_dead()
     if not rclpy.ok():
         rclpy.try_shutdown()  # a context that was shut down by hand cannot be initialised again
