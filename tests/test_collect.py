@@ -321,6 +321,20 @@ def test_canvas_numbers_a_student_once(course, source):
     assert numbers(course) == {'lovelaceada': {TOY: {'canvas': '18151'}}}
 
 
+def test_blackboard_has_times_and_no_numbers(course, source):
+    attempt = f'Lab 1_{{}}_attempt_2026-01-0{{}}-10-00-00_{TOY}.ipynb'
+    write(source / attempt.format('ada', 2), 'first')
+    write(source / attempt.format('ada', 3), 'second')
+    write(source / attempt.format('bob', 2), 'his')
+    assert sorted(rows(course, source).values()) == [AGAIN, NEW, NEW]
+    assert submitted(course)[NOTEBOOK] == 'second'
+    assert submitted(course, 'bob')[NOTEBOOK] == 'his'
+    assert not (course.gradebook / 'numbers.json').exists()
+    assert sorted(rows(course, source).values()) == [KNOWN, KNOWN, KNOWN]
+    write(source / 'later' / attempt.replace('Lab 1', 'Lab 1 again').format('ada', 4), 'third')
+    assert set(rows(course, source / 'later').values()) == {AGAIN}
+
+
 @pytest.mark.parametrize('damage', ['{', '[]', '{"ada": 1}', '{"ada": {"x": {"moodle": 1}}}'])
 def test_damaged_numbers_are_said_in_a_sentence(damage, course, source):
     write(course.gradebook / 'numbers.json', damage)

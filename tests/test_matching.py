@@ -54,6 +54,10 @@ def owners(*found, **options):
         'ada_1815_assignsubmission_file_02_joint_state.ipynb',
         'ada_18151_21012_02_joint_state-1.ipynb',
         'ada_LATE_18151_21012_02_joint_state.ipynb',
+        'Lab 2_ada_attempt_2026-01-02-03-04-05_02_joint_state.ipynb',
+        'gradebook_ROS_Lab_2_ada_attempt_2026-01-02-03-04-05_02_joint_state.ipynb',
+        'gradebook_ROS_Lab_2/Lab 2_ada_attempt_2026-01-02-03-04-05_02_joint_state.ipynb',
+        'Lab 2_ada_attempt_2026-01-02-03-04-05_work.zip/02_joint_state.ipynb',
     ],
 )
 def test_a_notebook_finds_its_student_and_its_assignment(path, at):
@@ -82,6 +86,7 @@ UPLOADS = {
     'canvas': 'ada_18151_21012_{}.zip/02_joint_state.ipynb',
     'canvas, again': 'ada_LATE_18151_21012_{}-1.zip/02_joint_state.ipynb',
     'canvas, unpacked': 'ada_18151_21012_{}/02_joint_state.ipynb',
+    'blackboard': 'Lab 2_ada_attempt_2026-01-02-03-04-05_{}.zip/02_joint_state.ipynb',
 }
 
 
@@ -242,6 +247,7 @@ def test_what_can_t_be_read_and_what_nobody_grades_is_told_apart(at):
 MALLORY = 'Mallory Evil_666_assignsubmission_file_'
 ADA = 'Ada Lovelace_1815_assignsubmission_file_'
 HERS = f'{ADA}/03_publisher.ipynb'
+HER_ATTEMPT = 'Lab 3_Ada Lovelace_attempt_2026-01-09-03-04-05'
 FORGED = [
     f'{MALLORY}/Ada Lovelace.zip/03_publisher.ipynb',
     f'{MALLORY}/Ada Lovelace/03_publisher.ipynb',
@@ -264,6 +270,12 @@ FORGED = [
     'evilmallory_66666_77777_Ada Lovelace_03_publisher.ipynb',
     'evilmallory_66666_77777_homework.zip/Ada Lovelace/03_publisher.ipynb',
     'evilmallory_LATE_66666_77777_lovelaceada_18151_21012_03_publisher.ipynb',
+    f'evilmallory_66666_77777_{HER_ATTEMPT}_03_publisher.ipynb',
+    f'{MALLORY}{HER_ATTEMPT}_03_publisher.ipynb',
+    f'Lab 3_evilmallory_attempt_2026-01-02-03-04-05_{HER_ATTEMPT}_03_publisher.ipynb',
+    f'Lab 3_evilmallory_attempt_2026-01-02-03-04-05_work.zip/{HER_ATTEMPT}_03_publisher.ipynb',
+    f'Lab 3_evilmallory_attempt_2026-01-02-03-04-05_{ADA}03_publisher.ipynb',
+    'Lab 3_evilmallory_attempt_2026-01-02-03-04-05_Ada Lovelace_03_publisher.ipynb',
     'Mallory Evil/Ada Lovelace/03_publisher.ipynb',
     'Mallory Evil/Ada Lovelace.zip/03_publisher.ipynb',
     'Mallory Evil/Ada Lovelace_03_publisher.ipynb',
@@ -336,6 +348,7 @@ def test_a_student_s_own_name_in_any_spelling_is_fine(path, at):
         ('müllerjörg_LATE_71717_81818_Jörg Müller_03_publisher-3.ipynb', 'müllerjörg'),
         ('müllerjörg_71717_81818_homework-1.zip/03_publisher.ipynb', 'müllerjörg'),
         ('Participant_123_assignsubmission_file_/03_publisher.ipynb', 'Participant 123'),
+        ('作业 3_小明_attempt_2026-01-02-03-04-05_03_publisher.ipynb', '小明'),
     ],
 )
 def test_names_of_every_alphabet_on_every_platform(path, student, at):
@@ -366,6 +379,37 @@ def test_a_student_has_another_number_in_each_of_moodle_s_assignments(at):
     taken, left = owners(at(path.format(2, '02_joint_state')), at(path.format(3, '03_publisher')))
     assert taken == [('Ada Lovelace', '02_joint_state'), ('Ada Lovelace', '03_publisher')]
     assert left == []
+
+
+BLACKBOARD = 'Lab 2_{}_attempt_2026-01-{}-03-04-05_02_joint_state.ipynb'
+
+
+def test_blackboard_says_which_attempt_is_the_latest(at):
+    attempts = [at(BLACKBOARD.format('ada', day), day) for day in ('10', '09', '11')]
+    hand_ins, left = match(attempts, ASSIGNMENTS)
+    assert [each.notebook for each in hand_ins] == [attempts[1], attempts[0], attempts[2]]
+    assert left == []
+    # the platform's clock is taken to be this machine's
+    local = hand_ins[0].handed_in.astimezone()
+    assert local.strftime('%m-%d %H:%M:%S') == '01-09 03:04:05'
+
+
+def test_a_time_that_is_none_is_left_out(at):
+    assert time_of(at(BLACKBOARD.format('ada', '41'))) == (None, [])
+
+
+def test_names_that_blackboard_leaves_unclear_are_left_to_a_person(at):
+    paths = [BLACKBOARD.format(who, '09') for who in ('a_lovelace', 'b_lovelace', 'zoe')]
+    taken, left = owners(*map(at, paths))
+    assert taken == [('zoe', '02_joint_state')]
+    assert [path for path, _ in left] == paths[:2]
+    assert all('there are several lovelace' in why for _, why in left)
+
+
+def test_a_name_stands_before_another_assignment_of_blackboard_s(at):
+    lab_3 = 'Lab 3_ada_attempt_2026-01-09-03-04-05_03_publisher.ipynb'
+    taken, left = owners(at(BLACKBOARD.format('ada', '09')), at(lab_3))
+    assert (taken, left) == ([('ada', '02_joint_state'), ('ada', '03_publisher')], [])
 
 
 def test_two_homeworks_are_not_one_student(at):

@@ -2,7 +2,8 @@ from pathlib import Path
 
 import pytest
 
-from grader.common.student_names import Unclear, problem_of_id, student_in
+from grader.collect.platforms import student_in
+from grader.common.student_names import Unclear, problem_of_id
 
 
 @pytest.mark.parametrize(

@@ -160,8 +160,11 @@ def test_leftovers_are_no_files_and_refused_paths_are(source, tmp_path):
     assert next(each.path for each in found if each.litter) == '.git'
 
 
-def test_one_upload_of_moodle_is_known_by_its_own_name(source, tmp_path, monkeypatch):
-    name = 'Mallory Evil_666_assignsubmission_file_'
+@pytest.mark.parametrize(
+    'name',
+    ['Mallory Evil_666_assignsubmission_file_', 'Lab_Mallory Evil_attempt_2026-01-02-03-04-05_'],
+)
+def test_one_upload_is_known_by_the_platform_s_name(name, source, tmp_path, monkeypatch):
     (source / name / 'Ada Lovelace').mkdir(parents=True)
     (source / name / 'Ada Lovelace/a.ipynb').write_text('x')
     wanted = {f'{name}/Ada Lovelace/a.ipynb': b'x'}

@@ -8,9 +8,10 @@ from hashlib import sha256
 from pathlib import Path
 
 from grader.collect.naming import Naming, Owner, is_notebook
+from grader.collect.platforms import Label
 from grader.collect.uploads import Incoming, wanted
 from grader.common.dates import date_of
-from grader.common.student_names import Label, Unclear, problem_of_id, spellings
+from grader.common.student_names import Unclear, problem_of_id, spellings
 from grader.notebook.submission import TIMESTAMP
 
 
@@ -26,7 +27,7 @@ class MatchedFile:
     handed_in: datetime | None = None
     """In UTC; None where nothing tells."""
     label: Label | None = None
-    """What Moodle or Canvas said of the student."""
+    """What a course platform said of the student."""
     remark: str = ''
     """What a person may want to look at, although it was taken."""
 
@@ -132,7 +133,11 @@ def _namesakes(owner: Owner) -> tuple:
     if owner.label is None:
         return (owner.student_id, owner.above, owner.assignment, None)
     platform = owner.label.platform
-    return (owner.student_id, owner.above if platform == 'moodle' else (), platform)
+    if platform.number_of == 'student':
+        return (owner.student_id, (), platform)
+    if platform.number_of == 'assignment':
+        return (owner.student_id, owner.above, platform)
+    return (owner.student_id, owner.above, owner.assignment, platform)
 
 
 def _of_several(owner: Owner) -> str:

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from grader.collect.archive_entries import ARCHIVE
-from grader.common.student_names import label_in
+from grader.collect.platforms import label_in
 
 _BETWEEN = '_+- .'
 """What may stand between a student's name and an assignment's."""

@@ -1,6 +1,6 @@
 """What names of files and folders tell of a notebook: its student, its assignment and its time.
 
-The outermost folder, archive or file that a person or a course management system named decides.
+The outermost folder, archive or file that a person or a course platform named decides.
 What lies in it was named by the student: that may agree, and never makes it somebody else's.
 """
 
@@ -10,19 +10,13 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from grader.collect.name_forms import Forms, bare, stem_of
+from grader.collect.platforms import Label, label_in, student_in
 from grader.collect.uploads import Incoming
 from grader.common.dates import date_in
-from grader.common.student_names import (
-    Label,
-    Unclear,
-    is_nobody,
-    label_in,
-    same_person,
-    student_in,
-)
+from grader.common.student_names import Unclear, is_nobody, same_person
 
 _AGAIN = re.compile(r'-\d+(?=$|\.(zip|tar|tgz|tbz2|txz)\b)', re.IGNORECASE)
-"""What Canvas puts behind the name of what is handed in again."""
+"""What a platform puts behind the name of what is handed in again."""
 EXPECTED = (
     'expected STUDENT_ASSIGNMENT.ipynb, STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb or an archive named '
     'after the student'
@@ -40,7 +34,7 @@ class Owner:
     handed_in: datetime | None = None
     """In UTC; None where its name tells no time."""
     label: Label | None = None
-    """What Moodle or Canvas said of the student."""
+    """What a course platform said of the student."""
     above: tuple[str, ...] = ()
     """What the folder, archive or file that decided lies in."""
     inside: tuple[str, ...] = ()
@@ -78,7 +72,7 @@ class Naming:
             stem = stem_of(label.rest)
         elif label and label.rest:  # what the student called that folder or archive
             inside = (_AGAIN.sub('', label.rest), *inside)
-        if label and label.platform == 'canvas':
+        if label and label.platform.numbers_copies:
             stem = _AGAIN.sub('', stem)
         if exchanged := self._forms.exchanged(name):
             if stem != exchanged.what or inside:
@@ -89,6 +83,7 @@ class Naming:
         student = student_in(self._forms.who(name))
         if (named := self._forms.named(stem)) and not same_person(named.who, student):
             where = f'in the archive of {student}' if each.archive else f'in a folder {student}'
+            where = f'in what {student} handed in' if label else where
             raise Unclear(
                 f"it is named after {named.who}, and {where}: rename it if it is {student}'s, "
                 'or else collect it by itself'
@@ -97,6 +92,7 @@ class Naming:
             student,
             assignment,
             by_folder=at < len(each.parts) - 1,
+            handed_in=label.handed_in if label else None,
             label=label,
             above=above,
             inside=inside,
@@ -167,7 +163,7 @@ class Naming:
         return assignment
 
     def _all_by_platform(self, notebooks: Sequence[Incoming], students: Sequence[str]) -> bool:
-        """Whether Moodle, Canvas or the exchange made all of it, in folders of the teacher's.
+        """Whether course platforms or the exchange made all of it, in folders of the teacher's.
 
         Folders of students, in which they may imitate that, would lie beside others' or be known.
         """
@@ -182,7 +178,7 @@ class Naming:
         )
 
     def _first_by_platform(self, each: Incoming) -> int | None:
-        """Return which part Moodle, Canvas or nbgrader's exchange named, the outermost one."""
+        """Return which part a platform or nbgrader's exchange named, the outermost one."""
         for at, part in enumerate(each.parts[: each.archive] or each.parts):
             if label_in(part) or (at < len(each.parts) - 1 and self._forms.exchanged(part)):
                 return at

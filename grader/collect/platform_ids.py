@@ -1,4 +1,4 @@
-"""The numbers that course management systems give students: kept for what goes back to them.
+"""The numbers that course platforms give students: kept for what goes back to them.
 
 gradebook/numbers.json holds {student: {assignment: {'moodle': '8001'}}}. Moodle numbers a student
 anew in each assignment, Canvas once.
@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from grader.collect.matching import MatchedFile
+from grader.collect.platforms import Label
 from grader.common.errors import CourseError
 from grader.common.files import write_whole
 from grader.course import Course
@@ -45,15 +46,15 @@ class Numbers:
         """
         came = defaultdict(set)
         for each in hand_ins:
-            if each.label:
-                came[_same(each)].add(each.label.number)
+            if label := _numbered(each):
+                came[_same(each)].add(label.number)
         problems = [_problem(each, came[_same(each)] | self._known(each)) for each in hand_ins]
         changed = False
         for each, problem in zip(hand_ins, problems, strict=True):
-            if each.label and not problem:
+            if (label := _numbered(each)) and not problem:
                 theirs = self._kept.setdefault(each.student_id, {}).setdefault(each.assignment, {})
-                changed |= theirs.get(each.label.platform) != each.label.number
-                theirs[each.label.platform] = each.label.number
+                changed |= theirs.get(label.platform.name) != label.number
+                theirs[label.platform.name] = label.number
         if changed:
             text = json.dumps(self._kept, ensure_ascii=False, indent=1, sort_keys=True)
             write_whole(self._path, text + '\n')
@@ -61,29 +62,35 @@ class Numbers:
 
     def _known(self, each: MatchedFile) -> set[str]:
         """Return the numbers that the student of that name had before."""
-        if each.label is None:
+        if (label := _numbered(each)) is None:
             return set()
-        platform, theirs = each.label.platform, self._kept.get(each.student_id, {})
-        if platform == 'moodle':
+        platform, theirs = label.platform, self._kept.get(each.student_id, {})
+        if platform.number_of == 'assignment':
             theirs = {each.assignment: self.of(each.student_id, each.assignment)}
-        return {numbers[platform] for numbers in theirs.values() if platform in numbers}
+        return {numbers[platform.name] for numbers in theirs.values() if platform.name in numbers}
+
+
+def _numbered(each: MatchedFile) -> Label | None:
+    """Return what a platform said of the student, if that is a number to be kept."""
+    return each.label if each.label and each.label.platform.number_of != 'download' else None
 
 
 def _same(each: MatchedFile) -> tuple[str, ...]:
     """Return what equal numbers are expected of."""
-    if each.label is None:
+    if (label := _numbered(each)) is None:
         return ()
-    of = each.assignment if each.label.platform == 'moodle' else ''
-    return each.label.platform, each.student_id, of
+    of = each.assignment if label.platform.number_of == 'assignment' else ''
+    return label.platform.name, each.student_id, of
 
 
 def _problem(each: MatchedFile, numbers: set[str]) -> str:
-    if each.label is None or numbers == {each.label.number}:
+    label = _numbered(each)
+    if label is None or numbers == {label.number}:
         return ''
-    platform, who = each.label.platform.capitalize(), each.student_id
-    others = ', '.join(sorted(numbers - {each.label.number}))
+    platform, who = label.platform.name.capitalize(), each.student_id
+    others = ', '.join(sorted(numbers - {label.number}))
     return (
-        f"the name {who} has {platform}'s number {each.label.number} here and {others} elsewhere: "
+        f"the name {who} has {platform}'s number {label.number} here and {others} elsewhere: "
         f'if it is one person, rename the folder to {who}, without the number; if not, give each '
         'folder a name of its own'
     )

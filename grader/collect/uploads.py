@@ -12,9 +12,9 @@ from pathlib import Path
 
 from grader.collect.archive_entries import ARCHIVE, MAX_PARTS
 from grader.collect.archives import MAX_FILE_BYTES, Allowance, unpack
+from grader.collect.platforms import label_in
 from grader.common.errors import CourseError
 from grader.common.parsing import Limits, TooHard, parse
-from grader.common.student_names import label_in
 from grader.notebook.submission import TIMESTAMP
 
 ALL = {'files': 100_000, 'bytes': 8_000_000_000}
@@ -74,7 +74,7 @@ def look_into(source: Path, aside: Path) -> Iterator[Incoming]:
     left = Allowance(**ALL)
     # the name of one student's upload says whose it is; a class's may look like one of Canvas's
     name = source.resolve().name
-    upload = (name,) if (label := label_in(name)) and label.platform == 'moodle' else ()
+    upload = (name,) if (label := label_in(name)) and label.platform.is_plain else ()
     if source.is_dir():
         found: Iterator[Incoming] = _walk(source, upload)
     elif upload and source.is_file():

@@ -2,8 +2,6 @@
 
 import re
 import unicodedata
-from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import lru_cache
 from itertools import permutations
 
@@ -16,16 +14,6 @@ HTML = frozenset('<>"')
 MOST_WORDS = 4
 """The words of a name are tried in each order where they are written as one; more are not."""
 
-# What course management systems put around a name. Neither leaves an underscore in the name, and
-# what stands behind it is the name that the student gave the file.
-_MOODLE = re.compile(
-    r'(?P<who>.+?)_(?P<number>\d+)_assignsubmission_(file|onlinetext)_?(?P<rest>.*)'
-)
-_CANVAS = re.compile(
-    r'(?P<who>[^_]+)(_LATE)?_(?P<number>\d{3,})_(?P<upload>\d{3,})(_(?P<rest>.*))?', re.I
-)
-_ANONYMOUS = {'Participant', 'Teilnehmer', 'Teilnehmerin'}
-"""What Moodle calls everybody where teachers must not know who it was."""
 _UPLOADS = """
     notebooks submitted submissions submission inbound assignment assignments homework hw task
     tasks exercise exercises solution solutions answer answers lab labs lesson lessons project
@@ -42,46 +30,6 @@ _BESIDE_THEM = frozenset(
 
 class Unclear(Exception):
     """Says in a sentence why a file is nobody's."""
-
-
-@dataclass(frozen=True)
-class Label:
-    """What a course management system wrote before the name of a file, or as a folder's name."""
-
-    platform: str
-    """'moodle' or 'canvas'."""
-    number: str
-    """Moodle's of a student in one assignment, Canvas's of a student."""
-    who: str
-    rest: str
-    """What the student called the file; '' in a folder's name."""
-
-
-def label_in(name: str) -> Label | None:
-    """Return what Moodle or Canvas says in a name, if one of them wrote it."""
-    for platform, form in (('moodle', _MOODLE), ('canvas', _CANVAS)):
-        if (found := form.fullmatch(name)) and not _is_term(found.groupdict()):
-            who, number = found['who'], found['number']
-            who = f'{who} {number}' if who in _ANONYMOUS else who
-            return Label(platform, number, who, found['rest'] or '')
-    return None
-
-
-def _is_term(found: Mapping[str, str]) -> bool:
-    """Whether two numbers are those of a year and the next, as in ws_2026_2027_group_a."""
-    number, upload = found['number'], found.get('upload', '')
-    return len(number) == len(upload) == 4 and int(upload) - int(number) in (0, 1)
-
-
-def student_in(name: str) -> str:
-    """Return the student's name in a name. Raises Unclear."""
-    name = unicodedata.normalize('NFC', name)
-    if label := label_in(name):
-        name = label.who
-    name = name.strip(' ')
-    if problem := problem_of_id(name):
-        raise Unclear(problem)
-    return name
 
 
 def same_person(one: str, other: str) -> bool:

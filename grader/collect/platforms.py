@@ -1,0 +1,123 @@
+"""Course platforms: what each one writes around the names of students and of their files."""
+
+import re
+import unicodedata
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from typing import Literal
+
+from grader.common.student_names import Unclear, problem_of_id
+
+
+@dataclass(frozen=True, kw_only=True)
+class Platform:
+    """A course platform, as its downloads name students."""
+
+    name: str
+    """As gradebook/numbers.json has it: 'moodle'."""
+    form: re.Pattern[str]
+    """What it writes before the name of a file, or as a folder's name. Its groups are `who`,
+    `number`, `rest` (what the student called the file; none in a folder's name), perhaps `time`.
+    """
+    number_of: Literal['student', 'assignment', 'download']
+    """Whether a student has one number, or another one in each assignment; 'download' is one that
+    only tells equal names in a download apart, and is not kept."""
+    time_format: str = ''
+    """Of the group `time`, the wall clock's when it was handed in."""
+    numbers_copies: bool = False
+    """Whether it puts -1, -2, … behind the name of a file that is handed in again."""
+    is_plain: bool = False
+    """Whether one student's upload can be collected by itself: nothing else has such a name."""
+
+
+# The part before `rest` ends as early as it can: what stands behind it was the student's choice.
+PLATFORMS = (
+    Platform(
+        name='moodle',
+        form=re.compile(
+            r'(?P<who>.+?)_(?P<number>\d+)_assignsubmission_(file|onlinetext)_?(?P<rest>.*)'
+        ),
+        number_of='assignment',
+        is_plain=True,
+    ),
+    Platform(
+        name='canvas',
+        form=re.compile(
+            r'(?P<who>[^_]+)(_LATE)?_(?P<number>\d{3,})_(?P<upload>\d{3,})(_(?P<rest>.*))?', re.I
+        ),
+        number_of='student',
+        numbers_copies=True,
+    ),
+    # it has no numbers: what stands before the time tells a_lovelace and b_lovelace apart
+    Platform(
+        name='blackboard',
+        form=re.compile(
+            r'(?P<number>.+?_(?P<who>[^_]+))_attempt_(?P<time>\d{4}(-\d\d){5})(_(?P<rest>.*))?'
+        ),
+        number_of='download',
+        time_format='%Y-%m-%d-%H-%M-%S',
+        is_plain=True,
+    ),
+)
+_ANONYMOUS = {'Participant', 'Teilnehmer', 'Teilnehmerin'}
+"""What Moodle calls everybody where teachers must not know who it was."""
+
+
+@dataclass(frozen=True)
+class Label:
+    """What a course platform wrote before the name of a file, or as a folder's name."""
+
+    platform: Platform
+    number: str
+    who: str
+    rest: str
+    """What the student called the file; '' in a folder's name."""
+    handed_in: datetime | None = None
+    """In UTC; None where it tells no time."""
+
+
+def label_in(name: str) -> Label | None:
+    """Return what a course platform says in a name, if one of them wrote it.
+
+    Where several may have, what a student called a file looks like another one's: the name that
+    stands first was not theirs to choose.
+    """
+    found = [
+        (match.end('who'), place, match)
+        for place, platform in enumerate(PLATFORMS)
+        if (match := platform.form.fullmatch(name)) and not _is_term(match.groupdict())
+    ]
+    if not found:
+        return None
+    _, place, match = min(found, key=lambda each: each[:2])
+    platform, who, number = PLATFORMS[place], match['who'], match['number']
+    who = f'{who} {number}' if who in _ANONYMOUS else who
+    return Label(platform, number, who, match['rest'] or '', _time(platform, match))
+
+
+def student_in(name: str) -> str:
+    """Return the student's name in a name. Raises Unclear."""
+    name = unicodedata.normalize('NFC', name)
+    if label := label_in(name):
+        name = label.who
+    name = name.strip(' ')
+    if problem := problem_of_id(name):
+        raise Unclear(problem)
+    return name
+
+
+def _is_term(found: Mapping[str, str]) -> bool:
+    """Whether two numbers are those of a year and the next, as in ws_2026_2027_group_a."""
+    number, upload = found['number'], found.get('upload', '')
+    return len(number) == len(upload) == 4 and int(upload) - int(number) in (0, 1)
+
+
+def _time(platform: Platform, found: re.Match[str]) -> datetime | None:
+    """Return when it was handed in; the platform's time zone is taken to be this machine's."""
+    if not platform.time_format:
+        return None
+    try:
+        return datetime.strptime(found['time'], platform.time_format).astimezone(UTC)
+    except (ValueError, OverflowError, OSError):
+        return None
