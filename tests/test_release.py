@@ -4,7 +4,8 @@ from pathlib import Path
 import nbformat
 import pytest
 from course_maker import PIXEL, TOY, make_course, toy_lesson, write_source
-from my_robot_basics.validate.cells import fingerprint
+from my_robot_basics.validate.cells import KEY, fingerprint
+from my_robot_basics.validate.lesson import read_lesson
 from nbgrader.utils import compute_checksum
 
 from grader.authoring.hidden_points import MarkHidden
@@ -69,6 +70,27 @@ VISIBLE_PARTS = {
     'imports, and a word on it': ('from math import pi\nprint("checked at grading")', 'all'),
     'nothing': ('', 'all'),
 }
+
+
+def test_cells_may_have_the_ids_that_jupyterlab_gives_them(tmp_path):
+    course = make_course(tmp_path / 'course')
+    lesson = toy_lesson()
+    for number, cell in enumerate(lesson.cells):
+        cell.id = f'{number:08x}-1a2b'
+    write_source(course, lesson)
+    release(course)
+    given = read_lesson(course.release_path(TOY))
+    assert (given.notes, given.missing) == ((), {})
+    assert given.hidden == {'double-hidden': 'part'}
+    roles = [cell.metadata[KEY].role for cell in given.notebook.cells]
+    assert roles == [
+        *('text', 'setup', 'demo', 'locked', 'answer', 'free', 'grade', 'grade'),
+        'answer',
+    ]
+    changed = course.release(TOY)
+    del changed.cells[6]  # double-check
+    nbformat.write(changed, course.release_path(TOY))
+    assert read_lesson(course.release_path(TOY)).missing == {'double-check': 1}
 
 
 @pytest.mark.parametrize(('shown', 'hidden'), VISIBLE_PARTS.values(), ids=VISIBLE_PARTS)

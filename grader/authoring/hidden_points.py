@@ -1,7 +1,7 @@
 """Write into a released notebook what *Validate* must know of it and its cells no longer show."""
 
 from my_robot_basics.feedback.hidden import visible
-from my_robot_basics.validate.cells import KEY, RECORD, fingerprint, roles
+from my_robot_basics.validate.cells import KEY, RECORD, fingerprint, grade_id, roles
 from my_robot_basics.validate.titles import checks_something
 from nbconvert.preprocessors import Preprocessor
 from nbformat import NotebookNode
@@ -17,9 +17,9 @@ class MarkHidden(Preprocessor):
         record = {}
         for cell, role in zip(nb.cells, roles(nb), strict=True):
             if role != 'text':
-                record[cell.id] = {'role': role}
+                record[_key(cell)] = {'role': role}
             if role == 'grade' and (shown := visible(cell.source)) != cell.source:
-                record[cell.id]['hidden'] = 'part' if checks_something(shown) else 'all'
+                record[_key(cell)]['hidden'] = 'part' if checks_something(shown) else 'all'
         nb.metadata[KEY] = {RECORD: record}
         return nb, resources
 
@@ -32,8 +32,13 @@ class MarkSources(Preprocessor):
     def preprocess(self, nb: NotebookNode, resources: dict) -> tuple[NotebookNode, dict]:
         """Complete the record."""
         for cell in nb.cells:
-            if mark := nb.metadata[KEY][RECORD].get(cell.id):
+            if mark := nb.metadata[KEY][RECORD].get(_key(cell)):
                 mark['source'] = fingerprint(cell.source)
                 if points := cell.metadata.get('nbgrader', {}).get('points'):
                     mark['points'] = points
         return nb, resources
+
+
+def _key(cell: NotebookNode) -> str:
+    """Return what the record calls a cell: the id that an author gave it, or JupyterLab did."""
+    return grade_id(cell) or cell.id

@@ -7,7 +7,8 @@ from nbformat import NotebookNode
 KEY = 'my_robot_basics'
 """Our one key in a cell's metadata: {'role': ...}, and after grading the verdict."""
 RECORD = 'cells'
-"""Under KEY in a released notebook's metadata: what each cell was given out as, by its id."""
+"""Under KEY in a released notebook's metadata: what each cell was given out as, by its
+nbgrader id; by its own where it has none."""
 
 
 def grade_id(cell: NotebookNode) -> str | None:
