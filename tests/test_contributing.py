@@ -6,31 +6,51 @@ import sys
 from textwrap import dedent
 from types import ModuleType
 
+import pytest
+
 from grader.collect import platforms
 from grader.course import ROOT
-from my_robot_basics import checks
+from my_robot_basics import checks, live
 
 PAGE = (ROOT / 'CONTRIBUTING.md').read_text(encoding='utf-8')
 
 
-def block_of(section):
-    """Return the first block of Python in a section."""
+def blocks_of(section):
+    """Return the blocks of Python in a section."""
     text = PAGE.partition(f'\n## {section}\n')[2].partition('\n## ')[0]
-    return dedent(re.search(r'^ *```python\n(.*?)^ *```', text, re.MULTILINE | re.DOTALL)[1])
+    blocks = re.findall(r'^ *```python\n(.*?)^ *```', text, re.MULTILINE | re.DOTALL)
+    return [dedent(block) for block in blocks]
 
 
-def test_the_row_of_a_check_makes_it_public(monkeypatch):
+@pytest.fixture
+def example(monkeypatch):
+    """Make the check of the page, and its row."""
     module = ModuleType('my_robot_basics.checks.example')
-    exec(block_of('A check'), vars(module))
+    exec(blocks_of('A check')[0], vars(module))
     monkeypatch.setitem(sys.modules, module.__name__, module)
     (row,) = re.findall(r"`('expect_text': '.+?')`", PAGE)
     for name, home in ast.literal_eval(f'{{{row}}}').items():
         monkeypatch.setitem(checks._HOMES, name, home)
-    assert checks.expect_text is module.expect_text
+    return module
+
+
+def test_the_row_of_a_check_makes_it_public(example):
+    assert checks.expect_text is example.expect_text
+
+
+@pytest.mark.starts
+@pytest.mark.parametrize('name', ['test_the_text_is_found', 'test_another_text_is_told'])
+def test_the_test_of_a_check_passes(name, example):
+    names = {}
+    exec(blocks_of('A check')[1], names)
+    try:
+        names[name](live.run)
+    finally:
+        live.stop()
 
 
 def test_the_row_of_a_platform_reads_its_names(monkeypatch):
-    brightspace = eval(block_of('A collect format'), vars(platforms))
+    brightspace = eval(blocks_of('A collect format')[0], vars(platforms))
     monkeypatch.setattr(platforms, 'PLATFORMS', (*platforms.PLATFORMS, brightspace))
     (name,) = re.findall(r'`(12345-.+?)`', PAGE)
     label = platforms.label_in(name)

@@ -128,7 +128,8 @@ class Topic:
         others, it speaks of what was `expected`, of the last one, as `seen` puts it in words, and
         gives the `hint` (on that one, if it is a function); so it does where one comes for which
         `never` holds, beside the right one. With `once`, a second one for which the predicate
-        holds fails, too.
+        holds fails, too, in words for a node that publishes once for each message: so publish one
+        message in `after`.
         """
         with Watcher() as watcher:
             ears = self.listen(watcher)
