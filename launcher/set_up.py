@@ -5,6 +5,7 @@ or tells of something else, its part of the work is done again.
 """
 
 import fcntl
+import hashlib
 import os
 import re
 import sys
@@ -19,6 +20,8 @@ from launcher.shares import TOOLS, UNDERLAY, make_tools, tell_ament, tell_jupyte
 
 PINS = 'environment.txt'
 """In the course's root, where installers run."""
+INTERFACES = 'arm_interfaces/wheel'
+"""Where the wheel of the course's own service and action lies: students have no compiler."""
 BUILD_TOOLS = ('setuptools',)
 """What the packages are built with that exist as sources alone."""
 
@@ -37,7 +40,23 @@ def made_packages(environment: Environment) -> str:
     files += sorted((package / 'my_robot_basics/validate/labextension').glob('*.json'))
     if environment.has_grader:
         files += [root / 'pyproject.toml', root / 'grader/kernels/kernelspec/kernel.json']
-    return ''.join([*(file.read_text(encoding='utf-8') for file in files), UNDERLAY, str(TOOLS)])
+    texts = [file.read_text(encoding='utf-8') for file in files]
+    wheel = hashlib.sha256((root / interfaces_wheel(root)).read_bytes()).hexdigest()
+    return ''.join([*texts, wheel, UNDERLAY, str(TOOLS)])
+
+
+def interfaces_wheel(root: Path) -> str:
+    """Return the path in the course of the one wheel of arm_interfaces, as installers want it.
+
+    Raises CourseError where it is missing, or is not the only one.
+    """
+    found = sorted((root / INTERFACES).glob('*.whl'))
+    if len(found) != 1:
+        raise CourseError(
+            f'{INTERFACES}/ has {len(found)} wheels (*.whl), expected one: get the files of the '
+            'course again.'
+        )
+    return f'./{found[0].relative_to(root)}'
 
 
 Made = Callable[[Environment], str]
@@ -113,7 +132,9 @@ def install_packages(installer: Installer) -> None:
     """Install the course's own packages: editable, so that a change holds at once."""
     environment = installer.environment
     ours = ['-e', './my_robot_basics', *(['-e', '.'] if environment.has_grader else [])]
-    installer.install('--no-deps', '--no-build-isolation', *ours)
+    # by force: a wheel of the same version may hold something else by now
+    options = ('--no-deps', '--no-build-isolation', '--force-reinstall')
+    installer.install(*options, *ours, interfaces_wheel(environment.root))
     with writing():
         tell_ament(environment)
         tell_jupyter(environment)

@@ -20,7 +20,7 @@ from grader.course import ROOT, Course
 from launcher import lab
 
 TOP = ['.jupyterlab', 'LICENSE', 'README.md', 'course', 'environment.txt', 'launcher']
-TOP += ['my_robot_basics', 'notebooks']
+TOP = sorted([*TOP, 'arm_interfaces', 'my_robot_basics', 'notebooks'])
 ANSWER = '    return x + x  # the secret answer'
 CANARY = 'assert student.call("double", 21) == 42, "count again"  # hidden canary'
 
@@ -36,7 +36,8 @@ def made(tmp_path_factory):
     shutil.copytree(
         ROOT / 'my_robot_basics', course.root / 'my_robot_basics', ignore=made_by_tools
     )
-    shutil.copytree(ROOT / 'launcher', course.root / 'launcher', ignore=made_by_tools)
+    for name in ('launcher', 'arm_interfaces'):
+        shutil.copytree(ROOT / name, course.root / name, ignore=made_by_tools)
     release(course)
     return course
 
@@ -91,13 +92,13 @@ def test_it_holds_what_students_need_and_nothing_else(made, fresh_lessons, tmp_p
     assert {f'notebooks/{TOY}/{TOY}.ipynb', 'notebooks/index.ipynb'} < found
     assert {'my_robot_basics/package.xml', 'my_robot_basics/my_robot_basics/ros2/start.py'} < found
     tracked = subprocess.run(
-        ['git', 'ls-files', 'my_robot_basics', 'launcher'],
+        ['git', 'ls-files', 'my_robot_basics', 'launcher', 'arm_interfaces'],
         cwd=ROOT,
         capture_output=True,
         text=True,
         check=True,
     ).stdout.split()
-    ours = ('my_robot_basics/', 'launcher/')
+    ours = ('my_robot_basics/', 'launcher/', 'arm_interfaces/')
     assert {name for name in found if name.startswith(ours)} == set(tracked)
 
 

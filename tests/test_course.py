@@ -68,6 +68,7 @@ class Machine:
         (self.root / 'notebooks').mkdir()
         for name in ('package.xml', 'setup.py', 'setup.cfg'):
             shutil.copy(ROOT / 'my_robot_basics' / name, package.parent)
+        shutil.copytree(ROOT / 'arm_interfaces', self.root / 'arm_interfaces')
         for name in ('course', 'pyproject.toml', 'LICENSE', 'README.md'):
             shutil.copy(ROOT / name, self.root)
         (package.parent / 'resource').mkdir()
@@ -262,6 +263,24 @@ def test_new_entry_points_are_installed_without_making_all_again(machine):
         call for call in machine.calls('uv pip install') if '-e ./my_robot_basics -e .' in call
     ]
     assert machine.course('scores').stderr == ''
+
+
+def test_another_wheel_of_the_same_version_is_installed(machine):
+    machine.course('scores')
+    machine.calls('uv')
+    (wheel,) = machine.root.glob('arm_interfaces/wheel/*.whl')
+    with wheel.open('ab') as file:
+        file.write(b'changed')
+    assert machine.course('scores').returncode == 0
+    assert [call for call in machine.calls('uv pip install') if call.endswith(f'/{wheel.name}')]
+    assert machine.course('scores').stderr == ''
+
+
+def test_without_its_wheel_the_course_says_what_is_missing(machine):
+    (wheel,) = machine.root.glob('arm_interfaces/wheel/*.whl')
+    wheel.unlink()
+    sentence = the_one_sentence(machine.course('scores'))
+    assert sentence.startswith('arm_interfaces/wheel/ has 0 wheels (*.whl), expected one: ')
 
 
 def test_ros_finds_the_package_and_its_executables(machine):
@@ -706,7 +725,8 @@ def test_in_a_bundle_an_instructors_verb_says_so_and_sets_nothing_up(bundle, ver
 def test_in_a_bundle_only_the_students_package_is_installed(bundle):
     assert bundle.course('lab').returncode == 0
     (*_, installed) = bundle.calls('uv pip install')
-    assert installed.endswith('--no-build-isolation -e ./my_robot_basics')
+    wheel = './arm_interfaces/wheel/arm_interfaces-0.1.0-cp311-abi3-manylinux_2_28_x86_64.whl'
+    assert installed.endswith(f' --force-reinstall -e ./my_robot_basics {wheel}')
     assert bundle.course('lab').stderr == ''
 
 

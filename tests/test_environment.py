@@ -16,6 +16,7 @@ from packaging.utils import canonicalize_name
 ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / 'my_robot_basics'
 UV = Path(sys.prefix, 'bin/uv')
+INTERFACES = 'arm_interfaces/wheel/*.whl'
 PYTHONS = ['3.11', '3.12', '3.13']
 THIS = '{}.{}'.format(*sys.version_info)
 
@@ -90,7 +91,7 @@ def test_every_direct_requirement_is_pinned_and_in_its_range():
 
 
 def test_this_environment_is_the_pinned_one():
-    ours = {'my-robot-basics', 'my-robot-basics-grader'}
+    ours = {'my-robot-basics', 'my-robot-basics-grader', 'arm-interfaces'}
     installed = {
         canonicalize_name(d.name): f'=={d.version}'
         for d in metadata.distributions(path=[sysconfig.get_path('purelib')])
@@ -170,8 +171,10 @@ def test_installs_on_each_python_that_is_here(version, found, venv):
         [UV, 'venv', '--python', found[version], venv],
         # without dependencies: what the pins forget is then missing
         [UV, 'pip', 'install', '--python', python, '--no-deps', '-r', 'environment.txt'],
+        [UV, 'pip', 'install', '--python', python, '--no-deps', *ROOT.glob(INTERFACES)],
         [UV, 'pip', 'check', '--python', python],
         [python, '-c', use_the_main_parts],
+        [python, '-P', 'tests/round_trip.py'],
     ):
         step = run(*command)
         assert step.returncode == 0, step.stdout + step.stderr

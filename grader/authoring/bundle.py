@@ -42,6 +42,10 @@ IN_PACKAGE += (
 )
 IN_PACKAGE += ('my_robot_basics/validate/labextension/*.js*',)
 """What a package consists of; `*` stands for folders, too."""
+INTERFACES = 'arm_interfaces'
+IN_INTERFACES: tuple[str, ...] = ('package.xml', 'CMakeLists.txt', 'srv/*.srv', 'action/*.action')
+IN_INTERFACES += ('wheel/*.py', 'wheel/abi3.h', 'wheel/*.whl')
+PACKAGES = {PACKAGE: IN_PACKAGE, INTERFACES: IN_INTERFACES}
 MADE_BY_TOOLS = ('*__pycache__*', '*.egg-info*', 'build/*', 'install/*', 'log/*')
 EXECUTABLE = ('course',)
 LONG_AGO = (1980, 1, 1, 0, 0, 0)
@@ -112,17 +116,18 @@ def _paths(course: Course, faults: list[str]) -> Iterator[str]:
         lesson = course.root / 'notebooks' / assignment
         names = {f'{assignment}.ipynb', *map(str, files_in(lesson))}
         yield from (f'notebooks/{assignment}/{name}' for name in sorted(names))
-    yield from (f'{PACKAGE}/{name}' for name in IN_PACKAGE if '*' not in name)
-    for path in map(str, files_in(course.root / PACKAGE)):
-        if any(fnmatch(path, pattern) for pattern in MADE_BY_TOOLS):
-            continue
-        if not any(fnmatch(path, pattern) for pattern in IN_PACKAGE):
-            faults.append(
-                f'{PACKAGE}/{path} is not on the list of what students get '
-                '(grader/authoring/bundle.py): add it there, or remove it'
-            )
-        elif path not in IN_PACKAGE:
-            yield f'{PACKAGE}/{path}'
+    for package, listed in PACKAGES.items():
+        yield from (f'{package}/{name}' for name in listed if '*' not in name)
+        for path in map(str, files_in(course.root / package)):
+            if any(fnmatch(path, pattern) for pattern in MADE_BY_TOOLS):
+                continue
+            if not any(fnmatch(path, pattern) for pattern in listed):
+                faults.append(
+                    f'{package}/{path} is not on the list of what students get '
+                    '(grader/authoring/bundle.py): add it there, or remove it'
+                )
+            elif path not in listed:
+                yield f'{package}/{path}'
 
 
 def _is_lesson(course: Course, name: str) -> bool:
