@@ -16,10 +16,11 @@ from grader.notebook.restore import AssignmentTemplate
 from grader.notebook.submission import Submission, read_submission
 from grader.storage.backups import bring_in_order
 from grader.storage.database import in_sentences, one_engine
-from grader.storage.gradebook import Stored, register, store
+from grader.storage.gradebook import Stored, store
 from grader.storage.late_penalties import deadlines
 from grader.storage.lock import gradebook_lock
 from grader.storage.pipeline import prepared_template
+from grader.storage.registering import register
 from grader.storage.reuse import (
     conditions,
     find_earlier_result,

@@ -12,7 +12,7 @@ from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook, new_outp
 
 from grader.authoring.release import release
 from grader.course import ROOT, Course
-from grader.storage.gradebook import register
+from grader.storage.registering import register
 
 TOY = '00_toy'
 PIXEL = (

@@ -23,8 +23,9 @@ from grader.notebook.restore import restore
 from grader.notebook.submission import read_submission
 from grader.report.feedback import write_feedback
 from grader.report.report import Run, write_report
-from grader.storage.gradebook import register, store
+from grader.storage.gradebook import store
 from grader.storage.pipeline import prepare
+from grader.storage.registering import register
 from grader.storage.submitted import find_submissions
 
 TOKEN = 'a-token-of-this-test'

@@ -22,8 +22,9 @@ from grader.common.parsing import Limits
 from grader.course import Course
 from grader.notebook.restore import restore
 from grader.notebook.submission import read_submission
-from grader.storage.gradebook import register, store
+from grader.storage.gradebook import store
 from grader.storage.pipeline import prepare
+from grader.storage.registering import register
 from grader.storage.submitted import find_submissions
 
 NOTEBOOK = f'{TOY}.ipynb'
@@ -254,7 +255,7 @@ def test_a_full_disk_is_said_in_a_sentence(course, source, monkeypatch):
         raise OSError(28, 'No space left on device')
 
     write(source / f'ada_{TOY}.ipynb', '')
-    monkeypatch.setattr(module, '_put', full)
+    monkeypatch.setattr(module, 'put_whole', full)
     with pytest.raises(CourseError, match='the disk is full: what was collected is kept whole'):
         rows(course, source)
 

@@ -21,7 +21,7 @@ from pathlib import Path
 import nbformat
 from grader.course import ROOT, Course
 from grader.judging.execute import execute
-from grader.storage.gradebook import register
+from grader.storage.registering import (register)
 from grader.notebook.restore import restore
 from grader.storage.pipeline import prepare
 if __name__ == '__main__':

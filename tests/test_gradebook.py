@@ -17,9 +17,10 @@ from grader.export.scores import COLUMNS, write_scores
 from grader.notebook.restore import KEY, restore
 from grader.notebook.submission import read_submission
 from grader.storage import gradebook
-from grader.storage.gradebook import register, store
+from grader.storage.gradebook import store
 from grader.storage.pipeline import prepare, prepared_template, unanswered
 from grader.storage.records import records, verdicts
+from grader.storage.registering import register
 
 RIGHT = 'def double(x):\n    return 2 * x'
 

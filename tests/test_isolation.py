@@ -18,6 +18,7 @@ from grader.kernels import fork_servers
 from grader.kernels import isolation as module
 from grader.kernels.isolation import NO_SANDBOX, TRUST, missing, protections, require_isolation
 from grader.report.feedback import write_feedback
+from grader.sandbox import remedies
 
 RIGHT = 'def double(x): return 2 * x'
 BWRAP = module.subprocess.run
@@ -106,7 +107,7 @@ SETTINGS = {
 @pytest.mark.parametrize(('setting', 'said'), SETTINGS.items(), ids=SETTINGS)
 def test_the_remedy_fits_what_the_system_forbids(monkeypatch, setting, said):
     value, remedy = said
-    monkeypatch.setattr(module, '_setting', lambda name: value if name == setting else '')
+    monkeypatch.setattr(remedies, '_setting', lambda name: value if name == setting else '')
     monkeypatch.setattr(module.subprocess, 'run', refusing('--unshare-user'))
     assert f'sudo sysctl -w {setting.replace("/", ".").rpartition(".")[0]}' in missing()
     assert remedy in missing()
@@ -121,10 +122,10 @@ def test_the_remedy_fits_what_the_system_forbids(monkeypatch, setting, said):
     ],
 )
 def test_the_remedy_fits_the_kind_of_machine(monkeypatch, what, said):
-    monkeypatch.setattr(module, '_in_container', lambda: what == 'container')
-    monkeypatch.setattr(module, '_setting', lambda name: '')
+    monkeypatch.setattr(remedies, '_in_container', lambda: what == 'container')
+    monkeypatch.setattr(remedies, '_setting', lambda name: '')
     wsl = '4.4.0-19041-Microsoft' if what == 'WSL' else '6.1.0'
-    monkeypatch.setattr(module.platform, 'release', lambda: wsl)
+    monkeypatch.setattr(remedies.platform, 'release', lambda: wsl)
     monkeypatch.setattr(module.subprocess, 'run', refusing('--unshare-user'))
     assert said in missing()
 

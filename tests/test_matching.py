@@ -2,8 +2,8 @@ from datetime import UTC, datetime
 
 import pytest
 
+from grader.collect.incoming import Incoming
 from grader.collect.matching import match
-from grader.collect.uploads import Incoming
 
 ASSIGNMENTS = ['00_two_link_arm', '02_joint_state', '03_publisher']
 LATER = datetime(2026, 1, 1, 12, tzinfo=UTC)

@@ -16,8 +16,8 @@ from test_dates import STOPS_DATEUTIL
 from grader.__main__ import main
 from grader.authoring.release import release
 from grader.course import Course
-from grader.storage.gradebook import register
 from grader.storage.records import records
+from grader.storage.registering import register
 
 ANSWERS = {
     'right': 'def double(x):\n    return 2 * x',

@@ -18,8 +18,8 @@ from grader.course import Course
 from grader.judging.execute import Execution
 from grader.notebook.restore import grade_id
 from grader.storage import reuse
-from grader.storage.gradebook import register
 from grader.storage.late_penalties import FILE
+from grader.storage.registering import register
 
 OTHER = '01_other'
 RIGHT = 'def double(x):\n    return 2 * x'

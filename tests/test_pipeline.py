@@ -5,8 +5,8 @@ from sample_class import PATHS, assignment_of
 from grader.course import Course
 from grader.notebook.restore import restore
 from grader.notebook.submission import read_submission
-from grader.storage.gradebook import register
 from grader.storage.pipeline import prepare, prepared_template
+from grader.storage.registering import register
 
 NAMES = (
     '02_joint_state-pass-helper_in_the_last_cell',

@@ -25,7 +25,7 @@ def told(monkeypatch, tmp_path):
 
     def run(number):
         monkeypatch.setattr(
-            'grader.cli.verbs.find_submissions', lambda *_, **__: signal.raise_signal(number)
+            'grader.cli.grade_verb.find_submissions', lambda *_, **__: signal.raise_signal(number)
         )
         return main(['grade'], course=Course.at(tmp_path))
 

@@ -16,7 +16,7 @@ from grader.judging.task import Task
 from grader.sandbox.limits import SUBMISSION_MEMORY_BYTES
 from grader.storage.records import records
 from grader.storage.submitted import find_submissions
-from grader.workers import workers
+from grader.workers import worker_process, workers
 from grader.workers.workers import Workers
 
 COMMAND = (sys.executable, str(Path(__file__).with_name('toy_worker.py')))
@@ -135,17 +135,18 @@ def test_a_submission_that_kills_whoever_grades_it_costs_nobody_else(course, tmp
 
 def test_a_worker_that_hangs_is_replaced(course, tmp_path, monkeypatch):
     mark = tmp_path / 'stopped'
-    monkeypatch.setattr(workers, 'BEAT_SEC', 0.1)
-    monkeypatch.setattr(workers, 'MOST_MISSED', 10_000)
+    monkeypatch.setattr(worker_process, 'BEAT_SEC', 0.1)
+    monkeypatch.setattr(worker_process, 'MOST_MISSED', 10_000)
     with Workers(1, command=COMMAND) as backend:
         work = backend.submit(task(course, f'# stop {mark}'))
         wait_for(mark.exists)
         (hung,) = team()
         (worker,) = backend._team
         wait_for(lambda: worker._missed > 50)
-        monkeypatch.setattr(workers, 'MOST_MISSED', 50)
+        monkeypatch.setattr(worker_process, 'MOST_MISSED', 50)
         wait_for(lambda: worker.ended)
-        monkeypatch.setattr(workers, 'MOST_MISSED', 10_000)  # the next one may take its time
+        # the next one may take its time
+        monkeypatch.setattr(worker_process, 'MOST_MISSED', 10_000)
         assert pid_of(work.result()) != hung.pid
         assert not hung.is_running()
 

@@ -11,7 +11,7 @@ from grader.__main__ import main
 from grader.authoring.release import release
 from grader.course import ROOT
 from grader.grade import grade_all
-from grader.storage.gradebook import register
+from grader.storage.registering import register
 from grader.storage.submitted import find_submissions
 
 PAGE = (ROOT / 'docs/writing-exercises.md').read_text(encoding='utf-8')

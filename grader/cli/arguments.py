@@ -5,6 +5,7 @@ from datetime import datetime
 from pathlib import Path
 
 from grader.cli import verbs
+from grader.cli.grade_verb import run_grade
 from grader.replay import RECORDED
 from grader.storage.due_dates import local_time
 
@@ -89,7 +90,7 @@ def make_parser() -> argparse.ArgumentParser:
     verb.add_argument(
         '--force', action='store_true', help='grade again what has not changed since, too'
     )
-    verb.set_defaults(run=verbs.run_grade)
+    verb.set_defaults(run=run_grade)
 
     verb = subparsers.add_parser('scores', help='write gradebook/scores.csv')
     verb.add_argument(

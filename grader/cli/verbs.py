@@ -1,7 +1,6 @@
 """What `./course VERB` does and prints: a function for each verb, which returns the status."""
 
 import argparse
-from datetime import datetime
 
 from grader.authoring.bundle import bundle
 from grader.authoring.release import release
@@ -14,28 +13,17 @@ from grader.course import Course
 from grader.export.sample_solutions import write_solutions
 from grader.export.scores import write_scores
 from grader.export.totals import write_totals
-from grader.grade import grade_all
 from grader.kernels.isolation import (
-    NO_SANDBOX,
     accounting,
     missing,
     protections,
-    require_isolation,
     slow,
 )
-from grader.replay import RECORDED, replay
 from grader.report.feedback import write_feedback
-from grader.report.progress_table import changes, print_rows
-from grader.report.report import Run, write_report
 from grader.storage.database import wait_until_free
 from grader.storage.due_dates import describe_deadlines, set_due
-from grader.storage.gradebook import register
 from grader.storage.late_penalties import extended_for_nobody
-from grader.storage.submitted import SubmissionFolder, find_submissions
-from grader.workers.backend import Backend
-from grader.workers.dask_backend import Cluster
-from grader.workers.dask_client import Certificates
-from grader.workers.workers import Workers
+from grader.storage.registering import register
 
 NO_DATE = 'none'
 """Stands for a due date that is taken back."""
@@ -88,84 +76,6 @@ def run_due(course: Course, asked: argparse.Namespace) -> int:
     for line in (*describe_deadlines(course), *extended_for_nobody(course)):
         print(line)
     return 0
-
-
-def run_grade(course: Course, asked: argparse.Namespace) -> int:
-    """Grade, a row for each submission, and write the report. 1 where one could not be graded."""
-    backend = _crew(asked)
-    submissions = find_submissions(course, assignment=asked.assignment, student_id=asked.student)
-    if asked.store and asked.seed == RECORDED:
-        raise CourseError('--store needs --seed HEX: what is recorded is stored already')
-    if asked.seed and not asked.store:
-        return _replay(course, submissions, asked, backend)
-    run = Run(datetime.now().astimezone(), seed=asked.seed or '')
-    graded = grade_all(
-        course,
-        submissions,
-        backend=backend,
-        seed=asked.seed or '',
-        trust_students=asked.trust_students,
-        force=asked.force,
-    )
-    rows = []
-    if asked.trust_students and not require_isolation(trust_students=True):
-        print(f'{NO_SANDBOX.capitalize()}, and student code has your rights (--trust-students).')
-    try:
-        for row in print_rows(graded, submissions):
-            rows.append(row)
-    except KeyboardInterrupt:
-        graded.close()  # ends all that runs, before anybody is told so
-        told = f'{len(rows)} of {len(submissions)} submissions are graded and stored'
-        raise KeyboardInterrupt(told) from None
-    report = write_report(course, run, rows)
-    if changed := changes(rows):
-        print(f'{len(changed)} score{"s" * (len(changed) > 1)} changed:')
-        print(*(f'  {line}' for line in changed), sep='\n')
-    for line in extended_for_nobody(course):
-        print(line)
-    failed = sum(row.stored is None for row in rows)
-    waiting = sum(row.stored is not None and row.stored.pending for row in rows)
-    print(
-        f'{len(rows) - failed} graded, {waiting} of them wait for a person (…), '
-        f'{failed} could not be graded (–).\n'
-        f'Report: {report}\nNext: ./course feedback, ./course scores'
-    )
-    return 1 if failed else 0
-
-
-def _crew(asked: argparse.Namespace) -> Backend | None:
-    certificates = Certificates(asked.tls_ca_file, asked.tls_cert, asked.tls_key)
-    if not asked.dask:
-        if certificates != Certificates():
-            raise CourseError('--tls-ca-file, --tls-cert and --tls-key go with --dask tls://…')
-        return Workers(asked.workers) if asked.workers else None
-    if asked.trust_students:
-        raise CourseError(
-            '--trust-students and --dask do not go together: a worker without a sandbox would '
-            'run what students wrote with the rights of all the cluster'
-        )
-    return Cluster(asked.dask, certificates)
-
-
-def _replay(
-    course: Course,
-    submissions: list[SubmissionFolder],
-    asked: argparse.Namespace,
-    backend: Backend | None,
-) -> int:
-    same = True
-    for line, as_stored in replay(
-        course,
-        submissions,
-        backend=backend,
-        seed=asked.seed,
-        trust_students=asked.trust_students,
-    ):
-        print(line, flush=True)
-        same &= as_stored
-    print('The same as in the gradebook.' if same else 'NOT the same as in the gradebook.')
-    print('Nothing was stored; --store stores it.')
-    return 0 if same else 1
 
 
 def run_scores(course: Course, asked: argparse.Namespace) -> int:

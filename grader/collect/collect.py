@@ -5,10 +5,9 @@ in gradebook/submitted_before/STUDENT/ASSIGNMENT/NUMBER/, with the grade that it
 """
 
 import errno
-import hashlib
 import shutil
 import tempfile
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from datetime import datetime
 from functools import cache
@@ -16,6 +15,15 @@ from pathlib import Path
 
 from grader.collect.matching import MatchedFile, match
 from grader.collect.platform_ids import Numbers
+from grader.collect.submission_folders import (
+    contents,
+    contents_of_earlier,
+    digests,
+    put_numbered,
+    put_whole,
+    within,
+    writer,
+)
 from grader.collect.uploads import look_into
 from grader.common.dates import date_of
 from grader.common.errors import CourseError
@@ -104,68 +112,28 @@ def _take(
     place = course.folder('submitted', each.student_id, each.assignment)
     shelf = course.folder('submitted_before', each.student_id, each.assignment)
     files = dict(_files(each))
-    came = _digests(files)
+    came = digests(files)
     if not place.exists():
-        _put(_writer(files, each.handed_in), place)
+        put_whole(writer(files, each.handed_in), place)
         return NEW, ''
-    there, when = _contents(place), date_of(place / TIMESTAMP)
+    there, when = contents(place), date_of(place / TIMESTAMP)
     if came == there:
         return KNOWN, 'nothing new'
     both = (each.handed_in, when) if each.handed_in and when else None
-    if not (both and both[0] > both[1]) and came in _shelved(shelf):
+    if not (both and both[0] > both[1]) and came in contents_of_earlier(shelf):
         return KNOWN, 'as an earlier one, which was replaced since'
     if both and both[0] <= both[1]:
-        kept = _shelve(_within('submitted', _writer(files, each.handed_in)), shelf)
+        kept = put_numbered(within('submitted', writer(files, each.handed_in)), shelf)
         return EARLIER, f'a later one is there already; kept in {_shown(kept, course)}'
-    if there not in _shelved(shelf):  # else an earlier run was ended right after that
-        _shelve(lambda folder: _copy_all(course, each, folder, grades), shelf)
-    _put(_writer(files, each.handed_in), place)
+    if there not in contents_of_earlier(shelf):  # else an earlier run was ended right after that
+        put_numbered(lambda folder: _copy_all(course, each, folder, grades), shelf)
+    put_whole(writer(files, each.handed_in), place)
     return AGAIN, f'the one before and its grade are kept in {_shown(shelf, course)}'
 
 
 def _files(each: MatchedFile) -> Iterator[tuple[str, Path]]:
     yield f'{each.assignment}.ipynb', each.notebook.readable
     yield from each.extra.items()
-
-
-def _contents(folder: Path) -> dict[str, bytes]:
-    """Return the digests of a submission's files, without the time."""
-    files = (path for path in folder.iterdir() if path.is_file() and path.name != TIMESTAMP)
-    return _digests({path.name: path for path in files})
-
-
-def _digests(files: Mapping[str, Path]) -> dict[str, bytes]:
-    """Return what tells contents apart: several submissions of 200 MB would fill the memory."""
-    found = {}
-    for name, path in files.items():
-        with path.open('rb') as file:
-            found[name] = hashlib.file_digest(file, 'sha256').digest()
-    return found
-
-
-def _shelved(shelf: Path) -> list[dict[str, bytes]]:
-    return [_contents(folder) for folder in shelf.glob('*/submitted')]
-
-
-def _writer(files: Mapping[str, Path], handed_in: datetime | None) -> Callable[[Path], None]:
-    """Return what writes a submission into an empty folder, its time as nbgrader does."""
-
-    def write(folder: Path) -> None:
-        for name, path in files.items():
-            shutil.copyfile(path, folder / name)
-        if handed_in:
-            time = handed_in.strftime('%Y-%m-%d %H:%M:%S.%f UTC')
-            (folder / TIMESTAMP).write_text(time, encoding='ascii')
-
-    return write
-
-
-def _within(name: str, write: Callable[[Path], None]) -> Callable[[Path], None]:
-    def write_within(folder: Path) -> None:
-        (folder / name).mkdir()
-        write(folder / name)
-
-    return write_within
 
 
 def _copy_all(
@@ -181,26 +149,6 @@ def _copy_all(
     whose = (each.student_id, each.assignment)
     theirs = [grade for grade in grades() if (grade.student_id, grade.assignment) == whose]
     write_whole(folder / 'scores.csv', as_csv(course, theirs))
-
-
-def _shelve(write: Callable[[Path], None], shelf: Path) -> Path:
-    """Put a folder beside those of earlier times; return it."""
-    numbers = [int(path.name) for path in shelf.glob('*') if path.name.isdecimal()]
-    place = shelf / str(max(numbers, default=0) + 1)
-    _put(write, place)
-    return place
-
-
-def _put(write: Callable[[Path], None], place: Path) -> None:
-    """Write a folder aside and put it in its place: nobody ever finds half of it."""
-    place.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(prefix='.new-', dir=place.parents[2]) as aside:
-        new = Path(aside, 'new')
-        new.mkdir()
-        write(new)
-        if place.exists():
-            place.rename(Path(aside, 'old'))
-        new.rename(place)
 
 
 def _shown(path: Path, course: Course) -> str:

@@ -9,9 +9,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
+from grader.collect.incoming import Incoming, is_notebook
 from grader.collect.name_forms import Forms, bare, stem_of
 from grader.collect.platforms import Label, label_in, student_in
-from grader.collect.uploads import Incoming
 from grader.common.dates import date_in
 from grader.common.student_names import Unclear, is_nobody, same_person
 
@@ -183,11 +183,6 @@ class Naming:
             if label_in(part) or (at < len(each.parts) - 1 and self._forms.exchanged(part)):
                 return at
         return None
-
-
-def is_notebook(each: Incoming) -> bool:
-    """Whether a file is a notebook that can be read."""
-    return not each.problem and each.parts[-1].lower().endswith('.ipynb')
 
 
 def shared_folders(folders: Sequence[tuple[str, ...]]) -> tuple[str, ...]:

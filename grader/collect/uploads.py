@@ -6,12 +6,13 @@ import shutil
 import stat
 import tempfile
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from datetime import UTC, datetime
 from pathlib import Path
 
 from grader.collect.archive_entries import ARCHIVE, MAX_PARTS
 from grader.collect.archives import MAX_FILE_BYTES, Allowance, unpack
+from grader.collect.incoming import Incoming, as_json, from_json
 from grader.collect.platforms import label_in
 from grader.common.errors import CourseError
 from grader.common.parsing import Limits, TooHard, parse
@@ -29,40 +30,6 @@ LIMITS_OF_ONE = Limits(cpu_sec=20, wall_sec=300)
 
 OTHER_ARCHIVE = re.compile(r'\.(rar|7z|gz|bz2|xz|zst|lzh|cab|iso|dmg)$', re.IGNORECASE)
 """How names of archives end that can't be read here."""
-LITTER = {'__MACOSX', '__pycache__', 'Thumbs.db', 'desktop.ini'}
-
-
-@dataclass(frozen=True)
-class Incoming:
-    """A file that came in, wherever it lay."""
-
-    parts: tuple[str, ...]
-    """Its path within what was collected; archives are folders here."""
-    file: Path | None = None
-    """Where it can be read; None where it is not wanted, or has a problem."""
-    modified: datetime | None = None
-    """When it, or the archive it came in, was written."""
-    problem: str = ''
-    """Why it can't be read."""
-    archive: int = 0
-    """How many of its parts lead to a student's archive and name it; 0 where there is none."""
-
-    @property
-    def path(self) -> str:
-        """Return its path as one text."""
-        return '/'.join(self.parts)
-
-    @property
-    def readable(self) -> Path:
-        """Where it can be read; only of what is wanted and has no problem."""
-        assert self.file is not None
-        return self.file
-
-    @property
-    def litter(self) -> bool:
-        """Whether an editor or a desktop left it there, not a person."""
-        hidden = any(part.startswith('.') or part in LITTER for part in self.parts)
-        return hidden and not self.problem
 
 
 def look_into(source: Path, aside: Path) -> Iterator[Incoming]:
@@ -100,12 +67,12 @@ def look_into(source: Path, aside: Path) -> Iterator[Incoming]:
 
 def read_apart(way: str, outer: dict, name: str, aside: str, left: dict) -> dict:
     """Do in a process of its own what `_apart` asks for: JSON comes, and JSON goes."""
-    allowance, archive = Allowance(**left), _unpacked(outer)
+    allowance, archive = Allowance(**left), from_json(outer)
     if way == 'inside':
         found = _inside(archive, name, Path(aside), allowance)
     else:
         found = _opened(archive, Path(aside), allowance, nested=1)
-    return {'found': [_packed(each) for each in found], 'left': asdict(allowance)}
+    return {'found': [as_json(each) for each in found], 'left': asdict(allowance)}
 
 
 def _apart(
@@ -113,7 +80,7 @@ def _apart(
 ) -> Iterator[Incoming]:
     """Yield what is in an archive, 'inside' alone or 'opened' with the archives in it."""
     own = tempfile.mkdtemp(dir=aside)
-    arguments = (way, _packed(outer), name, own, asdict(left))
+    arguments = (way, as_json(outer), name, own, asdict(left))
     try:
         said = parse('grader.collect.uploads:read_apart', *arguments, limits=limits)
     except TooHard as why:
@@ -126,25 +93,7 @@ def _apart(
         )
         return
     vars(left).update(said['left'])
-    yield from map(_unpacked, said['found'])
-
-
-def _packed(each: Incoming) -> dict:
-    """Return a file that came in as JSON."""
-    return vars(each) | {
-        'file': each.file and str(each.file),
-        'modified': each.modified and each.modified.isoformat(),
-    }
-
-
-def _unpacked(said: dict) -> Incoming:
-    return Incoming(
-        parts=tuple(said['parts']),
-        file=said['file'] and Path(said['file']),
-        modified=said['modified'] and datetime.fromisoformat(said['modified']),
-        problem=said['problem'],
-        archive=said['archive'],
-    )
+    yield from map(from_json, said['found'])
 
 
 def wanted(name: str) -> bool:

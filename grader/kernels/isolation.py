@@ -1,7 +1,6 @@
 """Whether this machine can keep student code in a sandbox; and if not, what is missing."""
 
 import os
-import platform
 import re
 import shutil
 import subprocess
@@ -9,13 +8,13 @@ import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 
 from grader.common.errors import CourseError
 from grader.common.pool import Pool
 from grader.kernels.fork_client import fork_into
 from grader.kernels.fork_servers import NoWarmKernel
 from grader.sandbox.cgroup_hierarchies import scoped
+from grader.sandbox.remedies import remedy
 from grader.sandbox.sandbox import Sandbox
 
 TRUST = 'MY_ROBOT_BASICS_TRUST_STUDENTS'
@@ -143,8 +142,8 @@ def _try_all() -> Iterator[Protection]:
     )
     for name, command in _TRIED.items():
         tried = subprocess.run(command, capture_output=True, text=True)
-        yield Protection(name, tried.stderr.strip() if tried.returncode else '', _remedy())
-    yield Protection(_WHOLE, _try_the_whole(), _remedy())
+        yield Protection(name, tried.stderr.strip() if tried.returncode else '', remedy())
+    yield Protection(_WHOLE, _try_the_whole(), remedy())
 
 
 def _try_the_whole() -> str:
@@ -171,40 +170,3 @@ async def _run_nothing() -> str:
         return (tried.stderr.strip() or 'it ended') if tried.returncode else ''
     finally:
         await sandbox.close()
-
-
-def _remedy() -> str:
-    """Return what to do about namespaces that are refused, by what is known of this machine."""
-    for setting, value, wanted in (
-        ('kernel/apparmor_restrict_unprivileged_userns', '1', '0'),
-        ('kernel/unprivileged_userns_clone', '0', '1'),
-        ('user/max_user_namespaces', '0', '10000'),
-        ('user/max_net_namespaces', '0', '10000'),
-    ):
-        if _setting(setting) == value:
-            assignment = f'{setting.replace("/", ".")}={wanted}'
-            return (
-                f'This system forbids it to ordinary programs: sudo sysctl -w {assignment}, and '
-                f'put the line {assignment} into /etc/sysctl.d/60-sandbox.conf to keep it so'
-            )
-    if _in_container():
-        return (
-            'This is a container, and its guard forbids it: grade outside of it, or start it with '
-            '--security-opt seccomp=unconfined --security-opt apparmor=unconfined '
-            '--security-opt systempaths=unconfined (Docker and Podman), or --privileged'
-        )
-    if 'microsoft' in platform.release().lower() and 'wsl2' not in platform.release().lower():
-        return 'This is WSL 1, which has no namespaces: wsl --set-version <distribution> 2'
-    return 'User namespaces are needed, in Linux 5.14 or newer: another machine may have them'
-
-
-def _setting(name: str) -> str:
-    try:
-        return Path('/proc/sys', name).read_text(encoding='ascii').strip()
-    except OSError:
-        return ''
-
-
-def _in_container() -> bool:
-    marks = ('/.dockerenv', '/run/.containerenv', '/run/systemd/container')
-    return any(Path(mark).exists() for mark in marks)

@@ -10,18 +10,17 @@ import nbformat
 from nbformat import NotebookNode
 from nbgrader.api import Grade, Gradebook, MissingEntry, SubmittedNotebook
 
-from grader.authoring.release_passes import PASSES
-from grader.common.errors import CourseError, GradebookError
+from grader.common.errors import GradebookError
 from grader.common.files import write_whole
 from grader.common.text import printable
 from grader.course import Course
-from grader.notebook.restore import KEY, grade_id
+from grader.notebook.restore import KEY
 from grader.notebook.submission import Submission, extra_python_files, handed_in, timestamps
 from grader.storage.database import connected, in_sentences, make_database, wait_until_free
 from grader.storage.lock import gradebook_lock
-from grader.storage.pipeline import apply, finish, first_reason, resources_of
+from grader.storage.pipeline import finish, first_reason, resources_of
+from grader.storage.registering import register
 
-SAVE_CELLS = 'nbgrader.preprocessors.SaveCells'
 _BEGUN = '.{}.ipynb.begun'
 """An executed notebook lies beside its place until all of it is stored."""
 
@@ -40,39 +39,6 @@ class Stored:
     """Why points are missing: the first reason, or ''."""
     late: float = 0.0
     """What lateness took off the score."""
-
-
-def register(course: Course, assignment: str) -> bool:
-    """Tell the database what an assignment consists of; return whether that was news to it.
-
-    Raises CourseError when cells came or went although submissions are graded already.
-    """
-    resources = resources_of(course, assignment)
-    tidied = apply(PASSES[: PASSES.index(SAVE_CELLS)], course.source(assignment), resources)
-    make_database(course)
-    with connected(course.db_url) as book:
-        known = _checksums_in(book, assignment)
-        wanted = {
-            grade_id(cell) or '': cell.metadata['nbgrader']['checksum']
-            for cell in tidied.cells
-            if 'checksum' in cell.metadata.get('nbgrader', {})
-        }
-        if known == wanted:
-            return False
-        came, went = (
-            sorted(wanted.keys() - (known or wanted)),
-            sorted((known or {}).keys() - wanted),
-        )
-        if (came or went) and book.assignment_submissions(assignment):
-            raise CourseError(
-                f"{assignment} can't be changed like this after submissions were graded "
-                f'(new cells: {", ".join(came) or "none"}; gone: {", ".join(went) or "none"}): '
-                'give the cells their former grade ids, or keep this gradebook/ elsewhere and '
-                'begin a new one.'
-            )
-        book.update_or_create_assignment(assignment)
-    apply((SAVE_CELLS,), tidied, resources)
-    return True
 
 
 def register_before_autograde(*, assignment: str, **_: object) -> None:
@@ -185,14 +151,6 @@ def submitted_notebook(
 def waits_for_a_person(grade: Grade) -> bool:
     """Whether nobody has given a score yet."""
     return grade.auto_score is None and grade.manual_score is None
-
-
-def _checksums_in(book: Gradebook, assignment: str) -> dict[str, str] | None:
-    try:
-        cells = book.find_notebook(assignment, assignment).source_cells
-    except MissingEntry:
-        return None
-    return {cell.name: cell.checksum for cell in cells}
 
 
 def _find(course: Course, submission: Submission) -> tuple[float, float, bool, float] | None:

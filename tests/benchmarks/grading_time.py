@@ -28,8 +28,8 @@ from grader.judging.execute import execute
 from grader.kernels.kernels import Kernel
 from grader.kernels.rooms import Rooms
 from grader.notebook.restore import restore, role
-from grader.storage.gradebook import register
 from grader.storage.pipeline import prepare
+from grader.storage.registering import register
 
 NAMES = (
     '02_joint_state-pass-numpy',

@@ -23,8 +23,8 @@ from grader.course import Course
 from grader.judging import execute as module
 from grader.kernels.isolation import require_isolation
 from grader.notebook.restore import restore
-from grader.storage.gradebook import register
 from grader.storage.pipeline import prepare
+from grader.storage.registering import register
 
 NAMES = (
     '02_joint_state-pass-numpy',

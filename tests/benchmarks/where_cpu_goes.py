@@ -25,8 +25,9 @@ from grader.kernels.kernels import Kernel
 from grader.notebook.restore import restore
 from grader.notebook.submission import read_submission
 from grader.storage.database import one_engine
-from grader.storage.gradebook import register, store
+from grader.storage.gradebook import store
 from grader.storage.pipeline import prepared_template
+from grader.storage.registering import register
 
 NAMES = (
     '02_joint_state-pass-one_constructor',

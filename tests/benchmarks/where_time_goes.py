@@ -30,8 +30,8 @@ from grader.kernels.provisioner import SandboxProvisioner
 from grader.kernels.rooms import Rooms
 from grader.notebook.restore import restore
 from grader.sandbox.sandbox import Sandbox
-from grader.storage.gradebook import register
 from grader.storage.pipeline import prepare
+from grader.storage.registering import register
 
 NAMES = (
     '02_joint_state-pass-numpy',

@@ -1,0 +1,78 @@
+"""Whose each notebook is, and which of them can be nobody's: names that disagree, or namesakes."""
+
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+
+from grader.collect.incoming import Incoming, is_notebook
+from grader.collect.naming import Naming, Owner
+from grader.common.student_names import Unclear, spellings
+
+
+def find_owners(
+    found: Sequence[Incoming], assignments: Iterable[str], students: Iterable[str]
+) -> tuple[dict[Incoming, Owner], dict[Incoming, str], dict[Incoming, str]]:
+    """Return whose each notebook is, what is strange about it, and why the rest are nobody's."""
+    owners: dict[Incoming, Owner] = {}
+    problems: dict[Incoming, str] = {}
+    students = list(students)
+    naming = Naming(found, assignments, students)
+    for each in filter(is_notebook, found):
+        try:
+            owners[each] = naming.owner(each)
+        except Unclear as unclear:
+            problems[each] = str(unclear)
+    numbers = defaultdict(set)
+    for owner in owners.values():
+        numbers[_namesakes(owner)].add(owner.label and owner.label.number)
+    known = defaultdict(set)
+    for student in {*students, *(owner.student_id for owner in owners.values())}:
+        for spelling in spellings(student):
+            known[spelling].add(student)
+    remarks = {}
+    for each, owner in owners.items():
+        remarks[each], problem = _claims(owner, naming, known)
+        if len(numbers[_namesakes(owner)]) > 1:
+            problem = _of_several(owner)
+        if problem:
+            problems[each] = problem
+    return {e: owner for e, owner in owners.items() if e not in problems}, remarks, problems
+
+
+def _namesakes(owner: Owner) -> tuple:
+    """Return what two owners have in common who may be two persons of one name.
+
+    In one download Moodle numbers each of them; Canvas's number is the same in each download.
+    """
+    if owner.label is None:
+        return (owner.student_id, owner.above, owner.assignment, None)
+    platform = owner.label.platform
+    if platform.number_of == 'student':
+        return (owner.student_id, (), platform)
+    if platform.number_of == 'assignment':
+        return (owner.student_id, owner.above, platform)
+    return (owner.student_id, owner.above, owner.assignment, platform)
+
+
+def _of_several(owner: Owner) -> str:
+    assert owner.label is not None  # it has the number
+    return (
+        f'there are several {owner.student_id} with different numbers, this one is '
+        f'{owner.label.number}: rename the folders so that each has a name of its own'
+    )
+
+
+def _claims(owner: Owner, naming: Naming, known: Mapping[str, set[str]]) -> tuple[str, str]:
+    """Compare the names inside an upload with its owner's; return a remark, and a problem.
+
+    `known` are all students, by how their names may be spelled.
+    """
+    whose, remark = owner.student_id, ''
+    for who, surely in naming.claims(owner):
+        others = set().union(*(known.get(spelling, ()) for spelling in spellings(who)))
+        if surely or others - {whose}:
+            return '', (
+                f"it lies in what {whose} handed in, under the name of {who}: if it is {whose}'s, "
+                'rename that; if others packed it, collect what they packed by itself'
+            )
+        remark = remark or f'from a folder of their own, {who!r}'
+    return remark, ''
