@@ -8,6 +8,7 @@ import pytest
 
 from grader.autograde import preprocessors
 from grader.sandbox import cgroup_hierarchies as module
+from grader.sandbox import systemd_scopes
 from grader.sandbox.cgroup_hierarchies import GRADERS, NoCgroups, scoped
 from grader.workers import dask_worker, workers
 
@@ -17,7 +18,7 @@ OFF = 'cpu io memory pids'
 @pytest.fixture(autouse=True)
 def fresh():
     """What was found out about this machine is forgotten, before and after."""
-    caches = (module._found, module._has_scopes)
+    caches = (module._found, systemd_scopes.has_scopes)
     for each in caches:
         each.cache_clear()
     yield
@@ -39,7 +40,8 @@ def machine(tmp_path, monkeypatch):
             '24 1 8:1 / / rw - ext4 /dev/sda rw\n' + ''.join(lines)
         )
         monkeypatch.setattr(os, 'geteuid', lambda: 0 if root else 1000)
-        monkeypatch.setattr(module, '_SYSTEMD', tmp_path if systemd else tmp_path / 'none')
+        for each in (module, systemd_scopes):
+            monkeypatch.setattr(each, 'SYSTEMD', tmp_path if systemd else tmp_path / 'none')
         return tmp_path
 
     return make
@@ -192,13 +194,13 @@ def nowhere(machine, monkeypatch):
     tree(proc / 'unified' / 'user.slice' / 'session-3.scope', processes='41')
     problem = module._found(proc)
     monkeypatch.setattr(module, '_found', lambda proc: problem)
-    monkeypatch.setattr(module, '_own_paths', lambda proc: {'': '/user.slice/session-3.scope'})
-    monkeypatch.setattr(module.shutil, 'which', lambda tool: f'/usr/bin/{tool}')
+    monkeypatch.setattr(systemd_scopes, 'own_paths', lambda proc: {'': '/user.slice/session-3.scope'})
+    monkeypatch.setattr(systemd_scopes.shutil, 'which', lambda tool: f'/usr/bin/{tool}')
     return monkeypatch
 
 
 def test_systemd_gives_a_scope_of_the_users_own(nowhere):
-    nowhere.setattr(module.subprocess, 'run', answering(0))
+    nowhere.setattr(systemd_scopes.subprocess, 'run', answering(0))
     command = scoped(('python', 'x'))
     assert command[:3] == ('systemd-run', '--user', '--scope')
     assert command[-3:] == ('--', 'python', 'x')
@@ -207,7 +209,7 @@ def test_systemd_gives_a_scope_of_the_users_own(nowhere):
 
 
 def test_where_systemd_refuses_the_command_is_as_it_was(nowhere):
-    nowhere.setattr(module.subprocess, 'run', answering(1))
+    nowhere.setattr(systemd_scopes.subprocess, 'run', answering(1))
     assert scoped(('python', 'x')) == ('python', 'x')
 
 

@@ -334,7 +334,7 @@ def _network(pid):
 )
 def test_a_room_ends_with_its_kernel(loop, code):
     sandbox, kernel = loop.run(opened())
-    network = _network(sandbox._pid)
+    network = _network(sandbox._holder.pid)
     before = len(inhabitants(network))
     linger = "import subprocess; subprocess.Popen(['sleep', '4243'], start_new_session=True)"
     loop.run(kernel.run(linger, timeout_sec=60.0))

@@ -11,6 +11,7 @@ from pathlib import Path
 import psutil
 import pytest
 import zmq
+from jupyter_client.kernelspec import KernelSpec
 from my_robot_basics.validate import timeouts
 from my_robot_basics.validate.limits import (
     FLOOD_CHARACTERS,
@@ -25,6 +26,7 @@ from nbformat.v4 import new_code_cell
 
 from grader.common.errors import RoomFailure
 from grader.kernels import kernels
+from grader.kernels.kernel_manager import OurKernelSpec
 from grader.kernels.kernels import Kernel
 
 DOMAIN = 0
@@ -322,7 +324,7 @@ def test_a_message_of_a_million_parts_is_passed_over(spare, run, part):
 
 
 def test_the_limits_of_what_waits_are_those_of_the_sockets(spare):
-    client = spare._client
+    client = spare._connection.client
     for channel in (client.iopub_channel, client.shell_channel, client.stdin_channel):
         limits = [channel.socket.getsockopt(each) for each in (zmq.RCVHWM, zmq.MAXMSGSIZE)]
         assert limits == [MAX_MESSAGES_WAITING, MAX_MESSAGE_BYTES]
@@ -491,8 +493,8 @@ def test_a_kernel_works_in_an_empty_folder_and_imports_nothing_from_it(shared, r
 )
 def test_a_kernel_that_does_not_start_is_the_graders_failure(loop, monkeypatch, argv, why):
     kernel = Kernel(room='test', domain_id=DOMAIN)
-    spec = kernels.KernelSpec(argv=argv, language='python')
-    monkeypatch.setattr(kernels._OurKernelSpec, 'get_kernel_spec', lambda self, name: spec)
+    spec = KernelSpec(argv=argv, language='python')
+    monkeypatch.setattr(OurKernelSpec, 'get_kernel_spec', lambda self, name: spec)
     with pytest.raises(RoomFailure, match=f'the test kernel did not start: .*{why}'):
         loop.run(kernel.start())
     assert not kernel.folder.exists()
@@ -501,8 +503,8 @@ def test_a_kernel_that_does_not_start_is_the_graders_failure(loop, monkeypatch, 
 def test_a_kernel_that_never_answers_is_given_up(loop, monkeypatch):
     monkeypatch.setattr(kernels, 'START_TIMEOUT_SEC', 0.3)
     kernel = Kernel(room='test', domain_id=DOMAIN)
-    spec = kernels.KernelSpec(argv=['sleep', '1000'], language='python')
-    monkeypatch.setattr(kernels._OurKernelSpec, 'get_kernel_spec', lambda self, name: spec)
+    spec = KernelSpec(argv=['sleep', '1000'], language='python')
+    monkeypatch.setattr(OurKernelSpec, 'get_kernel_spec', lambda self, name: spec)
     with pytest.raises(RoomFailure, match='the test kernel did not start: TimeoutError'):
         loop.run(kernel.start())
     assert processes_of(kernel) == []

@@ -525,7 +525,7 @@ def inhabitants(network):
 def test_nothing_outlives_the_sandbox(loop, code):
     sandbox = Sandbox(slot=next(SLOTS))
     loop.run(sandbox.open())
-    network = os.readlink(f'/proc/{sandbox._pid}/ns/net')
+    network = os.readlink(f'/proc/{sandbox._holder.pid}/ns/net')
     room = begin(sandbox, code)
     room.stdout.read(1)
     assert len(inhabitants(network)) >= 1
@@ -546,7 +546,7 @@ async def main():
     room = subprocess.Popen([*place.prefix, {sys.executable!r}, '-c', code], text=True,
         env=place.environment, pass_fds=place.pass_fds, stdout=subprocess.PIPE)
     room.stdout.readline()
-    print(sandbox._pid, flush=True)
+    print(sandbox._holder.pid, flush=True)
     time.sleep(1000)
 asyncio.run(main())
 """

@@ -8,25 +8,20 @@ systemd's delegation (`scoped` asks for it), in a container, or to root where no
 import contextlib
 import os
 import re
-import shutil
-import subprocess
-import uuid
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+from grader.sandbox.cgroup_paths import holds, own_paths
+from grader.sandbox.systemd_scopes import SYSTEMD, UNIT, has_scopes, scope_command
+
 GRADERS = 'mrb-graders'
 """The cgroup that graders move into."""
-UNIT = 'mrb-'
-"""How a scope is called that is for graders alone: not every systemd marks what it delegates."""
 NEEDED, WANTED = ('memory', 'pids'), ('memory', 'pids', 'cpu')
 """The controllers without which a cgroup is of no use, and those that we use."""
 GRADERS_WEIGHT = 1_000
 """Of the processor, beside 200 of a sandbox: who grades must answer however many run."""
 
-_SYSTEMD = Path('/run/systemd/system')
-_TRY_SEC = 10.0
 _MOVES = 10
 
 
@@ -62,41 +57,21 @@ def scoped(command: tuple[str, ...]) -> tuple[str, ...]:
     That is a scope: it is begun by `systemd-run`, as the user's own, and ends with the command.
     """
     found = _found(Path('/proc/self'))
-    return (*_scope(), *command) if isinstance(found, NoCgroups) and _has_scopes() else command
-
-
-def _scope() -> tuple[str, ...]:
-    """Return how a command begins that runs in a new scope."""
-    whose = ('--user',) if os.geteuid() else ()
-    unit = f'--unit={UNIT}{uuid.uuid4().hex}'
-    return ('systemd-run', *whose, '--scope', '--quiet', '--collect', unit, '-pDelegate=yes', '--')
-
-
-@cache
-def _has_scopes() -> bool:
-    """Try whether systemd makes a scope for us."""
-    lacking = shutil.which('systemd-run') is None or not _SYSTEMD.is_dir()
-    if lacking or 'memory' in _own_paths(Path('/proc/self')):  # of version 1: it has none to give
-        return False
-    try:
-        tried = subprocess.run(
-            [*_scope(), 'true'], stdin=subprocess.DEVNULL, capture_output=True, timeout=_TRY_SEC
-        )
-    except subprocess.TimeoutExpired:
-        return False
-    return tried.returncode == 0
+    return (
+        (*scope_command(), *command) if isinstance(found, NoCgroups) and has_scopes() else command
+    )
 
 
 @cache
 def _found(proc: Path) -> Hierarchies | NoCgroups:
     try:
-        paths = _own_paths(proc)
+        paths = own_paths(proc)
         if 'memory' in paths:
             folders = {name: _folder(proc, paths[name], name) for name in WANTED if name in paths}
             return Hierarchies(1, _writable(folders))
         if '' not in paths:
             raise NoCgroups('this Linux has none')
-        top = _folder(proc, '/', '') if _holds(proc, '/', '') else None
+        top = _folder(proc, '/', '') if holds(proc, '/', '') else None
         folder = _version_2(_folder(proc, paths[''], ''), top)
         controllers = _words(folder / 'cgroup.subtree_control')
         return Hierarchies(2, {name: folder for name in WANTED if name in controllers})
@@ -114,33 +89,9 @@ def _uncounted(command_line: Path = Path('/proc/cmdline')) -> str:
     return ' and '.join(name for option, name in names.items() if option in options)
 
 
-def _own_paths(proc: Path) -> dict[str, str]:
-    """Return the cgroup of this process by controller; that of version 2 by ''."""
-    lines = (proc / 'cgroup').read_text(encoding='utf-8').splitlines()
-    whole = [line.split(':', 2) for line in lines]
-    return {name: path for _, names, path in whole for name in names.split(',')}
-
-
-def _mounts(proc: Path, controller: str) -> Iterator[tuple[str, str]]:
-    """Yield which part of a controller's hierarchy is mounted, and where."""
-    for line in (proc / 'mountinfo').read_text(encoding='utf-8').splitlines():
-        own, _, general = line.partition(' - ')
-        kind, _, options = general.split(maxsplit=2)
-        if (kind, controller) == ('cgroup2', '') or (
-            kind == 'cgroup' and controller in options.split(',')
-        ):
-            root, where = own.split()[3:5]
-            yield root, where.replace(r'\040', ' ')
-
-
-def _holds(proc: Path, path: str, controller: str) -> list[Path]:
-    inside = [(os.path.relpath(path, root), where) for root, where in _mounts(proc, controller)]
-    return [Path(where, below) for below, where in inside if not below.startswith('..')]
-
-
 def _folder(proc: Path, path: str, controller: str) -> Path:
     """Return the folder of a cgroup. Raises NoCgroups where it is not mounted here."""
-    for folder in _holds(proc, path, controller):
+    for folder in holds(proc, path, controller):
         return folder
     raise NoCgroups(f'the cgroup {path} is not mounted here')
 
@@ -159,7 +110,7 @@ def _version_2(own: Path, top: Path | None) -> Path:
         folder = own.parent
     elif own == top or _delegated(own):
         folder = own
-    elif os.geteuid() == 0 and top is not None and not _SYSTEMD.is_dir():
+    elif os.geteuid() == 0 and top is not None and not SYSTEMD.is_dir():
         folder = top
     else:
         raise NoCgroups(f'{own} is not ours to use: systemd has not delegated it')

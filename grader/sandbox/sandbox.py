@@ -5,13 +5,9 @@ each room beside it, and everything in a room dies with its first process.
 """
 
 import asyncio
-import contextlib
 import itertools
 import os
 import shutil
-import signal
-import subprocess
-from collections.abc import Iterator
 from pathlib import Path
 
 from grader.common.errors import RoomFailure
@@ -22,19 +18,18 @@ from grader.sandbox.bubblewrap import (
     INSIDE,
     KEEPER,
     ROOMS,
-    holder_command,
     room_command,
     slot_user,
 )
 from grader.sandbox.cgroup_hierarchies import NoCgroups
 from grader.sandbox.cgroups import MemoryEvents, RoomCgroup, SandboxCgroups, joining
+from grader.sandbox.holder import Holder
 from grader.sandbox.kernel_paths import Keeper, Place, make_folder
 from grader.sandbox.limits import let_us_open_more
 from grader.sandbox.memory_watch import watch_memory
 from grader.sandbox.seccomp import seccomp_filter
 from grader.sandbox.temporary_folders import note_cgroups, own_folder
 
-OPEN_TIMEOUT_SEC = 30.0
 CLOSE_TIMEOUT_SEC = 10.0
 _numbers = itertools.count(1)
 
@@ -46,8 +41,6 @@ class Sandbox:
         """Prepare; `slot` is a small number that nobody else on this machine uses meanwhile."""
         let_us_open_more()
         self._user = slot_user(slot)
-        self._holder: subprocess.Popen | None = None
-        self._network = -1
         self._watch: asyncio.Future | None = None
         self._killed: set[int] = set()
         self._files: list[int] = []
@@ -57,38 +50,17 @@ class Sandbox:
         for folder in self._folders.values():
             for name, text in ACCOUNTS.items():
                 (folder / 'given' / name).write_text(text)
+        given = {room: folder / 'given' for room, folder in self._folders.items()}
+        self._holder = Holder(self._user, given)
 
     async def open(self) -> None:
         """Make the cgroups, the network and the disks. Raises RoomFailure."""
         self._make_cgroups()
-        self._holder = subprocess.Popen(
-            holder_command(self._user, {r: f / 'given' for r, f in self._folders.items()}),
-            bufsize=0,
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            start_new_session=True,
-            env={'PATH': f'{os.defpath}:/usr/sbin:/sbin'},
-        )
-        assert self._holder.stdout is not None
-        assert self._holder.stderr is not None
-        os.set_blocking(self._holder.stdout.fileno(), False)
-        line = b''
-        with contextlib.suppress(TimeoutError):
-            async with asyncio.timeout(OPEN_TIMEOUT_SEC):
-                while not line.endswith(b'\n') and self._holder.poll() is None:
-                    line += self._holder.stdout.read(100) or b''
-                    await asyncio.sleep(0.002)
-        if not line.strip().isdigit():
-            ended = self._holder.poll()
-            silent = 'it did not answer' if ended is None else f'it ended with {ended}, silently'
-            self._kill_holder()
-            said = self._holder.stderr.read(10_000).decode(errors='replace').strip()
-            raise RoomFailure(f'the sandbox could not be made: {said or silent}')
-        self._pid = int(line)
-        self._network = os.open(f'/proc/{self._pid}/ns/net', os.O_RDONLY)
+        await self._holder.start()
         if self._cgroups is None:
-            self._watch = asyncio.ensure_future(watch_memory(self._inhabitants, self._killed))
+            self._watch = asyncio.ensure_future(
+                watch_memory(self._holder.inhabitants, self._killed)
+            )
 
     def cgroup(self, room: str) -> RoomCgroup | None:
         """Return the cgroup of a room; None where this machine gives us none."""
@@ -111,7 +83,7 @@ class Sandbox:
             self._folders[room],
             self._folders[room],
             inside=INSIDE,
-            made=Path(f'/proc/{self._pid}/root{DISKS}/{room}/kernel'),
+            made=Path(f'/proc/{self._holder.pid}/root{DISKS}/{room}/kernel'),
             prefix=tuple(prefix),
             environment=ENVIRONMENT,
             pass_fds=(seccomp,),
@@ -134,7 +106,7 @@ class Sandbox:
     def _room_command(self, room: str, seccomp: int, told: int | None = None) -> list[str]:
         command = room_command(
             self._user,
-            holder=self._pid,
+            holder=self._holder.pid,
             room=room,
             seccomp=seccomp,
             told=told,
@@ -164,16 +136,17 @@ class Sandbox:
         """End whatever still runs in it, and wait until it has gone."""
         try:
             async with asyncio.timeout(CLOSE_TIMEOUT_SEC):
-                if self._holder is not None:
-                    await self._end()
+                if self._watch is not None:
+                    self._watch.cancel()
+                await self._holder.end()
                 await self._remove_cgroups()
         except TimeoutError:
             raise RoomFailure('processes of a sandbox could not be ended') from None
         finally:
-            for file in (*self._files, self._network):
-                if file >= 0:
-                    os.close(file)
-            self._files, self._network, self._holder = [], -1, None
+            self._holder.close()
+            for file in self._files:
+                os.close(file)
+            self._files = []
             for folder in self._folders.values():
                 shutil.rmtree(folder, ignore_errors=True)
 
@@ -184,39 +157,6 @@ class Sandbox:
                 await asyncio.sleep(0.005)
             self._note.unlink()
             self._note = None
-
-    async def _end(self) -> None:
-        if self._watch is not None:
-            self._watch.cancel()
-        self._kill_holder()
-        while left := list(self._inhabitants()):
-            for pid in left:
-                with contextlib.suppress(ProcessLookupError):
-                    os.kill(pid, signal.SIGKILL)
-            await asyncio.sleep(0.01)
-        assert self._holder is not None
-        while self._holder.poll() is None:
-            await asyncio.sleep(0.005)
-        for pipe in (self._holder.stdin, self._holder.stdout, self._holder.stderr):
-            if pipe is not None:
-                pipe.close()
-
-    def _kill_holder(self) -> None:
-        assert self._holder is not None
-        with contextlib.suppress(ProcessLookupError):
-            os.killpg(self._holder.pid, signal.SIGKILL)
-
-    def _inhabitants(self) -> Iterator[int]:
-        """Yield the processes that have this sandbox's network."""
-        if self._network < 0:
-            return
-        ours = os.fstat(self._network)
-        for name in os.listdir('/proc'):
-            if name.isdigit():
-                # other users' are not ours; others end while we look
-                with contextlib.suppress(OSError):
-                    if os.path.samestat(os.stat(f'/proc/{name}/ns/net'), ours):
-                        yield int(name)
 
 
 def _sandbox_cgroups() -> SandboxCgroups | None:

@@ -1,0 +1,57 @@
+"""How jupyter_client starts our kernels: one kernelspec, sockets in the kernel's own folder."""
+
+from pathlib import Path
+from subprocess import DEVNULL
+
+from jupyter_client import AsyncKernelManager
+from jupyter_client.kernelspec import KernelSpec, KernelSpecManager
+from zmq.asyncio import Context
+
+from grader.kernels.provisioner import NAME
+from grader.sandbox.kernel_paths import Place
+
+
+class OurKernelSpec(KernelSpecManager):
+    """One kernel, the interpreter we run on: no kernelspec of a student is ever looked up."""
+
+    argv: tuple[str, ...] = ()
+    metadata: dict = {}
+
+    def get_kernel_spec(self, kernel_name: str) -> KernelSpec:
+        """Return it, whatever the name."""
+        return KernelSpec(
+            argv=list(self.argv),
+            display_name='my_robot_basics',
+            language='python',
+            interrupt_mode='message',  # a signal from outside would end a sandbox
+            metadata=self.metadata,
+        )
+
+
+def manager_of(place: Place, context: Context) -> AsyncKernelManager:
+    """Return what starts, interrupts and ends a kernel in a place."""
+    specs = OurKernelSpec()
+    specs.argv = tuple(place.command())
+    if place.closed:
+        specs.metadata = {'kernel_provisioner': {'provisioner_name': NAME}}
+    return AsyncKernelManager(
+        context=context,
+        kernel_spec_manager=specs,
+        transport='ipc',
+        ip=str(place.sockets / 'zmq'),
+        connection_file=str(place.folder / 'connection.json'),
+    )
+
+
+async def launch(
+    manager: AsyncKernelManager, place: Place, room: str, environment: dict[str, str]
+) -> None:
+    """Start a kernel in its place: in a sandbox, or with the grading user's rights."""
+    if place.closed:
+        await manager.start_kernel(place=place, room=room, env=environment)
+        return
+    manager.write_connection_file()
+    place.tell(Path(manager.connection_file))
+    await manager.start_kernel(
+        cwd=place.folder / 'home' / 'work', env=environment, stdout=DEVNULL, stderr=DEVNULL
+    )
