@@ -2,7 +2,7 @@
 
 import pytest
 from my_robot_basics.checks import graph
-from my_robot_basics.graph.graphs import Graph
+from my_robot_basics.graph.snapshot import GraphSnapshot
 from rclpy.node import Node
 from std_msgs.msg import String
 
@@ -26,7 +26,7 @@ def test_the_graph_lists_every_endpoint_and_no_hidden_node():
 
 
 def picture(nodes=('/a',), publishers=None, subscriptions=None):
-    return Graph(nodes, publishers or {}, subscriptions or {})
+    return GraphSnapshot(nodes, publishers or {}, subscriptions or {})
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ import pytest
 from builtin_interfaces.msg import Time
 from my_robot_basics.checks import CheckFailed, student
 from my_robot_basics.exchange import responder, values
-from my_robot_basics.graph import graphs
+from my_robot_basics.graph.raised import what_raised
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 
@@ -211,8 +211,8 @@ def test_what_a_callback_raised_is_told_until_its_node_begins_anew(monkeypatch):
     live.wait_until(lambda: student.trouble('/raises'))
     said = 'ZeroDivisionError: once more \\(.*line \\d+, in tick: raise ZeroDivisionError'
     assert re.match(said, student.trouble('/raises'))
-    assert graphs.what_raised(['/other', '/raises']).startswith('its callback raised ZeroDiv')
-    assert graphs.what_raised(['/other']) == ''
+    assert what_raised(['/other', '/raises']).startswith('its callback raised ZeroDiv')
+    assert what_raised(['/other']) == ''
     live.run(Still, key='Raises')
     assert (student.trouble('/raises'), student.times_raised('/raises')) == ('', 0)
     live.stop()
@@ -231,4 +231,4 @@ def test_how_often_a_callback_raised_is_told_until_its_node_ends(monkeypatch, en
 def test_a_stamp_that_is_no_message_is_told_what_makes_one(monkeypatch):
     said = "AttributeError: 'Time' object has no attribute 'sec' (line 3)"
     monkeypatch.setattr(student, 'trouble', lambda name: said)
-    assert graphs.what_raised(['/any']).endswith('so make a stamp of the time with .to_msg()')
+    assert what_raised(['/any']).endswith('so make a stamp of the time with .to_msg()')

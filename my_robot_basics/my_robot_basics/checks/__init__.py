@@ -34,7 +34,7 @@ _HOMES = {
     'Relay': 'checks.relays',
     'Log': 'checks.logs',
     'Record': 'checks.logs',
-    'Graph': 'graph.graphs',
+    'GraphSnapshot': 'graph.snapshot',
     'Stage': 'checks.delivery_experiment',
     'StagePublisher': 'checks.delivery_experiment',
     'StageSubscription': 'checks.delivery_experiment',

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 from my_robot_basics.exchange import student
 from my_robot_basics.feedback.errors import fail
-from my_robot_basics.graph import graphs
+from my_robot_basics.graph.raised import what_raised
 
 FIX_FIRST = 'so fix that first: rclpy.spin would have ended there'
 
@@ -19,7 +19,7 @@ class Raised:
     def hint(self) -> str:
         """A clause that names one of them, and what to do; or ''."""
         names = [n for n, times in self._before.items() if student.times_raised(n) > times]
-        raised = graphs.what_raised(names)
+        raised = what_raised(names)
         return f'{raised}, {FIX_FIRST}' if raised else ''
 
     def expect_none(self) -> None:
@@ -30,7 +30,7 @@ class Raised:
 
 def expect_none_so_far(node_names: Iterable[str]) -> None:
     """No callback of the nodes has raised since they were started. Raises CheckFailed."""
-    if raised := graphs.what_raised(node_names):
+    if raised := what_raised(node_names):
         _fail(f'{raised}, {FIX_FIRST}')
 
 

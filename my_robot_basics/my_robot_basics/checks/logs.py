@@ -14,6 +14,7 @@ from my_robot_basics.checks.callbacks import Raised
 from my_robot_basics.checks.topics import Topic
 from my_robot_basics.feedback.errors import fail, shorten
 from my_robot_basics.graph import graphs
+from my_robot_basics.graph.raised import what_raised
 from my_robot_basics.graph.watcher import Watcher
 
 LEVELS = {10: 'DEBUG', 20: 'INFO', 30: 'WARN', 40: 'ERROR', 50: 'FATAL'}
@@ -257,7 +258,7 @@ class Log:
         return f"if that is yours, write super().__init__('{name}'), letter for letter"
 
     def _why_unanswered(self, wanted: Sequence[float]) -> str:
-        raised = '' if self._has('INFO') else graphs.what_raised([self._node_name])
+        raised = '' if self._has('INFO') else what_raised([self._node_name])
         if raised:
             return f'{raised}, so fix that first'
         if self._has('INFO') or not self._has('WARN'):
@@ -266,7 +267,7 @@ class Log:
         return INFO_FOR_ANGLES if elsewhere else WARN_ONLY
 
     def _why_unwarned(self) -> str:
-        raised = graphs.what_raised([self._node_name])
+        raised = what_raised([self._node_name])
         if raised and 'ValueError' not in raised:
             return f'{raised}, so fix that first'
         if self.records:

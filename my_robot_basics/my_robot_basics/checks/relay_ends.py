@@ -19,6 +19,8 @@ from my_robot_basics.exchange import values
 from my_robot_basics.feedback.errors import expect, fail
 from my_robot_basics.graph import graphs
 from my_robot_basics.graph.qos_compatibility import brief, incompatible, leave_out
+from my_robot_basics.graph.raised import what_raised
+from my_robot_basics.graph.snapshot import GraphSnapshot
 from my_robot_basics.graph.watcher import Watcher
 
 TIMEOUT_SEC = 10.0
@@ -137,7 +139,7 @@ class Ends:
         if is_latched and gaps and all(gaps):
             return leave_out(gaps[0])
         listeners = graphs.subscription_infos(watcher.node, self.source)
-        if raised := graphs.what_raised(map(graphs.full_name, listeners)):
+        if raised := what_raised(map(graphs.full_name, listeners)):
             return f'{raised}, so fix that first'
         if has_others:
             return 'publish exactly the message that your callback is given'
@@ -162,7 +164,7 @@ class Ends:
             hint=self._graph(watcher).why_unheard(self.source),
         )
 
-    def _graph(self, watcher: Watcher) -> graphs.Graph:
+    def _graph(self, watcher: Watcher) -> GraphSnapshot:
         """The graph without other publishers on `source`: it is not they who are at fault."""
         everybody = graphs.take(watcher)
         others = everybody.without(everybody.publishers(self.source))

@@ -1,0 +1,109 @@
+"""The ROS graph at one moment, and what it says of a topic on which nothing arrives."""
+
+import difflib
+from collections.abc import Collection
+from dataclasses import dataclass
+
+from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.graph.raised import what_raised
+
+_PLUMBING = ('/clock', '/parameter_events', '/rosout')
+
+
+@dataclass(frozen=True)
+class GraphSnapshot:
+    """A picture of the graph, without the nodes whose names start with `_`."""
+
+    node_names: tuple[str, ...]
+    """Full names, such as `/kinematics_publisher`, sorted."""
+    publisher_names: dict[str, tuple[str, ...]]
+    """Topic name to the full names of the nodes that publish there, one for each publisher."""
+    subscription_names: dict[str, tuple[str, ...]]
+    """Topic name to the full names of the nodes that subscribe there."""
+
+    def nodes(self) -> tuple[str, ...]:
+        """Full names of the nodes, sorted."""
+        return self.node_names
+
+    def publishers(self, topic_name: str) -> tuple[str, ...]:
+        """Full names of the nodes that publish on the topic, one for each publisher."""
+        return self.publisher_names.get(topic_name, ())
+
+    def subscriptions(self, topic_name: str) -> tuple[str, ...]:
+        """Full names of the nodes that subscribe to the topic, one for each subscription."""
+        return self.subscription_names.get(topic_name, ())
+
+    def without(self, node_names: Collection[str]) -> 'GraphSnapshot':
+        """The same graph, had those nodes not been there."""
+
+        def left(names: dict[str, tuple[str, ...]]) -> dict[str, tuple[str, ...]]:
+            rest = {
+                topic_name: tuple(node for node in nodes if node not in node_names)
+                for topic_name, nodes in names.items()
+            }
+            return {topic_name: nodes for topic_name, nodes in rest.items() if nodes}
+
+        return GraphSnapshot(
+            node_names=tuple(name for name in self.node_names if name not in node_names),
+            publisher_names=left(self.publisher_names),
+            subscription_names=left(self.subscription_names),
+        )
+
+    def why_silent(self, topic_name: str) -> str:
+        """What to try when nothing arrives on a topic: one clause."""
+        if senders := self.publishers(topic_name):
+            who = theirs(', '.join(senders))
+            if raised := what_raised(senders):
+                return f'{who} has a publisher there and sends nothing, because {raised}'
+            return (
+                f'{who} has a publisher there and sends nothing, so see that it spins, that its '
+                'timer is created (with a period in seconds, and the name of a method, without '
+                'parentheses), and that no callback raises, or waits and so keeps the node busy'
+            )
+        others = self.subscriptions(topic_name)
+        return self._why_none(topic_name, self.publisher_names, 'create_publisher', others)
+
+    def why_unheard(self, topic_name: str) -> str:
+        """What to try when nobody subscribes to a topic: one clause."""
+        others = self.publishers(topic_name)
+        return self._why_none(topic_name, self.subscription_names, 'create_subscription', others)
+
+    def _why_none(
+        self,
+        topic_name: str,
+        names: dict[str, tuple[str, ...]],
+        maker: str,
+        others: tuple[str, ...],
+    ) -> str:
+        # who is at the other end of the topic is not the one that is missing at this end
+        runs = [name for name in self.node_names if name not in others]
+        similar = _similar(topic_name, [name for name in names if name not in _PLUMBING])
+        # it may be the one that was meant, with its two ends mixed up
+        if mixed := sorted({*names.get(similar, others if not runs else ())} & {*others}):
+            return (
+                f'{theirs(", ".join(mixed))} is at the other end of this topic, so check the'
+                f' name in {maker}(…); if another node is missing, run the cell that starts it'
+            )
+        if not runs:
+            return 'the node is not running, so run the cell that starts it and read its output'
+        if similar:
+            uses = theirs(f'{", ".join(names[similar])} uses {similar}')
+            if similar in {name.rpartition('/')[0] + topic_name for name in names[similar]}:
+                return f"{uses}: a name without a leading / is relative to its node's namespace"
+            return f'{uses}, so compare the spelling'
+        if raised := what_raised(runs):
+            return f'{theirs(", ".join(runs))} runs, and {raised}, so fix that first'
+        look = f'look at the topic name in {maker}(…) and that the node calls it'
+        if len(runs) == 1:
+            return f'{theirs(runs[0])} runs, so {look}'
+        return (
+            f'{theirs(", ".join(runs))} run, so if yours is among them, {look}; if it is not, run'
+            ' the cell that starts it and read what it says'
+        )
+
+
+def _similar(topic_name: str, others: list[str]) -> str | None:
+    last = topic_name.rpartition('/')[2]
+    same_end = [name for name in others if name.rpartition('/')[2].lower() == last.lower()]
+    close = difflib.get_close_matches(topic_name, others, n=1, cutoff=0.6)
+    return next(iter([*same_end, *close]), None)
