@@ -76,7 +76,8 @@ def _finite(**values: ArrayLike) -> list[np.ndarray]:
     for name, value in values.items():
         array = np.asarray(value, dtype=float)
         if not np.isfinite(array).all():
-            raise ValueError(f'{name} must be finite, got {value}: check for NaN and infinity')
+            seen = str(value)
+            raise ValueError(f'{name} must be finite, got {seen}: check for NaN and infinity')
         arrays.append(array)
     return arrays
 
@@ -85,7 +86,8 @@ def _lengths(**values: ArrayLike) -> list[np.ndarray]:
     arrays = _finite(**values)
     for name, array in zip(values, arrays, strict=True):
         if not (array > 0).all():
-            raise ValueError(f'{name} must be a length above 0 m, got {values[name]}')
+            seen = str(values[name])
+            raise ValueError(f'{name} must be a length above 0 m, got {seen}')
     return arrays
 
 

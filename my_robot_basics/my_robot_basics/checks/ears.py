@@ -5,6 +5,7 @@ from typing import Any
 from rclpy.qos import QoSProfile
 
 from my_robot_basics.graph import graphs
+from my_robot_basics.graph.message_info import with_info
 from my_robot_basics.graph.watcher import Watcher
 
 
@@ -19,9 +20,9 @@ class Ears:
         self.heard: list[tuple[Any, int]] = []
         self._node = watcher.node
         self._subscription = self._node.create_subscription(
-            type_, topic_name, self._hear, qos_profile
+            type_, topic_name, with_info(self._hear), qos_profile
         )
-        self._publishers = ()
+        self._publishers: tuple[str, ...] = ()
 
     def is_connected(self) -> bool:
         """Whether a publisher has been met."""

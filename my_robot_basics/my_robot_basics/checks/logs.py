@@ -14,6 +14,7 @@ from my_robot_basics.checks.callbacks import Raised
 from my_robot_basics.checks.topics import Topic
 from my_robot_basics.feedback.errors import fail, shorten
 from my_robot_basics.graph import graphs
+from my_robot_basics.graph.message_info import with_info
 from my_robot_basics.graph.raised import what_raised
 from my_robot_basics.graph.watcher import Watcher
 
@@ -228,7 +229,7 @@ class Log:
     def _meet(self) -> None:
         node = self._watcher.node
         latched = QoSProfile(depth=DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        node.create_subscription(LogMessage, '/rosout', self._hear, latched)
+        node.create_subscription(LogMessage, '/rosout', with_info(self._hear), latched)
 
         def is_there() -> bool:
             infos = node.get_publishers_info_by_topic('/rosout')

@@ -1,7 +1,7 @@
 """The two topics of a relay, and the node of the student between them: meet it on both."""
 
 from dataclasses import dataclass
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.node import Node
@@ -60,9 +60,11 @@ class Ends:
     def publish_to_node(self, watcher: Watcher, type_: type, offered: QoSProfile) -> Publisher:
         """A publisher that has met a subscription which asks for no more than it offers."""
         refused = set()
-        events = PublisherEventCallbacks(
-            incompatible_qos=lambda event: refused.add(event.last_policy_kind)
-        )
+
+        def refuse(event: Any) -> None:
+            refused.add(event.last_policy_kind)
+
+        events = PublisherEventCallbacks(incompatible_qos=refuse)
         publisher = watcher.node.create_publisher(
             type_, self.source, offered, event_callbacks=events
         )

@@ -8,8 +8,9 @@ import itertools
 import statistics
 import time
 from collections.abc import Callable, Collection, Sequence
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
+from builtin_interfaces.msg import Time as TimeMessage
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.time import Time
@@ -18,6 +19,7 @@ from rosgraph_msgs.msg import Clock
 from my_robot_basics.checks.clock import Inconclusive, SimulatedClock
 from my_robot_basics.exchange import student
 from my_robot_basics.feedback.errors import fail
+from my_robot_basics.graph.message_info import with_info
 from my_robot_basics.graph.watcher import Watcher
 
 if TYPE_CHECKING:
@@ -80,7 +82,7 @@ def expect_to_follow(topic_name: str, type_: type, publishers: Collection[str]) 
     """
     for _ in range(ATTEMPTS):
         try:
-            seen = _while_ahead(topic_name, type_, publishers)
+            seen: list[float] | None = _while_ahead(topic_name, type_, publishers)
         except Inconclusive:
             seen = _while_ahead_inside(topic_name, type_, publishers)
             if seen is None:
@@ -130,8 +132,9 @@ def _while_ahead_inside(
             # on wall time, or a timer would wait until that has come
             clock.publish(Clock(clock=Time(nanoseconds=time.time_ns()).to_msg()))
             watcher.spin_for(SETTLE_SEC)
-            for name in (name for name, value in former.items() if value is not None):
-                student.set_use_sim_time(name, value=former[name])
+            for name, value in former.items():
+                if value is not None:
+                    student.set_use_sim_time(name, value=value)
 
 
 def _tick_ahead(watcher: Watcher, clock: Publisher, *, seconds: float) -> None:
@@ -145,11 +148,11 @@ def _hear_stamps(watcher: Watcher, topic_name: str, type_: type) -> Callable[[in
     """Listen; what is returned tells how far each stamp since a wall time is ahead of that."""
     heard: list[tuple[float, int]] = []
 
-    def hear(message: object, info: dict) -> None:
+    def hear(message: Any, info: dict) -> None:
         heard.append((_seconds(message.header.stamp), info['source_timestamp']))
 
     asked = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT)
-    watcher.node.create_subscription(type_, topic_name, hear, asked)
+    watcher.node.create_subscription(type_, topic_name, with_info(hear), asked)
     return lambda since_ns: [sec - sent_ns / 1e9 for sec, sent_ns in heard if sent_ns > since_ns]
 
 
@@ -179,7 +182,7 @@ def _from_wall(recording: 'Recording', stamps: Sequence[float]) -> list[float]:
     return [abs(stamp - sample.source_time_sec) for sample, stamp in pairs]
 
 
-def _seconds(stamp: object) -> float:
+def _seconds(stamp: TimeMessage) -> float:
     return stamp.sec + stamp.nanosec * 1e-9
 
 

@@ -65,8 +65,10 @@ class Topic:
         with Watcher() as watcher:
             ears = self.listen(watcher)
             found = sampling.simulated(watcher, ears, seconds=seconds, step_sec=step_sec)
-            why = found if isinstance(found, str) else ''
-            recording = sampling.wall(watcher, ears, why=why) if why else found
+            if isinstance(found, str):
+                why, recording = found, sampling.wall(watcher, ears, why=found)
+            else:
+                why, recording = '', found
             if not recording.messages:
                 self._fail_silent(watcher, seen=f'no message in {recording.seconds:g} s')
         left_sec = _looks_sec() - (time.monotonic() - began)

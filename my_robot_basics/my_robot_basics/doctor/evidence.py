@@ -13,6 +13,8 @@ PART_OF_PERIOD = 0.25
 """… and within this part of the mean time between two: a fast, steady flow is no burst."""
 
 Kind = Literal['publisher', 'subscription']
+VERBS: dict[Kind, str] = {'publisher': 'publishes', 'subscription': 'subscribes'}
+"""What a node with such an endpoint does."""
 
 
 @dataclass(frozen=True, kw_only=True)

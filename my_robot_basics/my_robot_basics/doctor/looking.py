@@ -2,15 +2,17 @@
 
 import dataclasses
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 from my_robot_basics.doctor import remaps, rules
 from my_robot_basics.doctor.asking import Questions
 from my_robot_basics.doctor.evidence import Diagnosis, Endpoint, Evidence, Heard, Kind
 from my_robot_basics.graph import graphs, participants
+from my_robot_basics.graph.message_info import with_info
 from my_robot_basics.graph.watcher import HIDDEN, Watcher
 from my_robot_basics.ros2.interfaces import message_class
 from my_robot_basics.session import domain
@@ -99,7 +101,7 @@ def _listen(watcher: Watcher, evidence: Evidence, *, listen_sec: float) -> Evide
     )
     began_sec, started = time.time(), time.monotonic()
 
-    def hear(message: object, info: dict) -> None:
+    def receive(message: object, info: dict) -> None:
         heard.append(Heard(message=message, sent_sec=info['source_timestamp'] / 1e9))
 
     def is_enough() -> bool:
@@ -108,7 +110,7 @@ def _listen(watcher: Watcher, evidence: Evidence, *, listen_sec: float) -> Evide
             return False
         return time.time() - fresh[0].sent_sec >= ENOUGH_SEC
 
-    watcher.node.create_subscription(type_, evidence.topic_name, hear, qos_profile)
+    watcher.node.create_subscription(type_, evidence.topic_name, with_info(receive), qos_profile)
     watcher.spin_until(is_enough, timeout_sec=listen_sec)
     return dataclasses.replace(
         evidence,
@@ -128,7 +130,7 @@ def _look_into(domain_id: int, topic_name: str) -> tuple[Endpoint, ...]:
 def endpoints_of(node: Node) -> Iterator[Endpoint]:
     """All endpoints on the graph that are neither ROS's own nor those of hidden nodes."""
     depths = _depths()
-    look_ups = {
+    look_ups: dict[Kind, Callable[[str], list[TopicEndpointInfo]]] = {
         'publisher': node.get_publishers_info_by_topic,
         'subscription': node.get_subscriptions_info_by_topic,
     }

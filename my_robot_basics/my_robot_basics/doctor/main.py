@@ -18,9 +18,10 @@ def main(argv: list[str] | None = None) -> int:
         description='Find out why no messages arrive on a topic, and how to fix it.',
         epilog='Exit status: 0 when all is well, 1 when a fault was found, 2 on wrong usage.',
     )
-    parser.add_argument(
-        'topic_name', help='for example /kinematics/joint_states'
-    ).completer = completion.topic_names
+    completion.offer(
+        parser.add_argument('topic_name', help='for example /kinematics/joint_states'),
+        completion.topic_names,
+    )
     parser.add_argument(
         '--domains',
         action='store_true',

@@ -1,9 +1,15 @@
 """The graph around a topic as a picture, the broken edge marked."""
 
 import io
+from typing import TYPE_CHECKING
 
 from my_robot_basics.doctor.evidence import Diagnosis, Endpoint, Kind
 from my_robot_basics.doctor.report import summary
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
 
 # Okabe and Ito's colours are told apart by everyone; a broken edge is dashed and crossed, too
 WELL, BROKEN, TOPIC = '#0072b2', '#d55e00', '#f0f0f0'
@@ -63,7 +69,7 @@ def _label(end: Endpoint | None, kind: Kind, topic_name: str) -> str:
     return end.node_name + elsewhere
 
 
-def box(axes: object, x: float, y: float, text: str, *, face: str, style: str = 'square') -> None:
+def box(axes: 'Axes', x: float, y: float, text: str, *, face: str, style: str = 'square') -> None:
     """Write a name in a frame; topics have round corners and another face than nodes."""
     axes.text(
         *(x, y, text),
@@ -76,7 +82,7 @@ def box(axes: object, x: float, y: float, text: str, *, face: str, style: str = 
 
 
 def arrow(
-    axes: object,
+    axes: 'Axes',
     start: tuple[float, float],
     stop: tuple[float, float],
     *,
@@ -94,16 +100,19 @@ def arrow(
     if is_broken:
         axes.plot(*middle, 'X', color=colour, ms=14, zorder=4)
         return
-    towards = [0.9 * m + 0.1 * b for m, b in zip(middle, stop, strict=True)]
     axes.annotate(
         '',
-        xy=towards,
-        xytext=[0.9 * m + 0.1 * a for m, a in zip(middle, start, strict=True)],
+        xy=_towards(stop, middle),
+        xytext=_towards(start, middle),
         arrowprops={'arrowstyle': '-|>', 'color': colour, 'lw': 2, 'mutation_scale': 18},
     )
 
 
-def png(figure: object) -> bytes:
+def _towards(end: tuple[float, float], middle: tuple[float, float]) -> tuple[float, float]:
+    return 0.9 * middle[0] + 0.1 * end[0], 0.9 * middle[1] + 0.1 * end[1]
+
+
+def png(figure: 'Figure') -> bytes:
     """Return the figure as a PNG."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 

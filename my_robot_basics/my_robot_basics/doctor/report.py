@@ -2,7 +2,7 @@
 
 import textwrap
 
-from my_robot_basics.doctor.evidence import Diagnosis, Evidence, Finding
+from my_robot_basics.doctor.evidence import Diagnosis, Evidence, Finding, Kind
 from my_robot_basics.session.errors import COLUMNS
 
 INDENT = ' ' * 13
@@ -43,7 +43,7 @@ def _heard(evidence: Evidence) -> str:
     return f', no new message in {evidence.listened_sec:.1f} s{latched}'
 
 
-def _names(evidence: Evidence, kind: str, verb: str, plural: str) -> str:
+def _names(evidence: Evidence, kind: Kind, verb: str, plural: str) -> str:
     names = sorted({end.node_name for end in evidence.ends(kind)})
     if not names:
         return f'nobody {verb}'

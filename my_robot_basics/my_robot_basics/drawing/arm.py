@@ -1,6 +1,7 @@
 """Pictures of the two-link arm: metres, equal aspect, the reachable ring, angles in degrees."""
 
 import io
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -59,7 +60,11 @@ class ArmPicture:
         )
         ring.set_label('reachable')
         axes.add_patch(ring)
-        style = {'solid_capstyle': 'round', 'marker': 'o', 'markerfacecolor': 'white'}
+        style: dict[str, Any] = {
+            'solid_capstyle': 'round',
+            'marker': 'o',
+            'markerfacecolor': 'white',
+        }
         (self._link1,) = axes.plot([], [], color=LINK1, lw=6, ms=9, label='link 1', **style)
         (self._link2,) = axes.plot([], [], color=LINK2, lw=4, ms=7, label='link 2', **style)
         (self._effector,) = axes.plot([], [], 'D', color=EFFECTOR, ms=9, label='end effector')
@@ -122,12 +127,13 @@ class ArmPicture:
         shown_deg = (angle_deg + 180) % 360 - 180  # more than a turn looks the same
         size = 0.3 * (self._l1 + self._l2)
         first, last = sorted((start_deg, start_deg + shown_deg))
-        arc = Arc(at, size, size, theta1=first, theta2=last, color=ANGLE, lw=1.2)
+        point = float(at[0]), float(at[1])
+        arc = Arc(point, size, size, theta1=first, theta2=last, color=ANGLE, lw=1.2)
         zero_line = np.array([at, at + 0.8 * size * _direction(start_deg)]).T
         zero = self._axes.plot(*zero_line, color=ANGLE, lw=0.8, ls=':')
         words = self._axes.annotate(
             f'{name} = {angle_deg:.1f}°',
-            at,
+            point,
             fontsize=9,
             va='bottom',
             path_effects=[withStroke(linewidth=3, foreground='white')],

@@ -2,12 +2,13 @@
 
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 if TYPE_CHECKING:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.text import Text
 
 TURNS_DEG = (0, 30, -30, 60, -60, 90, -90, 120, -120, 150, -150, 180)
@@ -44,15 +45,19 @@ def place(label: Label, *, avoid: np.ndarray) -> np.ndarray:
     spots = [_spot(label, turn_deg, size) for turn_deg in TURNS_DEG]
     hidden = [_count(low, low + size, avoid) for low in spots]
     low = spots[hidden.index(min(hidden))]
-    label.words.set_position(low)
-    (left, bottom), (right, top) = low, low + size
-    return points_along([(left, bottom), (right, bottom), (right, top), (left, top), low])
+    label.words.set_position((low[0], low[1]))
+    (left, bottom), (right, top) = low.tolist(), (low + size).tolist()
+    corners = [(left, bottom), (right, bottom), (right, top), (left, top), (left, bottom)]
+    return points_along(corners)
 
 
 def _size(words: 'Text') -> np.ndarray:
     """Return width and height of words as they are drawn, in metres."""
-    renderer = words.get_figure().canvas.get_renderer()
-    drawn = words.axes.transData.inverted().transform(words.get_window_extent(renderer))
+    figure, axes = words.get_figure(), words.axes
+    assert figure is not None  # it is drawn in one
+    assert axes is not None
+    renderer = cast('FigureCanvasAgg', figure.canvas).get_renderer()
+    drawn = axes.transData.inverted().transform(words.get_window_extent(renderer))
     return drawn[1] - drawn[0]
 
 

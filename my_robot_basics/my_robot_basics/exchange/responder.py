@@ -6,6 +6,7 @@ grading.
 
 import contextlib
 import sys
+from typing import Any
 
 from my_robot_basics.exchange import settled, values, wire
 
@@ -18,7 +19,8 @@ def answer(request_text: str) -> str:
     Raises values.WireError for a request that is not of this protocol.
     """
     request = wire.loads(request_text)
-    op, name, args = request.get('op'), request.get('name'), request.get('args', [])
+    op, args = request.get('op'), request.get('args', [])
+    name: Any = request.get('name')
     if request.get('protocol') != wire.PROTOCOL or op not in _PROTOCOL:
         raise values.WireError('a request of another protocol')
     if op == 'endpoint':

@@ -56,7 +56,9 @@ def parse_reply(text: object) -> tuple[str, Any]:
     return kind, body
 
 
-def _is_exception(body: dict) -> bool:
+def _is_exception(body: object) -> bool:
+    if not isinstance(body, dict):
+        return False
     return set(body) == {'type', 'message'} and all(isinstance(v, str) for v in body.values())
 
 

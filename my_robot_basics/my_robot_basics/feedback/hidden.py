@@ -197,8 +197,9 @@ def shown(outputs: Sequence[Any]) -> list[Any]:
 def _title_lines(source: str) -> int:
     """How many lines the docstring takes, which stays the first thing of a cell."""
     first, *_ = [*ast.parse(source).body, None]
-    has_title = isinstance(first, ast.Expr) and isinstance(first.value, ast.Constant)
-    return first.end_lineno if has_title else 0
+    if isinstance(first, ast.Expr) and isinstance(first.value, ast.Constant):
+        return first.end_lineno or 0
+    return 0
 
 
 def _said(outputs: Iterable[Any], mime: str) -> list[str]:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 
+from rclpy.duration import Duration
 from rclpy.qos import DurabilityPolicy, LivelinessPolicy, QoSProfile, ReliabilityPolicy
 
 
@@ -49,6 +50,6 @@ def leave_out(policies: Iterable[str]) -> str:
     return f'the publisher offers no {named}, so leave that out of the profile'
 
 
-def _sec(duration: object) -> str:
+def _sec(duration: Duration) -> str:
     seconds = duration.nanoseconds / 1e9
     return 'none' if seconds > 1e8 else f'{seconds:g} s'

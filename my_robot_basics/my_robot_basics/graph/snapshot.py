@@ -79,7 +79,7 @@ class GraphSnapshot:
         runs = [name for name in self.node_names if name not in others]
         similar = _similar(topic_name, [name for name in names if name not in _PLUMBING])
         # it may be the one that was meant, with its two ends mixed up
-        if mixed := sorted({*names.get(similar, others if not runs else ())} & {*others}):
+        if mixed := sorted({*names.get(similar or '', others if not runs else ())} & {*others}):
             return (
                 f'{theirs(", ".join(mixed))} is at the other end of this topic, so check the'
                 f' name in {maker}(…); if another node is missing, run the cell that starts it'

@@ -18,8 +18,8 @@ def branch_of(theta1_deg: float, theta2_deg: float, *, l1: float = L1, l2: float
 
     A stretched or folded arm is in both: of these, elbow_up is returned.
     """
-    target = forward_kinematics(theta1_deg, theta2_deg, l1, l2)
-    for branch, solution in inverse_kinematics(*target, l1, l2).items():
+    x, y = forward_kinematics(theta1_deg, theta2_deg, l1, l2)
+    for branch, solution in inverse_kinematics(x, y, l1, l2).items():
         if same_pose((theta1_deg, theta2_deg), solution):
             return branch
     raise ValueError(f'IK finds θ1 = {theta1_deg}°, θ2 = {theta2_deg}° in neither branch')

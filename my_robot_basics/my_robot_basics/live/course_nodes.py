@@ -6,11 +6,12 @@ derives from one of the package, takes a method of it, or makes one, it is told 
 
 import importlib
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from types import FunctionType
 
 from rclpy.node import Node
 
+from my_robot_basics.live.patching import patch, patched
 from my_robot_basics.session.errors import NotRunnable
 
 MODULES = tuple(
@@ -35,14 +36,10 @@ def taken_from(answer: type) -> str:
 @contextmanager
 def none_made() -> Iterator[None]:
     """Nobody makes one of the course's nodes meanwhile."""
-    former = {NodeClass: NodeClass.__init__ for NodeClass in _classes()}
-    for NodeClass in former:
-        NodeClass.__init__ = _refusal(NodeClass)
-    try:
+    with ExitStack() as stack:
+        for NodeClass in _classes():
+            stack.enter_context(patched(NodeClass, '__init__', _refusal(NodeClass)))
         yield
-    finally:
-        for NodeClass, function in former.items():
-            NodeClass.__init__ = function
 
 
 def close() -> None:
@@ -51,8 +48,8 @@ def close() -> None:
         refuse = _refusal(NodeClass)
         for name, attribute in [*vars(NodeClass).items()]:
             if isinstance(attribute, FunctionType):
-                setattr(NodeClass, name, refuse)
-        NodeClass.__init_subclass__ = classmethod(refuse)
+                patch(NodeClass, name, refuse)
+        patch(NodeClass, '__init_subclass__', classmethod(refuse))
 
 
 def _classes() -> list[type[Node]]:

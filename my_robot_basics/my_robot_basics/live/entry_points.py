@@ -39,7 +39,8 @@ def add_entry_point(entry_point: str) -> None:
             f"{workspace.shown(setup_file)} has no list 'console_scripts' any more: add "
             f"'{entry_point}' yourself where it belongs (reference/ has the file as it was)"
         )
-    entries = [e.value for e in listed.elts if isinstance(e, ast.Constant)]
+    constants = [e.value for e in listed.elts if isinstance(e, ast.Constant)]
+    entries = [value for value in constants if isinstance(value, str)]
     taken = [entry for entry in entries if entry.partition('=')[0].strip() == command]
     if not taken:
         setup_file.write_text(_with_line(text, listed, entry_point), encoding='utf-8')

@@ -77,7 +77,8 @@ class ArmView:
             self._trouble = f'{self._ignored} ignored: {trouble}'
         else:
             position = dict(zip(message.name, message.position, strict=False))
-            self._pose = tuple(math.degrees(position[joint]) for joint in JOINTS)
+            theta1_deg, theta2_deg = (math.degrees(position[joint]) for joint in JOINTS)
+            self._pose = theta1_deg, theta2_deg
             self._trouble = f'{self._ignored} ignored' if self._ignored else ''
         self.received.set()
         self._display.update_soon(self._bundle)

@@ -3,8 +3,11 @@
 import functools
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import Any
 
 from rclpy.node import Node
+
+from my_robot_basics.live.patching import patched
 
 
 @contextmanager
@@ -17,14 +20,11 @@ def announce_name(node: Node, on_name: Callable[[str], None]) -> Iterator[None]:
     make = Node.__init__
 
     @functools.wraps(make)
-    def init(self: Node, node_name: str, *args: object, **kwargs: object) -> None:
+    def init(self: Node, node_name: str, *args: Any, **kwargs: Any) -> None:
         if self is node:
             namespace = str(kwargs.get('namespace') or '').strip('/')
             on_name('/' + '/'.join(filter(None, [namespace, str(node_name)])))
         make(self, node_name, *args, **kwargs)
 
-    Node.__init__ = init
-    try:
+    with patched(Node, '__init__', init):
         yield
-    finally:
-        Node.__init__ = make

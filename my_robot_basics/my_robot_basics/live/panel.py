@@ -4,6 +4,7 @@ import html
 import threading
 from collections import deque
 from dataclasses import dataclass
+from typing import Protocol
 
 from my_robot_basics.live import notebook, troubles
 from my_robot_basics.live.log_lines import LogRecord
@@ -31,6 +32,25 @@ class Entry:
         text = self.text if len(self.text) <= LONGEST else self.text[:LONGEST] + ' …'
         again = self.times - 1
         return text + (f'\n  … {again} more time{"s"[: again != 1]}' if again else '')
+
+
+class NodePanel(Protocol):
+    """What shows one node: its log, or a picture."""
+
+    def listen(self, name: str) -> None:
+        """Show the log lines of the node of that fully qualified name."""
+
+    def adopt_thread(self) -> None:
+        """Let what this thread prints appear here."""
+
+    def show(self, state: str) -> None:
+        """Appear for the first time."""
+
+    def error(self, error: BaseException) -> None:
+        """Show an exception that a callback raised."""
+
+    def close(self, reason: str) -> None:
+        """Say why the node is gone."""
 
 
 class Panel:

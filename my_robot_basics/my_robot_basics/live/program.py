@@ -99,7 +99,7 @@ def _source_of(name: str) -> str:
         raise NotAnswered(
             f'{name} does nothing yet: answer the exercise, run its cells, then this one'
         )
-    first = min(part.lineno for part in (node, *node.decorator_list))
+    first = min([node.lineno, *(each.lineno for each in node.decorator_list)])
     lines = text.splitlines(keepends=True)[first - 1 : node.end_lineno]
     return textwrap.dedent(''.join(lines)).rstrip('\n') + '\n'
 

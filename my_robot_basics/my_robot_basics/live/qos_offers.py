@@ -1,9 +1,14 @@
 """A picture of the rule for QoS: no more may be requested than is offered."""
 
 from itertools import product
+from typing import TYPE_CHECKING
 
 from my_robot_basics.doctor import picture
 from my_robot_basics.live import notebook
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 
 POLICIES = {
     'reliability': ('RELIABLE', 'BEST_EFFORT'),
@@ -51,12 +56,12 @@ def draw() -> bytes:
     return picture.png(figure)
 
 
-def _name(axes: object, x: float, y: float, value: str, *, side: str) -> None:
+def _name(axes: 'Axes', x: float, y: float, value: str, *, side: str) -> None:
     frame = {'boxstyle': 'square,pad=0.4', 'facecolor': 'white', 'edgecolor': 'black'}
     axes.text(x, y, value, ha=side, va='center', fontsize=10, bbox=frame)
 
 
-def _line(axes: object, offered: int, requested: int) -> None:
+def _line(axes: 'Axes', offered: int, requested: int) -> None:
     """Draw an arrow for a pair that matches; a dashed, crossed line for one that does not."""
     start, stop = (OFFERED + GAP, offered), (REQUESTED - GAP, requested)
     if offered <= requested:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from itertools import product
+from typing import Any
 
 from rclpy.context import Context
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
@@ -68,7 +69,7 @@ class _Pairs(Node):
         def hear(message: Int32) -> None:
             self._outcome[pair] = 'yes'
 
-        def refuse(event: object) -> None:
+        def refuse(event: Any) -> None:
             self._outcome[pair] = qos_policy_name_from_kind(event.last_policy_kind)
 
         topic_name = f'/_pair_{len(self._senders)}'

@@ -1,7 +1,13 @@
 """A picture of the way of a message: publisher, two queues, executor, callback."""
 
+from typing import TYPE_CHECKING
+
 from my_robot_basics.doctor import picture
 from my_robot_basics.live import notebook
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 
 WAITS, FREE = '#56b4e9', 'white'
 """A place in a queue: with a message, and without one."""
@@ -41,7 +47,7 @@ def draw() -> bytes:
     return picture.png(figure)
 
 
-def _queue(axes: object, x: float, y: float, title: str, *, waiting: int) -> None:
+def _queue(axes: 'Axes', x: float, y: float, title: str, *, waiting: int) -> None:
     """Draw a queue around (x, y) in which some messages wait."""
     for place in range(PLACES):
         left = x + 0.9 * (place - PLACES / 2)
@@ -53,7 +59,7 @@ def _queue(axes: object, x: float, y: float, title: str, *, waiting: int) -> Non
 
 
 def _arrow(
-    axes: object, start: tuple[float, float], stop: tuple[float, float], label: str = ''
+    axes: 'Axes', start: tuple[float, float], stop: tuple[float, float], label: str = ''
 ) -> None:
     style = {'arrowstyle': '-|>', 'color': picture.WELL, 'lw': 2, 'mutation_scale': 15}
     axes.annotate('', xy=stop, xytext=start, arrowprops={**style, 'shrinkA': 0, 'shrinkB': 0})

@@ -5,7 +5,7 @@ import os
 import sys
 import threading
 from collections.abc import Callable
-from typing import Any
+from typing import Any, TypeVar
 
 import rclpy
 from rclpy.executors import ExternalShutdownException
@@ -15,14 +15,16 @@ from rclpy.signals import SignalHandlerOptions, uninstall_signal_handlers
 from my_robot_basics.live import node_file, notebook, spinning
 from my_robot_basics.live.background import Background
 from my_robot_basics.live.naming import announce_name
-from my_robot_basics.live.panel import STOPPED, Panel
+from my_robot_basics.live.panel import STOPPED, NodePanel, Panel
 from my_robot_basics.live.refusals import is_made, no_node_yet, not_a_class
 from my_robot_basics.session import classroom
 from my_robot_basics.session.errors import NotRunnable
 from my_robot_basics.session.neighbours import Neighbours, bury_the_dead
 
+N = TypeVar('N', bound=Node)
+
 _running: dict[str, Background] = {}
-_panels: dict[str, Panel] = {}
+_panels: dict[str, NodePanel] = {}
 _neighbours = Neighbours()
 _lock = threading.RLock()
 _owner_pid = os.getpid()
@@ -32,7 +34,7 @@ class _LivesElsewhere(Exception):
     """A node of that name is there already, and it is not ours."""
 
 
-def run(NodeClass: type[Node], *args: Any, key: str | None = None, **kwargs: Any) -> Node | None:
+def run(NodeClass: type[N], *args: Any, key: str | None = None, **kwargs: Any) -> N | None:
     """Make `NodeClass(*args, **kwargs)` and let it spin in the background; return the node.
 
     It replaces the node that runs under `key` (by default the class's name), and one of its own
@@ -48,13 +50,13 @@ def run(NodeClass: type[Node], *args: Any, key: str | None = None, **kwargs: Any
 
 
 def launch(
-    NodeClass: type[Node],
+    NodeClass: type[N],
     args: tuple[Any, ...],
     kwargs: dict[str, Any],
     *,
     key: str,
-    make_panel: Callable[[], Panel],
-) -> Node | None:
+    make_panel: Callable[[], NodePanel],
+) -> N | None:
     """Do what `run` says, with another panel; it is made once stdout is tapped."""
     __tracebackhide__ = True
     _stop_keys([key, *(k for k, background in _running.items() if not background.alive)])
@@ -70,7 +72,7 @@ def launch(
     node = NodeClass.__new__(NodeClass, *args, **kwargs)
     try:
         with announce_name(node, on_name):
-            node.__init__(*args, **kwargs)
+            type(node).__init__(node, *args, **kwargs)
         if not is_made(node):
             raise NotRunnable(no_node_yet(NodeClass))
     except _LivesElsewhere as found:
@@ -119,6 +121,7 @@ def _stop_keys(keys: list[str]) -> None:
             background, panel = _running.pop(key, None), _panels.pop(key, None)
         if background is not None:
             background.stop()
+        if panel is not None:
             panel.close(STOPPED)
 
 
@@ -148,7 +151,7 @@ def shut_down() -> None:
 
 
 def _say_nothing_of_an_end(
-    former: Callable[[threading.ExceptHookArgs], None],
+    former: Callable[[threading.ExceptHookArgs], object],
 ) -> Callable[[threading.ExceptHookArgs], None]:
     """Make a hook for threads that a student lets spin: that rclpy is shut down is no error."""
 
@@ -160,7 +163,7 @@ def _say_nothing_of_an_end(
 
 
 def _say_nothing_of_a_race(
-    former: Callable[['sys.UnraisableHookArgs'], None],
+    former: Callable[['sys.UnraisableHookArgs'], object],
 ) -> Callable[['sys.UnraisableHookArgs'], None]:
     """Make a hook for errors that nobody can catch: one of rclpy's own does no harm.
 

@@ -15,6 +15,7 @@ from rclpy.context import Context
 from rclpy.executors import Executor, TimeoutException, TimeoutObject
 from rclpy.node import Node
 
+from my_robot_basics.live.patching import patch
 from my_robot_basics.session.errors import LiveError, in_lines
 
 POLL_SEC = 0.1
@@ -41,7 +42,8 @@ def help_in_cells() -> None:
 
     Only the thread in which cells run sees a difference: a student's own threads spin as ever.
     """
-    Executor.wait_for_ready_callbacks = _interruptible(Executor.wait_for_ready_callbacks)
+    wait = _interruptible(Executor.wait_for_ready_callbacks)
+    patch(Executor, 'wait_for_ready_callbacks', wait)
     rclpy.init = _explaining_init(rclpy.init)
     rclpy.spin = _explaining_spin(rclpy.spin)
 

@@ -5,6 +5,7 @@ import threading
 import ipywidgets
 from geometry_msgs.msg import Point
 from rclpy.node import Node
+from rclpy.publisher import Publisher
 
 from my_robot_basics.live import notebook, runner
 from my_robot_basics.live.follow import FIRST_MESSAGE_SEC, ArmView
@@ -63,7 +64,7 @@ class TargetView(ArmView):
         self._l1, self._l2 = l1, l2
         self._target: Point | None = None
         self._lock = threading.Lock()
-        self.publisher = None
+        self.publisher: Publisher | None = None
         reach = 1.1 * (l1 + l2)
         self.x, self.y = (_slider(name, at, reach) for name, at in (('x', x), ('y', y)))
 
@@ -77,6 +78,7 @@ class TargetView(ArmView):
 
     def publish_target(self, change: object = None) -> None:
         """Send where the sliders stand, in metres."""
+        assert self.publisher is not None  # sliders are shown once the node has it
         self.publisher.publish(Point(x=self.x.value, y=self.y.value))
 
     def receive(self, message: Point) -> None:

@@ -1,11 +1,15 @@
 """Pictures of when messages arrive: how evenly, how late, and which of them never do."""
 
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from my_robot_basics.doctor.picture import png
 from my_robot_basics.live import notebook
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 # Okabe and Ito's colours are told apart by everyone; what is lost has another shape, too
 ARRIVED, LOST, BUSY, SENT = '#0072b2', '#d55e00', '#e69f00', '#000000'
@@ -106,6 +110,6 @@ def _panels(heights_inches: Sequence[float], *, title: str) -> tuple:
     return figure, iter(panels[:, 0])
 
 
-def _show(figure: object, text: str) -> None:
+def _show(figure: 'Figure', text: str) -> None:
     display = notebook.Display()
     display.show({'image/png': png(figure), 'text/plain': text})

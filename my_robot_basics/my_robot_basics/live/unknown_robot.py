@@ -1,7 +1,10 @@
 """A robot that the student has not seen before: which of its nodes meet on a topic?"""
 
+from typing import Any
+
 from geometry_msgs.msg import Point
 from rclpy.node import Node
+from rclpy.publisher import Publisher
 from sensor_msgs.msg import JointState, Temperature
 
 from my_robot_basics.live import runner
@@ -18,7 +21,7 @@ class UnknownRobot(Node):
     def __init__(self) -> None:
         super().__init__('_unknown_robot', enable_rosout=False, start_parameter_services=False)
         self._parts: list[Node] = []
-        self._publishers_and_messages = []
+        self._publishers_and_messages: list[tuple[Publisher, Any]] = []
         # no table of them can be imported: a running system is to be asked
         self._add('encoder_board', publishes=(TOPIC, WARMTH))
         self._add('self_test', publishes=(TOPIC,), subscribes=(TOPIC,))

@@ -1,10 +1,15 @@
 """What the shell offers after Tab: names that are on the graph or installed now."""
 
 import argparse
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 from my_robot_basics.ros2 import interfaces
 from my_robot_basics.ros2.graph import Graph
+
+
+def offer(action: argparse.Action, completer: Callable[..., Iterable[str]]) -> None:
+    """Let argcomplete ask that function what an argument may be; it looks for this attribute."""
+    vars(action)['completer'] = completer
 
 
 def topic_names(parsed_args: argparse.Namespace, **_: object) -> list[str]:

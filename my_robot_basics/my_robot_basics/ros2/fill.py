@@ -6,6 +6,7 @@ Each value is checked against the field's type: rclpy itself checks nothing, and
 import difflib
 import math
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from rosidl_parser import definition
@@ -42,10 +43,10 @@ def _fill(message: Any, values: dict, path: str, setters: list[StampSetter]) -> 
             raise BadValue(_no_such_field(message, name, slot_types, path))
         slot_type, here = slot_types[name], f'{path}{name}'
         if value == 'now' and _is(slot_type, _TIME):
-            setters.append(lambda stamp, name=name: setattr(message, name, stamp))
+            setters.append(partial(setattr, message, name))
         elif value == 'auto' and _is(slot_type, _HEADER):
             header = getattr(message, name)
-            setters.append(lambda stamp, header=header: setattr(header, 'stamp', stamp))
+            setters.append(partial(setattr, header, 'stamp'))
         else:
             setattr(message, name, _converted(value, slot_type, here, setters))
 

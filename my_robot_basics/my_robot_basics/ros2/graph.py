@@ -11,7 +11,7 @@ import select
 import sys
 import time
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 from my_robot_basics.ros2 import discovery, environment, lookup, stopping
 from my_robot_basics.ros2.errors import CommandError
@@ -56,7 +56,8 @@ class Graph:
         """Join the graph."""
         # a fifth of all that starts: messages ask for a package whose other half, which writes
         # message modules, may be missing
-        sys.modules.setdefault('rosidl_generator_py.generate_py_impl', None)
+        modules = cast('dict[str, object]', sys.modules)
+        modules.setdefault('rosidl_generator_py.generate_py_impl', None)
         import rclpy
         from rclpy.exceptions import InvalidNodeNameException
         from rclpy.executors import SingleThreadedExecutor

@@ -1,6 +1,7 @@
 """The console script `ros2`: hands over to a real ros2cli, or runs a verb of the table."""
 
 import argparse
+import io
 import os
 import sys
 from importlib import import_module
@@ -132,9 +133,10 @@ def _add_parser(
 
 
 def _run(args: argparse.Namespace) -> int | str | None:
-    if not args.use_python_default_buffering:
-        sys.stdout.reconfigure(line_buffering=True)
-    sys.stdout.reconfigure(errors='backslashreplace')
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        if not args.use_python_default_buffering:
+            sys.stdout.reconfigure(line_buffering=True)
+        sys.stdout.reconfigure(errors='backslashreplace')
     if not hasattr(args, 'main'):
         args.help_of.print_help()
         return 0
@@ -152,7 +154,8 @@ def _run(args: argparse.Namespace) -> int | str | None:
 def _chosen(words: list[str]) -> tuple[str | None, str | None]:
     """The command and the verb: no option that may stand before them takes a value."""
     plain = [word for word in words if not word.startswith('-')]
-    return (*plain, None, None)[:2]
+    command, verb, *_ = (*plain, None, None)
+    return command, verb
 
 
 def _module(name: str) -> ModuleType:
@@ -160,4 +163,4 @@ def _module(name: str) -> ModuleType:
 
 
 def _description(module: ModuleType) -> str:
-    return module.__doc__.partition('\n')[0].rstrip('.')
+    return (module.__doc__ or '').partition('\n')[0].rstrip('.')

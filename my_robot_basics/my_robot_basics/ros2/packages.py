@@ -27,7 +27,7 @@ def executables(package_name: str) -> list[Path]:
     """The executables of a package, sorted by path; raises CommandError without the package."""
     if (found := prefix(package_name)) is None:
         raise CommandError(f"Package '{package_name}' not found")
-    paths = []
+    paths: list[Path] = []
     for folder, folders, files in os.walk(found / 'lib' / package_name):
         folders[:] = [name for name in folders if not name.startswith('.')]
         candidates = (Path(folder, name) for name in files)

@@ -89,11 +89,13 @@ def type_names() -> dict[int, str]:
 def add_one_parameter(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of a verb that is about one parameter of one node."""
     arguments.add_discovery(parser)
-    parser.add_argument('node_name', help='Name of the ROS node').completer = completion.node_names
+    node_name = parser.add_argument('node_name', help='Name of the ROS node')
+    completion.offer(node_name, completion.node_names)
     parser.add_argument(
         '--include-hidden-nodes', action='store_true', help='Consider hidden nodes as well'
     )
-    parser.add_argument('parameter_name', help='Name of the parameter').completer = parameter_names
+    parameter_name = parser.add_argument('parameter_name', help='Name of the parameter')
+    completion.offer(parameter_name, parameter_names)
     parser.add_argument(
         '--timeout',
         metavar='N',

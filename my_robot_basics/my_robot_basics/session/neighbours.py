@@ -64,6 +64,7 @@ class Neighbours:
         return False
 
     def _hears_of(self, name: str) -> bool:
+        assert self._observer is not None  # it has met them
         return name in {
             f'{namespace.rstrip("/")}/{node_name}'
             for node_name, namespace in self._observer.get_node_names_and_namespaces()
@@ -97,5 +98,6 @@ def nodes_here(*, alive: bool = True) -> Iterator[Node]:
 def _classes(base: type) -> Iterator[type]:
     """Yield a class and all that derive from it."""
     yield base
-    for derived in base.__subclasses__():
+    subclasses: list[type] = base.__subclasses__()
+    for derived in subclasses:
         yield from _classes(derived)

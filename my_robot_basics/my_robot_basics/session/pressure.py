@@ -16,7 +16,8 @@ def crowded_sec() -> float:
         text = CPU.read_text(encoding='ascii')
     except OSError:
         return 0.0
-    return int(re.search(r'^some .*total=(\d+)', text)[1]) / 1e6
+    total_us = re.search(r'^some .*total=(\d+)', text)
+    return int(total_us[1]) / 1e6 if total_us else 0.0
 
 
 class Stopwatch:

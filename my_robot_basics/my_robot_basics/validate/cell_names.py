@@ -7,7 +7,7 @@ import re
 
 from nbformat import NotebookNode
 
-from my_robot_basics.validate.cells import KEY, grade_id, is_reset, role
+from my_robot_basics.validate.cells import KEY, grade_id, graded_id, is_reset, role
 from my_robot_basics.validate.titles import title_of_check
 
 _NAMED = re.compile(r'\b(?:the )?(?:answer )?(?:cell|check) `([^`]+)`')
@@ -31,7 +31,7 @@ def in_words(text: str, notebook: NotebookNode) -> str:
 
 def _name(cells: list[NotebookNode], index: int) -> str:
     cell = cells[index]
-    name, kind = grade_id(cell), role(cell)
+    name, kind = graded_id(cell), role(cell)
     exercise = name.rpartition('-')[0]
     if kind == 'answer':
         what = f'the answer to `{name}`'

@@ -16,6 +16,11 @@ def grade_id(cell: NotebookNode) -> str | None:
     return cell.metadata.get('nbgrader', {}).get('grade_id')
 
 
+def graded_id(cell: NotebookNode) -> str:
+    """Return the id of a cell that nbgrader knows."""
+    return grade_id(cell) or ''
+
+
 def role(cell: NotebookNode) -> str:
     """Return what a cell is for: answer, grade, locked, setup, demo, free or text."""
     if recorded := cell.metadata.get(KEY, {}).get('role'):

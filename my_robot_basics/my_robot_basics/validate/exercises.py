@@ -6,7 +6,7 @@ from itertools import pairwise
 
 from nbformat import NotebookNode
 
-from my_robot_basics.validate.cells import grade_id, is_reset, role
+from my_robot_basics.validate.cells import grade_id, graded_id, is_reset, role
 from my_robot_basics.validate.names import names_of, string_arguments
 
 
@@ -42,7 +42,9 @@ def find_exercises(notebook: NotebookNode) -> tuple[Exercise, ...]:
     """
     starts = [i for i, cell in enumerate(notebook.cells) if is_reset(cell)]
     spans = [range(*span) for span in pairwise([*starts, len(notebook.cells)])]
-    return tuple(_exercise(notebook, span) for span in spans if _answer(notebook, span))
+    return tuple(
+        _exercise(notebook, span, answer) for span in spans if (answer := _answer(notebook, span))
+    )
 
 
 def plans(notebook: NotebookNode, exercise: Exercise) -> Iterator[Plan]:
@@ -109,18 +111,18 @@ def _binds(cell: NotebookNode, names: set[str]) -> bool:
 
 
 def _answer(notebook: NotebookNode, span: range) -> int | None:
-    name = grade_id(notebook.cells[span.start]).removesuffix('-reset')
+    name = graded_id(notebook.cells[span.start]).removesuffix('-reset')
     return next((i for i in span if grade_id(notebook.cells[i]) == name), None)
 
 
-def _exercise(notebook: NotebookNode, span: range) -> Exercise:
+def _exercise(notebook: NotebookNode, span: range, answer: int) -> Exercise:
     cells = notebook.cells
-    name = grade_id(cells[span.start]).removesuffix('-reset')
+    name = graded_id(cells[span.start]).removesuffix('-reset')
     return Exercise(
         name=name,
         defines=string_arguments(cells[span.start].source, 'reset'),
         reset=span.start,
-        answer=_answer(notebook, span),
+        answer=answer,
         run=tuple(i for i in span[1:] if role(cells[i]) == 'locked'),
         grades=tuple(i for i in span if role(cells[i]) == 'grade' and _is_code(cells[i])),
     )
@@ -130,13 +132,13 @@ def _end(exercise: Exercise) -> int:
     return max((exercise.answer, *exercise.run, *exercise.grades))
 
 
-def _lacks(cells: list[NotebookNode], exercise: Exercise, setup: list[int]) -> set[str]:
+def _lacks(cells: list[NotebookNode], exercise: Exercise, setup: list[int]) -> frozenset[str]:
     """Names that the answer needs, or owes, and that neither it nor the setup binds."""
     answer = names_of(cells[exercise.answer].source)
     return (answer.needed | set(exercise.defines)) - answer.bound - _bound(cells, setup)
 
 
-def _lends(cells: list[NotebookNode], lent: list[int], lacks: set[str]) -> bool:
+def _lends(cells: list[NotebookNode], lent: list[int], lacks: frozenset[str]) -> bool:
     """Whether one of these cells binds a name that is lacking, as far as its text tells."""
     names = [names_of(cells[i].source) for i in lent]
     return bool(lacks) and any(each.binds_more or each.bound & lacks for each in names)

@@ -5,13 +5,13 @@ import copy
 from collections.abc import Callable
 from contextlib import AbstractAsyncContextManager, suppress
 from dataclasses import dataclass, field, replace
-from typing import Any, Protocol
+from typing import Any, Generic, Protocol, TypeVar
 
 from nbformat import NotebookNode
 
 from my_robot_basics.feedback import hidden
 from my_robot_basics.validate.cell_names import number_of
-from my_robot_basics.validate.cells import grade_id
+from my_robot_basics.validate.cells import grade_id, graded_id
 from my_robot_basics.validate.errors import RoomFailure
 from my_robot_basics.validate.exercises import (
     Exercise,
@@ -40,18 +40,19 @@ class Rooms(Protocol):
         """Run a grade cell, passing its questions on to the student's kernel."""
 
 
+R = TypeVar('R', bound=Rooms)
 Checks = dict[int, tuple[Verdict, list[NotebookNode]]]
-OpenRooms = Callable[[], AbstractAsyncContextManager[Rooms]]
+OpenRooms = Callable[[], AbstractAsyncContextManager[R]]
 
 
 @dataclass
-class Budget:
+class Budget(Generic[R]):
     """What is left of the time that all student cells of a notebook may take together."""
 
     remaining_sec: float = STUDENT_CELLS_BUDGET_SEC
     loop_time: Any = field(default_factory=lambda: asyncio.get_running_loop().time)
 
-    async def run(self, rooms: Rooms, cell: NotebookNode) -> CellRun:
+    async def run(self, rooms: R, cell: NotebookNode) -> CellRun:
         """Run one of the student's cells within its limit, and within what is left."""
         start = self.loop_time()
         timeout_sec = max(0.1, min(STUDENT_CELL_TIMEOUT_SEC, self.remaining_sec))
@@ -59,7 +60,7 @@ class Budget:
         self.remaining_sec -= self.loop_time() - start
         return run
 
-    async def run_within(self, timeout_sec: float, rooms: Rooms, cell: NotebookNode) -> CellRun:
+    async def run_within(self, timeout_sec: float, rooms: R, cell: NotebookNode) -> CellRun:
         """Run one of the student's cells for so long at most."""
         return await rooms.run_student_cell(cell.source, timeout_sec=timeout_sec)
 
@@ -75,7 +76,7 @@ class Judged:
 
 
 async def judge_exercise(
-    notebook: NotebookNode, exercise: Exercise, open_rooms: OpenRooms, budget: Budget
+    notebook: NotebookNode, exercise: Exercise, open_rooms: OpenRooms[R], budget: Budget[R]
 ) -> Judged:
     """Judge one exercise; where the rooms fail, once more in fresh ones.
 
@@ -92,7 +93,7 @@ async def judge_exercise(
 
 
 async def _try_plans(
-    notebook: NotebookNode, exercise: Exercise, open_rooms: OpenRooms, budget: Budget
+    notebook: NotebookNode, exercise: Exercise, open_rooms: OpenRooms[R], budget: Budget[R]
 ) -> Judged:
     todo = list(plans(notebook, exercise))
     for number, plan in enumerate(todo, start=1):
@@ -102,6 +103,7 @@ async def _try_plans(
             continue
         if more := plan_for_names(notebook, exercise, plan, _missing_names(judged)):
             again = await _try_plan(notebook, exercise, more, open_rooms, budget, is_last=True)
+            assert again is not None  # it was the last plan
             return max(judged, again, key=_points)
         return judged
     raise AssertionError('an exercise always has a last plan')
@@ -111,8 +113,8 @@ async def _try_plan(
     notebook: NotebookNode,
     exercise: Exercise,
     plan: Plan,
-    open_rooms: OpenRooms,
-    budget: Budget,
+    open_rooms: OpenRooms[R],
+    budget: Budget[R],
     *,
     is_last: bool,
 ) -> Judged | None:
@@ -142,7 +144,7 @@ def _points(judged: Judged) -> float:
 
 
 async def _run_cells(
-    notebook: NotebookNode, plan: Plan, rooms: Rooms, budget: Budget
+    notebook: NotebookNode, plan: Plan, rooms: R, budget: Budget[R]
 ) -> dict[int, CellRun]:
     return {i: await budget.run(rooms, notebook.cells[i]) for i in plan.cells}
 
@@ -156,7 +158,7 @@ async def _judge_cells(
     them: that one's reason is told by its cause alone, too.
     """
     cells = notebook.cells
-    own = [(grade_id(cells[i]), runs[i]) for i in (exercise.answer, *exercise.run)]
+    own = [(graded_id(cells[i]), runs[i]) for i in (exercise.answer, *exercise.run)]
     given_up = [(_name(cells, i), run) for i, run in runs.items() if run.cut_after_sec]
     checks, cut, quiet = {}, [], False
     for index in exercise.grades:
@@ -195,6 +197,6 @@ def _lacks_a_name(runs: dict[int, CellRun], exercise: Exercise, plan: Plan) -> b
     if not all(runs[i].ran_to_end for i in plan.borrowed):
         return True  # what the lesson shows may need more than names
     return any(
-        runs[i].error is not None and runs[i].error.ename == 'NameError'
+        (error := runs[i].error) is not None and error.ename == 'NameError'
         for i in (exercise.answer, *exercise.run)
     )

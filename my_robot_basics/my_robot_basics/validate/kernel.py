@@ -11,7 +11,7 @@ from pathlib import Path
 from subprocess import DEVNULL
 
 import psutil
-from jupyter_client import AsyncKernelManager
+from jupyter_client import AsyncKernelClient, AsyncKernelManager
 from jupyter_client.kernelspec import KernelSpec, KernelSpecManager
 
 from my_robot_basics.session.pressure import Stopwatch
@@ -49,7 +49,7 @@ class Kernel:
             ip=str(folder / 'zmq'),
             connection_file=str(folder / 'connection.json'),
         )
-        self._client = None
+        self._client: AsyncKernelClient | None = None
         self.alive = False
 
     async def start(self) -> None:
@@ -81,6 +81,7 @@ class Kernel:
         if not self.alive:
             result.died = True
             return result
+        assert self._client is not None  # it is alive
         request = self._client.execute(
             code,
             store_history=False,
@@ -113,6 +114,7 @@ class Kernel:
     async def stop(self, *, politely: bool) -> None:
         """End the kernel and all that it started; politely first where it may have nodes."""
         if politely and self.alive:
+            assert self._client is not None  # it is alive
             self._client.shutdown()
             with contextlib.suppress(TimeoutError):
                 await asyncio.wait_for(self._exited(), STOP_GRACE_SEC)
@@ -122,15 +124,15 @@ class Kernel:
 
     async def _connect(self) -> None:
         """Wait until the kernel says that it has taken our subscription to its outputs."""
-        self._client = self._manager.client()
-        self._client.start_channels(hb=False)
-        self._messages = Messages(self._client)
+        self._client = client = self._manager.client()
+        client.start_channels(hb=False)
+        self._messages = Messages(client)
         kind = None
         while kind != 'iopub_welcome':
             if not await self._manager.is_alive():
                 raise RoomFailure('a kernel did not start: its process ended')
             with contextlib.suppress(queue.Empty):
-                kind = (await self._client.get_iopub_msg(timeout=0.5))['msg_type']
+                kind = (await client.get_iopub_msg(timeout=0.5))['msg_type']
 
     async def _kill(self) -> None:
         """Kill the kernel, and what left its process group but kept its environment."""

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import nbformat
 from nbformat import NotebookNode
@@ -27,7 +28,8 @@ class Lesson:
 
 def read_lesson(path: Path) -> Lesson:
     """Read a notebook. Raises CourseError where there is none, or it holds no exercise."""
-    notebook, notes = _read(path), []
+    notebook = _read(path)
+    notes: list[str] = []
     record = _record(notebook)
     numbers = {id(cell): number for number, cell in enumerate(notebook.cells, start=1)}
     for cell in notebook.cells:
@@ -42,7 +44,7 @@ def read_lesson(path: Path) -> Lesson:
     graded = [c for c in notebook.cells if c.metadata[KEY].role in ('answer', 'grade')]
     if not graded:
         raise CourseError(f'{path} holds no exercise: name the notebook of a lesson')
-    here = {grade_id(cell): cell for cell in notebook.cells}
+    here = {name: cell for cell in notebook.cells if (name := grade_id(cell)) is not None}
     altered = _altered(here, record)
     return Lesson(
         notebook=notebook,
@@ -65,7 +67,7 @@ def _read(path: Path) -> NotebookNode:
         ) from None
 
 
-def _record(notebook: NotebookNode) -> dict[str, dict[str, str]]:
+def _record(notebook: NotebookNode) -> dict[str, dict[str, Any]]:
     """Return what the cells were given out as; {} where an older release does not tell."""
     match notebook.metadata.get(KEY):
         case {'cells': dict(record)}:
@@ -96,7 +98,8 @@ def _one_for_each_id(cells: list[NotebookNode], notes: list[str]) -> list[Notebo
         name = grade_id(cell)
         if name is None or name not in first:
             kept.append(cell)
-            first.setdefault(name, cell)
+            if name is not None:
+                first[name] = cell
         elif cell.metadata.nbgrader.get('solution'):
             notes.append(f'the answer cell `{name}` came in parts: they are joined')
             first[name].source += '\n\n' + cell.source
@@ -105,15 +108,15 @@ def _one_for_each_id(cells: list[NotebookNode], notes: list[str]) -> list[Notebo
     return kept
 
 
-def _role(cell: NotebookNode, given: str, record: dict[str, dict[str, str]]) -> str:
+def _role(cell: NotebookNode, given: str, record: dict[str, dict[str, Any]]) -> str:
     """Return what a cell is for; what students added or changed is theirs."""
     if given in ('text', 'answer') or grade_id(cell) or not record:
         return given
-    mark = record.get(cell.get('id'), {})
+    mark = record.get(cell.get('id', ''), {})
     return mark['role'] if mark.get('source') == fingerprint(cell.source) else 'free'
 
 
-def _altered(here: dict[str, NotebookNode], record: dict[str, dict[str, str]]) -> dict[str, str]:
+def _altered(here: dict[str, NotebookNode], record: dict[str, dict[str, Any]]) -> dict[str, str]:
     """Return what to say of each cell of an exercise that was changed or taken away."""
     said = {}
     for name, mark in record.items():

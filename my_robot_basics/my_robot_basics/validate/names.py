@@ -39,7 +39,8 @@ def names_of(source: str) -> Names:
         nodes = list(ast.walk(tree))
     except (SyntaxError, ValueError, RuntimeError, MemoryError):  # a RecursionError, too
         return Names()
-    bound, read = set(), set()
+    bound: set[str] = set()
+    read: set[str] = set()
     _collect(table, bound, read)
     loop_names = _names_of_comprehensions_alone(nodes)
     return Names(

@@ -113,10 +113,11 @@ class CellRun:
 
     def _keep_text(self, output: NotebookNode) -> None:
         last = self.outputs[-1] if self.outputs else None
-        goes_on = last is not None and last.get('name') == output.name
-        kept = output.text[: max(0, self._room - (0 if goes_on else _OVERHEAD))]
+        if last is not None and last.get('name') != output.name:
+            last = None
+        kept = output.text[: max(0, self._room - (_OVERHEAD if last is None else 0))]
         self._dropped += len(output.text) - len(kept)
-        if goes_on:
+        if last is not None:
             last.text += kept
             self._kept += len(kept)
         elif kept:
@@ -140,8 +141,10 @@ class Displays:
 
     def update(self, content: dict) -> None:
         """Replace what the content of an update_display_data message names."""
-        new = _output('display_data', content)
-        for run, output in self._outputs.get(_display_id(content), ()) if new else ():
+        new, display_id = _output('display_data', content), _display_id(content)
+        if new is None or display_id is None:
+            return
+        for run, output in self._outputs.get(display_id, ()):
             run.replace(output, new.data)
 
 

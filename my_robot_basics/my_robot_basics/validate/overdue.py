@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from nbformat import NotebookNode
 
-from my_robot_basics.validate.cells import grade_id
+from my_robot_basics.validate.cells import graded_id
 from my_robot_basics.validate.limits import STUDENT_CELL_TIMEOUT_SEC
 from my_robot_basics.validate.outputs import CellRun
 from my_robot_basics.validate.verdict import TROUBLE, Verdict
@@ -22,7 +22,7 @@ def judge_overdue(
     """
     if run is not None and run.ran_to_end:
         return None
-    name, points = grade_id(cell), float(cell.metadata.nbgrader.points)
+    name, points = graded_id(cell), float(cell.metadata.nbgrader.points)
     if run is not None and run.cut_after_sec and run.error is not None:
         return Verdict(name, 'ungraded', points, reason=run.error.evalue.strip())
     if not given_up:

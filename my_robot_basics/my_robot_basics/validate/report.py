@@ -6,10 +6,10 @@ from typing import Literal
 
 from nbformat import NotebookNode
 
-from my_robot_basics.validate.cells import KEY, grade_id
+from my_robot_basics.validate.cells import KEY, graded_id
 from my_robot_basics.validate.lesson import Lesson
 from my_robot_basics.validate.titles import title_of_check
-from my_robot_basics.validate.verdict import SCORED, TROUBLE, UNGRADED, Verdict
+from my_robot_basics.validate.verdict import TROUBLE, UNGRADED, Verdict
 
 Outcome = Literal['passed', 'partial', 'failed', 'at grading', 'by hand', 'not checked']
 MARKS = {'passed': '✓', 'partial': '✗', 'failed': '✗'}
@@ -126,7 +126,8 @@ def make_check(
     lesson: Lesson, cell: NotebookNode, verdict: Verdict | None, outputs: Iterable[NotebookNode]
 ) -> Check:
     """Tell of one graded cell; `verdict` is None where it was not run."""
-    name, hidden = grade_id(cell), lesson.hidden.get(grade_id(cell))
+    name = graded_id(cell)
+    hidden = lesson.hidden.get(name)
     by_hand = cell.metadata[KEY].role == 'answer'
     return Check(
         name=name,
@@ -164,7 +165,9 @@ def _outcome(
         return 'not checked'
     if hidden == 'all':
         return 'at grading'
-    return verdict.outcome if verdict and verdict.outcome in SCORED else 'not checked'
+    if verdict is None or verdict.outcome == 'ungraded' or verdict.outcome == 'manual':
+        return 'not checked'
+    return verdict.outcome
 
 
 def _pictures(outputs: Iterable[NotebookNode]) -> Iterable[dict[str, str]]:

@@ -54,13 +54,11 @@ class Rooms:
     async def __aenter__(self) -> 'Rooms':
         """Start both kernels, and see a message cross. Raises RoomFailure."""
         try:
-            self._open()
+            folder = self._open()
             async with asyncio.TaskGroup() as together:
                 together.create_task(self._prepare(self._student, STUDENT_COMES))
                 together.create_task(self._prepare(self._test, TEST_HEARS))
-            await self._run_ours(
-                self._student, STUDENT_GOES.format(files=str(self._folder / 'files'))
-            )
+            await self._run_ours(self._student, STUDENT_GOES.format(files=str(folder / 'files')))
         except BaseException as error:
             await self.__aexit__()
             reason = error.exceptions[0] if isinstance(error, ExceptionGroup) else error
@@ -125,28 +123,32 @@ class Rooms:
         at_grading = f'; at grading it has {REPLY_TIMEOUT_SEC:g} s' if run.cut_after_sec else ''
         return reply_of(run, within_sec=within_sec, at_grading=at_grading)
 
-    def _open(self) -> None:
-        self._claim = claim()
+    def _open(self) -> Path:
+        """Make the kernels' folder; return it."""
+        self._claim = owned = claim()
         short = None if len(tempfile.gettempdir()) < MOST_PATH else '/tmp'
-        self._folder = Path(tempfile.mkdtemp(prefix='validate-', dir=short))
-        (self._folder / 'files').mkdir()
+        self._folder = folder = Path(tempfile.mkdtemp(prefix='validate-', dir=short))
+        (folder / 'files').mkdir()
         for file in self._files:
-            shutil.copyfile(file, self._folder / 'files' / file.name)
-        self._student, self._test = self._kernel('student'), self._kernel('test')
+            shutil.copyfile(file, folder / 'files' / file.name)
+        self._student = self._kernel(folder / 'student', owned.domain_id)
+        self._test = self._kernel(folder / 'test', owned.domain_id)
+        return folder
 
-    def _kernel(self, room: str) -> Kernel:
+    def _kernel(self, folder: Path, domain_id: int) -> Kernel:
+        """Return a kernel for the room that the folder is named after."""
         environment = {
-            'MY_ROBOT_BASICS_ROOM': room,
+            'MY_ROBOT_BASICS_ROOM': folder.name,
             'MY_ROBOT_BASICS_ADVICE': '1',
-            'MY_ROBOT_BASICS_DOMAIN_ID': str(self._claim.domain_id),
+            'MY_ROBOT_BASICS_DOMAIN_ID': str(domain_id),
             'RCUTILS_LOGGING_USE_STDOUT': '1',
             # the student's own stays as it is, whichever cells are run
-            'MY_ROBOT_BASICS_WORKSPACE': str(self._folder / room / 'ros_ws'),
-            'ROS_LOG_DIR': str(self._folder / room / 'ros_log'),
+            'MY_ROBOT_BASICS_WORKSPACE': str(folder / 'ros_ws'),
+            'ROS_LOG_DIR': str(folder / 'ros_log'),
             'MPLBACKEND': 'module://matplotlib_inline.backend_inline',
             'PYTHONSAFEPATH': '1',
         }
-        self._kernels.append(Kernel(self._folder / room, environment))
+        self._kernels.append(Kernel(folder, environment))
         return self._kernels[-1]
 
     async def _prepare(self, kernel: Kernel, code: str) -> None:

@@ -9,7 +9,7 @@ from nbformat import NotebookNode
 
 from my_robot_basics.validate.ahead import Ahead
 from my_robot_basics.validate.cell_names import in_words
-from my_robot_basics.validate.cells import grade_id, role
+from my_robot_basics.validate.cells import grade_id, graded_id, role
 from my_robot_basics.validate.exercises import Exercise, find_exercises
 from my_robot_basics.validate.judging import Judged, judge_exercise
 from my_robot_basics.validate.lesson import Lesson, read_lesson
@@ -34,7 +34,7 @@ async def validate(path: Path, *, say: Say = lambda line: None) -> Report:
         for number, exercise in enumerate(exercises, start=1):
             open_rooms = partial(
                 ahead.rooms,
-                say=lambda line, of=exercise.name: say(f'{of}: {line}'),
+                say=partial(_say_of, exercise.name, say),
                 more=number < len(exercises),
             )
             judged = Judged({}, {})
@@ -49,8 +49,12 @@ async def validate(path: Path, *, say: Say = lambda line: None) -> Report:
     return report.with_words(lambda text: in_words(text, lesson.notebook))
 
 
+def _say_of(exercise: str, say: Say, line: str) -> None:
+    say(f'{exercise}: {line}')
+
+
 def _can_run(lesson: Lesson, index: int) -> bool:
-    name = grade_id(lesson.notebook.cells[index])
+    name = graded_id(lesson.notebook.cells[index])
     return name not in lesson.altered and lesson.hidden.get(name) != 'all'
 
 

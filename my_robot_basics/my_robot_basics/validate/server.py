@@ -54,6 +54,7 @@ class ValidateHandler(APIHandler):
             _interrupt(self._process)
 
     def _notebook(self, body: dict) -> Path:
+        assert self.serverapp is not None  # a handler has one
         root = Path(self.serverapp.root_dir).expanduser().resolve()
         path = (root / str(body.get('path', '')).lstrip('/')).resolve()
         if not path.is_relative_to(root):
@@ -61,6 +62,8 @@ class ValidateHandler(APIHandler):
         return path
 
     async def _pass_on(self, process: asyncio.subprocess.Process) -> None:
+        assert process.stdout is not None  # both are pipes
+        assert process.stderr is not None
         errors = asyncio.create_task(process.stderr.read())
         said = b'{}'
         async for line in process.stdout:

@@ -16,7 +16,7 @@ _STUDENTS = ('answer', 'free', 'locked')
 
 
 @dataclass
-class ShortBudget(Budget):
+class ShortBudget(Budget[Rooms]):
     """The grader's, and less for each cell of the student's: still less after one was given up."""
 
     free_sec: float = VALIDATE_TIMEOUT_SEC

@@ -9,7 +9,7 @@ import nbformat
 from nbformat import NotebookNode
 
 from my_robot_basics.feedback import hidden
-from my_robot_basics.validate.cells import KEY, grade_id, role
+from my_robot_basics.validate.cells import KEY, graded_id, role
 from my_robot_basics.validate.errors import RoomFailure
 from my_robot_basics.validate.limits import FLOOD_CHARACTERS
 from my_robot_basics.validate.outputs import CUT_OFF, CellRun
@@ -63,7 +63,7 @@ def judge(cell: NotebookNode, run: CellRun | None, own: Iterable[tuple[str, Cell
     come to a verdict.
     """
     own = list(own)
-    name, points = grade_id(cell), float(cell.metadata.nbgrader.points)
+    name, points = graded_id(cell), float(cell.metadata.nbgrader.points)
     if run is None:
         reason = 'the kernel of your notebook ended before the check: ' + _who_ended_it(own)
         return Verdict(name, outcome='failed', points=points, reason=reason)
@@ -94,7 +94,7 @@ def ungraded(cell: NotebookNode, why: str) -> Verdict:
     """Leave a grade cell to a person, because the grader itself failed."""
     reason = UNGRADED + why
     return Verdict(
-        grade_id(cell),
+        graded_id(cell),
         outcome='ungraded',
         points=float(cell.metadata.nbgrader.points),
         reason=reason,
@@ -107,7 +107,7 @@ def refuse(notebook: NotebookNode, problem: str) -> list[Verdict]:
     for cell in notebook.cells:
         if role(cell) == 'grade' and cell.cell_type == 'code':
             points = float(cell.metadata.nbgrader.points)
-            verdicts.append(Verdict(grade_id(cell), 'failed', points, reason=problem))
+            verdicts.append(Verdict(graded_id(cell), 'failed', points, reason=problem))
             write_verdict(cell, verdicts[-1], [])
     return verdicts
 

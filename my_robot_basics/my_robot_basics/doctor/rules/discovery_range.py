@@ -2,12 +2,12 @@
 
 from collections.abc import Iterator
 
-from my_robot_basics.doctor.evidence import Evidence, Finding
+from my_robot_basics.doctor.evidence import VERBS, Evidence, Finding
 
 
 def examine(evidence: Evidence) -> Iterator[Finding]:
     """Suspect the discovery range where an end is missing and a process can't be discovered."""
-    missing = next((k for k in ('publisher', 'subscription') if not evidence.ends(k)), None)
+    missing = next((k for k in VERBS if not evidence.ends(k)), None)
     if missing is None or evidence.unheard <= 0:
         return
     many = evidence.unheard > 1

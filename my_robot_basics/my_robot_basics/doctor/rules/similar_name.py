@@ -4,7 +4,7 @@ import difflib
 from collections.abc import Iterator
 
 from my_robot_basics.doctor import code
-from my_robot_basics.doctor.evidence import Endpoint, Evidence, Finding, Kind
+from my_robot_basics.doctor.evidence import VERBS, Endpoint, Evidence, Finding, Kind
 
 CUTOFF = 0.75
 
@@ -14,7 +14,7 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
     if not (evidence.publishers or evidence.subscriptions):
         yield from _misspelt_question(evidence)
         return
-    for kind, verb in ('publisher', 'publishes'), ('subscription', 'subscribes'):
+    for kind, verb in VERBS.items():
         if evidence.ends(kind):
             continue
         for end in _similar(evidence, kind)[:1]:

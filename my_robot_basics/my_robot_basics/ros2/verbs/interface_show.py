@@ -19,12 +19,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     comments.add_argument(
         '--no-comments', action='store_true', help='Show no comments or whitespace'
     )
-    parser.add_argument(
+    type_ = parser.add_argument(
         'type',
         type=_name,
         help="Show an interface definition (e.g. 'std_msgs/msg/String'). Passing '-' reads the "
         "argument from stdin (e.g. 'ros2 topic type /chatter | ros2 interface show -').",
-    ).completer = completion.interface_types
+    )
+    completion.offer(type_, completion.interface_types)
 
 
 def main(args: argparse.Namespace) -> None:

@@ -10,9 +10,10 @@ from my_robot_basics.ros2.graph import HIDDEN_PREFIX, Graph, NodeName
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
     arguments.add_discovery(parser)
-    parser.add_argument(
-        'node_name', help='Node name to request information'
-    ).completer = completion.node_names
+    completion.offer(
+        parser.add_argument('node_name', help='Node name to request information'),
+        completion.node_names,
+    )
     parser.add_argument(
         '--include-hidden',
         action='store_true',

@@ -12,9 +12,10 @@ from my_robot_basics.ros2.parameters import ParameterServices, absolute, type_na
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
     arguments.add_discovery(parser)
-    parser.add_argument(
-        'node_name', nargs='?', help='Name of the ROS node'
-    ).completer = completion.node_names
+    completion.offer(
+        parser.add_argument('node_name', nargs='?', help='Name of the ROS node'),
+        completion.node_names,
+    )
     parser.add_argument(
         '--filter',
         help='Only parameters matching the regex expression will be showed. '

@@ -7,9 +7,10 @@ from my_robot_basics.ros2 import completion, packages
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
-    parser.add_argument(
-        'package_name', nargs='?', help='The package name'
-    ).completer = completion.package_names
+    completion.offer(
+        parser.add_argument('package_name', nargs='?', help='The package name'),
+        completion.package_names,
+    )
     parser.add_argument(
         '--full-path', action='store_true', help='Show full path of each executable'
     )

@@ -7,9 +7,9 @@ from my_robot_basics.ros2 import completion, packages
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
-    parser.add_argument(
-        'package_name', help='The package name'
-    ).completer = completion.package_names
+    completion.offer(
+        parser.add_argument('package_name', help='The package name'), completion.package_names
+    )
     parser.add_argument(
         '--share', action='store_true', help='Show share directory for the package'
     )

@@ -14,12 +14,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help='Prefix command, which should go before the executable. Command must be wrapped in '
         "quotes if it contains spaces (e.g. --prefix 'gdb -ex run --args').",
     )
-    parser.add_argument(
-        'package_name', help='Name of the ROS package'
-    ).completer = completion.package_names
-    parser.add_argument(
-        'executable_name', help='Name of the executable'
-    ).completer = completion.executable_names
+    completion.offer(
+        parser.add_argument('package_name', help='Name of the ROS package'),
+        completion.package_names,
+    )
+    completion.offer(
+        parser.add_argument('executable_name', help='Name of the executable'),
+        completion.executable_names,
+    )
     parser.add_argument(
         'argv',
         nargs=argparse.REMAINDER,

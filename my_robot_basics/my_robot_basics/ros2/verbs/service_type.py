@@ -8,10 +8,13 @@ from my_robot_basics.ros2.graph import Graph
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
-    parser.add_argument(
-        'service_name',
-        help="Name of the ROS service to get type (e.g. '/talker/list_parameters')",
-    ).completer = completion.service_names
+    completion.offer(
+        parser.add_argument(
+            'service_name',
+            help="Name of the ROS service to get type (e.g. '/talker/list_parameters')",
+        ),
+        completion.service_names,
+    )
 
 
 def main(args: argparse.Namespace) -> int:

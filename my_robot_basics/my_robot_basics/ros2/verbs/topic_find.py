@@ -9,10 +9,13 @@ from my_robot_basics.ros2.graph import Graph
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
     arguments.add_discovery(parser)
-    parser.add_argument(
-        'topic_type',
-        help="Name of the ROS topic type to filter for (e.g. 'std_msgs/msg/String')",
-    ).completer = completion.message_types
+    completion.offer(
+        parser.add_argument(
+            'topic_type',
+            help="Name of the ROS topic type to filter for (e.g. 'std_msgs/msg/String')",
+        ),
+        completion.message_types,
+    )
     parser.add_argument(
         '-c',
         '--count-topics',

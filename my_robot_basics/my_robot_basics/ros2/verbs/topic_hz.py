@@ -15,9 +15,12 @@ SECOND_NSEC = 10**9
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
-    parser.add_argument(
-        'topic_name', help="Name of the ROS topic to listen to (e.g. '/chatter')"
-    ).completer = completion.topic_names
+    completion.offer(
+        parser.add_argument(
+            'topic_name', help="Name of the ROS topic to listen to (e.g. '/chatter')"
+        ),
+        completion.topic_names,
+    )
     parser.add_argument(
         '--window',
         '-w',

@@ -15,20 +15,29 @@ TAKEN_SEC = 2.0
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
-    parser.add_argument(
-        'topic_name', help="Name of the ROS topic to publish to (e.g. '/chatter')"
-    ).completer = completion.topic_names
-    parser.add_argument(
-        'message_type', help="Type of the ROS message (e.g. 'std_msgs/String')"
-    ).completer = completion.topic_types
+    completion.offer(
+        parser.add_argument(
+            'topic_name', help="Name of the ROS topic to publish to (e.g. '/chatter')"
+        ),
+        completion.topic_names,
+    )
+    completion.offer(
+        parser.add_argument(
+            'message_type', help="Type of the ROS message (e.g. 'std_msgs/String')"
+        ),
+        completion.topic_types,
+    )
     source = parser.add_mutually_exclusive_group()
-    source.add_argument(
-        'values',
-        nargs='?',
-        default='{}',
-        help="Values to fill the message with in YAML format (e.g. 'data: Hello World'), "
-        'otherwise the message will be published with default values',
-    ).completer = completion.prototype
+    completion.offer(
+        source.add_argument(
+            'values',
+            nargs='?',
+            default='{}',
+            help="Values to fill the message with in YAML format (e.g. 'data: Hello World'), "
+            'otherwise the message will be published with default values',
+        ),
+        completion.prototype,
+    )
     source.add_argument('--stdin', action='store_true', help='Read values from standard input')
     parser.add_argument(
         '-r',

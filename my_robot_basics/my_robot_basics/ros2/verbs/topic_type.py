@@ -9,9 +9,12 @@ from my_robot_basics.ros2.graph import Graph
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
     arguments.add_discovery(parser)
-    parser.add_argument(
-        'topic_name', help="Name of the ROS topic to get type (e.g. '/chatter')"
-    ).completer = completion.topic_names
+    completion.offer(
+        parser.add_argument(
+            'topic_name', help="Name of the ROS topic to get type (e.g. '/chatter')"
+        ),
+        completion.topic_names,
+    )
 
 
 def main(args: argparse.Namespace) -> int:
