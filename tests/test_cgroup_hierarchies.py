@@ -194,7 +194,9 @@ def nowhere(machine, monkeypatch):
     tree(proc / 'unified' / 'user.slice' / 'session-3.scope', processes='41')
     problem = module._found(proc)
     monkeypatch.setattr(module, '_found', lambda proc: problem)
-    monkeypatch.setattr(systemd_scopes, 'own_paths', lambda proc: {'': '/user.slice/session-3.scope'})
+    monkeypatch.setattr(
+        systemd_scopes, 'own_paths', lambda proc: {'': '/user.slice/session-3.scope'}
+    )
     monkeypatch.setattr(systemd_scopes.shutil, 'which', lambda tool: f'/usr/bin/{tool}')
     return monkeypatch
 

@@ -147,9 +147,8 @@ def test_fields_that_a_task_does_not_name_may_be_others(run, impatient):
     kept.assert_carries(pose, qos_profile=qos_profile_sensor_data)
     live.stop()
     run(Renames)
-    with pytest.raises(CheckFailed, match='not the same: name$'):
+    with pytest.raises(CheckFailed, match=r'not the same: name$'):
         kept.assert_carries(pose, qos_profile=qos_profile_sensor_data)
-
 
 
 def test_messages_that_nobody_sent_are_told(run):
