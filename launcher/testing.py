@@ -1,5 +1,6 @@
 """`./course test`: ruff, mypy, the tests, and the lessons against their stored outputs."""
 
+import os
 import subprocess
 import tempfile
 from collections.abc import Callable
@@ -15,6 +16,8 @@ SHARD = '--shard='
 ALL_THE_SAME = (*TIERS, '--no-isolation', SHARD)
 """How the options begin that leave it a check of everything."""
 LESSONS = 'solutions/*/*.ipynb'
+WORKERS = 4
+"""How many processes run tests at a time."""
 RECORD = 'unstable_tests.txt'
 """In the course's root; one line for each test that failed beside others and passed alone."""
 
@@ -41,9 +44,11 @@ class Checks:
 
     def tests(self, arguments: list[str]) -> int:
         """Run the tests, several at a time, and once more alone what failed."""
-        # most tests wait most of the time; one file stays on one worker: its tests share kernels
-        # and a ROS domain
-        many = ('-n', '4', '--dist', 'loadfile', '--no-loadscope-reorder')
+        # most tests wait most of the time, those of the quick tier do not; one file stays on one
+        # worker: its tests share kernels and a ROS domain
+        processors = len(os.sched_getaffinity(0))
+        workers = min(processors, WORKERS) if '--quick' in arguments else WORKERS
+        many = ('-n', str(workers), '--dist', 'loadfile', '--no-loadscope-reorder')
         return self.twice(
             'tests',
             lambda report: self.pytest(report, *many, *arguments),
@@ -64,7 +69,7 @@ class Checks:
         return self.twice(
             'lessons',
             lambda report: self.pytest(
-                report, *options, '-n', '4', '--dist', 'loadfile', 'solutions'
+                report, *options, '-n', str(WORKERS), '--dist', 'loadfile', 'solutions'
             ),
             again,
         )

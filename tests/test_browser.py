@@ -237,6 +237,7 @@ def test_the_lab_opens_on_the_contents_and_shows_the_terms_to_readers(page):
     expect(page.locator('.jp-MarkdownViewer table').first).to_be_visible()
 
 
+@pytest.mark.slow  # test_workspace.py sees its link
 def test_the_workspace_opens_in_the_file_browser(lab, page, monkeypatch):
     workspace = lab.folder.parent / 'ros_ws'
     monkeypatch.setenv('MY_ROBOT_BASICS_WORKSPACE', str(workspace))
@@ -298,6 +299,7 @@ def test_a_dragged_slider_moves_the_arm(opened):
     expect(image).to_have_attribute('alt', re.compile(f'θ1 = {readout}.0°'))
 
 
+@pytest.mark.slow  # a slider of the same kind is dragged above
 def test_a_dragged_target_moves_the_arm_over_the_topic(opened):
     lesson = opened('04_subscriber')
     lesson.command('notebook:run-cell', lesson.index('imports'))
@@ -359,6 +361,7 @@ def validations(server):
     return [p for p in below if 'my_robot_basics.validate' in p.cmdline()]
 
 
+@pytest.mark.slow  # as in nbval, and in Validate
 def test_an_answer_passes_where_it_is_written(opened):
     lesson = opened('03_publisher')
     answer = next(c for c in solution('03_publisher').cells if c.id == 'five_hz')

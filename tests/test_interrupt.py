@@ -155,7 +155,8 @@ def slow_ones(course):
 
 
 @pytest.mark.isolation
-@pytest.mark.parametrize('kill', [pytest.param(killed, marks=pytest.mark.slow), killed_servers])
+@pytest.mark.slow  # test_workers.py kills workers, and test_fork_servers.py servers
+@pytest.mark.parametrize('kill', [killed, killed_servers])
 def test_what_is_killed_below_a_run_changes_no_grade(course, slow_ones, run, kill):
     found = kernels_of(run)
     assert found.servers

@@ -108,6 +108,7 @@ def test_both_ways_write_the_same_pages(courses):
         assert 'canary' not in a.read_text()
 
 
+@pytest.mark.slow  # its scores are read above from where it reads them
 def test_nbgrader_exports_what_we_stored(courses):
     ours, _ = courses
     nbgrader(ours, 'export', f'--CourseDirectory.db_url={ours.db_url}', '--to', 'ours.csv')

@@ -200,6 +200,7 @@ def test_what_somebody_typed_into_a_release_is_kept_before_it_is_replaced(course
     assert path.read_bytes() == before
 
 
+@pytest.mark.slow
 def test_a_file_that_is_no_notebook_any_more_is_kept_too(course):
     path = course.release_path(TOY)
     path.write_text('{')

@@ -11,17 +11,13 @@ import signal
 import struct
 import subprocess
 import sys
-from importlib.util import find_spec, module_from_spec
 from pathlib import Path
 
-# the package itself imports its servers' extensions, which takes longer than all the rest
-sys.modules['nbgrader'] = module_from_spec(find_spec('nbgrader'))
+from given_verdicts import executed
 
-from given_verdicts import executed  # noqa: E402
-
-from grader.judging import task  # noqa: E402
-from grader.judging.execute import Execution  # noqa: E402
-from grader.workers import worker  # noqa: E402
+from grader.judging import task
+from grader.judging.execute import Execution
+from grader.workers import worker
 
 worker.BEAT_SEC = 0.1
 

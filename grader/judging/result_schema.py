@@ -12,7 +12,6 @@ import jsonschema
 import nbformat
 from my_robot_basics.validate.cells import KEY, grade_id, role
 from nbformat import NotebookNode
-from nbgrader.utils import determine_grade
 
 from grader.common.errors import TaskFailed
 from grader.sandbox.limits import (
@@ -124,6 +123,9 @@ def _problems(notebook: NotebookNode, asked: NotebookNode, seed: str) -> Iterato
 
 def _problems_of_check(cell: NotebookNode) -> Iterator[str]:
     """Yield what is wrong with the verdict in a grade cell, and with the score read off it."""
+    # not before: it imports nbgrader's servers, too, and a worker would start half as fast
+    from nbgrader.utils import determine_grade
+
     name, verdict = grade_id(cell), cell.metadata.get(KEY)
     for error in _VERDICT.iter_errors(verdict):
         yield f'`{name}`: {error.json_path}: {_first_line(error)}'

@@ -95,6 +95,7 @@ def test_colcon_builds_what_the_ament_index_finds(workspace, options):
     assert '[hello_node]: Hello' in workspace.first_line('hello_node')
 
 
+@pytest.mark.slow  # test_workspace.py builds a new node, too
 def test_a_students_own_node_is_found_after_the_next_build(workspace):
     workspace.build()
     (workspace.package / 'my_robot_basics' / 'five_hz.py').write_text(
