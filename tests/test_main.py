@@ -67,7 +67,8 @@ def test_all_verbs_in_a_row(tmp_path, capsys):
     course = make_course(tmp_path)
     assert main(['release', TOY], course=course) == 0
     released = f'notebooks/{TOY}/{TOY}.ipynb\nnotebooks/index.ipynb\n'
-    assert capsys.readouterr().out == f'{released}2 files changed.\n'
+    moved = f'solutions/{TOY}/{TOY}.ipynb keeps no pictures: notebooks/ has them now\n'
+    assert capsys.readouterr().out == f'{moved}{released}2 files changed.\n'
     for verb in ('scores', 'feedback'):
         assert main([verb], course=course) == 0
         assert capsys.readouterr().out.endswith('Nothing is graded yet. Next: ./course grade\n')

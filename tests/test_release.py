@@ -192,8 +192,7 @@ def test_what_somebody_typed_into_a_release_is_kept_before_it_is_replaced(course
     worked_in = path.read_bytes()
     said = []
     assert release(course, TOY, say=said.append) == [f'{TOY}/{TOY}.ipynb']
-    (line,) = said
-    assert f'notebooks/{TOY}/{TOY}.ipynb had been worked in' in line
+    (line,) = (each for each in said if f'notebooks/{TOY}/{TOY}.ipynb had been worked in' in each)
     copy = Path(line.partition('kept as ')[2])
     assert course.gradebook / 'replaced' in copy.parents
     assert copy.read_bytes() == worked_in
@@ -206,7 +205,8 @@ def test_a_file_that_is_no_notebook_any_more_is_kept_too(course):
     path.write_text('{')
     said = []
     release(course, TOY, say=said.append)
-    assert Path(said[0].partition('kept as ')[2]).read_text() == '{'
+    (copy,) = (each.partition('kept as ')[2] for each in said if 'kept as' in each)
+    assert Path(copy).read_text() == '{'
 
 
 def test_a_release_that_nobody_touched_is_replaced_without_a_copy(course):
@@ -217,7 +217,7 @@ def test_a_release_that_nobody_touched_is_replaced_without_a_copy(course):
     assert f'{TOY}/{TOY}.ipynb' in release(course, say=said.append)
     write_source(course, toy_lesson())
     release(course, say=said.append)
-    assert said == []
+    assert not [each for each in said if 'kept as' in each]
 
 
 def test_an_unknown_assignment_is_named_with_those_there_are(course):
