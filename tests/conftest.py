@@ -35,7 +35,7 @@ LONG = (
     *('checks_clock', 'hidden', 'kernels', 'dask_backend', 'checks_stamps', 'accessibility'),
     *('full_disk', 'ros2_streams', 'doctor_healthy', 'formgrader', 'checks_relays', 'workspace'),
     *('same_scores', 'browser_hostile', 'ros2_graph', 'release', 'live_kernel', 'environment'),
-    *('fork_servers', 'sandbox'),
+    *('fork_servers', 'sandbox', 'ros2_service'),
 )
 """Files that take longest come first: begun at the end, one would be waited for alone. Those that
 keep processors busy stand beside those that wait: all at once, each would take longer."""

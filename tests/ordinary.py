@@ -57,6 +57,8 @@ ORDINARY = {
     # the same commands with other options
     'test_ros2_graph::test_prints_what_ros2cli_prints': r'[a-z]+ [a-z]+( [^-\s]\S*)*',
     'test_ros2_graph::test_refuses_as_ros2cli_does': r'(topic info|node info|param list) .*',
+    'test_ros2_service::test_prints_what_ros2cli_prints': r'[a-z]+( [^-\s]\S*)*',
+    'test_ros2_service::test_refuses_as_ros2cli_does': r'(info|call //x) .*|.*(path|\[1\])',
     'test_ros2_streams::test_it_ends_when_nobody_reads_any_more': r'echo|hz|pub',
     'test_ros2_streams::test_a_signal_ends_it_quietly_with_the_status_of_ros2cli': r'echo|hz|pub',
     'test_ros2_streams::test_echo_prints_what_ros2cli_prints': (

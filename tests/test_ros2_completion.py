@@ -30,6 +30,12 @@ COMPLETIONS = [
     ('ros2 node info /', ['/arm/everything', '/kinematics_publisher']),
     ('ros2 param get /arm/everything a_', ['a_bool', 'a_double', 'a_string']),
     ('ros2 service type /arm/s', ['/arm/start']),
+    ('ros2 service info /arm/s', ['/arm/start']),
+    ('ros2 service call /arm/s', ['/arm/start']),
+    ('ros2 service call /arm/start s', ['std_srvs/srv/Trigger']),
+    ('ros2 service call /new std_srvs/srv/S', ['std_srvs/srv/SetBool']),
+    ('ros2 service call /new std_srvs/srv/SetBool d', ['data:\\ false\\']),
+    ('ros2 service find std_srvs/srv/T', ['std_srvs/srv/Trigger']),
     ('ros2 pkg prefix rclp', ['rclpy']),
 ]  # fmt: skip
 

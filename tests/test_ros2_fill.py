@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from my_robot_basics.ros2 import interfaces
 from my_robot_basics.ros2.as_text import Shortening, as_yaml
-from my_robot_basics.ros2.fill import BadValue, fill
+from my_robot_basics.ros2.fill import BadValue, fill, fill_to_publish
 from rclpy.serialization import deserialize_message, serialize_message
 from sensor_msgs.msg import JointState, Joy
 from std_msgs.msg import Bool, Byte, Char, Empty, Float32, Float64, Int8, Int32, String, UInt64
@@ -44,7 +44,7 @@ from std_msgs.msg import Bool, Byte, Char, Empty, Float32, Float64, Int8, Int32,
 def test_values_that_fit(message, values, expected):
     if 'header' in values:
         expected.header.stamp.sec = 3
-    assert fill(message, values) == []
+    assert fill_to_publish(message, values) == []
     assert message == expected
     assert repr(message) == repr(expected)
     serialize_message(message)
@@ -96,12 +96,19 @@ def test_a_mistake_is_named_with_its_path_and_what_is_wanted(message, values, co
 
 def test_stamps_are_set_at_publication():
     stamped, status = PointStamped(), DiagnosticArray()
-    setters = fill(stamped, {'header': {'stamp': 'now', 'frame_id': 'a'}})
-    setters += fill(status, {'header': 'auto'})
+    setters = fill_to_publish(stamped, {'header': {'stamp': 'now', 'frame_id': 'a'}})
+    setters += fill_to_publish(status, {'header': 'auto'})
     for set_stamp in setters:
         set_stamp(Time(sec=7))
     assert (stamped.header.stamp.sec, stamped.header.frame_id) == (7, 'a')
     assert status.header.stamp.sec == 7
+
+
+@pytest.mark.parametrize('value', ['now', 'auto'])
+def test_a_request_has_no_time_of_publication(value):
+    field = {'now': {'stamp': 'now'}, 'auto': 'auto'}[value]
+    with pytest.raises(BadValue, match=rf"as a dictionary, got '{value}'"):
+        fill(PointStamped(), {'header': field})
 
 
 MESSAGES = [interfaces.message_class(name) for name in interfaces.names('msg')]

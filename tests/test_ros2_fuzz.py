@@ -28,7 +28,16 @@ NAMES = [
     '-',
     '\udcff',
 ]
-TYPES = ['std_msgs/msg/String', 'std_msgs/String', 'a/b/c', '/', 'os/path', '..', 'std_msgs/msg/']
+TYPES = [
+    'std_srvs/SetBool',
+    'std_msgs/msg/String',
+    'std_msgs/String',
+    'a/b/c',
+    '/',
+    'os/path',
+    '..',
+    'std_msgs/msg/',
+]
 WORDS = (
     st.sampled_from([*NAMES, *TYPES, '{}', '{data: 1}', '{data: [', '-1', '--', '[', '*', 'nan'])
     | st.text(max_size=8)

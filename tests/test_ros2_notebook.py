@@ -51,6 +51,14 @@ def test_a_cell_sees_the_nodes_of_its_kernel(lesson):
     )
 
 
+def test_a_cell_calls_a_service_of_its_kernel(lesson):
+    kind = 'rcl_interfaces/srv/ListParameters'
+    assert lesson.run(f'!ros2 service find {kind}') == '/kinematics_publisher/list_parameters\n'
+    text = lesson.run(f'!ros2 service call /kinematics_publisher/list_parameters {kind}')
+    assert "ListParametersResult(names=['" in text
+    assert 'Traceback' not in text
+
+
 def test_a_cell_of_hz_ends_by_itself(lesson):
     text = lesson.run(f'!timeout -s INT 9 ros2 topic hz {TOPIC}')
     assert re.match(r'average rate: (0\.[89]|1\.[01])\d\d\n\tmin: \d', text), text
@@ -67,6 +75,7 @@ def test_a_pipe_in_a_cell_ends_with_its_reader(lesson):
     [
         ('ros2 topic hz /nothing', 'does not appear to be published yet'),
         ('ros2 topic pub /x std_msgs/msg/String', 'publishing #1'),
+        ('ros2 service call /nothing std_srvs/srv/Empty', 'waiting for service'),
         ('ros2 run my_robot_basics kinematics_subscriber', 'waiting for poses'),
     ],
 )

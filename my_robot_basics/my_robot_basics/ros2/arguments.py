@@ -112,11 +112,20 @@ def add_discovery(parser: argparse.ArgumentParser, *, daemon: bool = True) -> No
 
 def add_hidden_topics(parser: argparse.ArgumentParser) -> None:
     """Repeat the argument of `ros2 topic`, which is good before and after the verb."""
+    _add_hidden(parser, 'topics')
+
+
+def add_hidden_services(parser: argparse.ArgumentParser) -> None:
+    """Repeat the argument of `ros2 service`, which is good before and after the verb."""
+    _add_hidden(parser, 'services')
+
+
+def _add_hidden(parser: argparse.ArgumentParser, what: str) -> None:
     parser.add_argument(
-        '--include-hidden-topics',
+        f'--include-hidden-{what}',
         action='store_true',
         default=argparse.SUPPRESS,  # else it would undo what stands before the verb
-        help='Consider hidden topics as well',
+        help=f'Consider hidden {what} as well',
     )
 
 

@@ -2,6 +2,7 @@
 
 import argparse
 from collections.abc import Callable, Iterable
+from typing import Any
 
 from my_robot_basics.ros2 import interfaces
 from my_robot_basics.ros2.graph import Graph
@@ -28,6 +29,19 @@ def topic_types(parsed_args: argparse.Namespace, **_: object) -> list[str]:
     return topics.get(parsed_args.topic_name) or message_types()
 
 
+def service_types_of(parsed_args: argparse.Namespace, **_: object) -> list[str]:
+    """The type that the service has; all service types if it has none yet."""
+    with Graph(parsed_args) as graph:
+        graph.settle()
+        services = dict(graph.services(include_hidden=True))
+    return services.get(parsed_args.service_name) or service_types()
+
+
+def service_types(**_: object) -> list[str]:
+    """Service types that are installed."""
+    return interfaces.names('srv')
+
+
 def message_types(**_: object) -> list[str]:
     """Message types that are installed."""
     return interfaces.names('msg')
@@ -40,10 +54,18 @@ def interface_types(**_: object) -> list[str]:
 
 def prototype(parsed_args: argparse.Namespace, **_: object) -> list[str]:
     """A message with its default values, as YAML."""
+    return [_as_yaml(interfaces.message_class_for(parsed_args.message_type)())]
+
+
+def request_prototype(parsed_args: argparse.Namespace, **_: object) -> list[str]:
+    """A service's request with its default values, as YAML."""
+    return [_as_yaml(interfaces.service_class_for(parsed_args.service_type).Request())]
+
+
+def _as_yaml(message: Any) -> str:
     from my_robot_basics.ros2.as_text import Shortening, as_yaml
 
-    message = interfaces.message_class_for(parsed_args.message_type)()
-    return [as_yaml(message, Shortening())]
+    return as_yaml(message, Shortening())
 
 
 def node_names(parsed_args: argparse.Namespace, **_: object) -> list[str]:

@@ -25,7 +25,12 @@ class BadValue(ValueError):
     """A value that does not fit its field; the text names the field's path and its type."""
 
 
-def fill(message: Any, values: dict) -> list[StampSetter]:
+def fill(message: Any, values: dict) -> None:
+    """Set fields of a message from a dictionary; raises BadValue."""
+    _fill(message, values, '', None)
+
+
+def fill_to_publish(message: Any, values: dict) -> list[StampSetter]:
     """Set fields of a message from a dictionary, and return what sets its time stamps.
 
     As in ros2cli, `auto` for a header and `now` for a time ask for the time of publication: each
@@ -36,22 +41,22 @@ def fill(message: Any, values: dict) -> list[StampSetter]:
     return setters
 
 
-def _fill(message: Any, values: dict, path: str, setters: list[StampSetter]) -> None:
+def _fill(message: Any, values: dict, path: str, setters: list[StampSetter] | None) -> None:
     slot_types = dict(zip(message.get_fields_and_field_types(), message.SLOT_TYPES, strict=True))
     for name, value in values.items():
         if name not in slot_types:
             raise BadValue(_no_such_field(message, name, slot_types, path))
         slot_type, here = slot_types[name], f'{path}{name}'
-        if value == 'now' and _is(slot_type, _TIME):
+        if setters is not None and value == 'now' and _is(slot_type, _TIME):
             setters.append(partial(setattr, message, name))
-        elif value == 'auto' and _is(slot_type, _HEADER):
+        elif setters is not None and value == 'auto' and _is(slot_type, _HEADER):
             header = getattr(message, name)
             setters.append(partial(setattr, header, 'stamp'))
         else:
             setattr(message, name, _converted(value, slot_type, here, setters))
 
 
-def _converted(value: Any, slot_type: Any, path: str, setters: list[StampSetter]) -> Any:
+def _converted(value: Any, slot_type: Any, path: str, setters: list[StampSetter] | None) -> Any:
     if isinstance(slot_type, definition.AbstractNestedType):
         return _list(value, slot_type, path, setters)
     if isinstance(slot_type, definition.NamespacedType):
@@ -66,7 +71,7 @@ def _converted(value: Any, slot_type: Any, path: str, setters: list[StampSetter]
     return _number(value, slot_type.typename, path)
 
 
-def _list(value: Any, slot_type: Any, path: str, setters: list[StampSetter]) -> list:
+def _list(value: Any, slot_type: Any, path: str, setters: list[StampSetter] | None) -> list:
     wanted = f'a list of {type_name(slot_type.value_type)}'
     if not isinstance(value, list):
         raise BadValue(f'{path}: wants {wanted}, got {value!r}')

@@ -52,15 +52,7 @@ def path(name: str) -> Path:
 
 def message_class(name: str) -> Any:
     """The class of a message type such as `std_msgs/msg/String` or `std_msgs/String`, or None."""
-    parts = name.split('/')
-    if len(parts) == 2:
-        parts.insert(1, 'msg')
-    if len(parts) != 3 or not all(part.isidentifier() for part in parts) or parts[1] not in KINDS:
-        return None
-    try:
-        found = getattr(importlib.import_module('.'.join(parts[:2])), parts[2], None)
-    except ModuleNotFoundError:
-        return None
+    found = _class(name, 'msg')
     return found if hasattr(found, 'SLOT_TYPES') else None
 
 
@@ -68,8 +60,35 @@ def message_class_for(name: str) -> Any:
     """The class of the message type that a user has named; raises CommandError."""
     if (found := message_class(name)) is not None:
         return found
+    raise CommandError(f'The passed message type is invalid{_did_you_mean(name, "msg")}')
+
+
+def service_class_for(name: str) -> Any:
+    """The class of the service type that a user has named, such as `std_srvs/srv/SetBool`.
+
+    `std_srvs/SetBool` will do. Raises CommandError.
+    """
+    if (found := _class(name, 'srv')) is None:
+        raise CommandError(f'The passed service type is invalid{_did_you_mean(name, "srv")}')
+    if not (hasattr(found, 'Request') and hasattr(found, 'Response')):
+        raise CommandError('The passed type is not a service')
+    return found
+
+
+def _class(name: str, kind: str) -> Any:
+    parts = name.split('/')
+    if len(parts) == 2:
+        parts.insert(1, kind)
+    if len(parts) != 3 or not all(part.isidentifier() for part in parts) or parts[1] not in KINDS:
+        return None
+    try:
+        return getattr(importlib.import_module('.'.join(parts[:2])), parts[2], None)
+    except ModuleNotFoundError:
+        return None
+
+
+def _did_you_mean(name: str, kind: str) -> str:
     import difflib
 
-    near = difflib.get_close_matches(name, names('msg'), n=1, cutoff=0.8)
-    hint = f': did you mean {near[0]}?' if near else ''
-    raise CommandError(f'The passed message type is invalid{hint}')
+    near = difflib.get_close_matches(name, names(kind), n=1, cutoff=0.8)
+    return f': did you mean {near[0]}?' if near else ''

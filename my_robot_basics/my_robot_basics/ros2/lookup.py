@@ -8,20 +8,21 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 
-def full_name(node: 'Node', topic_name: str) -> str:
-    """The topic's name with its namespace; raises CommandError for an impossible one."""
-    from rclpy.exceptions import InvalidTopicNameException
+def full_name(node: 'Node', name: str, *, is_service: bool = False) -> str:
+    """A topic's or service's full name; raises CommandError for an impossible one."""
+    from rclpy.exceptions import InvalidServiceNameException, InvalidTopicNameException
     from rclpy.expand_topic_name import expand_topic_name
     from rclpy.validate_full_topic_name import validate_full_topic_name
     from rclpy.validate_topic_name import validate_topic_name
 
     try:
-        validate_topic_name(topic_name)  # it says what is wrong, expansion does not
-        name = expand_topic_name(topic_name, node.get_name(), node.get_namespace())
-        validate_full_topic_name(name)
-    except (ValueError, InvalidTopicNameException) as error:
+        # it says what is wrong, expansion does not
+        validate_topic_name(name, is_service=is_service)
+        full = expand_topic_name(name, node.get_name(), node.get_namespace())
+        validate_full_topic_name(full, is_service=is_service)
+    except (ValueError, InvalidTopicNameException, InvalidServiceNameException) as error:
         raise CommandError(str(error)) from None
-    return name
+    return full
 
 
 def types(node: 'Node', full_name: str) -> list[str]:

@@ -36,8 +36,8 @@ COMMANDS = {
     'run': Command('Run a package specific executable'),
     'service': Command(
         'Various service related sub-commands',
-        verbs=('list', 'type'),
-        elsewhere=('call', 'echo', 'find', 'info'),
+        verbs=('call', 'find', 'info', 'list', 'type'),
+        elsewhere=('echo',),
         hidden_flag='--include-hidden-services',
     ),
     'topic': Command(

@@ -18,12 +18,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action='store_true',
         help='Only display the number of services discovered',
     )
-    parser.add_argument(
-        '--include-hidden-services',
-        action='store_true',
-        default=argparse.SUPPRESS,  # else it would undo what stands before the verb
-        help='Consider hidden services as well',
-    )
+    arguments.add_hidden_services(parser)
 
 
 def main(args: argparse.Namespace) -> None:

@@ -4,7 +4,7 @@ import argparse
 import sys
 from typing import Any
 
-from my_robot_basics.ros2 import arguments, completion
+from my_robot_basics.ros2 import arguments, completion, typed_values
 from my_robot_basics.ros2.errors import CommandError
 from my_robot_basics.ros2.graph import Graph
 
@@ -92,7 +92,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def main(args: argparse.Namespace) -> None:
     """Run the verb."""
     from my_robot_basics.ros2 import qos
-    from my_robot_basics.ros2.fill import BadValue, fill
+    from my_robot_basics.ros2.fill import BadValue, fill_to_publish
     from my_robot_basics.ros2.interfaces import message_class_for
 
     times = 1 if args.once else args.times
@@ -104,9 +104,11 @@ def main(args: argparse.Namespace) -> None:
             'with --wait-matching-subscriptions, --once or --times'
         )
     message = message_class_for(args.message_type)()
-    values = _values(sys.stdin.buffer.read() if args.stdin else args.values)
+    values = typed_values.parse(sys.stdin.buffer.read() if args.stdin else args.values)
+    if not isinstance(values, dict):
+        raise CommandError('The passed value needs to be a dictionary in YAML format')
     try:
-        stamp_setters = fill(message, values)
+        stamp_setters = fill_to_publish(message, values)
     except BadValue as error:
         raise CommandError(f'Failed to populate field: {error}') from None
 
@@ -137,18 +139,6 @@ def main(args: argparse.Namespace) -> None:
         # a node that we have met may not have met us yet, and what it has not taken is lost
         graph.wait_until(lambda: publisher.wait_for_all_acked(Duration()), timeout_sec=TAKEN_SEC)
         graph.sleep(args.keep_alive)
-
-
-def _values(text: str | bytes) -> dict:
-    import yaml
-
-    try:
-        values = yaml.safe_load(text)
-    except (yaml.YAMLError, ValueError, OverflowError, RecursionError) as error:
-        raise CommandError(f'The passed value is not YAML: {error}') from None
-    if not isinstance(values, dict):
-        raise CommandError('The passed value needs to be a dictionary in YAML format')
-    return values
 
 
 def _wait_for_subscriptions(

@@ -1,0 +1,15 @@
+"""Values of fields that a user has typed, in YAML."""
+
+from typing import Any
+
+from my_robot_basics.ros2.errors import CommandError
+
+
+def parse(text: str | bytes) -> Any:
+    """The text as YAML; raises CommandError."""
+    import yaml
+
+    try:
+        return yaml.safe_load(text)
+    except (yaml.YAMLError, ValueError, OverflowError, RecursionError) as error:
+        raise CommandError(f'The passed value is not YAML: {error}') from None
