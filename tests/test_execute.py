@@ -8,7 +8,7 @@ import time
 
 import nbformat
 import pytest
-from my_robot_basics.validate import judging
+from my_robot_basics.validate import budget
 from my_robot_basics.validate.outputs import CellRun
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook, new_output
 from nbgrader.utils import determine_grade
@@ -72,7 +72,7 @@ GOOD = 'def double(x): return 2 * x'
 
 
 def test_each_exercise_costs_only_itself(monkeypatch):
-    monkeypatch.setattr(judging, 'STUDENT_CELL_TIMEOUT_SEC', 4.0)
+    monkeypatch.setattr(budget, 'STUDENT_CELL_TIMEOUT_SEC', 4.0)
     answers = {
         'good': GOOD,
         'raises': '1 / 0',
@@ -159,7 +159,7 @@ STRANGE = {
 
 @pytest.mark.parametrize(('own', 'outcome'), STRANGE.values(), ids=STRANGE)
 def test_strange_ways_to_answer(monkeypatch, own, outcome):
-    monkeypatch.setattr(judging, 'STUDENT_CELL_TIMEOUT_SEC', 4.0)
+    monkeypatch.setattr(budget, 'STUDENT_CELL_TIMEOUT_SEC', 4.0)
     execution = execute(handed_in(lesson('a'), **own))
     assert outcomes(execution)['a-check'] == outcome
 
@@ -297,7 +297,7 @@ def test_student_cells_share_one_budget(monkeypatch):
             return CellRun(status='ok')
 
     monkeypatch.setattr(module, 'Rooms', Slow)
-    monkeypatch.setattr(module, 'Budget', lambda: judging.Budget(0.5))
+    monkeypatch.setattr(module, 'Budget', lambda: budget.Budget(0.5))
     execute(handed_in(lesson('a', 'b', 'c'), a='loop', b='loop', c='loop'))
     assert given == sorted(given, reverse=True)
     assert max(given) <= 0.5

@@ -7,6 +7,7 @@ import pytest
 from course_maker import TOY, answered, make_course, submit, toy_lesson, write_source
 from my_robot_basics.checks import CheckFailed, expect, fail
 from my_robot_basics.feedback import hidden
+from my_robot_basics.feedback.hidden_source import marked, visible
 from my_robot_basics.validate.cells import role
 
 from grader.__main__ import main
@@ -190,14 +191,14 @@ def test_the_first_line_of_a_hidden_part_says_so_wherever_it_stands():
     source = (
         'for i in [1]:\n    ### BEGIN HIDDEN TESTS\n    told = 1\n    ### END HIDDEN TESTS\nx = 1'
     )
-    lines = hidden.marked(source).split('\n')
+    lines = marked(source).split('\n')
     assert lines[0].endswith('.start(quiet=False)')
-    titled = hidden.marked(f'"""A title\n\nand more"""\n{source}', quiet=True).split('\n')
+    titled = marked(f'"""A title\n\nand more"""\n{source}', quiet=True).split('\n')
     assert titled[3].endswith('.start(quiet=True)')
     assert titled[4:6] == lines[1:3]
     assert lines[2].startswith("    __import__('my_robot_basics.feedback.hidden'")
     assert lines[3:] == source.split('\n')[2:]
-    assert hidden.visible(source) == 'for i in [1]:\nx = 1'
+    assert visible(source) == 'for i in [1]:\nx = 1'
 
 
 @pytest.mark.parametrize('assignment', Course().assignments())
@@ -206,5 +207,5 @@ def test_what_is_run_of_a_lesson_is_python_and_what_is_visible_is_what_students_
     given = {cell.id: cell.source for cell in course.release(assignment).cells}
     for cell in course.source(assignment).cells:
         if cell.cell_type == 'code' and role(cell) == 'grade':
-            compile(hidden.marked(cell.source), cell.id, 'exec')
-            assert hidden.visible(cell.source) == given[cell.id]
+            compile(marked(cell.source), cell.id, 'exec')
+            assert visible(cell.source) == given[cell.id]

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import psutil
 import pytest
-from my_robot_basics.validate import judging
+from my_robot_basics.validate import budget
 from test_execute import GOOD, handed_in, lesson
 
 from grader.judging import execute as module
@@ -302,7 +302,7 @@ HOG = f'hog = [bytearray(b"x" * {64 * MEBIBYTE}) for _ in range({PIECES})]'
 
 def test_who_uses_too_much_memory_twice_gets_a_zero_that_says_so(monkeypatch, way):
     needs_cgroups()
-    monkeypatch.setattr(judging, 'STUDENT_CELL_TIMEOUT_SEC', 60.0)
+    monkeypatch.setattr(budget, 'STUDENT_CELL_TIMEOUT_SEC', 60.0)
     verdict = graded(ASKS, f'{GOOD}\n{HOG}')
     assert verdict.outcome == 'failed'
     assert 'your code used more than 2,048 MB' in verdict.reason
@@ -310,7 +310,7 @@ def test_who_uses_too_much_memory_twice_gets_a_zero_that_says_so(monkeypatch, wa
 
 def test_so_does_who_starts_a_program_that_does(monkeypatch):
     needs_cgroups()
-    monkeypatch.setattr(judging, 'STUDENT_CELL_TIMEOUT_SEC', 60.0)
+    monkeypatch.setattr(budget, 'STUDENT_CELL_TIMEOUT_SEC', 60.0)
     hog = f'import subprocess, sys; node = subprocess.Popen([sys.executable, "-c", {HOG!r}])'
     more = '\nnode.wait(50)\n'
     verdict = graded(NEEDS_NODE, f'{GOOD}\n{hog}{more}{STATUS}')

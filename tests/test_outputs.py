@@ -2,12 +2,8 @@
 
 import nbformat
 import pytest
-from my_robot_basics.validate.outputs import (
-    MAX_ERROR_CHARACTERS,
-    MAX_OUTPUT_CHARACTERS,
-    CellRun,
-    Displays,
-)
+from my_robot_basics.validate.outputs import MAX_OUTPUT_CHARACTERS, CellRun, Displays
+from my_robot_basics.validate.safe_outputs import MAX_ERROR_CHARACTERS
 
 
 def stream(text, name='stdout'):

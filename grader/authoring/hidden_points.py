@@ -1,6 +1,6 @@
 """Write into a released notebook what *Validate* must know of it and its cells no longer show."""
 
-from my_robot_basics.feedback.hidden import visible
+from my_robot_basics.feedback.hidden_source import visible
 from my_robot_basics.validate.cells import KEY, RECORD, fingerprint, grade_id, roles
 from my_robot_basics.validate.titles import checks_something
 from nbconvert.preprocessors import Preprocessor

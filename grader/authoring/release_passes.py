@@ -12,7 +12,7 @@ of that stand as comments right behind the answer, and take the stub's place:
 import re
 
 import nbformat
-from my_robot_basics.validate.outputs import WIDGET_VIEW
+from my_robot_basics.validate.safe_outputs import WIDGET_VIEW
 from nbconvert.preprocessors import Preprocessor
 from nbformat import NotebookNode
 

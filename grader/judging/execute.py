@@ -6,9 +6,10 @@ from functools import partial
 from pathlib import Path
 
 import nbformat
+from my_robot_basics.validate.budget import Budget
 from my_robot_basics.validate.cells import KEY, grade_id, role
 from my_robot_basics.validate.exercises import find_exercises
-from my_robot_basics.validate.judging import Budget, judge_exercise
+from my_robot_basics.validate.judging import judge_exercise
 from my_robot_basics.validate.limits import MAX_NOTEBOOK_OUTPUT_CHARACTERS
 from my_robot_basics.validate.verdict import Verdict, refuse, write_verdict
 from nbformat import NotebookNode

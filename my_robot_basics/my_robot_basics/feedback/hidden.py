@@ -1,11 +1,11 @@
 """The part of a check that students are not given: what fails there is told by its cause alone.
 
-The grader runs a grade cell as `marked` writes it. From its hidden part on, `fail` names neither
-inputs nor what is right, and nothing that the student's code made: someone who builds a table from
-feedback has nothing to write into it. The whole sentence goes to the instructor.
+The grader runs a grade cell as `marked` of `hidden_source` writes it. From its hidden part on,
+`fail` names neither inputs nor what is right, and nothing that the student's code made: someone
+who builds a table from feedback has nothing to write into it. The whole sentence goes to the
+instructor.
 """
 
-import ast
 import builtins
 import os
 import re
@@ -14,8 +14,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-BEGIN, END = (f'{word} HIDDEN TESTS' for word in ('BEGIN', 'END'))
-# in one piece, these words would show that something hidden was given out
 PLACE = 'in the part checked at grading: '
 """How a reason from there begins."""
 
@@ -31,7 +29,6 @@ _POINTS = 'application/vnd.my_robot_basics.points'
 """… And of this one: the points that a check leaves which fails."""
 _BEGAN, _INPUTS, _ALREADY = 'began', 'inputs', 'already'
 
-_HERE = "__import__('my_robot_basics.feedback.hidden', fromlist=['begin'])"
 _OPEN, _CLOSE = '\u2068', '\u2069'
 """Around what a student's code made: no text that `shorten` has cleaned holds these."""
 _THEIRS = re.compile(f'{_OPEN}[^{_CLOSE}]*{_CLOSE}')
@@ -40,29 +37,6 @@ _LIST = re.compile(r'…(, …)+')
 
 _quiet = False
 _began_sec: float | None = None
-
-
-def marked(source: str, *, quiet: bool = False) -> str:
-    """A grade cell as it is run: it says where its hidden part begins.
-
-    It is `quiet` from its first line on where the student's code knows hidden inputs already.
-    """
-    lines = []
-    for line in source.split('\n'):
-        indent = line[: len(line) - len(line.lstrip())]
-        lines.append(f'{indent}{_HERE}.begin()' if BEGIN in line else line)
-    lines.insert(_title_lines(source), f'{_HERE}.start(quiet={quiet})')
-    return '\n'.join(lines)
-
-
-def visible(source: str) -> str:
-    """A grade cell as students are given it."""
-    kept, inside = [], False
-    for line in source.split('\n'):
-        inside = (inside or BEGIN in line) and END not in line
-        if not inside and END not in line:
-            kept.append(line)
-    return '\n'.join(kept)
 
 
 def is_in_test_room() -> bool:
@@ -192,14 +166,6 @@ def shown(outputs: Sequence[Any]) -> list[Any]:
         if not _is_for_the_grader(output):
             kept.append(output)
     return kept
-
-
-def _title_lines(source: str) -> int:
-    """How many lines the docstring takes, which stays the first thing of a cell."""
-    first, *_ = [*ast.parse(source).body, None]
-    if isinstance(first, ast.Expr) and isinstance(first.value, ast.Constant):
-        return first.end_lineno or 0
-    return 0
 
 
 def _said(outputs: Iterable[Any], mime: str) -> list[str]:

@@ -11,10 +11,11 @@ import select
 import sys
 import time
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple, cast
+from typing import TYPE_CHECKING, Any, cast
 
 from my_robot_basics.ros2 import discovery, environment, lookup, stopping
 from my_robot_basics.ros2.errors import CommandError
+from my_robot_basics.ros2.node_name import NodeName
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -22,18 +23,6 @@ if TYPE_CHECKING:
 HIDDEN_PREFIX = '_'
 WAIT_SEC = 0.05
 """The longest wait between two looks at signals and the pipe."""
-
-
-class NodeName(NamedTuple):
-    """A node's name on the graph."""
-
-    name: str
-    namespace: str
-
-    @property
-    def full_name(self) -> str:
-        """The name with its namespace, such as `/arm/driver`."""
-        return f'{self.namespace.rstrip("/")}/{self.name}'
 
 
 class Graph:

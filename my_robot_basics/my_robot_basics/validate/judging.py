@@ -1,15 +1,14 @@
 """Run an exercise as its plans say, in rooms that somebody opens, and judge its checks."""
 
-import asyncio
 import copy
-from collections.abc import Callable
-from contextlib import AbstractAsyncContextManager, suppress
-from dataclasses import dataclass, field, replace
-from typing import Any, Generic, Protocol, TypeVar
+from contextlib import suppress
+from dataclasses import dataclass, replace
 
 from nbformat import NotebookNode
 
 from my_robot_basics.feedback import hidden
+from my_robot_basics.feedback.hidden_source import marked, visible
+from my_robot_basics.validate.budget import Budget
 from my_robot_basics.validate.cell_names import number_of
 from my_robot_basics.validate.cells import grade_id, graded_id
 from my_robot_basics.validate.errors import RoomFailure
@@ -19,50 +18,13 @@ from my_robot_basics.validate.exercises import (
     plan_for_names,
     plans,
 )
-from my_robot_basics.validate.limits import STUDENT_CELL_TIMEOUT_SEC, STUDENT_CELLS_BUDGET_SEC
 from my_robot_basics.validate.names import names_not_defined
 from my_robot_basics.validate.outputs import CellRun
 from my_robot_basics.validate.overdue import judge_overdue
+from my_robot_basics.validate.rooms_interface import OpenRooms, R, Rooms
 from my_robot_basics.validate.verdict import Verdict, judge, ungraded
 
-
-class Rooms(Protocol):
-    """Two kernels that share nothing but a ROS domain: the student's and the test's."""
-
-    @property
-    def student_alive(self) -> bool:
-        """Whether the student's kernel still runs."""
-
-    async def run_student_cell(self, source: str, *, timeout_sec: float) -> CellRun:
-        """Run one of the student's cells."""
-
-    async def run_check(self, source: str) -> CellRun:
-        """Run a grade cell, passing its questions on to the student's kernel."""
-
-
-R = TypeVar('R', bound=Rooms)
 Checks = dict[int, tuple[Verdict, list[NotebookNode]]]
-OpenRooms = Callable[[], AbstractAsyncContextManager[R]]
-
-
-@dataclass
-class Budget(Generic[R]):
-    """What is left of the time that all student cells of a notebook may take together."""
-
-    remaining_sec: float = STUDENT_CELLS_BUDGET_SEC
-    loop_time: Any = field(default_factory=lambda: asyncio.get_running_loop().time)
-
-    async def run(self, rooms: R, cell: NotebookNode) -> CellRun:
-        """Run one of the student's cells within its limit, and within what is left."""
-        start = self.loop_time()
-        timeout_sec = max(0.1, min(STUDENT_CELL_TIMEOUT_SEC, self.remaining_sec))
-        run = await self.run_within(timeout_sec, rooms, cell)
-        self.remaining_sec -= self.loop_time() - start
-        return run
-
-    async def run_within(self, timeout_sec: float, rooms: R, cell: NotebookNode) -> CellRun:
-        """Run one of the student's cells for so long at most."""
-        return await rooms.run_student_cell(cell.source, timeout_sec=timeout_sec)
 
 
 @dataclass(frozen=True)
@@ -162,7 +124,7 @@ async def _judge_cells(
     given_up = [(_name(cells, i), run) for i, run in runs.items() if run.cut_after_sec]
     checks, cut, quiet = {}, [], False
     for index in exercise.grades:
-        source = hidden.marked(cells[index].source, quiet=quiet)
+        source = marked(cells[index].source, quiet=quiet)
         can_tell = rooms.student_alive and not any(each.cut_after_sec for _, each in own)
         run = await rooms.run_check(source) if can_tell else None
         outputs = run.outputs if run else []
@@ -181,7 +143,7 @@ async def _told_in_full(notebook: NotebookNode, rooms: Rooms, cut: Checks) -> Ch
     for index, (verdict, _) in cut.items():
         cell = notebook.cells[index]
         if rooms.student_alive:
-            run = await rooms.run_check(hidden.marked(hidden.visible(cell.source)))
+            run = await rooms.run_check(marked(visible(cell.source)))
             again = judge(cell, run, [])
             if again.outcome == 'failed':
                 told[index] = replace(verdict, reason=again.reason, details=''), run.outputs

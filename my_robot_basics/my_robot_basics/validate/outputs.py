@@ -9,20 +9,16 @@ import nbformat
 from nbformat import NotebookNode
 
 from my_robot_basics.validate.limits import FLOOD_CHARACTERS, MAX_MESSAGE_BYTES
-from my_robot_basics.validate.pictures import KINDS, why_not_shown
+from my_robot_basics.validate.safe_outputs import safe_output
 
 MAX_OUTPUT_CHARACTERS = 200_000
 """What is kept of one cell's output; the rest is drained and counted."""
-MAX_ALT_CHARACTERS = 500
-MAX_ERROR_CHARACTERS = 10_000
 
 CUT_OFF = (
     f'sent over {MAX_MESSAGE_BYTES / 1e6:.0f} MB at once, or closed a connection of its '
     'kernel, which was ended: nothing that it says could be received any more'
 )
 """What is said of a cell whose kernel was cut off."""
-WIDGET_VIEW = 'application/vnd.jupyter.widget-view+json'
-"""Outlives no kernel; as text it ends whatever wants to show the notebook."""
 _OVERHEAD = 100
 """What an output costs besides its text: many small ones are as bad as a large one."""
 
@@ -66,7 +62,7 @@ class CellRun:
 
     def keep(self, kind: str, content: dict) -> NotebookNode | None:
         """Keep an output while there is room; return it if it can be updated later."""
-        output = _output(kind, content)
+        output = safe_output(kind, content)
         if output is None:
             return None
         if kind == 'stream':
@@ -141,51 +137,11 @@ class Displays:
 
     def update(self, content: dict) -> None:
         """Replace what the content of an update_display_data message names."""
-        new, display_id = _output('display_data', content), _display_id(content)
+        new, display_id = safe_output('display_data', content), _display_id(content)
         if new is None or display_id is None:
             return
         for run, output in self._outputs.get(display_id, ()):
             run.replace(output, new.data)
-
-
-def _output(kind: str, content: dict) -> NotebookNode | None:
-    """Build an output that is safe to store; None for what is not one."""
-    match kind, content:
-        case 'stream', {'name': 'stdout' | 'stderr' as name, 'text': str(text)}:
-            return nbformat.v4.new_output('stream', name=name, text=_clean(text))
-        case 'display_data' | 'execute_result', {'data': dict(data)}:
-            texts = {mime: text for mime, text in data.items() if isinstance(text, str)}
-            data = {_clean(m): _clean(text) for m, text in texts.items() if m != WIDGET_VIEW}
-            _leave_large_pictures_out(data)
-            about = _about_pictures(content.get('metadata'))
-            return nbformat.v4.new_output(kind, data=data, metadata=about)
-        case 'error', {'ename': str(name), 'evalue': str(value), 'traceback': list(lines)}:
-            return nbformat.v4.new_output(
-                'error',
-                ename=_clean(name)[:200],
-                evalue=_clean(value)[:MAX_ERROR_CHARACTERS],
-                traceback=_clean('\n'.join(map(str, lines)))[-MAX_ERROR_CHARACTERS:].split('\n'),
-            )
-    return None
-
-
-def _leave_large_pictures_out(data: dict[str, str]) -> None:
-    for kind in KINDS:
-        if kind in data and (why := why_not_shown(data[kind])):
-            del data[kind]
-            data['text/plain'] = f'[{why} was left out]'
-
-
-def _about_pictures(metadata: object) -> dict[str, dict[str, int | str]]:
-    """Keep the width and height (pixels) of pictures and their text alternative, by MIME type."""
-    kept = {}
-    for mime, about in metadata.items() if isinstance(metadata, dict) else ():
-        if isinstance(about, dict):
-            mime = _clean(mime)
-            kept[mime] = {k: about[k] for k in ('width', 'height') if type(about.get(k)) is int}
-            if isinstance(about.get('alt'), str):
-                kept[mime]['alt'] = _clean(about['alt'])[:MAX_ALT_CHARACTERS]
-    return kept
 
 
 def _display_id(content: dict) -> str | None:
@@ -193,11 +149,6 @@ def _display_id(content: dict) -> str | None:
         case {'transient': {'display_id': str(display_id)}}:
             return display_id
     return None
-
-
-def _clean(text: str) -> str:
-    """Replace lone surrogates: they can't be written to any file."""
-    return text.encode(errors='replace').decode()
 
 
 def _size(content: object) -> int:

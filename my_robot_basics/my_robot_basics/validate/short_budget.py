@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 from nbformat import NotebookNode
 
+from my_robot_basics.validate.budget import Budget
 from my_robot_basics.validate.cells import KEY, role
-from my_robot_basics.validate.judging import Budget
 from my_robot_basics.validate.limits import VALIDATE_NEXT_TIMEOUT_SEC, VALIDATE_TIMEOUT_SEC
 from my_robot_basics.validate.outputs import CellRun
 from my_robot_basics.validate.rooms import Rooms

@@ -2,7 +2,7 @@
 
 import ast
 
-from my_robot_basics.feedback.hidden import visible
+from my_robot_basics.feedback.hidden_source import visible
 
 
 def title_of_failure(source: str) -> str:

@@ -4,7 +4,8 @@ import argparse
 import sys
 
 from my_robot_basics.ros2 import arguments, completion
-from my_robot_basics.ros2.graph import HIDDEN_PREFIX, Graph, NodeName
+from my_robot_basics.ros2.graph import HIDDEN_PREFIX, Graph
+from my_robot_basics.ros2.node_name import NodeName
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -1,0 +1,31 @@
+"""How long the student's cells of a notebook may take together."""
+
+import asyncio
+from dataclasses import dataclass, field
+from typing import Any, Generic
+
+from nbformat import NotebookNode
+
+from my_robot_basics.validate.limits import STUDENT_CELL_TIMEOUT_SEC, STUDENT_CELLS_BUDGET_SEC
+from my_robot_basics.validate.outputs import CellRun
+from my_robot_basics.validate.rooms_interface import R
+
+
+@dataclass
+class Budget(Generic[R]):
+    """What is left of the time that all student cells of a notebook may take together."""
+
+    remaining_sec: float = STUDENT_CELLS_BUDGET_SEC
+    loop_time: Any = field(default_factory=lambda: asyncio.get_running_loop().time)
+
+    async def run(self, rooms: R, cell: NotebookNode) -> CellRun:
+        """Run one of the student's cells within its limit, and within what is left."""
+        start = self.loop_time()
+        timeout_sec = max(0.1, min(STUDENT_CELL_TIMEOUT_SEC, self.remaining_sec))
+        run = await self.run_within(timeout_sec, rooms, cell)
+        self.remaining_sec -= self.loop_time() - start
+        return run
+
+    async def run_within(self, timeout_sec: float, rooms: R, cell: NotebookNode) -> CellRun:
+        """Run one of the student's cells for so long at most."""
+        return await rooms.run_student_cell(cell.source, timeout_sec=timeout_sec)
