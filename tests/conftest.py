@@ -15,8 +15,9 @@ import pytest
 from hypothesis import HealthCheck, settings
 from my_robot_basics.session import classroom
 
+from grader.authoring import release
 from grader.kernels.isolation import TRUST, missing
-from tests import ordinary, tiers  # also where nbval runs with this as a plugin
+from tests import ordinary, preloaded, tiers  # also where nbval runs with this as a plugin
 
 # a busy machine fails no test
 settings.register_profile('busy', deadline=None, suppress_health_check=[HealthCheck.too_slow])
@@ -30,12 +31,14 @@ UNTESTED = pytest.StashKey[list]()
 """The tests that a machine without a sandbox leaves out."""
 
 LONG = (
-    *('sample_class', 'lessons_run', 'checks_sampling', 'browser', 'doctor_faults', 'attacks'),
-    *('checks_topics', 'interrupt', 'checks_logs', 'workers', 'nbgrader_commands', 'survival'),
-    *('checks_clock', 'hidden', 'kernels', 'dask_backend', 'checks_stamps', 'accessibility'),
-    *('full_disk', 'ros2_streams', 'doctor_healthy', 'formgrader', 'checks_relays', 'workspace'),
-    *('same_scores', 'browser_hostile', 'ros2_graph', 'release', 'live_kernel', 'environment'),
-    *('fork_servers', 'sandbox', 'ros2_service'),
+    *('checks_relays', 'sample_class', 'browser', 'checks_sampling', 'nbgrader_commands'),
+    *('live_kernel', 'attacks', 'checks_topics', 'release', 'kernel_exits', 'workers', 'answers'),
+    *('doctor_faults', 'interrupt', 'course', 'ros2_streams', 'checks_clock', 'kernels'),
+    *('workspace', 'checks_logs', 'hidden', 'executables', 'live_lessons', 'checks_stamps'),
+    *('survival', 'dask_backend', 'sandbox', 'browser_hostile', 'fork_servers', 'environment'),
+    *('lesson_own_program', 'package', 'formgrader', 'validate', 'ros2_graph', 'lessons_run'),
+    *('full_disk', 'accessibility', 'live_target', 'hidden_inputs', 'isolation', 'execute'),
+    *('ros2_service', 'rooms', 'bundle', 'feedback', 'collect', 'report', 'live_arm'),
 )
 """Files that take longest come first: begun at the end, one would be waited for alone. Those that
 keep processors busy stand beside those that wait: all at once, each would take longer."""
@@ -108,6 +111,8 @@ def pytest_configure(config: pytest.Config) -> None:
     elif quick:
         config.option.markexpr = 'not slow and not starts'
     config.stash[GUARD] = tiers.Guard(refuses=quick)
+    if not quick:  # that tier starts no server
+        release.subprocess = preloaded
     if config.getoption('--no-isolation'):
         os.environ[TRUST] = '1'
     # a session in the background ignores Ctrl-C, and so would all that it starts

@@ -112,6 +112,22 @@ ORDINARY = {
     'test_checks_relays::test_each_message_comes_out_at_once_and_once': (
         r'(DropsEveryTenth|DropsEqualOnes|DropsAfterAPause|Lags|Doubles)-.*'
     ),
+    'test_checks_relays::test_a_message_of_which_a_field_was_changed_does_not_pass': r'Stamps-.*',
+    'test_checks_relays::test_a_subscription_that_asks_for_too_much_is_named': r'(10|asked1)-.*',
+    'test_checks_relays::test_each_description_that_follows_comes_out_too': r'DropsEqualOnes-.*',
+    'test_checks_clock::test_a_timer_is_judged_exactly_on_the_robots_clock': (
+        r'(five_hz|own_thread)-.*'
+    ),
+    'test_checks_clock::test_a_node_is_alive_on_wall_time_after_a_check': r'five_hz',
+    'test_checks_clock::test_a_node_is_alive_after_a_check_that_was_cut_short': (
+        r'KeyboardInterrupt'
+    ),
+    'test_checks_sampling::test_a_machine_that_is_late_itself_looks_again_while_there_is_time': (
+        r'1\.0-1000\.0-4|0\.0-.*'
+    ),
+    'test_course::test_really_sets_up': r'uv',  # this environment was, too: with pip, or with uv
+    'test_ros2_streams::test_a_signal_at_any_moment_leaves_no_ghost': r'2',
+    'test_dask_backend::test_a_worker_that_is_not_as_we_are_grades_nothing': r'environment0-.*',
     'test_ros2_run::test_a_signal_reaches_the_executable_once': (
         r'(the process|both)-2|its group-15'
     ),
