@@ -8,6 +8,7 @@ from my_robot_basics.validate.cells import KEY, fingerprint
 from my_robot_basics.validate.lesson import read_lesson
 from nbgrader.utils import compute_checksum
 
+from grader.authoring.exercise_cells import outside_of_exercises
 from grader.authoring.hidden_points import MarkHidden
 from grader.authoring.leaks import leaks_of
 from grader.authoring.release import release, stale_or_leaking
@@ -167,6 +168,47 @@ def test_a_failure_leaves_the_former_release_as_it_was(course):
     with pytest.raises(CourseError, match='no end solution'):
         release(course)
     assert course.release_path(TOY).read_bytes() == before
+    write_source(course, toy_lesson())
+
+
+def drop(*names):
+    lesson = toy_lesson()
+    lesson.cells = [cell for cell in lesson.cells if cell.id not in names]
+    return lesson
+
+
+def with_second_answer():
+    """The second exercise has no reset cell: its check would be judged with the first answer."""
+    lesson = toy_lesson()
+    for cell in drop('double-reset').cells[3:6]:
+        cell.id = cell.id.replace('double', 'triple')
+        if cell.metadata.get('nbgrader'):
+            cell.metadata.nbgrader.grade_id = cell.id
+        lesson.cells.append(cell)
+    return lesson
+
+
+OUTSIDE = {
+    'no reset cell': (drop('double-reset'), ['answer cell `double`', 'id `double-reset` before']),
+    'no reset cell behind an exercise': (
+        with_second_answer(),
+        ['answer cell `triple`', 'id `triple-reset` before'],
+    ),
+    'no answer cell': (drop('double'), ['check `double-check`', 'put an answer cell before it']),
+    'neither': (drop('double', 'double-reset'), ['check `double-hidden`', 'with `-reset`']),
+}
+
+
+@pytest.mark.parametrize(('lesson', 'said'), OUTSIDE.values(), ids=OUTSIDE)
+def test_a_check_outside_of_an_exercise_is_refused_with_what_to_add(lesson, said):
+    faults = '; '.join(outside_of_exercises(lesson))
+    assert all(words in faults for words in said)
+
+
+def test_an_exercise_without_its_reset_cell_is_not_released(course):
+    write_source(course, drop('double-reset'))
+    with pytest.raises(CourseError, match=r'the answer cell `double` .* id `double-reset` before'):
+        release(course)
     write_source(course, toy_lesson())
 
 

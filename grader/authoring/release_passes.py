@@ -21,6 +21,7 @@ from grader.common.errors import CourseError
 
 PASSES = (
     'grader.authoring.release_passes.TidyMetadata',
+    'grader.authoring.exercise_cells.RequireExercises',
     'nbgrader.preprocessors.LockCells',
     'nbgrader.preprocessors.ClearSolutions',
     'grader.authoring.release_passes.ReleaseBroken',
