@@ -1,5 +1,6 @@
 """Topics from inside the student's kernel (nodes of live) and from outside; what silence means."""
 
+import math
 import os
 import subprocess
 import sys
@@ -249,6 +250,21 @@ def test_a_wrong_answer_beside_the_right_one_is_one_too_many(run, right):
             expected='only that',
             seen=lambda message: message.position[0],
             hint='leave it out',
+        )
+
+
+@pytest.mark.timeout(60)
+def test_a_wrong_answer_alone_is_not_waited_on(run):
+    run(Echo, 10)
+    with pytest.raises(CheckFailed, match=r'expected 9\.0, saw 0\.5: count again'):
+        topic('/answer').wait_for(
+            lambda message: message.position[0] == 9.0,
+            never=lambda message: message.position[0] == 0.5,
+            timeout_sec=math.inf,
+            after=lambda: topic('/question').publish(Point(x=0.5)),
+            expected='9.0',
+            seen=lambda message: message.position[0],
+            hint='count again',
         )
 
 

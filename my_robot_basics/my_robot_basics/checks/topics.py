@@ -129,9 +129,9 @@ class Topic:
         Raises CheckFailed when there is no publisher or no such message in time. Where there were
         others, it speaks of what was `expected`, of the last one, as `seen` puts it in words, and
         gives the `hint` (on that one, if it is a function); so it does where one comes for which
-        `never` holds, beside the right one. With `once`, a second one for which the predicate
-        holds fails, too, in words for a node that publishes once for each message: so publish one
-        message in `after`.
+        `never` holds, alone or beside the right one: nothing that comes later changes that. With
+        `once`, a second one for which the predicate holds fails, too, in words for a node that
+        publishes once for each message: so publish one message in `after`.
         """
         with Watcher() as watcher:
             ears = self.listen(watcher)
@@ -141,15 +141,19 @@ class Topic:
             def found() -> list:
                 return [m for m in ears.messages() if predicate is None or predicate(m)]
 
-            is_there = watcher.spin_until(lambda: bool(found()), timeout_sec=timeout_sec)
-            if is_there and (once or never is not None):
+            def wrong() -> list:
+                return [m for m in ears.messages() if never is not None and never(m)]
+
+            is_decided = watcher.spin_until(
+                lambda: bool(found() or wrong()), timeout_sec=timeout_sec
+            )
+            if is_decided and (once or never is not None):
                 watcher.spin_for(AFTERTHOUGHT_SEC)
             heard = ears.messages()
-            wrong = [m for m in heard if never is not None and never(m)]
-            if wrong or not is_there:
+            if wrong() or not found():
                 if not heard:
                     self._fail_silent(watcher, seen=f'no message in {timeout_sec:g} s')
-                last = [*heard, *wrong][-1]
+                last = [*heard, *wrong()][-1]
                 others = f'{len(heard)} others in {timeout_sec:g} s'
                 fail(
                     expected=expected or f'a message on {self.name} that answers',
