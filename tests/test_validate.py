@@ -293,12 +293,32 @@ def test_who_stops_it_ends_all_that_it_began(tmp_path, number):
         while 'running your cells' not in process.stdout.readline():
             assert process.poll() is None
         begun = psutil.Process(process.pid).children(recursive=True)
-        folders = {Path(p.cwd()).parents[1] for p in begun}
-        assert len(begun) >= 2
+        folders = {Path(p.cwd()).parents[1] for p in begun if p.cwd() != '/'}
+        assert len(begun) >= 3
+        assert len(folders) == 1
         process.send_signal(number)
         assert process.wait() == 130
     assert not any(child.is_running() for child in begun)
     assert [folder for folder in folders if folder.exists()] == []
+
+
+DAEMON = """
+import os, time
+if os.fork() == 0:
+    os.setsid()
+    if os.fork() == 0:
+        open({file!r}, 'w').write(str(os.getpid()))
+        time.sleep(600)
+    os._exit(0)
+while not os.path.exists({file!r}) or not open({file!r}).read():
+    time.sleep(0.01)
+"""
+
+
+def test_what_an_answer_forks_and_lets_go_ends_with_it(tmp_path):
+    daemon = DAEMON.format(file=str(tmp_path / 'pid'))
+    validated(answered('02_joint_state', tmp_path, to_joint_state=daemon))
+    assert not psutil.pid_exists(int((tmp_path / 'pid').read_text()))
 
 
 NO_LESSON = {

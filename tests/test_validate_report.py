@@ -4,11 +4,10 @@ import asyncio
 
 import pytest
 from answered import answered
-from my_robot_basics.validate import ahead
+from my_robot_basics.validate import run
 from my_robot_basics.validate.as_text import as_text
 from my_robot_basics.validate.errors import RoomFailure
 from my_robot_basics.validate.report import Check, Part, Report
-from my_robot_basics.validate.run import validate
 
 
 def check(outcome, points=2.0, *, earned=None, hidden=False):
@@ -93,8 +92,11 @@ def test_what_validate_fails_in_itself_is_no_fault_of_an_answer(monkeypatch, tmp
         async def __aenter__(self):
             raise RoomFailure('all ROS domains are taken')
 
-    monkeypatch.setattr(ahead, 'Rooms', NoRooms)
-    told = asyncio.run(validate(answered('07_common_errors', tmp_path)))
+        async def __aexit__(self, *_):
+            pass
+
+    monkeypatch.setattr(run, 'Rooms', NoRooms)
+    told = asyncio.run(run.validate(answered('07_common_errors', tmp_path), None))
     assert [check.outcome for check in told.checks] == ['not checked'] * 3
     assert told.checks[0].message == (
         'Validate itself failed here, and your answer was not checked: all ROS domains are taken'

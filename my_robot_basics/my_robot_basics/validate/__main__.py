@@ -10,9 +10,8 @@ import signal
 import sys
 from pathlib import Path
 
-from my_robot_basics.validate.as_text import as_text
 from my_robot_basics.validate.errors import CourseError
-from my_robot_basics.validate.run import validate
+from my_robot_basics.validate.forks import ForkServer
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -30,7 +29,12 @@ def main(arguments: list[str] | None = None) -> int:
     say = _say_json if options.json else _say
     signal.signal(signal.SIGTERM, signal.default_int_handler)  # ends its kernels then, too
     try:
-        report = asyncio.run(validate(options.notebook, say=say))
+        with ForkServer() as server:
+            # imported while the server does the same
+            from my_robot_basics.validate.as_text import as_text
+            from my_robot_basics.validate.run import validate
+
+            report = asyncio.run(validate(options.notebook, server, say=say))
     except KeyboardInterrupt:
         return 130
     except CourseError as error:

@@ -6,45 +6,34 @@ import math
 import os
 import queue
 import signal
-import sys
 from pathlib import Path
-from subprocess import DEVNULL
 
 import psutil
 from jupyter_client import AsyncKernelClient, AsyncKernelManager
-from jupyter_client.kernelspec import KernelSpec, KernelSpecManager
 
 from my_robot_basics.session.pressure import Stopwatch
 from my_robot_basics.validate.errors import RoomFailure
+from my_robot_basics.validate.forks import ForkedKernel, ForkServer
 from my_robot_basics.validate.messages import Messages, OnInput
 from my_robot_basics.validate.outputs import CellRun
 from my_robot_basics.validate.timeouts import finished, finished_in_grace
 
 START_TIMEOUT_SEC = 60.0
 STOP_GRACE_SEC = 2.0
-
-
-class _ThisPython(KernelSpecManager):
-    """One kernel, of the interpreter we run on: whatever the user has installed."""
-
-    def get_kernel_spec(self, kernel_name: str) -> KernelSpec:
-        launcher = [sys.executable, '-m', 'ipykernel_launcher', '-f', '{connection_file}']
-        options = ['--InteractiveShellApp.ignore_cwd=True', '--HistoryManager.enabled=False']
-        return KernelSpec(
-            argv=[*launcher, *options], display_name='my_robot_basics', language='python'
-        )
+OPTIONS = ('--InteractiveShellApp.ignore_cwd=True', '--HistoryManager.enabled=False')
 
 
 class Kernel:
     """One kernel that works in a folder of its own; everything of it goes with stop()."""
 
-    def __init__(self, folder: Path, environment: dict[str, str]) -> None:
+    def __init__(self, folder: Path, environment: dict[str, str], server: ForkServer) -> None:
         """Prepare a kernel in an empty folder; `environment` is added to the caller's."""
+        self._server = server
+        self._process: ForkedKernel | None = None
         self._work = folder / 'work'
         self._work.mkdir(parents=True)
         self._environment = os.environ | environment | {'IPYTHONDIR': str(folder / 'ipython')}
         self._manager = AsyncKernelManager(
-            kernel_spec_manager=_ThisPython(),
             transport='ipc',
             ip=str(folder / 'zmq'),
             connection_file=str(folder / 'connection.json'),
@@ -56,9 +45,9 @@ class Kernel:
         """Start the kernel and wait until its outputs are received. Raises RoomFailure."""
         try:
             async with asyncio.timeout(START_TIMEOUT_SEC):
-                await self._manager.start_kernel(
-                    cwd=self._work, env=self._environment, stdout=DEVNULL, stderr=DEVNULL
-                )
+                self._manager.write_connection_file()
+                options = ['-f', self._manager.connection_file, *OPTIONS]
+                self._process = await self._server.fork(self._work, self._environment, options)
                 await self._connect()
         except (OSError, RuntimeError, TimeoutError) as error:
             raise RoomFailure(f'a kernel did not start: {error or "it took too long"}') from error
@@ -75,13 +64,20 @@ class Kernel:
     ) -> CellRun:
         """Run one cell; interrupt it after `timeout_sec`, kill the kernel if that does nothing.
 
-        So it does after `free_sec` in which no process had to wait for a processor.
+        So it does after `free_sec` in which no process had to wait for a processor, or for which
+        the code has had one.
         """
         result, watch = CellRun(), Stopwatch()
         if not self.alive:
             result.died = True
             return result
         assert self._client is not None  # it is alive
+        busy_sec = self._forked.busy_sec()
+
+        def is_enough() -> bool:
+            free_for_sec = max(watch.free_sec(), self._forked.busy_sec() - busy_sec)
+            return result.flooded or free_for_sec >= free_sec
+
         request = self._client.execute(
             code,
             store_history=False,
@@ -91,16 +87,11 @@ class Kernel:
         )
         done = asyncio.ensure_future(self._messages.follow(request, result, on_input))
         try:
-            result.timed_out = not await finished(
-                done,
-                timeout_sec,
-                self._is_alive,
-                lambda: result.flooded or watch.free_sec() >= free_sec,
-            )
+            result.timed_out = not await finished(done, timeout_sec, self._is_alive, is_enough)
             if result.timed_out and not result.flooded and free_sec < math.inf:
                 result.cut_after_sec = watch.wall_sec()
             if result.timed_out and self.alive:
-                await self._manager.interrupt_kernel()
+                self._forked.interrupt()
                 if not await finished_in_grace(done, self._is_alive):
                     await self._kill()
         finally:
@@ -117,37 +108,46 @@ class Kernel:
             assert self._client is not None  # it is alive
             self._client.shutdown()
             with contextlib.suppress(TimeoutError):
-                await asyncio.wait_for(self._exited(), STOP_GRACE_SEC)
+                await asyncio.wait_for(self._forked.ended(), STOP_GRACE_SEC)
         await self._kill()
         if self._client is not None:
             self._client.stop_channels()
 
+    @property
+    def _forked(self) -> ForkedKernel:
+        """Its process, once it was started."""
+        assert self._process is not None
+        return self._process
+
     async def _connect(self) -> None:
         """Wait until the kernel says that it has taken our subscription to its outputs."""
+        while not Path(f'{self._manager.ip}-{self._manager.iopub_port}').exists():
+            self._expect_alive()
+            await asyncio.sleep(0.01)
         self._client = client = self._manager.client()
         client.start_channels(hb=False)
         self._messages = Messages(client)
         kind = None
         while kind != 'iopub_welcome':
-            if not await self._manager.is_alive():
-                raise RoomFailure('a kernel did not start: its process ended')
+            self._expect_alive()
             with contextlib.suppress(queue.Empty):
                 kind = (await client.get_iopub_msg(timeout=0.5))['msg_type']
 
     async def _kill(self) -> None:
         """Kill the kernel, and what left its process group but kept its environment."""
         self.alive = False
-        if self._manager.has_kernel:
-            await self._manager.shutdown_kernel(now=True)
+        if self._process is not None:
+            await self._process.kill()
+            self._process.close()
         for process in psutil.process_iter():
             with contextlib.suppress(psutil.Error):
                 if process.environ().get('IPYTHONDIR') == self._environment['IPYTHONDIR']:
                     process.send_signal(signal.SIGKILL)
 
-    async def _exited(self) -> None:
-        while await self._manager.is_alive():
-            await asyncio.sleep(0.01)
+    def _expect_alive(self) -> None:
+        if not self._forked.alive:
+            raise RoomFailure('a kernel did not start: its process ended')
 
     async def _is_alive(self) -> bool:
-        self.alive = await self._manager.is_alive()
+        self.alive = self._forked.alive
         return self.alive

@@ -5,7 +5,7 @@ STUDENT_CELL_TIMEOUT_SEC = 10.0
 VALIDATE_TIMEOUT_SEC = 2.5
 """*Validate* waits so long for a student's cell or function, and says that grading waits longer:
 what takes more is not checked, and never called wrong. Time in which processes had to wait for a
-processor does not count, up to the grader's own limit, …"""
+processor does not count, unless the code itself had one, up to the grader's own limit, …"""
 VALIDATE_NEXT_TIMEOUT_SEC = 1.0
 """… and so long where something has not returned already."""
 STUDENT_CELLS_BUDGET_SEC = 120.0

@@ -10,6 +10,7 @@ from pathlib import Path
 from my_robot_basics.session.domain import Claim, claim
 from my_robot_basics.session.errors import LiveError
 from my_robot_basics.validate.errors import RoomFailure
+from my_robot_basics.validate.forks import ForkServer
 from my_robot_basics.validate.kernel import Kernel
 from my_robot_basics.validate.limits import (
     CHECK_TIMEOUT_SEC,
@@ -26,6 +27,7 @@ from my_robot_basics.validate.questions import (
     reply_of,
 )
 from my_robot_basics.validate.titles import title_of_check
+from my_robot_basics.validate.together import together
 
 SETUP_TIMEOUT_SEC = 60.0
 SLOW_SEC = 1.0
@@ -42,9 +44,9 @@ class Rooms:
     say: Say = staticmethod(lambda line: None)
     """Is told what begins."""
 
-    def __init__(self, *, files: Sequence[Path]) -> None:
-        """Prepare two kernels; the student's finds copies of `files`."""
-        self._files = files
+    def __init__(self, *, files: Sequence[Path], server: ForkServer) -> None:
+        """Prepare two kernels of a server; the student's finds copies of `files`."""
+        self._files, self._server = files, server
         self._claim: Claim | None = None
         self._folder: Path | None = None
         self._kernels: list[Kernel] = []
@@ -53,18 +55,19 @@ class Rooms:
 
     async def __aenter__(self) -> 'Rooms':
         """Start both kernels, and see a message cross. Raises RoomFailure."""
+        self.say('starting two kernels')
         try:
             folder = self._open()
-            async with asyncio.TaskGroup() as together:
-                together.create_task(self._prepare(self._student, STUDENT_COMES))
-                together.create_task(self._prepare(self._test, TEST_HEARS))
+            await together(
+                self._prepare(self._student, STUDENT_COMES),
+                self._prepare(self._test, TEST_HEARS),
+            )
             await self._run_ours(self._student, STUDENT_GOES.format(files=str(folder / 'files')))
         except BaseException as error:
             await self.__aexit__()
-            reason = error.exceptions[0] if isinstance(error, ExceptionGroup) else error
-            if isinstance(reason, OSError | LiveError):
-                raise RoomFailure(f'no kernels could be started: {reason}') from error
-            raise reason from None
+            if isinstance(error, OSError | LiveError):
+                raise RoomFailure(f'no kernels could be started: {error}') from error
+            raise
         return self
 
     async def __aexit__(self, *_: object) -> None:
@@ -148,7 +151,7 @@ class Rooms:
             'MPLBACKEND': 'module://matplotlib_inline.backend_inline',
             'PYTHONSAFEPATH': '1',
         }
-        self._kernels.append(Kernel(folder, environment))
+        self._kernels.append(Kernel(folder, environment, self._server))
         return self._kernels[-1]
 
     async def _prepare(self, kernel: Kernel, code: str) -> None:

@@ -1,52 +1,72 @@
 """Validate a lesson: run what its exercises need, nothing else, and say what came of it."""
 
+import asyncio
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 
 from nbformat import NotebookNode
 
-from my_robot_basics.validate.ahead import Ahead
 from my_robot_basics.validate.cell_names import in_words
 from my_robot_basics.validate.cells import grade_id, graded_id, role
 from my_robot_basics.validate.exercises import Exercise, find_exercises
+from my_robot_basics.validate.forks import ForkServer
 from my_robot_basics.validate.judging import Judged, judge_exercise
 from my_robot_basics.validate.lesson import Lesson, read_lesson
 from my_robot_basics.validate.report import Check, Part, Report, make_check, troubles_of
+from my_robot_basics.validate.rooms import Rooms, Say
 from my_robot_basics.validate.short_budget import ShortBudget
+from my_robot_basics.validate.together import together
 
-Say = Callable[[str], None]
+SIDE_BY_SIDE = 2
+"""Exercises at a time: they wait more than they work, and loops without an end do not."""
 
 
-async def validate(path: Path, *, say: Say = lambda line: None) -> Report:
-    """Run the visible checks of a notebook, each exercise in fresh kernels.
+async def validate(path: Path, server: ForkServer, *, say: Say = lambda line: None) -> Report:
+    """Run the visible checks of a notebook, each exercise in fresh kernels of a server.
 
     `say` gets a line whenever something else begins. Raises CourseError where the file is no
     notebook of the course.
     """
     lesson = read_lesson(path)
     files = [p for p in sorted(path.parent.glob('*.py')) if p.is_file()]
-    budget = ShortBudget()
-    parts = []
-    exercises = find_exercises(lesson.notebook)
-    async with Ahead(files) as ahead:
-        for number, exercise in enumerate(exercises, start=1):
-            open_rooms = partial(
-                ahead.rooms,
-                say=partial(_say_of, exercise.name, say),
-                more=number < len(exercises),
-            )
-            judged = Judged({}, {})
-            if runnable := tuple(i for i in exercise.grades if _can_run(lesson, i)):
-                judged = await judge_exercise(
-                    lesson.notebook, replace(exercise, grades=runnable), open_rooms, budget
-                )
-            parts.append(_part(lesson, exercise, judged))
+    run = _Run(lesson, partial(Rooms, files=files, server=server), say)
+    parts = await together(*map(run.part, find_exercises(lesson.notebook)))
     told = {check.name for part in parts for check in part.checks}
     parts += [*_by_hand(lesson), *_without_exercise(lesson, told), *_missing(lesson)]
     report = Report(path.name, tuple(parts), lesson.notes)
     return report.with_words(lambda text: in_words(text, lesson.notebook))
+
+
+@dataclass(frozen=True)
+class _Run:
+    """What the exercises of a lesson have in common."""
+
+    lesson: Lesson
+    make_rooms: Callable[[], Rooms]
+    say: Say
+    places: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(SIDE_BY_SIDE))
+    budget: ShortBudget = field(default_factory=ShortBudget)
+
+    async def part(self, exercise: Exercise) -> Part:
+        """Judge an exercise by the checks that can be run, when its turn comes."""
+        judged = Judged({}, {})
+        runnable = tuple(i for i in exercise.grades if _can_run(self.lesson, i))
+        async with self.places:
+            if runnable:
+                judged = await judge_exercise(
+                    self.lesson.notebook,
+                    replace(exercise, grades=runnable),
+                    partial(self._rooms, exercise),
+                    self.budget,
+                )
+        return _part(self.lesson, exercise, judged)
+
+    def _rooms(self, exercise: Exercise) -> Rooms:
+        rooms = self.make_rooms()
+        rooms.say = partial(_say_of, exercise.name, self.say)
+        return rooms
 
 
 def _say_of(exercise: str, say: Say, line: str) -> None:

@@ -1,0 +1,18 @@
+"""Do several things at a time."""
+
+import asyncio
+from collections.abc import Awaitable
+from typing import TypeVar
+
+T = TypeVar('T')
+
+
+async def together(*work: Awaitable[T]) -> list[T]:
+    """Wait for all of it; when some fails the rest is called off: nothing goes on alone."""
+    tasks = [asyncio.ensure_future(each) for each in work]
+    try:
+        return await asyncio.gather(*tasks)
+    finally:
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
