@@ -8,6 +8,7 @@ import tempfile
 import time
 from collections.abc import Iterator
 from functools import cache
+from pathlib import Path
 
 import _pytest.runner
 import nbgrader.api
@@ -59,6 +60,11 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         action='store_true',
         help='where this machine has no sandbox: do without it, and without the tests of it',
     )
+
+
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    # even to import what is not run takes seconds
+    return (config.getoption('--quick') and tiers.starts_all(collection_path)) or None
 
 
 @pytest.hookimpl(tryfirst=True)  # pytest chooses by the marks afterwards

@@ -11,6 +11,7 @@ import os
 import re
 import sys
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 from rclpy.context import Context
@@ -61,9 +62,14 @@ def mark(items: list[pytest.Item]) -> None:
         fixtures = getattr(item, '_fixtureinfo', None)
         used = fixtures.name2fixturedefs.values() if fixtures else ()
         by_fixture = any(getattr(each[-1].func, 'starts', False) for each in used)
-        by_file = item.path.stem.removeprefix('test_') in STARTING_FILES
-        if by_file or by_fixture or any(item.get_closest_marker(name) for name in IMPLY):
+        by_mark = any(item.get_closest_marker(name) for name in IMPLY)
+        if starts_all(item.path) or by_fixture or by_mark:
             item.add_marker('starts')
+
+
+def starts_all(path: Path) -> bool:
+    """Whether a path is that of a file of tests that all start something."""
+    return path.stem.removeprefix('test_') in STARTING_FILES
 
 
 def keep_shard(items: list[pytest.Item], shard: str) -> list[pytest.Item]:
