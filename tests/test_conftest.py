@@ -8,8 +8,15 @@ from types import SimpleNamespace
 import pytest
 import rclpy.context
 
-from tests import tiers
-from tests.conftest import GUARD
+from tests import ordinary, tiers
+from tests.conftest import GUARD, LONG
+
+TESTS = Path(__file__).parent
+FILES = {
+    path.stem: path
+    for folder in (TESTS, TESTS.parent / 'my_robot_basics/test')
+    for path in folder.glob('test_*.py')
+}
 
 
 def test_a_kernel_started_by_a_test_does_not_know_of_pytest():
@@ -41,9 +48,18 @@ def test_what_is_no_shard_is_refused(shard):
 
 
 def test_the_files_that_start_something_are_there():
-    folders = (Path(__file__).parent, Path(__file__).parents[1] / 'my_robot_basics/test')
-    there = {path.stem for folder in folders for path in folder.glob('test_*.py')}
-    assert {f'test_{name}' for name in tiers.STARTING_FILES} - there == set()
+    assert {f'test_{name}' for name in tiers.STARTING_FILES} - FILES.keys() == set()
+
+
+def test_the_files_that_come_first_are_there():
+    assert {f'test_{name}' for name in LONG} - FILES.keys() == set()
+    assert len(set(LONG)) == len(LONG)
+
+
+@pytest.mark.parametrize('row', ordinary.ORDINARY)
+def test_a_row_of_what_an_ordinary_run_takes_names_a_test(row):
+    file, _, name = row.partition('::')
+    assert f'def {name}(' in FILES[file].read_text(encoding='utf-8')
 
 
 @pytest.mark.parametrize(
