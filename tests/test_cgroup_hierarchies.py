@@ -94,7 +94,7 @@ def test_version_1_has_a_hierarchy_for_each_controller(machine):
     for name in ('memory/session', 'pids', 'cpu/work'):
         (proc / name).mkdir(parents=True)
     where = found(proc)
-    assert (where.version, list(where.folders)) == (1, ['memory', 'pids', 'cpu'])
+    assert (where.version, list(where.folders)) == (1, ['memory', 'pids', 'cpu', 'cpuacct'])
     assert where.folders['memory'] == proc / 'memory' / 'session'
     assert where.folders['cpu'] == proc / 'cpu' / 'work'
 

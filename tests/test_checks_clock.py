@@ -154,6 +154,28 @@ def test_a_crowded_machine_gives_more_time_to_answer_but_not_without_end(
     assert is_done == in_time
 
 
+@pytest.mark.parametrize(
+    ('in_room', 'crowded_share', 'after_sec', 'is_left'),
+    [
+        (False, 1.0, 16.0, False),
+        (True, 0.0, 16.0, False),
+        (True, 0.9, 40.0, True),
+        (True, 1.0, 46.0, False),
+    ],
+)
+def test_a_crowded_machine_does_not_use_up_the_time_for_driving_the_clock(
+    monkeypatch, in_room, crowded_share, after_sec, is_left
+):
+    now = [0.0]
+    monkeypatch.setattr(pressure, 'time', types.SimpleNamespace(monotonic=lambda: now[0]))
+    monkeypatch.setattr(pressure, 'crowded_sec', lambda: crowded_share * now[0])
+    monkeypatch.setattr(clock, 'BUDGET_SEC', 15.0)
+    monkeypatch.setattr(clock, 'is_in_test_room', lambda: in_room)
+    simulated = clock.SimulatedClock(Watcher(), needed=set())
+    now[0] = after_sec
+    assert (simulated._part_used() <= 1.0) == is_left
+
+
 class Counter(Node):
     """Publishes twice a second, with every so manieth call of a timer that steps skip calls of."""
 

@@ -6,6 +6,8 @@ import pytest
 from my_robot_basics.checks import CheckFailed, sampling, topic, topics
 from my_robot_basics.checks import recording as recording_module
 from my_robot_basics.checks.clock import SimulatedClock
+from my_robot_basics.checks.recording import Recording, Sample
+from my_robot_basics.feedback.errors import Starved
 from my_robot_basics.graph.watcher import Watcher
 from nodes.running import running
 
@@ -143,3 +145,42 @@ def test_the_wall_clock_waits_for_the_next_message_of_a_slow_node():
 def test_the_wall_clock_tells_how_long_there_was_nothing(patience_sec, seconds):
     recording = looked_at('never_spins', patience_sec=patience_sec)
     assert (recording.messages, recording.seconds) == ((), seconds)
+
+
+def on_wall(gaps_sec, *, late_sec):
+    """A recording on the wall clock of messages so far apart."""
+    times = [sum(gaps_sec[:n]) for n in range(1, len(gaps_sec) + 1)]
+    samples = tuple(Sample(None, at, at) for at in times)
+    return Recording(
+        topic_name=TOPIC,
+        messages=samples,
+        clock='wall',
+        publishers=('/a',),
+        seconds=times[-1],
+        start_sec=0.0,
+        late_sec=late_sec,
+    )
+
+
+STARVED_GAPS = [0.2, 0.33, 0.21, 0.41, 0.2, 0.28, 0.2, 0.37, 0.22, 0.2, 0.3, 0.25, 0.44, 0.2]
+"""Of a right node on a machine that had no time for it: 3.7 Hz."""
+
+
+@pytest.mark.parametrize(
+    ('gaps_sec', 'late_sec', 'doubt'),
+    [
+        (STARVED_GAPS, 0.15, Starved),
+        (STARVED_GAPS, 0.0, CheckFailed),
+        ([0.25] * 16, 0.3, CheckFailed),
+        ([1.0, 1.02, 0.99, 1.01], 0.3, CheckFailed),
+        ([0.1, 0.12, 0.08, 0.13, 0.1, 0.07] * 5, 0.3, CheckFailed),
+        ([0.1, 0.3, 0.11, 0.29] * 10, 0.3, CheckFailed),
+        ([0.2, 0.21, 0.2, 0.19, 1.4, 0.2, 0.2, 0.23, 0.2, 0.2], 0.1, CheckFailed),
+    ],
+    ids=['starved', 'idle', '4_hz', '1_hz', '10_hz', 'by_turns', 'a_pause'],
+)
+def test_a_machine_is_blamed_only_for_what_it_can_do(monkeypatch, gaps_sec, late_sec, doubt):
+    monkeypatch.setattr(recording_module.callbacks, 'expect_none_so_far', lambda names: None)
+    with pytest.raises(CheckFailed) as failed:
+        on_wall(gaps_sec, late_sec=late_sec).assert_rate(hz=5.0)
+    assert failed.type is doubt

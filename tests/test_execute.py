@@ -5,10 +5,12 @@ import os
 import signal
 import threading
 import time
+from copy import deepcopy
 
 import nbformat
 import pytest
-from my_robot_basics.validate import budget
+from my_robot_basics.session import pressure
+from my_robot_basics.validate import budget, second_look
 from my_robot_basics.validate.outputs import CellRun
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook, new_output
 from nbgrader.utils import determine_grade
@@ -208,11 +210,18 @@ class FakeRooms:
         pass
 
     student_alive = True
+    used_sec = 0.0
+
+    def student_cpu_sec(self):
+        return self.used_sec * time.monotonic()
 
     async def run_student_cell(self, source, *, timeout_sec):
         return CellRun(status='ok')
 
     async def run_check(self, source):
+        if source == second_look.LEAVE_CLOCKS:
+            return CellRun(status='ok')
+        await asyncio.sleep(0.01)
         return self.checks.pop(0)
 
 
@@ -253,6 +262,53 @@ def test_the_graders_own_failure_is_tried_again_and_then_left_to_a_person(
         assert 'a person has to look at it' in cell.outputs[0].text
         assert CANARY not in str((cell.outputs, cell.metadata, verdict))
         assert 'assert x' not in str((cell.outputs, cell.metadata, verdict))
+
+
+STARVED, DISTURBED = ended(error='Starved'), ended(error='Disturbed')
+DOUBTS = {
+    'a busy machine, once': ([STARVED, ended()], True, 0.0, 'passed', 2),
+    'a busy machine, twice': ([STARVED, STARVED], True, 0.0, 'ungraded', 2),
+    'an idle machine': ([STARVED, STARVED], False, 0.0, 'failed', 2),
+    'a failure at the second look': (
+        [STARVED, ended(error='CheckFailed')],
+        True,
+        0.0,
+        'failed',
+        2,
+    ),
+    'who burns the time itself': ([STARVED], True, 0.9, 'failed', 1),
+    'a node that ended with its clock': ([DISTURBED, ended()], False, 0.0, 'passed', 2),
+    'one that goes on ending': ([DISTURBED, DISTURBED], True, 0.0, 'failed', 2),
+    'a busy machine after it': ([DISTURBED, STARVED], True, 0.0, 'ungraded', 2),
+    'who ends and burns after it': ([DISTURBED, STARVED], True, 0.9, 'failed', 2),
+}
+
+
+@pytest.mark.parametrize(
+    ('checks', 'others_crowd', 'used_sec', 'outcome', 'opened'), DOUBTS.values(), ids=DOUBTS
+)
+def test_what_others_may_be_to_blame_for_is_looked_at_again_and_burning_time_gains_nothing(
+    monkeypatch, checks, others_crowd, used_sec, outcome, opened
+):
+    async def answer():
+        return others_crowd
+
+    monkeypatch.setattr(second_look, 'others_crowd', answer)
+    rooms = type('Rooms', (FakeRooms,), {'checks': deepcopy(checks), 'used_sec': used_sec})
+    monkeypatch.setattr(module, 'Rooms', rooms)
+    execution = execute(handed_in(lesson('a'), a=GOOD))
+    verdict = execution.verdicts[0]
+    assert (verdict.outcome, rooms.opened) == (outcome, opened)
+    if outcome == 'ungraded':
+        assert verdict.score is None
+        assert 'a person has to look at it: the machine was too busy' in verdict.reason
+
+
+def test_others_crowd_a_machine_only_where_processes_wait_without_the_answer(monkeypatch):
+    monkeypatch.setattr(second_look, 'CROWD_SEC', 0.05)
+    for share, crowd in [(0.0, False), (0.2, False), (0.9, True)]:
+        monkeypatch.setattr(pressure, 'crowded_sec', lambda share=share: share * time.monotonic())
+        assert asyncio.run(second_look.others_crowd()) is crowd
 
 
 def test_a_failure_in_one_exercise_leaves_the_others_their_verdicts(monkeypatch):

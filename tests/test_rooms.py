@@ -18,6 +18,19 @@ from grader.kernels.isolation import require_isolation
 from grader.kernels.rooms import Rooms
 
 IMPORT = 'from my_robot_basics.checks import student\n'
+BURN = """
+import os, signal, time
+signal.signal(signal.SIGCHLD, signal.SIG_IGN)
+for _ in range(5):
+    if os.fork() == 0:
+        while time.process_time() < 0.2:
+            pass
+        os._exit(0)
+try:
+    os.wait()
+except ChildProcessError:
+    pass
+"""
 
 
 @pytest.fixture(scope='module')
@@ -82,6 +95,18 @@ def said(cell_run):
 def test_the_names_of_a_notebook_are_the_students_alone(shared, student):
     seen = student(shared, 'print(sorted(n for n in globals() if not n.startswith("_")))')
     assert text_of(seen) == "['In', 'Out', 'exit', 'get_ipython', 'open', 'quit']\n"
+
+
+def test_all_time_that_a_students_room_takes_is_counted_however_it_is_taken(rooms, student):
+    before_sec = rooms.student_cpu_sec()
+    assert (before_sec is None) is (
+        rooms._sandbox is None or rooms._sandbox.cgroup('student') is None
+    )
+    if before_sec is None:
+        pytest.skip('this machine gives us no cgroups')
+    # nobody waits for these: their times are no parent's
+    student(rooms, BURN)
+    assert rooms.student_cpu_sec() - before_sec >= 0.5
 
 
 def test_own_modules_can_be_imported_and_shadow_nothing(shared, student):

@@ -90,6 +90,11 @@ class Rooms:
             run.ending = await self._expect_fair()
         return run
 
+    def student_cpu_sec(self) -> float | None:
+        """How long the student's room has kept processors busy, in s; None where nobody counts."""
+        cgroup = self._sandbox.cgroup('student') if self._sandbox else None
+        return cgroup.cpu_sec() if cgroup else None
+
     async def run_check(self, source: str) -> CellRun:
         """Run a grade cell, passing its questions on to the student's kernel.
 

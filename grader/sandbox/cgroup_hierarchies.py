@@ -19,6 +19,8 @@ GRADERS = 'mrb-graders'
 """The cgroup that graders move into."""
 NEEDED, WANTED = ('memory', 'pids'), ('memory', 'pids', 'cpu')
 """The controllers without which a cgroup is of no use, and those that we use."""
+COUNTS = 'cpuacct'
+"""Counts the time of processors in version 1; in version 2 every cgroup does."""
 GRADERS_WEIGHT = 1_000
 """Of the processor, beside 200 of a sandbox: who grades must answer however many run."""
 
@@ -67,7 +69,8 @@ def _found(proc: Path) -> Hierarchies | NoCgroups:
     try:
         paths = own_paths(proc)
         if 'memory' in paths:
-            folders = {name: _folder(proc, paths[name], name) for name in WANTED if name in paths}
+            wanted = (*WANTED, COUNTS)
+            folders = {name: _folder(proc, paths[name], name) for name in wanted if name in paths}
             return Hierarchies(1, _writable(folders))
         if '' not in paths:
             raise NoCgroups('this Linux has none')

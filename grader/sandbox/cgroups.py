@@ -65,6 +65,15 @@ class RoomCgroup:
             self._events = self._read_events()
         return self._events
 
+    def cpu_sec(self) -> float | None:
+        """Return how long its processes have kept processors busy; None where nobody counts."""
+        with contextlib.suppress(OSError):
+            if self.version == 2:
+                return _numbers(self.folders['memory'] / 'cpu.stat')['usage_usec'] / 1e6
+            if folder := self.folders.get('cpuacct'):
+                return int((folder / 'cpuacct.usage').read_text('ascii')) / 1e9
+        return None
+
     def make(self) -> None:
         """Make it, with its limits. Raises OSError."""
         for path in dict.fromkeys(self.folders.values()):

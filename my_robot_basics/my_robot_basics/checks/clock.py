@@ -18,11 +18,15 @@ from rclpy.task import Future
 from rclpy.time import Time
 from rosgraph_msgs.msg import Clock
 
+from my_robot_basics.feedback.hidden import is_in_test_room
 from my_robot_basics.graph.watcher import HIDDEN, Watcher
 from my_robot_basics.session.pressure import Stopwatch
 
 BUDGET_SEC = 15.0
-"""How long the clock is driven at most, and *Validate* gives a cell 30 s in all."""
+"""How long the clock is driven at most, and nbgrader's Validate gives a cell 30 s in all: …"""
+CROWDED_BUDGET_SEC = 45.0
+"""… in a room of its own, time in which processes had to wait for a processor does not count,
+within this."""
 SLOWEST_BARRIER_SEC = 0.5
 SLOWEST_MEDIAN_SEC = 0.02
 FIRST_ANSWER_SEC = 1.0
@@ -31,8 +35,21 @@ slow, too."""
 RESTORE_SEC = 10.0
 MEDIAN_EVERY = 40
 HELD_EVERY_SEC = 0.02
+LEFT_ALONE = "the nodes' clocks are left alone"
+_are_left_alone = False
 _latest_ns = 0
 """What `/clock` showed last: a node that waits for a time would else wait for it once more."""
+
+
+def leave_alone() -> None:
+    """Drive no clock from now on: a node may take a change of its clock amiss."""
+    global _are_left_alone
+    _are_left_alone = True
+
+
+def are_left_alone() -> bool:
+    """Whether no clock is driven."""
+    return _are_left_alone
 
 
 class Inconclusive(Exception):
@@ -49,7 +66,7 @@ class SimulatedClock:
         """`needed`: full names of the nodes without which the look is inconclusive."""
         self._watcher = watcher
         self._needed = needed
-        self._deadline = time.monotonic() + BUDGET_SEC
+        self._watch = Stopwatch()
         self._former: dict[str, bool] = {}
         self._barriers: dict[str, Client] = {}
         self._setters: dict[str, Client] = {}
@@ -60,6 +77,8 @@ class SimulatedClock:
 
     def __enter__(self) -> Self:
         """Switch the nodes to `/clock`, which starts no earlier than now. Raises Inconclusive."""
+        if are_left_alone():
+            raise Inconclusive(LEFT_ALONE)
         node = self._watcher.node
         if node.get_publishers_info_by_topic('/clock'):
             raise Inconclusive('another node publishes /clock')
@@ -103,11 +122,18 @@ class SimulatedClock:
 
     def is_half_over(self) -> bool:
         """Whether half of the time is gone for which the clock may be driven."""
-        return time.monotonic() > self._deadline - BUDGET_SEC / 2
+        return self._part_used() > 0.5
+
+    def _part_used(self) -> float:
+        wall_sec = self._watch.wall_sec()
+        if not is_in_test_room():
+            return wall_sec / BUDGET_SEC
+        return max(self._watch.free_sec() / BUDGET_SEC, wall_sec / CROWDED_BUDGET_SEC)
 
     def _expect_time_left(self) -> None:
-        if time.monotonic() > self._deadline:
-            raise Inconclusive(f'the clock could not be driven within {BUDGET_SEC:g} s')
+        if self._part_used() > 1.0:
+            within_sec = self._watch.wall_sec()
+            raise Inconclusive(f'the clock could not be driven within {within_sec:.0f} s')
 
     def _publish(self) -> None:
         self._publisher.publish(Clock(clock=Time(nanoseconds=self.now_ns).to_msg()))

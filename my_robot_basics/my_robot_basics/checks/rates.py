@@ -4,8 +4,8 @@ from typing import TYPE_CHECKING, NoReturn
 
 import numpy as np
 
-from my_robot_basics.checks import periods, pictures
-from my_robot_basics.feedback.errors import fail
+from my_robot_basics.checks import periods, pictures, starved
+from my_robot_basics.feedback.errors import CheckFailed, Starved, fail
 
 if TYPE_CHECKING:
     from my_robot_basics.checks.recording import Recording
@@ -127,7 +127,8 @@ def fail_rate(recording: 'Recording', hz: float) -> NoReturn:
         seen = f'{_hz(_measured_hz(recording, hz))} {over}'
         hint, cause = 'the timer period is in seconds, and period = 1 / rate', 'another rate'
     picture = pictures.arrivals(recording, hz=hz)
-    fail(expected=_hz(hz), seen=seen, hint=hint, cause=cause, picture=picture)
+    doubt = Starved if starved.may_be(recording, hz) else CheckFailed
+    fail(expected=_hz(hz), seen=seen, hint=hint, cause=cause, picture=picture, doubt=doubt)
 
 
 def _is_mostly(recording: 'Recording', hz: float) -> bool:

@@ -16,7 +16,7 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.time import Time
 from rosgraph_msgs.msg import Clock
 
-from my_robot_basics.checks.clock import Inconclusive, SimulatedClock
+from my_robot_basics.checks.clock import Inconclusive, SimulatedClock, are_left_alone
 from my_robot_basics.exchange import student
 from my_robot_basics.feedback.errors import fail
 from my_robot_basics.graph.message_info import with_info
@@ -80,7 +80,7 @@ def expect_to_follow(topic_name: str, type_: type, publishers: Collection[str]) 
 
     Nothing follows where the nodes do not let it be moved, or publish nothing meanwhile.
     """
-    for _ in range(ATTEMPTS):
+    for _ in range(0 if are_left_alone() else ATTEMPTS):
         try:
             seen: list[float] | None = _while_ahead(topic_name, type_, publishers)
         except Inconclusive:

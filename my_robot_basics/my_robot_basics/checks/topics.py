@@ -10,12 +10,14 @@ from rclpy.publisher import Publisher
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 from my_robot_basics.checks import sampling
+from my_robot_basics.checks.clock import are_left_alone
 from my_robot_basics.checks.ears import Ears
 from my_robot_basics.checks.recording import Recording
 from my_robot_basics.exchange import student, values
-from my_robot_basics.feedback.errors import CheckFailed, fail, shorten
+from my_robot_basics.feedback.errors import CheckFailed, Disturbed, expect, fail, shorten
 from my_robot_basics.feedback.hidden import theirs
 from my_robot_basics.graph import graphs
+from my_robot_basics.graph.raised import what_raised
 from my_robot_basics.graph.watcher import Watcher
 
 PUBLISHER_SEC = 10.0
@@ -31,8 +33,10 @@ LATE_LOOKS = 2
 """How many more recordings such a machine gets."""
 VALIDATE_SEC = 28.0
 """How long a recording may take with all other looks at it: *Validate* gives a cell 30 s …"""
-GRADING_SEC = 40.0
-"""… and the grader 90 s, for two recordings at most."""
+GRADING_SEC = 60.0
+"""… and the grader 150 s, for two recordings at most."""
+BEFORE_SEC = 0.5
+"""How long to listen for a message before a node's clock is touched."""
 DEPTH = 5000
 """Queue of a recording: more messages than any look can bring (KEEP_LAST overwrites)."""
 
@@ -64,11 +68,14 @@ class Topic:
         began = time.monotonic()
         with Watcher() as watcher:
             ears = self.listen(watcher)
+            sent = watcher.spin_until_free(lambda: bool(ears.heard), free_sec=BEFORE_SEC)
             found = sampling.simulated(watcher, ears, seconds=seconds, step_sec=step_sec)
             if isinstance(found, str):
                 why, recording = found, sampling.wall(watcher, ears, why=found)
             else:
                 why, recording = '', found
+            if not recording.messages and sent and not are_left_alone():
+                self._expect_ends_by_itself(ears)
             if not recording.messages:
                 self._fail_silent(watcher, seen=f'no message in {recording.seconds:g} s')
         left_sec = _looks_sec() - (time.monotonic() - began)
@@ -238,6 +245,17 @@ class Topic:
             return self._to_look_again(again, why, left_sec=left, late_looks=late_looks - 1)
 
         return replace(recording, look_again=look_again)
+
+    def _expect_ends_by_itself(self, ears: Ears) -> None:
+        """Who sends nothing any more has raised something, or the change of its clock ended it."""
+        expect(
+            bool(what_raised(ears.publishers())),
+            expected=f'messages on {self.name}',
+            seen="some, and none any more once the node was on the robot's clock (use_sim_time)",
+            hint='let no loop end when sleep_for returns False: it does so when the clock changes',
+            cause='the messages end',
+            doubt=Disturbed,
+        )
 
     def _fail_silent(self, watcher: Watcher, *, seen: str) -> None:
         if graphs.publisher_infos(watcher.node, self.name):

@@ -24,7 +24,23 @@ class PartlyRight(CheckFailed):
     """A verdict that leaves some of the points: the grader is told how many."""
 
 
-def expect(condition: bool, *, expected: object, seen: object, hint: str, cause: str = '') -> None:
+class Starved(CheckFailed):
+    """A verdict for which a machine that is too busy may be to blame: rooms take a second look."""
+
+
+class Disturbed(CheckFailed):
+    """One for which the check itself may be to blame: rooms take another look at it."""
+
+
+def expect(
+    condition: bool,
+    *,
+    expected: object,
+    seen: object,
+    hint: str,
+    cause: str = '',
+    doubt: type[CheckFailed] = CheckFailed,
+) -> None:
     """Raise CheckFailed('expected …, saw …: hint') unless the condition holds; see `fail`.
 
     `hint` says what to try next, as a clause: 'convert both angles with radians()'.
@@ -34,7 +50,7 @@ def expect(condition: bool, *, expected: object, seen: object, hint: str, cause:
     if not isinstance(condition, bool | np.bool_):
         raise TypeError(f'expect() takes a bool as its condition, not {condition!r}')
     if not condition:
-        fail(expected=expected, seen=seen, hint=hint, cause=cause)
+        fail(expected=expected, seen=seen, hint=hint, cause=cause, doubt=doubt)
 
 
 def fail(
@@ -45,14 +61,16 @@ def fail(
     cause: str = '',
     picture: bytes | None = None,
     earned: float = 0.0,
+    doubt: type[CheckFailed] = CheckFailed,
 ) -> NoReturn:
     """Raise CheckFailed('expected …, saw …: hint'); show the picture (PNG bytes) before it.
 
     From a hidden part on, students read 'cause: hint' alone, or the hint: `cause` is what went
     wrong in words that tell no input, no right value, and nothing that the student's code made.
-    What is `earned` all the same, fewer points than the check has, makes it a PartlyRight.
+    What is `earned` all the same, fewer points than the check has, makes it a PartlyRight; where
+    another than the answer may be to blame, `doubt` is Starved or Disturbed.
     """
-    Failure = PartlyRight if earned else CheckFailed
+    Failure = PartlyRight if earned else doubt
     if earned:
         hidden.tell_points(earned)
     sentence = hidden.in_full(f'expected {expected}, saw {seen}: {hint}')

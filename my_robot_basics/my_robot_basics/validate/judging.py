@@ -22,6 +22,7 @@ from my_robot_basics.validate.names import names_not_defined
 from my_robot_basics.validate.outputs import CellRun
 from my_robot_basics.validate.overdue import judge_overdue
 from my_robot_basics.validate.rooms_interface import OpenRooms, R, Rooms
+from my_robot_basics.validate.second_look import Looks
 from my_robot_basics.validate.verdict import Verdict, judge, ungraded
 
 Checks = dict[int, tuple[Verdict, list[NotebookNode]]]
@@ -42,29 +43,32 @@ async def judge_exercise(
 ) -> Judged:
     """Judge one exercise; where the rooms fail, once more in fresh ones.
 
-    Where they fail again its checks are `ungraded`.
+    So it does where the machine, or a check itself, may have made it fail. Where that comes to
+    nothing its checks are `ungraded`.
     """
     failure: RoomFailure | None = None
+    looks = Looks(open_rooms)
     for _ in range(2):
         try:
-            return await _try_plans(notebook, exercise, open_rooms, budget)
+            return await _try_plans(notebook, exercise, looks, budget)
         except RoomFailure as error:
             failure = error
+            await looks.end(error)
     cells = notebook.cells
     return Judged({}, {i: (ungraded(cells[i], str(failure)), []) for i in exercise.grades})
 
 
 async def _try_plans(
-    notebook: NotebookNode, exercise: Exercise, open_rooms: OpenRooms[R], budget: Budget[R]
+    notebook: NotebookNode, exercise: Exercise, looks: Looks[R], budget: Budget[R]
 ) -> Judged:
     todo = list(plans(notebook, exercise))
     for number, plan in enumerate(todo, start=1):
         is_last = number == len(todo)
-        judged = await _try_plan(notebook, exercise, plan, open_rooms, budget, is_last=is_last)
+        judged = await _try_plan(notebook, exercise, plan, looks, budget, is_last=is_last)
         if judged is None:
             continue
         if more := plan_for_names(notebook, exercise, plan, _missing_names(judged)):
-            again = await _try_plan(notebook, exercise, more, open_rooms, budget, is_last=True)
+            again = await _try_plan(notebook, exercise, more, looks, budget, is_last=True)
             assert again is not None  # it was the last plan
             return max(judged, again, key=_points)
         return judged
@@ -75,21 +79,21 @@ async def _try_plan(
     notebook: NotebookNode,
     exercise: Exercise,
     plan: Plan,
-    open_rooms: OpenRooms[R],
+    looks: Looks[R],
     budget: Budget[R],
     *,
     is_last: bool,
 ) -> Judged | None:
     """Judge an exercise after a plan's cells; None where it lacks a name and others are left."""
-    async with open_rooms() as rooms:
+    async with looks.rooms() as rooms:
         # as they are now: a display that is updated later may show hidden inputs
         runs = copy.deepcopy(await _run_cells(notebook, plan, rooms, budget))
         if not is_last and _lacks_a_name(runs, exercise, plan):
             return None
-        checks, cut = await _judge_cells(notebook, exercise, rooms, runs)
+        checks, cut = await _judge_cells(notebook, exercise, looks, rooms, runs)
     if cut:
         with suppress(RoomFailure):  # the verdicts stand, with their causes alone
-            async with open_rooms() as rooms:
+            async with looks.rooms() as rooms:
                 await _run_cells(notebook, plan, rooms, budget)
                 checks |= await _told_in_full(notebook, rooms, {i: checks[i] for i in cut})
     return Judged(runs, checks)
@@ -112,7 +116,11 @@ async def _run_cells(
 
 
 async def _judge_cells(
-    notebook: NotebookNode, exercise: Exercise, rooms: Rooms, runs: dict[int, CellRun]
+    notebook: NotebookNode,
+    exercise: Exercise,
+    looks: Looks[R],
+    rooms: R,
+    runs: dict[int, CellRun],
 ) -> tuple[Checks, list[int]]:
     """Judge an exercise's grade cells; return what came of them, and whose reasons are cut short.
 
@@ -126,7 +134,7 @@ async def _judge_cells(
     for index in exercise.grades:
         source = marked(cells[index].source, quiet=quiet)
         can_tell = rooms.student_alive and not any(each.cut_after_sec for _, each in own)
-        run = await rooms.run_check(source) if can_tell else None
+        run = await looks.run_check(rooms, source) if can_tell else None
         outputs = run.outputs if run else []
         open_ = judge_overdue(cells[index], run, given_up)
         verdict = open_ or judge(cells[index], run, own)

@@ -12,8 +12,9 @@ STUDENT_CELLS_BUDGET_SEC = 120.0
 """The most that all student cells of a notebook may take together: a class has to end."""
 REPLY_TIMEOUT_SEC = 10.0
 """How long the student's kernel may take to answer one question of a check: as for a cell."""
-CHECK_TIMEOUT_SEC = 90.0
-"""A check has time limits of its own; this one ends a check that lost them."""
+CHECK_TIMEOUT_SEC = 150.0
+"""A check has time limits of its own, longer ones on a crowded machine; this one ends a check that
+lost them."""
 INTERRUPT_GRACE_SEC = 2.0
 """A kernel that ignores an interrupt so long is killed. Time in which processes had to wait for a
 processor does not count, …"""

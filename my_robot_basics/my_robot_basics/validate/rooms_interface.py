@@ -17,6 +17,9 @@ class Rooms(Protocol):
     async def run_student_cell(self, source: str, *, timeout_sec: float) -> CellRun:
         """Run one of the student's cells."""
 
+    def student_cpu_sec(self) -> float | None:
+        """How long the student's room has kept processors busy; None where nobody counts."""
+
     async def run_check(self, source: str) -> CellRun:
         """Run a grade cell, passing its questions on to the student's kernel."""
 

@@ -13,6 +13,7 @@ from my_robot_basics.validate.cells import KEY, graded_id, role
 from my_robot_basics.validate.errors import RoomFailure
 from my_robot_basics.validate.limits import FLOOD_CHARACTERS
 from my_robot_basics.validate.outputs import CUT_OFF, CellRun
+from my_robot_basics.validate.second_look import DISTURBED, STARVED
 from my_robot_basics.validate.text import printable, shorten
 
 Outcome = Literal['passed', 'partial', 'failed', 'ungraded', 'manual']
@@ -25,7 +26,7 @@ TROUBLE = 'your cell '
 """A note that begins so tells what went wrong in one of the student's cells."""
 UNGRADED = 'not graded, a person has to look at it: '
 """How the reason begins where the grader itself failed."""
-_FAILURES = ('CheckFailed', 'PartlyRight', 'AssertionError')
+_FAILURES = ('CheckFailed', 'PartlyRight', STARVED, DISTURBED, 'AssertionError')
 _SHOWN = ('display_data', 'stream')
 _TEMPORARY_FILE = re.compile(r'\((<ipython-input-[^>]*>|\d+\.py), (?=line \d+\))')
 """How a SyntaxError names a cell of a notebook, which nobody would recognise."""

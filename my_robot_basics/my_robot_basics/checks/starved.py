@@ -1,0 +1,38 @@
+"""Whether a machine that is too busy may be to blame for a rate on the wall clock."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from my_robot_basics.checks import periods
+
+if TYPE_CHECKING:
+    from my_robot_basics.checks.recording import Recording
+
+LATE_SEC = 0.05
+"""A machine that keeps the recording waiting so long …"""
+LATE_TIMES = 3.0
+"""… may keep a node waiting so many times as long: several of its threads take turns."""
+STEADY_PART = 0.05
+"""Gaps that differ by no more of them are those of a node that nobody kept waiting."""
+MOST_TIMES = 1.03
+"""So many times as many messages may a busy machine bring: those that were late, at once."""
+
+
+def may_be(recording: 'Recording', hz: float) -> bool:
+    """Whether a node of that rate may have been kept waiting for what was recorded.
+
+    A machine that is too busy makes messages late, each by another time, and no more of them. How
+    much is told by how late the recording itself was; what comes by turns, or as evenly as with
+    a timer of another period, is no machine's doing.
+    """
+    late_sec, messages = recording.late_sec, recording.messages
+    if recording.clock != 'wall' or late_sec < LATE_SEC or not messages:
+        return False
+    times = np.array([0.0, *(sample.time_sec for sample in messages)])
+    gaps = np.diff(times)
+    often, seldom = np.quantile(gaps, [0.25, 0.75])
+    is_steady = seldom - often < STEADY_PART * np.median(gaps)
+    is_late = recording.largest_gap_sec - 1.0 / hz <= LATE_TIMES * late_sec
+    is_slow = recording.rate_hz <= MOST_TIMES * hz
+    return bool(is_late and is_slow and not is_steady and not periods.come_by_turns(times))

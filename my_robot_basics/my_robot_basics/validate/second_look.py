@@ -1,0 +1,86 @@
+"""A second look at an exercise where the machine, or a check itself, may have made it fail.
+
+A check says so by what it raises. It costs nobody points before fresh rooms were tried, and after
+them only where nothing but the answer can be at fault.
+"""
+
+import asyncio
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from typing import Generic
+
+from my_robot_basics.session.pressure import Stopwatch
+from my_robot_basics.validate.errors import RoomFailure
+from my_robot_basics.validate.outputs import CellRun
+from my_robot_basics.validate.rooms_interface import OpenRooms, R
+
+STARVED, DISTURBED = 'Starved', 'Disturbed'
+"""What a check raises then: both are in `feedback.errors`."""
+BUSY_SHARE = 0.25
+"""Of one processor: a student's room that uses more, while a check waits for its messages, keeps
+itself waiting. A node that publishes now and then needs a tenth of that."""
+CROWD_SEC = 1.0
+"""How long to look, with the student's room closed, whether others keep the machine busy …"""
+CROWDED_SHARE = 0.5
+"""… for at least so much of the time."""
+LEAVE_CLOCKS = '''"""The nodes' clocks are left alone"""
+from my_robot_basics.checks import clock
+
+clock.leave_alone()
+'''
+
+
+class Doubt(RoomFailure):
+    """A check failed, and perhaps not for the answer's sake."""
+
+    def __init__(self, kind: str, said: str) -> None:
+        """Take the name of what it raised, and its words."""
+        self.kind = kind
+        why = 'the check disturbed it' if kind == DISTURBED else 'the machine was too busy'
+        super().__init__(f'{why} ({said.strip()})')
+
+
+class Looks(Generic[R]):
+    """The looks at one exercise: whom each of them may still blame."""
+
+    def __init__(self, open_rooms: OpenRooms[R]) -> None:
+        """Begin with the first."""
+        self._open_rooms = open_rooms
+        self._doubted: tuple[str, ...] = (STARVED, DISTURBED)
+        self._leaves_clocks = False
+
+    async def end(self, failure: RoomFailure) -> None:
+        """Prepare the next look; no room of the exercise is open."""
+        self._leaves_clocks = isinstance(failure, Doubt) and failure.kind == DISTURBED
+        self._doubted = (STARVED,) if await others_crowd() else ()
+
+    @asynccontextmanager
+    async def rooms(self) -> AsyncIterator[R]:
+        """Open rooms for this look."""
+        async with self._open_rooms() as rooms:
+            if self._leaves_clocks:
+                await rooms.run_check(LEAVE_CLOCKS)
+            yield rooms
+
+    async def run_check(self, rooms: R, source: str) -> CellRun:
+        """Run a grade cell. Raises Doubt where others than the answer may have made it fail."""
+        watch, used_sec = Stopwatch(), rooms.student_cpu_sec()
+        run = await rooms.run_check(source)
+        kind = run.error.ename if run.error else ''
+        by_itself = kind == STARVED and (
+            _sec_since(used_sec, rooms.student_cpu_sec()) > BUSY_SHARE * watch.wall_sec()
+        )
+        if run.error and kind in self._doubted and not by_itself:
+            raise Doubt(kind, run.error.evalue)
+        return run
+
+
+async def others_crowd() -> bool:
+    """Whether processes wait for a processor, for most of a while in which no answer runs."""
+    watch = Stopwatch()
+    await asyncio.sleep(CROWD_SEC)
+    return watch.free_sec() <= (1.0 - CROWDED_SHARE) * watch.wall_sec()
+
+
+def _sec_since(before_sec: float | None, after_sec: float | None) -> float:
+    return 0.0 if before_sec is None or after_sec is None else after_sec - before_sec
