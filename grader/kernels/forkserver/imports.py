@@ -24,6 +24,8 @@ _BOTH = (
     'rclpy',
     'rclpy.executors',
     'rclpy.node',
+    'arm_interfaces.action',
+    'arm_interfaces.srv',
     'builtin_interfaces.msg',
     'geometry_msgs.msg',
     'rcl_interfaces.msg',
@@ -53,6 +55,7 @@ _ROOMS = {
         'my_robot_basics.checks.delivery_experiment',
         'my_robot_basics.checks.stamps',
         'my_robot_basics.exchange.student',
+        'my_robot_basics.checks.ik',
         'my_robot_basics.checks.topics',
     ),
 }

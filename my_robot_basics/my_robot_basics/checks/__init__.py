@@ -8,6 +8,8 @@ without an error has passed.
 - messages of a node: `topic(name).record(...)`, `topic(name).wait_for(...)`
 - messages to a node: `topic(name).publish(...)`
 - a node that republishes: `relay(source, to=target)`
+- a server of the student's: `service(name, type).call(request)`
+- a client of the student's: `serve(name, type, answer, ...)`, the check's own server
 - a node's log: `rosout(node_name)`
 - nodes, publishers and subscriptions: `graph()`
 - predictions: `Predictions`
@@ -20,6 +22,8 @@ import importlib
 _HOMES = {
     'topic': 'checks.topics',
     'relay': 'checks.relays',
+    'service': 'checks.services',
+    'serve': 'checks.servers',
     'rosout': 'checks.logs',
     'graph': 'graph.graphs',
     'inputs': 'checks.seeds',
@@ -32,6 +36,8 @@ _HOMES = {
     'Recording': 'checks.recording',
     'Sample': 'checks.recording',
     'Relay': 'checks.relays',
+    'Service': 'checks.services',
+    'Server': 'checks.servers',
     'Log': 'checks.logs',
     'Record': 'checks.logs',
     'GraphSnapshot': 'graph.snapshot',
@@ -39,7 +45,7 @@ _HOMES = {
     'StagePublisher': 'checks.delivery_experiment',
     'StageSubscription': 'checks.delivery_experiment',
 }
-_MODULES = {'joints': 'checks.joints', 'student': 'exchange.student'}
+_MODULES = {'ik': 'checks.ik', 'joints': 'checks.joints', 'student': 'exchange.student'}
 
 __all__ = [*_HOMES, *_MODULES]
 

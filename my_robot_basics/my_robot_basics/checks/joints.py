@@ -58,7 +58,7 @@ def expect_radians(position: Sequence[float], pose_deg: Sequence[float]) -> None
         _are_near(seen, right),
         expected=f'{right} rad for {tuple(pose_deg)} degrees',
         seen=f'{seen}',
-        hint=_why_off(list(position), pose_deg),
+        hint=why_off(list(position), pose_deg),
     )
 
 
@@ -67,10 +67,11 @@ def why_wrong(message: JointState, pose_deg: Sequence[float]) -> str:
     seen, right = pose(message), in_radians(pose_deg)
     if seen.keys() != right.keys():
         return f'give each message two positions, and the names {" and ".join(right)}'
-    return _why_off([seen[name] for name in right], pose_deg)
+    return why_off([seen[name] for name in right], pose_deg)
 
 
-def _why_off(seen: Sequence[float], pose_deg: Sequence[float]) -> str:
+def why_off(seen: Sequence[float], pose_deg: Sequence[float]) -> str:
+    """Advice for positions in radians that are not this pose, by what they are instead."""
     right = [math.radians(angle) for angle in pose_deg]
     if len(seen) != len(right):
         return 'put one position for each joint into the list'

@@ -77,18 +77,18 @@ class GraphSnapshot:
     ) -> str:
         # who is at the other end of the topic is not the one that is missing at this end
         runs = [name for name in self.node_names if name not in others]
-        similar = _similar(topic_name, [name for name in names if name not in _PLUMBING])
+        near = similar(topic_name, [name for name in names if name not in _PLUMBING])
         # it may be the one that was meant, with its two ends mixed up
-        if mixed := sorted({*names.get(similar or '', others if not runs else ())} & {*others}):
+        if mixed := sorted({*names.get(near or '', others if not runs else ())} & {*others}):
             return (
                 f'{theirs(", ".join(mixed))} is at the other end of this topic, so check the'
                 f' name in {maker}(…); if another node is missing, run the cell that starts it'
             )
         if not runs:
             return 'the node is not running, so run the cell that starts it and read its output'
-        if similar:
-            uses = theirs(f'{", ".join(names[similar])} uses {similar}')
-            if similar in {name.rpartition('/')[0] + topic_name for name in names[similar]}:
+        if near:
+            uses = theirs(f'{", ".join(names[near])} uses {near}')
+            if near in {name.rpartition('/')[0] + topic_name for name in names[near]}:
                 return f"{uses}: a name without a leading / is relative to its node's namespace"
             return f'{uses}, so compare the spelling'
         if raised := what_raised(runs):
@@ -102,7 +102,8 @@ class GraphSnapshot:
         )
 
 
-def _similar(topic_name: str, others: list[str]) -> str | None:
+def similar(topic_name: str, others: list[str]) -> str | None:
+    """The name that was probably meant, among others; or None."""
     last = topic_name.rpartition('/')[2]
     same_end = [name for name in others if name.rpartition('/')[2].lower() == last.lower()]
     close = difflib.get_close_matches(topic_name, others, n=1, cutoff=0.6)

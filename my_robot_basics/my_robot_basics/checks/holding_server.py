@@ -1,0 +1,64 @@
+"""A server whose answers can be held back, and which can be absent for a while."""
+
+from collections.abc import Callable
+from typing import Any
+
+from rclpy.node import Node
+from rclpy.service import Service
+
+
+class HoldingServer:
+    """Serves as soon as `start` was called, on a node that somebody else spins."""
+
+    def __init__(
+        self, node: Node, *, name: str, type_: type, answer: Callable[[Any], Any]
+    ) -> None:
+        """`answer(request)` returns the response."""
+        self.name, self.type, self.answer = name, type_, answer
+        self.requests: list[Any] = []
+        """All that it was asked, in order."""
+        self.starts = 0
+        """How often it was started."""
+        self._node = node
+        self._service: Service | None = None
+        self._holds = False
+        self._held: list[tuple[Callable[[Any, Any], None], Any, Any]] = []
+
+    def start(self) -> None:
+        """Serve again, after `stop`."""
+        service = self._node.create_service(self.type, self.name, self._take)
+        send = service.send_response
+
+        def send_or_hold(response: Any, header: Any) -> None:
+            if self._holds:
+                self._held.append((send, response, header))
+            else:
+                send(response, header)
+
+        service.send_response = send_or_hold  # the executor calls it with what _take returns
+        self._service = service
+        self.starts += 1
+
+    def stop(self) -> None:
+        """Be absent: a request that comes now is lost, and so is one that has no answer yet."""
+        self._node.destroy_service(self._service)
+        self._held.clear()
+
+    def hold(self) -> None:
+        """Take requests, and keep the answers until `release`."""
+        self._holds = True
+
+    def release(self, *, reverse: bool = False) -> None:
+        """Send the answers that were kept, with `reverse` the last one first; hold no longer."""
+        self._holds = False
+        for send, response, header in reversed(self._held) if reverse else self._held:
+            send(response, header)
+        self._held = []
+
+    def holds_any(self) -> bool:
+        """Whether an answer is kept back."""
+        return bool(self._held)
+
+    def _take(self, request: Any, _: Any) -> Any:
+        self.requests.append(request)
+        return self.answer(request)

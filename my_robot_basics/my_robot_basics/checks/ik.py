@@ -1,0 +1,183 @@
+"""What `/solve_ik` is to answer, and what is wrong with what it does; in radians."""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from geometry_msgs.msg import Point
+
+from arm_interfaces.srv import SolveIK
+from my_robot_basics.checks import joints
+from my_robot_basics.checks.servers import Server
+from my_robot_basics.checks.services import Service
+from my_robot_basics.feedback.errors import expect, fail, shorten
+from my_robot_basics.two_link_kinematics import L1, L2, inverse_kinematics
+
+UP, DOWN = 'elbow_up', 'elbow_down'
+NEAR_M = 1e-6
+"""A request for a target is no further off."""
+
+
+def request(x: float, y: float) -> SolveIK.Request:
+    """A request for a target, in metres."""
+    return SolveIK.Request(target=Point(x=x, y=y))
+
+
+def solve(asked: SolveIK.Request, *, l1: float = L1, l2: float = L2) -> SolveIK.Response:
+    """The right response to a request.
+
+    With other lengths of the links, in metres, it is one that only who is answered can know.
+    """
+    response = SolveIK.Response()
+    try:
+        branches_deg = inverse_kinematics(asked.target.x, asked.target.y, l1, l2)
+    except ValueError as error:
+        response.message = str(error)
+        return response
+    response.reachable = True
+    response.elbow_up = [math.radians(angle) for angle in branches_deg[UP]]
+    response.elbow_down = [math.radians(angle) for angle in branches_deg[DOWN]]
+    return response
+
+
+def expect_solutions(service: Service, *targets: tuple[float, float]) -> None:
+    """Each target, asked for at once with the others, is answered with both branches in radians.
+
+    Targets are (x, y) in metres and within reach. Raises CheckFailed.
+    """
+    responses = service.call_all(*(request(x, y) for x, y in targets))
+    for (x, y), response in zip(targets, responses, strict=True):
+        where = f'the target ({x:g}, {y:g})'
+        expect(
+            response.reachable,
+            expected=f'reachable to be True for {where}',
+            seen='False',
+            hint='set response.reachable = True where inverse_kinematics finds solutions',
+            cause='a target within reach is called unreachable',
+        )
+        branches_deg = inverse_kinematics(x, y)
+        for branch, other in ((UP, DOWN), (DOWN, UP)):
+            position = list(getattr(response, branch))
+            if not _is_pose(position, branches_deg[branch]):
+                fail(
+                    expected=f'{branch} of {_rad(branches_deg[branch])} rad for {where}',
+                    seen=shorten([round(angle, 4) for angle in position]),
+                    hint=_why_wrong(position, branches_deg, branch, other),
+                    cause=f'{branch} is wrong',
+                )
+
+
+def expect_refusals(service: Service, *targets: tuple[float, float]) -> None:
+    """Each target, out of reach or no number, is answered: not reachable, no angles, a message.
+
+    Raises CheckFailed.
+    """
+    for x, y in targets:
+        response = service.call(request(x, y))
+        what = 'NaN' if math.isnan(x + y) else 'a target out of reach'
+        expect(
+            not response.reachable,
+            expected=f'reachable to be False for ({x:g}, {y:g})',
+            seen='True',
+            hint='inverse_kinematics raises ValueError there: catch it, and leave reachable False',
+            cause=f'{what} is called reachable',
+        )
+        angles = [*response.elbow_up, *response.elbow_down]
+        expect(
+            not angles,
+            expected=f'no angles for ({x:g}, {y:g})',
+            seen=f'{len(angles)}',
+            hint='leave elbow_up and elbow_down empty',
+            cause=f'{what} has angles',
+        )
+        expect(
+            bool(response.message.strip()),
+            expected=f'a message that says why ({x:g}, {y:g}) is not reachable',
+            seen='none',
+            hint='set response.message, to the text of the ValueError, say',
+            cause=f'{what} has no message',
+        )
+
+
+def expect_answer(server: Server, x: float, y: float) -> None:
+    """The client asks for a target, and publishes its elbow-up pose. Raises CheckFailed."""
+    ask(server, x, y)
+    expect_elbow_up(server, x, y)
+
+
+def expect_never_blocks(server: Server, *targets: tuple[float, float]) -> None:
+    """The client goes on while the server takes its time, and while there is none.
+
+    It answers each of three targets, within reach, that it is asked for while there is a server.
+    Raises CheckFailed.
+    """
+    first, second, third = targets
+    server.hold()
+    ask(server, *first)
+    server.expect_alive('the server takes its time')
+    server.release()
+    expect_elbow_up(server, *first)
+    server.stop()
+    server.publish(Point(x=second[0], y=second[1]))
+    server.expect_alive('there is no server')
+    server.start()
+    expect_answer(server, *third)
+
+
+def ask(server: Server, x: float, y: float) -> None:
+    """The client asks for a target."""
+
+    def is_it(asked: Any) -> bool:
+        return math.hypot(asked.target.x - x, asked.target.y - y) < NEAR_M
+
+    server.ask(
+        Point(x=x, y=y), is_it=is_it, hint='put the point that arrived into request.target, as is'
+    )
+
+
+def expect_elbow_up(server: Server, x: float, y: float) -> None:
+    """The client publishes the elbow-up pose that the server answers for a target."""
+    response = server.answer(request(x, y))
+    up_deg, down_deg = (
+        [math.degrees(angle) for angle in branch]
+        for branch in (response.elbow_up, response.elbow_down)
+    )
+    right = joints.in_radians(up_deg)
+
+    def why_wrong(message: Any) -> str:
+        if joints.agree(joints.pose(message), joints.in_radians(down_deg)):
+            return 'this is elbow_down: publish the angles of response.elbow_up'
+        return joints.why_wrong(message, up_deg)
+
+    server.expect(
+        lambda message: joints.agree(joints.pose(message), right),
+        expected=f'the elbow-up pose {right}',
+        hint=why_wrong,
+    )
+
+
+def expect_no_answer(server: Server, x: float, y: float) -> None:
+    """The client asks for a target out of reach, and publishes nothing. Raises CheckFailed."""
+    ask(server, x, y)
+    server.expect_nothing(hint='publish only where response.reachable is True')
+
+
+def _is_pose(position: Sequence[float], pose_deg: Sequence[float]) -> bool:
+    right = [math.radians(angle) for angle in pose_deg]
+    return len(position) == len(right) and all(
+        abs(a - b) < joints.EXACT_RAD for a, b in zip(position, right, strict=True)
+    )
+
+
+def _why_wrong(
+    position: Sequence[float], branches_deg: dict[str, tuple], branch: str, other: str
+) -> str:
+    if not position:
+        return f'fill in both branches: response.{branch} is empty'
+    if _is_pose(position, branches_deg[other]):
+        return f'this is {other}: the two branches are swapped, or one stands in both'
+    return joints.why_off(list(position), branches_deg[branch])
+
+
+def _rad(pose_deg: Sequence[float]) -> list[float]:
+    return [round(math.radians(angle), 4) for angle in pose_deg]

@@ -1,0 +1,183 @@
+"""The check's own server, at once, slow or absent, for a node of the student's that asks it."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any, NoReturn
+
+from rclpy.publisher import Publisher
+
+from my_robot_basics.checks.callbacks import Raised
+from my_robot_basics.checks.ears import Ears
+from my_robot_basics.checks.holding_server import HoldingServer
+from my_robot_basics.checks.pulse import Pulse
+from my_robot_basics.checks.topics import Topic
+from my_robot_basics.checks.waiting_clients import (
+    waits_for_answer,
+    waits_for_server,
+    why_not_asked,
+    why_not_published,
+)
+from my_robot_basics.feedback.errors import expect, fail, shorten
+from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.graph import services
+from my_robot_basics.graph.watcher import Watcher
+
+PATIENCE_SEC = 4.0
+"""How long to wait for a request or an answer, of time that was free."""
+QUIET_SEC = 0.5
+"""How long to listen for what must not come."""
+AGAIN_SEC = 0.5
+"""Who has only just met the server may lose a request: until one has arrived, the message that
+leads to it is published again so often."""
+
+
+@contextmanager
+def serve(
+    name: str, type_: type, answer: Callable[[Any], Any], *, asked_on: str, to: str, alive: str
+) -> Iterator['Server']:
+    """The check's own server of a service, for the duration of a with statement.
+
+    `answer(request)` returns the response to a request. The student's node asks for each message
+    on the topic `asked_on`, publishes what it makes of the answer on the topic `to`, and counts on
+    the topic `alive` at 10 Hz: where that stands still, the node waits in a callback. Raises
+    CheckFailed where nobody publishes on these two, or another node serves.
+
+        with serve('/solve_ik', SolveIK, ik.solve, asked_on='/target_point',
+                   to='/kinematics/joint_states', alive='/ik_client/alive') as server:
+            server.hold()
+            server.ask(Point(x=1.0), is_it=lambda request: request.target.x == 1.0)
+            server.expect_alive('the server takes its time')
+            server.release()
+            server.expect(is_right, expected='…', hint=lambda message: '…')
+    """
+    with Watcher() as watcher:
+        answers, beats = (Topic(topic_name).listen(watcher) for topic_name in (to, alive))
+        others = services.take(watcher.node).servers.get(name, {})
+        expect(
+            not others,
+            expected=f'no server of {name} but that of this check',
+            seen=theirs(', '.join(sorted(others))),
+            hint='stop that node: here, the check itself answers',
+            cause=f'another node serves {name}',
+        )
+        served = {'name': name, 'type_': type_, 'answer': answer}
+        server = Server(watcher, asked_on=asked_on, answers=answers, beats=beats, **served)
+        server.start()
+        yield server
+
+
+class Server(HoldingServer):
+    """What `serve` yields, while it lasts."""
+
+    def __init__(
+        self, watcher: Watcher, *, asked_on: str, answers: Ears, beats: Ears, **served: Any
+    ) -> None:
+        """`served` is for HoldingServer."""
+        super().__init__(watcher.node, **served)
+        self.asked_on = asked_on
+        self._watcher, self._answers, self._beats = watcher, answers, beats
+        self._raised = Raised({*answers.publishers(), *beats.publishers()})
+        self._publisher: Publisher | None = None
+        self._heard = self._known_starts = 0
+
+    def publish(self, message: Any) -> None:
+        """Publish a message that is to lead to a request, without waiting for one."""
+        if self._publisher is None:
+            self._publisher = Topic(self.asked_on).meet(self._watcher, type(message))
+        self._heard = len(self._answers.heard)
+        self._publisher.publish(message)
+
+    def ask(
+        self, message: Any, *, is_it: Callable[[Any], bool], hint: str = 'ask for what arrived'
+    ) -> Any:
+        """Publish a message on `asked_on`; the request that it leads to, for which `is_it` holds.
+
+        Raises CheckFailed where none comes in PATIENCE_SEC of time that was free, with the reason.
+        """
+        before = len(self.requests)
+
+        def found() -> list[Any]:
+            return [request for request in self.requests[before:] if is_it(request)]
+
+        self.publish(message)
+        for _ in range(round(PATIENCE_SEC / AGAIN_SEC)):
+            if self._watcher.spin_until_free(lambda: bool(found()), free_sec=AGAIN_SEC):
+                self._known_starts = self.starts
+                return found()[0]
+            if self._known_starts < self.starts:
+                self.publish(message)
+        others = self.requests[before:]
+        fail(
+            expected=f'a request to {self.name} for the message on {self.asked_on}',
+            seen=shorten(others[-1]) if others else f'none in {PATIENCE_SEC:g} s',
+            hint=hint if others else self._raised.hint() or self._why_not_asked(),
+            cause=f'{self.name} is {"asked for something else" if others else "not asked"}',
+        )
+
+    def expect(
+        self, is_right: Callable[[Any], bool], *, expected: str, hint: Callable[[Any], str]
+    ) -> Any:
+        """The message on `to`, since the last one was asked for, for which `is_right` holds.
+
+        `hint(message)` says what is wrong with another one. Raises CheckFailed where none comes in
+        PATIENCE_SEC of time that was free.
+        """
+
+        def heard() -> list[Any]:
+            return self._answers.messages()[self._heard :]
+
+        found = self._watcher.spin_until_free(
+            lambda: any(map(is_right, heard())), free_sec=PATIENCE_SEC
+        )
+        if found:
+            self._raised.expect_none()
+            return next(filter(is_right, heard()))
+        others = heard()
+        wrong = f'a wrong message on {self._answers.topic_name}'
+        fail(
+            expected=f'{expected} on {self._answers.topic_name}',
+            seen=shorten(others[-1]) if others else f'none in {PATIENCE_SEC:g} s',
+            hint=hint(others[-1]) if others else self._raised.hint() or self._why_silent(),
+            cause=wrong if others else f'{self.name} has answered, and nothing is published',
+        )
+
+    def expect_nothing(self, *, hint: str) -> None:
+        """Nothing comes on `to` in QUIET_SEC after what was last asked for. Raises CheckFailed."""
+        self._watcher.spin_for(QUIET_SEC)
+        others = self._answers.messages()[self._heard :]
+        expect(
+            not others,
+            expected=f'no message on {self._answers.topic_name}',
+            seen=shorten(others[-1]) if others else '',
+            hint=hint,
+            cause=f'a message on {self._answers.topic_name} that should not be',
+        )
+        self._raised.expect_none()
+
+    def expect_alive(self, meanwhile: str) -> None:
+        """The node goes on counting on `alive`. `meanwhile`: what happens, as a clause.
+
+        Raises CheckFailed where the count stands still: see `Pulse`.
+        """
+        if not self._goes_on():
+            self._fail_still(meanwhile)
+
+    def _why_not_asked(self) -> str:
+        return why_not_asked(
+            self._watcher, self.name, self.type, asked_on=self.asked_on, goes_on=self._goes_on
+        )
+
+    def _why_silent(self) -> str:
+        return why_not_published(self.name, goes_on=self._goes_on)
+
+    def _goes_on(self) -> bool:
+        return Pulse(self._watcher, self._beats).goes_on()
+
+    def _fail_still(self, meanwhile: str) -> NoReturn:
+        why = waits_for_answer if self.holds_any() else waits_for_server
+        fail(
+            expected=f'the count on {self._beats.topic_name} to go on while {meanwhile}',
+            seen='it stand still',
+            hint=self._raised.hint() or why(self.name),
+            cause=f'the count on {self._beats.topic_name} stands still',
+        )

@@ -1,0 +1,160 @@
+"""A service as a check sees it: call its server, and say why no answer comes."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, NoReturn
+
+from rcl_interfaces.srv import GetParameters
+from rclpy.task import Future
+
+from my_robot_basics.checks.callbacks import Raised
+from my_robot_basics.exchange import student
+from my_robot_basics.feedback.errors import expect, fail
+from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.graph import graphs, services
+from my_robot_basics.graph.watcher import Watcher
+
+SERVER_SEC = 10.0
+"""How long to wait for a server; less where the notebook says that none can come."""
+ANSWER_SEC = 4.0
+"""How long to wait for an answer, of time that was free."""
+LOOK_SEC = 0.5
+"""How often the notebook is asked meanwhile whether a callback has raised."""
+PARAMETERS_SEC = 1.0
+"""How long a node may take to tell a parameter, of time that was free: one that spins does."""
+
+
+def service(name: str, type_: type) -> 'Service':
+    """The service of that (absolute) name and type, to be called.
+
+    `response = service('/solve_ik', SolveIK).call(SolveIK.Request(target=point))`
+    """
+    return Service(name, type_)
+
+
+@dataclass(frozen=True)
+class Service:
+    """What a check may do with a service that the student's node serves."""
+
+    name: str
+    """Absolute: '/solve_ik'."""
+    type: type
+    """Its class, such as `arm_interfaces.srv.SolveIK`."""
+
+    def call(self, request: Any) -> Any:
+        """Send a request; the response to it. Raises CheckFailed as `call_all` does."""
+        return self.call_all(request)[0]
+
+    def call_all(self, *requests: Any) -> list[Any]:
+        """Send all requests at once, before any is answered; the responses, in their order.
+
+        Answers may come in any order. Raises CheckFailed where there is no server, one of another
+        type, or more than one; and where an answer does not come in ANSWER_SEC of time that was
+        free, with the reason: the callback raised, returned no response, does not return, or the
+        node does not spin.
+        """
+        with Watcher() as watcher:
+            server = self._meet(watcher)
+            raised = Raised([server])
+            client = watcher.node.create_client(self.type, self.name)
+            watcher.spin_until(client.service_is_ready, timeout_sec=SERVER_SEC)
+            asked = [client.call_async(request) for request in requests]
+            if not wait_for_all(watcher, asked, gives_up=lambda: bool(raised.hint())):
+                answered = sum(future.done() for future in asked)
+                self._fail_unanswered(watcher, server, raised, answered, len(asked))
+            raised.expect_none()
+            return [future.result() for future in asked]
+
+    def _meet(self, watcher: Watcher) -> str:
+        """Wait for the server; the full name of its node."""
+        found: dict[str, tuple[str, ...]] = {}
+
+        def is_there() -> bool:
+            found.clear()
+            found.update(services.take(watcher.node).servers.get(self.name, {}))
+            return bool(found)
+
+        patience_sec = graphs.SETTLED_SEC if graphs.is_settled(watcher) else SERVER_SEC
+        if not watcher.spin_until(is_there, timeout_sec=patience_sec):
+            fail(
+                expected=f'a server of {self.name}',
+                seen=graphs.none_in(patience_sec),
+                hint=services.take(watcher.node).why_none(self.name, maker='create_service'),
+            )
+        wanted = type_name(self.type)
+        types = sorted({each for types in found.values() for each in types})
+        expect(
+            types == [wanted],
+            expected=f'a server of {self.name} for {wanted}',
+            seen=f'one for {theirs(" and ".join(types))}',
+            hint='compare the type in create_service(…)',
+            cause=f'{self.name} has another type',
+        )
+        # two nodes may have one name
+        watcher.spin_for(graphs.NEWCOMER_SEC)
+        count = watcher.node.count_services(self.name)
+        expect(
+            count == 1,
+            expected=f'one server of {self.name}',
+            seen=f'{count} ({theirs(", ".join(sorted(found)))})',
+            hint='stop the other node: nobody knows whose answer arrives',
+            cause=f'{self.name} has more than one server',
+        )
+        return next(iter(found))
+
+    def _fail_unanswered(
+        self, watcher: Watcher, server: str, raised: Raised, answered: int, asked: int
+    ) -> NoReturn:
+        seen = 'none' if not answered else f'{answered} of {asked}'
+        fail(
+            expected='an answer to each request' if asked > 1 else 'an answer',
+            seen=seen if raised.hint() else f'{seen} in {ANSWER_SEC:g} s',
+            hint=self._why_unanswered(watcher, server, raised),
+            cause=f'{self.name} does not answer',
+        )
+
+    def _why_unanswered(self, watcher: Watcher, server: str, raised: Raised) -> str:
+        if raised.hint():
+            # rclpy checks the type of what a callback returns, and says nothing but that
+            if student.trouble(server) == 'TypeError':
+                return 'end the callback with `return response`, in each of its branches'
+            return raised.hint()
+        if not answers_parameters(watcher, server):
+            return (
+                f'{theirs(server)} answers nothing at all, so see that it spins, and that its '
+                'callback ends with `return response`, raises nothing, and waits for nothing'
+            )
+        return (
+            f'{theirs(server)} runs, and the callback of this service has not returned: see what '
+            'it waits for'
+        )
+
+
+def wait_for_all(
+    watcher: Watcher, asked: Sequence[Future], *, gives_up: Callable[[], bool]
+) -> bool:
+    """Spin until all are answered, at most ANSWER_SEC of time that was free; whether they are.
+
+    `gives_up` says that no answer can come any more.
+    """
+    for _ in range(round(ANSWER_SEC / LOOK_SEC)):
+        if watcher.spin_until_free(lambda: all(f.done() for f in asked), free_sec=LOOK_SEC):
+            return True
+        if gives_up():
+            break
+    return all(future.done() for future in asked)
+
+
+def answers_parameters(watcher: Watcher, node_name: str) -> bool:
+    """Whether a node tells a parameter: then it spins, and nothing keeps it busy."""
+    client = watcher.node.create_client(GetParameters, f'{node_name}/get_parameters')
+    watcher.spin_until(client.service_is_ready, timeout_sec=PARAMETERS_SEC)
+    asked = client.call_async(GetParameters.Request(names=['use_sim_time']))
+    told = watcher.spin_until_free(asked.done, free_sec=PARAMETERS_SEC)
+    watcher.node.destroy_client(client)
+    return told
+
+
+def type_name(type_: type) -> str:
+    """The name of a service's class: 'arm_interfaces/srv/SolveIK'."""
+    return f'{type_.__module__.partition(".")[0]}/srv/{type_.__name__}'

@@ -1,0 +1,68 @@
+"""Services on the graph: which nodes serve one, which ask, and with which type."""
+
+from dataclasses import dataclass
+
+from rclpy.node import Node
+
+from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.graph.snapshot import similar
+from my_robot_basics.graph.watcher import HIDDEN
+
+_OF_EVERY_NODE = frozenset(
+    """describe_parameters get_parameter_types get_parameters list_parameters set_parameters
+    set_parameters_atomically get_type_description""".split()  # noqa: SIM905
+)
+
+
+@dataclass(frozen=True)
+class Ends:
+    """Who serves and who asks, without the nodes whose names start with `_`."""
+
+    node_names: tuple[str, ...]
+    """Full names of all nodes, sorted."""
+    servers: dict[str, dict[str, tuple[str, ...]]]
+    """Service name to full node name to the types that the node serves it with."""
+    clients: dict[str, dict[str, tuple[str, ...]]]
+    """The same of those that ask."""
+
+    def why_none(self, name: str, *, maker: str) -> str:
+        """What to try where nobody is at that end of a service: one clause.
+
+        `maker` is 'create_service' or 'create_client'.
+        """
+        ends = self.servers if maker == 'create_service' else self.clients
+        if not self.node_names:
+            return 'the node is not running, so run the cell that starts it and read its output'
+        if near := similar(name, [each for each in ends if each != name]):
+            uses = theirs(f'{", ".join(ends[near])} uses {near}')
+            if any(near == f'{node.rpartition("/")[0]}{name}' for node in ends[near]):
+                return f"{uses}: a name without a leading / is relative to its node's namespace"
+            return f'{uses}, so compare the spelling'
+        runs = theirs(', '.join(self.node_names))
+        return f'{runs} runs, so look at the service name in {maker}(…) and that the node calls it'
+
+
+def take(node: Node) -> Ends:
+    """The services as a node sees them now."""
+    nodes = [
+        (name, namespace)
+        for name, namespace in node.get_node_names_and_namespaces()
+        if not name.startswith(HIDDEN)
+    ]
+    servers: dict[str, dict[str, tuple[str, ...]]] = {}
+    clients: dict[str, dict[str, tuple[str, ...]]] = {}
+    for name, namespace in nodes:
+        full_name = f'{namespace.rstrip("/")}/{name}'
+        for ends, look_up in (
+            (servers, node.get_service_names_and_types_by_node),
+            (clients, node.get_client_names_and_types_by_node),
+        ):
+            try:
+                found = look_up(name, namespace)
+            except RuntimeError:  # it has gone meanwhile
+                continue
+            for service_name, types in found:
+                if service_name.rpartition('/')[2] not in _OF_EVERY_NODE:
+                    ends.setdefault(service_name, {})[full_name] = tuple(types)
+    names = tuple(sorted({f'{namespace.rstrip("/")}/{name}' for name, namespace in nodes}))
+    return Ends(names, servers, clients)

@@ -1,0 +1,371 @@
+"""A node that asks a service: right in whatever way, and told the cause where it waits."""
+
+import collections
+import threading
+import time
+from functools import partial
+
+import pytest
+import rclpy
+from geometry_msgs.msg import Point
+from my_robot_basics.checks import CheckFailed, ik, serve, servers
+from nodes.running import imported, running
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.executors import MultiThreadedExecutor
+from std_srvs.srv import Trigger
+
+from arm_interfaces.srv import SolveIK
+from my_robot_basics import live
+
+IKClient = imported('ik_client').IKClient
+
+TARGETS = [(1.2, 0.4), (-0.5, 1.1), (0.9, -1.3)]
+WAITS = (
+    "it called `/solve_ik` inside a callback and waited there: the answer can't be delivered "
+    'while the callback runs; use call_async and add_done_callback'
+)
+STOPS = []
+"""What ends the threads that nodes have made for themselves."""
+
+
+@pytest.fixture
+def run():
+    yield live.run
+    while STOPS:
+        STOPS.pop()()
+    live.stop()
+
+
+@pytest.fixture
+def impatient(monkeypatch):
+    """Wait for what does not come no longer than it takes to be sure."""
+    monkeypatch.setattr(servers, 'PATIENCE_SEC', 1.5)
+
+
+def server(answer=ik.solve):
+    return serve(
+        '/solve_ik',
+        SolveIK,
+        answer,
+        asked_on='/target_point',
+        to='/kinematics/joint_states',
+        alive='/ik_client/alive',
+    )
+
+
+def check_asks():
+    with server() as serving:
+        for target in TARGETS:
+            ik.expect_answer(serving, *target)
+        ik.expect_no_answer(serving, 2.5, 0.0)
+
+
+def check_never_blocks():
+    with server() as serving:
+        ik.expect_never_blocks(serving, *TARGETS)
+
+
+# --- right ones ----------------------------------------------------------------------------------
+
+
+class Base(IKClient):
+    """With groups: what it asks is in one, and its other callbacks are in another."""
+
+    def __init__(self):
+        self.group = ReentrantCallbackGroup()
+        super().__init__()
+
+    def create_client(self, *arguments):
+        return super().create_client(*arguments, callback_group=self.group)
+
+    def create_subscription(self, *arguments, **options):
+        return super().create_subscription(*arguments, **{'callback_group': self.group, **options})
+
+
+class Awaits(Base):
+    async def ask(self, target):
+        self.answer(await self.client.call_async(SolveIK.Request(target=target)))
+
+
+class Blocks(Base):
+    """Calls and waits, with threads enough and a group that allows it."""
+
+    def __init__(self):
+        super().__init__()
+        executor = MultiThreadedExecutor(4, context=self.context)
+        executor.add_node(self)
+        STOPS.append(executor.shutdown)
+        threading.Thread(target=executor.spin, daemon=True).start()
+
+    def ask(self, target):
+        if self.client.wait_for_service(10.0):
+            self.answer(self.client.call(SolveIK.Request(target=target), timeout_sec=10.0))
+
+
+class OwnThread(IKClient):
+    """Waits in a thread that it has for that."""
+
+    def __init__(self):
+        super().__init__()
+        self.targets = collections.deque()
+        self.is_over = threading.Event()
+        STOPS.append(self.is_over.set)
+        threading.Thread(target=self.work, daemon=True).start()
+
+    def ask(self, target):
+        self.targets.append(target)
+
+    def work(self):
+        while not self.is_over.wait(0.01):
+            if self.targets and self.client.service_is_ready():
+                future = self.client.call_async(SolveIK.Request(target=self.targets.popleft()))
+                while not future.done() and not self.is_over.wait(0.01):
+                    pass
+                self.answer(future.result())
+
+
+class WorksOff(IKClient):
+    """A queue that a timer works off, one after the other."""
+
+    def __init__(self):
+        super().__init__()
+        self.targets, self.future = collections.deque(), None
+        self.create_timer(0.05, self.look)
+
+    def ask(self, target):
+        self.targets.append(target)
+
+    def look(self):
+        if self.future and self.future.done():
+            self.answer(self.future.result())
+            self.future = None
+        if self.targets and not self.future and self.client.service_is_ready():
+            self.future = self.client.call_async(SolveIK.Request(target=self.targets.popleft()))
+
+
+RIGHT = [IKClient, Awaits, Blocks, OwnThread, WorksOff]
+
+
+@pytest.mark.parametrize('node_class', RIGHT)
+def test_who_asks_right_passes_in_whatever_way(run, node_class):
+    run(node_class)
+    check_asks()
+    check_never_blocks()
+
+
+def test_a_program_of_its_own_passes():
+    with running('ik_client'):
+        check_asks()
+        check_never_blocks()
+
+
+def test_answers_come_out_of_order_where_the_server_says_so(run):
+    run(IKClient)
+    with server() as serving:
+        serving.hold()
+        for target in TARGETS:
+            ik.ask(serving, *target)
+        serving.release(reverse=True)
+        for target in reversed(TARGETS):
+            ik.expect_elbow_up(serving, *target)
+
+
+# --- who waits -----------------------------------------------------------------------------------
+
+
+class Calls(IKClient):
+    def ask(self, target):
+        self.answer(self.client.call(SolveIK.Request(target=target), timeout_sec=20.0))
+
+
+class CallsAWhile(IKClient):
+    def ask(self, target):
+        self.answer(self.client.call(SolveIK.Request(target=target), timeout_sec=3.0))
+
+
+class SpinsInside(IKClient):
+    def ask(self, target):
+        future = self.client.call_async(SolveIK.Request(target=target))
+        rclpy.spin_until_future_complete(self, future, timeout_sec=20.0)
+        self.answer(future.result())
+
+
+class Sleeps(IKClient):
+    def ask(self, target):
+        future = self.client.call_async(SolveIK.Request(target=target))
+        for _ in range(200):
+            if future.done():
+                break
+            time.sleep(0.1)
+        else:
+            return
+        self.answer(future.result())
+
+
+class AwaitsInItsOnlyGroup(IKClient):
+    async def ask(self, target):
+        self.answer(await self.client.call_async(SolveIK.Request(target=target)))
+
+
+WAITING = [Calls, SpinsInside, Sleeps, AwaitsInItsOnlyGroup]
+
+
+@pytest.mark.parametrize('node_class', WAITING)
+@pytest.mark.usefixtures('impatient')
+def test_who_waits_inside_a_callback_is_told(run, node_class):
+    run(node_class)
+    with pytest.raises(CheckFailed) as failure:
+        check_never_blocks()
+    assert str(failure.value) == (
+        'expected the count on /ik_client/alive to go on while the server takes its time, '
+        f'saw it stand still: {WAITS}'
+    )
+
+
+@pytest.mark.parametrize('node_class', [Calls, SpinsInside])
+@pytest.mark.usefixtures('impatient')
+def test_who_never_gets_an_answer_is_told_why(run, node_class):
+    run(node_class)
+    with pytest.raises(CheckFailed, match=r'expected the elbow-up pose .*saw none') as failure:
+        check_asks()
+    assert str(failure.value).endswith(WAITS)
+
+
+@pytest.mark.usefixtures('impatient')
+def test_who_gives_up_waiting_is_told_not_to_wait(run):
+    run(CallsAWhile)
+    for check in check_asks, check_never_blocks:
+        with pytest.raises(CheckFailed, match='inside a callback'):
+            check()
+
+
+class WaitsForTheServer(IKClient):
+    def ask(self, target):
+        self.client.wait_for_service(20.0)
+        super().ask(target)
+
+
+@pytest.mark.usefixtures('impatient')
+def test_who_waits_for_a_server_that_is_not_there_is_told(run):
+    run(WaitsForTheServer)
+    check_asks()
+    with pytest.raises(CheckFailed, match='while there is no server, saw it stand still: it wai'):
+        check_never_blocks()
+
+
+# --- who is wrong otherwise ----------------------------------------------------------------------
+
+
+class ForwardsNothing(IKClient):
+    def answer(self, response):
+        pass
+
+
+class ElbowDown(IKClient):
+    def answer(self, response):
+        self.send(response.elbow_down)
+
+
+class Degrees(IKClient):
+    def send(self, position):
+        super().send([57.29577951308232 * angle for angle in position])
+
+
+class AsksForAnother(IKClient):
+    def ask(self, target):
+        super().ask(Point(x=target.y, y=target.x))
+
+
+class AsksNobody(IKClient):
+    def ask(self, target):
+        pass
+
+
+class RaisesInAnswer(IKClient):
+    def answer(self, response):
+        self.send(response.elbow)
+
+
+WRONG = [
+    (ForwardsNothing, 'saw none in 1.5 s: publish when the answer is there'),
+    (ElbowDown, 'this is elbow_down: publish the angles of response.elbow_up'),
+    (Degrees, 'these are degrees: convert both with radians'),
+    (AsksForAnother, 'a request to /solve_ik for the message on /target_point, saw arm_interf'),
+    (AsksNobody, 'saw none in 1.5 s: call self.client.call_async'),
+    (RaisesInAnswer, "saw none in 1.5 s: its callback raised AttributeError.*'elbow'"),
+]
+
+
+class Solves(IKClient):
+    def ask(self, target):
+        self.target = target
+        super().ask(target)
+
+    def answer(self, response):
+        super().answer(ik.solve(SolveIK.Request(target=self.target)))
+
+
+@pytest.mark.usefixtures('impatient')
+def test_who_asks_and_publishes_another_answer_is_found(run):
+    run(Solves)
+    with (
+        server(partial(ik.solve, l1=1.3)) as serving,
+        pytest.raises(CheckFailed, match='the elbow-up pose'),
+    ):
+        ik.expect_answer(serving, *TARGETS[0])
+
+
+class AnswersAnything(IKClient):
+    def answer(self, response):
+        self.send(response.elbow_up)
+
+
+@pytest.mark.usefixtures('impatient')
+def test_who_publishes_no_angles_is_told(run):
+    run(AnswersAnything)
+    with pytest.raises(CheckFailed, match=r'no message on /kin.*: publish only where response.re'):
+        check_asks()
+
+
+@pytest.mark.parametrize(('node_class', 'message'), WRONG)
+@pytest.mark.usefixtures('impatient')
+def test_what_is_wrong_is_named(run, node_class, message):
+    run(node_class)
+    with pytest.raises(CheckFailed, match=message):
+        check_asks()
+
+
+class AsksElsewhere(IKClient):
+    def create_client(self, type_, name):
+        return super().create_client(type_, '/solve_it')
+
+
+class AsksForATrigger(IKClient):
+    def create_client(self, type_, name):
+        return super().create_client(Trigger, name)
+
+    def ask(self, target):
+        self.client.call_async(Trigger.Request())
+
+
+@pytest.mark.parametrize(
+    ('node_class', 'message'),
+    [
+        (AsksElsewhere, '/ik_client uses /solve_it, so compare the spelling'),
+        (AsksForATrigger, 'it asks for std_srvs/srv/Trigger, so compare the type in'),
+    ],
+)
+@pytest.mark.usefixtures('impatient')
+def test_a_client_of_something_else_is_found(run, node_class, message):
+    run(node_class)
+    with pytest.raises(CheckFailed, match=message):
+        check_asks()
+
+
+def test_another_server_is_named(run):
+    run(IKClient)
+    run(imported('ik_service').IKService)
+    with pytest.raises(
+        CheckFailed, match='no server of /solve_ik but that of this check, saw /ik'
+    ):
+        check_asks()
