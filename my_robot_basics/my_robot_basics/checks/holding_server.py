@@ -35,13 +35,15 @@ class HoldingServer:
             else:
                 send(response, header)
 
-        service.send_response = send_or_hold  # the executor calls it with what _take returns
+        # the executor calls it with what _take returns
+        service.send_response = send_or_hold  # type: ignore[method-assign]
         self._service = service
         self.starts += 1
 
     def stop(self) -> None:
         """Be absent: a request that comes now is lost, and so is one that has no answer yet."""
-        self._node.destroy_service(self._service)
+        if self._service is not None:
+            self._node.destroy_service(self._service)
         self._held.clear()
 
     def hold(self) -> None:
