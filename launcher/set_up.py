@@ -16,7 +16,7 @@ from pathlib import Path
 from launcher.environment import Environment
 from launcher.installer import Installer, version_of, writing
 from launcher.messages import CourseError, say
-from launcher.shares import TOOLS, UNDERLAY, make_tools, tell_ament, tell_jupyter
+from launcher.shares import KERNELS, TOOLS, UNDERLAY, make_tools, tell_ament, tell_jupyter
 
 PINS = 'environment.txt'
 """In the course's root, where installers run."""
@@ -42,7 +42,7 @@ def made_packages(environment: Environment) -> str:
         files += [root / 'pyproject.toml', root / 'grader/kernels/kernelspec/kernel.json']
     texts = [file.read_text(encoding='utf-8') for file in files]
     wheel = hashlib.sha256((root / interfaces_wheel(root)).read_bytes()).hexdigest()
-    return ''.join([*texts, wheel, UNDERLAY, str(TOOLS)])
+    return ''.join([*texts, wheel, UNDERLAY, KERNELS, str(TOOLS)])
 
 
 def interfaces_wheel(root: Path) -> str:

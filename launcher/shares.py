@@ -21,6 +21,8 @@ case :${AMENT_PREFIX_PATH:-}: in
 esac
 """  # noqa: E501
 """What a workspace's setup.bash reads of the ROS that it was built on: any terminal can."""
+KERNELS = "c.InteractiveShellApp.extensions.append('my_robot_basics.live.extension')\n"
+"""What each IPython kernel of .venv reads at its start."""
 BUTTON = 'my_robot_basics/my_robot_basics/validate/labextension'
 KERNEL = 'share/jupyter/kernels/my_robot_basics_sandbox'
 
@@ -48,7 +50,7 @@ def executables_of(setup: str) -> list[str]:
 
 
 def tell_jupyter(environment: Environment) -> None:
-    """Put in place the Validate button, its part of the server and the sandbox's kernel."""
+    """Put in place the Validate button, its part of the server, and what kernels read."""
     venv, button = environment.venv, environment.root / BUTTON
     extensions, server = venv / 'share/jupyter/labextensions', venv / 'etc/jupyter'
     server /= 'jupyter_server_config.d'
@@ -56,6 +58,8 @@ def tell_jupyter(environment: Environment) -> None:
         folder.mkdir(parents=True, exist_ok=True)
     point(extensions / 'my_robot_basics_validate', button)
     shutil.copy(button / 'server.json', server / 'my_robot_basics.json')
+    (venv / 'etc/ipython').mkdir(parents=True, exist_ok=True)
+    (venv / 'etc/ipython/ipython_kernel_config.py').write_text(KERNELS, encoding='utf-8')
     if environment.has_grader:
         (venv / KERNEL).mkdir(parents=True, exist_ok=True)
         shutil.copy(environment.root / 'grader/kernels/kernelspec/kernel.json', venv / KERNEL)

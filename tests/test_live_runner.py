@@ -9,7 +9,7 @@ FORGET = """
 import weakref
 
 import rclpy
-from my_robot_basics.live import run
+from my_robot_basics.live import runner
 from rclpy.executors import SingleThreadedExecutor
 
 
@@ -18,6 +18,7 @@ class Careless:
         raise ValueError('of the student')
 
 
+runner.set_up()
 rclpy.init(args=[])
 executor = SingleThreadedExecutor()
 rclpy.get_default_context()._callbacks.clear()  # as when two threads remove at once

@@ -109,6 +109,11 @@ def test_all_time_that_a_students_room_takes_is_counted_however_it_is_taken(room
     assert rooms.student_cpu_sec() - before_sec >= 0.5
 
 
+def test_a_cell_that_names_live_finds_the_kernel_set_up(rooms, student):
+    code = 'from my_robot_basics.live import runner; print(runner._is_set_up)'
+    assert said(student(rooms, code)) == 'True\n'
+
+
 def test_own_modules_can_be_imported_and_shadow_nothing(shared, student):
     code = 'import helper, numpy, json, rclpy, my_robot_basics.live; print(helper.WHERE)'
     result = student(shared, code)

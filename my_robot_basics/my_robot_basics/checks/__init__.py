@@ -57,6 +57,3 @@ def __getattr__(name: str) -> object:
     if name not in _HOMES:
         raise AttributeError(f'module {__name__!r} has no attribute {name!r}')
     return getattr(importlib.import_module(f'my_robot_basics.{_HOMES[name]}'), name)
-
-
-importlib.import_module('my_robot_basics.checks.tick').watch()

@@ -1,7 +1,7 @@
 """Nodes inside a notebook kernel: run, replace, stop; see the arm move.
 
-Importing a name from here enters the classroom (see `classroom.enter`); importing the modules
-`classroom` and `domain` does not, and does not load rclpy.
+Importing a name from here changes nothing in the process. A notebook's kernel is set up by the
+first cell that names `live` (see `extension`), any other process by its first `run`.
 """
 
 from importlib import import_module
@@ -90,5 +90,4 @@ _MODULES = {
 def __getattr__(name: str) -> Any:
     if name not in _MODULES:
         raise AttributeError(f'module {__name__!r} has no attribute {name!r}')
-    classroom.enter()
     return getattr(import_module(f'{__name__}.{_MODULES[name]}'), name)

@@ -13,6 +13,7 @@ from rclpy.qos import QoSProfile, qos_policy_name_from_kind
 from std_msgs.msg import Int32
 
 from my_robot_basics.live.waiting import wait_until
+from my_robot_basics.session import classroom
 
 TIMEOUT_SEC = 10.0
 
@@ -24,6 +25,7 @@ def measure_pairs(profiles: Mapping[str, QoSProfile]) -> dict[tuple[str, str], s
     the message arrived, else the name of the policy that did not match. Raises WaitedInVain where
     a pair tells neither.
     """
+    classroom.enter()
     context = Context()
     context.init([], initialize_logging=False)
     try:

@@ -2,17 +2,15 @@
 
 import atexit
 import os
-import sys
 import threading
 from collections.abc import Callable
 from typing import Any, TypeVar
 
 import rclpy
-from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions, uninstall_signal_handlers
 
-from my_robot_basics.live import node_file, notebook, spinning
+from my_robot_basics.live import harmless_errors, node_file, notebook, spinning
 from my_robot_basics.live.background import Background
 from my_robot_basics.live.naming import announce_name
 from my_robot_basics.live.panel import STOPPED, NodePanel, Panel
@@ -27,7 +25,7 @@ _running: dict[str, Background] = {}
 _panels: dict[str, NodePanel] = {}
 _neighbours = Neighbours()
 _lock = threading.RLock()
-_owner_pid = os.getpid()
+_is_set_up = False
 
 
 class _LivesElsewhere(Exception):
@@ -126,8 +124,7 @@ def _stop_keys(keys: list[str]) -> None:
 
 
 def _ensure_rclpy() -> None:
-    domain_of_lesson = classroom.enter()
-    notebook.open_tap()
+    domain_of_lesson = set_up()
     # rclpy.init() in a student's cell listens for Ctrl-C: after one, a thread of rclpy shuts down
     # every context of this process, on a busy machine only when the next node has begun
     uninstall_signal_handlers()
@@ -150,50 +147,30 @@ def shut_down() -> None:
     rclpy.try_shutdown()
 
 
-def _say_nothing_of_an_end(
-    former: Callable[[threading.ExceptHookArgs], object],
-) -> Callable[[threading.ExceptHookArgs], None]:
-    """Make a hook for threads that a student lets spin: that rclpy is shut down is no error."""
+def set_up() -> int:
+    """Make this process part of a lesson, once, and return its ROS domain ID.
 
-    def hook(args: threading.ExceptHookArgs) -> None:
-        if not (args.exc_type and issubclass(args.exc_type, ExternalShutdownException)):
-            former(args)
-
-    return hook
-
-
-def _say_nothing_of_a_race(
-    former: Callable[['sys.UnraisableHookArgs'], object],
-) -> Callable[['sys.UnraisableHookArgs'], None]:
-    """Make a hook for errors that nobody can catch: one of rclpy's own does no harm.
-
-    A Context removes executors that are gone from a list without a lock; where two go at the
-    same moment, it may miss one. Told in a cell that is being validated, it would cost its points.
+    A notebook's kernel begins to read the ROS log, knows %%write_node, and lets a cell that spins
+    be interrupted. What `run` started is stopped when Python ends. Raises NoFreeDomain or
+    BadDomain.
     """
-
-    def hook(args: 'sys.UnraisableHookArgs') -> None:
-        where = getattr(args.object, '__qualname__', '')
-        if not (args.exc_type is ValueError and where.startswith('WeakMethod.')):
-            former(args)
-
-    return hook
-
-
-# before anything logs, also where a student initialises rclpy
-classroom.enter()
-notebook.open_tap()
-if notebook.in_kernel():
-    node_file.register()
-if notebook.in_kernel() and not classroom.in_grading_room():
-    spinning.help_in_cells()
-threading.excepthook = _say_nothing_of_an_end(threading.excepthook)
-sys.unraisablehook = _say_nothing_of_a_race(sys.unraisablehook)
+    global _is_set_up
+    domain_id = classroom.enter()
+    notebook.open_tap()
+    if not _is_set_up:
+        _is_set_up = True
+        if notebook.in_kernel():
+            node_file.register()
+            if not classroom.in_grading_room():
+                spinning.help_in_cells()
+        harmless_errors.hide()
+        atexit.register(_leave_nothing, os.getpid())
+    return domain_id
 
 
-@atexit.register
-def _leave_nothing() -> None:
+def _leave_nothing(owner_pid: int) -> None:
     # a forked child has neither our threads nor our participants
-    if os.getpid() == _owner_pid:
+    if os.getpid() == owner_pid:
         shut_down()
         _neighbours.leave()
         notebook.leave()
