@@ -13,6 +13,8 @@ from my_robot_basics.session import domain
 SCRIPT = Path(sys.executable).with_name('ros2')
 NODES = Path(__file__).parent / 'nodes'
 PATIENCE_SEC = 30
+OF_A_LESSON = ('ROS_AUTOMATIC_DISCOVERY_RANGE', 'FASTRTPS_DEFAULT_PROFILES_FILE')
+"""What nodes outside of the course lack."""
 
 
 @dataclass(frozen=True)
@@ -65,6 +67,17 @@ def on_the_graph(*names: str, topics: tuple[str, ...] = ()) -> Iterator[None]:
                 'topic', 'list', '--no-daemon', '--include-hidden-topics'
             ).out.splitlines()
         yield
+
+
+@contextlib.contextmanager
+def plain_nodes(nodes: int, contexts: int) -> Iterator[subprocess.Popen]:
+    """Run `nodes/plain.py`, which knows nothing of the course."""
+    environment = {name: value for name, value in os.environ.items() if name not in OF_A_LESSON}
+    with started(
+        *(sys.executable, NODES / 'plain.py', str(nodes), str(contexts)), env=environment
+    ) as process:
+        assert process.stdout.readline() == 'up\n'
+        yield process
 
 
 @contextlib.contextmanager

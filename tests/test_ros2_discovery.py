@@ -1,11 +1,19 @@
-"""When a look at the graph may end: with everybody there, on the operating system's word."""
+"""When a look at the graph may end: with everybody there, and all that they say they have."""
 
+import contextlib
+import re
+import socket
+import time
 from types import SimpleNamespace
 
 import pytest
-from my_robot_basics.graph import participants
+from hypothesis import given
+from hypothesis import strategies as st
+from my_robot_basics.graph import entities, participants, reannouncing
 from my_robot_basics.ros2 import discovery, environment
-from ros2_command import on_the_graph, own_domain
+from rclpy.context import Context
+from rclpy.node import Node
+from ros2_command import PATIENCE_SEC, on_the_graph, own_domain, plain_nodes, ros2
 
 TABLE = """\
    sl  local_address rem_address   st tx_queue rx_queue tr tm->when retrnsmt   uid  timeout inode
@@ -44,6 +52,104 @@ def test_a_running_node_is_counted():
             assert participants.count(domain_id) == 1
 
 
+def test_a_process_knows_its_own_ports():
+    with own_domain(), on_the_graph('five_hz', topics=('/kinematics/joint_states',)):
+        domain_id = environment.domain_id()
+        others = participants.ports(domain_id)
+        assert participants.own_ports(domain_id) == set()
+        with observer():
+            own = participants.own_ports(domain_id)
+            assert participants.ports(domain_id) == own | others
+        assert len(own) == 1
+        assert len(others) == 1
+
+
+@contextlib.contextmanager
+def observer():
+    """A node of this process, in the domain of the environment."""
+    context = Context()
+    context.init(domain_id=environment.domain_id())
+    node = Node('observer', context=context, start_parameter_services=False)
+    try:
+        yield node
+    finally:
+        node.destroy_node()
+        context.try_shutdown()
+
+
+def test_whoever_is_asked_announces_itself_to_that_port_and_logs_nothing():
+    with own_domain(), plain_nodes(2, 1) as process:
+        theirs = participants.ports(environment.domain_id())
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as listener:
+            listener.bind((reannouncing.LOOPBACK, 0))
+            listener.settimeout(PATIENCE_SEC)
+            reannouncing.ask_ports(theirs, reply_port=listener.getsockname()[1])
+            announced = listener.recv(65536)
+        names = ros2('node', 'list', '--all').out
+        time.sleep(reannouncing.LEASE_SEC + 0.5)  # they forget whom they have answered
+        assert process.poll() is None
+        process.terminate()
+        assert process.communicate() == ('', '')
+    assert announced.startswith(b'RTPS')
+    assert b'enclave=/' in announced  # a ROS participant says so
+    assert re.fullmatch(r'/_ros2cli_\d+\n/plain_0\n/plain_1\n', names)
+
+
+def test_what_participants_say_they_have_is_what_is_on_the_graph():
+    with own_domain(), plain_nodes(3, 2), observer() as node:
+        ends: set[bytes] = set()
+        with entities.Reader(node) as reader:
+            until = time.monotonic() + PATIENCE_SEC
+            while len(reader.read()) < 3 or not expected_ends(reader) <= ends:
+                assert time.monotonic() < until, reader.read()
+                reannouncing.ask(environment.domain_id())
+                time.sleep(0.1)
+                ends = {
+                    bytes(info.endpoint_gid)
+                    for name, _ in node.get_topic_names_and_types(no_demangle=True)
+                    for look_up in (
+                        node.get_publishers_info_by_topic,
+                        node.get_subscriptions_info_by_topic,
+                    )
+                    for info in look_up(name, no_mangle=True)
+                }
+            said = reader.read().values()
+    nodes = sorted(sorted(each.nodes) for each in said)
+    assert nodes == [[('observer', '/')], [('plain_0', '/'), ('plain_2', '/')], [('plain_1', '/')]]
+    unsaid = ends - {end for each in said for end in each.endpoints}
+    assert len(unsaid) == 6  # with which the three say and hear all this
+
+
+def expected_ends(reader):
+    return {end for each in reader.read().values() for end in each.endpoints}
+
+
+GID, READER, WRITER = bytes(range(16)), bytes(16), bytes([7] * 16)
+SAID = (
+    *(b'\0\1\0\0', GID, b'\1\0\0\0', b'\2\0\0\0/\0\0\0', b'\7\0\0\0talker\0\0'),
+    *(b'\1\0\0\0', READER, b'\1\0\0\0', WRITER),
+)
+
+
+def test_a_saying_is_parsed():
+    assert entities.parse(b''.join(SAID)) == (
+        GID,
+        entities.Entities(frozenset({('talker', '/')}), frozenset({READER, WRITER})),
+    )
+
+
+@given(message=st.binary(max_size=80) | st.integers(0, 80).map(lambda n: b''.join(SAID)[:n]))
+def test_what_is_no_saying_is_refused_at_once(message):
+    with contextlib.suppress(ValueError):
+        entities.parse(message)
+
+
+@pytest.mark.parametrize('length', [0, 3, 19, 23, 40, len(b''.join(SAID)) - 1])
+def test_a_saying_that_was_cut_is_refused(length):
+    with pytest.raises(ValueError, match='the message ends at'):
+        entities.parse(b''.join(SAID)[:length])
+
+
 class Clock:
     """Time passes when somebody waits."""
 
@@ -58,58 +164,88 @@ class Clock:
 
 
 class Seen:
-    """Stands for an rclpy node that sees another participant and its endpoint at given times."""
+    """Stands for an rclpy node that sees another participant's endpoint at given times.
 
-    def __init__(self, clock, *, participant_at=0.0, endpoint_at=0.0, name_at=0.0):
+    And for the reader of what participants say.
+    """
+
+    def __init__(self, clock, *, said_at=0.0, endpoint_at=0.0, name_at=0.0):
         self.clock = clock
-        self.times = participant_at, endpoint_at, name_at
+        self.times = said_at, endpoint_at, name_at
 
     def _has(self, index):
         return self.clock.now >= self.times[index] - 1e-9
 
-    def get_topic_names_and_types(self):
-        return [('/topic', ['std_msgs/msg/String'])] if self._has(1) else []
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        pass
+
+    def read(self):
+        own = {b'own': entities.Entities(frozenset(), frozenset())}
+        other = entities.Entities(frozenset({('talker', '/')}), frozenset({b'end'}))
+        return own | {b'other': other} if self._has(0) else own
+
+    def get_topic_names_and_types(self, no_demangle):
+        return [('rt/topic', ['std_msgs::msg::dds_::String_'])] if self._has(1) else []
 
     def get_node_names_and_namespaces(self):
         return [('talker', '/')] if self._has(2) else []
 
-    def get_subscriptions_info_by_topic(self, name):
+    def get_subscriptions_info_by_topic(self, name, no_mangle):
         return []
 
-    def get_publishers_info_by_topic(self, name, no_mangle=False):
-        if name == discovery.ANNOUNCEMENTS:
-            return ['own', 'other'] if self._has(0) else ['own']
+    def get_publishers_info_by_topic(self, name, no_mangle):
         node_name = 'talker' if self._has(2) else discovery.UNKNOWN
-        return [SimpleNamespace(node_name=node_name, endpoint_gid=[1])] if self._has(1) else []
+        return [SimpleNamespace(node_name=node_name, endpoint_gid=b'end')]
+
+
+def settled_after(monkeypatch, seen, *, present=2, here_only=True):
+    """When it ends, and when it has asked for announcements, in seconds."""
+    clock, asked = seen.clock, []
+    monkeypatch.setattr(discovery, 'time', clock)
+    monkeypatch.setattr(participants, 'count', lambda domain_id: present)
+    monkeypatch.setattr(environment, 'hears_this_machine_only', lambda: here_only)
+    monkeypatch.setattr(entities, 'Reader', lambda node: seen)
+    monkeypatch.setattr(reannouncing, 'ask', lambda domain_id: asked.append(clock.now))
+    discovery.settle(seen, clock.wait)
+    return clock.now, asked
 
 
 @pytest.mark.parametrize(
     ('seen', 'present', 'here_only', 'expected_sec'),
     [
         ({}, 2, True, 0.05),
-        ({'participant_at': 0.2, 'endpoint_at': 0.21, 'name_at': 0.23}, 2, True, 0.28),
+        ({'said_at': 0.2, 'endpoint_at': 0.21, 'name_at': 0.23}, 2, True, 0.28),
         ({'name_at': 0.5}, 2, True, 0.55),
-        ({'participant_at': 0.9, 'endpoint_at': 0.9, 'name_at': 0.9}, 2, True, 0.95),
-        ({}, 3, True, 1.0),  # one that never says anything
+        ({'endpoint_at': 1.5}, 2, True, 1.55),  # it is known to come
+        ({'said_at': 0.9, 'endpoint_at': 0.9, 'name_at': 0.9}, 2, True, 0.95),
+        ({}, 3, True, 2.0),  # one that never says anything
         ({}, 0, True, 0.05),  # the operating system tells nothing
         ({}, 2, False, 0.5),  # other machines may answer
-        ({'endpoint_at': 9.0, 'name_at': 9.0, 'participant_at': 0.7}, 2, False, 0.75),
+        ({'said_at': 0.7}, 2, False, 0.75),
     ],
 )
 def test_it_ends_when_everybody_is_there(seen, present, here_only, expected_sec, monkeypatch):
-    clock = Clock()
-    monkeypatch.setattr(discovery, 'time', clock)
-    monkeypatch.setattr(participants, 'count', lambda domain_id: present)
-    monkeypatch.setattr(environment, 'hears_this_machine_only', lambda: here_only)
-    discovery.settle(Seen(clock, **seen), clock.wait)
-    assert clock.now == pytest.approx(expected_sec, abs=discovery.POLL_SEC * 1.5)
+    took_sec, _ = settled_after(
+        monkeypatch, Seen(Clock(), **seen), present=present, here_only=here_only
+    )
+    assert took_sec == pytest.approx(expected_sec, abs=discovery.POLL_SEC * 1.5)
+
+
+def test_who_is_missing_is_asked_less_and_less_often(monkeypatch):
+    _, asked = settled_after(monkeypatch, Seen(Clock(), said_at=0.4))
+    assert asked == pytest.approx([0.0, 0.05, 0.15, 0.35], abs=discovery.POLL_SEC * 3.5)
+
+
+def test_where_nobody_is_missing_nobody_is_asked(monkeypatch):
+    _, asked = settled_after(monkeypatch, Seen(Clock(), endpoint_at=0.4))
+    assert asked == []
 
 
 def test_a_graph_that_never_rests_ends_too(monkeypatch):
-    clock = Clock()
-    node = Seen(clock)
-    node.get_topic_names_and_types = lambda: [(f'/topic_{clock.now}', [])]
-    monkeypatch.setattr(discovery, 'time', clock)
-    monkeypatch.setattr(participants, 'count', lambda domain_id: 2)
-    discovery.settle(node, clock.wait)
-    assert clock.now == pytest.approx(discovery.MOST_SEC, abs=discovery.POLL_SEC * 1.5)
+    seen = Seen(Clock())
+    seen.get_node_names_and_namespaces = lambda: [('talker', '/'), (f'n{seen.clock.now}', '/')]
+    took_sec, _ = settled_after(monkeypatch, seen)
+    assert took_sec == pytest.approx(discovery.MOST_SEC, abs=discovery.POLL_SEC * 1.5)

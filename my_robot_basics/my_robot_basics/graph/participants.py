@@ -1,20 +1,56 @@
-"""How many DDS participants this machine has in a ROS domain, asked of the operating system."""
+"""The DDS participants that this machine has in a ROS domain, asked of the operating system.
 
+The RTPS standard numbers the ports: participant n of a domain listens for announcements on
+7400 + 250 · domain + 10 + 2 · n.
+"""
+
+import os
 from pathlib import Path
 
 SOCKETS = Path('/proc/net/udp')
-# The RTPS standard's port numbers: participant n of a domain listens for announcements on
-# 7400 + 250 · domain + 10 + 2 · n.
+OWN_FILES = Path('/proc/self/fd')
 _FIRST_PORT, _PORTS_A_DOMAIN, _OFFSET, _PORTS_A_PARTICIPANT = 7400, 250, 10, 2
 
 
 def count(domain_id: int) -> int:
     """Participants that listen in the domain now, of any process; 0 if that can't be known."""
+    return len(ports(domain_id))
+
+
+def ports(domain_id: int) -> set[int]:
+    """The ports on which they listen for announcements; none if that can't be known."""
+    return set(_inodes(domain_id))
+
+
+def own_ports(domain_id: int) -> set[int]:
+    """The ports of those that are in this process."""
+    own = set(_open_sockets())
+    return {port for port, inode in _inodes(domain_id).items() if inode in own}
+
+
+def _inodes(domain_id: int) -> dict[int, str]:
+    """Each port with the number of its socket."""
     try:
         lines = SOCKETS.read_text(encoding='ascii').splitlines()[1:]
     except OSError:
-        return 0
-    ports = {int(line.split()[1].rpartition(':')[2], 16) for line in lines}
+        return {}
     start = _FIRST_PORT + _PORTS_A_DOMAIN * domain_id
     listening = range(start + _OFFSET, start + _PORTS_A_DOMAIN, _PORTS_A_PARTICIPANT)
-    return len(ports.intersection(listening))
+    found = {}
+    for fields in map(str.split, lines):
+        port = int(fields[1].rpartition(':')[2], 16)
+        if port in listening:
+            found[port] = fields[9]
+    return found
+
+
+def _open_sockets() -> list[str]:
+    found = []
+    for file in OWN_FILES.iterdir():
+        try:
+            target = os.readlink(file)
+        except OSError:  # closed meanwhile
+            continue
+        if target.startswith('socket:['):
+            found.append(target[len('socket:[') : -1])
+    return found
