@@ -32,7 +32,7 @@ STARTING_FILES = frozenset(
     """
     checks_clock checks_latched checks_logs checks_sampling checks_predictions checks_relays
     checks_servers checks_services checks_settled checks_delivery_experiment checks_stamps
-    checks_tick checks_topics checks_watcher crowd dask_backend doctor_faults doctor_healthy
+    checks_tick checks_topics checks_watcher course crowd dask_backend doctor_faults doctor_healthy
     executables execute grade gradebook imports
     interrupt isolation isolation_everywhere kernels lesson_own_program lessons_run
     live_camera live_classroom live_domain live_kernel live_lessons live_neighbours
@@ -45,7 +45,7 @@ STARTING_FILES = frozenset(
     """.split()  # noqa: SIM905
 )
 """Files, test_NAME.py, of which all tests, or nearly all, start something: if not a kernel, then
-nbgrader's command so often that it takes too long for that tier."""
+nbgrader's command or `./course` so often that it takes too long for that tier."""
 IMPLY = frozenset({'isolation', 'browser'})
 """Marks of tests that start something."""
 
