@@ -146,6 +146,9 @@ def test_fields_that_a_task_does_not_name_may_be_others(run, impatient):
     run(Rebuilds)
     kept.assert_carries(pose, qos_profile=qos_profile_sensor_data)
     live.stop()
+    run(Stamps)
+    kept.assert_carries(pose, qos_profile=qos_profile_sensor_data)
+    live.stop()
     run(Renames)
     with pytest.raises(CheckFailed, match=r'not the same: name$'):
         kept.assert_carries(pose, qos_profile=qos_profile_sensor_data)

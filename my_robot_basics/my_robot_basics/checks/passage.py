@@ -3,8 +3,6 @@
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
-from rclpy.serialization import serialize_message
-
 from my_robot_basics.checks.carried import Carried
 from my_robot_basics.checks.ears import Ears
 from my_robot_basics.checks.variety import Sent
@@ -64,11 +62,11 @@ class Passage:
         ears: Ears,
         *,
         publish: Callable[[Any], None],
-        is_same: Callable[[Any, Any], bool],
+        what: Callable[[Any], Any],
     ) -> None:
-        """`is_same(heard, sent)` tells whether one is the other. Only what comes now counts."""
+        """`what(message)` is the same of two messages that are one. Only what comes now counts."""
         self._watcher, self._ears = watcher, ears
-        self._publish, self._is_same = publish, is_same
+        self._publish, self._what = publish, what
         self._seen = len(ears.heard)
         self._waiting: list[Sent] = []
         self._out: list[Sent] = []
@@ -108,8 +106,8 @@ class Passage:
 
     def invents(self, sent: Iterable[Any]) -> bool:
         """Whether messages came out that are not among those that anybody `sent`."""
-        known = {serialize_message(message) for message in sent}
-        invented = [each for each in self._others if serialize_message(each) not in known]
+        known = {self._what(message) for message in sent}
+        invented = [each for each in self._others if self._what(each) not in known]
         return len(invented) >= FEWEST_INVENTED
 
     def loses_one_of_two(self, messages: Iterator[Sent]) -> bool:
@@ -166,7 +164,7 @@ class Passage:
         self._seen += len(heard)
         for message in heard:
             for place, sent in enumerate(self._waiting):
-                if self._is_same(message, sent.message):
+                if self._what(message) == self._what(sent.message):
                     del self._waiting[place]
                     self._out.append(sent)
                     self._copies.append(1)
@@ -176,7 +174,7 @@ class Passage:
 
     def _count(self, message: Any) -> None:
         for place in reversed(range(max(0, len(self._out) - RECENT), len(self._out))):
-            if self._is_same(message, self._out[place].message):
+            if self._what(message) == self._what(self._out[place].message):
                 self._copies[place] += 1
                 return
         self._others.append(message)

@@ -6,6 +6,7 @@ from typing import Any, NoReturn
 
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.serialization import serialize_message
 
 from my_robot_basics.checks import relay_ends
 from my_robot_basics.checks.callbacks import Raised
@@ -107,7 +108,7 @@ class Relay:
         )
         watcher.spin_until(source_ears.is_connected, timeout_sec=relay_ends.TIMEOUT_SEC)
         watcher.spin_for(QUIET_SEC)
-        passage = Passage(watcher, ears, publish=publisher.publish, is_same=self._is_same)
+        passage = Passage(watcher, ears, publish=publisher.publish, what=self._what)
         messages = varied(make_message)
         carried = passage.carry(messages)
         if not carried.is_whole():
@@ -165,18 +166,21 @@ class Relay:
             f' {self.to}',
         )
 
-    def _is_same(self, received: Any, sent: Any) -> bool:
-        """Whether it is that very message."""
-        return not self._differing(received, sent)
+    def _what(self, message: Any) -> bytes:
+        """What of a message has to come out as it is: all of it, or those fields."""
+        kept = message
+        if self.fields:
+            kept = type(message)(**{name: getattr(message, name) for name in self.fields})
+        return serialize_message(kept)
 
-    def _differing(self, received: Any, sent: Any) -> list[str]:
-        names = self.fields or sent.get_fields_and_field_types()
-        return [name for name in names if getattr(received, name) != getattr(sent, name)]
+    def _is_same(self, received: Any, sent: Any) -> bool:
+        return self._what(received) == self._what(sent)
 
     def _what_differs(self, others: list[Any], sent: Any) -> str:
         """Which fields are others where some are right, as a clause; or ''."""
+        names = self.fields or tuple(sent.get_fields_and_field_types())
         for received in others:
-            wrong = self._differing(received, sent)
-            if 0 < len(wrong) < len(sent.get_fields_and_field_types()):
+            wrong = [name for name in names if getattr(received, name) != getattr(sent, name)]
+            if 0 < len(wrong) < len(names):
                 return f'; not the same: {", ".join(wrong)}'
         return ''
