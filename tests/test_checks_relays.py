@@ -380,6 +380,22 @@ def test_a_callback_that_raised_is_named(run, node_class, reason):
             check()
 
 
+@pytest.mark.timeout(120)
+def test_a_message_at_which_a_callback_raised_is_not_waited_for(run, monkeypatch):
+    class Raises(monitor.JointStateMonitor):
+        def changed(self, publish):
+            def receive(message):
+                raise ValueError('at each')
+
+            return receive
+
+    monkeypatch.setattr(relay_ends, 'TIMEOUT_SEC', 3600.0)
+    run(Raises)
+    for check in check_delivery, check_late_joiner:
+        with pytest.raises(CheckFailed, match='saw none in 1 s: its callback raised ValueError'):
+            check()
+
+
 def test_what_a_callback_raised_before_the_check_is_not_of_the_other_topic(run):
     class Raises(monitor.JointStateMonitor):
         def changed(self, publish):

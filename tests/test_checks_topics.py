@@ -128,6 +128,18 @@ def test_silence_is_explained(monkeypatch, capfd, node, reason):
     assert capfd.readouterr().err == ''
 
 
+def test_silence_of_a_node_whose_callback_raised_is_not_waited_on(run):
+    class Raises(Node):
+        def __init__(self):
+            super().__init__('raises')
+            self.create_publisher(JointState, TOPIC, 10)
+            self.create_timer(0.2, lambda: 1 / 0)
+
+    run(Raises)
+    with pytest.raises(CheckFailed, match=r'saw no message in 2 s: .* raised ZeroDivisionError'):
+        topic(TOPIC).record()
+
+
 def test_bytes_that_are_no_message_are_silence():
     # in a process of its own: rcl keeps the C library's complaint, and prints it later
     code = f"from my_robot_basics.checks import topic; topic('{TOPIC}').record()"

@@ -7,6 +7,7 @@ from my_robot_basics.checks import rates
 from my_robot_basics.checks.clock import Inconclusive, SimulatedClock
 from my_robot_basics.checks.ears import Ears
 from my_robot_basics.checks.recording import Recording, Sample
+from my_robot_basics.graph.raised import what_raised
 from my_robot_basics.graph.watcher import Watcher
 
 HOLD_SEC = 1.0
@@ -14,6 +15,8 @@ WALL_SEC = 4.0
 PATIENCE_SEC = 7.0
 """How long to wait on the wall clock for a message, and for the next one: 5 s apart is slow, but
 no silence."""
+RAISED_SEC = 2.0
+"""The same where nothing has come yet and a callback raised: rclpy.spin would have ended there."""
 FIRST_MESSAGE_SEC = 20.0
 UNEVEN = 'its messages are not evenly spaced'
 IGNORES = 'the node ignores the clock'
@@ -78,6 +81,8 @@ def wall(
     It waits for that one `patience_sec` at most, and as long for the next one, should that be
     longer: then it ends there.
     """
+    if not ears.heard and what_raised(ears.publishers()):
+        seconds = patience_sec = RAISED_SEC
     began_ns = time.time_ns()
     if watcher.spin_until(lambda: ears.count_since(began_ns) > 0, timeout_sec=patience_sec):
         watcher.late_sec = 0.0
