@@ -41,7 +41,7 @@ STARTING_FILES = frozenset(
     partial preprocessors readme release replay reuse rooms ros2_completion ros2_discovery
     ros2_graph ros2_interfaces ros2_main ros2_notebook ros2_real ros2_run ros2_service
     ros2_shell ros2_streams same_scores survival synthetic_class temporary_folders validate
-    validate_server workers workspace_terminal
+    validate_forks validate_server workers workspace_terminal
     """.split()  # noqa: SIM905
 )
 """Files, test_NAME.py, of which all tests, or nearly all, start something: if not a kernel, then
