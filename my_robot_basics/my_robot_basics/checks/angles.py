@@ -6,7 +6,7 @@ from collections.abc import Sequence
 WITHIN_DEG = 0.01
 ROUNDED_DEG = 0.5
 """Angles that were rounded are no further off, in whole degrees or in hundredths of a radian."""
-HOW = '(print(…) does not reach the log)'
+HOW = '(print(…) does not reach the log, nor does a logger of another name)'
 
 
 def near(angle_deg: float, number: float, within_deg: float = WITHIN_DEG) -> bool:
@@ -31,7 +31,10 @@ def what_to_try(wanted: Sequence[float], numbers: Sequence[float]) -> str:
     if not numbers:
         return f'log every solution for each target, with self.get_logger().info(…) {HOW}'
     if not missing(wanted, numbers, ROUNDED_DEG):
-        return 'log the angles with two decimals or more'
+        close = [n for n in numbers if any(near(a, n, ROUNDED_DEG) for a in wanted)]
+        if all(number == round(number, 1) for number in close):
+            return 'log the angles with two decimals or more'
+        return 'the angles are close, and not right: add nothing to them, and round nothing before'
     if not missing(wanted, [math.degrees(number) for number in numbers], ROUNDED_DEG):
         return 'these are radians, so log them with math.degrees(…)'
     absent = missing(wanted, numbers)

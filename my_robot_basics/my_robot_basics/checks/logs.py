@@ -1,5 +1,6 @@
 """What a node logs, as everybody else on the robot can read it: the topic /rosout."""
 
+import re
 import time
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
@@ -25,6 +26,11 @@ AFTERTHOUGHT_SEC = 0.3
 """How long angles may come behind a warning …"""
 WARNED_SEC = 0.1
 """… And a warning behind the angles: a later one is found with the next target."""
+ONCE_MORE_SEC = 2.0
+"""How long to wait for the answer to a target that is sent a second time."""
+ONE_LATE = 'each answer is one target late: use the point that the callback is given, at once'
+EARLIER = 'these are the angles of an earlier target: use the point that the callback is given'
+_NAN = re.compile(r'\bnan\b', re.IGNORECASE)
 WARN_ONLY = 'warn only when inverse_kinematics(x, y) raises ValueError'
 INFO_FOR_ANGLES = 'log angles with self.get_logger().info(…), and ' + WARN_ONLY
 
@@ -68,6 +74,8 @@ class Log:
         self._publishers: dict[str, Publisher] = {}
         self._forms: set[str] = set()
         """Texts without their numbers that held angles, of targets in reach."""
+        self._asked: tuple[str, Any] | None = None
+        """The topic and the target that was sent last."""
         self._answer: list[float] = []
         """The angles of the last target in reach."""
 
@@ -100,6 +108,7 @@ class Log:
             publisher = Topic(topic_name).meet(self._watcher, type(message))
             self._publishers[topic_name] = publisher
         self.mark()
+        self._asked = topic_name, message
         self._publishers[topic_name].publish(message)
 
     @property
@@ -167,7 +176,7 @@ class Log:
             fail(
                 expected=f'{listed} for {what} in the INFO log of {self._node_name}',
                 seen=self._shown('INFO'),
-                hint=self._why_unanswered(wanted),
+                hint=self._why_late(is_answered) or self._why_unanswered(wanted),
                 cause='the INFO log lacks the angles of a target in reach',
             )
         before = self._count('WARN') if may_lag else 0
@@ -258,10 +267,24 @@ class Log:
             return f'the name {name} is right, so leave the namespace out of super().__init__(…)'
         return f"if that is yours, write super().__init__('{name}'), letter for letter"
 
+    def _why_late(self, is_answered: Callable[[Self], bool]) -> str:
+        """Send the target once more; who answers it only now answers the one before."""
+        if self._asked is None or not self._has('INFO'):
+            return ''
+        since_ns = self._since_ns
+        self.ask(*self._asked)
+        is_late = self.wait_for(is_answered, timeout_sec=ONCE_MORE_SEC)
+        self._since_ns = since_ns
+        return ONE_LATE if is_late else ''
+
     def _why_unanswered(self, wanted: Sequence[float]) -> str:
         raised = '' if self._has('INFO') else what_raised([self._node_name])
         if raised:
             return f'{raised}, so fix that first'
+        if any(_NAN.search(text) for text in self._texts('INFO')):
+            return 'an angle is nan, which is no number, so check how it is computed'
+        if self._answer and not angles.missing(self._answer, self.numbers()):
+            return EARLIER
         if self._has('INFO') or not self._has('WARN'):
             return angles.what_to_try(wanted, self.numbers())
         elsewhere = not angles.missing(wanted, self.numbers('WARN'), angles.ROUNDED_DEG)

@@ -23,6 +23,8 @@ from my_robot_basics.graph.watcher import Watcher
 PUBLISHER_SEC = 10.0
 ABSENT_SEC = 3.0
 """How long to wait for an endpoint that the notebook's own process says it has not got."""
+ONCE_MORE_SEC = 2.0
+"""How long to wait for the answer to what is sent a second time."""
 ACQUAINTANCE_SEC = 0.5
 """How long a BEST_EFFORT subscription is given to meet the publisher, and to read what it sent."""
 AFTERTHOUGHT_SEC = 0.3
@@ -158,6 +160,8 @@ class Topic:
                 watcher.spin_for(AFTERTHOUGHT_SEC)
             heard = ears.messages()
             if wrong() or not found():
+                if not heard and after is not None:
+                    self._expect_none_late(watcher, ears, after)
                 if not heard:
                     self._fail_silent(watcher, seen=f'no message in {timeout_sec:g} s')
                 last = [*heard, *wrong()][-1]
@@ -255,6 +259,17 @@ class Topic:
             hint='let no loop end when sleep_for returns False: it does so when the clock changes',
             cause='the messages end',
             doubt=Disturbed,
+        )
+
+    def _expect_none_late(self, watcher: Watcher, ears: Ears, after: Callable[[], None]) -> None:
+        """Do once more what brings messages; who sends one only now sends the one before."""
+        after()
+        expect(
+            not watcher.spin_until(lambda: bool(ears.heard), timeout_sec=ONCE_MORE_SEC),
+            expected=f'a message on {self.name} for each that your node receives',
+            seen='the first one only when a second was sent',
+            hint='publish what you make of the message that your callback is given, at once, and '
+            'not of the one before',
         )
 
     def _fail_silent(self, watcher: Watcher, *, seen: str) -> None:
