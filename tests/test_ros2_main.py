@@ -1,6 +1,8 @@
 """The command as a whole: what it hands over, offers and refuses."""
 
 import os
+import signal
+import subprocess
 import sys
 from pathlib import Path
 
@@ -142,3 +144,22 @@ def test_what_writes_message_modules_is_not_loaded():
     code = "import sys; sys.argv[1:] = ['topic', 'list']; from my_robot_basics.ros2 import main;"
     code += "main.main(); sys.exit('rclpy' not in sys.modules or 'lark' in sys.modules)"
     assert pexpect.run(f'{sys.executable} -c "{code}"', withexitstatus=True)[1] == 0
+
+
+def test_a_slow_end_of_python_does_not_change_the_status():
+    # the alarm would kill it there, where Python has taken our handler away
+    code = """
+import atexit, os, signal, sys
+from my_robot_basics.ros2 import main, stopping
+from my_robot_basics.ros2.verbs import interface_list
+def stop(args):
+    stopping.leave_in_good_order()
+    os.kill(os.getpid(), signal.SIGINT)
+    stopping.check()
+interface_list.main = stop
+atexit.register(lambda: print(signal.getitimer(signal.ITIMER_REAL)))
+sys.exit(main.main(['interface', 'list']))
+"""
+    done = subprocess.run([sys.executable, '-c', code], capture_output=True, encoding='utf-8')
+    assert (done.stdout, done.stderr) == ('(0.0, 0.0)\n', '')
+    assert done.returncode == signal.SIGINT

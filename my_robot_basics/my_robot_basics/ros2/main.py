@@ -148,6 +148,7 @@ def _run(args: argparse.Namespace) -> int | str | None:
     except RuntimeError as error:  # a CommandError, or rclpy's word for what DDS refused
         status = str(error)
     sys.stdout.flush()
+    stopping.finish()
     return status
 
 

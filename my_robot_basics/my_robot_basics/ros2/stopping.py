@@ -37,6 +37,11 @@ def check() -> None:
         raise Stopped(_noted)
 
 
+def finish() -> None:
+    """All is cleaned up: the end of Python itself, without our handlers, may take its time."""
+    signal.setitimer(signal.ITIMER_REAL, 0.0)
+
+
 def _stop(number: int, frame: FrameType | None) -> None:
     global _noted
     if not _cleans_up:
