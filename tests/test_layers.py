@@ -102,3 +102,21 @@ def test_each_part_of_a_package_has_its_line_in_the_map(package):
 def test_what_students_get_needs_no_grader():
     ours = [module for module in modules() if module.startswith('my_robot_basics')]
     assert [m for m in ours for other, _ in imported(m) if other.startswith('grader')] == []
+
+
+MOST_LINES = 200
+LONGER = {f'my_robot_basics/my_robot_basics/checks/{name}.py' for name in ('logs', 'topics')}
+LONGER |= {f'my_robot_basics/my_robot_basics/checks/{name}.py' for name in ('clock', 'sampling')}
+"""Still to be split."""
+
+
+def test_a_module_is_short_enough_to_keep_in_mind():
+    """Where one has grown longer it has two subjects: give each a module, and name them."""
+    folders = [*PACKAGES.values(), ROOT / 'launcher']
+    lines = {
+        str(path.relative_to(ROOT)): len(path.read_text(encoding='utf-8').splitlines())
+        for folder in folders
+        for path in folder.rglob('*.py')
+    }
+    assert len(lines) > 300
+    assert {name for name, count in lines.items() if count > MOST_LINES} - LONGER == set()

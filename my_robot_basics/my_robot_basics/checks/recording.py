@@ -6,14 +6,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from my_robot_basics.checks import callbacks, pictures, rates, stamps
-from my_robot_basics.feedback.errors import CheckFailed, expect, fail, shorten, show
+from my_robot_basics.checks import callbacks, pictures, positions, rates, stamps
+from my_robot_basics.feedback.errors import CheckFailed, expect, shorten, show
 
 SECOND_LOOK_SEC = 4.0
 LONGER_LOOK_SEC = 8.0
 """On the wall clock, where a first look leaves the period in doubt."""
 LONGEST_LOOK_SEC = 12.0
-ANGLE_SLACK_RAD = 1e-6
 
 
 @dataclass(frozen=True)
@@ -104,18 +103,7 @@ class Recording:
         With `names`, low and high are for those joints, in whatever order a message has them.
         """
         messages = self._messages_with('position')
-        for message in messages:
-            seen = len(message.position)
-            expect(
-                seen == len(low),
-                expected=f'{len(low)} positions in each message',
-                seen=str(seen),
-                hint='message.position holds one angle for each joint, in the order of the names',
-            )
-        poses = [_by_name(message, names) for message in messages]
-        for pose in poses:
-            if not _within(pose, low, high):
-                self._fail_position(pose, low, high, poses=poses)
+        positions.check_positions(messages, low, high, names)
 
     def assert_frame_id(self, frame_id: str) -> None:
         """Every message's header names that frame."""
@@ -135,24 +123,6 @@ class Recording:
         """Show when the messages arrived; with `hz`, beside when they should have."""
         alt = f'Arrivals of {len(self.messages)} messages on {self.topic_name}'
         show(pictures.arrivals(self, hz=hz), alt=alt)
-
-    def _fail_position(
-        self, pose: Sequence[float], low: Sequence[float], high: Sequence[float], *, poses: list
-    ) -> None:
-        degrees = [[math.degrees(bound) for bound in bounds] for bounds in (low, high)]
-        shown = ', '.join(f'{angle:.4g}' for angle in pose)
-        picture = None
-        # half a turn is the most that an angle in radians is likely to be
-        largest = max(abs(angle) for each in poses for angle in each)
-        if largest > math.pi and all(_within(each, *degrees) for each in poses):
-            seen, hint = f'({shown}), which looks like degrees', 'convert with math.radians(…)'
-            picture = pictures.misread(pose)
-        else:
-            seen = f'({shown})'
-            hint = 'keep each joint within its range, and each position beside its own name'
-        bounds = ', '.join(f'{a:.4g} to {b:.4g}' for a, b in zip(low, high, strict=True))
-        expected = f'positions in radians ({bounds})'
-        fail(expected=expected, seen=seen, hint=hint, picture=picture)
 
     def _look_again(self, hz: float, *, seconds: float) -> 'Recording | None':
         """Another recording, where that can be had and may help."""
@@ -190,16 +160,3 @@ class Recording:
                 hint='compare the message type in create_publisher(…)',
             )
         return messages
-
-
-def _within(pose: Sequence[float], low: Sequence[float], high: Sequence[float]) -> bool:
-    # a NaN is within nothing
-    slack = ANGLE_SLACK_RAD
-    return all(a - slack <= x <= b + slack for x, a, b in zip(pose, low, high, strict=True))
-
-
-def _by_name(message: Any, names: Sequence[str]) -> tuple[float, ...]:
-    position = tuple(message.position)
-    if not names or sorted(message.name) != sorted(names) or len(position) != len(names):
-        return position
-    return tuple(position[list(message.name).index(name)] for name in names)

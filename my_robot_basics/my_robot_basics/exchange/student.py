@@ -8,14 +8,20 @@ import builtins
 from typing import Any
 
 from my_robot_basics.exchange import responder, values, wire
+from my_robot_basics.exchange.expected_types import (
+    brief,
+    check_type,
+    not_always,
+    wanted_type,
+    what_is_unsupported,
+    with_article,
+)
 from my_robot_basics.feedback import hidden
 from my_robot_basics.feedback.errors import fail, shorten
 from my_robot_basics.feedback.hidden import is_in_test_room
 
 __all__ = ['call', 'value']
 
-_CLASS_OF_A_MESSAGE = 'Metaclass_'
-"""How rosidl calls the class of a message's class."""
 _ANSWER_CELL = 'in the answer cell, and run the cell'
 
 
@@ -26,7 +32,7 @@ def call(name: str, *args: object, returns: type | tuple[type, ...] | None = Non
     other type fails the check; a bool is no int, an int will do for a float. Raises CheckFailed
     where there is no such function, or it raises, returns None, or does not end in 10 s.
     """
-    shown = hidden.theirs(shorten(f'{name}({", ".join(_brief(argument) for argument in args)})'))
+    shown = hidden.theirs(shorten(f'{name}({", ".join(brief(argument) for argument in args)})'))
     kind, body = _ask(wire.request(op='call', name=name, args=args), shown)
     if kind == 'missing':
         _fail_missing(name, what='function')
@@ -36,9 +42,9 @@ def call(name: str, *args: object, returns: type | tuple[type, ...] | None = Non
         cause = f'`{name}` raises {hidden.raised(raised)}'
         fail(expected=f'`{shown}` to return', seen=raised, hint=hint, cause=cause)
     if kind == 'unsupported':
-        seen, hint = _unsupported(body, returns)
-        wanted = f'`{shown}` to return {_wanted(returns)}'
-        fail(expected=wanted, seen=seen, hint=hint, cause=_not(name, returns))
+        seen, hint = what_is_unsupported(body, returns)
+        wanted = f'`{shown}` to return {wanted_type(returns)}'
+        fail(expected=wanted, seen=seen, hint=hint, cause=not_always(name, returns))
     if body is None:
         hint = f'end `{name}` with `return …` (printing a result does not return it)'
         fail(
@@ -47,7 +53,7 @@ def call(name: str, *args: object, returns: type | tuple[type, ...] | None = Non
             hint=hint,
             cause=f'`{name}` returns None',
         )
-    _check_type(body, returns, what=f'`{shown}` to return', cause=_not(name, returns))
+    check_type(body, returns, what=f'`{shown}` to return', cause=not_always(name, returns))
     return body
 
 
@@ -62,12 +68,12 @@ def value(name: str, *, type: builtins.type | tuple[builtins.type, ...] | None =
         _fail_missing(name, what='value')
     if kind == 'unsupported':
         hint = 'use plain values (numbers, text, lists, tuples, sets, dicts)'
-        seen = _article(shorten(body))
-        fail(expected=f'`{name}` to be {_wanted(type)}', seen=seen, hint=hint)
+        seen = with_article(shorten(body))
+        fail(expected=f'`{name}` to be {wanted_type(type)}', seen=seen, hint=hint)
     if body is None and type is not None:
         hint = f'give `{name}` its value {_ANSWER_CELL}'
-        fail(expected=f'`{name}` to be {_wanted(type)}', seen='None', hint=hint)
-    _check_type(body, type, what=f'`{name}` to be', cause=f'`{name}` is not {_wanted(type)}')
+        fail(expected=f'`{name}` to be {wanted_type(type)}', seen='None', hint=hint)
+    check_type(body, type, what=f'`{name}` to be', cause=f'`{name}` is not {wanted_type(type)}')
     return body
 
 
@@ -150,64 +156,3 @@ def _ask(question: str, shown: str) -> tuple[str, Any]:
 def _fail_missing(name: str, *, what: str) -> None:
     verb = f'define `{name}`' if what == 'function' else f'assign `{name}`'
     fail(expected=f'a {what} `{name}`', seen='no such name', hint=f'{verb} {_ANSWER_CELL}')
-
-
-def _check_type(
-    found: object, wanted: type | tuple[type, ...] | None, *, what: str, cause: str
-) -> None:
-    if wanted is None:
-        return
-    types = wanted if isinstance(wanted, tuple) else (wanted,)
-    if type(found) in types or (type(found) is int and float in types):
-        return
-    seen = f'{_article(type(found).__name__)} ({_brief(found)})'
-    hint = _other_type(found, types)
-    fail(expected=f'{what} {_wanted(wanted)}', seen=seen, hint=hint, cause=cause)
-
-
-def _unsupported(body: str, wanted: type | tuple[type, ...] | None) -> tuple[str, str]:
-    """What to say of a result that cannot travel: what it is, and what to do."""
-    if values.WRONG_FIELD in body:
-        hint = 'give each field a value of the type that get_fields_and_field_types() names'
-    elif body.startswith(_CLASS_OF_A_MESSAGE):
-        name = body.removeprefix(_CLASS_OF_A_MESSAGE)
-        return f'the class {name}', f'make a message of it with parentheses, {name}()'
-    elif isinstance(wanted, type) and hasattr(wanted, 'get_fields_and_field_types'):
-        hint = _other_type(None, (wanted,))
-    else:
-        hint = 'return plain values (numbers, text, lists, dicts) or a ROS message'
-    return _article(shorten(body)), hint
-
-
-def _other_type(found: object, wanted: tuple[type, ...]) -> str:
-    if isinstance(found, str) and str not in wanted:
-        return 'a text in quotes is no other value, even if it reads like one'
-    if dict in wanted:
-        return 'write a dict, {key: value, …}, with the keys of the answer cell'
-    if bool in wanted:
-        return 'write True or False, or a comparison, which makes one of them'
-    if any(hasattr(each, 'get_fields_and_field_types') for each in wanted):
-        return f'make a message with {wanted[0].__name__}(), fill in its fields, and return it'
-    return 'print(type(…)) of the value shows what it is'
-
-
-def _not(name: str, returns: type | tuple[type, ...] | None) -> str:
-    return f'`{name}` does not always return {_wanted(returns)}'
-
-
-def _wanted(types: type | tuple[type, ...] | None) -> str:
-    if types is None:
-        return 'a plain value or a ROS message'
-    types = types if isinstance(types, tuple) else (types,)
-    return ' or '.join(_article(each.__name__) for each in types)
-
-
-def _article(noun: str) -> str:
-    return f'{"an" if noun[:1].lower() in "aeiou" else "a"} {noun}'
-
-
-def _brief(argument: object) -> str:
-    """An argument as a student would type it; a message by its type alone."""
-    if hasattr(argument, 'get_fields_and_field_types'):
-        return f'{type(argument).__name__}(…)'
-    return shorten(repr(argument), 60)

@@ -1,0 +1,72 @@
+"""What type a check expects of an answer, and what to say where it has another."""
+
+from my_robot_basics.exchange import values
+from my_robot_basics.feedback.errors import fail, shorten
+
+_CLASS_OF_A_MESSAGE = 'Metaclass_'
+"""How rosidl calls the class of a message's class."""
+
+
+def check_type(
+    found: object, wanted: type | tuple[type, ...] | None, *, what: str, cause: str
+) -> None:
+    """Fail unless it has that type; a bool is no int, an int will do for a float."""
+    if wanted is None:
+        return
+    types = wanted if isinstance(wanted, tuple) else (wanted,)
+    if type(found) in types or (type(found) is int and float in types):
+        return
+    seen = f'{with_article(type(found).__name__)} ({brief(found)})'
+    hint = _other_type(found, types)
+    fail(expected=f'{what} {wanted_type(wanted)}', seen=seen, hint=hint, cause=cause)
+
+
+def what_is_unsupported(body: str, wanted: type | tuple[type, ...] | None) -> tuple[str, str]:
+    """What to say of a result that cannot travel: what it is, and what to do."""
+    if values.WRONG_FIELD in body:
+        hint = 'give each field a value of the type that get_fields_and_field_types() names'
+    elif body.startswith(_CLASS_OF_A_MESSAGE):
+        name = body.removeprefix(_CLASS_OF_A_MESSAGE)
+        return f'the class {name}', f'make a message of it with parentheses, {name}()'
+    elif isinstance(wanted, type) and hasattr(wanted, 'get_fields_and_field_types'):
+        hint = _other_type(None, (wanted,))
+    else:
+        hint = 'return plain values (numbers, text, lists, dicts) or a ROS message'
+    return with_article(shorten(body)), hint
+
+
+def _other_type(found: object, wanted: tuple[type, ...]) -> str:
+    if isinstance(found, str) and str not in wanted:
+        return 'a text in quotes is no other value, even if it reads like one'
+    if dict in wanted:
+        return 'write a dict, {key: value, …}, with the keys of the answer cell'
+    if bool in wanted:
+        return 'write True or False, or a comparison, which makes one of them'
+    if any(hasattr(each, 'get_fields_and_field_types') for each in wanted):
+        return f'make a message with {wanted[0].__name__}(), fill in its fields, and return it'
+    return 'print(type(…)) of the value shows what it is'
+
+
+def not_always(name: str, returns: type | tuple[type, ...] | None) -> str:
+    """The cause of a failure, without what was returned."""
+    return f'`{name}` does not always return {wanted_type(returns)}'
+
+
+def wanted_type(types: type | tuple[type, ...] | None) -> str:
+    """One of these types, in words."""
+    if types is None:
+        return 'a plain value or a ROS message'
+    types = types if isinstance(types, tuple) else (types,)
+    return ' or '.join(with_article(each.__name__) for each in types)
+
+
+def with_article(noun: str) -> str:
+    """A noun behind a or an."""
+    return f'{"an" if noun[:1].lower() in "aeiou" else "a"} {noun}'
+
+
+def brief(argument: object) -> str:
+    """An argument as a student would type it; a message by its type alone."""
+    if hasattr(argument, 'get_fields_and_field_types'):
+        return f'{type(argument).__name__}(…)'
+    return shorten(repr(argument), 60)
