@@ -8,7 +8,7 @@ waited for a processor, and the notebook has to answer questions meanwhile.
 from my_robot_basics.checks.clock import Inconclusive, SimulatedClock
 from my_robot_basics.checks.ears import Ears
 from my_robot_basics.exchange import student
-from my_robot_basics.graph.watcher import CROWDED_TIMES, Watcher
+from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
 
 STEP_NS = 100_000_000
@@ -21,7 +21,11 @@ BEATS = 12
 STILL_SEC = 0.8
 """… a silence is so long, of time that was free, and …"""
 LOOKS = 8
-"""… holds so many questions that the notebook answered."""
+"""… holds so many questions that the notebook answered. …"""
+CROWDED_LOOKS = 40
+"""… Where no time is free, so many prove that its process has its turns, and the node none."""
+AGAIN_TIMES = 3
+"""A second look takes so many times as much of all three."""
 LOOK_SEC = 0.1
 
 
@@ -30,10 +34,18 @@ class Pulse:
 
     def __init__(self, watcher: Watcher, ears: Ears) -> None:
         self._watcher, self._ears = watcher, ears
+        self._was_free = False
 
     def goes_on(self) -> bool:
-        """Whether it counts now: over two seconds of the robot's clock, or on the wall clock."""
-        return self._ticks() or self._beats()
+        """Whether it counts now, on the wall clock.
+
+        A silence without enough free time leaves a doubt: then two seconds of the robot's clock
+        decide, or a longer look. They come later, for a clock that was driven, and given back, may
+        keep a timer silent for as long as it was ahead.
+        """
+        if self._beats():
+            return True
+        return not self._was_free and (self._ticks() or self._beats(times=AGAIN_TIMES))
 
     def _ticks(self) -> bool:
         """Whether it counts on the robot's clock; False proves nothing."""
@@ -50,23 +62,25 @@ class Pulse:
             return False
         return True
 
-    def _beats(self) -> bool:
+    def _beats(self, *, times: int = 1) -> bool:
         """Whether it counts on the wall clock, without a silence among the first BEATS."""
         began = len(self._ears.heard)
         while len(self._ears.heard) - began < BEATS:
-            if self._is_silent():
+            if self._is_silent(times):
                 return False
         return True
 
-    def _is_silent(self) -> bool:
+    def _is_silent(self, times: int) -> bool:
         """Whether no beat comes for so long; it returns at a beat."""
-        before, watch = len(self._ears.heard), Stopwatch()
-        looks = 0
-        while len(self._ears.heard) == before:
-            self._watcher.spin_until(lambda: len(self._ears.heard) > before, timeout_sec=LOOK_SEC)
+        before, watch, looks = len(self._ears.heard), Stopwatch(), 0
+        while looks < times * CROWDED_LOOKS and (
+            looks < times * LOOKS or watch.free_sec() < times * STILL_SEC
+        ):
+            if self._watcher.spin_until(
+                lambda: len(self._ears.heard) > before, timeout_sec=LOOK_SEC
+            ):
+                return False
             student.times_raised('')  # its process has had a turn when that is answered
             looks += 1
-            is_crowded_out = watch.wall_sec() >= CROWDED_TIMES * STILL_SEC
-            if looks >= LOOKS and (watch.free_sec() >= STILL_SEC or is_crowded_out):
-                return len(self._ears.heard) == before
-        return False
+        self._was_free = watch.free_sec() >= times * STILL_SEC
+        return True
