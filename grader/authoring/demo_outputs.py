@@ -69,8 +69,8 @@ def keep_outputs(
         elif not ((changed or fresh) and _was_run(cell, sanitize)):
             cell.outputs = old.get('outputs', [])
             doubtful += [cell.id] * (changed and any(map(_has_picture, cell.outputs)))
-        for output in filter(_has_picture, cell.outputs):
-            output.data.pop('text/html', None)  # the same picture once more
+        for output in filter(_is_in_page, cell.outputs):
+            output.data.pop(PICTURE, None)  # HTML shows the same, and has words for it
     return doubtful
 
 
@@ -118,7 +118,11 @@ def _differs(cell: NotebookNode) -> bool:
 
 
 def _has_picture(output: NotebookNode) -> bool:
-    return PICTURE in output.get('data', {})
+    return PICTURE in output.get('data', {}) or _is_in_page(output)
+
+
+def _is_in_page(output: NotebookNode) -> bool:
+    return f'src="data:{PICTURE};' in output.get('data', {}).get('text/html', '')
 
 
 def _lacks_picture(output: NotebookNode) -> bool:
