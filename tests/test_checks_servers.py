@@ -310,7 +310,7 @@ def test_who_asks_and_publishes_another_answer_is_found(run):
     run(Solves)
     with (
         server(partial(ik.solve, l1=1.3)) as serving,
-        pytest.raises(CheckFailed, match='the elbow-up pose'),
+        pytest.raises(CheckFailed, match='the angles of the response, not a solution of'),
     ):
         ik.expect_answer(serving, *TARGETS[0])
 

@@ -147,6 +147,9 @@ def expect_elbow_up(server: Server, x: float, y: float) -> None:
     def why_wrong(message: Any) -> str:
         if joints.agree(joints.pose(message), joints.in_radians(down_deg)):
             return 'this is elbow_down: publish the angles of response.elbow_up'
+        own_deg = [math.degrees(angle) for angle in solve(request(x, y)).elbow_up]
+        if own_deg and joints.agree(joints.pose(message), joints.in_radians(own_deg)):
+            return 'publish the angles of the response, not a solution of your own'
         return joints.why_wrong(message, up_deg)
 
     server.expect(
