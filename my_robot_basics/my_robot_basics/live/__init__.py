@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from my_robot_basics.live.qos_pictures import show_lost_messages, show_qos_matrix
     from my_robot_basics.live.queue_picture import show_queues
     from my_robot_basics.live.runner import run, stop
+    from my_robot_basics.live.service_picture import show_service
     from my_robot_basics.live.sliders import move_arm
     from my_robot_basics.live.target import drag_target
     from my_robot_basics.live.timeline import show_arrivals, show_deliveries
@@ -54,6 +55,7 @@ __all__ = [
     'show_offers',
     'show_qos_matrix',
     'show_queues',
+    'show_service',
     'show_workspace',
     'stop',
     'wait_until',
@@ -74,6 +76,7 @@ _MODULES = {
     'follow_arm': 'follow',
     'show_graph': 'graph_picture',
     'show_queues': 'queue_picture',
+    'show_service': 'service_picture',
     'show_offers': 'qos_offers',
     'measure_pairs': 'qos_pairs',
     'show_qos_matrix': 'qos_pictures',

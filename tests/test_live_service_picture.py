@@ -1,0 +1,26 @@
+"""Two clients and one server: a picture, and what it says in words."""
+
+from io import BytesIO
+
+import matplotlib.image
+from my_robot_basics.live import notebook, service_picture, show_service
+
+
+def test_each_client_gets_its_own_response_after_its_request(monkeypatch):
+    shown = []
+    monkeypatch.setattr(notebook.Display, 'show', lambda self, bundle: shown.append(bundle))
+    show_service()
+    [bundle] = shown
+    assert bundle['image/png'].startswith(b'\x89PNG')
+    steps = bundle['text/plain'].split(': ')[1].split(' → ')
+    for client in 'left', 'right':
+        asked = steps.index(f'{client} sends a request')
+        worked = steps.index(f'the callback for {client} runs')
+        assert asked < worked < steps.index(f'the response goes to {client} alone')
+
+
+def test_it_needs_no_more_than_the_width_of_a_phone():
+    picture = matplotlib.image.imread(BytesIO(service_picture.draw()))
+    assert picture.shape[1] <= 400
+    # opaque, and white at its border: as readable on a dark page
+    assert (picture[[0, -1], :, :] == 1).all()
