@@ -52,6 +52,10 @@ CONTRACT = {
         'fix_units': ('DegreesToJointState', {'fix_units-fixed': 2}),
         'fix_stamp': ('StampedPublisher', {'fix_stamp-fixed': 2}),
     },
+    '08_services': {
+        'ik_service': ('IKService', {'ik_service_answers': 2, 'ik_service_unreachable': 1}),
+        'ik_client': ('IKClient', {'ik_client_asks': 2, 'ik_client_never_blocks': 2}),
+    },
 }
 """Assignment -> exercise -> (the name that its answer defines, its grade cells' points)."""
 
@@ -59,7 +63,7 @@ WITHOUT_HIDDEN_PART = {'reach-visible', 'joint_names', 'explain_counts'}
 """Grade cells that show all they check."""
 WITH_RUN_CELL = {
     *('five_hz', 'ik_solver_node', 'find_endpoints', 'compatible_qos'),
-    *('fix_topic_name', 'fix_units', 'fix_stamp'),
+    *('fix_topic_name', 'fix_units', 'fix_stamp', 'ik_service', 'ik_client'),
 }
 """Exercises for which a locked cell starts nodes."""
 BY_HAND = {'explain_counts'}
