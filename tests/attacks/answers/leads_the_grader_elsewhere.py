@@ -1,4 +1,4 @@
-"""Puts links to a socket of the machine in the place of its own, and cuts the grader off."""  # earns 3
+"""Puts links to a socket of the machine in the place of its own, and cuts the grader off."""  # earns 0
 
 import os
 import socket
