@@ -6,7 +6,7 @@ import time
 import types
 
 import pytest
-from my_robot_basics.checks import CheckFailed, clock, sampling, topic
+from my_robot_basics.checks import CheckFailed, clock, clock_budget, sampling, topic
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session import pressure
 from nodes.running import imported, running
@@ -169,11 +169,11 @@ def test_a_crowded_machine_does_not_use_up_the_time_for_driving_the_clock(
     now = [0.0]
     monkeypatch.setattr(pressure, 'time', types.SimpleNamespace(monotonic=lambda: now[0]))
     monkeypatch.setattr(pressure, 'crowded_sec', lambda: crowded_share * now[0])
-    monkeypatch.setattr(clock, 'BUDGET_SEC', 15.0)
-    monkeypatch.setattr(clock, 'is_in_test_room', lambda: in_room)
-    simulated = clock.SimulatedClock(Watcher(), needed=set())
+    monkeypatch.setattr(clock_budget, 'BUDGET_SEC', 15.0)
+    monkeypatch.setattr(clock_budget, 'is_in_test_room', lambda: in_room)
+    budget = clock_budget.ClockBudget()
     now[0] = after_sec
-    assert (simulated._part_used() <= 1.0) == is_left
+    assert (budget.part_used() <= 1.0) == is_left
 
 
 class Counter(Node):

@@ -98,7 +98,7 @@ def test_an_answer_to_an_older_question_does_not_count():
         with rosout('ik_solver_node') as later:
             # latched: the old records do arrive, and are left out
             assert not later.wait_for(lambda log: bool(log.records), timeout_sec=0.5)
-            assert later._heard
+            assert later._received
 
 
 def test_the_target_is_named():
@@ -116,7 +116,7 @@ def test_no_warning_is_a_failure():
 
 
 def test_a_node_that_does_not_run_is_named(monkeypatch):
-    monkeypatch.setattr('my_robot_basics.checks.logs.NODE_SEC', 1.0)
+    monkeypatch.setattr('my_robot_basics.checks.node_log.NODE_SEC', 1.0)
     with pytest.raises(CheckFailed, match='expected a node /ik_solver_node, saw no node'):
         rosout('ik_solver_node').__enter__()
 
@@ -166,7 +166,7 @@ def test_a_warning_behind_the_answer_is_not_about_the_target_before():
 
 
 def test_another_name_is_the_cause_where_a_node_runs(monkeypatch):
-    monkeypatch.setattr('my_robot_basics.checks.logs.NODE_SEC', 3.0)
+    monkeypatch.setattr('my_robot_basics.checks.node_log.NODE_SEC', 3.0)
     words = r"saw /ik_solver_node: .* super\(\)\.__init__\('ik'\)"
     with running('ik_solver'), pytest.raises(CheckFailed, match=words):
         rosout('ik').__enter__()

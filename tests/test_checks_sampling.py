@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import pytest
-from my_robot_basics.checks import CheckFailed, sampling, topic, topics
+from my_robot_basics.checks import CheckFailed, topic, topic_ends, topics, wall_recording
 from my_robot_basics.checks import recording as recording_module
 from my_robot_basics.checks.clock import SimulatedClock
 from my_robot_basics.checks.recording import Recording, Sample
@@ -38,7 +38,9 @@ def test_a_wrong_rate_fails(node, seen):
 
 @pytest.mark.usefixtures('patient')
 def test_a_timer_that_leaves_every_twentieth_out_fails_without_another_look(monkeypatch):
-    monkeypatch.setattr(sampling, 'wall', lambda *_, **__: pytest.fail('looked at the wall clock'))
+    monkeypatch.setattr(
+        wall_recording, 'wall', lambda *_, **__: pytest.fail('looked at the wall clock')
+    )
     with running('leaves_out'), pytest.raises(CheckFailed, match='one message of 20 missing each'):
         topic(TOPIC).record(seconds=60.0).assert_rate(hz=5.0)
 
@@ -56,7 +58,7 @@ def test_on_a_busy_machine_the_clock_is_driven_for_a_shorter_time(monkeypatch):
 def test_the_first_look_stands_when_the_node_has_gone(monkeypatch):
     with running('too_slow'):
         recording = topic(TOPIC).record(seconds=10.0)
-    monkeypatch.setattr(topics, 'PUBLISHER_SEC', 1.0)
+    monkeypatch.setattr(topic_ends, 'PUBLISHER_SEC', 1.0)
     with pytest.raises(CheckFailed, match=r'saw 4\.(75|8) Hz over 10 s \(47 messages\)'):
         recording.assert_rate(hz=5.0)
 
@@ -75,8 +77,8 @@ def test_a_machine_that_is_late_itself_looks_again_while_there_is_time(
         recorded.append(replace(on_wall(*args, **options), late_sec=late_sec))
         return recorded[-1]
 
-    on_wall = sampling.wall
-    monkeypatch.setattr(sampling, 'wall', wall)
+    on_wall = wall_recording.wall
+    monkeypatch.setattr(wall_recording, 'wall', wall)
     monkeypatch.setattr(recording_module, 'SECOND_LOOK_SEC', 1.0)
     with running('unresponsive'):
         recording = topic(TOPIC).record()
@@ -132,7 +134,7 @@ def test_a_near_miss_fails_on_the_wall_clock(node, seen):
 def looked_at(node, *, patience_sec):
     with running(node), Watcher() as watcher:
         ears = topic(TOPIC).listen(watcher)
-        return sampling.wall(watcher, ears, why='', seconds=0.1, patience_sec=patience_sec)
+        return wall_recording.wall(watcher, ears, why='', seconds=0.1, patience_sec=patience_sec)
 
 
 def test_the_wall_clock_waits_for_the_next_message_of_a_slow_node():

@@ -39,7 +39,7 @@ _HOMES = {
     'Service': 'checks.services',
     'Server': 'checks.servers',
     'Log': 'checks.logs',
-    'Record': 'checks.logs',
+    'Record': 'checks.node_log',
     'GraphSnapshot': 'graph.snapshot',
     'Stage': 'checks.delivery_experiment',
     'StagePublisher': 'checks.delivery_experiment',

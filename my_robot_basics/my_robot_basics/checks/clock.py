@@ -10,7 +10,6 @@ import time
 from collections.abc import Iterable
 from typing import Self
 
-from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import GetParameters, SetParameters
 from rclpy.client import Client
 from rclpy.qos import QoSProfile, ReliabilityPolicy
@@ -18,15 +17,12 @@ from rclpy.task import Future
 from rclpy.time import Time
 from rosgraph_msgs.msg import Clock
 
-from my_robot_basics.feedback.hidden import is_in_test_room
-from my_robot_basics.graph.watcher import HIDDEN, Watcher
+from my_robot_basics.checks.clock_budget import ClockBudget
+from my_robot_basics.checks.clock_use import LEFT_ALONE, are_left_alone
+from my_robot_basics.checks.parameter_services import nodes_with_services, use_sim_time
+from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
 
-BUDGET_SEC = 15.0
-"""How long the clock is driven at most, and nbgrader's Validate gives a cell 30 s in all: …"""
-CROWDED_BUDGET_SEC = 45.0
-"""… in a room of its own, time in which processes had to wait for a processor does not count,
-within this."""
 SLOWEST_BARRIER_SEC = 0.5
 SLOWEST_MEDIAN_SEC = 0.02
 FIRST_ANSWER_SEC = 1.0
@@ -35,21 +31,8 @@ slow, too."""
 RESTORE_SEC = 10.0
 MEDIAN_EVERY = 40
 HELD_EVERY_SEC = 0.02
-LEFT_ALONE = "the nodes' clocks are left alone"
-_are_left_alone = False
 _latest_ns = 0
 """What `/clock` showed last: a node that waits for a time would else wait for it once more."""
-
-
-def leave_alone() -> None:
-    """Drive no clock from now on: a node may take a change of its clock amiss."""
-    global _are_left_alone
-    _are_left_alone = True
-
-
-def are_left_alone() -> bool:
-    """Whether no clock is driven."""
-    return _are_left_alone
 
 
 class Inconclusive(Exception):
@@ -66,7 +49,7 @@ class SimulatedClock:
         """`needed`: full names of the nodes without which the look is inconclusive."""
         self._watcher = watcher
         self._needed = needed
-        self._watch = Stopwatch()
+        self._budget = ClockBudget()
         self._former: dict[str, bool] = {}
         self._barriers: dict[str, Client] = {}
         self._setters: dict[str, Client] = {}
@@ -122,17 +105,11 @@ class SimulatedClock:
 
     def is_half_over(self) -> bool:
         """Whether half of the time is gone for which the clock may be driven."""
-        return self._part_used() > 0.5
-
-    def _part_used(self) -> float:
-        wall_sec = self._watch.wall_sec()
-        if not is_in_test_room():
-            return wall_sec / BUDGET_SEC
-        return max(self._watch.free_sec() / BUDGET_SEC, wall_sec / CROWDED_BUDGET_SEC)
+        return self._budget.part_used() > 0.5
 
     def _expect_time_left(self) -> None:
-        if self._part_used() > 1.0:
-            within_sec = self._watch.wall_sec()
+        if self._budget.part_used() > 1.0:
+            within_sec = self._budget.wall_sec()
             raise Inconclusive(f'the clock could not be driven within {within_sec:.0f} s')
 
     def _publish(self) -> None:
@@ -151,11 +128,11 @@ class SimulatedClock:
 
     def _switch(self) -> None:
         """Turn `use_sim_time` on for every node that answers, and start `/clock` at wall time."""
-        self._watcher.spin_until_free(
-            lambda: self._needed <= self._with_services(), free_sec=FIRST_ANSWER_SEC
-        )
         node = self._watcher.node
-        for name in self._with_services():
+        self._watcher.spin_until_free(
+            lambda: self._needed <= nodes_with_services(node), free_sec=FIRST_ANSWER_SEC
+        )
+        for name in nodes_with_services(node):
             self._barriers[name] = node.create_client(GetParameters, f'{name}/get_parameters')
             self._setters[name] = node.create_client(SetParameters, f'{name}/set_parameters')
             self._expect_time_left()
@@ -199,9 +176,7 @@ class SimulatedClock:
 
     def _set_all(self, values: dict[str, bool]) -> list[Future]:
         return [
-            self._setters[name].call_async(
-                SetParameters.Request(parameters=[_use_sim_time(value)])
-            )
+            self._setters[name].call_async(SetParameters.Request(parameters=[use_sim_time(value)]))
             for name, value in values.items()
         ]
 
@@ -217,14 +192,3 @@ class SimulatedClock:
         return self._watcher.spin_until_free(
             lambda: all(future.done() for future in asked), free_sec=free_sec
         )
-
-    def _with_services(self) -> set[str]:
-        suffix = '/set_parameters'
-        services = [name for name, _ in self._watcher.node.get_service_names_and_types()]
-        nodes = {name.removesuffix(suffix) for name in services if name.endswith(suffix)}
-        return {name for name in nodes if not name.rpartition('/')[2].startswith(HIDDEN)}
-
-
-def _use_sim_time(value: bool) -> Parameter:
-    kind = ParameterType.PARAMETER_BOOL
-    return Parameter(name='use_sim_time', value=ParameterValue(type=kind, bool_value=value))

@@ -6,27 +6,19 @@ from dataclasses import replace
 from typing import Any
 
 from rclpy.duration import Duration
-from rclpy.publisher import Publisher
-from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
-from my_robot_basics.checks import sampling
-from my_robot_basics.checks.clock import are_left_alone
+from my_robot_basics.checks import sampling, wall_recording
+from my_robot_basics.checks.clock_use import are_left_alone
 from my_robot_basics.checks.ears import Ears
 from my_robot_basics.checks.recording import Recording
-from my_robot_basics.exchange import student, values
+from my_robot_basics.checks.topic_ends import ACQUAINTANCE_SEC, TopicEnds
+from my_robot_basics.exchange import student
 from my_robot_basics.feedback.errors import CheckFailed, Disturbed, expect, fail, shorten
-from my_robot_basics.feedback.hidden import theirs
-from my_robot_basics.graph import graphs
 from my_robot_basics.graph.raised import what_raised
 from my_robot_basics.graph.watcher import Watcher
 
-PUBLISHER_SEC = 10.0
-ABSENT_SEC = 3.0
-"""How long to wait for an endpoint that the notebook's own process says it has not got."""
 ONCE_MORE_SEC = 2.0
 """How long to wait for the answer to what is sent a second time."""
-ACQUAINTANCE_SEC = 0.5
-"""How long a BEST_EFFORT subscription is given to meet the publisher, and to read what it sent."""
 AFTERTHOUGHT_SEC = 0.3
 """How long to listen for what must not come beside the right message."""
 LATE_SEC = 0.02
@@ -39,8 +31,6 @@ GRADING_SEC = 60.0
 """… and the grader 150 s, for two recordings at most."""
 BEFORE_SEC = 0.5
 """How long to listen for a message before a node's clock is touched."""
-DEPTH = 5000
-"""Queue of a recording: more messages than any look can bring (KEEP_LAST overwrites)."""
 
 
 def topic(name: str) -> 'Topic':
@@ -51,12 +41,8 @@ def topic(name: str) -> 'Topic':
     return Topic(name)
 
 
-class Topic:
+class Topic(TopicEnds):
     """What a check may do with one topic; each call is a ROS node of its own while it lasts."""
-
-    def __init__(self, name: str) -> None:
-        """Use `topic(name)`; nothing is done with the topic yet."""
-        self.name = name
 
     def record(self, seconds: float = 10.0, step_sec: float = 0.1) -> Recording:
         """Record `seconds` of the robot's time, beginning at a message (which does not count).
@@ -73,13 +59,13 @@ class Topic:
             sent = watcher.spin_until_free(lambda: bool(ears.heard), free_sec=BEFORE_SEC)
             found = sampling.simulated(watcher, ears, seconds=seconds, step_sec=step_sec)
             if isinstance(found, str):
-                why, recording = found, sampling.wall(watcher, ears, why=found)
+                why, recording = found, wall_recording.wall(watcher, ears, why=found)
             else:
                 why, recording = '', found
             if not recording.messages and sent and not are_left_alone():
                 self._expect_ends_by_itself(ears)
             if not recording.messages:
-                self._fail_silent(watcher, seen=f'no message in {recording.seconds:g} s')
+                self.fail_silent(watcher, seen=f'no message in {recording.seconds:g} s')
         left_sec = _looks_sec() - (time.monotonic() - began)
         return self._to_look_again(recording, why, left_sec=left_sec, late_looks=LATE_LOOKS)
 
@@ -95,30 +81,7 @@ class Topic:
             for message in messages:
                 publisher.publish(message)
             publisher.wait_for_all_acked(Duration(seconds=2))
-            watcher.spin_for(ACQUAINTANCE_SEC if self._sends_once(watcher) else 0.0)
-
-    def meet(
-        self, watcher: Watcher, type_: type, *, depth: int = 10, timeout_sec: float = 10.0
-    ) -> Publisher:
-        """A publisher that every subscription is content with, once one is there."""
-        offer = QoSProfile(
-            depth=max(10, depth),
-            reliability=ReliabilityPolicy.RELIABLE,
-            durability=DurabilityPolicy.TRANSIENT_LOCAL,
-        )
-        publisher = watcher.node.create_publisher(type_, self.name, offer)
-        timeout_sec = self.patience_sec(watcher, timeout_sec, end='subscriptions', type_=type_)
-        if not watcher.spin_until(
-            lambda: publisher.get_subscription_count() > 0, timeout_sec=timeout_sec
-        ):
-            self._fail_unheard(watcher, type_, timeout_sec=timeout_sec)
-        # a BEST_EFFORT one may not know yet of a publisher that knows of it
-        watcher.spin_for(ACQUAINTANCE_SEC if self._sends_once(watcher) else 0.0)
-        return publisher
-
-    def _sends_once(self, watcher: Watcher) -> bool:
-        infos = graphs.subscription_infos(watcher.node, self.name)
-        return any(info.qos_profile.reliability == ReliabilityPolicy.BEST_EFFORT for info in infos)
+            watcher.spin_for(ACQUAINTANCE_SEC if self.sends_once(watcher) else 0.0)
 
     def wait_for(
         self,
@@ -163,7 +126,7 @@ class Topic:
                 if not heard and after is not None:
                     self._expect_none_late(watcher, ears, after)
                 if not heard:
-                    self._fail_silent(watcher, seen=f'no message in {timeout_sec:g} s')
+                    self.fail_silent(watcher, seen=f'no message in {timeout_sec:g} s')
                 last = [*heard, *wrong()][-1]
                 others = f'{len(heard)} others in {timeout_sec:g} s'
                 fail(
@@ -179,57 +142,6 @@ class Topic:
                 )
             return found()[0]
 
-    def listen(self, watcher: Watcher) -> Ears:
-        """Subscribe with the publishers' own type and QoS; wait for them first.
-
-        Raises CheckFailed when there is no publisher, or no one type.
-        """
-        patience_sec = self.patience_sec(watcher, PUBLISHER_SEC, end='publishers')
-        if not graphs.wait_for_publisher(watcher, self.name, timeout_sec=patience_sec):
-            fail(
-                expected=f'a publisher on {self.name}',
-                seen=graphs.none_in(patience_sec),
-                hint=graphs.take(watcher).why_silent(self.name),
-            )
-        message_type = self._message_type(watcher)
-        offers = graphs.publisher_infos(watcher.node, self.name)
-        reliable = all(
-            offer.qos_profile.reliability == ReliabilityPolicy.RELIABLE for offer in offers
-        )
-        wanted = QoSProfile(
-            depth=DEPTH,
-            reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
-        )
-        return Ears(watcher, topic_name=self.name, type_=message_type, qos_profile=wanted)
-
-    def patience_sec(
-        self, watcher: Watcher, most_sec: float, *, end: str, type_: type | None = None
-    ) -> float:
-        """How long to wait for an endpoint of the notebook: less where it says it has none.
-
-        `end` is 'publishers' or 'subscriptions', with `type_` if only one of that type will do.
-        """
-        type_name = values.type_name(type_) if type_ else ''
-        if student.has_endpoint(self.name, end, type_name):
-            return most_sec
-        if graphs.is_settled(watcher):
-            return graphs.SETTLED_SEC
-        return most_sec if student.has_endpoint(self.name) else min(most_sec, ABSENT_SEC)
-
-    def _message_type(self, watcher: Watcher) -> type:
-        """The one type that the publishers of the topic agree on."""
-        infos = graphs.publisher_infos(watcher.node, self.name)
-        types = sorted({info.topic_type for info in infos})
-        try:
-            (name,) = types
-            return values.message_type(name)
-        except ValueError:
-            fail(
-                expected=f'one standard message type on {self.name}',
-                seen=' and '.join(types),
-                hint='create every publisher of a topic with the same type of common_interfaces',
-            )
-
     def _to_look_again(
         self, recording: Recording, why: str, *, left_sec: float, late_looks: int
     ) -> Recording:
@@ -240,7 +152,7 @@ class Topic:
             began = time.monotonic()
             with Watcher() as watcher:
                 ears = self.listen(watcher)
-                again = sampling.wall(
+                again = wall_recording.wall(
                     watcher, ears, why=why, seconds=seconds, patience_sec=seconds
                 )
             if again.late_sec < LATE_SEC or not late_looks:
@@ -271,20 +183,6 @@ class Topic:
             hint='publish what you make of the message that your callback is given, at once, and '
             'not of the one before',
         )
-
-    def _fail_silent(self, watcher: Watcher, *, seen: str) -> None:
-        if graphs.publisher_infos(watcher.node, self.name):
-            # a publisher of another type may have come to light only now
-            self._message_type(watcher)
-        hint = graphs.take(watcher).why_silent(self.name)
-        fail(expected=f'messages on {self.name}', seen=seen, hint=hint)
-
-    def _fail_unheard(self, watcher: Watcher, type_: type, *, timeout_sec: float) -> None:
-        hint = graphs.take(watcher).why_unheard(self.name)
-        if infos := graphs.subscription_infos(watcher.node, self.name):
-            hint = f'one is there for {theirs(infos[0].topic_type)}, so compare the message type'
-        seen = graphs.none_in(timeout_sec)
-        fail(expected=f'a subscription on {self.name} for {type_.__name__}', seen=seen, hint=hint)
 
 
 def _looks_sec() -> float:

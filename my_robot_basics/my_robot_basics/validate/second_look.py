@@ -24,9 +24,9 @@ CROWD_SEC = 1.0
 CROWDED_SHARE = 0.5
 """… for at least so much of the time."""
 LEAVE_CLOCKS = '''"""The nodes' clocks are left alone"""
-from my_robot_basics.checks import clock
+from my_robot_basics.checks import clock_use
 
-clock.leave_alone()
+clock_use.leave_alone()
 '''
 
 

@@ -1,0 +1,148 @@
+"""The log of one node: what it says on /rosout since a moment."""
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, Self
+
+from rcl_interfaces.msg import Log as LogMessage
+from rclpy.publisher import Publisher
+from rclpy.qos import DurabilityPolicy, QoSProfile
+
+from my_robot_basics.checks import answers
+from my_robot_basics.checks.callbacks import Raised
+from my_robot_basics.checks.topics import Topic
+from my_robot_basics.feedback.errors import fail, shorten
+from my_robot_basics.graph import graphs
+from my_robot_basics.graph.message_info import with_info
+from my_robot_basics.graph.watcher import Watcher
+
+LEVELS = {10: 'DEBUG', 20: 'INFO', 30: 'WARN', 40: 'ERROR', 50: 'FATAL'}
+DEPTH = 1000
+NODE_SEC = 10.0
+
+
+@dataclass(frozen=True)
+class Record:
+    """One log record."""
+
+    level: str
+    """'DEBUG', 'INFO', 'WARN', 'ERROR' or 'FATAL'."""
+    text: str
+    """As the node logged it, without time and logger's name."""
+
+
+class NodeLog:
+    """A context manager that listens to one node's log.
+
+    Only records that were logged since `mark()` count (at first, since it began to listen):
+    /rosout is latched, and would otherwise bring answers to older questions.
+    """
+
+    def __init__(self, node_name: str) -> None:
+        """Use `with rosout(node_name) as log`; listening begins with the `with` statement."""
+        self._logger = node_name.strip('/').replace('/', '.')
+        self.node_name = f'/{node_name.strip("/")}'
+        self._received: list[tuple[int, Record]] = []
+        self._watcher = Watcher()
+        self._since_ns = 0
+        self._publishers: dict[str, Publisher] = {}
+        self._asked: tuple[str, Any] | None = None
+        """The topic and the target that was sent last."""
+
+    def __enter__(self) -> Self:
+        """Subscribe and wait for the node. Raises CheckFailed when it does not come."""
+        self._watcher.__enter__()
+        try:
+            self._meet()
+        except BaseException:
+            self._watcher.__exit__()
+            raise
+        self.mark()
+        self._raised = Raised([self.node_name])
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Stop listening."""
+        self._watcher.__exit__()
+
+    def mark(self) -> None:
+        """Let only records count that are logged from now on."""
+        self._since_ns = time.time_ns()
+
+    def ask(self, topic_name: str, message: Any) -> None:
+        """Publish a target, of which the records since then are to tell.
+
+        Raises CheckFailed where nobody subscribes to the topic.
+        """
+        if topic_name not in self._publishers:
+            publisher = Topic(topic_name).meet(self._watcher, type(message))
+            self._publishers[topic_name] = publisher
+        self.mark()
+        self._asked = topic_name, message
+        self._publishers[topic_name].publish(message)
+
+    @property
+    def records(self) -> tuple[Record, ...]:
+        """The records that were received since the mark, oldest first."""
+        return tuple(record for sent_ns, record in self._received if sent_ns > self._since_ns)
+
+    def numbers(self, level: str = 'INFO', *, since: int = 0) -> tuple[float, ...]:
+        """All numbers in the records of a level since the mark, in order; or `since` its n-th."""
+        texts = self.texts(level)[since:]
+        return tuple(number for text in texts for number in answers.numbers_of(text))
+
+    def wait_for(self, done: Callable[[Self], bool], *, timeout_sec: float = 5.0) -> bool:
+        """Listen until `done(log)`, at most `timeout_sec`; whether it came to that."""
+        return self._watcher.spin_until(lambda: done(self), timeout_sec=timeout_sec)
+
+    def _meet(self) -> None:
+        node = self._watcher.node
+        latched = QoSProfile(depth=DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        node.create_subscription(LogMessage, '/rosout', with_info(self._receive), latched)
+
+        def is_there() -> bool:
+            infos = node.get_publishers_info_by_topic('/rosout')
+            return self.node_name in map(graphs.full_name, infos)
+
+        is_settled = graphs.is_settled(self._watcher, self.node_name)
+        timeout_sec = graphs.SETTLED_SEC if is_settled else NODE_SEC
+        if not self._watcher.spin_until(is_there, timeout_sec=timeout_sec):
+            others = graphs.take(self._watcher).nodes()
+            fail(
+                expected=f'a node {self.node_name}',
+                seen=', '.join(others) or 'no node',
+                hint=self._why_absent(others),
+            )
+
+    def _receive(self, message: LogMessage, info: dict) -> None:
+        if message.name == self._logger or message.name.startswith(f'{self._logger}.'):
+            level = LEVELS.get(message.level, str(message.level))
+            self._received.append((info['source_timestamp'], Record(level, message.msg)))
+
+    def _why_absent(self, others: Sequence[str]) -> str:
+        if not others:
+            return 'the node is not running, so run the cell that starts it and read its output'
+        name = self.node_name.strip('/')
+        if any(other.endswith(self.node_name) for other in others):
+            return f'the name {name} is right, so leave the namespace out of super().__init__(…)'
+        return f"if that is yours, write super().__init__('{name}'), letter for letter"
+
+    def texts(self, level: str) -> list[str]:
+        """The texts of a level since the mark, in order."""
+        return [record.text for record in self.records if record.level == level]
+
+    def has(self, level: str) -> bool:
+        """Whether there is a record of a level since the mark."""
+        return self.count(level) > 0
+
+    def count(self, level: str) -> int:
+        """How many records of a level there are since the mark."""
+        return sum(record.level == level for record in self.records)
+
+    def shown(self, level: str) -> str:
+        """What to show of a level: its texts, or what came instead."""
+        if texts := self.texts(level):
+            return f"'{shorten(' | '.join(texts))}'"
+        others = ' | '.join(f'{record.level} {record.text}' for record in self.records)
+        return f'no {level} record' + (f" but '{shorten(others)}'" if others else '')

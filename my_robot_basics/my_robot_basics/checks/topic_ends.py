@@ -1,0 +1,117 @@
+"""The two ends of a topic: meet the notebook's subscription, or listen to its publisher."""
+
+from rclpy.publisher import Publisher
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+
+from my_robot_basics.checks.ears import Ears
+from my_robot_basics.exchange import student, values
+from my_robot_basics.feedback.errors import fail
+from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.graph import graphs
+from my_robot_basics.graph.watcher import Watcher
+
+PUBLISHER_SEC = 10.0
+ABSENT_SEC = 3.0
+"""How long to wait for an endpoint that the notebook's own process says it has not got."""
+DEPTH = 5000
+"""Queue of a recording: more messages than any look can bring (KEEP_LAST overwrites)."""
+ACQUAINTANCE_SEC = 0.5
+"""How long a BEST_EFFORT subscription is given to meet the publisher, and to read what it sent."""
+
+
+class TopicEnds:
+    """One topic, and the endpoints that a check makes on it."""
+
+    def __init__(self, name: str) -> None:
+        """Nothing is done with the topic yet."""
+        self.name = name
+
+    def meet(
+        self, watcher: Watcher, type_: type, *, depth: int = 10, timeout_sec: float = 10.0
+    ) -> Publisher:
+        """A publisher that every subscription is content with, once one is there."""
+        offer = QoSProfile(
+            depth=max(10, depth),
+            reliability=ReliabilityPolicy.RELIABLE,
+            durability=DurabilityPolicy.TRANSIENT_LOCAL,
+        )
+        publisher = watcher.node.create_publisher(type_, self.name, offer)
+        timeout_sec = self.patience_sec(watcher, timeout_sec, end='subscriptions', type_=type_)
+        if not watcher.spin_until(
+            lambda: publisher.get_subscription_count() > 0, timeout_sec=timeout_sec
+        ):
+            self._fail_unheard(watcher, type_, timeout_sec=timeout_sec)
+        # a BEST_EFFORT one may not know yet of a publisher that knows of it
+        watcher.spin_for(ACQUAINTANCE_SEC if self.sends_once(watcher) else 0.0)
+        return publisher
+
+    def sends_once(self, watcher: Watcher) -> bool:
+        """Whether a subscription is BEST_EFFORT: to it nothing is sent again."""
+        infos = graphs.subscription_infos(watcher.node, self.name)
+        return any(info.qos_profile.reliability == ReliabilityPolicy.BEST_EFFORT for info in infos)
+
+    def listen(self, watcher: Watcher) -> Ears:
+        """Subscribe with the publishers' own type and QoS; wait for them first.
+
+        Raises CheckFailed when there is no publisher, or no one type.
+        """
+        patience_sec = self.patience_sec(watcher, PUBLISHER_SEC, end='publishers')
+        if not graphs.wait_for_publisher(watcher, self.name, timeout_sec=patience_sec):
+            fail(
+                expected=f'a publisher on {self.name}',
+                seen=graphs.none_in(patience_sec),
+                hint=graphs.take(watcher).why_silent(self.name),
+            )
+        message_type = self._message_type(watcher)
+        offers = graphs.publisher_infos(watcher.node, self.name)
+        reliable = all(
+            offer.qos_profile.reliability == ReliabilityPolicy.RELIABLE for offer in offers
+        )
+        wanted = QoSProfile(
+            depth=DEPTH,
+            reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
+        )
+        return Ears(watcher, topic_name=self.name, type_=message_type, qos_profile=wanted)
+
+    def patience_sec(
+        self, watcher: Watcher, most_sec: float, *, end: str, type_: type | None = None
+    ) -> float:
+        """How long to wait for an endpoint of the notebook: less where it says it has none.
+
+        `end` is 'publishers' or 'subscriptions', with `type_` if only one of that type will do.
+        """
+        type_name = values.type_name(type_) if type_ else ''
+        if student.has_endpoint(self.name, end, type_name):
+            return most_sec
+        if graphs.is_settled(watcher):
+            return graphs.SETTLED_SEC
+        return most_sec if student.has_endpoint(self.name) else min(most_sec, ABSENT_SEC)
+
+    def _message_type(self, watcher: Watcher) -> type:
+        """The one type that the publishers of the topic agree on."""
+        infos = graphs.publisher_infos(watcher.node, self.name)
+        types = sorted({info.topic_type for info in infos})
+        try:
+            (name,) = types
+            return values.message_type(name)
+        except ValueError:
+            fail(
+                expected=f'one standard message type on {self.name}',
+                seen=' and '.join(types),
+                hint='create every publisher of a topic with the same type of common_interfaces',
+            )
+
+    def fail_silent(self, watcher: Watcher, *, seen: str) -> None:
+        """Say why no message comes. Raises CheckFailed."""
+        if graphs.publisher_infos(watcher.node, self.name):
+            # a publisher of another type may have come to light only now
+            self._message_type(watcher)
+        hint = graphs.take(watcher).why_silent(self.name)
+        fail(expected=f'messages on {self.name}', seen=seen, hint=hint)
+
+    def _fail_unheard(self, watcher: Watcher, type_: type, *, timeout_sec: float) -> None:
+        hint = graphs.take(watcher).why_unheard(self.name)
+        if infos := graphs.subscription_infos(watcher.node, self.name):
+            hint = f'one is there for {theirs(infos[0].topic_type)}, so compare the message type'
+        seen = graphs.none_in(timeout_sec)
+        fail(expected=f'a subscription on {self.name} for {type_.__name__}', seen=seen, hint=hint)

@@ -1,0 +1,67 @@
+"""Record a topic on the wall clock."""
+
+import time
+
+from my_robot_basics.checks.ears import Ears
+from my_robot_basics.checks.recording import Recording, Sample
+from my_robot_basics.graph.raised import what_raised
+from my_robot_basics.graph.watcher import Watcher
+
+WALL_SEC = 4.0
+
+PATIENCE_SEC = 7.0
+"""How long to wait on the wall clock for a message, and for the next one: 5 s apart is slow, but
+no silence."""
+
+RAISED_SEC = 2.0
+"""The same where nothing has come yet and a callback raised: rclpy.spin would have ended there."""
+
+IGNORES = 'the node ignores the clock'
+
+
+def wall(
+    watcher: Watcher,
+    ears: Ears,
+    *,
+    why: str,
+    seconds: float = WALL_SEC,
+    patience_sec: float = PATIENCE_SEC,
+) -> Recording:
+    """A recording of `seconds` on the wall clock, beginning at a message.
+
+    It waits for that one `patience_sec` at most, and as long for the next one, should that be
+    longer: then it ends there.
+    """
+    if not ears.heard and what_raised(ears.publishers()):
+        seconds = patience_sec = RAISED_SEC
+    began_ns = time.time_ns()
+    if watcher.spin_until(lambda: ears.count_since(began_ns) > 0, timeout_sec=patience_sec):
+        watcher.late_sec = 0.0
+        watcher.spin_for(seconds)
+        watcher.spin_until(
+            lambda: ears.count_since(began_ns) > 1, timeout_sec=patience_sec - seconds
+        )
+    sent = [(message, sent_ns) for message, sent_ns in ears.heard if sent_ns > began_ns]
+    start_ns = sent[0][1] if sent else began_ns
+    samples = [
+        Sample(message, (sent_ns - start_ns) / 1e9, sent_ns / 1e9) for message, sent_ns in sent[1:]
+    ]
+    next_sec = samples[0].time_sec if samples else patience_sec
+    seconds = max(seconds, next_sec)
+    return Recording(
+        topic_name=ears.topic_name,
+        messages=tuple(sample for sample in samples if sample.time_sec <= seconds),
+        clock='wall',
+        publishers=ears.publishers(),
+        seconds=seconds,
+        start_sec=start_ns / 1e9,
+        note=_note(ears, why),
+        late_sec=watcher.late_sec,
+    )
+
+
+def _note(ears: Ears, why: str) -> str:
+    if why != IGNORES:
+        return ''
+    name = ', '.join(ears.publishers())
+    return f"note: {name} ignores the robot's clock (use_sim_time); judged on the wall clock"
