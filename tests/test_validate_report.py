@@ -7,16 +7,16 @@ from answered import answered
 from my_robot_basics.validate import run
 from my_robot_basics.validate.as_text import as_text
 from my_robot_basics.validate.errors import RoomFailure
-from my_robot_basics.validate.report import Check, Part, Report
+from my_robot_basics.validate.report import CheckFeedback, ExerciseFeedback, Report
 
 
 def check(outcome, points=2.0, *, earned=None, hidden=False):
     earned = (points if outcome == 'passed' else 0.0) if earned is None else earned
-    return Check(outcome, f'It is {outcome}', points, outcome, hidden, earned, message='')
+    return CheckFeedback(outcome, f'It is {outcome}', points, outcome, hidden, earned, message='')
 
 
 def report(*checks):
-    return Report('lesson.ipynb', (Part('exercise', (), checks),), ())
+    return Report('lesson.ipynb', (ExerciseFeedback('exercise', (), checks),), ())
 
 
 SUMMARIES = {

@@ -3,7 +3,7 @@
 import textwrap
 from collections.abc import Iterator
 
-from my_robot_basics.validate.report import MARKS, Check, Part, Report
+from my_robot_basics.validate.report import MARKS, CheckFeedback, ExerciseFeedback, Report
 
 COLUMNS = 100
 MORE = {
@@ -23,7 +23,7 @@ def as_text(report: Report) -> str:
     return '\n'.join([*lines, '', report.summary])
 
 
-def _part(part: Part) -> Iterator[str]:
+def _part(part: ExerciseFeedback) -> Iterator[str]:
     yield part.name
     for trouble in part.troubles:
         yield from _indented(trouble)
@@ -31,7 +31,7 @@ def _part(part: Part) -> Iterator[str]:
         yield from _check(check)
 
 
-def _check(check: Check) -> Iterator[str]:
+def _check(check: CheckFeedback) -> Iterator[str]:
     lost = f'{check.earned:g} of ' if check.outcome in ('failed', 'partial') else ''
     points = f'{lost}{check.points:g} point{"" if check.points == 1 else "s"}'
     more = MORE.get(check.outcome) or ('more checks at grading' if check.is_partly_hidden else '')

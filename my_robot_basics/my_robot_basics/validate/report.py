@@ -17,7 +17,7 @@ MARKS |= {'at grading': '…', 'by hand': '…', 'not checked': '?'}
 
 
 @dataclass(frozen=True)
-class Check:
+class CheckFeedback:
     """One graded cell."""
 
     name: str
@@ -39,13 +39,13 @@ class Check:
 
 
 @dataclass(frozen=True)
-class Part:
+class ExerciseFeedback:
     """One exercise."""
 
     name: str
     troubles: tuple[str, ...]
     """What went wrong in the student's own cells."""
-    checks: tuple[Check, ...]
+    checks: tuple[CheckFeedback, ...]
 
 
 @dataclass(frozen=True)
@@ -53,11 +53,11 @@ class Report:
     """All that is said of a notebook."""
 
     notebook: str
-    parts: tuple[Part, ...]
+    parts: tuple[ExerciseFeedback, ...]
     notes: tuple[str, ...]
 
     @property
-    def checks(self) -> list[Check]:
+    def checks(self) -> list[CheckFeedback]:
         """All checks, in order."""
         return [check for part in self.parts for check in part.checks]
 
@@ -124,12 +124,12 @@ class Report:
 
 def make_check(
     lesson: Lesson, cell: NotebookNode, verdict: Verdict | None, outputs: Iterable[NotebookNode]
-) -> Check:
+) -> CheckFeedback:
     """Tell of one graded cell; `verdict` is None where it was not run."""
     name = graded_id(cell)
     hidden = lesson.hidden.get(name)
     by_hand = cell.metadata[KEY].role == 'answer'
-    return Check(
+    return CheckFeedback(
         name=name,
         title='Your written answer' if by_hand else title_of_check(cell.source) or name,
         points=float(cell.metadata.nbgrader.get('points', 0)),
@@ -176,7 +176,7 @@ def _pictures(outputs: Iterable[NotebookNode]) -> Iterable[dict[str, str]]:
             yield {'png': ''.join(png.split()), 'alt': output.data.get('text/plain', '')}
 
 
-def _waits(check: Check) -> bool:
+def _waits(check: CheckFeedback) -> bool:
     """Whether its points are still open when all that can be seen is right."""
     return check.outcome == 'at grading' or (check.earned > 0 and check.is_partly_hidden)
 

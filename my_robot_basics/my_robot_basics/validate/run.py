@@ -14,7 +14,13 @@ from my_robot_basics.validate.exercises import Exercise, find_exercises
 from my_robot_basics.validate.forks import ForkServer
 from my_robot_basics.validate.judging import Judged, judge_exercise
 from my_robot_basics.validate.lesson import Lesson, read_lesson
-from my_robot_basics.validate.report import Check, Part, Report, make_check, troubles_of
+from my_robot_basics.validate.report import (
+    CheckFeedback,
+    ExerciseFeedback,
+    Report,
+    make_check,
+    troubles_of,
+)
 from my_robot_basics.validate.rooms import Rooms, Say
 from my_robot_basics.validate.short_budget import ShortBudget
 from my_robot_basics.validate.together import together
@@ -49,7 +55,7 @@ class _Run:
     places: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(SIDE_BY_SIDE))
     budget: ShortBudget = field(default_factory=ShortBudget)
 
-    async def part(self, exercise: Exercise) -> Part:
+    async def part(self, exercise: Exercise) -> ExerciseFeedback:
         """Judge an exercise by the checks that can be run, when its turn comes."""
         judged = Judged({}, {})
         runnable = tuple(i for i in exercise.grades if _can_run(self.lesson, i))
@@ -78,36 +84,36 @@ def _can_run(lesson: Lesson, index: int) -> bool:
     return name not in lesson.altered and lesson.hidden.get(name) != 'all'
 
 
-def _part(lesson: Lesson, exercise: Exercise, judged: Judged) -> Part:
+def _part(lesson: Lesson, exercise: Exercise, judged: Judged) -> ExerciseFeedback:
     checks = []
     for index in exercise.grades:
         verdict, outputs = judged.checks.get(index, (None, []))
         checks.append(make_check(lesson, lesson.notebook.cells[index], verdict, outputs))
     verdicts = [verdict for verdict, _ in judged.checks.values()]
-    return Part(exercise.name, troubles_of(verdicts), tuple(checks))
+    return ExerciseFeedback(exercise.name, troubles_of(verdicts), tuple(checks))
 
 
-def _by_hand(lesson: Lesson) -> list[Part]:
+def _by_hand(lesson: Lesson) -> list[ExerciseFeedback]:
     """Tell of the answers that a person reads."""
     written = [c for c in lesson.notebook.cells if role(c) == 'answer' and _has_points(c)]
-    checks: list[Check] = [make_check(lesson, cell, None, []) for cell in written]
-    return [Part(check.name, (), (check,)) for check in checks]
+    checks: list[CheckFeedback] = [make_check(lesson, cell, None, []) for cell in written]
+    return [ExerciseFeedback(check.name, (), (check,)) for check in checks]
 
 
-def _without_exercise(lesson: Lesson, told: set[str]) -> list[Part]:
+def _without_exercise(lesson: Lesson, told: set[str]) -> list[ExerciseFeedback]:
     """Tell of the checks whose answer cell, or what begins their exercise, was taken away."""
     cells = [c for c in lesson.notebook.cells if role(c) == 'grade' and grade_id(c) not in told]
     checks = [make_check(lesson, cell, None, []) for cell in cells]
-    return [Part(check.name, (), (check,)) for check in checks]
+    return [ExerciseFeedback(check.name, (), (check,)) for check in checks]
 
 
-def _missing(lesson: Lesson) -> list[Part]:
+def _missing(lesson: Lesson) -> list[ExerciseFeedback]:
     checks = [
-        Check(name, name, points, 'not checked', is_partly_hidden=False)
+        CheckFeedback(name, name, points, 'not checked', is_partly_hidden=False)
         for name, points in lesson.missing.items()
         if points
     ]
-    return [Part(check.name, (), (check,)) for check in checks]
+    return [ExerciseFeedback(check.name, (), (check,)) for check in checks]
 
 
 def _has_points(cell: NotebookNode) -> bool:
