@@ -63,7 +63,7 @@ class Row:
 
 
 @dataclass(frozen=True)
-class _Assignment:
+class _PreparedAssignment:
     """What the submissions of one assignment have in common."""
 
     template: AssignmentTemplate
@@ -121,7 +121,7 @@ def grade_all(
 
 def _prepare(
     course: Course, submissions: Sequence[SubmissionFolder], *, seed: str, isolated: bool
-) -> dict[str, _Assignment]:
+) -> dict[str, _PreparedAssignment]:
     """Bring the gradebook in order, and return what each assignment is graded by."""
     deadlines(course.gradebook, course.assignments())  # what is wrong with them is said now
     prepared = {}
@@ -129,7 +129,7 @@ def _prepare(
         bring_in_order(course)
         for name in sorted({each.assignment for each in submissions if not each.problem}):
             register(course, name)
-            prepared[name] = _Assignment(
+            prepared[name] = _PreparedAssignment(
                 template=prepared_template(course, name),
                 seed_of=(lambda _: seed) if seed else course.seeds(name),
                 conditions=conditions(course, name, isolated=isolated),

@@ -18,7 +18,7 @@ WRITTEN = 'a written answer that a person reads'
 
 
 @dataclass(frozen=True)
-class Check:
+class CheckStatistics:
     """How a class did in one graded cell."""
 
     grade_id: str
@@ -44,7 +44,7 @@ class Check:
 
 
 @dataclass(frozen=True)
-class Assignment:
+class AssignmentStatistics:
     """How a class did in one assignment."""
 
     name: str
@@ -53,7 +53,7 @@ class Assignment:
     max_score: float
     scores: tuple[float, ...]
     """Of each student, the lowest first; what waits for a person counts 0."""
-    checks: tuple[Check, ...]
+    checks: tuple[CheckStatistics, ...]
 
     @property
     def mean(self) -> float:
@@ -70,14 +70,14 @@ class Assignment:
 class Tally:
     """What one run says of a class; everything that students wrote is printable text."""
 
-    assignments: tuple[Assignment, ...]
+    assignments: tuple[AssignmentStatistics, ...]
     reasons: tuple[Reason, ...]
     """Why points are missing, the most common reason first."""
     looks: tuple[Reason, ...]
     """Why a person should look, and at whose submissions; what is only to be read comes last."""
 
     @property
-    def hardest(self) -> list[tuple[str, Check]]:
+    def hardest(self) -> list[tuple[str, CheckStatistics]]:
         """Return assignment and check where anybody missed points, most of the class first."""
         missed = [
             (each.name, check)
@@ -109,7 +109,7 @@ def _assignments(
     whose: dict[tuple, Row],
     of_cells: dict[tuple, list[Record]],
     failures: list[Said],
-) -> Iterable[Assignment]:
+) -> Iterable[AssignmentStatistics]:
     for name in sorted({assignment for _, assignment in whose}):
         stored = [
             row.stored
@@ -125,7 +125,7 @@ def _assignments(
             if failure.assignment == name:
                 said[failure.grade_id].append(failure)
         ids = dict.fromkeys(r.grade_id for r in cells if r.max_score)
-        yield Assignment(
+        yield AssignmentStatistics(
             name=name,
             version=course.version(name)[:12],
             max_score=max(each.max_score for each in stored),
@@ -137,12 +137,12 @@ def _assignments(
         )
 
 
-def _check(cells: list[Record], title: str | None, failures: list[Said]) -> Check:
+def _check(cells: list[Record], title: str | None, failures: list[Said]) -> CheckStatistics:
     scored = [record for record in cells if record.score is not None]
     passed = sum(
         record.score is not None and record.score >= record.max_score for record in scored
     )
-    return Check(
+    return CheckStatistics(
         grade_id=cells[0].grade_id,
         title=title or '',
         points=cells[0].max_score,
