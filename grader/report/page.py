@@ -16,7 +16,7 @@ from pygments.lexers import PythonLexer
 from grader.common.text import visible
 from grader.kernels.isolation import NO_SANDBOX
 from grader.notebook.restore import KEY
-from grader.report.page_parts import find_parts
+from grader.report.page_parts import find_sections
 from grader.report.templates import template
 
 _TAGS = {'p', 'em', 'strong', 'code', 'pre', 'ul', 'ol', 'li', 'blockquote', 'h4', 'br', 'table'}
@@ -34,7 +34,7 @@ def page(as_json: dict, about: dict, plain: str = '') -> str:
     why text and code are shown as they were typed. All of it is JSON.
     """
     notebook = nbformat.from_dict(as_json)
-    parts, others = find_parts(notebook)
+    parts, others = find_sections(notebook)
     ours = notebook.metadata.get(KEY, {})
     problem = ours.get('problem', '')
     return _template(is_plain=bool(plain)).render(

@@ -53,8 +53,8 @@ class CheckedCell:
 
 
 @dataclass
-class Part:
-    """An answer, its outputs, and its checks."""
+class PageSection:
+    """An exercise on the page: its answer, its outputs, and its checks."""
 
     name: str
     answer: str = ''
@@ -64,14 +64,16 @@ class Part:
     comment: str = ''
 
 
-def find_parts(notebook: NotebookNode) -> tuple[list[Part], list[tuple[str, list[Piece]]]]:
+def find_sections(
+    notebook: NotebookNode,
+) -> tuple[list[PageSection], list[tuple[str, list[Piece]]]]:
     """Return the exercises, and the other cells that put something out."""
-    parts, others = [Part('')], []
+    parts, others = [PageSection('')], []
     for cell in notebook.cells:
         kind, name = role(cell), grade_id(cell) or ''
         if kind == 'answer':
             marks = cell.metadata.nbgrader
-            parts.append(Part(name, cell.source, cell.cell_type == 'markdown'))
+            parts.append(PageSection(name, cell.source, cell.cell_type == 'markdown'))
             parts[-1].comment = marks.get('comment') or ''
             parts[-1].pieces += _pieces(cell)
             if marks.get('grade'):
