@@ -9,7 +9,7 @@ import psutil
 import pytest
 
 from grader.kernels import fork_servers
-from grader.kernels.kernels import Kernel
+from grader.kernels.kernels import GradingKernel
 from grader.sandbox.sandbox import Sandbox
 
 FIRST_SLOT = 1000 + os.getpid() % 400 * 100
@@ -23,7 +23,7 @@ async def opened(*, room='student', seed='', fresh=False):
     """Return a sandbox and a kernel in it; it is forked, unless it has to be started `fresh`."""
     sandbox = Sandbox(slot=next(SLOTS))
     await sandbox.open()
-    kernel = Kernel(room=room, domain_id=DOMAIN, seed=seed, place=sandbox.place(room))
+    kernel = GradingKernel(room=room, domain_id=DOMAIN, seed=seed, place=sandbox.place(room))
     with pytest.MonkeyPatch.context() as patch:
         if fresh:
             patch.setitem(fork_servers._unfit, room, 'the test says so')

@@ -14,7 +14,7 @@ from forked_kernels import DOMAIN, SLOTS, closed, opened
 
 from grader.common.errors import RoomFailure
 from grader.kernels import fork_servers
-from grader.kernels.kernels import Kernel
+from grader.kernels.kernels import GradingKernel
 from grader.sandbox import cgroups as module
 from grader.sandbox.cgroup_hierarchies import NoCgroups, hierarchies
 from grader.sandbox.cgroups import MemoryEvents, joining, remove_cgroup
@@ -57,7 +57,9 @@ def kernels(request, loop, sandbox):
             for room in ('student', 'test'):
                 if request.param == 'started':
                     patch.setitem(fork_servers._unfit, room, 'the test says so')
-                kernels[room] = Kernel(room=room, domain_id=DOMAIN, place=sandbox.place(room))
+                kernels[room] = GradingKernel(
+                    room=room, domain_id=DOMAIN, place=sandbox.place(room)
+                )
                 await kernels[room].start()
                 assert bool(kernels[room].why_not_warm) is (request.param == 'started')
         return kernels
@@ -120,7 +122,7 @@ for _ in range(500):
 def test_memory_of_all_kinds_is_counted_and_only_the_room_pays(loop, monkeypatch, code):
     monkeypatch.setattr(module, 'ROOM_MEMORY_BYTES', LIMIT)
     sandbox, student = loop.run(opened())
-    test = Kernel(room='test', domain_id=DOMAIN, place=sandbox.place('test'))
+    test = GradingKernel(room='test', domain_id=DOMAIN, place=sandbox.place('test'))
     loop.run(test.start())
     rooms = [sandbox.cgroup(room) for room in ('student', 'test')]
     assert [room.memory_limit_bytes for room in rooms] == [LIMIT, LIMIT]

@@ -250,8 +250,8 @@ FAILURES = {
 def test_the_graders_own_failure_is_tried_again_and_then_left_to_a_person(
     monkeypatch, checks, outcome, opened
 ):
-    rooms = type('Rooms', (FakeRooms,), {'checks': list(checks)})
-    monkeypatch.setattr(module, 'Rooms', rooms)
+    rooms = type('GradingRooms', (FakeRooms,), {'checks': list(checks)})
+    monkeypatch.setattr(module, 'GradingRooms', rooms)
     execution = execute(handed_in(lesson('a'), a=GOOD))
     verdict = execution.verdicts[0]
     assert (verdict.outcome, rooms.opened) == (outcome, opened)
@@ -294,8 +294,8 @@ def test_what_others_may_be_to_blame_for_is_looked_at_again_and_burning_time_gai
         return others_crowd
 
     monkeypatch.setattr(second_look, 'others_crowd', answer)
-    rooms = type('Rooms', (FakeRooms,), {'checks': deepcopy(checks), 'used_sec': used_sec})
-    monkeypatch.setattr(module, 'Rooms', rooms)
+    rooms = type('GradingRooms', (FakeRooms,), {'checks': deepcopy(checks), 'used_sec': used_sec})
+    monkeypatch.setattr(module, 'GradingRooms', rooms)
     execution = execute(handed_in(lesson('a'), a=GOOD))
     verdict = execution.verdicts[0]
     assert (verdict.outcome, rooms.opened) == (outcome, opened)
@@ -312,8 +312,8 @@ def test_others_crowd_a_machine_only_where_processes_wait_without_the_answer(mon
 
 
 def test_a_failure_in_one_exercise_leaves_the_others_their_verdicts(monkeypatch):
-    rooms = type('Rooms', (FakeRooms,), {'checks': [DEAD, DEAD, ended()]})
-    monkeypatch.setattr(module, 'Rooms', rooms)
+    rooms = type('GradingRooms', (FakeRooms,), {'checks': [DEAD, DEAD, ended()]})
+    monkeypatch.setattr(module, 'GradingRooms', rooms)
     execution = execute(handed_in(lesson('a', 'b')))
     assert outcomes(execution) == {'a-check': 'ungraded', 'b-check': 'passed', 'why': 'manual'}
 
@@ -328,7 +328,7 @@ def test_a_check_with_a_defect_is_ungraded_and_quotes_nothing():
 
 
 def test_a_notebook_that_could_not_be_read_fails_without_running(monkeypatch):
-    monkeypatch.setattr(module, 'Rooms', None)
+    monkeypatch.setattr(module, 'GradingRooms', None)
     notebook = handed_in(lesson('a', 'b'))
     notebook.metadata[KEY] = {'notes': ['damaged'], 'problem': 'damaged'}
     execution = execute(notebook)
@@ -352,7 +352,7 @@ def test_student_cells_share_one_budget(monkeypatch):
             await asyncio.sleep(min(timeout_sec, 0.2) if 'loop' in source else 0)
             return CellRun(status='ok')
 
-    monkeypatch.setattr(module, 'Rooms', Slow)
+    monkeypatch.setattr(module, 'GradingRooms', Slow)
     monkeypatch.setattr(module, 'Budget', lambda: budget.Budget(0.5))
     execute(handed_in(lesson('a', 'b', 'c'), a='loop', b='loop', c='loop'))
     assert given == sorted(given, reverse=True)
@@ -361,7 +361,7 @@ def test_student_cells_share_one_budget(monkeypatch):
 
 
 def test_it_works_inside_a_running_event_loop(monkeypatch):
-    monkeypatch.setattr(module, 'Rooms', type('R', (FakeRooms,), {'checks': [ended()]}))
+    monkeypatch.setattr(module, 'GradingRooms', type('R', (FakeRooms,), {'checks': [ended()]}))
 
     async def formgrader():
         return execute(handed_in(lesson('a')))
@@ -388,7 +388,7 @@ def test_ctrl_c_closes_the_rooms_and_ends(monkeypatch, inside_a_loop):
             time.sleep(0.01)
         os.kill(os.getpid(), signal.SIGINT)
 
-    monkeypatch.setattr(module, 'Rooms', Endless)
+    monkeypatch.setattr(module, 'GradingRooms', Endless)
     threading.Thread(target=interrupt).start()
 
     async def formgrader():
@@ -402,7 +402,7 @@ def test_ctrl_c_closes_the_rooms_and_ends(monkeypatch, inside_a_loop):
 
 
 def test_the_real_rooms_are_used_unless_a_test_says_otherwise():
-    assert module.Rooms is rooms_module.Rooms
+    assert module.GradingRooms is rooms_module.GradingRooms
 
 
 def test_a_notebook_keeps_so_much_output_and_says_so_of_the_rest():

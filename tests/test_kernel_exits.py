@@ -18,7 +18,7 @@ from grader.judging import execute as module
 from grader.judging.execute import execute
 from grader.kernels import fork_servers
 from grader.kernels.kernel_exits import Doing, Ending
-from grader.kernels.rooms import Rooms
+from grader.kernels.rooms import GradingRooms
 from grader.sandbox import cgroups
 from grader.sandbox.cgroup_hierarchies import NoCgroups, hierarchies
 from grader.sandbox.cgroups import MemoryEvents, remove_cgroup
@@ -74,7 +74,7 @@ def strike(monkeypatch, hit, *, when, delay_sec=0.5, times=2):
     """Let `hit` do something to a student's kernel, from outside, while something runs."""
     opened = []
 
-    class Struck(Rooms):
+    class Struck(GradingRooms):
         async def run_student_cell(self, source, *, timeout_sec):
             return await self._struck(
                 'cell' if 'time.sleep' in source else '',
@@ -92,7 +92,7 @@ def strike(monkeypatch, hit, *, when, delay_sec=0.5, times=2):
                 loop.call_later(delay_sec, hit, psutil.Process(pid))
             return await work
 
-    monkeypatch.setattr(module, 'Rooms', Struck)
+    monkeypatch.setattr(module, 'GradingRooms', Struck)
     return opened
 
 

@@ -27,7 +27,7 @@ from nbformat.v4 import new_code_cell
 from grader.common.errors import RoomFailure
 from grader.kernels import kernels
 from grader.kernels.kernel_manager import OurKernelSpec
-from grader.kernels.kernels import Kernel
+from grader.kernels.kernels import GradingKernel
 
 DOMAIN = 0
 """No kernel of this module makes a node."""
@@ -42,7 +42,7 @@ def loop():
 @pytest.fixture(scope='module')
 def shared(loop):
     """A kernel for cells that do it no harm."""
-    kernel = Kernel(room='student', domain_id=DOMAIN)
+    kernel = GradingKernel(room='student', domain_id=DOMAIN)
     loop.run(kernel.start())
     yield kernel
     loop.run(kernel.stop())
@@ -60,7 +60,7 @@ def spares(loop):
 @pytest.fixture
 def spare(loop, spares):
     """A kernel for a cell that leaves nothing in it: where it lives on, the next test has it."""
-    kernel = spares.pop() if spares else Kernel(room='student', domain_id=DOMAIN)
+    kernel = spares.pop() if spares else GradingKernel(room='student', domain_id=DOMAIN)
     if not kernel.alive:
         loop.run(kernel.start())
     yield kernel
@@ -73,7 +73,7 @@ def spare(loop, spares):
 @pytest.fixture
 def own(loop):
     """A kernel of one test's own."""
-    kernel = Kernel(room='student', domain_id=DOMAIN)
+    kernel = GradingKernel(room='student', domain_id=DOMAIN)
     loop.run(kernel.start())
     yield kernel
     loop.run(kernel.stop())
@@ -442,7 +442,7 @@ def test_a_thread_that_will_not_end_does_not_keep_a_kernel(own, loop, run):
 def test_a_kernel_leaves_no_file_and_no_descriptor(loop, run):
     before = None
     for _ in range(2):
-        kernel = Kernel(room='test', domain_id=DOMAIN, seed='ab')
+        kernel = GradingKernel(room='test', domain_id=DOMAIN, seed='ab')
         loop.run(kernel.start())
         assert run(kernel, "open('left.txt', 'w').write('x')").ran_to_end
         loop.run(kernel.stop())
@@ -469,7 +469,7 @@ def test_a_kernel_is_told_only_what_its_room_may_know(loop, run, monkeypatch, ro
     }
     for name, value in forbidden.items():
         monkeypatch.setenv(name, value)
-    kernel = Kernel(room=room, domain_id=5, seed='abcd')
+    kernel = GradingKernel(room=room, domain_id=5, seed='abcd')
     loop.run(kernel.start())
     try:
         seen = environment(run, kernel)
@@ -492,7 +492,7 @@ def test_a_kernel_works_in_an_empty_folder_and_imports_nothing_from_it(shared, r
     [(['/bin/false'], 'its process ended'), (['/nowhere/python'], 'No such file')],
 )
 def test_a_kernel_that_does_not_start_is_the_graders_failure(loop, monkeypatch, argv, why):
-    kernel = Kernel(room='test', domain_id=DOMAIN)
+    kernel = GradingKernel(room='test', domain_id=DOMAIN)
     spec = KernelSpec(argv=argv, language='python')
     monkeypatch.setattr(OurKernelSpec, 'get_kernel_spec', lambda self, name: spec)
     with pytest.raises(RoomFailure, match=f'the test kernel did not start: .*{why}'):
@@ -502,7 +502,7 @@ def test_a_kernel_that_does_not_start_is_the_graders_failure(loop, monkeypatch, 
 
 def test_a_kernel_that_never_answers_is_given_up(loop, monkeypatch):
     monkeypatch.setattr(kernels, 'START_TIMEOUT_SEC', 0.3)
-    kernel = Kernel(room='test', domain_id=DOMAIN)
+    kernel = GradingKernel(room='test', domain_id=DOMAIN)
     spec = KernelSpec(argv=['sleep', '1000'], language='python')
     monkeypatch.setattr(OurKernelSpec, 'get_kernel_spec', lambda self, name: spec)
     with pytest.raises(RoomFailure, match='the test kernel did not start: TimeoutError'):
@@ -525,7 +525,7 @@ def test_cancelling_a_cell_leaves_a_kernel_that_can_be_stopped(own, loop):
 
 def test_a_long_path_for_temporary_files_is_not_used_for_sockets(monkeypatch, tmp_path):
     monkeypatch.setattr(tempfile, 'tempdir', str(tmp_path / ('x' * 100)))
-    kernel = Kernel(room='student', domain_id=DOMAIN)
+    kernel = GradingKernel(room='student', domain_id=DOMAIN)
     try:
         assert len(f'{kernel.place.sockets}/zmq-10') < 107
     finally:

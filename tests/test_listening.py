@@ -5,7 +5,7 @@ import asyncio
 import pytest
 
 from grader.kernels import fork_servers
-from grader.kernels.rooms import Rooms
+from grader.kernels.rooms import GradingRooms
 
 pytestmark = pytest.mark.isolation
 
@@ -37,7 +37,7 @@ def rooms(request):
         if request.param == 'started':
             for room in ('student', 'test'):
                 patch.setitem(fork_servers._unfit, room, 'the test says so')
-        opened = Rooms()
+        opened = GradingRooms()
         loop.run(opened.__aenter__())
         yield lambda code: printed(loop.run(opened.run_student_cell(code, timeout_sec=30.0)))
         loop.run(opened.__aexit__())

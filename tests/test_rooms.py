@@ -15,7 +15,7 @@ from my_robot_basics.validate.outputs import CellRun
 from grader.common.errors import RoomFailure
 from grader.kernels import rooms as module
 from grader.kernels.isolation import require_isolation
-from grader.kernels.rooms import Rooms
+from grader.kernels.rooms import GradingRooms
 
 IMPORT = 'from my_robot_basics.checks import student\n'
 BURN = """
@@ -53,7 +53,7 @@ def shared(loop, tmp_path_factory):
     ):
         (folder / f'{name}.py').write_text('raise SystemExit("shadowed")')
     (folder / 'helper.py').write_text('WHERE = "my own helper"')
-    rooms = Rooms(
+    rooms = GradingRooms(
         extra_files=sorted(folder.glob('*.py')), seed='beef', isolated=require_isolation()
     )
     loop.run(rooms.__aenter__())
@@ -64,7 +64,7 @@ def shared(loop, tmp_path_factory):
 @pytest.fixture
 def rooms(loop):
     """Rooms of one test's own."""
-    rooms = Rooms(seed='beef', isolated=require_isolation())
+    rooms = GradingRooms(seed='beef', isolated=require_isolation())
     loop.run(rooms.__aenter__())
     yield rooms
     loop.run(rooms.__aexit__())
@@ -124,7 +124,7 @@ def test_own_modules_are_not_there_before_the_probe(loop, student, tmp_path):
     """Some that libraries look for, and do without: they would end the kernel."""
     for name in ('regex', 'atomicwrites', 'future_builtins', 'nothing_else'):
         (tmp_path / f'{name}.py').write_text('import os; os._exit(0)')
-    rooms = Rooms(extra_files=sorted(tmp_path.glob('*.py')), isolated=False)
+    rooms = GradingRooms(extra_files=sorted(tmp_path.glob('*.py')), isolated=False)
     loop.run(rooms.__aenter__())
     assert said(student(rooms, 'print(1)')) == '1\n'
     assert student(rooms, 'import nothing_else').died
@@ -372,7 +372,11 @@ def test_rooms_that_do_not_open_are_the_graders_failure(
     (tmp_path / 'a.py').write_text('')
     monkeypatch.setattr(places[what], what, fail)
     with pytest.raises(RoomFailure, match=why):
-        loop.run(Rooms(extra_files=[tmp_path / 'a.py'], isolated=require_isolation()).__aenter__())
+        loop.run(
+            GradingRooms(
+                extra_files=[tmp_path / 'a.py'], isolated=require_isolation()
+            ).__aenter__()
+        )
     assert left() == NOTHING
 
 
@@ -393,7 +397,7 @@ def test_a_room_that_is_not_made_ready_closes_both(loop, monkeypatch, left, code
     monkeypatch.setattr(module, 'TEST_HEARS', hears)
     monkeypatch.setattr(module, 'SETUP_TIMEOUT_SEC', 3600.0)
     with pytest.raises(RoomFailure, match=why):
-        loop.run(Rooms(isolated=require_isolation()).__aenter__())
+        loop.run(GradingRooms(isolated=require_isolation()).__aenter__())
     assert left() == NOTHING
 
 
@@ -411,7 +415,7 @@ def test_a_student_who_prefers_shared_memory_is_heard_too(rooms, student, check)
 
 def test_cancelling_while_rooms_open_closes_them(loop, left):
     async def cancelled():
-        task = asyncio.ensure_future(Rooms(isolated=require_isolation()).__aenter__())
+        task = asyncio.ensure_future(GradingRooms(isolated=require_isolation()).__aenter__())
         while left()[0] < 2:
             await asyncio.sleep(0.05)
         task.cancel()
@@ -424,7 +428,7 @@ def test_cancelling_while_rooms_open_closes_them(loop, left):
 
 @pytest.mark.parametrize('closed', [pytest.param(True, marks=pytest.mark.isolation), False])
 def test_rooms_leave_nothing(loop, left, closed):
-    rooms = Rooms(isolated=closed)
+    rooms = GradingRooms(isolated=closed)
 
     async def once():
         async with rooms:
@@ -455,7 +459,7 @@ def test_only_the_literal_of_one_string_is_read(text, is_string):
         return result
 
     answering.run = run
-    rooms = Rooms()
+    rooms = GradingRooms()
     rooms._student = answering
     reply = asyncio.run(rooms._ask_student('{}'))
     if is_string:

@@ -16,7 +16,7 @@ import pytest
 
 from grader.common.errors import RoomFailure
 from grader.course import ROOT
-from grader.kernels.kernels import Kernel
+from grader.kernels.kernels import GradingKernel
 from grader.sandbox import bubblewrap, cgroups, memory_watch
 from grader.sandbox import sandbox as module
 from grader.sandbox.bubblewrap import FIRST_USER, slot_user
@@ -78,7 +78,7 @@ def inside(request, loop):
     """Return what Python printed in a room: a process of its own, or a kernel that was forked."""
 
     async def in_a_kernel(sandbox, code, room):
-        kernel = Kernel(room=room, domain_id=0, place=sandbox.place(room))
+        kernel = GradingKernel(room=room, domain_id=0, place=sandbox.place(room))
         await kernel.start()
         assert kernel.why_not_warm == ''
         ran = await kernel.run(code, timeout_sec=120.0)
@@ -629,9 +629,9 @@ def as_ordinary_user(home, code):
 @pytest.mark.skipif(os.geteuid() != 0, reason='we are an ordinary user')
 def test_an_ordinary_user_has_the_same_sandbox(tmp_path_factory):
     code = """
-from grader.kernels.rooms import Rooms
+from grader.kernels.rooms import GradingRooms
 async def main():
-    async with Rooms() as rooms:
+    async with GradingRooms() as rooms:
         run = await rooms.run_student_cell('import os; print(os.getuid()); x = 7', timeout_sec=60)
         print(run.outputs[0].text.strip())
         run = await rooms.run_check(
@@ -659,12 +659,12 @@ def test_files_on_their_way_in_one_room_stop_none_elsewhere(tmp_path_factory):
     code = f"""
 import resource
 resource.setrlimit(resource.RLIMIT_NOFILE, (1_024, 4_096))  # as for a login
-from grader.kernels.rooms import Rooms
+from grader.kernels.rooms import GradingRooms
 async def main():
-    async with Rooms() as rooms:
+    async with GradingRooms() as rooms:
         run = await rooms.run_student_cell({UNDER_WAY!r}, timeout_sec=60)
         print(run.outputs[0].text.strip())
-        async with Rooms() as others:
+        async with GradingRooms() as others:
             run = await others.run_student_cell('print("fine")', timeout_sec=60)
             print(run.outputs[0].text.strip())
 """

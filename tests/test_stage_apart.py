@@ -9,7 +9,7 @@ import json
 import pytest
 
 from grader.kernels.isolation import require_isolation
-from grader.kernels.rooms import Rooms
+from grader.kernels.rooms import GradingRooms
 
 pytestmark = pytest.mark.isolation
 
@@ -63,7 +63,7 @@ print(topic('/mine').wait_for(timeout_sec=20.0).data)
 
 
 async def intruded():
-    async with Rooms(isolated=require_isolation()) as rooms:
+    async with GradingRooms(isolated=require_isolation()) as rooms:
         assert (await rooms.run_student_cell(INTRUDER, timeout_sec=30.0)).ran_to_end
         meets = await rooms.run_check(MEETS)
         late = await rooms.run_check(LATE)

@@ -11,7 +11,7 @@ from my_robot_basics.validate import run
 from my_robot_basics.validate.errors import RoomFailure
 from my_robot_basics.validate.forks import ForkServer
 from my_robot_basics.validate.judging import Judged
-from my_robot_basics.validate.kernel import Kernel
+from my_robot_basics.validate.kernel import LocalKernel
 
 NOTHING_SHARED = """
 import importlib, threading
@@ -38,7 +38,7 @@ def in_kernels(server, tmp_path, use, number=1):
     """What comes of using so many kernels, one after the other."""
 
     async def one(name):
-        kernel = Kernel(tmp_path / name, {'FOO': name}, server)
+        kernel = LocalKernel(tmp_path / name, {'FOO': name}, server)
         try:
             await kernel.start()
             return await use(kernel)

@@ -95,7 +95,7 @@ def test_what_validate_fails_in_itself_is_no_fault_of_an_answer(monkeypatch, tmp
         async def __aexit__(self, *_):
             pass
 
-    monkeypatch.setattr(run, 'Rooms', NoRooms)
+    monkeypatch.setattr(run, 'LocalRooms', NoRooms)
     told = asyncio.run(run.validate(answered('07_common_errors', tmp_path), None))
     assert [check.outcome for check in told.checks] == ['not checked'] * 3
     assert told.checks[0].message == (

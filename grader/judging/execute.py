@@ -17,7 +17,7 @@ from nbformat import NotebookNode
 from grader.common.pool import Pool
 from grader.judging.local_paths import hide_local_paths
 from grader.kernels.isolation import require_isolation
-from grader.kernels.rooms import Rooms
+from grader.kernels.rooms import GradingRooms
 
 
 @dataclass(frozen=True)
@@ -59,8 +59,10 @@ class _Task:
     budget: Budget
     room: _Room = field(default_factory=_Room)
 
-    def rooms(self, doubts: list[str]) -> Rooms:
-        return Rooms(extra_files=self.files, seed=self.seed, isolated=self.isolated, doubts=doubts)
+    def rooms(self, doubts: list[str]) -> GradingRooms:
+        return GradingRooms(
+            extra_files=self.files, seed=self.seed, isolated=self.isolated, doubts=doubts
+        )
 
     def write(self, index: int, verdict: Verdict, outputs: Sequence[NotebookNode]) -> Verdict:
         write_verdict(self.notebook.cells[index], verdict, outputs)

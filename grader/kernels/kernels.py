@@ -25,7 +25,7 @@ _END_SEC = 1.0
 """A process whose sockets are closed is gone after so long, if it is ending."""
 
 
-class Kernel:
+class GradingKernel:
     """One kernel in an empty folder of its own; everything of it goes with stop()."""
 
     def __init__(
@@ -54,7 +54,7 @@ class Kernel:
         """Why a kernel in a sandbox was started and not forked; '' where it was."""
         return self._in_sandbox().why_not_warm
 
-    async def start(self) -> 'Kernel':
+    async def start(self) -> 'GradingKernel':
         """Start the kernel and wait until its outputs are received; raises RoomFailure."""
         try:
             await launch(self._manager, self.place, self.room, self._environment)

@@ -19,14 +19,14 @@ from my_robot_basics.validate.questions import (
 
 from grader.common.errors import RoomFailure
 from grader.kernels.kernel_exits import Doing, signal_name, whose_memory
-from grader.kernels.kernels import Kernel
+from grader.kernels.kernels import GradingKernel
 from grader.sandbox.cgroups import MemoryEvents
 from grader.sandbox.sandbox import Sandbox
 
 SETUP_TIMEOUT_SEC = 60.0
 
 
-class Rooms:
+class GradingRooms:
     """A student room and a test room for one exercise; `async with` starts and ends them."""
 
     def __init__(
@@ -48,10 +48,10 @@ class Rooms:
         self._isolated = isolated
         self._sandbox: Sandbox | None = None
         self._claim: Claim | None = None
-        self._kernels: list[Kernel] = []
+        self._kernels: list[GradingKernel] = []
         self._doubts = [] if doubts is None else doubts
 
-    async def __aenter__(self) -> 'Rooms':
+    async def __aenter__(self) -> 'GradingRooms':
         """Start both kernels, and see a message cross from one to the other."""
         try:
             await self._open()
@@ -144,10 +144,10 @@ class Rooms:
         self._student = self._kernel('student')
         self._test = self._kernel('test', seed=self._seed)
 
-    def _kernel(self, room: str, *, seed: str = '') -> Kernel:
+    def _kernel(self, room: str, *, seed: str = '') -> GradingKernel:
         place = self._sandbox.place(room) if self._sandbox else None
         assert self._claim is not None  # from _open
-        kernel = Kernel(room=room, domain_id=self._claim.domain_id, seed=seed, place=place)
+        kernel = GradingKernel(room=room, domain_id=self._claim.domain_id, seed=seed, place=place)
         self._kernels.append(kernel)
         return kernel
 
@@ -170,7 +170,7 @@ class Rooms:
         await self._test.start()
         await self._prepare(self._test, TEST_HEARS)
 
-    async def _prepare(self, kernel: Kernel, code: str) -> None:
+    async def _prepare(self, kernel: GradingKernel, code: str) -> None:
         run = await kernel.run(code, timeout_sec=SETUP_TIMEOUT_SEC)
         if not run.ran_to_end:
             seen = run.error.evalue if run.error else 'it did not end'

@@ -67,24 +67,24 @@ class PageSection:
 def find_sections(
     notebook: NotebookNode,
 ) -> tuple[list[PageSection], list[tuple[str, list[Piece]]]]:
-    """Return the exercises, and the other cells that put something out."""
-    parts, others = [PageSection('')], []
+    """Return the exercises, and the other cells that have outputs."""
+    sections, others = [PageSection('')], []
     for cell in notebook.cells:
         kind, name = role(cell), grade_id(cell) or ''
         if kind == 'answer':
             marks = cell.metadata.nbgrader
-            parts.append(PageSection(name, cell.source, cell.cell_type == 'markdown'))
-            parts[-1].comment = marks.get('comment') or ''
-            parts[-1].pieces += _pieces(cell)
+            sections.append(PageSection(name, cell.source, cell.cell_type == 'markdown'))
+            sections[-1].comment = marks.get('comment') or ''
+            sections[-1].pieces += _pieces(cell)
             if marks.get('grade'):
-                parts[-1].checks.append(_check(cell))
+                sections[-1].checks.append(_check(cell))
         elif kind == 'grade':
-            parts[-1].checks.append(_check(cell))
-        elif kind == 'locked' and name.startswith(f'{parts[-1].name}-'):
-            parts[-1].pieces += _pieces(cell)
+            sections[-1].checks.append(_check(cell))
+        elif kind == 'locked' and name.startswith(f'{sections[-1].name}-'):
+            sections[-1].pieces += _pieces(cell)
         elif cell.cell_type == 'code' and cell.get('outputs'):
             others.append((cell.source, list(_pieces(cell))))
-    return parts, others
+    return sections, others
 
 
 def _check(cell: NotebookNode) -> CheckedCell:

@@ -25,8 +25,8 @@ from sample_class import PATHS, assignment_of, grade
 
 from grader.course import Course
 from grader.judging.execute import execute
-from grader.kernels.kernels import Kernel
-from grader.kernels.rooms import Rooms
+from grader.kernels.kernels import GradingKernel
+from grader.kernels.rooms import GradingRooms
 from grader.notebook.restore import restore, role
 from grader.storage.pipeline import prepare
 from grader.storage.registering import register
@@ -60,11 +60,11 @@ def timed(part: str, method: Callable[..., Awaitable]) -> Callable[..., Awaitabl
 
 def watch_the_rooms() -> None:
     """Let every part of a grading be timed."""
-    Kernel.start = timed('start', Kernel.start)
-    Rooms.__aenter__ = timed('open', Rooms.__aenter__)
-    Rooms.run_student_cell = timed('student cells', Rooms.run_student_cell)
-    Rooms.run_check = timed('checks', Rooms.run_check)
-    Rooms.__aexit__ = timed('stop', Rooms.__aexit__)
+    GradingKernel.start = timed('start', GradingKernel.start)
+    GradingRooms.__aenter__ = timed('open', GradingRooms.__aenter__)
+    GradingRooms.run_student_cell = timed('student cells', GradingRooms.run_student_cell)
+    GradingRooms.run_check = timed('checks', GradingRooms.run_check)
+    GradingRooms.__aexit__ = timed('stop', GradingRooms.__aexit__)
 
 
 def seconds(work: Callable[..., object], *args: object) -> float:

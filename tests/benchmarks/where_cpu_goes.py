@@ -21,7 +21,7 @@ from sample_class import PATHS, assignment_of
 
 from grader.judging.execute import execute_exercises
 from grader.kernels.isolation import require_isolation
-from grader.kernels.kernels import Kernel
+from grader.kernels.kernels import GradingKernel
 from grader.notebook.restore import restore
 from grader.notebook.submission import read_submission
 from grader.storage.database import one_engine
@@ -45,7 +45,7 @@ before: dict[int, float] = {}
 """What each kernel had used when it was looked at last, by its process ID."""
 
 
-def note(kernel: Kernel, part: str) -> None:
+def note(kernel: GradingKernel, part: str) -> None:
     """Count for a part what a kernel has used since it was looked at last."""
     provisioner = kernel._manager.provisioner
     if not kernel._manager.has_kernel or not hasattr(provisioner.process, '_kernel'):
@@ -63,9 +63,9 @@ def note(kernel: Kernel, part: str) -> None:
 
 def watch(name: str, part_of: Callable[..., str], *, first: bool = False) -> None:
     """Let a method of kernels note what they use in it, or `first` what they used before."""
-    method = getattr(Kernel, name)
+    method = getattr(GradingKernel, name)
 
-    async def noted(kernel: Kernel, *args: object, **kwargs: object) -> object:
+    async def noted(kernel: GradingKernel, *args: object, **kwargs: object) -> object:
         if first:
             note(kernel, part_of())
         result = await method(kernel, *args, **kwargs)
@@ -73,7 +73,7 @@ def watch(name: str, part_of: Callable[..., str], *, first: bool = False) -> Non
             note(kernel, part_of(*args))
         return result
 
-    setattr(Kernel, name, noted)
+    setattr(GradingKernel, name, noted)
 
 
 def grade(course: Course, name: str, number: int) -> None:

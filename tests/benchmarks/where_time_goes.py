@@ -25,9 +25,9 @@ from grader.course import Course
 from grader.judging import execute
 from grader.kernels import fork_client, fork_servers
 from grader.kernels.isolation import require_isolation
-from grader.kernels.kernels import Kernel
+from grader.kernels.kernels import GradingKernel
 from grader.kernels.provisioner import SandboxProvisioner
-from grader.kernels.rooms import Rooms
+from grader.kernels.rooms import GradingRooms
 from grader.notebook.restore import restore
 from grader.sandbox.sandbox import Sandbox
 from grader.storage.pipeline import prepare
@@ -44,12 +44,12 @@ WATCHED = {
     'build the room': (fork_client, '_built'),
     'fork the kernel': (fork_client, '_forked'),
     'IPython starts': (SandboxProvisioner, 'post_launch'),
-    'connect to it': (Kernel, '_connect'),
-    'student cells': (Rooms, 'run_student_cell'),
-    'checks': (Rooms, 'run_check'),
-    'end it all': (Rooms, '__aexit__'),
-    'start a kernel': (Kernel, 'start'),
-    'open the rooms': (Rooms, '__aenter__'),
+    'connect to it': (GradingKernel, '_connect'),
+    'student cells': (GradingRooms, 'run_student_cell'),
+    'checks': (GradingRooms, 'run_check'),
+    'end it all': (GradingRooms, '__aexit__'),
+    'start a kernel': (GradingKernel, 'start'),
+    'open the rooms': (GradingRooms, '__aenter__'),
     'all of it': (execute, '_try_plans'),
 }
 """Parts, and what is timed. The last three hold others in them."""

@@ -23,7 +23,7 @@ STOP_GRACE_SEC = 2.0
 OPTIONS = ('--InteractiveShellApp.ignore_cwd=True', '--HistoryManager.enabled=False')
 
 
-class Kernel:
+class LocalKernel:
     """One kernel that works in a folder of its own; everything of it goes with stop()."""
 
     def __init__(self, folder: Path, environment: dict[str, str], server: ForkServer) -> None:

@@ -11,7 +11,7 @@ from my_robot_basics.session.domain import Claim, claim
 from my_robot_basics.session.errors import LiveError
 from my_robot_basics.validate.errors import RoomFailure
 from my_robot_basics.validate.forks import ForkServer
-from my_robot_basics.validate.kernel import Kernel
+from my_robot_basics.validate.kernel import LocalKernel
 from my_robot_basics.validate.limits import (
     CHECK_TIMEOUT_SEC,
     REPLY_TIMEOUT_SEC,
@@ -38,7 +38,7 @@ MOST_PATH = 60
 Say = Callable[[str], None]
 
 
-class Rooms:
+class LocalRooms:
     """A student's kernel and a test's for one exercise; `async with` starts and ends them."""
 
     say: Say = staticmethod(lambda line: None)
@@ -49,11 +49,11 @@ class Rooms:
         self._files, self._server = files, server
         self._claim: Claim | None = None
         self._folder: Path | None = None
-        self._kernels: list[Kernel] = []
+        self._kernels: list[LocalKernel] = []
         self._unanswered: CellRun | None = None
         """The question that was given up."""
 
-    async def __aenter__(self) -> 'Rooms':
+    async def __aenter__(self) -> 'LocalRooms':
         """Start both kernels, and see a message cross. Raises RoomFailure."""
         self.say('starting two kernels')
         try:
@@ -141,7 +141,7 @@ class Rooms:
         self._test = self._kernel(folder / 'test', owned.domain_id)
         return folder
 
-    def _kernel(self, folder: Path, domain_id: int) -> Kernel:
+    def _kernel(self, folder: Path, domain_id: int) -> LocalKernel:
         """Return a kernel for the room that the folder is named after."""
         environment = {
             'MY_ROBOT_BASICS_ROOM': folder.name,
@@ -154,14 +154,14 @@ class Rooms:
             'MPLBACKEND': 'module://matplotlib_inline.backend_inline',
             'PYTHONSAFEPATH': '1',
         }
-        self._kernels.append(Kernel(folder, environment, self._server))
+        self._kernels.append(LocalKernel(folder, environment, self._server))
         return self._kernels[-1]
 
-    async def _prepare(self, kernel: Kernel, code: str) -> None:
+    async def _prepare(self, kernel: LocalKernel, code: str) -> None:
         await kernel.start()
         await self._run_ours(kernel, code)
 
-    async def _run_ours(self, kernel: Kernel, code: str) -> None:
+    async def _run_ours(self, kernel: LocalKernel, code: str) -> None:
         run = await kernel.run(code, timeout_sec=SETUP_TIMEOUT_SEC)
         if not run.ran_to_end:
             why = run.error.evalue if run.error else 'it did not end'

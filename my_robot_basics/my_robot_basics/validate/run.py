@@ -21,7 +21,7 @@ from my_robot_basics.validate.report import (
     make_check,
     troubles_of,
 )
-from my_robot_basics.validate.rooms import Rooms, Say
+from my_robot_basics.validate.rooms import LocalRooms, Say
 from my_robot_basics.validate.short_budget import ShortBudget
 from my_robot_basics.validate.together import together
 
@@ -37,7 +37,7 @@ async def validate(path: Path, server: ForkServer, *, say: Say = lambda line: No
     """
     lesson = read_lesson(path)
     files = [p for p in sorted(path.parent.glob('*.py')) if p.is_file()]
-    run = _Run(lesson, partial(Rooms, files=files, server=server), say)
+    run = _Run(lesson, partial(LocalRooms, files=files, server=server), say)
     parts = await together(*map(run.part, find_exercises(lesson.notebook)))
     told = {check.name for part in parts for check in part.checks}
     parts += [*_by_hand(lesson), *_without_exercise(lesson, told), *_missing(lesson)]
@@ -50,7 +50,7 @@ class _Run:
     """What the exercises of a lesson have in common."""
 
     lesson: Lesson
-    make_rooms: Callable[[], Rooms]
+    make_rooms: Callable[[], LocalRooms]
     say: Say
     places: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(SIDE_BY_SIDE))
     budget: ShortBudget = field(default_factory=ShortBudget)
@@ -69,7 +69,7 @@ class _Run:
                 )
         return _part(self.lesson, exercise, judged)
 
-    def _rooms(self, exercise: Exercise) -> Rooms:
+    def _rooms(self, exercise: Exercise) -> LocalRooms:
         rooms = self.make_rooms()
         rooms.say = partial(_say_of, exercise.name, self.say)
         return rooms

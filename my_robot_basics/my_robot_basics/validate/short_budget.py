@@ -9,19 +9,21 @@ from my_robot_basics.validate.budget import Budget
 from my_robot_basics.validate.cells import KEY, role
 from my_robot_basics.validate.limits import VALIDATE_NEXT_TIMEOUT_SEC, VALIDATE_TIMEOUT_SEC
 from my_robot_basics.validate.outputs import CellRun
-from my_robot_basics.validate.rooms import Rooms
+from my_robot_basics.validate.rooms import LocalRooms
 
 _STUDENTS = ('answer', 'free', 'locked')
 """Roles of the cells whose time is the student's: locked ones run the answer."""
 
 
 @dataclass
-class ShortBudget(Budget[Rooms]):
+class ShortBudget(Budget[LocalRooms]):
     """The grader's, and less for each cell of the student's: still less after one was given up."""
 
     free_sec: float = VALIDATE_TIMEOUT_SEC
 
-    async def run_within(self, timeout_sec: float, rooms: Rooms, cell: NotebookNode) -> CellRun:
+    async def run_within(
+        self, timeout_sec: float, rooms: LocalRooms, cell: NotebookNode
+    ) -> CellRun:
         """Run one of the student's cells for so long at most."""
         free_sec = self.free_sec if role(cell) in _STUDENTS else math.inf
         run = await rooms.run_student_cell(
