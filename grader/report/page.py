@@ -34,13 +34,15 @@ def page(as_json: dict, about: dict, plain: str = '') -> str:
     why text and code are shown as they were typed. All of it is JSON.
     """
     notebook = nbformat.from_dict(as_json)
-    parts, others = find_sections(notebook)
+    sections, others = find_sections(notebook)
     ours = notebook.metadata.get(KEY, {})
     problem = ours.get('problem', '')
     return _template(is_plain=bool(plain)).render(
         about=about,
-        parts=[] if problem else [part for part in parts if part.checks or part.answer],
-        checks=[check for part in parts for check in part.checks],
+        sections=[]
+        if problem
+        else [section for section in sections if section.checks or section.answer],
+        checks=[check for section in sections for check in section.checks],
         others=others,
         problem=problem,
         title=ours.get('title', ''),
