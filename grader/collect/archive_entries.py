@@ -30,7 +30,7 @@ ARCHIVE = re.compile(r'\.(zip|tar|tgz|tbz2|txz|tar\.(gz|bz2|xz))$', re.IGNORECAS
 
 
 @dataclass(frozen=True)
-class Entry:
+class ArchiveEntry:
     """What an archive says of one file in it."""
 
     parts: tuple[str, ...]
@@ -47,7 +47,7 @@ class Refused(Exception):
     """Says in a sentence why there is no going on."""
 
 
-def entries(archive: Path, *, name: str, aside: Path, most: int) -> Iterator[Entry]:
+def entries(archive: Path, *, name: str, aside: Path, most: int) -> Iterator[ArchiveEntry]:
     """Yield the files that an archive names; folders are left out.
 
     `name` tells its kind. A tar is unpacked into `aside` first, `most` bytes of it. Raises
@@ -78,7 +78,7 @@ class _Careful(io.FileIO):
         return super().read(size)
 
 
-def _zipped(archive: Path) -> Iterator[Entry]:
+def _zipped(archive: Path) -> Iterator[ArchiveEntry]:
     with _Careful(archive) as raw, zipfile.ZipFile(raw) as box:
         for info in box.infolist():
             if info.is_dir():
@@ -91,7 +91,7 @@ def _zipped(archive: Path) -> Iterator[Entry]:
                 problem = 'a device or the like: only files are taken'
             elif info.flag_bits & 1:
                 problem = 'encrypted: ask for it without a password'
-            yield Entry(parts, _local(info.date_time), problem, partial(box.open, info))
+            yield ArchiveEntry(parts, _local(info.date_time), problem, partial(box.open, info))
 
 
 def _decoded(info: zipfile.ZipInfo) -> str:
@@ -113,7 +113,7 @@ def _local(date: tuple[int, int, int, int, int, int]) -> datetime | None:
         return None
 
 
-def _tarred(archive: Path, *, name: str, aside: Path, most: int) -> Iterator[Entry]:
+def _tarred(archive: Path, *, name: str, aside: Path, most: int) -> Iterator[ArchiveEntry]:
     reader = TAR_READERS[Path(name.lower()).suffix]
     with tempfile.TemporaryDirectory(dir=aside) as folder:
         plain = Path(folder, 'plain.tar')
@@ -132,7 +132,7 @@ def _tarred(archive: Path, *, name: str, aside: Path, most: int) -> Iterator[Ent
                     problem = 'a device or the like: only files are taken'
                 # it returns None for what is no file, which has a problem
                 content = cast('partial[IO[bytes]]', partial(box.extractfile, info))
-                yield Entry(parts, _utc(info.mtime), problem, content)
+                yield ArchiveEntry(parts, _utc(info.mtime), problem, content)
             raw.seek(box.offset)
             end = raw.read(tarfile.BLOCKSIZE)
             if len(end) < tarfile.BLOCKSIZE or any(end):

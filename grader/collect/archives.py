@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
-from grader.collect.archive_entries import Entry, Refused, copy, entries
+from grader.collect.archive_entries import ArchiveEntry, Refused, copy, entries
 from grader.common.text import shorten
 
 MAX_FILE_BYTES = 50_000_000
@@ -87,7 +87,7 @@ def unpack(
         yield Member((), problem=_broken(error))
 
 
-def _copied(entry: Entry, aside: Path, left: Allowance) -> tuple[Path | None, str]:
+def _copied(entry: ArchiveEntry, aside: Path, left: Allowance) -> tuple[Path | None, str]:
     """Copy an entry to a name of ours; return that, or why not."""
     most = min(MAX_FILE_BYTES, left.bytes)
     problem = f'over {most / 1e6:.0f} MB once unpacked: a bomb?'

@@ -20,7 +20,7 @@ STYLE = 'margin:0;padding-left:8px;border-left:3px solid #0072b2;font-size:13px;
 
 
 @dataclass
-class Entry:
+class PanelEntry:
     """A log record or an exception; `times` counts the exception's returns."""
 
     text: str
@@ -61,7 +61,7 @@ class Panel:
         self._title = title
         self._name = ''
         self._state = 'starting'
-        self._entries: deque[Entry] = deque()
+        self._entries: deque[PanelEntry] = deque()
         self._left_out = 0
         self._lock = threading.Lock()
         self._display = notebook.Display()
@@ -85,14 +85,14 @@ class Panel:
 
     def log(self, record: LogRecord) -> None:
         """Add a log record."""
-        self._add(Entry(f'[{record.severity}] [{record.logger}]: {record.text}'))
+        self._add(PanelEntry(f'[{record.severity}] [{record.logger}]: {record.text}'))
 
     def error(self, error: BaseException) -> None:
         """Add an exception that a callback raised; one from the same line is only counted."""
         troubles.remember(self._name, error)
         where, what = where_and_what(error)
         text = '\n'.join(filter(None, [what, where, f'  {self._title} goes on']))
-        self._add(Entry(text, where=f'{type(error).__name__} {where}'))
+        self._add(PanelEntry(text, where=f'{type(error).__name__} {where}'))
         if not notebook.in_kernel():
             print(text, flush=True)
 
@@ -109,7 +109,7 @@ class Panel:
             self._state = reason
         self._display.update(self._bundle())
 
-    def _add(self, entry: Entry) -> None:
+    def _add(self, entry: PanelEntry) -> None:
         with self._lock:
             same = (e for e in self._entries if e.where is not None and e.where == entry.where)
             known = next(same, None)
