@@ -9,7 +9,7 @@ from pathlib import Path
 
 from grader.collect.incoming import Incoming, is_notebook
 from grader.collect.owners import find_owners
-from grader.collect.platforms import Label
+from grader.collect.platforms import PlatformLabel
 from grader.collect.uploads import wanted
 from grader.common.dates import date_of
 from grader.common.student_names import problem_of_id
@@ -27,7 +27,7 @@ class MatchedFile:
     """The student's Python files beside it, by name."""
     handed_in: datetime | None = None
     """In UTC; None where nothing tells."""
-    label: Label | None = None
+    label: PlatformLabel | None = None
     """What a course platform said of the student."""
     remark: str = ''
     """What a person may want to look at, although it was taken."""

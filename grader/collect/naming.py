@@ -11,7 +11,7 @@ from datetime import datetime
 
 from grader.collect.incoming import Incoming, is_notebook
 from grader.collect.name_forms import Forms, bare, stem_of
-from grader.collect.platforms import Label, label_in, student_in
+from grader.collect.platforms import PlatformLabel, label_in, student_in
 from grader.common.dates import date_in
 from grader.common.student_names import Unclear, is_nobody, same_person
 
@@ -33,7 +33,7 @@ class Owner:
     """Whether all that lies in its folder is theirs."""
     handed_in: datetime | None = None
     """In UTC; None where its name tells no time."""
-    label: Label | None = None
+    label: PlatformLabel | None = None
     """What a course platform said of the student."""
     above: tuple[str, ...] = ()
     """What the folder, archive or file that decided lies in."""

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from grader.collect.matching import MatchedFile
-from grader.collect.platforms import Label
+from grader.collect.platforms import PlatformLabel
 from grader.common.errors import CourseError
 from grader.common.files import write_whole
 from grader.course import Course
@@ -70,7 +70,7 @@ class Numbers:
         return {numbers[platform.name] for numbers in theirs.values() if platform.name in numbers}
 
 
-def _numbered(each: MatchedFile) -> Label | None:
+def _numbered(each: MatchedFile) -> PlatformLabel | None:
     """Return what a platform said of the student, if that is a number to be kept."""
     return each.label if each.label and each.label.platform.number_of != 'download' else None
 

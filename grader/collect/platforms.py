@@ -65,7 +65,7 @@ _ANONYMOUS = {'Participant', 'Teilnehmer', 'Teilnehmerin'}
 
 
 @dataclass(frozen=True)
-class Label:
+class PlatformLabel:
     """What a course platform wrote before the name of a file, or as a folder's name."""
 
     platform: Platform
@@ -77,7 +77,7 @@ class Label:
     """In UTC; None where it tells no time."""
 
 
-def label_in(name: str) -> Label | None:
+def label_in(name: str) -> PlatformLabel | None:
     """Return what a course platform says in a name, if one of them wrote it.
 
     Where several may have, what a student called a file looks like another one's: the name that
@@ -93,7 +93,7 @@ def label_in(name: str) -> Label | None:
     _, place, match = min(found, key=lambda each: each[:2])
     platform, who, number = PLATFORMS[place], match['who'], match['number']
     who = f'{who} {number}' if who in _ANONYMOUS else who
-    return Label(platform, number, who, match['rest'] or '', _time(platform, match))
+    return PlatformLabel(platform, number, who, match['rest'] or '', _time(platform, match))
 
 
 def student_in(name: str) -> str:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from my_robot_basics.drawing.labels import Label, place, points_along
+from my_robot_basics.drawing.labels import PictureLabel, place, points_along
 from my_robot_basics.two_link_kinematics import L1, L2, forward_kinematics
 
 # Okabe and Ito's colours are told apart by everyone
@@ -116,7 +116,9 @@ class ArmPicture:
         self._figure.savefig(buffer, format='png', pil_kwargs={'compress_level': 1})
         return buffer.getvalue()
 
-    def _angle(self, name: str, angle_deg: float, *, at: np.ndarray, start_deg: float) -> Label:
+    def _angle(
+        self, name: str, angle_deg: float, *, at: np.ndarray, start_deg: float
+    ) -> PictureLabel:
         """Draw an arc from the direction `start_deg` on, its zero line, and the angle in words.
 
         The words are still to be placed.
@@ -139,7 +141,9 @@ class ArmPicture:
             path_effects=[withStroke(linewidth=3, foreground='white')],
         )
         self._angles += [self._axes.add_patch(arc), *zero, words]
-        return Label(words, at, distance=0.62 * size, direction_deg=start_deg + shown_deg / 2)
+        return PictureLabel(
+            words, at, distance=0.62 * size, direction_deg=start_deg + shown_deg / 2
+        )
 
 
 def _direction(angle_deg: float) -> np.ndarray:

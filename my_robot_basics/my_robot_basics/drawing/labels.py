@@ -20,7 +20,7 @@ MARGIN = 0.35
 
 
 @dataclass(frozen=True)
-class Label:
+class PictureLabel:
     """Words that stand beside a point of the picture."""
 
     words: 'Text'
@@ -39,7 +39,7 @@ def points_along(corners: ArrayLike) -> np.ndarray:
     return np.concatenate([corners, *(np.linspace(*side, POINTS) for side in sides)])
 
 
-def place(label: Label, *, avoid: np.ndarray) -> np.ndarray:
+def place(label: PictureLabel, *, avoid: np.ndarray) -> np.ndarray:
     """Put words where they hide the fewest of the points `avoid`; return points around them."""
     size = _size(label.words)
     spots = [_spot(label, turn_deg, size) for turn_deg in TURNS_DEG]
@@ -61,7 +61,7 @@ def _size(words: 'Text') -> np.ndarray:
     return drawn[1] - drawn[0]
 
 
-def _spot(label: Label, turn_deg: float, size: np.ndarray) -> np.ndarray:
+def _spot(label: PictureLabel, turn_deg: float, size: np.ndarray) -> np.ndarray:
     """Return the lower left corner of words that stand in that direction."""
     angle = np.radians(label.direction_deg + turn_deg)
     towards = np.array([np.cos(angle), np.sin(angle)])
