@@ -142,8 +142,8 @@ def sockets(tmp_path, monkeypatch):
 def test_lessons_are_sorted_by_their_start(sockets):
     sockets(f'3.2000.{os.getpid()}.late', f'9.1000.{os.getpid()}.early')
     early, late = lessons.running()
-    assert early == lessons.Lesson(1000, 9, os.getpid(), 'early')
-    assert late == lessons.Lesson(2000, 3, os.getpid(), 'late')
+    assert early == lessons.RunningLesson(1000, 9, os.getpid(), 'early')
+    assert late == lessons.RunningLesson(2000, 3, os.getpid(), 'late')
 
 
 def test_lessons_of_other_users_and_nonsense_are_left_out(sockets, monkeypatch):

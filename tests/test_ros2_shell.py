@@ -13,9 +13,9 @@ from my_robot_basics.session import lessons
 
 PATIENCE_SEC = 60
 RUNNING = [
-    lessons.Lesson(1_000_000_000, 7, 100, '02_joint_state'),
-    lessons.Lesson(2_000_000_000, 4, 101, '05_command_line'),
-    lessons.Lesson(3_000_000_000, 9, 102, '03_publisher'),
+    lessons.RunningLesson(1_000_000_000, 7, 100, '02_joint_state'),
+    lessons.RunningLesson(2_000_000_000, 4, 101, '05_command_line'),
+    lessons.RunningLesson(3_000_000_000, 9, 102, '03_publisher'),
 ]
 
 

@@ -7,7 +7,7 @@ from my_robot_basics.ros2.errors import CommandError
 from my_robot_basics.session import lessons
 from my_robot_basics.session.classroom import FAST_DISCOVERY, HIGHEST_DOMAIN
 
-_joined: lessons.Lesson | None = None
+_joined: lessons.RunningLesson | None = None
 
 
 def enter() -> None:

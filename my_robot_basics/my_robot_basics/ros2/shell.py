@@ -59,7 +59,7 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _choose(running: list[lessons.Lesson], wanted: str | None) -> int:
+def _choose(running: list[lessons.RunningLesson], wanted: str | None) -> int:
     """The domain of the lesson that is wanted; 0, ROS's own default, where no lesson runs."""
     if wanted is None:
         return running[-1].domain_id if running else 0
@@ -76,7 +76,7 @@ def _choose(running: list[lessons.Lesson], wanted: str | None) -> int:
     )
 
 
-def _report(running: list[lessons.Lesson], domain_id: int) -> str:
+def _report(running: list[lessons.RunningLesson], domain_id: int) -> str:
     lines = []
     for lesson in running:
         started = time.strftime('%H:%M:%S', time.localtime(lesson.started_nsec / 1e9))

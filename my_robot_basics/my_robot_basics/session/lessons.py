@@ -23,7 +23,7 @@ _announcement: socket.socket | None = None
 
 
 @dataclass(frozen=True, order=True)
-class Lesson:
+class RunningLesson:
     """A notebook whose kernel takes part in ROS."""
 
     started_nsec: int
@@ -44,7 +44,7 @@ def announce(domain_id: int) -> None:
     _announcement = domain.hold(f'{_PREFIX}.{domain_id}.{time.time_ns()}.{os.getpid()}.{name}')
 
 
-def running() -> list[Lesson]:
+def running() -> list[RunningLesson]:
     """The lessons of this user on this machine, the one that started last comes last."""
     try:
         rows = SOCKETS.read_text(encoding='ascii', errors='replace').splitlines()
@@ -54,7 +54,7 @@ def running() -> list[Lesson]:
     for row in rows:
         if told := _ROW.search(row):
             domain_id, started_nsec, pid = map(int, told.groups()[:3])
-            found.append(Lesson(started_nsec, domain_id, pid, told[4]))
+            found.append(RunningLesson(started_nsec, domain_id, pid, told[4]))
     return sorted(lesson for lesson in found if _is_ours(lesson.pid))
 
 
