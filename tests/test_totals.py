@@ -9,11 +9,11 @@ from grader.notebook.restore import restore
 from grader.notebook.submission import read_submission
 from grader.storage.gradebook import store
 from grader.storage.pipeline import prepare
-from grader.storage.records import Record
+from grader.storage.records import CellScore
 
 
 def cell(student, assignment, score, most, *, submitted=True, name='check'):
-    return Record(student, assignment, name, score, most, submitted=submitted)
+    return CellScore(student, assignment, name, score, most, submitted=submitted)
 
 
 CLASS = [

@@ -32,7 +32,7 @@ from grader.course import Course
 from grader.export.scores import as_csv
 from grader.notebook.submission import TIMESTAMP
 from grader.storage.lock import gradebook_lock
-from grader.storage.records import Record, records
+from grader.storage.records import CellScore, records
 from grader.storage.submitted import known_students
 
 NEW, AGAIN, EARLIER, KNOWN = 'new', 'again', 'earlier', 'known'
@@ -91,7 +91,7 @@ def collect(course: Course, source: Path, *, file_times: bool = False) -> Iterat
 
 
 def _row(
-    course: Course, each: MatchedFile, problem: str, grades: Callable[[], list[Record]]
+    course: Course, each: MatchedFile, problem: str, grades: Callable[[], list[CellScore]]
 ) -> Row:
     try:
         outcome, reason = (LEFT, problem) if problem else _take(course, each, grades)
@@ -106,7 +106,7 @@ def _row(
 
 
 def _take(
-    course: Course, each: MatchedFile, grades: Callable[[], list[Record]]
+    course: Course, each: MatchedFile, grades: Callable[[], list[CellScore]]
 ) -> tuple[str, str]:
     """Put a submission in its place; return what became of it, and why."""
     place = course.folder('submitted', each.student_id, each.assignment)
@@ -137,7 +137,7 @@ def _files(each: MatchedFile) -> Iterator[tuple[str, Path]]:
 
 
 def _copy_all(
-    course: Course, each: MatchedFile, folder: Path, grades: Callable[[], list[Record]]
+    course: Course, each: MatchedFile, folder: Path, grades: Callable[[], list[CellScore]]
 ) -> None:
     """Copy what there is of a submission: its files, what came of them, and its scores."""
     for step in ('submitted', 'autograded', 'feedback'):

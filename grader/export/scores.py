@@ -9,7 +9,7 @@ from grader.common.files import write_whole
 from grader.common.text import spreadsheet_table
 from grader.course import Course
 from grader.kernels.isolation import NO_SANDBOX
-from grader.storage.records import Record, graded_notebook, records, verdicts_in
+from grader.storage.records import CellScore, graded_notebook, records, verdicts_in
 
 COLUMNS = ('student_id', 'assignment', 'grade_id', 'score', 'max_score', 'comment')
 
@@ -24,12 +24,12 @@ def write_scores(course: Course) -> Path:
     return path
 
 
-def as_csv(course: Course, found: Iterable[Record]) -> str:
+def as_csv(course: Course, found: Iterable[CellScore]) -> str:
     """Return the table of some graded cells, with what the checks said of them."""
     return spreadsheet_table([COLUMNS, *_rows(course, found)])
 
 
-def _rows(course: Course, found: Iterable[Record]) -> Iterator[tuple]:
+def _rows(course: Course, found: Iterable[CellScore]) -> Iterator[tuple]:
     said: dict[str, dict] = {}
     whose, remark = None, ''
     for record in found:
@@ -47,7 +47,7 @@ def _rows(course: Course, found: Iterable[Record]) -> Iterator[tuple]:
         )
 
 
-def _comment(record: Record, verdict: dict, remark: str) -> str:
+def _comment(record: CellScore, verdict: dict, remark: str) -> str:
     """Put into words why a cell has its score."""
     if not record.submitted:
         return 'not submitted'

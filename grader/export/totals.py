@@ -8,7 +8,7 @@ from pathlib import Path
 from grader.common.files import write_whole
 from grader.common.text import spreadsheet_table
 from grader.course import Course
-from grader.storage.records import Record, records
+from grader.storage.records import CellScore, records
 
 
 @dataclass(frozen=True)
@@ -42,9 +42,9 @@ class Totals:
         return sum(self.max_scores)
 
 
-def add_up(found: Iterable[Record]) -> Totals:
+def add_up(found: Iterable[CellScore]) -> Totals:
     """Add up graded cells, those of assignments that a student did not hand in among them."""
-    by_student: dict[str, dict[str, list[Record]]] = defaultdict(lambda: defaultdict(list))
+    by_student: dict[str, dict[str, list[CellScore]]] = defaultdict(lambda: defaultdict(list))
     for record in found:
         by_student[record.student_id][record.assignment].append(record)
     max_scores = {
@@ -90,10 +90,10 @@ def as_csv(totals: Totals) -> str:
     return spreadsheet_table(rows)
 
 
-def _score(cells: list[Record]) -> float | None:
+def _score(cells: list[CellScore]) -> float | None:
     handed_in = [cell for cell in cells if cell.submitted]
     return sum(cell.score or 0.0 for cell in handed_in) if handed_in else None
 
 
-def _waits(cell: Record) -> bool:
+def _waits(cell: CellScore) -> bool:
     return cell.submitted and cell.score is None

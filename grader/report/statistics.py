@@ -12,7 +12,7 @@ from grader.course import Course
 from grader.grade import Row
 from grader.notebook.restore import KEY, grade_id
 from grader.report.message_groups import Reason, Said, grouped
-from grader.storage.records import Record, graded_notebook, records, verdicts_in
+from grader.storage.records import CellScore, graded_notebook, records, verdicts_in
 
 WRITTEN = 'a written answer that a person reads'
 
@@ -107,7 +107,7 @@ def tally(course: Course, rows: Sequence[Row]) -> Tally:
 def _assignments(
     course: Course,
     whose: dict[tuple, Row],
-    of_cells: dict[tuple, list[Record]],
+    of_cells: dict[tuple, list[CellScore]],
     failures: list[Said],
 ) -> Iterable[AssignmentStatistics]:
     for name in sorted({assignment for _, assignment in whose}):
@@ -137,7 +137,7 @@ def _assignments(
         )
 
 
-def _check(cells: list[Record], title: str | None, failures: list[Said]) -> CheckStatistics:
+def _check(cells: list[CellScore], title: str | None, failures: list[Said]) -> CheckStatistics:
     scored = [record for record in cells if record.score is not None]
     passed = sum(
         record.score is not None and record.score >= record.max_score for record in scored
@@ -162,7 +162,7 @@ def _failures(notebooks: dict[tuple[str, str], NotebookNode]) -> Iterable[Said]:
 
 def _looks(
     rows: Sequence[Row],
-    of_cells: dict[tuple, list[Record]],
+    of_cells: dict[tuple, list[CellScore]],
     notebooks: dict[tuple[str, str], NotebookNode],
 ) -> Iterable[Said]:
     for row in rows:

@@ -14,7 +14,7 @@ from grader.storage.gradebook import opened, submitted_notebook, waits_for_a_per
 
 
 @dataclass(frozen=True)
-class Record:
+class CellScore:
     """One graded cell of one student."""
 
     student_id: str
@@ -30,7 +30,7 @@ class Record:
     """What a person wrote."""
 
 
-def records(course: Course, *, only: Collection[tuple[str, str]] | None = None) -> list[Record]:
+def records(course: Course, *, only: Collection[tuple[str, str]] | None = None) -> list[CellScore]:
     """Return all graded cells of all students, in a stable order; registers what is new.
 
     `only` asks for some submissions that were graded, as pairs of student and assignment.
@@ -64,7 +64,7 @@ def graded_notebook(course: Course, student_id: str, assignment: str) -> Noteboo
 
 def _records(
     book: Gradebook, student: str, assignment: str, place: Callable[[GradeCell], tuple[int, str]]
-) -> Iterator[Record]:
+) -> Iterator[CellScore]:
     known = [cell for nb in book.find_assignment(assignment).notebooks for cell in nb.grade_cells]
     found = submitted_notebook(book, student, assignment)
     grades = {grade.name: grade for grade in found.grades} if found else {}
@@ -73,7 +73,7 @@ def _records(
     )
     for cell in sorted(known, key=place):
         grade = grades.get(cell.name)
-        yield Record(
+        yield CellScore(
             student_id=student,
             assignment=assignment,
             grade_id=cell.name,
@@ -84,7 +84,7 @@ def _records(
             comment=comments.get(cell.name) or '',
         )
     if found and found.late_submission_penalty:
-        yield Record(student, assignment, 'late_penalty', -found.late_submission_penalty, 0.0)
+        yield CellScore(student, assignment, 'late_penalty', -found.late_submission_penalty, 0.0)
 
 
 def _place_in(course: Course, assignment: str) -> Callable[[GradeCell], tuple[int, str]]:
