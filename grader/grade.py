@@ -48,7 +48,7 @@ class Graded:
 
 
 @dataclass(frozen=True)
-class Row:
+class SubmissionOutcome:
     """What the run says of one submission."""
 
     student_id: str
@@ -81,7 +81,7 @@ def grade_all(
     seed: str = '',
     trust_students: bool = False,
     force: bool = False,
-) -> Generator[Row, None, None]:
+) -> Generator[SubmissionOutcome, None, None]:
     """Read, restore, run, judge and store submissions, many at a time, in their order.
 
     Each gets its row, whatever becomes of it. The backend is this machine's worker processes
@@ -142,7 +142,7 @@ def _graded(submission: Submission, result: Result, key: str) -> Graded:
     return Graded(submission, result.notebook, seconds=result.seconds)
 
 
-def _store(course: Course, found: SubmissionFolder, work: 'Future[Graded]') -> Row:
+def _store(course: Course, found: SubmissionFolder, work: 'Future[Graded]') -> SubmissionOutcome:
     """Wait until a submission is judged, and store it; say why where that can't be done."""
     stored, reason, seconds, reused = None, found.problem, None, False
     which = printable(f'{found.assignment} of {found.student_id}')
@@ -164,4 +164,4 @@ def _store(course: Course, found: SubmissionFolder, work: 'Future[Graded]') -> R
         if not found.problem:
             logging.exception('%s', which)
             reason = f'not graded, the grader failed: {type(error).__name__}: {error}'
-    return Row(found.student_id, found.assignment, stored, reason, seconds, reused)
+    return SubmissionOutcome(found.student_id, found.assignment, stored, reason, seconds, reused)

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from grader.course import Course
-from grader.grade import Row, grade_all
+from grader.grade import SubmissionOutcome, grade_all
 from grader.storage.submitted import find_submissions
 from grader.workers.backend import Backend
 
@@ -39,7 +39,7 @@ def hand_in(course: Course, names: Iterable[str]) -> None:
 
 def grade(
     course: Course, names: Iterable[str], *, backend: Backend | None = None
-) -> dict[str, Row]:
+) -> dict[str, SubmissionOutcome]:
     """Grade samples as `./course grade` does; return the rows by the samples' names."""
     hand_in(course, names)
     return {

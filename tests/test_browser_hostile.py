@@ -18,7 +18,7 @@ from nbformat.v4 import new_output
 from nbgrader.api import Gradebook
 
 from grader.authoring.release import release
-from grader.grade import Row
+from grader.grade import SubmissionOutcome
 from grader.notebook.restore import restore
 from grader.notebook.submission import read_submission
 from grader.report.feedback import write_feedback
@@ -203,7 +203,10 @@ def test_a_page_of_feedback_does_nothing(browser, course):
 
 
 def test_the_report_of_a_run_does_nothing(browser, course):
-    rows = [Row(BY_NAME, TOY, None, f'{EVIL} <{BY_NAME}', 1.0), Row(EVIL, EVIL, None, EVIL)]
+    rows = [
+        SubmissionOutcome(BY_NAME, TOY, None, f'{EVIL} <{BY_NAME}', 1.0),
+        SubmissionOutcome(EVIL, EVIL, None, EVIL),
+    ]
     page = write_report(course, Run(datetime.now().astimezone(), seed=''), rows)
     assert browser.harm_of(page.as_uri()) == []
     assert 'evil &lt;script&gt;' in browser.text()

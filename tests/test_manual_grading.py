@@ -15,7 +15,7 @@ import pytest
 from course_maker import TOY, answered, executed, released_course, submit
 
 from grader.export.scores import write_scores
-from grader.grade import Row
+from grader.grade import SubmissionOutcome
 from grader.notebook.restore import restore
 from grader.notebook.submission import read_submission
 from grader.report.feedback import write_feedback
@@ -94,7 +94,7 @@ def grade(course, student, explained):
     submission = read_submission(folder, student_id=student, assignment=TOY)
     restored = restore(submission.notebook, course.template(TOY)).notebook
     stored = store(course, submission, executed(prepare(course, TOY, restored), {}))
-    return Row(student, TOY, stored, stored.reason)
+    return SubmissionOutcome(student, TOY, stored, stored.reason)
 
 
 def exported(course, student):
@@ -130,7 +130,7 @@ def test_nobody_has_to_read_what_nobody_wrote(course):
 
 def test_the_reason_of_a_check_comes_before_what_waits(course):
     row = grade(course, 'ada', BECAUSE)
-    assert why(Row('ada', TOY, row.stored, 'expected 42')) == 'expected 42'
+    assert why(SubmissionOutcome('ada', TOY, row.stored, 'expected 42')) == 'expected 42'
 
 
 def test_the_formgrader_gives_points_that_a_regrade_keeps(course, formgrader):

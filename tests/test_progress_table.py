@@ -4,7 +4,7 @@ import threading
 import time
 from dataclasses import replace
 
-from grader.grade import Row
+from grader.grade import SubmissionOutcome
 from grader.report import progress_table
 from grader.report.progress_table import print_rows, why
 from grader.storage.gradebook import Stored
@@ -25,7 +25,7 @@ class Terminal(io.StringIO):
 def slowly(names):
     for name in names:
         time.sleep(0.2)  # the bar is drawn ten times a second at most
-        yield Row(name, '00_toy', SAID.get(name), 'no room')
+        yield SubmissionOutcome(name, '00_toy', SAID.get(name), 'no room')
 
 
 def test_a_terminal_sees_how_many_are_done_how_fast_and_how_long_it_will_take(
@@ -53,7 +53,7 @@ def test_time_goes_on_while_one_submission_takes_long(monkeypatch, tmp_path):
         while sys.stderr.getvalue().count('0/1') < 5:
             assert time.monotonic() < deadline
             time.sleep(0.01)
-        yield Row('ada', '00_toy', None, 'no room')
+        yield SubmissionOutcome('ada', '00_toy', None, 'no room')
 
     list(print_rows(one_long(), [SubmissionFolder('ada', '00_toy', tmp_path)]))
     assert not [thread for thread in threading.enumerate() if thread.name == 'bar']
@@ -71,7 +71,7 @@ def test_a_log_sees_rows_alone(monkeypatch, tmp_path, capsys):
 
 def test_a_row_says_what_lateness_cost_and_that_nothing_is_new():
     late = replace(SAID['bob'], former=2.0, late=0.3)
-    row = Row('bob', '00_toy', late, 'count again', reused=True)
+    row = SubmissionOutcome('bob', '00_toy', late, 'count again', reused=True)
     assert why(row) == '(unchanged) (late: -0.3) count again'
     assert why(replace(row, stored=replace(late, former=2.3))) == (
         '(was 2.3) (late: -0.3) count again'

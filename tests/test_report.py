@@ -8,7 +8,7 @@ from nbgrader.api import Gradebook
 
 from grader.cli.demo import demo
 from grader.course import Course
-from grader.grade import Row
+from grader.grade import SubmissionOutcome
 from grader.notebook.restore import restore
 from grader.notebook.submission import read_submission
 from grader.report.report import Run, write_report
@@ -46,7 +46,7 @@ def graded(course, student, reasons=None, *, explained='so', seconds=1.0, notebo
         restored = restore(submission.notebook, course.template(TOY)).notebook
         judged = executed(prepare(course, TOY, restored), reasons or {})
     stored = store(course, submission, judged)
-    return Row(student, TOY, stored, stored.reason, seconds)
+    return SubmissionOutcome(student, TOY, stored, stored.reason, seconds)
 
 
 def reported(course, rows, run=RUN):
@@ -100,8 +100,8 @@ def test_whatever_needs_a_person_is_listed_with_why(course):
         graded(course, 'bob', {'double-check': '?'}, explained=''),
         graded(course, 'eve', notebook=b'no notebook'),
         graded(course, 'zoe', {}, explained=''),
-        Row('x.ipynb', '', None, 'a file where a folder was expected'),
-        Row('kim', TOY, None, 'not graded, the grader failed: OSError: no room'),
+        SubmissionOutcome('x.ipynb', '', None, 'a file where a folder was expected'),
+        SubmissionOutcome('kim', TOY, None, 'not graded, the grader failed: OSError: no room'),
     ]
     looks = tally(course, rows).looks
     assert [(each.students, each.checks, each.words) for each in looks if each.checks] == [
@@ -164,7 +164,7 @@ def test_the_json_says_what_happened_how_long_it_took_and_with_what(course):
         graded(course, 'ada', {}, seconds=2.0),
         graded(course, 'bob', {}, seconds=9.5),
         graded(course, 'eve', {}, seconds=None),
-        Row('kim', TOY, None, 'not graded'),
+        SubmissionOutcome('kim', TOY, None, 'not graded'),
     ]
     facts, html = reported(course, rows)
     assert facts['began'] == '2026-11-21T08:30:00+00:00'
@@ -201,7 +201,7 @@ def test_the_report_says_whether_there_was_a_sandbox_and_which_inputs(course, mo
 def test_nothing_that_a_student_wrote_gets_into_the_page_as_it_is(course):
     rows = [
         graded(course, 'ada', {'double-check': f'expected 2, saw {SCRIPT}\x1b[31m\u202e: try'}),
-        Row(SCRIPT, SCRIPT, None, SCRIPT),
+        SubmissionOutcome(SCRIPT, SCRIPT, None, SCRIPT),
     ]
     facts, html = reported(course, rows)
     assert SCRIPT not in html
@@ -222,7 +222,7 @@ def test_every_student_has_a_row_of_scores_whatever_was_graded_in_this_run(cours
 
 
 def test_a_name_that_is_no_text_is_reported_too(course):
-    facts, _ = reported(course, [Row('\udcff', '', None, 'not UTF-8')])
+    facts, _ = reported(course, [SubmissionOutcome('\udcff', '', None, 'not UTF-8')])
     assert facts['looks'][0]['students'] == ['\\udcff']
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from grader.common.errors import CourseError
 from grader.course import ROOT, Course
-from grader.grade import Row, grade_all
+from grader.grade import SubmissionOutcome, grade_all
 from grader.kernels.isolation import NO_SANDBOX, require_isolation
 from grader.report.feedback import write_feedback
 from grader.report.progress_table import print_rows
@@ -69,7 +69,7 @@ def _parts(sample: Path, course: Course) -> tuple[str, str, str]:
     )
 
 
-def _as_named(course: Course, row: Row, outcome: str) -> bool:
+def _as_named(course: Course, row: SubmissionOutcome, outcome: str) -> bool:
     said = verdicts(course, row.student_id, row.assignment).values()
     outcomes = [verdict['outcome'] for verdict in said if 'outcome' in verdict]
     return row.stored is not None and OUTCOMES[outcome](outcomes)

@@ -43,7 +43,7 @@ LEFT, UNUSED = 'left', 'unused'
 
 
 @dataclass(frozen=True)
-class Row:
+class FileOutcome:
     """What the run says of one file."""
 
     path: str
@@ -55,7 +55,7 @@ class Row:
     handed_in: datetime | None = None
 
 
-def collect(course: Course, source: Path, *, file_times: bool = False) -> Iterator[Row]:
+def collect(course: Course, source: Path, *, file_times: bool = False) -> Iterator[FileOutcome]:
     """Take in a folder, an archive or a notebook; yield a row for each file, those left last.
 
     Nothing is written but under gradebook/, and `source` stays as it is. Doing it again changes
@@ -84,15 +84,15 @@ def collect(course: Course, source: Path, *, file_times: bool = False) -> Iterat
                 'the same again'
             ) from None
         for left in sorted(rest, key=lambda left: left.incoming.parts):
-            yield Row(left.incoming.path, LEFT if left.matters else UNUSED, left.reason)
+            yield FileOutcome(left.incoming.path, LEFT if left.matters else UNUSED, left.reason)
         for incoming in found:
             if incoming.litter:
-                yield Row(incoming.path, UNUSED, 'hidden, or left behind by a program')
+                yield FileOutcome(incoming.path, UNUSED, 'hidden, or left behind by a program')
 
 
 def _row(
     course: Course, each: MatchedFile, problem: str, grades: Callable[[], list[CellScore]]
-) -> Row:
+) -> FileOutcome:
     try:
         outcome, reason = (LEFT, problem) if problem else _take(course, each, grades)
         if not problem and each.remark:
@@ -102,7 +102,7 @@ def _row(
             raise
         outcome, reason = LEFT, f'{error.strerror}: {error.filename}'
     whose = (each.student_id, each.assignment)
-    return Row(each.notebook.path, outcome, reason, *whose, each.handed_in)
+    return FileOutcome(each.notebook.path, outcome, reason, *whose, each.handed_in)
 
 
 def _take(

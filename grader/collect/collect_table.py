@@ -3,7 +3,7 @@
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator
 
-from grader.collect.collect import AGAIN, EARLIER, KNOWN, LEFT, NEW, UNUSED, Row
+from grader.collect.collect import AGAIN, EARLIER, KNOWN, LEFT, NEW, UNUSED, FileOutcome
 from grader.collect.naming import shared_folders
 from grader.common.text import columns, pad, printable, shorten
 
@@ -16,7 +16,7 @@ MAX_COLUMNS = 120
 """Of a path: it may be 5,000 characters long, and all lines of a table are as wide as one."""
 
 
-def lines(rows: Iterable[Row]) -> Iterator[str]:
+def lines(rows: Iterable[FileOutcome]) -> Iterator[str]:
     """Yield the lines of the report: what was taken, what was not and why, and how many."""
     rows = list(rows)
     taken = [row for row in rows if row.student_id and row.outcome != LEFT]
@@ -34,13 +34,13 @@ def lines(rows: Iterable[Row]) -> Iterator[str]:
     yield from ('', f'{", ".join(parts) or nothing}; {len(left)} not taken.')
 
 
-def _taken(row: Row) -> tuple[str, ...]:
+def _taken(row: FileOutcome) -> tuple[str, ...]:
     time = f'{row.handed_in:%Y-%m-%d %H:%M:%S}' if row.handed_in else '–'
     what = f'{WORDS[row.outcome]}: {row.reason}' if row.reason else WORDS[row.outcome]
     return row.student_id, row.assignment, time, what
 
 
-def _gathered(rows: list[Row]) -> Iterator[tuple[str, str]]:
+def _gathered(rows: list[FileOutcome]) -> Iterator[tuple[str, str]]:
     """Yield files and reasons; many of one kind in one place are counted."""
     alike = defaultdict(list)
     for row in rows:

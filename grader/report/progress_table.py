@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from tqdm import tqdm
 
 from grader.common.text import columns, pad, printable, shorten
-from grader.grade import Row
+from grader.grade import SubmissionOutcome
 from grader.storage.submitted import SubmissionFolder
 
 MAX_NAME_COLUMNS = 40
@@ -19,11 +19,11 @@ _OUTCOMES = ('with all points', 'with fewer', 'for a person', 'not graded')
 
 
 def print_rows(
-    rows: Iterable[Row],
+    rows: Iterable[SubmissionOutcome],
     submissions: Sequence[SubmissionFolder],
     *,
     expected: dict[str, str] | None = None,
-) -> Iterator[Row]:
+) -> Iterator[SubmissionOutcome]:
     """Print each row as it comes, and pass it on.
 
     `expected` adds a column: what should come of each student.
@@ -80,7 +80,7 @@ def _ticking(bar: tqdm) -> Iterator[None]:
         thread.join()
 
 
-def _outcome(row: Row) -> str:
+def _outcome(row: SubmissionOutcome) -> str:
     if row.stored is None:
         return 'not graded'
     if row.stored.pending:
@@ -88,7 +88,7 @@ def _outcome(row: Row) -> str:
     return 'with all points' if row.stored.score >= row.stored.max_score else 'with fewer'
 
 
-def score_of(row: Row) -> str:
+def score_of(row: SubmissionOutcome) -> str:
     """Return a row's score as text: '2/5', '2/5 …' where some of it waits for a person."""
     if row.stored is None:
         return '–'
@@ -96,7 +96,7 @@ def score_of(row: Row) -> str:
     return f'{row.stored.score:g}/{row.stored.max_score:g}{waits}'
 
 
-def why(row: Row) -> str:
+def why(row: SubmissionOutcome) -> str:
     """Return the reason of a row as one line, and what is new about it, or that nothing is."""
     stored, text = row.stored, printable(row.reason)
     if stored and stored.pending and not text:
@@ -110,7 +110,7 @@ def why(row: Row) -> str:
     return text
 
 
-def changes(rows: Iterable[Row]) -> list[str]:
+def changes(rows: Iterable[SubmissionOutcome]) -> list[str]:
     """Return a line for each score that is not what it was before."""
     return [
         f'{printable(row.student_id)}  {printable(row.assignment)}  '

@@ -15,7 +15,7 @@ from grader.common.text import printable
 from grader.common.versions import versions
 from grader.course import Course
 from grader.export.totals import Totals, add_up
-from grader.grade import Row
+from grader.grade import SubmissionOutcome
 from grader.kernels.isolation import require_isolation
 from grader.report.charts import distribution, share
 from grader.report.message_groups import Reason
@@ -41,7 +41,7 @@ class Run:
     """The seed that was replayed; '' for each student's own."""
 
 
-def write_report(course: Course, run: Run, rows: Sequence[Row]) -> Path:
+def write_report(course: Course, run: Run, rows: Sequence[SubmissionOutcome]) -> Path:
     """Write report.html and report.json into gradebook/runs/<time>/; return the page's path."""
     counted = tally(course, rows)
     facts = _facts(run, rows, counted) | {'totals': _totals(add_up(records(course)))}
@@ -57,7 +57,7 @@ def write_report(course: Course, run: Run, rows: Sequence[Row]) -> Path:
     return page
 
 
-def _facts(run: Run, rows: Sequence[Row], counted: Tally) -> dict:
+def _facts(run: Run, rows: Sequence[SubmissionOutcome], counted: Tally) -> dict:
     """Return all that the report says, as plain values."""
     seconds = (datetime.now().astimezone() - run.began).total_seconds()
     timed = [row for row in rows if row.seconds is not None]
@@ -120,7 +120,7 @@ def _reason(reason: Reason) -> dict:
     return asdict(reason) | {'count': len(reason.students)}
 
 
-def _submission(row: Row) -> dict:
+def _submission(row: SubmissionOutcome) -> dict:
     return {
         'student_id': printable(row.student_id),
         'assignment': printable(row.assignment),

@@ -9,7 +9,7 @@ from my_robot_basics.validate.titles import title_of_check
 from nbformat import NotebookNode
 
 from grader.course import Course
-from grader.grade import Row
+from grader.grade import SubmissionOutcome
 from grader.notebook.restore import KEY, grade_id
 from grader.report.message_groups import Reason, Said, grouped
 from grader.storage.records import CellScore, graded_notebook, records, verdicts_in
@@ -88,7 +88,7 @@ class Tally:
         return sorted(missed, key=lambda found: -found[1].missed / found[1].students)
 
 
-def tally(course: Course, rows: Sequence[Row]) -> Tally:
+def tally(course: Course, rows: Sequence[SubmissionOutcome]) -> Tally:
     """Count what came of the submissions of one run."""
     whose = {(row.student_id, row.assignment): row for row in rows if row.stored}
     of_cells = defaultdict(list)
@@ -106,7 +106,7 @@ def tally(course: Course, rows: Sequence[Row]) -> Tally:
 
 def _assignments(
     course: Course,
-    whose: dict[tuple, Row],
+    whose: dict[tuple, SubmissionOutcome],
     of_cells: dict[tuple, list[CellScore]],
     failures: list[Said],
 ) -> Iterable[AssignmentStatistics]:
@@ -161,7 +161,7 @@ def _failures(notebooks: dict[tuple[str, str], NotebookNode]) -> Iterable[Said]:
 
 
 def _looks(
-    rows: Sequence[Row],
+    rows: Sequence[SubmissionOutcome],
     of_cells: dict[tuple, list[CellScore]],
     notebooks: dict[tuple[str, str], NotebookNode],
 ) -> Iterable[Said]:
