@@ -12,7 +12,7 @@ import subprocess
 
 from grader.common.errors import RoomFailure
 from grader.common.file_wait import readable
-from grader.kernels.fork_servers import MAX_ANSWER, Server, expect_fit, send
+from grader.kernels.fork_servers import MAX_ANSWER, RoomForkServer, expect_fit, send
 from grader.kernels.forked_kernel import Forked
 from grader.sandbox.kernel_paths import Keeper, Place
 from grader.sandbox.limits import OUT_OF_MEMORY_SCORE, process_limits
@@ -111,7 +111,7 @@ def _order(place: Place, environment: dict[str, str], first: int) -> dict:
     }
 
 
-async def _answer(errand: socket.socket, server: Server) -> tuple[int, int]:
+async def _answer(errand: socket.socket, server: RoomForkServer) -> tuple[int, int]:
     """Return the pidfd and the listener that come over an errand, when the kernel is ready."""
     found: dict[bytes, int] = {}
     problem = ''

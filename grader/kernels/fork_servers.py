@@ -29,7 +29,7 @@ class NoWarmKernel(Exception):
     """Why kernels can't be forked on this machine; they can be started all the same."""
 
 
-class Server:
+class RoomForkServer:
     """A process that forks kernels, as long as this one lives and does not close it."""
 
     def __init__(self, room: str) -> None:
@@ -83,7 +83,7 @@ class Server:
         return 'the process that forks them has ended'
 
 
-_servers: dict[str, Server] = {}
+_servers: dict[str, RoomForkServer] = {}
 _unfit: dict[str, str] = {}
 """Why no kernel can be forked for a room on this machine."""
 _lock = threading.Lock()
@@ -95,14 +95,14 @@ def expect_fit(room: str) -> None:
         raise NoWarmKernel(_unfit[room])
 
 
-def send(errand: socket.socket, *, room: str) -> Server:
+def send(errand: socket.socket, *, room: str) -> RoomForkServer:
     """Give an errand to the server of a room, a new one where there is none or it has ended.
 
     Raises NoWarmKernel where that ends, too.
     """
     with _lock:
         for _ in range(2):
-            server = _servers.get(room) or _servers.setdefault(room, Server(room))
+            server = _servers.get(room) or _servers.setdefault(room, RoomForkServer(room))
             try:
                 server.send(errand)
                 return server
