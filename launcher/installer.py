@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from launcher.environment import Environment
-from launcher.messages import CourseError, clear_progress, say, show_progress
+from launcher.messages import LauncherError, clear_progress, say, show_progress
 
 STEPS = ('Resolved ', 'Collecting ', 'Downloading ', 'Prepared ', 'Installed ')
 """How the lines of an installer begin that tell how far it is."""
@@ -57,13 +57,13 @@ class Installer:
         return 'uv' if self.uses_uv else 'pip'
 
     def make_venv(self, python: Path) -> None:
-        """Make an empty .venv. Raises CourseError where that Python has no venv module."""
+        """Make an empty .venv. Raises LauncherError where that Python has no venv module."""
         venv = self.environment.venv
         if not self.uses_uv and not _runs(
             [python, '-c', 'import ensurepip, venv'], self.variables
         ):
             version = version_of(python)
-            raise CourseError(
+            raise LauncherError(
                 f'Python {version} ({python}) has no venv module: install it (on Debian and '
                 f'Ubuntu: sudo apt install python{version.rpartition(".")[0]}-venv), then start '
                 'again.'
@@ -94,7 +94,7 @@ class Installer:
             self.run(*command, '--no-input', '--progress-bar', 'off', *arguments, PIP_USER='0')
 
     def run(self, *command: str | Path, **variables: str) -> None:
-        """Run a command and show its progress. Raises CourseError with why it failed."""
+        """Run a command and show its progress. Raises LauncherError with why it failed."""
         process = subprocess.Popen(
             list(map(str, command)),
             cwd=self.environment.root,
@@ -115,7 +115,7 @@ class Installer:
         failed = process.wait()
         clear_progress()
         if failed:
-            raise CourseError(reason_of(said))
+            raise LauncherError(reason_of(said))
 
 
 def progress(line: str) -> str:
@@ -136,12 +136,12 @@ def reason_of(lines: Iterable[str]) -> str:
 
 @contextmanager
 def writing() -> Iterator[None]:
-    """Turn what goes wrong with files into a CourseError."""
+    """Turn what goes wrong with files into a LauncherError."""
     try:
         yield
     except OSError as error:
         full = error.errno in (errno.ENOSPC, errno.EDQUOT)
-        raise CourseError(DISK_IS_FULL if full else f'{error}\n{FAILED}') from error
+        raise LauncherError(DISK_IS_FULL if full else f'{error}\n{FAILED}') from error
 
 
 def version_of(python: Path) -> str:

@@ -4,7 +4,7 @@ import os
 import sys
 
 from launcher.environment import Environment
-from launcher.messages import CourseError
+from launcher.messages import LauncherError
 
 SETTINGS = '.jupyterlab'
 """They leave out the instructors' panels."""
@@ -14,14 +14,14 @@ SHELL = """{'shell_command': ['bash', '-c', 'exec bash --rcfile "$COURSE_TERMINA
 
 
 def run(environment: Environment, variables: dict[str, str], arguments: list[str]) -> int:
-    """Become JupyterLab. Raises CourseError where there are no lessons.
+    """Become JupyterLab. Raises LauncherError where there are no lessons.
 
     Only the lessons are served: neither the solutions nor their nbgrader configuration lie under
     the server's root.
     """
     root, lessons = environment.root, environment.root / 'notebooks'
     if not lessons.is_dir():
-        raise CourseError('there is no folder notebooks/: make it with ./course release.')
+        raise LauncherError('there is no folder notebooks/: make it with ./course release.')
     # the file browser shows the workspace, too; where it lies elsewhere, its user knows the place
     link, workspace = lessons / 'ros_ws', root / 'ros_ws'
     shown = os.path.lexists(link)

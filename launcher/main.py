@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 from launcher.environment import Environment
-from launcher.messages import CourseError, say
+from launcher.messages import LauncherError, say
 from launcher.set_up import is_set_up, set_up
 from launcher.verbs import Verb, read_verbs
 
@@ -25,7 +25,7 @@ def main(arguments: list[str]) -> int:
     try:
         set_up(environment, Path(python))
         return run_verb(environment, read_verbs()[name], rest)
-    except CourseError as error:
+    except LauncherError as error:
         say(str(error))
         return 1
     except KeyboardInterrupt:

@@ -3,7 +3,7 @@
 import sys
 
 
-class CourseError(Exception):
+class LauncherError(Exception):
     """The reason why nothing can be done, and what to do: one sentence, the last of its lines."""
 
 

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from launcher.environment import Environment
 from launcher.installer import Installer, version_of, writing
-from launcher.messages import CourseError, say
+from launcher.messages import LauncherError, say
 from launcher.shares import KERNELS, TOOLS, UNDERLAY, make_tools, tell_ament, tell_jupyter
 
 PINS = 'environment.txt'
@@ -48,11 +48,11 @@ def made_packages(environment: Environment) -> str:
 def interfaces_wheel(root: Path) -> str:
     """Return the path in the course of the one wheel of arm_interfaces, as installers want it.
 
-    Raises CourseError where it is missing, or is not the only one.
+    Raises LauncherError where it is missing, or is not the only one.
     """
     found = sorted((root / INTERFACES).glob('*.whl'))
     if len(found) != 1:
-        raise CourseError(
+        raise LauncherError(
             f'{INTERFACES}/ has {len(found)} wheels (*.whl), expected one: get the files of the '
             'course again.'
         )
@@ -88,12 +88,12 @@ def has_environment(environment: Environment, version: str = '') -> bool:
 
 
 def set_up(environment: Environment, python: Path) -> None:
-    """Make all of .venv that is missing. Raises CourseError where that cannot be done."""
+    """Make all of .venv that is missing. Raises LauncherError where that cannot be done."""
     asked = version_of(python) if os.environ.get('PYTHON') else ''
     if has_environment(environment, asked) and is_current(environment, made_packages):
         return
     if not os.access(environment.root, os.W_OK):
-        raise CourseError(
+        raise LauncherError(
             f'the folder {environment.root} is read-only: copy the course into a folder of your '
             'own and start it there.'
         )
