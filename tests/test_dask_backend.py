@@ -15,7 +15,7 @@ from grader.__main__ import main
 from grader.common.errors import ClusterError, TaskFailed
 from grader.course import Course
 from grader.grade import grade_all
-from grader.judging.task import Task
+from grader.judging.task import GradingTask
 from grader.storage.records import records
 from grader.storage.submitted import find_submissions
 from grader.workers import dask_backend
@@ -85,7 +85,9 @@ def test_a_cluster_grades_as_this_machine_does_and_a_lost_worker_changes_nothing
     waits = dict.fromkeys(('bob', 'eve', 'kim'), f'# wait {mark}')
     there = handed_in(course, tmp_path / 'there', waits)
     with Cluster(scheduler.address) as backend:
-        failing = backend.submit(Task(notebook=answered(course, f'# fail\n{RIGHT}'), seed='abc'))
+        failing = backend.submit(
+            GradingTask(notebook=answered(course, f'# fail\n{RIGHT}'), seed='abc')
+        )
         with pytest.raises(TaskFailed, match=r'^OSError: no room$'):
             failing.result()
     rows = grade_all(there, find_submissions(there), backend=Cluster(scheduler.address))
@@ -139,14 +141,14 @@ def test_a_worker_that_comes_later_is_looked_at_too(course, scheduler, start):
     with Cluster(scheduler.address) as backend:
         good.kill()
         start_worker(start, scheduler.address, TOY_MISSING='no bubblewrap here')
-        work = backend.submit(Task(notebook=answered(course, RIGHT), seed='abc'))
+        work = backend.submit(GradingTask(notebook=answered(course, RIGHT), seed='abc'))
         with pytest.raises(ClusterError, match='refuses: no bubblewrap here'):
             work.result()
 
 
 def test_leaving_calls_off_what_is_under_way_and_what_waits(course, scheduler, start, tmp_path):
     start_worker(start, scheduler.address)
-    task = Task(notebook=answered(course, f'# wait {tmp_path / "go"}\n{RIGHT}'), seed='abc')
+    task = GradingTask(notebook=answered(course, f'# wait {tmp_path / "go"}\n{RIGHT}'), seed='abc')
     with connected(scheduler.address, Certificates()) as onlooker:
 
         def known():

@@ -406,8 +406,8 @@ def test_the_real_rooms_are_used_unless_a_test_says_otherwise():
 
 
 def test_a_notebook_keeps_so_much_output_and_says_so_of_the_rest():
-    room, cell = module._Room(1_000), [new_output('stream', text='x' * 400)]
-    assert room.fit(cell) == room.fit(cell) == cell
-    [output] = room.fit(cell)
+    space, cell = module._OutputSpace(1_000), [new_output('stream', text='x' * 400)]
+    assert space.fit(cell) == space.fit(cell) == cell
+    [output] = space.fit(cell)
     assert output.text.startswith('[not kept: all cells together printed more than 4,000,000')
-    assert room.fit([]) == []
+    assert space.fit([]) == []

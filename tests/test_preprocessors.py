@@ -10,7 +10,7 @@ from nbformat.v4 import new_code_cell
 
 from grader.autograde import preprocessors
 from grader.autograde.preprocessors import ExecuteRooms, RestoreSubmission
-from grader.judging.task import Result, Task
+from grader.judging.task import GradingTask, Result
 from grader.notebook.restore import KEY, grade_id
 
 ANSWER = 'def double(x): return 2 * x'
@@ -128,7 +128,7 @@ def test_running_takes_the_students_seed_and_the_students_files(course, tasks, i
     result = asyncio.run(formgrader()) if in_a_loop else ExecuteRooms().preprocess(notebook, at)
     assert result[0] is notebook
     assert tasks == [
-        Task(notebook=notebook, files={'helper.py': b''}, seed=course.seed(TOY, 'ada'))
+        GradingTask(notebook=notebook, files={'helper.py': b''}, seed=course.seed(TOY, 'ada'))
     ]
 
 

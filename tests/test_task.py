@@ -9,7 +9,7 @@ from course_maker import toy_lesson
 from grader.common.errors import TaskFailed
 from grader.judging import task
 from grader.judging.execute import Execution
-from grader.judging.task import Task, pack, run_packed, unpack
+from grader.judging.task import GradingTask, pack, run_packed, unpack
 from grader.notebook.restore import KEY
 
 ODD = 'lone \udcff, nul \0, ideographs 小明, escapes \x1b[31m, </script>'
@@ -17,7 +17,9 @@ ODD = 'lone \udcff, nul \0, ideographs 小明, escapes \x1b[31m, </script>'
 
 @pytest.fixture
 def work():
-    return Task(notebook=toy_lesson(), seed='abc', files={'helper.py': b'\xff\0', 'a b.py': b''})
+    return GradingTask(
+        notebook=toy_lesson(), seed='abc', files={'helper.py': b'\xff\0', 'a b.py': b''}
+    )
 
 
 @pytest.fixture

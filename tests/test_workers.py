@@ -12,7 +12,7 @@ from my_robot_basics.session import pressure
 from grader.common.errors import TaskFailed
 from grader.course import Course
 from grader.grade import grade_all
-from grader.judging.task import Task
+from grader.judging.task import GradingTask
 from grader.sandbox.limits import SUBMISSION_MEMORY_BYTES
 from grader.storage.records import records
 from grader.storage.submitted import find_submissions
@@ -30,7 +30,7 @@ def course(tmp_path_factory):
 
 
 def task(course, first_line=''):
-    return Task(notebook=answered(course, f'{first_line}\n{RIGHT}'), seed='abc')
+    return GradingTask(notebook=answered(course, f'{first_line}\n{RIGHT}'), seed='abc')
 
 
 def pid_of(result):

@@ -10,7 +10,7 @@ from nbformat import NotebookNode
 from traitlets import Bool
 
 from grader.course import Course
-from grader.judging.task import Task
+from grader.judging.task import GradingTask
 from grader.kernels.isolation import require_isolation
 from grader.notebook.restore import KEY, restore
 from grader.notebook.submission import extra_python_files, read_submission
@@ -62,7 +62,7 @@ class ExecuteRooms(Preprocessor):
         """
         at, folder = resources['nbgrader'], Path(resources['metadata']['path'])
         require_isolation(trust_students=self.trust_students)
-        task = Task(
+        task = GradingTask(
             notebook=nb,
             files={path.name: path.read_bytes() for path in extra_python_files(folder)},
             seed=Course.of_nbgrader(resources).seed(at['assignment'], at['student']),

@@ -32,7 +32,7 @@ class Execution:
 
 
 @dataclass
-class _Room:
+class _OutputSpace:
     """What is left for the outputs of all cells of a notebook."""
 
     characters: int = MAX_NOTEBOOK_OUTPUT_CHARACTERS
@@ -49,7 +49,7 @@ class _Room:
 
 
 @dataclass(frozen=True)
-class _Task:
+class _NotebookRun:
     """What all exercises of a notebook are judged with."""
 
     notebook: NotebookNode
@@ -57,7 +57,7 @@ class _Task:
     seed: str
     isolated: bool
     budget: Budget
-    room: _Room = field(default_factory=_Room)
+    space: _OutputSpace = field(default_factory=_OutputSpace)
 
     def rooms(self, doubts: list[str]) -> GradingRooms:
         return GradingRooms(
@@ -102,7 +102,9 @@ async def execute_exercises(
     else:
         in_sandbox = require_isolation(trust_students=trust_students)
         graded.metadata[KEY].in_sandbox = in_sandbox
-        verdicts = await _execute(_Task(graded, tuple(extra_files), seed, in_sandbox, Budget()))
+        verdicts = await _execute(
+            _NotebookRun(graded, tuple(extra_files), seed, in_sandbox, Budget())
+        )
     hide_local_paths(graded)
     by_hand = [_by_hand(c) for c in graded.cells if role(c) == 'answer' and _points(c)]
     return Execution(
@@ -112,14 +114,14 @@ async def execute_exercises(
     )
 
 
-async def _execute(task: _Task) -> list[Verdict]:
+async def _execute(work: _NotebookRun) -> list[Verdict]:
     verdicts = []
-    for exercise in find_exercises(task.notebook):
-        rooms = partial(task.rooms, [])
-        judged = await judge_exercise(task.notebook, exercise, rooms, task.budget)
+    for exercise in find_exercises(work.notebook):
+        rooms = partial(work.rooms, [])
+        judged = await judge_exercise(work.notebook, exercise, rooms, work.budget)
         for index, run in judged.runs.items():
-            task.notebook.cells[index].outputs = task.room.fit(run.outputs)
-        verdicts += [task.write(index, *check) for index, check in judged.checks.items()]
+            work.notebook.cells[index].outputs = work.space.fit(run.outputs)
+        verdicts += [work.write(index, *check) for index, check in judged.checks.items()]
     return verdicts
 
 

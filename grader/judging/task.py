@@ -21,7 +21,7 @@ from grader.sandbox.temporary_folders import own_folder
 
 
 @dataclass(frozen=True)
-class Task:
+class GradingTask:
     """All that the grading of one submission depends on."""
 
     notebook: NotebookNode
@@ -43,7 +43,7 @@ class Result:
     """How long that took, from the first kernel's start to the last one's end."""
 
 
-def pack(task: Task) -> str:
+def pack(task: GradingTask) -> str:
     """Return a task as JSON, in ASCII."""
     files = {name: base64.b64encode(raw).decode('ascii') for name, raw in task.files.items()}
     return json.dumps(
@@ -66,7 +66,7 @@ async def run_packed(text: str) -> str:
         return json.dumps({'failed': said, 'traceback': trace})
 
 
-def unpack(text: str, task: Task) -> Result:
+def unpack(text: str, task: GradingTask) -> Result:
     """Check what came of a task, and return it.
 
     Raises TaskFailed where it failed, and where what came back is no result of it.

@@ -5,7 +5,7 @@ from typing import Protocol, Self
 
 from nbformat import NotebookNode
 
-from grader.judging.task import Result, Task
+from grader.judging.task import GradingTask, Result
 from grader.notebook.restore import KEY, AssignmentTemplate, restore
 from grader.notebook.submission import Submission
 from grader.storage.pipeline import unanswered
@@ -29,7 +29,7 @@ class Backend(Protocol):
         """Return whether student code runs in a sandbox; raises CourseError where it must."""
         ...
 
-    def submit(self, task: Task) -> 'Future[Result]':
+    def submit(self, task: GradingTask) -> 'Future[Result]':
         """Grade a task as soon as there is room. The future raises TaskFailed for no result."""
         ...
 
@@ -48,7 +48,7 @@ def submit_for_grading(
         nothing.set_result(Result(unanswered(template, submission.problem), 0.0))
         return nothing
     return backend.submit(
-        Task(
+        GradingTask(
             notebook=_restored(submission, template),
             files={path.name: path.read_bytes() for path in submission.extra_files},
             seed=seed,

@@ -9,7 +9,7 @@ from typing import Any, Self
 
 from grader.common.errors import ClusterError, TaskFailed
 from grader.common.versions import machinery, versions
-from grader.judging.task import Result, Task, pack, unpack
+from grader.judging.task import GradingTask, Result, pack, unpack
 from grader.workers.dask_client import CONNECT_TIMEOUT_SEC, Certificates, check_address, connected
 
 _START = 'Start workers from the same checkout, set up by ./course: .venv/bin/dask worker ADDRESS'
@@ -53,7 +53,7 @@ class Cluster:
         """Return True: a worker without a sandbox grades nothing."""
         return True
 
-    def submit(self, task: Task) -> 'Future[Result]':
+    def submit(self, task: GradingTask) -> 'Future[Result]':
         """Have a task graded.
 
         The future raises TaskFailed for no result, and ClusterError where the cluster is lost.
@@ -66,7 +66,7 @@ class Cluster:
         asked.add_done_callback(lambda done: self._settle(done, task))
         return work
 
-    def _settle(self, asked: Any, task: Task) -> None:
+    def _settle(self, asked: Any, task: GradingTask) -> None:
         """Pass on what came of a task; called by Dask, in a thread of its own."""
         work = self._asked.pop(asked)
         try:

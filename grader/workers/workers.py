@@ -8,7 +8,7 @@ from typing import Self
 from grader.common.available_memory import available_bytes
 from grader.common.errors import TaskFailed
 from grader.common.pool import Pool
-from grader.judging.task import Result, Task, pack, unpack
+from grader.judging.task import GradingTask, Result, pack, unpack
 from grader.kernels.isolation import require_isolation
 from grader.sandbox.cgroup_hierarchies import scoped
 from grader.sandbox.limits import (
@@ -65,7 +65,7 @@ class Workers:
         """Return whether student code runs in a sandbox; raises CourseError where it must."""
         return require_isolation(trust_students=trust_students)
 
-    def submit(self, task: Task) -> 'Future[Result]':
+    def submit(self, task: GradingTask) -> 'Future[Result]':
         """Grade a task as soon as there is room. The future raises TaskFailed for no result."""
         return self._pool.submit(self._graded, task)
 
@@ -73,7 +73,7 @@ class Workers:
         """Grade a packed task; the future brings what came of it, packed."""
         return self._pool.submit(self._tried, text)
 
-    async def _graded(self, task: Task) -> Result:
+    async def _graded(self, task: GradingTask) -> Result:
         return unpack(await self._tried(pack(task)), task)
 
     async def _tried(self, text: str) -> str:

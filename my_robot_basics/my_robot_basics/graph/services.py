@@ -15,7 +15,7 @@ _OF_EVERY_NODE = frozenset(
 
 
 @dataclass(frozen=True)
-class Ends:
+class ServiceGraph:
     """Who serves and who asks, without the nodes whose names start with `_`."""
 
     node_names: tuple[str, ...]
@@ -42,7 +42,7 @@ class Ends:
         return f'{runs} runs, so look at the service name in {maker}(…) and that the node calls it'
 
 
-def take(node: Node) -> Ends:
+def take(node: Node) -> ServiceGraph:
     """The services as a node sees them now."""
     nodes = [
         (name, namespace)
@@ -65,4 +65,4 @@ def take(node: Node) -> Ends:
                 if service_name.rpartition('/')[2] not in _OF_EVERY_NODE:
                     ends.setdefault(service_name, {})[full_name] = tuple(types)
     names = tuple(sorted({f'{namespace.rstrip("/")}/{name}' for name, namespace in nodes}))
-    return Ends(names, servers, clients)
+    return ServiceGraph(names, servers, clients)
