@@ -3,6 +3,7 @@
 import ast
 import graphlib
 import re
+from collections import defaultdict
 from functools import cache
 from pathlib import Path
 
@@ -107,13 +108,31 @@ def test_what_students_get_needs_no_grader():
 MOST_LINES = 200
 
 
+def product():
+    """Return the files of all that is not a test."""
+    folders = [*PACKAGES.values(), ROOT / 'launcher']
+    return sorted(path for folder in folders for path in folder.rglob('*.py'))
+
+
 def test_a_module_is_short_enough_to_keep_in_mind():
     """Where one has grown longer it has two subjects: give each a module, and name them."""
-    folders = [*PACKAGES.values(), ROOT / 'launcher']
     lines = {
         str(path.relative_to(ROOT)): len(path.read_text(encoding='utf-8').splitlines())
-        for folder in folders
-        for path in folder.rglob('*.py')
+        for path in product()
     }
     assert len(lines) > 300
     assert {name: count for name, count in lines.items() if count > MOST_LINES} == {}
+
+
+def test_a_class_has_its_name_alone():
+    """Two that share one are two things with one word, or one thing twice.
+
+    A protocol and what implements it have two names, too: GradingRooms and LocalRooms are Rooms.
+    """
+    places = defaultdict(list)
+    for path in product():
+        for node in ast.walk(ast.parse(path.read_text(encoding='utf-8'))):
+            if isinstance(node, ast.ClassDef) and not node.name.startswith('_'):
+                places[node.name].append(str(path.relative_to(ROOT)))
+    assert len(places) > 100
+    assert {name: paths for name, paths in places.items() if len(paths) > 1} == {}
