@@ -196,8 +196,8 @@ def look_at_counter(calls_each):
         return Counter(calls_each=calls_each, context=context)
 
     with spinning(make), Watcher() as watcher:
-        ears = topic('/counted').listen(watcher)
-        return sampling.simulated(watcher, ears, seconds=10.0, step_sec=0.1)
+        recorder = topic('/counted').listen(watcher)
+        return sampling.simulated(watcher, recorder, seconds=10.0, step_sec=0.1)
 
 
 @pytest.mark.usefixtures('patient')

@@ -24,9 +24,9 @@ def test_a_subscription_hears_what_is_published_while_it_is_there(stage):
     early = publisher.publish()
     subscription = stage.subscription('/pose')
     now = publisher.publish()
-    assert subscription.heard(now)
-    assert not subscription.heard(early)
-    assert not subscription.heard(early, now)
+    assert subscription.received(now)
+    assert not subscription.received(early)
+    assert not subscription.received(early, now)
 
 
 @pytest.mark.parametrize(
@@ -47,14 +47,14 @@ def test_a_subscription_hears_what_is_published_while_it_is_there(stage):
 )
 def test_name_and_type_decide(stage, publisher, subscription, arrives):
     sender, receiver = stage.publisher(**publisher), stage.subscription(**subscription)
-    assert receiver.heard(sender.publish()) is arrives
+    assert receiver.received(sender.publish()) is arrives
 
 
 def test_each_subscription_hears_each_publisher(stage):
     publishers = [stage.publisher('/pose') for _ in range(3)]
     subscriptions = [stage.subscription('/pose') for _ in range(2)]
     messages = [publisher.publish() for publisher in publishers]
-    assert all(subscription.heard(*messages) for subscription in subscriptions)
+    assert all(subscription.received(*messages) for subscription in subscriptions)
 
 
 def test_a_closed_subscription_stops_nobody(stage):
@@ -62,8 +62,8 @@ def test_a_closed_subscription_stops_nobody(stage):
     closed.close()
     unheard = publisher.publish()
     again = stage.subscription('/pose')
-    assert again.heard(publisher.publish())
-    assert not again.heard(unheard)
+    assert again.received(publisher.publish())
+    assert not again.received(unheard)
 
 
 def test_stages_do_not_hear_each_other(participants):
@@ -71,8 +71,8 @@ def test_stages_do_not_hear_each_other(participants):
     publisher, subscription = one.publisher('/pose'), other.subscription('/pose')
     ninth = [publisher.publish() for _ in range(9)][-1]
     own = other.publisher('/pose').publish()
-    assert subscription.heard(own)
-    assert not subscription.heard(ninth)
+    assert subscription.received(own)
+    assert not subscription.received(ninth)
 
 
 def test_its_nodes_are_hidden(stage, participants):
@@ -89,4 +89,4 @@ def test_without_a_meeting_there_is_no_verdict(monkeypatch):
         with pytest.raises(DidNotRun, match='your answer is not the cause'):
             publisher.publish()
         with pytest.raises(DidNotRun):
-            subscription.heard()
+            subscription.received()

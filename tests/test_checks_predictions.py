@@ -17,13 +17,13 @@ KEYS = 'arrives', 'is_lost'
 def arrives(stage):
     """the subscription is there"""
     publisher, subscription = stage.publisher('/pose'), stage.subscription('/pose')
-    return subscription.heard(publisher.publish())
+    return subscription.received(publisher.publish())
 
 
 def is_lost(stage):
     """nobody is there"""
     message = stage.publisher('/pose').publish()
-    return stage.subscription('/pose').heard(message)
+    return stage.subscription('/pose').received(message)
 
 
 def predictions(monkeypatch, **answer):

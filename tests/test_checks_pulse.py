@@ -12,12 +12,12 @@ class Fake:
 
     def __init__(self, beats_at, *, free_share):
         self.beats_at, self.free_share = set(beats_at), free_share
-        self.looks, self.heard = 0, []
+        self.looks, self.received = 0, []
 
     def spin_until(self, done, *, timeout_sec):
         self.looks += 1
         if self.looks in self.beats_at:
-            self.heard.append(self.looks)
+            self.received.append(self.looks)
         return done()
 
     def stopwatch(self):
@@ -53,5 +53,5 @@ def test_only_time_that_was_free_counts(monkeypatch, beats_at, free_share, goes_
         raise Inconclusive('its parameter services do not answer')
 
     monkeypatch.setattr(pulse, 'SimulatedClock', refuse)
-    ears = SimpleNamespace(heard=fake.heard, publishers=lambda: ('/ik_client',))
-    assert pulse.Pulse(fake, ears).goes_on() is goes_on
+    recorder = SimpleNamespace(received=fake.received, publishers=lambda: ('/ik_client',))
+    assert pulse.Pulse(fake, recorder).goes_on() is goes_on

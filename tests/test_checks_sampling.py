@@ -133,8 +133,10 @@ def test_a_near_miss_fails_on_the_wall_clock(node, seen):
 
 def looked_at(node, *, patience_sec):
     with running(node), Watcher() as watcher:
-        ears = topic(TOPIC).listen(watcher)
-        return wall_recording.wall(watcher, ears, why='', seconds=0.1, patience_sec=patience_sec)
+        recorder = topic(TOPIC).listen(watcher)
+        return wall_recording.wall(
+            watcher, recorder, why='', seconds=0.1, patience_sec=patience_sec
+        )
 
 
 def test_the_wall_clock_waits_for_the_next_message_of_a_slow_node():

@@ -20,14 +20,14 @@ from rclpy.node import Node
 from std_msgs.msg import String
 
 rclpy.init()
-intruder, met, heard = Node('intruder'), [], []
+intruder, met, received = Node('intruder'), [], []
 
 def intrude():
     while True:
         for name, types in intruder.get_topic_names_and_types():
             if types == ['std_msgs/msg/String'] and name not in met:
                 met.append(name)
-                intruder.create_subscription(String, name, lambda m: heard.append(m.data), 1000)
+                intruder.create_subscription(String, name, lambda m: received.append(m.data), 1000)
                 publishers.append(intruder.create_publisher(String, name, 1000))
         for publisher in publishers:
             for number in range(1, 6):
@@ -53,7 +53,7 @@ with watchers() as (senders, receivers):
         message = stage.publisher('/pose').publish()
         late = stage.subscription('/pose')
         time.sleep(0.2)
-        arrived.append(late.heard(message))
+        arrived.append(late.received(message))
 print(json.dumps([arrived, new]))
 """
 MEETS = """

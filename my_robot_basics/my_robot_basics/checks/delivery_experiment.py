@@ -122,14 +122,16 @@ class StageSubscription:
     def __init__(self, stage: Stage, node: Node, topic_name: str, type_: type) -> None:
         """Use `Stage.subscription`."""
         self._stage, self._node = stage, node
-        self._heard: list[Any] = []
+        self._received: list[Any] = []
         self._controls: list[Any] = []
-        self._subscription = node.create_subscription(type_, topic_name, self._heard.append, DEPTH)
+        self._subscription = node.create_subscription(
+            type_, topic_name, self._received.append, DEPTH
+        )
         self.control = node.create_subscription(
             String, stage.control_topic, self._controls.append, DEPTH
         )
 
-    def heard(self, *messages: Any) -> bool:
+    def received(self, *messages: Any) -> bool:
         """Whether all these messages have arrived, once nothing can be on its way any more."""
         self._stage.settle()
         marks = [publisher.mark() for publisher in self._stage.publishers]
@@ -137,10 +139,10 @@ class StageSubscription:
         self._stage.wait(
             lambda: (
                 all(control in self._controls for _, control in marks)
-                and sum(last in self._heard for last, _ in marks) == matches
+                and sum(last in self._received for last, _ in marks) == matches
             )
         )
-        return all(message in self._heard for message in messages)
+        return all(message in self._received for message in messages)
 
     def close(self) -> None:
         """Destroy the subscription."""

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 from my_robot_basics.checks.carried import Carried
-from my_robot_basics.checks.ears import Ears
+from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.variety import Sent
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
@@ -59,15 +59,15 @@ class Passage:
     def __init__(
         self,
         watcher: Watcher,
-        ears: Ears,
+        recorder: Recorder,
         *,
         publish: Callable[[Any], None],
         what: Callable[[Any], Any],
     ) -> None:
         """`what(message)` is the same of two messages that are one. Only what comes now counts."""
-        self._watcher, self._ears = watcher, ears
+        self._watcher, self._recorder = watcher, recorder
         self._publish, self._what = publish, what
-        self._seen = len(ears.heard)
+        self._seen = len(recorder.received)
         self._waiting: list[Sent] = []
         self._out: list[Sent] = []
         self._copies: list[int] = []
@@ -160,9 +160,9 @@ class Passage:
 
     def _take(self) -> None:
         """Sort what was received: the first of those that are waited for, a copy, or another's."""
-        heard = self._ears.messages()[self._seen :]
-        self._seen += len(heard)
-        for message in heard:
+        received = self._recorder.messages()[self._seen :]
+        self._seen += len(received)
+        for message in received:
             for place, sent in enumerate(self._waiting):
                 if self._what(message) == self._what(sent.message):
                     del self._waiting[place]

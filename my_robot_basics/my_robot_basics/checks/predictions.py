@@ -22,7 +22,7 @@ class Predictions:
     def late(stage):
         '''a VOLATILE publisher keeps nothing for subscribers that come later'''
         message = stage.publisher('/pose').publish()
-        return stage.subscription('/pose').heard(message)
+        return stage.subscription('/pose').received(message)
 
     predictions = Predictions('answers', ['late'])
     predictions.run(late)

@@ -6,7 +6,7 @@ waited for a processor, and the notebook has to answer questions meanwhile.
 """
 
 from my_robot_basics.checks.clock import Inconclusive, SimulatedClock
-from my_robot_basics.checks.ears import Ears
+from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.exchange import student
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
@@ -32,8 +32,8 @@ LOOK_SEC = 0.1
 class Pulse:
     """A topic on which a node counts at 10 Hz while it is alive."""
 
-    def __init__(self, watcher: Watcher, ears: Ears) -> None:
-        self._watcher, self._ears = watcher, ears
+    def __init__(self, watcher: Watcher, recorder: Recorder) -> None:
+        self._watcher, self._recorder = watcher, recorder
         self._was_free = False
 
     def goes_on(self) -> bool:
@@ -50,12 +50,12 @@ class Pulse:
     def _ticks(self) -> bool:
         """Whether it counts on the robot's clock; False proves nothing."""
         try:
-            with SimulatedClock(self._watcher, needed=set(self._ears.publishers())) as clock:
+            with SimulatedClock(self._watcher, needed=set(self._recorder.publishers())) as clock:
                 still = 0
                 for _ in range(TICKS):
-                    before = len(self._ears.heard)
+                    before = len(self._recorder.received)
                     clock.tick(STEP_NS)
-                    still = 0 if len(self._ears.heard) > before else still + 1
+                    still = 0 if len(self._recorder.received) > before else still + 1
                     if still > MOST_TICKS_STILL:
                         return False
         except Inconclusive:
@@ -64,20 +64,20 @@ class Pulse:
 
     def _beats(self, *, times: int = 1) -> bool:
         """Whether it counts on the wall clock, without a silence among the first BEATS."""
-        began = len(self._ears.heard)
-        while len(self._ears.heard) - began < BEATS:
+        began = len(self._recorder.received)
+        while len(self._recorder.received) - began < BEATS:
             if self._is_silent(times):
                 return False
         return True
 
     def _is_silent(self, times: int) -> bool:
         """Whether no beat comes for so long; it returns at a beat."""
-        before, watch, looks = len(self._ears.heard), Stopwatch(), 0
+        before, watch, looks = len(self._recorder.received), Stopwatch(), 0
         while looks < times * CROWDED_LOOKS and (
             looks < times * LOOKS or watch.free_sec() < times * STILL_SEC
         ):
             if self._watcher.spin_until(
-                lambda: len(self._ears.heard) > before, timeout_sec=LOOK_SEC
+                lambda: len(self._recorder.received) > before, timeout_sec=LOOK_SEC
             ):
                 return False
             student.times_raised('')  # its process has had a turn when that is answered

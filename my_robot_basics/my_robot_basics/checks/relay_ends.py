@@ -13,7 +13,7 @@ from rclpy.qos import (
     qos_policy_name_from_kind,
 )
 
-from my_robot_basics.checks.ears import Ears
+from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.topics import Topic
 from my_robot_basics.exchange import values
 from my_robot_basics.feedback.errors import expect, fail
@@ -37,7 +37,7 @@ class Ends:
     source: str
     to: str
 
-    def listen(self, watcher: Watcher, type_: type) -> Ears:
+    def listen(self, watcher: Watcher, type_: type) -> Recorder:
         """Listen on `to`; a VOLATILE publisher is waited for until it knows of the listener."""
         topic = Topic(self.to)
         patience_sec = topic.patience_sec(watcher, TIMEOUT_SEC, end='publishers')
@@ -47,15 +47,15 @@ class Ends:
                 seen=graphs.none_in(patience_sec),
                 hint=self._graph(watcher).why_silent(self.to),
             )
-        ears = topic.listen(watcher)
+        recorder = topic.listen(watcher)
         expect(
-            ears.type is type_,
+            recorder.type is type_,
             expected=f'{type_.__name__} messages on {self.to}',
-            seen=ears.type.__name__,
+            seen=recorder.type.__name__,
             hint=f'publish there the messages that arrive on {self.source}',
         )
-        watcher.spin_until(ears.is_connected, timeout_sec=TIMEOUT_SEC)
-        return ears
+        watcher.spin_until(recorder.is_connected, timeout_sec=TIMEOUT_SEC)
+        return recorder
 
     def publish_to_node(self, watcher: Watcher, type_: type, offered: QoSProfile) -> Publisher:
         """A publisher that has met a subscription which asks for no more than it offers."""

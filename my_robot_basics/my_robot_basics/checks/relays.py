@@ -11,9 +11,9 @@ from rclpy.serialization import serialize_message
 from my_robot_basics.checks import relay_ends
 from my_robot_basics.checks.callbacks import Raised
 from my_robot_basics.checks.carried import Carried
-from my_robot_basics.checks.ears import Ears
 from my_robot_basics.checks.latched import said_to_nobody
 from my_robot_basics.checks.passage import QUIET_SEC, Passage
+from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.relay_ends import Ends
 from my_robot_basics.checks.variety import filled, varied
 from my_robot_basics.feedback.errors import fail
@@ -62,13 +62,13 @@ class Relay:
         with Watcher() as watcher:
             ends = Ends(self.source, self.to)
             first = make_message()
-            ears = ends.listen(watcher, type(first))
-            raised = Raised(ears.publishers())
+            recorder = ends.listen(watcher, type(first))
+            raised = Raised(recorder.publishers())
             publisher = ends.publish_to_node(watcher, type(first), qos_profile)
             ends.expect_one_profile(watcher)
-            self._expect_out(watcher, ears, first, raised, again=publisher)
+            self._expect_out(watcher, recorder, first, raised, again=publisher)
             watcher.spin_for(QUIET_SEC)
-            self._expect_passage(watcher, ears, publisher, make_message, raised)
+            self._expect_passage(watcher, recorder, publisher, make_message, raised)
 
     def assert_carries_latched(self, make_message: Callable[[], Any], *, times: int = 1) -> None:
         """A message that was published before anybody subscribed comes out on `to`, once.
@@ -81,36 +81,38 @@ class Relay:
         with Watcher() as watcher:
             ends = Ends(self.source, self.to)
             message_type = type(make_message())
-            ears = ends.listen(watcher, message_type)
-            raised = Raised(ears.publishers())
+            recorder = ends.listen(watcher, message_type)
+            raised = Raised(recorder.publishers())
             ends.expect_transient_local(watcher)
             ends.expect_type(watcher, message_type)
             ends.expect_one_profile(watcher)
             for number in range(times):
                 with said_to_nobody(self.source, make_message) as (message, publisher):
-                    self._expect_out(watcher, ears, message, raised)
+                    self._expect_out(watcher, recorder, message, raised)
                     # one behind the other, should there be two
                     watcher.spin_for(QUIET_SEC)
-                    count = sum(self._is_same(heard, message) for heard in ears.messages())
+                    count = sum(
+                        self._is_same(received, message) for received in recorder.messages()
+                    )
                     if count > 1:
                         self._fail(*Carried(copies=count).fault())
                     if number + 1 == times:
-                        self._expect_passage(watcher, ears, publisher, make_message, raised)
+                        self._expect_passage(watcher, recorder, publisher, make_message, raised)
 
     def _expect_passage(
         self,
         watcher: Watcher,
-        ears: Ears,
+        recorder: Recorder,
         publisher: Publisher,
         make_message: Callable[[], Any],
         raised: Raised,
     ) -> None:
-        source_ears = Ears(
-            watcher, topic_name=self.source, type_=ears.type, qos_profile=EVERYTHING
+        source_recorder = Recorder(
+            watcher, topic_name=self.source, type_=recorder.type, qos_profile=EVERYTHING
         )
-        watcher.spin_until(source_ears.is_connected, timeout_sec=relay_ends.TIMEOUT_SEC)
+        watcher.spin_until(source_recorder.is_connected, timeout_sec=relay_ends.TIMEOUT_SEC)
         watcher.spin_for(QUIET_SEC)
-        passage = Passage(watcher, ears, publish=publisher.publish, what=self._what)
+        passage = Passage(watcher, recorder, publish=publisher.publish, what=self._what)
         messages = varied(make_message)
         carried = passage.carry(messages)
         if not carried.is_whole():
@@ -127,7 +129,7 @@ class Relay:
                 raised.hint()
                 or 'publish each in the callback itself, or keep all of them until then',
             )
-        if passage.invents(source_ears.messages()):
+        if passage.invents(source_recorder.messages()):
             self._fail(
                 f'messages that nobody published on {self.source}',
                 'publish in that callback alone, and only the message that it is given',
@@ -145,25 +147,25 @@ class Relay:
     def _expect_out(
         self,
         watcher: Watcher,
-        ears: Ears,
+        recorder: Recorder,
         message: Any,
         raised: Raised,
         *,
         again: Publisher | None = None,
     ) -> None:
         """Wait for the message on `to`; publish it `again` and again meanwhile."""
-        before = len(ears.messages())
+        before = len(recorder.messages())
         for times in range(1, round(relay_ends.TIMEOUT_SEC / AGAIN_SEC) + 1):
             if again is not None:
                 again.publish(message)
             if watcher.spin_until(
-                lambda: any(self._is_same(heard, message) for heard in ears.messages()),
+                lambda: any(self._is_same(received, message) for received in recorder.messages()),
                 timeout_sec=AGAIN_SEC,
             ):
                 return
             if times % TIMES_RAISED == 0 and raised.hint():
                 break
-        others = ears.messages()[before:]
+        others = recorder.messages()[before:]
         has_others = bool(others)
         fail(
             expected=f'a message from {self.source} to be republished on {self.to}, unchanged',

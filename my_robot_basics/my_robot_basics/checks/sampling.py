@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from my_robot_basics.checks import rates
 from my_robot_basics.checks.clock import Inconclusive, SimulatedClock
-from my_robot_basics.checks.ears import Ears
+from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.recording import Recording, Sample
 from my_robot_basics.checks.wall_recording import IGNORES
 from my_robot_basics.graph.watcher import Watcher
@@ -34,14 +34,16 @@ class Silent(Inconclusive):
     """No message came for as long as one is waited for."""
 
 
-def simulated(watcher: Watcher, ears: Ears, *, seconds: float, step_sec: float) -> Recording | str:
+def simulated(
+    watcher: Watcher, recorder: Recorder, *, seconds: float, step_sec: float
+) -> Recording | str:
     """A recording on the robot's clock, or a clause that says why there is none."""
     try:
-        with SimulatedClock(watcher, needed=set(ears.publishers())) as clock:
-            _hold(watcher, ears, clock)
+        with SimulatedClock(watcher, needed=set(recorder.publishers())) as clock:
+            _hold(watcher, recorder, clock)
             for part in CLOSER:
                 recording = _drive(
-                    ears,
+                    recorder,
                     clock,
                     seconds=max(seconds * part, SECONDS_LEAST),
                     step_sec=step_sec * part,
@@ -50,7 +52,7 @@ def simulated(watcher: Watcher, ears: Ears, *, seconds: float, step_sec: float) 
                     return recording
                 if not rates.is_even(recording):
                     return UNEVEN
-                proof = _prove(ears, clock, recording)
+                proof = _prove(recorder, clock, recording)
                 if proof is None:
                     continue
                 if not rates.is_nearly_even(proof):
@@ -61,64 +63,68 @@ def simulated(watcher: Watcher, ears: Ears, *, seconds: float, step_sec: float) 
     return COUNTS
 
 
-def _hold(watcher: Watcher, ears: Ears, clock: SimulatedClock) -> None:
+def _hold(watcher: Watcher, recorder: Recorder, clock: SimulatedClock) -> None:
     """The clock stands still: a node that keeps publishing does not follow it."""
     began_ns = time.time_ns()
     end = time.monotonic() + HOLD_SEC
     while time.monotonic() < end:
         clock.hold(0.05)
-        if ears.count_since(began_ns) >= 2:
+        if recorder.count_since(began_ns) >= 2:
             raise Inconclusive(IGNORES)
 
 
-def _drive(ears: Ears, clock: SimulatedClock, *, seconds: float, step_sec: float) -> Recording:
+def _drive(
+    recorder: Recorder, clock: SimulatedClock, *, seconds: float, step_sec: float
+) -> Recording:
     """Record `seconds`, or until there are FEWEST messages. Raises Inconclusive.
 
     Where the machine is too busy for that, it leaves the proof its time and records less.
     """
-    step_ns, start_ns = _find_step(ears, clock, step_sec=step_sec)
-    before = len(ears.heard)
+    step_ns, start_ns = _find_step(recorder, clock, step_sec=step_sec)
+    before = len(recorder.received)
     for done in range(round(seconds * 1e9 / step_ns)):
         if clock.is_half_over() and done * step_ns >= SECONDS_ENOUGH * 1e9:
             break
         clock.tick(step_ns)
-    while len(ears.heard) < before + rates.FEWEST:
-        _tick_to_message(ears, clock, step_ns=step_ns)
-    return _recorded(ears, clock, start_ns=start_ns, step_ns=step_ns)
+    while len(recorder.received) < before + rates.FEWEST:
+        _tick_to_message(recorder, clock, step_ns=step_ns)
+    return _recorded(recorder, clock, start_ns=start_ns, step_ns=step_ns)
 
 
-def _recorded(ears: Ears, clock: SimulatedClock, *, start_ns: int, step_ns: int) -> Recording:
+def _recorded(
+    recorder: Recorder, clock: SimulatedClock, *, start_ns: int, step_ns: int
+) -> Recording:
     """What was received on the robot's clock since a message."""
     samples = [
         Sample(message, (clock.time_ns(sent_ns) - start_ns) / 1e9, sent_ns / 1e9)
-        for message, sent_ns in ears.heard
+        for message, sent_ns in recorder.received
         if clock.time_ns(sent_ns) > start_ns
     ]
     return Recording(
-        topic_name=ears.topic_name,
+        topic_name=recorder.topic_name,
         messages=tuple(samples),
         clock='simulated',
-        publishers=ears.publishers(),
+        publishers=recorder.publishers(),
         seconds=(clock.now_ns - start_ns) / 1e9,
         start_sec=start_ns / 1e9,
         step_sec=step_ns / 1e9,
     )
 
 
-def _find_step(ears: Ears, clock: SimulatedClock, *, step_sec: float) -> tuple[int, int]:
+def _find_step(recorder: Recorder, clock: SimulatedClock, *, step_sec: float) -> tuple[int, int]:
     """A step that skips no period of the timer, and the time of the message to begin at.
 
     A timer fires once a tick at most, so messages in two ticks running ask for a finer step.
     """
     for part in FINER:
         step_ns = round(step_sec * part * 1e9)
-        _tick_to_message(ears, clock, step_ns=step_ns)
-        if _tick_to_message(ears, clock, step_ns=step_ns) > 1:
+        _tick_to_message(recorder, clock, step_ns=step_ns)
+        if _tick_to_message(recorder, clock, step_ns=step_ns) > 1:
             break
     return step_ns, clock.now_ns
 
 
-def _prove(ears: Ears, clock: SimulatedClock, recording: Recording) -> Recording | None:
+def _prove(recorder: Recorder, clock: SimulatedClock, recording: Recording) -> Recording | None:
     """A recording with other steps that shows the same period, or None. Raises Inconclusive.
 
     A timer fires once a tick at most. One that is faster than the ticks, and publishes every so
@@ -127,20 +133,27 @@ def _prove(ears: Ears, clock: SimulatedClock, recording: Recording) -> Recording
     step_ns = round(recording.step_sec * 1e9)
     coarse_ns, fine_ns = step_ns * PROOF_PARTS, round(step_ns / PROOF_PARTS)
     is_slow = recording.rate_hz * COARSE_STEPS * coarse_ns <= 1e9
-    coarse = is_slow and _same_period(ears, clock, recording, coarse_ns, ticks_least=PROOF_STEPS)
+    coarse = is_slow and _same_period(
+        recorder, clock, recording, coarse_ns, ticks_least=PROOF_STEPS
+    )
     ticks_least = PROOF_STEPS * PROOF_PARTS
-    return coarse or _same_period(ears, clock, recording, fine_ns, ticks_least=ticks_least)
+    return coarse or _same_period(recorder, clock, recording, fine_ns, ticks_least=ticks_least)
 
 
 def _same_period(
-    ears: Ears, clock: SimulatedClock, recording: Recording, step_ns: int, *, ticks_least: int
+    recorder: Recorder,
+    clock: SimulatedClock,
+    recording: Recording,
+    step_ns: int,
+    *,
+    ticks_least: int,
 ) -> Recording | None:
     ticks = messages = 0
     try:
-        _tick_to_message(ears, clock, step_ns=step_ns)
+        _tick_to_message(recorder, clock, step_ns=step_ns)
         start_ns = clock.now_ns
         while ticks < ticks_least:
-            ticks += _tick_to_message(ears, clock, step_ns=step_ns)
+            ticks += _tick_to_message(recorder, clock, step_ns=step_ns)
             messages += 1
     except Silent:
         return None
@@ -148,14 +161,14 @@ def _same_period(
     unsure_ns = step_ns + messages * recording.step_sec * 1e9 / len(recording.messages)
     if abs(ticks * step_ns - recorded_ns) > 1.5 * unsure_ns:
         return None
-    return _recorded(ears, clock, start_ns=start_ns, step_ns=step_ns)
+    return _recorded(recorder, clock, start_ns=start_ns, step_ns=step_ns)
 
 
-def _tick_to_message(ears: Ears, clock: SimulatedClock, *, step_ns: int) -> int:
+def _tick_to_message(recorder: Recorder, clock: SimulatedClock, *, step_ns: int) -> int:
     """Tick until a message arrives; how many ticks it took. Raises Inconclusive."""
-    before = len(ears.heard)
+    before = len(recorder.received)
     for ticks in range(1, round(FIRST_MESSAGE_SEC * 1e9 / step_ns) + 1):
         clock.tick(step_ns)
-        if len(ears.heard) > before:
+        if len(recorder.received) > before:
             return ticks
     raise Silent(f"no message arrived in {FIRST_MESSAGE_SEC:g} s of the robot's time")

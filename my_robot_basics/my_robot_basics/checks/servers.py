@@ -7,9 +7,9 @@ from typing import Any, NoReturn
 from rclpy.publisher import Publisher
 
 from my_robot_basics.checks.callbacks import Raised
-from my_robot_basics.checks.ears import Ears
 from my_robot_basics.checks.holding_server import HoldingServer
 from my_robot_basics.checks.pulse import Pulse
+from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.topics import Topic
 from my_robot_basics.checks.waiting_clients import (
     waits_for_answer,
@@ -70,7 +70,7 @@ class Server(HoldingServer):
     """What `serve` yields, while it lasts."""
 
     def __init__(
-        self, watcher: Watcher, *, asked_on: str, answers: Ears, beats: Ears, **served: Any
+        self, watcher: Watcher, *, asked_on: str, answers: Recorder, beats: Recorder, **served: Any
     ) -> None:
         """`served` is for HoldingServer."""
         super().__init__(watcher.node, **served)
@@ -78,13 +78,13 @@ class Server(HoldingServer):
         self._watcher, self._answers, self._beats = watcher, answers, beats
         self._raised = Raised({*answers.publishers(), *beats.publishers()})
         self._publisher: Publisher | None = None
-        self._heard = self._known_starts = 0
+        self._seen = self._known_starts = 0
 
     def publish(self, message: Any) -> None:
         """Publish a message that is to lead to a request, without waiting for one."""
         if self._publisher is None:
             self._publisher = Topic(self.asked_on).meet(self._watcher, type(message))
-        self._heard = len(self._answers.heard)
+        self._seen = len(self._answers.received)
         self._publisher.publish(message)
 
     def ask(
@@ -123,16 +123,16 @@ class Server(HoldingServer):
         PATIENCE_SEC of time that was free.
         """
 
-        def heard() -> list[Any]:
-            return self._answers.messages()[self._heard :]
+        def received() -> list[Any]:
+            return self._answers.messages()[self._seen :]
 
         found = self._watcher.spin_until_free(
-            lambda: any(map(is_right, heard())), free_sec=PATIENCE_SEC
+            lambda: any(map(is_right, received())), free_sec=PATIENCE_SEC
         )
         if found:
             self._raised.expect_none()
-            return next(filter(is_right, heard()))
-        others = heard()
+            return next(filter(is_right, received()))
+        others = received()
         wrong = f'a wrong message on {self._answers.topic_name}'
         fail(
             expected=f'{expected} on {self._answers.topic_name}',
@@ -144,7 +144,7 @@ class Server(HoldingServer):
     def expect_nothing(self, *, hint: str) -> None:
         """Nothing comes on `to` in QUIET_SEC after what was last asked for. Raises CheckFailed."""
         self._watcher.spin_for(QUIET_SEC)
-        others = self._answers.messages()[self._heard :]
+        others = self._answers.messages()[self._seen :]
         expect(
             not others,
             expected=f'no message on {self._answers.topic_name}',

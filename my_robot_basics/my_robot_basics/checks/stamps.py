@@ -97,7 +97,7 @@ def expect_to_follow(topic_name: str, type_: type, publishers: Collection[str]) 
 def _while_ahead(topic_name: str, type_: type, publishers: Collection[str]) -> list[float]:
     """How far stamps are ahead of the computer's clock, in seconds, while the nodes' clock is."""
     with Watcher() as watcher:
-        proofs = _hear_stamps(watcher, topic_name, type_)
+        proofs = _receive_stamps(watcher, topic_name, type_)
         with SimulatedClock(watcher, needed=set(publishers)) as clock:
             clock.tick(round(AHEAD_SEC * 1e9))
             since_ns = time.time_ns()
@@ -119,7 +119,7 @@ def _while_ahead_inside(
     with Watcher() as watcher:
         if watcher.node.get_publishers_info_by_topic('/clock'):
             return None
-        proofs = _hear_stamps(watcher, topic_name, type_)
+        proofs = _receive_stamps(watcher, topic_name, type_)
         clock = watcher.node.create_publisher(Clock, '/clock', 1)
         former = {name: student.set_use_sim_time(name, value=True) for name in publishers}
         try:
@@ -145,16 +145,20 @@ def _tick_ahead(watcher: Watcher, clock: Publisher, *, seconds: float) -> None:
         watcher.spin_for(PROOF_STEP_SEC)
 
 
-def _hear_stamps(watcher: Watcher, topic_name: str, type_: type) -> Callable[[int], list[float]]:
+def _receive_stamps(
+    watcher: Watcher, topic_name: str, type_: type
+) -> Callable[[int], list[float]]:
     """Listen; what is returned tells how far each stamp since a wall time is ahead of that."""
-    heard: list[tuple[float, int]] = []
+    received: list[tuple[float, int]] = []
 
-    def hear(message: Any, info: dict) -> None:
-        heard.append((_seconds(message.header.stamp), info['source_timestamp']))
+    def receive(message: Any, info: dict) -> None:
+        received.append((_seconds(message.header.stamp), info['source_timestamp']))
 
     asked = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT)
-    watcher.node.create_subscription(type_, topic_name, with_info(hear), asked)
-    return lambda since_ns: [sec - sent_ns / 1e9 for sec, sent_ns in heard if sent_ns > since_ns]
+    watcher.node.create_subscription(type_, topic_name, with_info(receive), asked)
+    return lambda since_ns: [
+        sec - sent_ns / 1e9 for sec, sent_ns in received if sent_ns > since_ns
+    ]
 
 
 def _come_in_pairs(recording: 'Recording', stamps: Sequence[float]) -> bool:

@@ -3,7 +3,7 @@
 from rclpy.publisher import Publisher
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
-from my_robot_basics.checks.ears import Ears
+from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.exchange import student, values
 from my_robot_basics.feedback.errors import fail
 from my_robot_basics.feedback.hidden import theirs
@@ -50,7 +50,7 @@ class TopicEnds:
         infos = graphs.subscription_infos(watcher.node, self.name)
         return any(info.qos_profile.reliability == ReliabilityPolicy.BEST_EFFORT for info in infos)
 
-    def listen(self, watcher: Watcher) -> Ears:
+    def listen(self, watcher: Watcher) -> Recorder:
         """Subscribe with the publishers' own type and QoS; wait for them first.
 
         Raises CheckFailed when there is no publisher, or no one type.
@@ -71,7 +71,7 @@ class TopicEnds:
             depth=DEPTH,
             reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
         )
-        return Ears(watcher, topic_name=self.name, type_=message_type, qos_profile=wanted)
+        return Recorder(watcher, topic_name=self.name, type_=message_type, qos_profile=wanted)
 
     def patience_sec(
         self, watcher: Watcher, most_sec: float, *, end: str, type_: type | None = None

@@ -9,7 +9,7 @@ from rclpy.duration import Duration
 
 from my_robot_basics.checks import sampling, wall_recording
 from my_robot_basics.checks.clock_use import are_left_alone
-from my_robot_basics.checks.ears import Ears
+from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.recording import Recording
 from my_robot_basics.checks.topic_ends import ACQUAINTANCE_SEC, TopicEnds
 from my_robot_basics.exchange import student
@@ -55,15 +55,15 @@ class Topic(TopicEnds):
         """
         began = time.monotonic()
         with Watcher() as watcher:
-            ears = self.listen(watcher)
-            sent = watcher.spin_until_free(lambda: bool(ears.heard), free_sec=BEFORE_SEC)
-            found = sampling.simulated(watcher, ears, seconds=seconds, step_sec=step_sec)
+            recorder = self.listen(watcher)
+            sent = watcher.spin_until_free(lambda: bool(recorder.received), free_sec=BEFORE_SEC)
+            found = sampling.simulated(watcher, recorder, seconds=seconds, step_sec=step_sec)
             if isinstance(found, str):
-                why, recording = found, wall_recording.wall(watcher, ears, why=found)
+                why, recording = found, wall_recording.wall(watcher, recorder, why=found)
             else:
                 why, recording = '', found
             if not recording.messages and sent and not are_left_alone():
-                self._expect_ends_by_itself(ears)
+                self._expect_ends_by_itself(recorder)
             if not recording.messages:
                 self.fail_silent(watcher, seen=f'no message in {recording.seconds:g} s')
         left_sec = _looks_sec() - (time.monotonic() - began)
@@ -106,29 +106,29 @@ class Topic(TopicEnds):
         publishes once for each message: so publish one message in `after`.
         """
         with Watcher() as watcher:
-            ears = self.listen(watcher)
+            recorder = self.listen(watcher)
             if after is not None:
                 after()
 
             def found() -> list:
-                return [m for m in ears.messages() if predicate is None or predicate(m)]
+                return [m for m in recorder.messages() if predicate is None or predicate(m)]
 
             def wrong() -> list:
-                return [m for m in ears.messages() if never is not None and never(m)]
+                return [m for m in recorder.messages() if never is not None and never(m)]
 
             is_decided = watcher.spin_until(
                 lambda: bool(found() or wrong()), timeout_sec=timeout_sec
             )
             if is_decided and (once or never is not None):
                 watcher.spin_for(AFTERTHOUGHT_SEC)
-            heard = ears.messages()
+            received = recorder.messages()
             if wrong() or not found():
-                if not heard and after is not None:
-                    self._expect_none_late(watcher, ears, after)
-                if not heard:
+                if not received and after is not None:
+                    self._expect_none_late(watcher, recorder, after)
+                if not received:
                     self.fail_silent(watcher, seen=f'no message in {timeout_sec:g} s')
-                last = [*heard, *wrong()][-1]
-                others = f'{len(heard)} others in {timeout_sec:g} s'
+                last = [*received, *wrong()][-1]
+                others = f'{len(received)} others in {timeout_sec:g} s'
                 fail(
                     expected=expected or f'a message on {self.name} that answers',
                     seen=shorten(seen(last)) if seen else others,
@@ -151,9 +151,9 @@ class Topic(TopicEnds):
                 raise CheckFailed('there is no time for another look')
             began = time.monotonic()
             with Watcher() as watcher:
-                ears = self.listen(watcher)
+                recorder = self.listen(watcher)
                 again = wall_recording.wall(
-                    watcher, ears, why=why, seconds=seconds, patience_sec=seconds
+                    watcher, recorder, why=why, seconds=seconds, patience_sec=seconds
                 )
             if again.late_sec < LATE_SEC or not late_looks:
                 return again
@@ -162,10 +162,10 @@ class Topic(TopicEnds):
 
         return replace(recording, look_again=look_again)
 
-    def _expect_ends_by_itself(self, ears: Ears) -> None:
+    def _expect_ends_by_itself(self, recorder: Recorder) -> None:
         """Who sends nothing any more has raised something, or the change of its clock ended it."""
         expect(
-            bool(what_raised(ears.publishers())),
+            bool(what_raised(recorder.publishers())),
             expected=f'messages on {self.name}',
             seen="some, and none any more once the node was on the robot's clock (use_sim_time)",
             hint='let no loop end when sleep_for returns False: it does so when the clock changes',
@@ -173,11 +173,13 @@ class Topic(TopicEnds):
             doubt=Disturbed,
         )
 
-    def _expect_none_late(self, watcher: Watcher, ears: Ears, after: Callable[[], None]) -> None:
+    def _expect_none_late(
+        self, watcher: Watcher, recorder: Recorder, after: Callable[[], None]
+    ) -> None:
         """Do once more what brings messages; who sends one only now sends the one before."""
         after()
         expect(
-            not watcher.spin_until(lambda: bool(ears.heard), timeout_sec=ONCE_MORE_SEC),
+            not watcher.spin_until(lambda: bool(recorder.received), timeout_sec=ONCE_MORE_SEC),
             expected=f'a message on {self.name} for each that your node receives',
             seen='the first one only when a second was sent',
             hint='publish what you make of the message that your callback is given, at once, and '

@@ -2,7 +2,7 @@
 
 import time
 
-from my_robot_basics.checks.ears import Ears
+from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.recording import Recording, Sample
 from my_robot_basics.graph.raised import what_raised
 from my_robot_basics.graph.watcher import Watcher
@@ -21,7 +21,7 @@ IGNORES = 'the node ignores the clock'
 
 def wall(
     watcher: Watcher,
-    ears: Ears,
+    recorder: Recorder,
     *,
     why: str,
     seconds: float = WALL_SEC,
@@ -32,16 +32,16 @@ def wall(
     It waits for that one `patience_sec` at most, and as long for the next one, should that be
     longer: then it ends there.
     """
-    if not ears.heard and what_raised(ears.publishers()):
+    if not recorder.received and what_raised(recorder.publishers()):
         seconds = patience_sec = RAISED_SEC
     began_ns = time.time_ns()
-    if watcher.spin_until(lambda: ears.count_since(began_ns) > 0, timeout_sec=patience_sec):
+    if watcher.spin_until(lambda: recorder.count_since(began_ns) > 0, timeout_sec=patience_sec):
         watcher.late_sec = 0.0
         watcher.spin_for(seconds)
         watcher.spin_until(
-            lambda: ears.count_since(began_ns) > 1, timeout_sec=patience_sec - seconds
+            lambda: recorder.count_since(began_ns) > 1, timeout_sec=patience_sec - seconds
         )
-    sent = [(message, sent_ns) for message, sent_ns in ears.heard if sent_ns > began_ns]
+    sent = [(message, sent_ns) for message, sent_ns in recorder.received if sent_ns > began_ns]
     start_ns = sent[0][1] if sent else began_ns
     samples = [
         Sample(message, (sent_ns - start_ns) / 1e9, sent_ns / 1e9) for message, sent_ns in sent[1:]
@@ -49,19 +49,19 @@ def wall(
     next_sec = samples[0].time_sec if samples else patience_sec
     seconds = max(seconds, next_sec)
     return Recording(
-        topic_name=ears.topic_name,
+        topic_name=recorder.topic_name,
         messages=tuple(sample for sample in samples if sample.time_sec <= seconds),
         clock='wall',
-        publishers=ears.publishers(),
+        publishers=recorder.publishers(),
         seconds=seconds,
         start_sec=start_ns / 1e9,
-        note=_note(ears, why),
+        note=_note(recorder, why),
         late_sec=watcher.late_sec,
     )
 
 
-def _note(ears: Ears, why: str) -> str:
+def _note(recorder: Recorder, why: str) -> str:
     if why != IGNORES:
         return ''
-    name = ', '.join(ears.publishers())
+    name = ', '.join(recorder.publishers())
     return f"note: {name} ignores the robot's clock (use_sim_time); judged on the wall clock"

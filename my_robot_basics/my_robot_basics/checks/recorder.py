@@ -9,7 +9,7 @@ from my_robot_basics.graph.message_info import with_info
 from my_robot_basics.graph.watcher import Watcher
 
 
-class Ears:
+class Recorder:
     """A subscription that keeps every message with the wall time at which it was sent."""
 
     def __init__(
@@ -17,10 +17,10 @@ class Ears:
     ) -> None:
         self.topic_name = topic_name
         self.type = type_
-        self.heard: list[tuple[Any, int]] = []
+        self.received: list[tuple[Any, int]] = []
         self._node = watcher.node
         self._subscription = self._node.create_subscription(
-            type_, topic_name, with_info(self._hear), qos_profile
+            type_, topic_name, with_info(self._receive), qos_profile
         )
         self._publishers: tuple[str, ...] = ()
 
@@ -40,11 +40,11 @@ class Ears:
 
     def messages(self) -> list[Any]:
         """The messages received so far."""
-        return [message for message, _ in self.heard]
+        return [message for message, _ in self.received]
 
     def count_since(self, wall_ns: int) -> int:
         """How many messages were sent after that wall time."""
-        return sum(sent_ns > wall_ns for _, sent_ns in self.heard)
+        return sum(sent_ns > wall_ns for _, sent_ns in self.received)
 
-    def _hear(self, message: Any, info: dict) -> None:
-        self.heard.append((message, info['source_timestamp']))
+    def _receive(self, message: Any, info: dict) -> None:
+        self.received.append((message, info['source_timestamp']))
