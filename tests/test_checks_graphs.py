@@ -60,10 +60,13 @@ def picture(nodes=('/a',), publishers=None, subscriptions=None):
     ],
 )
 def test_silence_has_a_reason(seen, why):
-    assert seen.why_silent('/t/joint_states').startswith(why)
+    assert seen.why_no_message('/t/joint_states').startswith(why)
 
 
 @pytest.mark.starts
 def test_a_subscription_that_is_missing_has_a_reason():
     seen = picture(subscriptions={'/target_points': ('/a',)})
-    assert seen.why_unheard('/target_point') == '/a uses /target_points, so compare the spelling'
+    assert (
+        seen.why_no_subscription('/target_point')
+        == '/a uses /target_points, so compare the spelling'
+    )

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from my_robot_basics.doctor import picture, report
-from my_robot_basics.doctor.evidence import Endpoint, Evidence, Heard, NodeState
+from my_robot_basics.doctor.evidence import Endpoint, Evidence, NodeState, ReceivedMessage
 from my_robot_basics.doctor.remaps import of_command
 from my_robot_basics.doctor.rules import RULES, judge, qos
 from my_robot_basics.graph.watcher import Watcher
@@ -50,10 +50,10 @@ def both_ends():
 @given(offered=PROFILES, asked=PROFILES)
 def test_the_diagnosis_agrees_with_what_arrives(both_ends, offered, asked):
     sender, receiver = both_ends
-    heard = []
+    received = []
     publisher = sender.node.create_publisher(String, '/qos', QoSProfile(**offered))
     subscription = receiver.node.create_subscription(
-        String, '/qos', heard.append, QoSProfile(**asked)
+        String, '/qos', received.append, QoSProfile(**asked)
     )
     look_ups = (
         receiver.node.get_publishers_info_by_topic,
@@ -68,7 +68,7 @@ def test_the_diagnosis_agrees_with_what_arrives(both_ends, offered, asked):
 
         def arrives():
             publisher.publish(String())
-            return bool(heard)
+            return bool(received)
 
         # a pair that matches does so within milliseconds
         assert receiver.spin_until(arrives, timeout_sec=0.3 if gaps else 10.0) is not bool(gaps)
@@ -111,18 +111,18 @@ def end(kind, node_name, *, topic_name=TOPIC, type_name='sensor_msgs/msg/JointSt
 
 def healthy(*, rate_hz=5.0, number=10, position=(0.4, -1.1), names=('joint1', 'joint2')):
     began_sec = time.time()
-    heard = []
+    received = []
     for i in range(number):
         message = JointState(name=list(names), position=list(position))
         sent_sec = began_sec + i / rate_hz
         message.header.stamp.sec = int(sent_sec)
         message.header.stamp.nanosec = int(sent_sec % 1 * 1e9)
-        heard.append(Heard(message=message, sent_sec=sent_sec))
+        received.append(ReceivedMessage(message=message, sent_sec=sent_sec))
     return Evidence(
         topic_name=TOPIC,
         endpoints=(end('publisher', '/talker'), end('subscription', '/listener')),
         nodes={'/talker': NodeState(answers=True), '/listener': NodeState(answers=True)},
-        heard=tuple(heard),
+        received=tuple(received),
         listened_sec=number / rate_hz,
         began_sec=began_sec,
     )
@@ -149,20 +149,20 @@ def replaced(evidence=None, **changes):
 
 
 TALKER, LISTENER = healthy().endpoints
-SILENT = {'heard': (), 'listened_sec': 6.0}
+SILENT = {'received': (), 'listened_sec': 6.0}
 
 
 @pytest.mark.parametrize(
     ('evidence', 'titles'),
     [
-        (replaced(endpoints=(), heard=(), nodes={}), ['no publisher', 'no subscription']),
+        (replaced(endpoints=(), received=(), nodes={}), ['no publisher', 'no subscription']),
         (replaced(endpoints=(TALKER,)), ['no subscription']),
         (replaced(**SILENT), ['the timer never fires']),
         (
-            replaced(endpoints=(LISTENER,), unheard=1, **SILENT),
+            replaced(endpoints=(LISTENER,), missing_participants=1, **SILENT),
             ['a process that cannot be discovered', 'no publisher'],
         ),
-        (replaced(unheard=1), []),
+        (replaced(missing_participants=1), []),
         (
             replaced(
                 endpoints=(
@@ -170,7 +170,7 @@ SILENT = {'heard': (), 'listened_sec': 6.0}
                     end('subscription', '/driver', type_name='velodyne_msgs/msg/VelodyneScan'),
                 ),
                 unknown_types=('velodyne_msgs/msg/VelodyneScan',),
-                heard=(),
+                received=(),
                 listened_sec=0.0,
             ),
             ['message type not installed here'],
@@ -213,12 +213,14 @@ def test_what_follows_from_what_was_seen(evidence, titles):
 def with_bursts(*firsts, number=6):
     """100 Hz from a queue of one, in which `number` messages each came at once."""
     evidence = healthy(rate_hz=100.0, number=200)
-    heard = list(evidence.heard)
+    received = list(evidence.received)
     for first in firsts:
         for i in range(first, first + number):
-            heard[i] = dataclasses.replace(heard[i], sent_sec=heard[first + number - 1].sent_sec)
+            received[i] = dataclasses.replace(
+                received[i], sent_sec=received[first + number - 1].sent_sec
+            )
     ends = end('publisher', '/talker', depth=1), end('subscription', '/listener')
-    return replaced(evidence, heard=tuple(heard), endpoints=ends)
+    return replaced(evidence, received=tuple(received), endpoints=ends)
 
 
 @pytest.mark.parametrize(
@@ -302,7 +304,7 @@ def test_the_report_names_rate_and_faults_in_order():
     ('evidence', 'text'),
     [
         (healthy(), '/talker publishes, /listener subscribes, 5 Hz'),
-        (replaced(endpoints=(), heard=(), nodes={}), 'broken: no publisher (no publisher)'),
+        (replaced(endpoints=(), received=(), nodes={}), 'broken: no publisher (no publisher)'),
         (replaced(**SILENT), 'broken: /talker (the timer never fires)'),
     ],
 )

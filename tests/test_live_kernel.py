@@ -281,8 +281,8 @@ rclpy.shutdown()
 other.stdout.readline()''')
     lesson.run('from my_robot_basics.live.runner import _neighbours; _neighbours.meet()')
     try:
-        heard = "_neighbours._hears_of('/talker')"
-        assert lesson.wait_for(lambda: lesson.value(heard) == 'True')
+        announced = "_neighbours._is_announced('/talker')"
+        assert lesson.wait_for(lambda: lesson.value(announced) == 'True')
         assert 'already runs outside live' in lesson.run('talker = run(Talker)').stdout
         assert lesson.value('talker') == 'None'
     finally:

@@ -320,7 +320,7 @@ publisher = node.create_publisher(String, '/said', 10)
 node.create_timer(0.05, lambda: publisher.publish(String(data='hello')))
 threading.Thread(target=rclpy.spin, args=(node,), daemon=True).start()
 """
-HEAR = """
+RECEIVE = """
 from my_robot_basics.checks import topic
 print(topic('/said').wait_for(timeout_sec=20.0).data)
 """
@@ -328,7 +328,7 @@ print(topic('/said').wait_for(timeout_sec=20.0).data)
 
 def test_a_topic_crosses_but_not_into_the_rooms_next_door(rooms, shared, student, check):
     student(rooms, PUBLISH)
-    assert said(check(rooms, HEAR)) == 'hello\n'
+    assert said(check(rooms, RECEIVE)) == 'hello\n'
     code = 'from my_robot_basics.checks import graph; print(graph().nodes())'
     assert 'talker' in said(check(rooms, code))
     assert 'talker' not in said(check(shared, code))
@@ -393,8 +393,8 @@ NOT_READY = {
 def test_a_room_that_is_not_made_ready_closes_both(loop, monkeypatch, left, code, why):
     monkeypatch.setattr(module, 'STUDENT_COMES', code)
     patience = 0.5 if code == PROBE else 3600  # what can't come any more is not waited for
-    hears = module.TEST_HEARS.replace('hear()', f'hear({patience})')
-    monkeypatch.setattr(module, 'TEST_HEARS', hears)
+    receives = module.TEST_RECEIVES.replace('receive()', f'receive({timeout_sec})')
+    monkeypatch.setattr(module, 'TEST_RECEIVES', receives)
     monkeypatch.setattr(module, 'SETUP_TIMEOUT_SEC', 3600.0)
     with pytest.raises(RoomFailure, match=why):
         loop.run(GradingRooms(isolated=require_isolation()).__aenter__())
@@ -410,7 +410,7 @@ IN_SHARED_MEMORY = PUBLISH.replace(
 @pytest.mark.isolation
 def test_a_student_who_prefers_shared_memory_is_heard_too(rooms, student, check):
     student(rooms, IN_SHARED_MEMORY)
-    assert said(check(rooms, HEAR)) == 'hello\n'
+    assert said(check(rooms, RECEIVE)) == 'hello\n'
 
 
 def test_cancelling_while_rooms_open_closes_them(loop, left):
@@ -472,11 +472,11 @@ def test_the_probe_hears_only_what_is_announced(loop):
     from my_robot_basics.exchange import probe
 
     with pytest.raises(TimeoutError, match='no message went from kernel to kernel in 0 s'):
-        probe.hear(0.3)
+        probe.receive(0.3)
     probe.announce()
     try:
-        probe.hear()
+        probe.receive()
     finally:
         probe.silence()
     with pytest.raises(TimeoutError):
-        probe.hear(0.3)
+        probe.receive(0.3)

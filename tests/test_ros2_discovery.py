@@ -206,7 +206,7 @@ def settled_after(monkeypatch, seen, *, present=2, here_only=True):
     clock, asked = seen.clock, []
     monkeypatch.setattr(discovery, 'time', clock)
     monkeypatch.setattr(participants, 'count', lambda domain_id: present)
-    monkeypatch.setattr(environment, 'hears_this_machine_only', lambda: here_only)
+    monkeypatch.setattr(environment, 'is_localhost_only', lambda: here_only)
     monkeypatch.setattr(entities, 'Reader', lambda node: seen)
     monkeypatch.setattr(reannouncing, 'ask', lambda domain_id: asked.append(clock.now))
     discovery.settle(seen, clock.wait)

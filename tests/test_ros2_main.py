@@ -111,7 +111,7 @@ def test_what_the_environment_says_stands(monkeypatch):
     environment.enter()
     environment.enter()
     assert environment.domain_id() == 5
-    assert not environment.hears_this_machine_only()
+    assert not environment.is_localhost_only()
     assert os.environ['FASTRTPS_DEFAULT_PROFILES_FILE'] == '/mine.xml'
     assert os.environ['AMENT_PREFIX_PATH'] == f'/workspace/install:{sys.prefix}'
 
@@ -123,7 +123,7 @@ def test_a_bare_shell_gets_what_a_lesson_has(monkeypatch):
     monkeypatch.delenv('FASTRTPS_DEFAULT_PROFILES_FILE')
     environment.enter()
     assert environment.domain_id() == 0
-    assert environment.hears_this_machine_only()
+    assert environment.is_localhost_only()
     assert Path(os.environ['FASTRTPS_DEFAULT_PROFILES_FILE']).is_file()
     assert os.environ['AMENT_PREFIX_PATH'] == sys.prefix
 

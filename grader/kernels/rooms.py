@@ -12,7 +12,7 @@ from my_robot_basics.validate.outputs import CellRun
 from my_robot_basics.validate.questions import (
     STUDENT_COMES,
     STUDENT_GOES,
-    TEST_HEARS,
+    TEST_RECEIVES,
     as_expression,
     reply_of,
 )
@@ -168,7 +168,7 @@ class GradingRooms:
 
     async def _prepare_test(self) -> None:
         await self._test.start()
-        await self._prepare(self._test, TEST_HEARS)
+        await self._prepare(self._test, TEST_RECEIVES)
 
     async def _prepare(self, kernel: GradingKernel, code: str) -> None:
         run = await kernel.run(code, timeout_sec=SETUP_TIMEOUT_SEC)

@@ -153,11 +153,11 @@ class SimulatedClock:
         }
         self.now_ns = max(time.time_ns(), _latest_ns)
         self._answered(self._set_all(dict.fromkeys(self._former, True)), FIRST_ANSWER_SEC)
-        self._watcher.spin_until_free(self._is_heard, free_sec=FIRST_ANSWER_SEC)
+        self._watcher.spin_until_free(self._is_subscribed_to, free_sec=FIRST_ANSWER_SEC)
         self._publish()
         self._barrier()
 
-    def _is_heard(self) -> bool:
+    def _is_subscribed_to(self) -> bool:
         self._publish()
         return self._publisher.get_subscription_count() >= len(self._barriers)
 

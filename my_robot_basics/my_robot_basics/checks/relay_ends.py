@@ -45,7 +45,7 @@ class Ends:
             fail(
                 expected=f'a publisher on {self.to}',
                 seen=graphs.none_in(patience_sec),
-                hint=self._graph(watcher).why_silent(self.to),
+                hint=self._graph(watcher).why_no_message(self.to),
             )
         recorder = topic.listen(watcher)
         expect(
@@ -163,7 +163,7 @@ class Ends:
         fail(
             expected=f'a subscription on {self.source}',
             seen=graphs.none_in(patience_sec),
-            hint=self._graph(watcher).why_unheard(self.source),
+            hint=self._graph(watcher).why_no_subscription(self.source),
         )
 
     def _graph(self, watcher: Watcher) -> GraphSnapshot:

@@ -40,7 +40,7 @@ class TopicEnds:
         if not watcher.spin_until(
             lambda: publisher.get_subscription_count() > 0, timeout_sec=timeout_sec
         ):
-            self._fail_unheard(watcher, type_, timeout_sec=timeout_sec)
+            self._fail_no_subscription(watcher, type_, timeout_sec=timeout_sec)
         # a BEST_EFFORT one may not know yet of a publisher that knows of it
         watcher.spin_for(ACQUAINTANCE_SEC if self.sends_once(watcher) else 0.0)
         return publisher
@@ -60,7 +60,7 @@ class TopicEnds:
             fail(
                 expected=f'a publisher on {self.name}',
                 seen=graphs.none_in(patience_sec),
-                hint=graphs.take(watcher).why_silent(self.name),
+                hint=graphs.take(watcher).why_no_message(self.name),
             )
         message_type = self._message_type(watcher)
         offers = graphs.publisher_infos(watcher.node, self.name)
@@ -106,11 +106,11 @@ class TopicEnds:
         if graphs.publisher_infos(watcher.node, self.name):
             # a publisher of another type may have come to light only now
             self._message_type(watcher)
-        hint = graphs.take(watcher).why_silent(self.name)
+        hint = graphs.take(watcher).why_no_message(self.name)
         fail(expected=f'messages on {self.name}', seen=seen, hint=hint)
 
-    def _fail_unheard(self, watcher: Watcher, type_: type, *, timeout_sec: float) -> None:
-        hint = graphs.take(watcher).why_unheard(self.name)
+    def _fail_no_subscription(self, watcher: Watcher, type_: type, *, timeout_sec: float) -> None:
+        hint = graphs.take(watcher).why_no_subscription(self.name)
         if infos := graphs.subscription_infos(watcher.node, self.name):
             hint = f'one is there for {theirs(infos[0].topic_type)}, so compare the message type'
         seen = graphs.none_in(timeout_sec)

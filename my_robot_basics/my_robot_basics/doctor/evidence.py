@@ -34,7 +34,7 @@ class Endpoint:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Heard:
+class ReceivedMessage:
     """One message that the doctor has received."""
 
     message: Any
@@ -72,7 +72,7 @@ class Evidence:
     """Full names of all nodes that are not hidden."""
     has_clock: bool = False
     """Whether somebody publishes `/clock`."""
-    heard: tuple[Heard, ...] = ()
+    received: tuple[ReceivedMessage, ...] = ()
     listened_sec: float = 0.0
     began_sec: float = 0.0
     """When the doctor began to listen, on the wall clock."""
@@ -80,7 +80,7 @@ class Evidence:
     """Types of the topic's publishers that are not installed here: nobody could listen in."""
     remaps: tuple[Remap, ...] = ()
     domain_id: int = 0
-    unheard: int = 0
+    missing_participants: int = 0
     """Participants of this domain on this machine that are not on the graph."""
     elsewhere: dict[int, tuple[Endpoint, ...]] = field(default_factory=dict)
     """Endpoints of the topic in other domains of this machine, where these were looked at."""
@@ -106,9 +106,9 @@ class Evidence:
         return self.nodes.get(node_name, NodeState(answers=None))
 
     @cached_property
-    def fresh(self) -> tuple[Heard, ...]:
+    def fresh(self) -> tuple[ReceivedMessage, ...]:
         """The messages that were sent while the doctor looked: not those kept for late joiners."""
-        return tuple(each for each in self.heard if each.sent_sec >= self.began_sec)
+        return tuple(each for each in self.received if each.sent_sec >= self.began_sec)
 
     @property
     def rate_hz(self) -> float:

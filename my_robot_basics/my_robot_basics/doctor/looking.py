@@ -10,7 +10,7 @@ from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 from my_robot_basics.doctor import remaps, rules
 from my_robot_basics.doctor.asking import Questions
-from my_robot_basics.doctor.evidence import Diagnosis, Endpoint, Evidence, Heard, Kind
+from my_robot_basics.doctor.evidence import Diagnosis, Endpoint, Evidence, Kind, ReceivedMessage
 from my_robot_basics.graph import graphs, participants
 from my_robot_basics.graph.message_info import with_info
 from my_robot_basics.graph.watcher import HIDDEN, Watcher
@@ -61,7 +61,9 @@ def _look(watcher: Watcher, topic_name: str, *, domain_id: int, listen_sec: floa
     graph = graphs.take(watcher)
     if not (graph.publishers(topic_name) and graph.subscriptions(topic_name)):
         # before anybody is called missing
-        watcher.spin_until(lambda: _unheard(watcher.node, domain_id) <= 0, timeout_sec=MISSING_SEC)
+        watcher.spin_until(
+            lambda: _missing_participants(watcher.node, domain_id) <= 0, timeout_sec=MISSING_SEC
+        )
         graph = graphs.take(watcher)
     endpoints = tuple(endpoints_of(watcher.node))
     ends = {end.node_name for end in endpoints if end.topic_name == topic_name}
@@ -72,7 +74,7 @@ def _look(watcher: Watcher, topic_name: str, *, domain_id: int, listen_sec: floa
         has_clock=bool(watcher.node.get_publishers_info_by_topic('/clock')),
         remaps=remaps.of_this_machine(),
         domain_id=domain_id,
-        unheard=_unheard(watcher.node, domain_id),
+        missing_participants=_missing_participants(watcher.node, domain_id),
     )
     questions = Questions(watcher, sorted(ends))
     if evidence.publishers:
@@ -90,7 +92,7 @@ def _listen(watcher: Watcher, evidence: Evidence, *, listen_sec: float) -> Evide
     type_ = next(filter(None, classes.values()), None)
     if type_ is None:
         return evidence
-    heard: list[Heard] = []
+    received: list[ReceivedMessage] = []
     offers = [end.qos_profile for end in evidence.publishers]
     reliable = all(offer.reliability == ReliabilityPolicy.RELIABLE for offer in offers)
     keeping = all(offer.durability == DurabilityPolicy.TRANSIENT_LOCAL for offer in offers)
@@ -102,10 +104,10 @@ def _listen(watcher: Watcher, evidence: Evidence, *, listen_sec: float) -> Evide
     began_sec, started = time.time(), time.monotonic()
 
     def receive(message: object, info: dict) -> None:
-        heard.append(Heard(message=message, sent_sec=info['source_timestamp'] / 1e9))
+        received.append(ReceivedMessage(message=message, sent_sec=info['source_timestamp'] / 1e9))
 
     def is_enough() -> bool:
-        fresh = [each for each in heard if each.sent_sec >= began_sec]
+        fresh = [each for each in received if each.sent_sec >= began_sec]
         if len(fresh) < ENOUGH_MESSAGES:
             return False
         return time.time() - fresh[0].sent_sec >= ENOUGH_SEC
@@ -114,7 +116,7 @@ def _listen(watcher: Watcher, evidence: Evidence, *, listen_sec: float) -> Evide
     watcher.spin_until(is_enough, timeout_sec=listen_sec)
     return dataclasses.replace(
         evidence,
-        heard=tuple(sorted(heard, key=lambda each: each.sent_sec)),
+        received=tuple(sorted(received, key=lambda each: each.sent_sec)),
         listened_sec=time.monotonic() - started,
         began_sec=began_sec,
     )
@@ -164,7 +166,7 @@ def _depths() -> dict[tuple[Kind, str, str], int]:
     return found
 
 
-def _unheard(node: Node, domain_id: int) -> int:
+def _missing_participants(node: Node, domain_id: int) -> int:
     """How many participants this machine has in the domain that are not on the graph."""
-    heard = node.get_publishers_info_by_topic(ANNOUNCEMENTS, no_mangle=True)
-    return participants.count(domain_id) - len(heard)
+    received = node.get_publishers_info_by_topic(ANNOUNCEMENTS, no_mangle=True)
+    return participants.count(domain_id) - len(received)

@@ -27,10 +27,10 @@ def summary(evidence: Evidence) -> str:
     """Which nodes are there, and what was received: one clause."""
     senders = _names(evidence, 'publisher', 'publishes', 'publish')
     listeners = _names(evidence, 'subscription', 'subscribes', 'subscribe')
-    return f'{senders}, {listeners}{_heard(evidence)}'
+    return f'{senders}, {listeners}{_received(evidence)}'
 
 
-def _heard(evidence: Evidence) -> str:
+def _received(evidence: Evidence) -> str:
     if not evidence.listened_sec:
         return ''
     number = len(evidence.fresh)
@@ -38,7 +38,7 @@ def _heard(evidence: Evidence) -> str:
         return f', {evidence.rate_hz:.3g} Hz ({number} messages in {evidence.listened_sec:.1f} s)'
     if number:
         return f', 1 message in {evidence.listened_sec:.1f} s'
-    kept = len(evidence.heard)
+    kept = len(evidence.received)
     latched = f' ({kept} kept from before)' if kept else ''
     return f', no new message in {evidence.listened_sec:.1f} s{latched}'
 

@@ -34,16 +34,16 @@ def silence() -> None:
         _end(*_announced.pop())
 
 
-def hear(timeout_sec: float = TIMEOUT_SEC) -> None:
+def receive(timeout_sec: float = TIMEOUT_SEC) -> None:
     """Wait for the other room's message; raises TimeoutError."""
     context, node = _node('_probe_test_room')
-    heard = threading.Event()
-    node.create_subscription(Empty, TOPIC_NAME, lambda _: heard.set(), QOS)
+    received = threading.Event()
+    node.create_subscription(Empty, TOPIC_NAME, lambda _: received.set(), QOS)
     executor = SingleThreadedExecutor(context=context)
     executor.add_node(node)
     deadline = node.get_clock().now().nanoseconds + int(timeout_sec * 1e9)
     try:
-        while not heard.is_set():
+        while not received.is_set():
             if node.get_clock().now().nanoseconds > deadline:
                 raise TimeoutError(f'no message went from kernel to kernel in {timeout_sec:.0f} s')
             executor.spin_once(timeout_sec=0.1)

@@ -49,7 +49,7 @@ class GraphSnapshot:
             subscription_names=left(self.subscription_names),
         )
 
-    def why_silent(self, topic_name: str) -> str:
+    def why_no_message(self, topic_name: str) -> str:
         """What to try when nothing arrives on a topic: one clause."""
         if senders := self.publishers(topic_name):
             who = theirs(', '.join(senders))
@@ -63,7 +63,7 @@ class GraphSnapshot:
         others = self.subscriptions(topic_name)
         return self._why_none(topic_name, self.publisher_names, 'create_publisher', others)
 
-    def why_unheard(self, topic_name: str) -> str:
+    def why_no_subscription(self, topic_name: str) -> str:
         """What to try when nobody subscribes to a topic: one clause."""
         others = self.publishers(topic_name)
         return self._why_none(topic_name, self.subscription_names, 'create_subscription', others)

@@ -68,7 +68,7 @@ class _Pairs(Node):
         return {pair: self._outcome[pair] for pair in self._senders}
 
     def _connect(self, pair: tuple[str, str], offered: QoSProfile, asked: QoSProfile) -> None:
-        def hear(message: Int32) -> None:
+        def receive(message: Int32) -> None:
             self._outcome[pair] = 'yes'
 
         def refuse(event: Any) -> None:
@@ -80,7 +80,7 @@ class _Pairs(Node):
         self._senders[pair] = self.create_publisher(
             Int32, topic_name, offered, event_callbacks=quiet
         )
-        self.create_subscription(Int32, topic_name, hear, asked, event_callbacks=events)
+        self.create_subscription(Int32, topic_name, receive, asked, event_callbacks=events)
 
     def _spin_until(self, condition: Callable[[], bool]) -> None:
         def is_so() -> bool:

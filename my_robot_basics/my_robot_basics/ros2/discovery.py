@@ -48,7 +48,7 @@ def settle(node: 'Node', wait: Callable[[float], None]) -> None:
             if (look := _look(node, reader.read())) != last:
                 last, changed = look, now
             quiet_sec = COMPLETE_SEC if look.is_complete(present) else INCOMPLETE_SEC
-            waited_enough = environment.hears_this_machine_only() or now >= started + NETWORK_SEC
+            waited_enough = environment.is_localhost_only() or now >= started + NETWORK_SEC
             if waited_enough and now >= changed + quiet_sec:
                 return
             if len(look.said) < present and now >= asked + pause_sec:

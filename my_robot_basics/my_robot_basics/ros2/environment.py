@@ -56,7 +56,7 @@ def domain_id() -> int:
     )
 
 
-def hears_this_machine_only() -> bool:
+def is_localhost_only() -> bool:
     """Whether nodes on other machines are out of reach."""
     discovery_range = os.environ.get('ROS_AUTOMATIC_DISCOVERY_RANGE')
     return discovery_range == 'LOCALHOST' and not os.environ.get('ROS_STATIC_PEERS')

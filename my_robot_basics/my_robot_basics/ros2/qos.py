@@ -49,7 +49,7 @@ def profile(args: argparse.Namespace) -> QoSProfile:
     return made
 
 
-def to_hear(publishers: Sequence[Any], args: argparse.Namespace) -> QoSProfile:
+def for_publishers(publishers: Sequence[Any], args: argparse.Namespace) -> QoSProfile:
     """The profile of the arguments, or one that matches every publisher (a TopicEndpointInfo).
 
     Says so where it has to ask for less than some of them offer.

@@ -57,13 +57,13 @@ class Neighbours:
         if not classroom.in_grading_room():  # where nobody else can have come
             time.sleep(max(0.0, self._since + MEETING_SEC - time.monotonic()))
         watch = Stopwatch()
-        while self._hears_of(name):
+        while self._is_announced(name):
             if watch.free_sec() > PARTING_SEC or watch.wall_sec() > PARTING_MOST_SEC:
                 return True
             time.sleep(0.005)
         return False
 
-    def _hears_of(self, name: str) -> bool:
+    def _is_announced(self, name: str) -> bool:
         assert self._observer is not None  # it has met them
         return name in {
             f'{namespace.rstrip("/")}/{node_name}'

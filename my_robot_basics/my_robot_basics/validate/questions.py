@@ -16,9 +16,9 @@ STUDENT_COMES = """
 from my_robot_basics.exchange import probe
 probe.announce()
 """
-TEST_HEARS = """
+TEST_RECEIVES = """
 from my_robot_basics.exchange import probe
-probe.hear()
+probe.receive()
 """
 STUDENT_GOES = 'import sys; probe.silence(); sys.path.append({files!r}); del probe, sys'
 """Modules of the student's come last, and after the probe: libraries look for some that they may

@@ -22,7 +22,7 @@ from my_robot_basics.validate.overdue import rounded_down
 from my_robot_basics.validate.questions import (
     STUDENT_COMES,
     STUDENT_GOES,
-    TEST_HEARS,
+    TEST_RECEIVES,
     as_expression,
     reply_of,
 )
@@ -60,7 +60,7 @@ class LocalRooms:
             folder = self._open()
             await together(
                 self._prepare(self._student, STUDENT_COMES),
-                self._prepare(self._test, TEST_HEARS),
+                self._prepare(self._test, TEST_RECEIVES),
             )
             await self._run_ours(self._student, STUDENT_GOES.format(files=str(folder / 'files')))
         except BaseException as error:

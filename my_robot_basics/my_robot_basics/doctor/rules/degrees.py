@@ -13,7 +13,7 @@ _TURNS_FOREVER = ('wheel', 'continuous', 'propeller', 'rotor')
 
 def examine(evidence: Evidence) -> Iterator[Finding]:
     """Name positions beyond a whole turn in radians, and within one in degrees."""
-    angles = [angle for each in evidence.heard for angle in _angles(each.message)]
+    angles = [angle for each in evidence.received for angle in _angles(each.message)]
     sizes = [abs(angle) for angle in angles if math.isfinite(angle)]
     if not sizes or not math.tau < max(sizes) <= TURN_DEG:
         return

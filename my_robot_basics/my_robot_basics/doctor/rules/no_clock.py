@@ -7,7 +7,7 @@ from my_robot_basics.doctor.evidence import Evidence, Finding
 
 def examine(evidence: Evidence) -> Iterator[Finding]:
     """Name each publisher's node with use_sim_time, where no node publishes /clock."""
-    if evidence.heard or evidence.has_clock:
+    if evidence.received or evidence.has_clock:
         return
     for publisher in evidence.publishers:
         if evidence.state(publisher.node_name).use_sim_time:

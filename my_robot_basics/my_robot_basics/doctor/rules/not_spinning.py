@@ -7,7 +7,7 @@ from my_robot_basics.doctor.evidence import Evidence, Finding
 
 def examine(evidence: Evidence) -> Iterator[Finding]:
     """Name silent publishers, and subscriptions, whose nodes answer no question."""
-    ends = (() if evidence.heard else evidence.publishers) + evidence.subscriptions
+    ends = (() if evidence.received else evidence.publishers) + evidence.subscriptions
     for end in ends:
         if evidence.state(end.node_name).answers is not False:
             continue

@@ -7,7 +7,7 @@ from my_robot_basics.doctor.evidence import Evidence, Finding
 
 def examine(evidence: Evidence) -> Iterator[Finding]:
     """Suspect the timer, where the node is known to spin or nothing is known."""
-    if evidence.heard or not evidence.listened_sec:
+    if evidence.received or not evidence.listened_sec:
         return
     for publisher in evidence.publishers:
         state = evidence.state(publisher.node_name)

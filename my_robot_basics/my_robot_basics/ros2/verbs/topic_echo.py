@@ -98,7 +98,7 @@ def main(args: argparse.Namespace) -> None:
 
         echo = Echo(args)
         graph.settle()
-        profile = qos.to_hear(graph.publishers_of(args.topic_name), args)
+        profile = qos.for_publishers(graph.publishers_of(args.topic_name), args)
         echo.subscribe(graph, _message_class(graph, args), profile)
         graph.spin_until(lambda: args.once and echo.has_printed, timeout_sec=args.timeout)
 
