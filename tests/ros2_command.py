@@ -12,7 +12,7 @@ from my_robot_basics.session import domain
 
 SCRIPT = Path(sys.executable).with_name('ros2')
 NODES = Path(__file__).parent / 'nodes'
-PATIENCE_SEC = 30
+TIMEOUT_SEC = 30
 OF_A_LESSON = ('ROS_AUTOMATIC_DISCOVERY_RANGE', 'FASTRTPS_DEFAULT_PROFILES_FILE')
 """What nodes outside of the course lack."""
 
@@ -31,7 +31,7 @@ def ros2(*words: str, stdin: str = '', **environment: str) -> Result:
         input=stdin,
         capture_output=True,
         encoding='utf-8',
-        timeout=PATIENCE_SEC,
+        timeout=TIMEOUT_SEC,
         env={**os.environ, **environment},
     )
     return Result(done.returncode, done.stdout, done.stderr)

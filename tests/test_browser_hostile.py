@@ -29,7 +29,7 @@ from grader.storage.registering import register
 from grader.storage.submitted import find_submissions
 
 TOKEN = 'a-token-of-this-test'
-PATIENCE_SEC = 120
+TIMEOUT_SEC = 120
 
 pytestmark = drives_chromium
 
@@ -80,7 +80,7 @@ class Browser:
 
     def __init__(self, page):
         self.page, self.harm = page, []
-        page.set_default_timeout(PATIENCE_SEC * 1000)
+        page.set_default_timeout(TIMEOUT_SEC * 1000)
         page.on('dialog', self._dialog)
         page.route('**/*', self._request)
 
@@ -173,7 +173,7 @@ def formgrader(course):
             stderr=subprocess.STDOUT,
         )
     try:
-        deadline = time.monotonic() + PATIENCE_SEC
+        deadline = time.monotonic() + TIMEOUT_SEC
         while True:
             try:
                 urllib.request.urlopen(f'{address}/api/status?token={TOKEN}').close()

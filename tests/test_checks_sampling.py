@@ -131,23 +131,21 @@ def test_a_near_miss_fails_on_the_wall_clock(node, seen):
         topic(TOPIC).record().assert_rate(hz=5.0)
 
 
-def looked_at(node, *, patience_sec):
+def looked_at(node, *, timeout_sec):
     with running(node), Watcher() as watcher:
         recorder = topic(TOPIC).listen(watcher)
-        return wall_recording.wall(
-            watcher, recorder, why='', seconds=0.1, patience_sec=patience_sec
-        )
+        return wall_recording.wall(watcher, recorder, why='', seconds=0.1, timeout_sec=timeout_sec)
 
 
 def test_the_wall_clock_waits_for_the_next_message_of_a_slow_node():
-    recording = looked_at('one_hz', patience_sec=10.0)
+    recording = looked_at('one_hz', timeout_sec=10.0)
     (sample,) = recording.messages
     assert sample.time_sec == recording.seconds > 0.1
 
 
-@pytest.mark.parametrize(('patience_sec', 'seconds'), [(0.4, 0.4), (0.0, 0.1)])
-def test_the_wall_clock_tells_how_long_there_was_nothing(patience_sec, seconds):
-    recording = looked_at('never_spins', patience_sec=patience_sec)
+@pytest.mark.parametrize(('timeout_sec', 'seconds'), [(0.4, 0.4), (0.0, 0.1)])
+def test_the_wall_clock_tells_how_long_there_was_nothing(timeout_sec, seconds):
+    recording = looked_at('never_spins', timeout_sec=timeout_sec)
     assert (recording.messages, recording.seconds) == ((), seconds)
 
 

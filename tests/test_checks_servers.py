@@ -39,7 +39,7 @@ def run():
 @pytest.fixture
 def impatient(monkeypatch):
     """Wait for what does not come no longer than it takes to be sure."""
-    monkeypatch.setattr(servers, 'PATIENCE_SEC', 1.5)
+    monkeypatch.setattr(servers, 'TIMEOUT_SEC', 1.5)
 
 
 def server(answer=ik.solve):

@@ -29,7 +29,7 @@ from nodes.patient import (
 )
 from rclpy.parameter import Parameter
 
-PATIENCE_SEC = 20.0
+TIMEOUT_SEC = 20.0
 DEAD = 'while rclpy.ok(): time.sleep(0.1)'
 
 
@@ -47,7 +47,7 @@ def first_finding(**options):
 
 
 def wait_for(done):
-    deadline = time.monotonic() + PATIENCE_SEC
+    deadline = time.monotonic() + TIMEOUT_SEC
     while not done() and time.monotonic() < deadline:
         time.sleep(0.02)
     return done()
@@ -187,7 +187,7 @@ def test_a_subscription_that_nobody_spins(tmp_path):
 
 def wait_for_finding(title, **options):
     """The first finding, once the other process is up."""
-    deadline = time.monotonic() + PATIENCE_SEC
+    deadline = time.monotonic() + TIMEOUT_SEC
     while (found := first_finding(**options)).title != title and time.monotonic() < deadline:
         pass
     assert found.title == title

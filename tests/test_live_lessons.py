@@ -9,7 +9,7 @@ import time
 import pytest
 from jupyter_client.manager import start_new_kernel
 from my_robot_basics.session import domain, lessons
-from ros2_command import PATIENCE_SEC, ros2
+from ros2_command import TIMEOUT_SEC, ros2
 
 TALK = """
 from std_msgs.msg import Int32
@@ -38,7 +38,7 @@ def kernel(folder, name, **environment):
     def run_cell(source):
         printed.clear()
         client.execute_interactive(
-            source, timeout=PATIENCE_SEC, output_hook=hear, stop_on_error=False
+            source, timeout=TIMEOUT_SEC, output_hook=hear, stop_on_error=False
         )
         return ''.join(printed)
 

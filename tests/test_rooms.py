@@ -392,7 +392,7 @@ NOT_READY = {
 @pytest.mark.parametrize(('code', 'why'), NOT_READY.values(), ids=NOT_READY)
 def test_a_room_that_is_not_made_ready_closes_both(loop, monkeypatch, left, code, why):
     monkeypatch.setattr(module, 'STUDENT_COMES', code)
-    patience = 0.5 if code == PROBE else 3600  # what can't come any more is not waited for
+    timeout_sec = 0.5 if code == PROBE else 3600  # what can't come any more is not waited for
     receives = module.TEST_RECEIVES.replace('receive()', f'receive({timeout_sec})')
     monkeypatch.setattr(module, 'TEST_RECEIVES', receives)
     monkeypatch.setattr(module, 'SETUP_TIMEOUT_SEC', 3600.0)

@@ -5,7 +5,7 @@ import subprocess
 
 import pexpect
 import pytest
-from ros2_command import PATIENCE_SEC, SCRIPT, on_the_graph, own_domain, ros2
+from ros2_command import SCRIPT, TIMEOUT_SEC, on_the_graph, own_domain, ros2
 
 
 @pytest.fixture(scope='module')
@@ -56,7 +56,7 @@ def test_the_doctor_completes_topics_too(tmp_path):
     subprocess.run(
         [SCRIPT.with_name('topic_doctor')],
         env={**os.environ, **asked, '_ARGCOMPLETE_STDOUT_FILENAME': str(answer)},
-        timeout=PATIENCE_SEC,
+        timeout=TIMEOUT_SEC,
     )
     assert answer.read_text().strip() == '/kinematics/joint_states'
 

@@ -13,7 +13,7 @@ from my_robot_basics.graph import entities, participants, reannouncing
 from my_robot_basics.ros2 import discovery, environment
 from rclpy.context import Context
 from rclpy.node import Node
-from ros2_command import PATIENCE_SEC, on_the_graph, own_domain, plain_nodes, ros2
+from ros2_command import TIMEOUT_SEC, on_the_graph, own_domain, plain_nodes, ros2
 
 TABLE = """\
    sl  local_address rem_address   st tx_queue rx_queue tr tm->when retrnsmt   uid  timeout inode
@@ -82,7 +82,7 @@ def test_whoever_is_asked_announces_itself_to_that_port_and_logs_nothing():
         theirs = participants.ports(environment.domain_id())
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as listener:
             listener.bind((reannouncing.LOOPBACK, 0))
-            listener.settimeout(PATIENCE_SEC)
+            listener.settimeout(TIMEOUT_SEC)
             reannouncing.ask_ports(theirs, reply_port=listener.getsockname()[1])
             announced = listener.recv(65536)
         names = ros2('node', 'list', '--all').out
@@ -99,7 +99,7 @@ def test_what_participants_say_they_have_is_what_is_on_the_graph():
     with own_domain(), plain_nodes(3, 2), observer() as node:
         ends: set[bytes] = set()
         with entities.Reader(node) as reader:
-            until = time.monotonic() + PATIENCE_SEC
+            until = time.monotonic() + TIMEOUT_SEC
             while len(reader.read()) < 3 or not expected_ends(reader) <= ends:
                 assert time.monotonic() < until, reader.read()
                 reannouncing.ask(environment.domain_id())

@@ -6,7 +6,7 @@ import subprocess
 import sys
 
 import pytest
-from ros2_command import PATIENCE_SEC, on_the_graph, own_domain
+from ros2_command import TIMEOUT_SEC, on_the_graph, own_domain
 
 pytest.importorskip(
     'ros2cli', reason='no ros2cli to compare with: source a ROS 2 Jazzy installation to run this'
@@ -85,7 +85,7 @@ def answer(program, words):
         [sys.executable, '-c', program, *words],
         capture_output=True,
         encoding='utf-8',
-        timeout=PATIENCE_SEC,
+        timeout=TIMEOUT_SEC,
         env=os.environ,
     )
     # what differs from message to message, and where two endpoints may come in either order

@@ -10,7 +10,7 @@ import time
 
 import pexpect
 import pytest
-from ros2_command import PATIENCE_SEC, SCRIPT, ros2, started
+from ros2_command import SCRIPT, TIMEOUT_SEC, ros2, started
 
 EXECUTABLES = {
     'says': 'print(*sys.argv[1:])',
@@ -122,7 +122,7 @@ def test_a_signal_reaches_the_executable_once(number, to):
             process.send_signal(number)
         if to != 'the process':  # Ctrl-C; and `timeout` does both
             os.killpg(process.pid, number)
-        out, err = process.communicate(timeout=PATIENCE_SEC)
+        out, err = process.communicate(timeout=TIMEOUT_SEC)
     assert out == f'{number.name}\n[ros2run]: Process exited with failure 5\n'
     assert (err, process.returncode) == ('', 5)
 
@@ -139,7 +139,7 @@ def test_timeout_ends_a_node():
         ['timeout', '-s', 'INT', '2', SCRIPT, 'run', 'demo', 'counts'],
         capture_output=True,
         encoding='utf-8',
-        timeout=PATIENCE_SEC,
+        timeout=TIMEOUT_SEC,
     )
     assert done.stdout.splitlines()[1:] == [
         'SIGINT',

@@ -4,7 +4,7 @@ import re
 import signal
 
 import pytest
-from ros2_command import PATIENCE_SEC, SCRIPT, on_the_graph, own_domain, ros2, started
+from ros2_command import SCRIPT, TIMEOUT_SEC, on_the_graph, own_domain, ros2, started
 
 BUILT_IN = {
     'describe_parameters': 'rcl_interfaces/srv/DescribeParameters',
@@ -100,7 +100,7 @@ def test_a_repeated_call_goes_on_until_a_signal():
             assert line, text
             text += line
         process.send_signal(signal.SIGINT)
-        _, err = process.communicate(timeout=PATIENCE_SEC)
+        _, err = process.communicate(timeout=TIMEOUT_SEC)
     assert (err, process.returncode) == ('', signal.SIGINT)
 
 
@@ -108,7 +108,7 @@ def test_a_call_waits_for_its_service_and_ends_with_a_signal():
     with started(SCRIPT, 'service', 'call', '/nothing', 'std_srvs/srv/Empty') as process:
         assert process.stdout.readline() == WAITING
         process.send_signal(signal.SIGTERM)
-        out, err = process.communicate(timeout=PATIENCE_SEC)
+        out, err = process.communicate(timeout=TIMEOUT_SEC)
     assert (out, err, process.returncode) == ('', '', signal.SIGTERM)
 
 

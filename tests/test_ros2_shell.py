@@ -11,7 +11,7 @@ from my_robot_basics.ros2 import shell
 from my_robot_basics.ros2.errors import CommandError
 from my_robot_basics.session import lessons
 
-PATIENCE_SEC = 60
+TIMEOUT_SEC = 60
 RUNNING = [
     lessons.RunningLesson(1_000_000_000, 7, 100, '02_joint_state'),
     lessons.RunningLesson(2_000_000_000, 4, 101, '05_command_line'),
@@ -25,7 +25,7 @@ def run(*arguments, **environment):
         env={**os.environ, **environment},
         capture_output=True,
         encoding='utf-8',
-        timeout=PATIENCE_SEC,
+        timeout=TIMEOUT_SEC,
     )
 
 
@@ -118,7 +118,7 @@ def test_an_open_shell_is_the_users_own_with_the_settings_of_the_course(home):
     environment = {**os.environ, 'HOME': str(home), 'VIRTUAL_ENV': sys.prefix}
     command = ['-P', '-m', 'my_robot_basics.ros2.shell', '--lesson', '55']
     with pexpect.spawn(
-        sys.executable, command, env=environment, encoding='utf-8', timeout=PATIENCE_SEC
+        sys.executable, command, env=environment, encoding='utf-8', timeout=TIMEOUT_SEC
     ) as terminal:
         terminal.expect_exact('READY ')
         for line, answer in (

@@ -10,7 +10,7 @@ import time
 import pytest
 from rclpy.context import Context
 from rclpy.node import Node
-from ros2_command import PATIENCE_SEC, SCRIPT, on_the_graph, own_domain, ros2, started
+from ros2_command import SCRIPT, TIMEOUT_SEC, on_the_graph, own_domain, ros2, started
 
 TOPIC = '/kinematics/joint_states'
 NUMBER = r'-?\d+\.\d+(e-\d+)?'
@@ -229,7 +229,7 @@ def test_a_signal_ends_it_quietly_with_the_status_of_ros2cli(words):
         # somewhere in the imports, in discovery, or in the work
         select.select([process.stdout], [], [], len(words[-1]) % 10 / 10)
         process.send_signal(number)
-        _, err = process.communicate(timeout=PATIENCE_SEC)
+        _, err = process.communicate(timeout=TIMEOUT_SEC)
     assert (process.returncode, err) == (number, '')
 
 
@@ -251,7 +251,7 @@ def test_a_signal_at_any_moment_leaves_no_ghost(number, bystander):
             wait_for_handlers(process)
             time.sleep(moment_sec)
             process.send_signal(number)
-            out, err = process.communicate(timeout=PATIENCE_SEC)
+            out, err = process.communicate(timeout=TIMEOUT_SEC)
         assert (process.returncode, out, err) == (number, '', '')
         time.sleep(0.2)  # its farewell is under way
         names = bystander.get_node_names()
@@ -263,7 +263,7 @@ def test_it_ends_when_nobody_reads_any_more(words):
     with started(SCRIPT, 'topic', *words) as process:
         process.stdout.close()
         assert process.stderr.read() == ''
-        assert process.wait(PATIENCE_SEC) == 141
+        assert process.wait(TIMEOUT_SEC) == 141
 
 
 def test_head_gets_its_lines():
@@ -272,7 +272,7 @@ def test_head_gets_its_lines():
         shell=True,
         capture_output=True,
         encoding='utf-8',
-        timeout=PATIENCE_SEC,
+        timeout=TIMEOUT_SEC,
     )
     assert re.fullmatch(r'header:\n  stamp:\n    sec: \d+\n', done.stdout)
     assert done.stderr == ''
@@ -285,4 +285,4 @@ def test_a_reader_that_stalls_does_not_hold_up_a_signal():
         select.select([process.stdout], [], [])
         time.sleep(0.3)  # it writes, and nobody reads
         process.send_signal(signal.SIGINT)
-        assert process.wait(PATIENCE_SEC) == signal.SIGINT
+        assert process.wait(TIMEOUT_SEC) == signal.SIGINT

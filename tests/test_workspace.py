@@ -17,7 +17,7 @@ from ros2_command import own_domain
 ROOT = Path(__file__).parents[1]
 BUILD = 'colcon build --packages-select my_robot_basics >log.txt 2>&1 || cat log.txt\n'
 SOURCE = 'source install/setup.bash\n'
-PATIENCE_SEC = 120
+TIMEOUT_SEC = 120
 
 
 def ros2_run(executable, until):
@@ -58,7 +58,7 @@ def shell(script, **environment):
         env={**os.environ, **environment},
         capture_output=True,
         encoding='utf-8',
-        timeout=PATIENCE_SEC,
+        timeout=TIMEOUT_SEC,
     )
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
@@ -288,7 +288,7 @@ def test_a_terminal_that_sources_it_needs_nothing_else(built):
         env=bare,
         capture_output=True,
         text=True,
-        timeout=PATIENCE_SEC,
+        timeout=TIMEOUT_SEC,
     )
     install = built.parents[1] / 'install/my_robot_basics'
     assert (done.stdout, done.stderr) == (f'{install}\n{sys.prefix}\n', '')
@@ -308,7 +308,7 @@ def test_in_a_cell_all_of_it_works_and_the_kernel_keeps_to_the_installed_package
         for cell in cells:
             client.execute_interactive(
                 cell,
-                timeout=PATIENCE_SEC,
+                timeout=TIMEOUT_SEC,
                 output_hook=lambda message: printed.append(
                     message['content'].get('text', message['msg_type'])
                 ),

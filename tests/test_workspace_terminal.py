@@ -12,7 +12,7 @@ from pathlib import Path
 import nbformat
 import pytest
 from my_robot_basics.live.workspace import BUILD, make_workspace
-from ros2_command import PATIENCE_SEC
+from ros2_command import TIMEOUT_SEC
 from tornado.httpclient import AsyncHTTPClient
 from tornado.websocket import websocket_connect
 
@@ -45,7 +45,7 @@ def lab(tmp_path, monkeypatch):
             stderr=file,
         )
     try:
-        deadline = time.monotonic() + 2 * PATIENCE_SEC
+        deadline = time.monotonic() + 2 * TIMEOUT_SEC
         while 'is running at' not in log.read_text() or not answers(port):
             assert server.poll() is None, log.read_text()
             assert time.monotonic() < deadline, log.read_text()
@@ -71,7 +71,7 @@ async def _type(address, dialogue):
             await terminal.write_message(json.dumps(['stdin', f'{line}\r']))
             seen = ''
             try:
-                async with asyncio.timeout(PATIENCE_SEC):  # nodes go on speaking meanwhile
+                async with asyncio.timeout(TIMEOUT_SEC):  # nodes go on speaking meanwhile
                     while not re.search(answer, seen):
                         kind, *text = json.loads(await terminal.read_message())
                         seen += text[0] if kind == 'stdout' else ''

@@ -32,7 +32,7 @@ class Pool:
 
     def __exit__(self, *_: object) -> None:
         """Cancel what still runs, let it clean up, and end the loop."""
-        with _patience():
+        with _answering_interrupts():
             self._loop.call_soon_threadsafe(self._left.set)
             self._thread.join()
 
@@ -58,7 +58,7 @@ class Pool:
 
 
 @contextmanager
-def _patience() -> Iterator[None]:
+def _answering_interrupts() -> Iterator[None]:
     """Answer another Ctrl-C with a word: it takes seconds, and else leaves kernels behind."""
     if threading.current_thread() is not threading.main_thread():
         yield  # Python tells the main thread alone

@@ -11,7 +11,7 @@ from types import ModuleType
 from my_robot_basics.checks import graph
 
 FOLDER = Path(__file__).parent
-PATIENCE_SEC = 5.0
+TIMEOUT_SEC = 5.0
 
 
 @contextlib.contextmanager
@@ -31,7 +31,7 @@ def running(name: str) -> Iterator[None]:
         # first in good order: a process that is killed stays on the graph as a ghost for a while
         process.terminate()
         try:
-            process.wait(PATIENCE_SEC)
+            process.wait(TIMEOUT_SEC)
         except subprocess.TimeoutExpired:
             process.kill()
             process.wait()

@@ -11,7 +11,7 @@ from my_robot_basics.session.pressure import Stopwatch
 
 ON_TIME_SEC = 1.0
 """How long a message may take. Who passes it on by a timer is in time, too."""
-PATIENCE_TIMES, LEAST_SEC = 10.0, 0.2
+TIMEOUT_FACTOR, LEAST_SEC = 10.0, 0.2
 """Once some came out, no more than so many times as long as the slowest of them, and that."""
 QUIET_SEC = 0.1
 """How long to listen for a second copy."""
@@ -150,10 +150,10 @@ class Passage:
             self._take()
             return not any(each is sent for each in self._waiting)
 
-        patience_sec, watch = ON_TIME_SEC, Stopwatch()
+        timeout_sec, watch = ON_TIME_SEC, Stopwatch()
         if self._slowest_sec:
-            patience_sec = max(LEAST_SEC, PATIENCE_TIMES * self._slowest_sec)
-        if not self._watcher.spin_until_free(is_out, free_sec=min(patience_sec, ON_TIME_SEC)):
+            timeout_sec = max(LEAST_SEC, TIMEOUT_FACTOR * self._slowest_sec)
+        if not self._watcher.spin_until_free(is_out, free_sec=min(timeout_sec, ON_TIME_SEC)):
             return False
         self._slowest_sec = max(self._slowest_sec, watch.wall_sec())
         return True

@@ -40,11 +40,11 @@ class Ends:
     def listen(self, watcher: Watcher, type_: type) -> Recorder:
         """Listen on `to`; a VOLATILE publisher is waited for until it knows of the listener."""
         topic = Topic(self.to)
-        patience_sec = topic.patience_sec(watcher, TIMEOUT_SEC, end='publishers')
-        if not graphs.wait_for_publisher(watcher, self.to, timeout_sec=patience_sec):
+        timeout_sec = topic.timeout_for(watcher, TIMEOUT_SEC, end='publishers')
+        if not graphs.wait_for_publisher(watcher, self.to, timeout_sec=timeout_sec):
             fail(
                 expected=f'a publisher on {self.to}',
-                seen=graphs.none_in(patience_sec),
+                seen=graphs.none_in(timeout_sec),
                 hint=self._graph(watcher).why_no_message(self.to),
             )
         recorder = topic.listen(watcher)
@@ -72,15 +72,15 @@ class Ends:
         def is_there() -> bool:
             return publisher.get_subscription_count() > 0
 
-        patience_sec = Topic(self.source).patience_sec(
+        timeout_sec = Topic(self.source).timeout_for(
             watcher, TIMEOUT_SEC, end='subscriptions', type_=type_
         )
-        watcher.spin_until(lambda: is_there() or bool(refused), timeout_sec=patience_sec)
+        watcher.spin_until(lambda: is_there() or bool(refused), timeout_sec=timeout_sec)
         if watcher.spin_until(is_there, timeout_sec=REFUSED_SEC if refused else 0.0):
             return publisher
         if not refused:
             self.expect_type(watcher, type_)
-            self._fail_absent(watcher, patience_sec=patience_sec)
+            self._fail_absent(watcher, timeout_sec=timeout_sec)
         asked = {brief(asked) for asked in _requests(watcher.node, self.source)}
         policies = {qos_policy_name_from_kind(kind) for kind in refused}
         hint = 'give create_subscription a profile with reliability and durability as offered'
@@ -99,9 +99,9 @@ class Ends:
         def asked() -> set[str]:
             return {asked.durability.name for asked in _requests(watcher.node, self.source)}
 
-        patience_sec = Topic(self.source).patience_sec(watcher, TIMEOUT_SEC, end='subscriptions')
-        if not watcher.spin_until(lambda: bool(asked()), timeout_sec=patience_sec):
-            self._fail_absent(watcher, patience_sec=patience_sec)
+        timeout_sec = Topic(self.source).timeout_for(watcher, TIMEOUT_SEC, end='subscriptions')
+        if not watcher.spin_until(lambda: bool(asked()), timeout_sec=timeout_sec):
+            self._fail_absent(watcher, timeout_sec=timeout_sec)
         # a second subscription may be a moment behind the first
         if not watcher.spin_until(lambda: 'TRANSIENT_LOCAL' in asked(), timeout_sec=SECOND_SEC):
             fail(
@@ -159,10 +159,10 @@ class Ends:
             hint='compare the message type in create_subscription(…)',
         )
 
-    def _fail_absent(self, watcher: Watcher, *, patience_sec: float) -> NoReturn:
+    def _fail_absent(self, watcher: Watcher, *, timeout_sec: float) -> NoReturn:
         fail(
             expected=f'a subscription on {self.source}',
-            seen=graphs.none_in(patience_sec),
+            seen=graphs.none_in(timeout_sec),
             hint=self._graph(watcher).why_no_subscription(self.source),
         )
 

@@ -22,7 +22,7 @@ from my_robot_basics.feedback.hidden import theirs
 from my_robot_basics.graph import services
 from my_robot_basics.graph.watcher import Watcher
 
-PATIENCE_SEC = 4.0
+TIMEOUT_SEC = 4.0
 """How long to wait for a request or an answer, of time that was free."""
 QUIET_SEC = 0.5
 """How long to listen for what must not come."""
@@ -92,7 +92,7 @@ class Server(HoldingServer):
     ) -> Any:
         """Publish a message on `asked_on`; the request that it leads to, for which `is_it` holds.
 
-        Raises CheckFailed where none comes in PATIENCE_SEC of time that was free, with the reason.
+        Raises CheckFailed where none comes in TIMEOUT_SEC of time that was free, with the reason.
         """
         before = len(self.requests)
 
@@ -100,7 +100,7 @@ class Server(HoldingServer):
             return [request for request in self.requests[before:] if is_it(request)]
 
         self.publish(message)
-        for _ in range(round(PATIENCE_SEC / AGAIN_SEC)):
+        for _ in range(round(TIMEOUT_SEC / AGAIN_SEC)):
             if self._watcher.spin_until_free(lambda: bool(found()), free_sec=AGAIN_SEC):
                 self._known_starts = self.starts
                 return found()[0]
@@ -109,7 +109,7 @@ class Server(HoldingServer):
         others = self.requests[before:]
         fail(
             expected=f'a request to {self.name} for the message on {self.asked_on}',
-            seen=shorten(others[-1]) if others else f'none in {PATIENCE_SEC:g} s',
+            seen=shorten(others[-1]) if others else f'none in {TIMEOUT_SEC:g} s',
             hint=hint if others else self._raised.hint() or self._why_not_asked(),
             cause=f'{self.name} is {"asked for something else" if others else "not asked"}',
         )
@@ -120,14 +120,14 @@ class Server(HoldingServer):
         """The message on `to`, since the last one was asked for, for which `is_right` holds.
 
         `hint(message)` says what is wrong with another one. Raises CheckFailed where none comes in
-        PATIENCE_SEC of time that was free.
+        TIMEOUT_SEC of time that was free.
         """
 
         def received() -> list[Any]:
             return self._answers.messages()[self._seen :]
 
         found = self._watcher.spin_until_free(
-            lambda: any(map(is_right, received())), free_sec=PATIENCE_SEC
+            lambda: any(map(is_right, received())), free_sec=TIMEOUT_SEC
         )
         if found:
             self._raised.expect_none()
@@ -136,7 +136,7 @@ class Server(HoldingServer):
         wrong = f'a wrong message on {self._answers.topic_name}'
         fail(
             expected=f'{expected} on {self._answers.topic_name}',
-            seen=shorten(others[-1]) if others else f'none in {PATIENCE_SEC:g} s',
+            seen=shorten(others[-1]) if others else f'none in {TIMEOUT_SEC:g} s',
             hint=hint(others[-1]) if others else self._raised.hint() or self._why_silent(),
             cause=wrong if others else f'{self.name} has answered, and nothing is published',
         )

@@ -74,11 +74,11 @@ class Service:
             found.update(services.take(watcher.node).servers.get(self.name, {}))
             return bool(found)
 
-        patience_sec = graphs.SETTLED_SEC if graphs.is_settled(watcher) else SERVER_SEC
-        if not watcher.spin_until(is_there, timeout_sec=patience_sec):
+        timeout_sec = graphs.SETTLED_SEC if graphs.is_settled(watcher) else SERVER_SEC
+        if not watcher.spin_until(is_there, timeout_sec=timeout_sec):
             fail(
                 expected=f'a server of {self.name}',
-                seen=graphs.none_in(patience_sec),
+                seen=graphs.none_in(timeout_sec),
                 hint=services.take(watcher.node).why_none(self.name, maker='create_service'),
             )
         wanted = type_name(self.type)

@@ -36,7 +36,7 @@ class TopicEnds:
             durability=DurabilityPolicy.TRANSIENT_LOCAL,
         )
         publisher = watcher.node.create_publisher(type_, self.name, offer)
-        timeout_sec = self.patience_sec(watcher, timeout_sec, end='subscriptions', type_=type_)
+        timeout_sec = self.timeout_for(watcher, timeout_sec, end='subscriptions', type_=type_)
         if not watcher.spin_until(
             lambda: publisher.get_subscription_count() > 0, timeout_sec=timeout_sec
         ):
@@ -55,11 +55,11 @@ class TopicEnds:
 
         Raises CheckFailed when there is no publisher, or no one type.
         """
-        patience_sec = self.patience_sec(watcher, PUBLISHER_SEC, end='publishers')
-        if not graphs.wait_for_publisher(watcher, self.name, timeout_sec=patience_sec):
+        timeout_sec = self.timeout_for(watcher, PUBLISHER_SEC, end='publishers')
+        if not graphs.wait_for_publisher(watcher, self.name, timeout_sec=timeout_sec):
             fail(
                 expected=f'a publisher on {self.name}',
-                seen=graphs.none_in(patience_sec),
+                seen=graphs.none_in(timeout_sec),
                 hint=graphs.take(watcher).why_no_message(self.name),
             )
         message_type = self._message_type(watcher)
@@ -73,7 +73,7 @@ class TopicEnds:
         )
         return Recorder(watcher, topic_name=self.name, type_=message_type, qos_profile=wanted)
 
-    def patience_sec(
+    def timeout_for(
         self, watcher: Watcher, most_sec: float, *, end: str, type_: type | None = None
     ) -> float:
         """How long to wait for an endpoint of the notebook: less where it says it has none.

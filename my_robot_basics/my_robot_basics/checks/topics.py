@@ -153,7 +153,7 @@ class Topic(TopicEnds):
             with Watcher() as watcher:
                 recorder = self.listen(watcher)
                 again = wall_recording.wall(
-                    watcher, recorder, why=why, seconds=seconds, patience_sec=seconds
+                    watcher, recorder, why=why, seconds=seconds, timeout_sec=seconds
                 )
             if again.late_sec < LATE_SEC or not late_looks:
                 return again

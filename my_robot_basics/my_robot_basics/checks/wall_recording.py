@@ -9,7 +9,7 @@ from my_robot_basics.graph.watcher import Watcher
 
 WALL_SEC = 4.0
 
-PATIENCE_SEC = 7.0
+TIMEOUT_SEC = 7.0
 """How long to wait on the wall clock for a message, and for the next one: 5 s apart is slow, but
 no silence."""
 
@@ -25,28 +25,28 @@ def wall(
     *,
     why: str,
     seconds: float = WALL_SEC,
-    patience_sec: float = PATIENCE_SEC,
+    timeout_sec: float = TIMEOUT_SEC,
 ) -> Recording:
     """A recording of `seconds` on the wall clock, beginning at a message.
 
-    It waits for that one `patience_sec` at most, and as long for the next one, should that be
+    It waits for that one `timeout_sec` at most, and as long for the next one, should that be
     longer: then it ends there.
     """
     if not recorder.received and what_raised(recorder.publishers()):
-        seconds = patience_sec = RAISED_SEC
+        seconds = timeout_sec = RAISED_SEC
     began_ns = time.time_ns()
-    if watcher.spin_until(lambda: recorder.count_since(began_ns) > 0, timeout_sec=patience_sec):
+    if watcher.spin_until(lambda: recorder.count_since(began_ns) > 0, timeout_sec=timeout_sec):
         watcher.late_sec = 0.0
         watcher.spin_for(seconds)
         watcher.spin_until(
-            lambda: recorder.count_since(began_ns) > 1, timeout_sec=patience_sec - seconds
+            lambda: recorder.count_since(began_ns) > 1, timeout_sec=timeout_sec - seconds
         )
     sent = [(message, sent_ns) for message, sent_ns in recorder.received if sent_ns > began_ns]
     start_ns = sent[0][1] if sent else began_ns
     samples = [
         Sample(message, (sent_ns - start_ns) / 1e9, sent_ns / 1e9) for message, sent_ns in sent[1:]
     ]
-    next_sec = samples[0].time_sec if samples else patience_sec
+    next_sec = samples[0].time_sec if samples else timeout_sec
     seconds = max(seconds, next_sec)
     return Recording(
         topic_name=recorder.topic_name,

@@ -37,7 +37,7 @@ class Questions:
         }
 
     def answers(self) -> dict[str, NodeState]:
-        """What is known of each node that was asked, after a moment of patience."""
+        """What is known of each node that was asked, after a short wait."""
         futures = self._asked.values()
         self._watcher.spin_until(
             lambda: all(future.done() for future in futures), timeout_sec=ANSWER_SEC

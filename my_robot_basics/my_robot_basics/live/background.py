@@ -6,7 +6,7 @@ from collections.abc import Callable
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 
-PATIENCE_SEC = 1.0
+JOIN_TIMEOUT_SEC = 1.0
 """How long a callback may still run before its node is destroyed under it."""
 
 
@@ -54,11 +54,11 @@ class Background:
                 self._executor.create_task(lambda: None)  # waking alone does not end a wait
         if threading.current_thread() is self._thread:
             return  # a callback stops its own node: the thread ends after it
-        self._thread.join(PATIENCE_SEC)
+        self._thread.join(JOIN_TIMEOUT_SEC)
         if self._thread.is_alive():
             # the callback does not return: with its node gone, its next use of it raises
             self._destroy()
-            self._thread.join(PATIENCE_SEC)
+            self._thread.join(JOIN_TIMEOUT_SEC)
 
     def _spin(self) -> None:
         self._before()

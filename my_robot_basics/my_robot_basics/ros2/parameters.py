@@ -8,7 +8,7 @@ from my_robot_basics.ros2 import arguments, completion
 from my_robot_basics.ros2.errors import CommandError
 from my_robot_basics.ros2.graph import Graph
 
-PATIENCE_SEC = 5.0
+TIMEOUT_SEC = 5.0
 """For the services to appear, and again for an answer."""
 
 
@@ -29,7 +29,7 @@ class ParameterServices:
         ready = f'{node_name}/list_parameters' in services
         if ready:
             self._client = AsyncParameterClient(graph.node, node_name)
-            ready = graph.wait_until(self._client.services_are_ready, timeout_sec=PATIENCE_SEC)
+            ready = graph.wait_until(self._client.services_are_ready, timeout_sec=TIMEOUT_SEC)
         if not ready:
             raise CommandError(
                 f'Wait for service timed out waiting for parameter services for node {node_name}'
@@ -54,7 +54,7 @@ class ParameterServices:
         return self._answer(self._client.set_parameters([parameter])).results[0]
 
     def _answer(self, future: Any) -> Any:
-        self._graph.spin_until(future.done, timeout_sec=PATIENCE_SEC)
+        self._graph.spin_until(future.done, timeout_sec=TIMEOUT_SEC)
         if not future.done():
             raise CommandError(
                 f'Node {self._node_name} does not answer its parameter services: '

@@ -11,7 +11,7 @@ from types import FrameType
 
 from my_robot_basics.ros2.errors import Stopped
 
-PATIENCE_SEC = 1.0
+GRACE_SEC = 1.0
 """So long a noted signal may take to end the process; a write to a full pipe can hold it up."""
 
 _cleans_up = False
@@ -47,7 +47,7 @@ def _stop(number: int, frame: FrameType | None) -> None:
     if not _cleans_up:
         os._exit(number)
     _noted = _noted or number
-    signal.setitimer(signal.ITIMER_REAL, PATIENCE_SEC)
+    signal.setitimer(signal.ITIMER_REAL, GRACE_SEC)
 
 
 def _give_up(number: int, frame: FrameType | None) -> None:

@@ -10,11 +10,12 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
     missing = next((k for k in VERBS if not evidence.ends(k)), None)
     if missing is None or evidence.missing_participants <= 0:
         return
-    many = evidence.missing_participants > 1
+    number = evidence.missing_participants
+    many = number > 1
     yield Finding(
         title='a process that cannot be discovered',
         expected=f'every process of ROS domain {evidence.domain_id} on this machine to be found',
-        seen=f'{evidence.missing_participants} {"are" if many else "is"} running in it and not on the graph:'
+        seen=f'{number} {"are" if many else "is"} running in it and not on the graph:'
         f' {"their" if many else "its"} discovery range may be OFF',
         mend='restart that node in a terminal in which this line was run',
         code='$ export ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST',
