@@ -72,7 +72,7 @@ ORDINARY = {
         r'03_publisher-fail-1hz'
     ),
     # the same fault, or the same end, of another kind
-    'test_doctor_faults::test_a_wrong_line_is_named_first_and_mended': (
+    'test_doctor_faults::test_a_wrong_line_is_named_first_and_fixed': (
         r'does not subscribe|misspelt|namespace|best effort|no timer|no stamp|degrees'
     ),
     'test_doctor_healthy::test_half_a_dozen_healthy_systems': r'[01]',

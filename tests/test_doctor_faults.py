@@ -112,7 +112,7 @@ FAULTS = {
 
 
 @pytest.mark.parametrize('fault', FAULTS)
-def test_a_wrong_line_is_named_first_and_mended(fault):
+def test_a_wrong_line_is_named_first_and_fixed(fault):
     source, line, wrong, title = FAULTS[fault]
     edits = {TALKER: [], LISTENER: []}
     edits[source] = [(line, wrong)]
@@ -171,7 +171,7 @@ def test_a_type_that_is_not_installed_here(monkeypatch):
         found = first_finding()
         assert found.title == 'message type not installed here'
         assert 'sensor_msgs/msg/JointState' in found.expected
-        assert 'the package sensor_msgs ' in found.mend
+        assert 'the package sensor_msgs ' in found.fix
 
 
 def test_a_subscription_that_nobody_spins(tmp_path):

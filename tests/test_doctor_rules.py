@@ -82,12 +82,12 @@ def test_the_diagnosis_agrees_with_what_arrives(both_ends, offered, asked):
 
 
 @given(offered=PROFILES, asked=PROFILES)
-def test_the_mend_of_any_profile_is_content_with_the_offer(offered, asked):
+def test_the_fix_of_any_profile_is_content_with_the_offer(offered, asked):
     given_, wanted = infinite(QoSProfile(**offered)), infinite(QoSProfile(**asked))
     gaps = qos.incompatible(given_, wanted)
     if gaps:
-        mended = eval(qos._modest(given_, wanted), {**globals()})
-        assert qos.incompatible(given_, infinite(mended)) == {}
+        fixed = eval(qos._modest(given_, wanted), {**globals()})
+        assert qos.incompatible(given_, infinite(fixed)) == {}
 
 
 def infinite(profile):
@@ -255,9 +255,9 @@ def test_a_misspelt_question_is_answered_with_the_right_one():
 
 def test_an_empty_domain_sends_to_the_others():
     empty = replaced(endpoints=(), nodes={}, **SILENT)
-    assert '--domains' in judge(empty).findings[0].mend
+    assert '--domains' in judge(empty).findings[0].fix
     looked = replaced(empty, elsewhere={7: (LISTENER,)})
-    assert not any('--domains' in finding.mend for finding in judge(looked).findings)
+    assert not any('--domains' in finding.fix for finding in judge(looked).findings)
 
 
 def test_every_rule_is_in_the_table():

@@ -166,7 +166,7 @@ def test_an_unreadable_submission_has_a_page_with_its_reason(course):
     assert '0 of 5 points' in html
 
 
-def test_what_was_mended_is_told(course):
+def test_what_was_restored_is_told(course):
     notebook = answered(course, RIGHT)
     del notebook.cells[6]
     html = feedback(course, 'ada', notebook)

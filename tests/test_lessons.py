@@ -287,8 +287,8 @@ def test_an_untouched_answer_is_valid_python_with_hints(lesson):
             released = broken(released)
             ast.parse(released)
             assert '# 1. ' in released, cell.id
-            is_to_be_mended = '### BROKEN' in cell.source
-            assert ('YOUR CODE HERE' in released) != is_to_be_mended, cell.id
+            is_to_be_fixed = '### BROKEN' in cell.source
+            assert ('YOUR CODE HERE' in released) != is_to_be_fixed, cell.id
 
 
 def marks(cell):

@@ -112,7 +112,7 @@ def changed(out):
     return re.findall(r'^  (\w+  \w+  .+ → .+)$', out, re.MULTILINE)
 
 
-def test_a_check_that_was_wrong_is_mended_after_the_class_has_been_graded(
+def test_a_check_that_was_wrong_is_fixed_after_the_class_has_been_graded(
     course, tmp_path, capsys, run_now
 ):
     collect(course, tmp_path)

@@ -110,7 +110,7 @@ def test_releasing_again_changes_nothing(course):
     assert course.release_path(TOY).read_bytes() == before
 
 
-MENDED = """def double(x):
+FIXED = """def double(x):
     # 1. why is it wrong?
     ### BEGIN SOLUTION
     y = x  # the same in both
@@ -121,10 +121,10 @@ MENDED = """def double(x):
     ### BROKEN:     return x - y"""
 
 
-def test_an_answer_to_be_mended_is_released_broken_and_graded_mended(course):
+def test_an_answer_to_be_fixed_is_released_broken_and_graded_fixed(course):
     before = course.release_path(TOY).read_bytes()
     lesson = toy_lesson()
-    lesson.cells[4].source = MENDED
+    lesson.cells[4].source = FIXED
     write_source(course, lesson)
     release(course)
     released = cells(course)['double']

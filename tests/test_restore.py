@@ -58,7 +58,7 @@ def assert_whole(restored, template):
     nbformat.validate(nbformat.from_dict(restored.notebook))
 
 
-def test_an_untouched_submission_needs_no_mending(submitted, template):
+def test_an_untouched_submission_needs_no_restoring(submitted, template):
     restored = restore(submitted, template)
     assert_whole(restored, template)
     assert restored.notes == ()
@@ -132,7 +132,7 @@ def drop_metadata(name):
     return mutate
 
 
-MENDED = {
+CHANGED = {
     'a check is deleted': (delete('double-check'), 'double-check', 'missing'),
     'a hidden check is deleted': (delete('double-hidden'), 'double-hidden', 'missing'),
     'a check is edited': (edit('double-check', 'pass'), 'double-check', 'changed'),
@@ -151,7 +151,7 @@ HOW = {
 }
 
 
-@pytest.mark.parametrize(('mutate', 'name', 'how'), MENDED.values(), ids=MENDED)
+@pytest.mark.parametrize(('mutate', 'name', 'how'), CHANGED.values(), ids=CHANGED)
 def test_locked_and_grade_cells_are_the_originals_whatever_became_of_them(
     submitted, template, mutate, name, how
 ):

@@ -63,7 +63,7 @@ def restore(submitted: NotebookNode, template: AssignmentTemplate) -> Restored:
     found = _match(submitted, template.notebook)
     cells = [_from_student(cell) for cell in found[-1].after]
     for index, cell in enumerate(template.notebook.cells):
-        cells.extend(_mend(cell, found[index].parts, template.released, notes))
+        cells.extend(_restore(cell, found[index].parts, template.released, notes))
         cells.extend(_from_student(own) for own in found[index].after)
     _give_unique_ids(cells)
     answers = [i for i, cell in enumerate(template.notebook.cells) if role(cell) == 'answer']
@@ -96,7 +96,7 @@ def _match(submitted: NotebookNode, template: NotebookNode) -> dict[int, _Found]
     return found
 
 
-def _mend(
+def _restore(
     cell: NotebookNode, parts: list[NotebookNode], released: dict[str, str], notes: list[str]
 ) -> Iterator[NotebookNode]:
     """Yield what stands for one cell of the template."""

@@ -138,7 +138,7 @@ class Finding:
     title: str
     expected: str
     seen: str
-    mend: str
+    fix: str
     """A sentence that says what to do."""
     code: str = ''
     """The line that fixes it: Python in the node, or a command where it starts with `$ `."""

@@ -51,8 +51,8 @@ def _names(evidence: Evidence, kind: Kind, verb: str, plural: str) -> str:
 
 
 def _paragraph(number: int, finding: Finding) -> str:
-    mend = f'{finding.mend}{":" if finding.code else ""}'
-    told = {'expected': finding.expected, 'saw': finding.seen, 'to do': mend}
+    fix = f'{finding.fix}{":" if finding.code else ""}'
+    told = {'expected': finding.expected, 'saw': finding.seen, 'to do': fix}
     lines = [f'{number}. {finding.title}']
     for label, text in told.items():
         lines += textwrap.wrap(

@@ -23,7 +23,7 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
         expected='angles in radians in message.position (a full turn is 6.283)',
         seen=f'{shown:.1f}, which looks like degrees:'
         f' as radians it is {abs(shown) / math.tau:.1f} turns',
-        mend='convert before you publish',
+        fix='convert before you publish',
         code='message.position = [math.radians(angle) for angle in message.position]',
         broken=evidence.publishers,
     )

@@ -17,7 +17,7 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
         expected=f'every process of ROS domain {evidence.domain_id} on this machine to be found',
         seen=f'{number} {"are" if many else "is"} running in it and not on the graph:'
         f' {"their" if many else "its"} discovery range may be OFF',
-        mend='restart that node in a terminal in which this line was run',
+        fix='restart that node in a terminal in which this line was run',
         code='$ export ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST',
         missing=missing,
     )

@@ -27,7 +27,7 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
             ' joined (durability TRANSIENT_LOCAL)',
             seen='it requests VOLATILE, and the last message was sent'
             f' {ago_sec:.1f} s before the doctor started',
-            mend=f'request the kept messages in {subscription.node_name}',
+            fix=f'request the kept messages in {subscription.node_name}',
             code=code.create(
                 'subscription',
                 type_name=subscription.type_name,

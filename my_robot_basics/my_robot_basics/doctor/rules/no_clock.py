@@ -15,7 +15,7 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
                 title='use_sim_time without a /clock',
                 expected=f'a /clock, which {publisher.node_name} needs (use_sim_time is true)',
                 seen='no node publishes /clock: its time stays at 0, and no timer fires',
-                mend='start the simulator, or let the node use the wall clock',
+                fix='start the simulator, or let the node use the wall clock',
                 code=f'$ ros2 param set {publisher.node_name} use_sim_time false',
                 broken=(publisher,),
             )

@@ -12,17 +12,17 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
         return
     running = ', '.join(evidence.nodes)
     types = [end.type_name for end in evidence.subscriptions]
-    mend = 'start the node that publishes there, and check that its constructor has this line'
+    fix = 'start the node that publishes there, and check that its constructor has this line'
     if not running and not evidence.elsewhere:
-        mend = (
+        fix = (
             'if it runs already, look into the other ROS domains of this machine, too (--domains,'
-            f' or domains=True); else {mend}'
+            f' or domains=True); else {fix}'
         )
     yield Finding(
         title='no publisher',
         expected=f'a publisher on {evidence.topic_name}',
         seen=f'none; running: {running}' if running else 'none, and no node is running',
-        mend=mend,
+        fix=fix,
         code=code.create(
             'publisher', type_name=(types or [''])[0], topic_name=evidence.topic_name
         ),

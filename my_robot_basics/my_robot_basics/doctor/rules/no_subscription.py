@@ -16,7 +16,7 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
         title='no subscription',
         expected=f'a subscription on {evidence.topic_name}',
         seen=f'none; the publisher belongs to {senders}' if senders else 'none',
-        mend='start the node that subscribes, and check that its constructor has this line',
+        fix='start the node that subscribes, and check that its constructor has this line',
         code=code.create(
             'subscription', type_name=(types or [''])[0], topic_name=evidence.topic_name
         ),

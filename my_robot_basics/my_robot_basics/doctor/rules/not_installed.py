@@ -16,7 +16,7 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
             expected=f'{type_name}, which {senders} publishes, to be installed here',
             seen='this environment does not have the type: its nodes cannot subscribe, and the'
             ' doctor cannot see whether messages arrive at nodes of another environment',
-            mend=f'install the package {package} here, or source the workspace in which it was'
+            fix=f'install the package {package} here, or source the workspace in which it was'
             ' built, and start again from there',
             code='$ source install/setup.bash',
             broken=ends,

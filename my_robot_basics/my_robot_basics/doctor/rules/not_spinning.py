@@ -16,7 +16,7 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
             title='the node is not spinning',
             expected=f'{end.node_name} to be spun, so that {job}',
             seen='it is on the graph and does not answer requests',
-            mend='spin it; in a notebook, start it with live.run(…). If it was spinning, an'
+            fix='spin it; in a notebook, start it with live.run(…). If it was spinning, an'
             ' exception in a callback has ended that, or a callback does not return: read its log',
             code='rclpy.spin(node)',
             broken=(end,),

@@ -19,7 +19,7 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
                 title='another domain ID',
                 expected=f'a {kind} on {evidence.topic_name} in ROS domain {evidence.domain_id}',
                 seen=f'{who} {verb} there in domain {domain_id}: different domains never meet',
-                mend=f'start {who} again in a terminal in which this line was run',
+                fix=f'start {who} again in a terminal in which this line was run',
                 code=f'$ export ROS_DOMAIN_ID={evidence.domain_id}',
                 broken=(found[0],),
                 missing=kind,

@@ -28,7 +28,7 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
                     f' requests {wants}'
                     for policy, (has, wants) in gaps.items()
                 ),
-                mend=f'request no more than is offered, in {subscription.node_name}',
+                fix=f'request no more than is offered, in {subscription.node_name}',
                 code=code.create(
                     'subscription',
                     type_name=subscription.type_name,

@@ -23,7 +23,7 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
                 expected=f'a {kind} on {evidence.topic_name}',
                 seen=f'{moved[0].node_name} was started with -r {remap.name}:={remap.instead},'
                 ' and uses that name instead',
-                mend='stop it, and start it without the rule',
+                fix='stop it, and start it without the rule',
                 code=f'$ {remap.command}',
                 broken=(moved[0],),
                 missing=kind,

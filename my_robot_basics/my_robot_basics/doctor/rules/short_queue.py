@@ -28,7 +28,7 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
             expected=f'a queue of {burst} messages in {end.node_name}: {burst} arrive at once',
             seen=f'its {end.kind} has depth {end.depth}: while it is busy, a new message pushes'
             ' the oldest out, also when RELIABLE',
-            mend=f'make the queue of the {end.kind} in {end.node_name} as long as a burst',
+            fix=f'make the queue of the {end.kind} in {end.node_name} as long as a burst',
             code=code.create(
                 end.kind,
                 type_name=end.type_name,

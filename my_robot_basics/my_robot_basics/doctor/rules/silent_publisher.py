@@ -18,7 +18,7 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
             title='the timer never fires',
             expected=f'messages of {publisher.node_name} on {evidence.topic_name}',
             seen=f'it {alive} sent none in {evidence.listened_sec:.1f} s',
-            mend='check that the constructor creates a timer, that its period is in seconds and'
+            fix='check that the constructor creates a timer, that its period is in seconds and'
             ' that the callback calls publish',
             code='self.timer = self.create_timer(0.2, self.publish)',
             broken=(publisher,),

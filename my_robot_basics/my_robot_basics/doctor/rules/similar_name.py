@@ -23,7 +23,7 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
                 title=f'a similar name: {how}',
                 expected=f'a {kind} on {evidence.topic_name}',
                 seen=f'none, and {end.node_name} {verb} on {end.topic_name} ({how})',
-                mend=f'if {evidence.topic_name} is right, write it in {end.node_name} (or start '
+                fix=f'if {evidence.topic_name} is right, write it in {end.node_name} (or start '
                 f'that with --ros-args -r {end.topic_name}:={evidence.topic_name})',
                 code=code.create(kind, type_name=end.type_name, topic_name=evidence.topic_name),
                 broken=(end,),
@@ -38,7 +38,7 @@ def _misspelt_question(evidence: Evidence) -> Iterator[Finding]:
             title=f'a similar name: {how}',
             expected=f'a node that uses {evidence.topic_name}',
             seen=f'none, and {end.node_name} uses {end.topic_name} ({how})',
-            mend='run the doctor on that topic, if it is the one you mean',
+            fix='run the doctor on that topic, if it is the one you mean',
             code=f'$ topic_doctor {end.topic_name}',
             broken=(end,),
             missing=end.kind,

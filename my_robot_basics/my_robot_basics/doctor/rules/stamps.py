@@ -33,7 +33,7 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
         title='stamps missing or old',
         expected="the time of sending in each message's header.stamp",
         seen=f'{seen}: tf2, RViz2 and message filters drop such messages',
-        mend='set the stamp just before each publish',
+        fix='set the stamp just before each publish',
         code='message.header.stamp = self.get_clock().now().to_msg()',
         broken=evidence.publishers,
     )

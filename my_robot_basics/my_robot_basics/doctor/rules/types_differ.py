@@ -18,7 +18,7 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
             expected='one message type at both ends',
             seen=f'{sender} publishes {type_name}, {subscription.node_name} expects'
             f' {subscription.type_name}: no message arrives',
-            mend=f'import and use the same type in {subscription.node_name}'
+            fix=f'import and use the same type in {subscription.node_name}'
             f' (from {type_name.replace("/", ".").rpartition(".")[0]})',
             code=code.create('subscription', type_name=type_name, topic_name=evidence.topic_name),
             broken=(subscription,),
