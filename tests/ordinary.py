@@ -53,6 +53,8 @@ ORDINARY = {
         r'(sleep_loop|multithreaded|busy_callback)-.*'
     ),
     # the same commands with other options
+    'test_ros2_action::test_prints_what_ros2cli_prints': r'[a-z]+( [^-\s]\S*)*',
+    'test_ros2_action::test_refuses_as_ros2cli_does': r'(type|info) .*|.*(path|\[1\])',
     'test_ros2_graph::test_prints_what_ros2cli_prints': r'[a-z]+ [a-z]+( [^-\s]\S*)*',
     'test_ros2_graph::test_refuses_as_ros2cli_does': r'(topic info|node info|param list) .*',
     'test_ros2_service::test_prints_what_ros2cli_prints': r'[a-z]+( [^-\s]\S*)*',

@@ -36,6 +36,13 @@ COMPLETIONS = [
     ('ros2 service call /new std_srvs/srv/S', ['std_srvs/srv/SetBool']),
     ('ros2 service call /new std_srvs/srv/SetBool d', ['data:\\ false\\']),
     ('ros2 service find std_srvs/srv/T', ['std_srvs/srv/Trigger']),
+    ('ros2 action info /arm/m', ['/arm/move']),
+    ('ros2 action type /arm/m', ['/arm/move']),
+    ('ros2 action send_goal /arm/m', ['/arm/move']),
+    ('ros2 action send_goal /arm/move a', ['arm_interfaces/action/MoveArm']),
+    ('ros2 action send_goal /new arm', ['arm_interfaces/action/MoveArm']),
+    ('ros2 action send_goal /new arm_interfaces/action/MoveArm p',
+     ['position:\\ \\[\\]\\\nspeed:\\ 0.0\\']),
     ('ros2 pkg prefix rclp', ['rclpy']),
 ]  # fmt: skip
 

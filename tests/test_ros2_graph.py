@@ -105,6 +105,13 @@ SERVICES = """
 /other_type/get_type_description
 """
 
+HIDDEN_TOPICS = """
+/_hidden
+/_other_type_is_up
+/arm/move/_action/feedback
+/arm/move/_action/status
+""".strip()
+
 NODE_INFO = """
 /arm/everything
   Subscribers:
@@ -127,7 +134,7 @@ NODE_INFO = """
   Service Clients:
     /arm/start: std_srvs/srv/Trigger
   Action Servers:
-
+    /arm/move: arm_interfaces/action/MoveArm
   Action Clients:
 
 """
@@ -161,8 +168,8 @@ SHOWN = [
     ('topic list --show-types', TYPED_TOPICS),
     ('topic list -v', VERBOSE_TOPICS),
     ('topic list -c', '7\n'),
-    ('topic list --include-hidden-topics', '/_hidden\n/_other_type_is_up' + TOPICS),
-    ('topic --include-hidden-topics list -c', '9\n'),
+    ('topic list --include-hidden-topics', HIDDEN_TOPICS + TOPICS),
+    ('topic --include-hidden-topics list -c', '11\n'),
     ('topic list --no-daemon --spin-time 1.5', TOPICS),
     ('topic info /kinematics/joint_states', INFO),
     ('topic info /two_types', "Type: ['std_msgs/msg/Int32', 'std_msgs/msg/String']\n"

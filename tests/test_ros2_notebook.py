@@ -11,6 +11,33 @@ from my_robot_basics.live import run
 from my_robot_basics.kinematics_publisher import KinematicsPublisher
 publisher = run(KinematicsPublisher)
 """
+WAITER = """
+from my_robot_basics.live import stop, wait_until
+from rclpy.action import ActionServer, CancelResponse
+from rclpy.node import Node
+from rclpy.task import Future
+from arm_interfaces.action import MoveArm
+
+cancelled = []
+
+class Waiter(Node):
+    def __init__(self):
+        super().__init__('waiter')
+        self.asked = Future()
+        ActionServer(self, MoveArm, '/wait', self.execute, cancel_callback=self.cancel)
+
+    def cancel(self, handle):
+        self.asked.set_result(None)
+        return CancelResponse.ACCEPT
+
+    async def execute(self, handle):
+        await self.asked
+        handle.canceled()
+        cancelled.append(True)
+        return MoveArm.Result()
+
+waiter = run(Waiter)
+"""
 TOPIC = '/kinematics/joint_states'
 
 
@@ -68,6 +95,18 @@ def test_a_cell_of_hz_ends_by_itself(lesson):
 def test_a_pipe_in_a_cell_ends_with_its_reader(lesson):
     text = lesson.run(f'!ros2 topic echo {TOPIC} | head -3')
     assert re.fullmatch(r'header:\n  stamp:\n    sec: \d+\n', text)
+
+
+def test_an_interrupt_cancels_the_goal_of_a_cell(lesson):
+    lesson.run(WAITER)
+    goal = '!ros2 action send_goal /wait arm_interfaces/action/MoveArm'
+    text = lesson.run(goal, interrupt_at='Goal accepted')
+    assert 'Traceback' not in text
+    assert lesson.run('wait_until(lambda: cancelled) or print(cancelled)') == '[True]\n'
+    assert lesson.run('!ros2 action info /wait') == (
+        'Action: /wait\nAction clients: 0\nAction servers: 1\n    /waiter\n'
+    )
+    lesson.run('stop(Waiter)')
 
 
 @pytest.mark.parametrize(

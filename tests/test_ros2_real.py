@@ -48,6 +48,15 @@ COMMANDS = [
     ('service', 'call', '/arm/start', 'std_srvs/Trigger', '[1]'),
     ('service', 'call', '/x', 'std_msgs/msg/String'),
     ('service', 'call', '/x', 'os/path'),
+    ('action', 'list', '-t'),
+    ('action', 'list', '-c'),
+    ('action', 'type', '/arm/move'),
+    ('action', 'type', '/nothing'),
+    ('action', 'info', '/arm/move', '-t'),
+    ('action', 'info', '/arm/move', '-c'),
+    ('action', 'info', '/nothing'),
+    ('action', 'send_goal', '/arm/move', 'arm_interfaces/action/MoveArm', '{speed: 1}'),
+    ('action', 'send_goal', '/x', 'os/path'),
     ('param', 'list', '/arm/everything', '--param-type', *DIRECT),
     ('param', 'get', '/arm/everything', 'some_doubles', *DIRECT),
     ('param', 'get', '/arm/everything', 'some_bytes', '--hide-type', *DIRECT),
@@ -89,6 +98,6 @@ def answer(program, words):
         env=os.environ,
     )
     # what differs from message to message, and where two endpoints may come in either order
-    text = re.sub(r'-?\d+\.\d+(e-\d+)?|\d{9,}', 'NUMBER', done.stdout)
+    text = re.sub(r'-?\d+\.\d+(e-\d+)?|[0-9a-f]{32}|\d{9,}', 'NUMBER', done.stdout)
     sections = sorted(re.sub(r'nanosec: \d+', '', text).split('\n\n'))
     return sections, done.stderr, done.returncode

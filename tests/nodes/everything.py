@@ -3,10 +3,13 @@
 import array
 
 from five_hz import spin
+from rclpy.action import ActionServer
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
+
+from arm_interfaces.action import MoveArm
 
 PARAMETERS = {
     'a_bool': True,
@@ -34,6 +37,7 @@ class Everything(Node):
         self.heard = self.create_subscription(String, '/heard', print, 10)
         self.own_client = self.create_client(Trigger, 'start')
         self.service = self.create_service(Trigger, 'start', lambda request, response: response)
+        self.mover = ActionServer(self, MoveArm, 'move', lambda handle: MoveArm.Result())
         self.ready = self.create_publisher(String, '/everything_is_up', 10)
 
 

@@ -42,6 +42,14 @@ def service_types(**_: object) -> list[str]:
     return interfaces.names('srv')
 
 
+def action_types_of(parsed_args: argparse.Namespace, **_: object) -> list[str]:
+    """The type that the action has; all action types if it has none yet."""
+    with Graph(parsed_args) as graph:
+        graph.settle()
+        actions = dict(graph.actions())
+    return actions.get(parsed_args.action_name) or interfaces.names('action')
+
+
 def message_types(**_: object) -> list[str]:
     """Message types that are installed."""
     return interfaces.names('msg')
@@ -60,6 +68,11 @@ def prototype(parsed_args: argparse.Namespace, **_: object) -> list[str]:
 def request_prototype(parsed_args: argparse.Namespace, **_: object) -> list[str]:
     """A service's request with its default values, as YAML."""
     return [_as_yaml(interfaces.service_class_for(parsed_args.service_type).Request())]
+
+
+def goal_prototype(parsed_args: argparse.Namespace, **_: object) -> list[str]:
+    """An action's goal with its default values, as YAML."""
+    return [_as_yaml(interfaces.action_class_for(parsed_args.action_type).Goal())]
 
 
 def _as_yaml(message: Any) -> str:
@@ -82,6 +95,13 @@ def service_names(parsed_args: argparse.Namespace, **_: object) -> list[str]:
         graph.settle()
         include_hidden = parsed_args.include_hidden_services
         return [name for name, _ in graph.services(include_hidden=include_hidden)]
+
+
+def action_names(parsed_args: argparse.Namespace, **_: object) -> list[str]:
+    """Actions."""
+    with Graph(parsed_args) as graph:
+        graph.settle()
+        return [name for name, _ in graph.actions()]
 
 
 def package_names(**_: object) -> Iterable[str]:

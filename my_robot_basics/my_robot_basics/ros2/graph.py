@@ -160,6 +160,12 @@ class Graph:
         """Service names and their types, sorted by name."""
         return lookup.visible(self.node.get_service_names_and_types(), include_hidden)
 
+    def actions(self) -> list[tuple[str, list[str]]]:
+        """Action names and their types, sorted by name; ros2cli hides none."""
+        from rclpy.action import get_action_names_and_types
+
+        return sorted(get_action_names_and_types(self.node))
+
     def nodes(self, *, include_hidden: bool = False) -> list[NodeName]:
         """The nodes; two nodes of one name are in it twice."""
         names = (NodeName(*pair) for pair in self.node.get_node_names_and_namespaces())

@@ -75,6 +75,17 @@ def service_class_for(name: str) -> Any:
     return found
 
 
+def action_class_for(name: str) -> Any:
+    """The class of the action type that a user has named, such as `pkg/action/Name`.
+
+    `pkg/Name` will do. Raises CommandError.
+    """
+    found = _class(name, 'action')
+    if hasattr(found, 'Goal') and hasattr(found, 'Result') and hasattr(found, 'Feedback'):
+        return found
+    raise CommandError(f'The passed action type is invalid{_did_you_mean(name, "action")}')
+
+
 def _class(name: str, kind: str) -> Any:
     parts = name.split('/')
     if len(parts) == 2:

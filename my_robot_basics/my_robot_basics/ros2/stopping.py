@@ -1,4 +1,4 @@
-"""SIGINT and SIGTERM: the end of a command at any moment, with the exit status of ros2cli.
+"""SIGINT, SIGTERM and SIGHUP: the end of a command at any moment, with the exit status of ros2cli.
 
 Before a participant exists there is nothing to clean up, and the process ends on the spot.
 Afterwards the signal is noted, waiting code checks for it often, and the participant leaves the
@@ -19,9 +19,14 @@ _noted = 0
 
 
 def watch() -> None:
-    """Take the signals over, also where a shell had them ignored (`ros2 … &` in a script)."""
+    """Take the signals over, also where a shell had them ignored (`ros2 … &` in a script).
+
+    SIGHUP, of a terminal that closes, stays ignored: that is what `nohup` is for.
+    """
     signal.signal(signal.SIGINT, _stop)
     signal.signal(signal.SIGTERM, _stop)
+    if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:
+        signal.signal(signal.SIGHUP, _stop)
     signal.signal(signal.SIGALRM, _give_up)
 
 
@@ -35,6 +40,19 @@ def check() -> None:
     """Raise Stopped if a signal was noted."""
     if _noted:
         raise Stopped(_noted)
+
+
+def may_go_on(stopped: Stopped) -> bool:
+    """Whether the command may answer a signal by something else than its end; then it goes on.
+
+    That is so for Ctrl-C, and where a terminal closes. The next signal is noted again.
+    """
+    global _noted
+    if stopped.number not in (signal.SIGINT, signal.SIGHUP):
+        return False
+    _noted = 0
+    signal.setitimer(signal.ITIMER_REAL, 0.0)
+    return True
 
 
 def finish() -> None:

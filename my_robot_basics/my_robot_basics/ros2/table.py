@@ -17,6 +17,9 @@ class Command:
 
 
 COMMANDS = {
+    'action': Command(
+        'Various action related sub-commands', verbs=('info', 'list', 'send_goal', 'type')
+    ),
     'interface': Command(
         'Show information about ROS interfaces',
         verbs=('list', 'show'),
@@ -49,7 +52,7 @@ COMMANDS = {
 }
 
 ELSEWHERE = (
-    *('action', 'bag', 'component', 'daemon', 'doctor', 'extension_points', 'extensions'),
+    *('bag', 'component', 'daemon', 'doctor', 'extension_points', 'extensions'),
     *('launch', 'lifecycle', 'multicast', 'security', 'test', 'trace', 'wtf'),
 )
 """Commands of a ROS 2 installation that ours has not."""

@@ -1,0 +1,59 @@
+"""Print information about an action."""
+
+import argparse
+from collections.abc import Callable
+from typing import Any
+
+from my_robot_basics.ros2 import completion, lookup
+from my_robot_basics.ros2.graph import Graph
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    completion.offer(
+        parser.add_argument(
+            'action_name', help="Name of the ROS action to get info (e.g. '/fibonacci')"
+        ),
+        completion.action_names,
+    )
+    parser.add_argument(
+        '-t', '--show-types', action='store_true', help='Additionally show the action type'
+    )
+    parser.add_argument(
+        '-c',
+        '--count',
+        action='store_true',
+        help='Only display the number of action clients and action servers',
+    )
+
+
+def main(args: argparse.Namespace) -> None:
+    """Run the verb."""
+    with Graph(args) as graph:
+        from rclpy import action
+
+        full_name = lookup.full_name(graph.node, args.action_name)
+        graph.settle()
+        ends = {
+            'clients': _ends(graph, full_name, action.get_action_client_names_and_types_by_node),
+            'servers': _ends(graph, full_name, action.get_action_server_names_and_types_by_node),
+        }
+    print(f'Action: {args.action_name}')
+    for title, nodes in ends.items():
+        print(f'Action {title}: {len(nodes)}')
+        for node_name, types in [] if args.count else nodes:
+            shown = f' [{", ".join(types)}]' if args.show_types else ''
+            print(f'    {node_name}{shown}')
+
+
+def _ends(graph: Graph, name: str, look_up: Callable[..., Any]) -> list[tuple[str, list[str]]]:
+    """Full names of the nodes at one end of an action, hidden ones too, and their types."""
+    found = []
+    for node in graph.nodes(include_hidden=True):
+        try:
+            actions = dict(look_up(graph.node, node.name, node.namespace))
+        except RuntimeError:  # it has gone meanwhile
+            continue
+        if name in actions:
+            found.append((node.full_name, actions[name]))
+    return found

@@ -1,0 +1,139 @@
+"""Send an action goal."""
+
+import argparse
+import sys
+from typing import Any
+
+from my_robot_basics.ros2 import completion, lookup, stopping, typed_values
+from my_robot_basics.ros2.errors import CommandError, Stopped
+from my_robot_basics.ros2.graph import Graph
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    completion.offer(
+        parser.add_argument('action_name', help="Name of the ROS action (e.g. '/fibonacci')"),
+        completion.action_names,
+    )
+    completion.offer(
+        parser.add_argument(
+            'action_type',
+            help="Type of the ROS action (e.g. 'example_interfaces/action/Fibonacci')",
+        ),
+        completion.action_types_of,
+    )
+    source = parser.add_mutually_exclusive_group()
+    completion.offer(
+        source.add_argument(
+            'goal',
+            nargs='?',
+            default='{}',
+            help="Goal request values in YAML format (e.g. '{order: 10}')",
+        ),
+        completion.goal_prototype,
+    )
+    source.add_argument('--stdin', action='store_true', help='Read goal from standard input')
+    parser.add_argument(
+        '-f', '--feedback', action='store_true', help='Echo feedback messages for the goal'
+    )
+
+
+def main(args: argparse.Namespace) -> None:
+    """Run the verb."""
+    from my_robot_basics.ros2.interfaces import action_class_for
+
+    action_class = action_class_for(args.action_type)
+    goal = action_class.Goal()
+    _fill(goal, typed_values.parse(sys.stdin.buffer.read() if args.stdin else args.goal))
+
+    node_name = f'_ros2cli_send_goal_{args.action_type.replace("/", "_")}'
+    with Graph(args, node_name=node_name) as graph:
+        from rclpy.action import ActionClient
+
+        action_name = lookup.full_name(graph.node, args.action_name)
+        client = ActionClient(graph.node, action_class, action_name)
+        try:
+            print('Waiting for an action server to become available...')
+            graph.wait_until(client.server_is_ready)
+            print(f'Sending goal:\n     {_as_yaml(goal)}')
+            _send(graph, client, goal, show_feedback=args.feedback)
+        finally:
+            client.destroy()
+
+
+def _fill(goal: Any, values: Any) -> None:
+    from my_robot_basics.ros2.fill import BadValue, fill
+
+    try:
+        if not isinstance(values, dict):
+            kind = type(values).__name__
+            raise BadValue(f"Value '{values}' is expected to be a dictionary but is a {kind}")
+        fill(goal, values)
+    except BadValue as error:
+        raise CommandError(f'Failed to populate message fields: {error}') from None
+
+
+def _send(graph: Graph, client: Any, goal: Any, *, show_feedback: bool) -> None:
+    """Send a goal, and follow it to its end; a signal cancels it, a second one ends the wait."""
+    accepting = client.send_goal_async(goal, _show_feedback if show_feedback else None)
+    handle = _answer(graph, accepting, 'sending goal')
+    if not handle.accepted:
+        print('Goal was rejected.')
+        return
+    print(f'Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n')
+    ending = handle.get_result_async()
+    try:
+        result = _answer(graph, ending, 'getting result')
+    except Stopped as stopped:
+        if not stopping.may_go_on(stopped) or _has_ended(handle):
+            raise
+        _cancel(graph, handle)
+        result = _answer(graph, ending, 'getting result')
+    print(f'Result:\n    {_as_yaml(result.result)}')
+    print(f'Goal finished with status: {_status_name(result.status)}')
+
+
+def _show_feedback(message: Any) -> None:
+    print(f'Feedback:\n    {_as_yaml(message.feedback)}')
+
+
+def _answer(graph: Graph, future: Any, doing: str) -> Any:
+    graph.spin_until(future.done)
+    if (answer := future.result()) is None:
+        raise CommandError(f'Exception while {doing}: {future.exception()!r}')
+    return answer
+
+
+def _has_ended(handle: Any) -> bool:
+    """Whether the goal has, or somebody else has cancelled it."""
+    from action_msgs.msg import GoalStatus
+
+    return handle.status not in (
+        *(GoalStatus.STATUS_UNKNOWN, GoalStatus.STATUS_ACCEPTED, GoalStatus.STATUS_EXECUTING),
+    )
+
+
+def _cancel(graph: Graph, handle: Any) -> None:
+    print('Canceling goal...')
+    response = _answer(graph, handle.cancel_goal_async(), 'canceling goal')
+    cancelled = [info.goal_id for info in response.goals_canceling]
+    if not cancelled:
+        raise CommandError('Failed to cancel goal')
+    if len(cancelled) > 1:
+        raise CommandError('More than one goal canceled')
+    if cancelled[0] != handle.goal_id:
+        raise CommandError('Canceled goal with incorrect goal ID')
+    print('Goal canceled.')
+
+
+def _status_name(status: int) -> str:
+    from action_msgs.msg import GoalStatus
+
+    names = 'ACCEPTED', 'EXECUTING', 'CANCELING', 'SUCCEEDED', 'CANCELED', 'ABORTED'
+    return {getattr(GoalStatus, f'STATUS_{name}'): name for name in names}.get(status, 'UNKNOWN')
+
+
+def _as_yaml(message: Any) -> str:
+    from my_robot_basics.ros2.as_text import Shortening, as_yaml
+
+    return as_yaml(message, Shortening())

@@ -1,0 +1,27 @@
+"""Print a action's type."""
+
+import argparse
+
+from my_robot_basics.ros2 import completion
+from my_robot_basics.ros2.graph import Graph
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    completion.offer(
+        parser.add_argument(
+            'action_name', help="Name of the ROS action to get info (e.g. '/fibonacci')"
+        ),
+        completion.action_names,
+    )
+
+
+def main(args: argparse.Namespace) -> int:
+    """Run the verb."""
+    with Graph(args) as graph:
+        graph.settle()
+        actions = dict(graph.actions())
+    if args.action_name not in actions:
+        return 1
+    print(*actions[args.action_name], sep='\n')
+    return 0

@@ -1,0 +1,190 @@
+"""What `ros2 action` prints of a running system: the cases of ros2cli's own tests (Jazzy)."""
+
+import contextlib
+import re
+import signal
+
+import pytest
+from ros2_command import PATIENCE_SEC, SCRIPT, on_the_graph, own_domain, ros2, started
+
+KIND = 'arm_interfaces/action/MoveArm'
+ACTION, HIDDEN = '/my_ns/move_arm', '/my_ns/_move_arm'
+WAITING = 'Waiting for an action server to become available...\n'
+
+
+@pytest.fixture(scope='module', autouse=True)
+def system():
+    with own_domain(), on_the_graph('actions', topics=('/my_ns/_mover_is_up',)):
+        yield
+
+
+def goal(speed):
+    return f'{{position: [0.5, -1.0], speed: {speed}}}'
+
+
+def sent(speed):
+    return f'{WAITING}Sending goal:\n     position:\n- 0.5\n- -1.0\nspeed: {speed}\n\n'
+
+
+def feedback(remaining):
+    return f'Feedback:\n    position:\n- 0.5\n- -1.0\nremaining: {remaining}\n\n'
+
+
+def ended(status):
+    return f'Result:\n    position:\n- 0.5\n- -1.0\n\nGoal finished with status: {status}\n'
+
+
+ACCEPTED = 'Goal accepted with ID: ID\n\n'
+INFO = 'Action: /my_ns/move_arm\nAction clients: 0\nAction servers: 1\n'
+SHOWN = [
+    ('list', f'{HIDDEN}\n{ACTION}\n'),
+    ('list -t', f'{HIDDEN} [{KIND}]\n{ACTION} [{KIND}]\n'),
+    ('list --show-types', f'{HIDDEN} [{KIND}]\n{ACTION} [{KIND}]\n'),
+    ('list -c', '2\n'),
+    ('type /my_ns/move_arm', f'{KIND}\n'),
+    ('info /my_ns/move_arm', f'{INFO}    /my_ns/mover\n'),
+    ('info -t /my_ns/move_arm', f'{INFO}    /my_ns/mover [{KIND}]\n'),
+    ('info -c /my_ns/move_arm', INFO),
+    ('info my_ns/move_arm', f'{INFO}    /my_ns/mover\n'.replace('/my_ns/m', 'my_ns/m', 1)),
+    ('info /nothing', 'Action: /nothing\nAction clients: 0\nAction servers: 0\n'),
+]
+
+
+@pytest.mark.parametrize(('words', 'expected'), SHOWN, ids=[words for words, _ in SHOWN])
+def test_prints_what_ros2cli_prints(words, expected):
+    result = ros2('action', *words.split())
+    assert (result.out, result.err, result.status) == (expected, '', 0)
+
+
+EMPTY = 'position: []\nspeed: 0.0\n'
+GOALS = [
+    ((KIND, goal(0.5)), '', sent(0.5) + ACCEPTED + ended('SUCCEEDED')),
+    (('arm_interfaces/MoveArm', goal(0.5)), '', sent(0.5) + ACCEPTED + ended('SUCCEEDED')),
+    ((KIND, '--stdin'), goal(0.5), sent(0.5) + ACCEPTED + ended('SUCCEEDED')),
+    ((KIND, goal(-1.0)), '', sent(-1.0) + ACCEPTED + ended('ABORTED')),
+    ((KIND, goal(0.0)), '', f'{sent(0.0)}Goal was rejected.\n'),
+    ((KIND,), '', f'{WAITING}Sending goal:\n     {EMPTY}\nGoal was rejected.\n'),
+]
+
+
+@pytest.mark.parametrize(('words', 'stdin', 'expected'), GOALS, ids=[str(g[0]) for g in GOALS])
+def test_a_goal_shows_how_it_ended(words, stdin, expected):
+    result = ros2('action', 'send_goal', ACTION, *words, stdin=stdin)
+    assert without_id(result.out) == expected
+    assert (result.err, result.status) == ('', 0)
+
+
+@pytest.mark.parametrize('option', ['-f', '--feedback'])
+def test_feedback_is_shown_as_it_comes(option):
+    shown = sent(1.0) + ACCEPTED + ''.join(feedback(left) for left in (2.0, 1.0, 0.0))
+    with sending(option, ACTION, KIND, goal(1.0)) as process:
+        # the first may be there before the client knows that its goal was accepted
+        text = read_until(process, lambda text: len(text) >= len(shown))
+        process.send_signal(signal.SIGINT)
+        out, _ = process.communicate(timeout=PATIENCE_SEC)
+    assert sorted(text.splitlines()) == sorted(shown.splitlines())
+    assert re.findall(r'remaining: .*', text) == re.findall(r'remaining: .*', shown)
+    assert out == f'Canceling goal...\nGoal canceled.\n{ended("CANCELED")}'
+
+
+def without_id(text):
+    return re.sub(r'(?<=ID: )[0-9a-f]{32}\n', 'ID\n', text)
+
+
+@contextlib.contextmanager
+def sending(*words):
+    with started(SCRIPT, 'action', 'send_goal', *words) as process:
+        yield process
+
+
+def read_until(process, is_enough):
+    """What a process prints, line by line, until it is enough; goals without their ids."""
+    text = ''
+    while not is_enough(text):
+        line = process.stdout.readline()
+        assert line, text
+        text = without_id(text + line)
+    return text
+
+
+@contextlib.contextmanager
+def accepted_goal(speed):
+    """A command whose goal was accepted, which has printed so far and no further."""
+    with sending(ACTION, KIND, goal(speed)) as process:
+        read_until(process, lambda text: text.endswith(ACCEPTED))
+        yield process
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGHUP])
+def test_ctrl_c_cancels_the_goal_and_waits_for_its_end(number):
+    with accepted_goal(1.0) as process:
+        process.send_signal(number)
+        out, err = process.communicate(timeout=PATIENCE_SEC)
+    assert (out, err) == (f'Canceling goal...\nGoal canceled.\n{ended("CANCELED")}', '')
+    assert process.returncode == 0
+
+
+def test_it_says_that_a_goal_cannot_be_cancelled():
+    with accepted_goal(2.0) as process:
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=PATIENCE_SEC)
+    assert (out, err) == ('Canceling goal...\n', 'Failed to cancel goal\n')
+    assert process.returncode == 1
+
+
+def test_sigterm_ends_it_at_once():
+    with accepted_goal(2.0) as process:
+        process.send_signal(signal.SIGTERM)
+        out, err = process.communicate(timeout=PATIENCE_SEC)
+    assert (out, err, process.returncode) == ('', '', signal.SIGTERM)
+
+
+def test_a_client_is_counted_and_named():
+    with accepted_goal(1.0) as process:
+        result = ros2('action', 'info', '-t', ACTION)
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=PATIENCE_SEC)
+    client = '    /_ros2cli_send_goal_arm_interfaces_action_MoveArm'
+    assert result.out == (
+        f'Action: {ACTION}\nAction clients: 1\n{client} [{KIND}]\n'
+        f'Action servers: 1\n    /my_ns/mover [{KIND}]\n'
+    )
+
+
+def test_a_goal_waits_for_its_server_and_ends_with_a_signal():
+    with sending('/nothing', KIND) as process:
+        assert process.stdout.readline() == WAITING
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=PATIENCE_SEC)
+    assert (out, err, process.returncode) == ('', '', signal.SIGINT)
+
+
+INVALID = 'The passed action type is invalid'
+UNFILLED = 'Failed to populate message fields: '
+NO_DICTIONARY = "Value '[1]' is expected to be a dictionary but is a list"
+NO_FIELD = "sped: arm_interfaces/action/MoveArm_Goal has no field 'sped': did you mean speed?"
+SLASHES = "Invalid topic name: topic name must not contain repeated '/':\n  '//x'\n    ^\n"
+REFUSED = [
+    ('type /not_an_action', ''),
+    ('info //x', SLASHES),
+    ('send_goal /x os/path', f'{INVALID}\n'),
+    ('send_goal /x nothing', f'{INVALID}\n'),
+    ('send_goal /x std_srvs/srv/SetBool', f'{INVALID}\n'),
+    ('send_goal /x arm_interfaces/action/Movearm', f'{INVALID}: did you mean {KIND}?\n'),
+    (f'send_goal /x {KIND} [1]', f'{UNFILLED}{NO_DICTIONARY}\n'),
+    (f'send_goal /x {KIND} {{sped:}}', f'{UNFILLED}{NO_FIELD}\n'),
+    (f'send_goal //x {KIND}', SLASHES),
+]
+
+
+@pytest.mark.parametrize(('words', 'complaint'), REFUSED, ids=[words for words, _ in REFUSED])
+def test_refuses_as_ros2cli_does(words, complaint):
+    result = ros2('action', *words.split())
+    assert (result.out, result.err, result.status) == ('', complaint, 1)
+
+
+@pytest.mark.parametrize('words', ['send_goal /x', 'send_goal /x y {} --stdin', 'type', 'info'])
+def test_a_wrong_usage_is_shown_the_right_one(words):
+    result = ros2('action', *words.split())
+    assert result.err.startswith(f'usage: ros2 action {words.split()[0]} [-h]')
+    assert (result.out, result.status) == ('', 2)
