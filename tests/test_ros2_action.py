@@ -5,7 +5,7 @@ import re
 import signal
 
 import pytest
-from ros2_command import PATIENCE_SEC, SCRIPT, on_the_graph, own_domain, ros2, started
+from ros2_command import TIMEOUT_SEC, SCRIPT, on_the_graph, own_domain, ros2, started
 
 KIND = 'arm_interfaces/action/MoveArm'
 ACTION, HIDDEN = '/my_ns/move_arm', '/my_ns/_move_arm'
@@ -81,7 +81,7 @@ def test_feedback_is_shown_as_it_comes(option):
         # the first may be there before the client knows that its goal was accepted
         text = read_until(process, lambda text: len(text) >= len(shown))
         process.send_signal(signal.SIGINT)
-        out, _ = process.communicate(timeout=PATIENCE_SEC)
+        out, _ = process.communicate(timeout=TIMEOUT_SEC)
     assert sorted(text.splitlines()) == sorted(shown.splitlines())
     assert re.findall(r'remaining: .*', text) == re.findall(r'remaining: .*', shown)
     assert out == f'Canceling goal...\nGoal canceled.\n{ended("CANCELED")}'
@@ -119,7 +119,7 @@ def accepted_goal(speed):
 def test_ctrl_c_cancels_the_goal_and_waits_for_its_end(number):
     with accepted_goal(1.0) as process:
         process.send_signal(number)
-        out, err = process.communicate(timeout=PATIENCE_SEC)
+        out, err = process.communicate(timeout=TIMEOUT_SEC)
     assert (out, err) == (f'Canceling goal...\nGoal canceled.\n{ended("CANCELED")}', '')
     assert process.returncode == 0
 
@@ -127,7 +127,7 @@ def test_ctrl_c_cancels_the_goal_and_waits_for_its_end(number):
 def test_it_says_that_a_goal_cannot_be_cancelled():
     with accepted_goal(2.0) as process:
         process.send_signal(signal.SIGINT)
-        out, err = process.communicate(timeout=PATIENCE_SEC)
+        out, err = process.communicate(timeout=TIMEOUT_SEC)
     assert (out, err) == ('Canceling goal...\n', 'Failed to cancel goal\n')
     assert process.returncode == 1
 
@@ -135,7 +135,7 @@ def test_it_says_that_a_goal_cannot_be_cancelled():
 def test_sigterm_ends_it_at_once():
     with accepted_goal(2.0) as process:
         process.send_signal(signal.SIGTERM)
-        out, err = process.communicate(timeout=PATIENCE_SEC)
+        out, err = process.communicate(timeout=TIMEOUT_SEC)
     assert (out, err, process.returncode) == ('', '', signal.SIGTERM)
 
 
@@ -143,7 +143,7 @@ def test_a_client_is_counted_and_named():
     with accepted_goal(1.0) as process:
         result = ros2('action', 'info', '-t', ACTION)
         process.send_signal(signal.SIGINT)
-        process.communicate(timeout=PATIENCE_SEC)
+        process.communicate(timeout=TIMEOUT_SEC)
     client = '    /_ros2cli_send_goal_arm_interfaces_action_MoveArm'
     assert result.out == (
         f'Action: {ACTION}\nAction clients: 1\n{client} [{KIND}]\n'
@@ -155,7 +155,7 @@ def test_a_goal_waits_for_its_server_and_ends_with_a_signal():
     with sending('/nothing', KIND) as process:
         assert process.stdout.readline() == WAITING
         process.send_signal(signal.SIGINT)
-        out, err = process.communicate(timeout=PATIENCE_SEC)
+        out, err = process.communicate(timeout=TIMEOUT_SEC)
     assert (out, err, process.returncode) == ('', '', signal.SIGINT)
 
 
