@@ -9,7 +9,14 @@ from pathlib import Path
 
 from launcher.environment import Environment
 from launcher.messages import say
-from launcher.unstable import MOST, add_unstable, read_failures, read_passes, unstable
+from launcher.unstable import (
+    MOST,
+    add_unstable,
+    read_failures,
+    read_import_errors,
+    read_passes,
+    unstable,
+)
 
 TIERS = ('--quick', '--slow')
 SHARD = '--shard='
@@ -78,10 +85,16 @@ class Checks:
         """Run checks, and again alone what failed: what fails twice has failed.
 
         A machine that was short of time fails tests that nothing is wrong with. They are written
-        down, with why: more than MOST of them in a run have failed, too.
+        down, with why: more than MOST of them in a run have failed, too. A file that cannot be
+        imported is no such test.
         """
         status = first(f'{what}.xml')
         if status != 1:
+            return status
+        if errors := read_import_errors(self.reports / f'{what}.xml'):
+            for path, why in errors.items():
+                say(f'{path} could not be imported, so none of its tests were run: {why}')
+            say('fix that, and run this again')
             return status
         say(f'now the {what} that failed beside others once more, alone; they are named above')
         status = again(f'{what}-alone.xml')

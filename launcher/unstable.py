@@ -8,6 +8,8 @@ from xml.etree import ElementTree
 MOST = 2
 """How many of them a run may have."""
 BAD = ('failure', 'error')
+UNREAD = 'collection failure'
+"""What pytest writes where a file of tests could not be imported."""
 
 
 def read_failures(report: Path) -> dict[str, str]:
@@ -21,6 +23,18 @@ def read_failures(report: Path) -> dict[str, str]:
                 name, ' '.join(bad.get('message', '').split()) or 'no reason given'
             )
     return failures
+
+
+def read_import_errors(report: Path) -> dict[str, str]:
+    """Return the files of tests that pytest could not import, and why: the error's last line."""
+    errors: dict[str, str] = {}
+    for name, case in _cases(report):
+        error = case.find('error')
+        if error is not None and error.get('message') == UNREAD:
+            why = (error.text or '').rstrip().rpartition('\n')[2]
+            module = name.removeprefix('::')
+            errors[f'{module.replace(".", "/")}.py'] = why.removeprefix('E').strip()
+    return errors
 
 
 def read_passes(report: Path) -> set[str]:

@@ -173,6 +173,44 @@ def test_more_than_two_unstable_tests_fail_a_run(number, status, tmp_path, capsy
         assert 'failed beside others and passed alone' in capsys.readouterr().err
 
 
+@pytest.mark.starts
+@pytest.mark.parametrize(
+    ('source', 'why'),
+    [
+        ('import nothing_like_this', "ModuleNotFoundError: No module named 'nothing_like_this'"),
+        ('from os import nothing', "ImportError: cannot import name 'nothing' from 'os'"),
+        ('def test_a(:', 'SyntaxError: invalid syntax'),
+        ('1 / 0', 'ZeroDivisionError: division by zero'),
+    ],
+)
+def test_a_file_that_cannot_be_imported_is_named_and_not_run_again(source, why, tmp_path, capsys):
+    (tmp_path / 'test_broken.py').write_text(source)
+    (tmp_path / 'test_good.py').write_text('def test_good(): pass')
+    checks = Checks(Environment(tmp_path), {}, tmp_path)
+
+    def first(name):
+        command = (
+            sys.executable,
+            '-m',
+            'pytest',
+            '-q',
+            '-n',
+            '1',
+            f'--junitxml={tmp_path / name}',
+        )
+        return subprocess.run(command, cwd=tmp_path, stdout=subprocess.DEVNULL).returncode
+
+    def again(name):
+        raise AssertionError('what cannot be imported is not run once more')
+
+    assert checks.twice('tests', first, again) == 1
+    said = capsys.readouterr().err
+    assert said.startswith('course: test_broken.py could not be imported, so none of its tests')
+    assert f' were run: {why}' in said
+    assert said.endswith('course: fix that, and run this again\n')
+    assert 'beside others' not in said
+
+
 def test_every_package_without_a_wheel_is_built_with_tools_that_are_pinned():
     """pip's own environments for builds take no hashes: on an empty cache, it failed."""
     pins = build_tools(ROOT / 'environment.txt')
