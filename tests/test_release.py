@@ -1,4 +1,5 @@
 import json
+import re
 from pathlib import Path
 
 import nbformat
@@ -11,6 +12,7 @@ from nbgrader.utils import compute_checksum
 from grader.authoring.exercise_cells import outside_of_exercises
 from grader.authoring.hidden_points import MarkHidden
 from grader.authoring.leaks import leaks_of
+from grader.authoring.markers import marker_faults
 from grader.authoring.release import release, stale_or_leaking
 from grader.authoring.release_passes import broken
 from grader.common.errors import CourseError
@@ -163,11 +165,58 @@ def test_broken_lines_that_no_stub_waits_for_are_refused(source):
 def test_a_failure_leaves_the_former_release_as_it_was(course):
     before = course.release_path(TOY).read_bytes()
     broken = toy_lesson()
-    broken.cells[4].source = broken.cells[4].source.replace('### END SOLUTION', '')
+    broken.cells[4].source += '\n\n### BROKEN: x = 1'
     write_source(course, broken)
-    with pytest.raises(CourseError, match='no end solution'):
+    with pytest.raises(CourseError, match='right behind ### END SOLUTION'):
         release(course)
     assert course.release_path(TOY).read_bytes() == before
+    write_source(course, toy_lesson())
+
+
+UNPAIRED = {
+    'no end': (
+        '1\n### BEGIN HIDDEN TESTS\n2',
+        "line 2: 'BEGIN HIDDEN TESTS' has no end: add a line '### END HIDDEN TESTS' behind the"
+        ' last hidden line',
+    ),
+    'two beginnings': (
+        '### BEGIN HIDDEN TESTS\n1\n### BEGIN HIDDEN TESTS\n2\n### END HIDDEN TESTS',
+        "line 1: 'BEGIN HIDDEN TESTS' has no end: add a line '### END HIDDEN TESTS' before line 3,"
+        ' where another begins',
+    ),
+    'no beginning': (
+        '1\n### END HIDDEN TESTS',
+        "line 2: 'END HIDDEN TESTS' ends nothing: add a line '### BEGIN HIDDEN TESTS' before what"
+        ' students must not see, or remove this one',
+    ),
+    'another kind of cell': (
+        '### BEGIN SOLUTION\n1\n### END SOLUTION',
+        "line 1: 'BEGIN SOLUTION' stands in a cell of another kind: give the cell the type"
+        " 'Autograded answer' in Create Assignment, or remove the line",
+    ),
+    'no end of a mark scheme': (
+        '### BEGIN MARK SCHEME\n1',
+        "line 1: 'BEGIN MARK SCHEME' has no end: add a line '### END MARK SCHEME' behind its last"
+        ' line',
+    ),
+}
+
+
+@pytest.mark.parametrize(('source', 'fault'), UNPAIRED.values(), ids=UNPAIRED)
+def test_a_marker_without_its_other_one_is_named_with_what_to_add(source, fault):
+    lesson = toy_lesson()
+    assert list(marker_faults(lesson)) == []
+    lesson.cells[7].source = source
+    assert list(marker_faults(lesson)) == [f'the cell `double-hidden`, {fault}']
+
+
+def test_a_lesson_with_a_marker_alone_is_not_released_and_named(course):
+    lesson = toy_lesson()
+    lesson.cells[7].source = lesson.cells[7].source.replace('### END HIDDEN TESTS', '')
+    write_source(course, lesson)
+    said = f'solutions/{TOY}/{TOY}.ipynb cannot be released: the cell `double-hidden`, line '
+    with pytest.raises(CourseError, match=f'^{re.escape(said)}'):
+        release(course)
     write_source(course, toy_lesson())
 
 
@@ -207,7 +256,8 @@ def test_a_check_outside_of_an_exercise_is_refused_with_what_to_add(lesson, said
 
 def test_an_exercise_without_its_reset_cell_is_not_released(course):
     write_source(course, drop('double-reset'))
-    with pytest.raises(CourseError, match=r'the answer cell `double` .* id `double-reset` before'):
+    said = f'^solutions/{TOY}/{TOY}.ipynb cannot be released: the answer cell `double` '
+    with pytest.raises(CourseError, match=said):
         release(course)
     write_source(course, toy_lesson())
 

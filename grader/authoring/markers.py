@@ -1,0 +1,70 @@
+"""Whether the lines between which nbgrader takes something out come in pairs, and in which cells.
+
+nbgrader refuses such a lesson, too, and does not say which cell it means; an end without its
+beginning it overlooks.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from my_robot_basics.validate.cells import grade_id
+from nbformat import NotebookNode
+
+
+@dataclass(frozen=True)
+class _Region:
+    """Something that students must not see."""
+
+    words: str
+    last: str
+    """What its last line is, for an author."""
+    kind: str = ''
+    """The cells that may have one, by nbgrader's name for them in their metadata."""
+    type_there: str = ''
+    """What *Create Assignment* calls such a cell; '' where any cell may have one."""
+
+
+REGIONS = (
+    _Region('SOLUTION', "the answer's last line", 'solution', 'Autograded answer'),
+    _Region('HIDDEN TESTS', 'the last hidden line', 'grade', 'Autograder tests'),
+    _Region('MARK SCHEME', 'its last line'),
+)
+
+
+def marker_faults(notebook: NotebookNode) -> Iterator[str]:
+    """Yield which cell has a region without its end, or its beginning, and what to add."""
+    for cell in notebook.cells:
+        name = grade_id(cell) or cell.get('id', 'without an id')
+        for region in REGIONS:
+            for fault in _faults(cell, region):
+                yield f'the cell `{name}`, {fault}'
+
+
+def _faults(cell: NotebookNode, region: _Region) -> Iterator[str]:
+    begin, end = f'BEGIN {region.words}', f'END {region.words}'
+    opened = 0
+    """The line where a region has begun and not ended; lines are counted from 1."""
+    for number, line in enumerate(cell.source.split('\n'), 1):
+        if begin in line:
+            if opened:
+                yield _without_end(region, opened, f'before line {number}, where another begins')
+            opened = number
+            if region.kind and not cell.metadata.get('nbgrader', {}).get(region.kind):
+                yield (
+                    f'line {number}: {begin!r} stands in a cell of another kind: give the cell'
+                    f' the type {region.type_there!r} in Create Assignment, or remove the line'
+                )
+        elif end in line:
+            if not opened:
+                yield (
+                    f'line {number}: {end!r} ends nothing: add a line {"### " + begin!r} before'
+                    ' what students must not see, or remove this one'
+                )
+            opened = 0
+    if opened:
+        yield _without_end(region, opened, f'behind {region.last}')
+
+
+def _without_end(region: _Region, opened: int, where: str) -> str:
+    end = f'### END {region.words}'
+    return f"line {opened}: 'BEGIN {region.words}' has no end: add a line {end!r} {where}"
