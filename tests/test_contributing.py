@@ -56,3 +56,10 @@ def test_the_row_of_a_platform_reads_its_names(monkeypatch):
     label = platforms.label_in(name)
     assert (label.platform, label.number, label.who) == (brightspace, '12345', 'Ada Lovelace')
     assert platforms.student_in(name) == 'Ada Lovelace'
+
+
+def test_the_example_lesson_has_the_number_of_no_other():
+    (number,) = set(re.findall(r'\b(\d\d)_example\b', PAGE))
+    lessons = {path.parent.name for path in ROOT.glob('solutions/*/*.ipynb')}
+    assert '08_services' in lessons
+    assert [name for name in lessons - {f'{number}_example'} if name.startswith(number)] == []

@@ -5,7 +5,7 @@ import re
 import signal
 
 import pytest
-from ros2_command import TIMEOUT_SEC, SCRIPT, on_the_graph, own_domain, ros2, started
+from ros2_command import SCRIPT, TIMEOUT_SEC, on_the_graph, own_domain, ros2, started
 
 KIND = 'arm_interfaces/action/MoveArm'
 ACTION, HIDDEN = '/my_ns/move_arm', '/my_ns/_move_arm'
