@@ -6,7 +6,7 @@ import nbformat
 from nbformat import NotebookNode
 
 ROOT = Path(__file__).parents[1]
-LESSONS = sorted(path.stem for path in ROOT.glob('notebooks/*/*.ipynb'))
+LESSONS = sorted(path.stem for path in ROOT.glob('notebooks/[0-9]*/*.ipynb'))
 
 
 def read(folder: str, lesson: str) -> NotebookNode:

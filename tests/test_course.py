@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-VERBS = ['lab', 'validate', 'workspace', 'ros-shell', 'test', 'release', 'bundle', 'collect']
-VERBS += ['due', 'grade', 'scores', 'feedback', 'solutions', 'demo', 'doctor']
+VERBS = ['lab', 'validate', 'workspace', 'ros-shell', 'test', 'release', 'bundle', 'translate']
+VERBS += ['collect', 'due', 'grade', 'scores', 'feedback', 'solutions', 'demo', 'doctor']
 TOOLS = ['sh', 'cat', 'chmod', 'cp', 'dirname', 'env', 'mkdir', 'readlink', 'sleep', 'uname']
 IN_A_NAMESPACE = [
     shutil.which('unshare'),
@@ -563,6 +563,11 @@ def test_lab_shows_a_workspace_that_is_there_in_its_file_browser(machine):
         assert machine.course('lab').returncode == 0
         assert link.readlink() == Path('../ros_ws')
         assert (link / 'src').is_dir()
+    edition = machine.root / 'notebooks/zh_CN'
+    edition.mkdir()
+    (edition / 'index.ipynb').touch()
+    assert machine.course('lab').returncode == 0
+    assert (edition / 'ros_ws').readlink() == Path('../../ros_ws')
     link.unlink()
     link.write_text('mine')
     assert machine.course('lab').returncode == 0
@@ -594,6 +599,34 @@ def test_workspace_and_shell_are_the_packages(machine, verb, module, folder):
         f'python -P -m my_robot_basics.{module} -c two words',
         folder.format(root=machine.root),
     ]
+
+
+CHINESE = {'LANG': 'zh_CN.UTF-8', 'LC_ALL': '', 'LC_MESSAGES': ''}
+LANGUAGES = {
+    'by the locale': ([], CHINESE, 'zh_CN/index.ipynb'),
+    'by another locale of the language': ([], CHINESE | {'LANG': 'zh_SG'}, 'zh_CN/index.ipynb'),
+    'by the strongest variable': ([], CHINESE | {'LC_ALL': 'de_DE'}, 'index.ipynb'),
+    'in no locale at all': ([], CHINESE | {'LANG': 'C.UTF-8'}, 'index.ipynb'),
+    'asked for': (['--language', 'zh_CN'], {'LANG': 'C'}, 'zh_CN/index.ipynb'),
+    'asked for otherwise': (['--language=en'], CHINESE, 'index.ipynb'),
+}
+
+
+@pytest.mark.parametrize(('asked', 'locale', 'page'), LANGUAGES.values(), ids=LANGUAGES)
+def test_lab_opens_the_lessons_in_the_language_of_its_user(machine, asked, locale, page):
+    edition = machine.root / 'notebooks/zh_CN'
+    edition.mkdir()
+    (edition / 'index.ipynb').touch()
+    assert machine.course('lab', *asked, **locale).returncode == 0
+    (command,) = (call for call in machine.calls() if '-m jupyterlab' in call)
+    assert f'--LabApp.default_url=/lab/tree/{page} ' in command
+    assert '--language' not in command
+
+
+def test_a_language_without_lessons_is_named_with_those_there_are(machine):
+    machine.course('scores')
+    said = the_one_sentence(machine.course('lab', '--language', 'tlh'))
+    assert "there are no lessons in 'tlh': --language takes en" in said
 
 
 def test_lab_without_lessons_says_what_to_do(machine):

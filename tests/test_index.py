@@ -38,7 +38,7 @@ def test_its_links_lead_somewhere(link):
 
 
 def test_lessons_say_where_the_answer_goes_in_the_words_of_the_index():
-    released = ''.join(path.read_text() for path in ROOT.glob('notebooks/*/*.ipynb'))
+    released = ''.join(path.read_text() for path in ROOT.glob('notebooks/[0-9]*/*.ipynb'))
     stubs = re.findall(r'`(YOUR [A-Z ]+)`', TEXT)
     assert len(stubs) == 2
     assert [stub for stub in stubs if stub not in released] == []

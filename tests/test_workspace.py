@@ -170,6 +170,11 @@ def test_the_courses_own_is_shown_in_the_file_browser(tmp_path, monkeypatch):
         make_workspace()
         assert link.readlink() == Path('../ros_ws')
         assert (link / 'src/my_robot_basics/setup.py').is_file()
+    edition = tmp_path / 'notebooks/zh_CN'
+    edition.mkdir()
+    (edition / 'index.ipynb').touch()
+    make_workspace()
+    assert (edition / 'ros_ws').readlink() == Path('../../ros_ws')
     link.unlink()
     link.mkdir()
     make_workspace()

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from fnmatch import fnmatch
 from pathlib import Path
 
+from grader.authoring.editions import editions
 from grader.authoring.index import INDEX, copied_pages
 from grader.authoring.leaks import files_in, leaks_beside
 from grader.authoring.release import stale_or_leaking
@@ -111,11 +112,12 @@ def _paths(course: Course, faults: list[str]) -> Iterator[str]:
     yield from (*AS_THEY_ARE, *SETTINGS, f'solutions/{README}')
     modules = [path for path in files_in(course.root / LAUNCHER) if path.suffix == '.py']
     yield from (f'{LAUNCHER}/{path}' for path in modules)
-    yield from (f'notebooks/{page}' for page in (INDEX, *copied_pages(course)))
-    for assignment in course.assignments():
-        lesson = course.root / 'notebooks' / assignment
-        names = {f'{assignment}.ipynb', *map(str, files_in(lesson))}
-        yield from (f'notebooks/{assignment}/{name}' for name in sorted(names))
+    for folder in _folders(course):
+        yield from (f'{folder}/{page}' for page in (INDEX, *copied_pages(course)))
+        for assignment in course.assignments():
+            lesson = course.root / folder / assignment
+            names = {f'{assignment}.ipynb', *map(str, files_in(lesson))}
+            yield from (f'{folder}/{assignment}/{name}' for name in sorted(names))
     for package, listed in PACKAGES.items():
         yield from (f'{package}/{name}' for name in listed if '*' not in name)
         for path in map(str, files_in(course.root / package)):
@@ -130,9 +132,18 @@ def _paths(course: Course, faults: list[str]) -> Iterator[str]:
                 yield f'{package}/{path}'
 
 
+def _folders(course: Course) -> list[str]:
+    """Return the folders of the editions, the English one first."""
+    return ['notebooks', *(f'notebooks/{each.language}' for each in editions(course))]
+
+
 def _is_lesson(course: Course, name: str) -> bool:
     """Whether a file was checked line by line with its own lesson."""
-    return any(name.startswith(f'{FOLDER}/notebooks/{each}/') for each in course.assignments())
+    return any(
+        name.startswith(f'{FOLDER}/{folder}/{each}/')
+        for folder in _folders(course)
+        for each in course.assignments()
+    )
 
 
 def _zipped(files: dict[str, bytes]) -> bytes:

@@ -1,12 +1,15 @@
 """The pages beside the lessons: the contents, made from them, the core terms, what comes next."""
 
 import re
-import shutil
+from collections.abc import Iterable
+from functools import reduce
 from pathlib import Path
 
+from babel import Locale
 from my_robot_basics.validate.cells import title_of
-from nbformat import NotebookNode, v4, write
+from nbformat import NotebookNode, from_dict, v4, write
 
+from grader.authoring.editions import ENGLISH, Edition, editions
 from grader.course import Course
 
 INDEX, TERMS, NEXT = 'index.ipynb', 'terms.md', 'what_next.md'
@@ -35,12 +38,27 @@ TO_THE_PAGES = {
 }
 
 
-def write_pages(course: Course, folder: Path, *, metadata: dict) -> None:
-    """Write the index notebook with that metadata, and copy the other pages that there are."""
+HEADER = '| lesson | you will be able to | you need | minutes | exercises | points |'
+TOTAL = 'all together'
+JOINED = '{abilities}; {ability}'
+"""How the abilities of a lesson are put one behind the other."""
+TEXTS = (WELCOME, HEADER, TOTAL, JOINED, HOW_IT_WORKS, *TO_THE_PAGES.values())
+"""All that the page of contents says by itself."""
+PART = 'index'
+"""What is translated of it, as a part of the course."""
+
+
+def write_pages(
+    course: Course, folder: Path, *, metadata: dict, edition: Edition | None = None
+) -> None:
+    """Write the index notebook with that metadata, and the other pages that there are."""
+    edition = edition or Edition()
     for page in copied_pages(course):
-        shutil.copyfile(course.root / 'solutions' / page, folder / page)
-    index = make_index(course)
-    index.metadata = metadata
+        english = (course.root / 'solutions' / page).read_text(encoding='utf-8')
+        text = edition.text(Path(page).stem, english)
+        (folder / page).write_text(text, encoding='utf-8')
+    index = make_index(course, edition)
+    index.metadata = from_dict(metadata)
     write(index, folder / INDEX)
 
 
@@ -49,42 +67,74 @@ def copied_pages(course: Course) -> list[str]:
     return [page for page in COPIED if (course.root / 'solutions' / page).exists()]
 
 
-def make_index(course: Course) -> NotebookNode:
+def make_index(course: Course, edition: Edition | None = None) -> NotebookNode:
     """Return the table of contents as a notebook: each lesson, what it teaches, its points."""
-    lessons = {name: course.source(name) for name in course.assignments()}
-    rows = [_row(name, lesson) for name, lesson in lessons.items()]
+    edition = edition or Edition()
+    lessons = {name: edition.notebook(name, course.source(name)) for name in course.assignments()}
+    rows = [_row(name, lesson, edition) for name, lesson in lessons.items()]
     total = sum(_points(lesson) for lesson in lessons.values())
     minutes = sum(float(_needs(lesson.cells[0].source)[1] or 0) for lesson in lessons.values())
     table = [
-        '| lesson | you will be able to | you need | minutes | exercises | points |',
+        edition.text(PART, HEADER),
         '|---|---|---|---|---|---|',
         *rows,
-        f'| **all together** | | | **{minutes:g}** | | **{total:g}** |',
+        f'| **{edition.text(PART, TOTAL)}** | | | **{minutes:g}** | | **{total:g}** |',
     ]
-    pages = ' '.join(TO_THE_PAGES[page] for page in copied_pages(course))
-    about = f'{HOW_IT_WORKS}\n{pages}'.strip()
-    texts = {'contents': '\n'.join([WELCOME, *table]), 'how_it_works': about}
+    pages = ' '.join(edition.text(PART, TO_THE_PAGES[page]) for page in copied_pages(course))
+    about = f'{edition.text(PART, HOW_IT_WORKS)}\n{pages}'.strip()
+    welcome = [edition.text(PART, WELCOME), *_to_other_editions(course, edition)]
+    texts = {'contents': '\n'.join([*welcome, *table]), 'how_it_works': about}
     return v4.new_notebook(
         cells=[v4.new_markdown_cell(text, id=id_) for id_, text in texts.items()]
     )
 
 
-def _row(name: str, lesson: NotebookNode) -> str:
+def _to_other_editions(course: Course, edition: Edition) -> list[str]:
+    """Return a line with a link to the contents in each other language, named in that language."""
+    known = [Edition(), *editions(course)]
+    top = '' if edition.language == ENGLISH else '../'
+    links = [
+        f'[{_name(each.language)}]({top}{_folder(each)}{INDEX})'
+        for each in known
+        if each.language != edition.language
+    ]
+    return [' · '.join(links) + '\n'] if links else []
+
+
+def _name(language: str) -> str:
+    return (Locale.parse(language).get_language_name(language) or language).capitalize()
+
+
+def _folder(edition: Edition) -> str:
+    return '' if edition.language == ENGLISH else f'{edition.language}/'
+
+
+def _row(name: str, lesson: NotebookNode, edition: Edition) -> str:
     opening = lesson.cells[0].source
     title = title_of(lesson)
     marks = [cell.metadata.get('nbgrader', {}) for cell in lesson.cells]
     exercises = ', '.join(f'`{mark["grade_id"]}`' for mark in marks if mark.get('solution'))
     link = f'[{title}]({name}/{name}.ipynb)'
-    abilities, (needs, minutes) = '; '.join(_abilities(opening)), _needs(opening)
+    abilities, (needs, minutes) = _joined(_abilities(opening), edition), _needs(opening)
     points = f'{_points(lesson):g}'
     return '| ' + ' | '.join([link, abilities, needs, minutes, exercises, points]) + ' |'
 
 
-def _needs(opening: str) -> tuple[str, str]:
-    """Return what a lesson needs before it, and its minutes, as its first cell says; or blanks."""
-    found = re.search(
-        r'^\| you need \| time \|\n.*\n\| (.+) \| about (\d+) minutes \|$', opening, re.M
+def _joined(abilities: Iterable[str], edition: Edition) -> str:
+    pattern = edition.text(PART, JOINED)
+    return reduce(
+        lambda before, ability: pattern.format(abilities=before, ability=ability),
+        [*abilities] or [''],
     )
+
+
+def _needs(opening: str) -> tuple[str, str]:
+    """Return what a lesson needs before it, and its minutes, as its first cell says; or blanks.
+
+    It is the row of a table that ends with a number in words, '| about 35 minutes |', in any
+    language.
+    """
+    found = re.search(r'^\| (.+) \| [^\d|\n]*(\d+)[^\d|\n]+ \|$', opening, re.M)
     return (found[1], found[2]) if found else ('', '')
 
 
@@ -95,4 +145,4 @@ def _points(lesson: NotebookNode) -> float:
 def _abilities(opening: str) -> list[str]:
     """Return the items of a lesson's numbered list, each in one line that fits into a table."""
     items = re.findall(r'^\d+\. (.+(?:\n[^\d\n|].*)*)', opening, re.MULTILINE)
-    return [' '.join(item.split()).rstrip(',.;').replace('|', r'\|') for item in items]
+    return [' '.join(item.split()).rstrip(',.;，。；').replace('|', r'\|') for item in items]

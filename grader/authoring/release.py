@@ -13,6 +13,8 @@ import nbformat
 from nbformat import NotebookNode
 
 from grader.authoring.demo_outputs import Sanitize, clean_source, keep_outputs, read_sanitizer
+from grader.authoring.edition_files import write_editions
+from grader.authoring.editions import editions
 from grader.authoring.exercise_cells import outside_of_exercises
 from grader.authoring.index import write_pages
 from grader.authoring.leaks import files_in, leaks_of
@@ -46,7 +48,8 @@ def release(
         built = _build(course, assignment, Path(folder))
         for line in _keep_outputs(course, built, fresh=fresh_outputs):
             say(line)
-        if leaks := [leak for name in _names(built) for leak in leaks_of(course, name, built)]:
+        write_editions(course, _names(course, built), built, metadata=METADATA, say=say)
+        if leaks := _leaks(course, built):
             raise CourseError('nothing was released: ' + '; '.join(leaks))
         changed = [path for path in files_in(built) if _differs(built, course, path)]
         for line in _keep_work(course, changed):
@@ -55,7 +58,7 @@ def release(
             place = course.root / 'notebooks' / path
             place.parent.mkdir(parents=True, exist_ok=True)
             write_whole(place, (built / path).read_bytes())
-        for name in _names(built):
+        for name in _names(course, built):
             if (cleaned := _cleaned_source(course, name)) is not None:
                 write_whole(course.source_path(name), cleaned)
                 say(f'{_source_name(name)} keeps no pictures: notebooks/ has them now')
@@ -67,7 +70,8 @@ def stale_or_leaking(course: Course) -> list[str]:
     with tempfile.TemporaryDirectory() as folder:
         built = _build(course, '*', Path(folder))
         list(_keep_outputs(course, built))
-        names = _names(built)
+        names = _names(course, built)
+        write_editions(course, names, built, metadata=METADATA)
         stale = [
             f'notebooks/{path} is not what solutions/ gives: run ./course release'
             for path in files_in(built)
@@ -85,7 +89,7 @@ def stale_or_leaking(course: Course) -> list[str]:
         for path in files_in(released)
         if path not in expected and len(path.parts) > 1
     ]
-    return stale + strange + [leak for name in names for leak in leaks_of(course, name, released)]
+    return stale + strange + _leaks(course, released)
 
 
 def _build(course: Course, assignment: str, folder: Path) -> Path:
@@ -122,7 +126,7 @@ def _source_faults(course: Course, name: str) -> Iterator[str]:
 def _keep_outputs(course: Course, built: Path, *, fresh: bool = False) -> Iterator[str]:
     """Give built notebooks the outputs that still hold; name the cells that should be run."""
     sanitize = sanitizer_of(course)
-    for name in _names(built):
+    for name in _names(course, built):
         path = built / name / f'{name}.ipynb'
         notebook = nbformat.read(path, as_version=4)
         before = last_release(course, name)
@@ -133,6 +137,17 @@ def _keep_outputs(course: Course, built: Path, *, fresh: bool = False) -> Iterat
                 f'{_source_name(name)}, cell {cell!r}: its code has changed, and its picture has '
                 'not. Run the lesson in JupyterLab, save it, and release it again'
             )
+
+
+def _leaks(course: Course, released: Path) -> list[str]:
+    """Return what tells an answer or a hidden test in the released lessons of any language."""
+    folders = [released, *(released / edition.language for edition in editions(course))]
+    return [
+        leak
+        for folder in folders
+        for name in _names(course, folder)
+        for leak in leaks_of(course, name, folder)
+    ]
 
 
 def last_release(course: Course, name: str) -> NotebookNode:
@@ -169,8 +184,9 @@ def _keep_work(course: Course, changed: Sequence[Path]) -> Iterator[str]:
         yield f'notebooks/{name} had been worked in: it is kept as {copy}'
 
 
-def _names(built: Path) -> list[str]:
-    return sorted(path.name for path in built.iterdir() if path.is_dir())
+def _names(course: Course, built: Path) -> list[str]:
+    """Return the assignments that a folder holds, in the order of their names."""
+    return [name for name in course.assignments() if (built / name).is_dir()]
 
 
 def _differs(built: Path, course: Course, path: Path) -> bool:

@@ -36,6 +36,11 @@ def make_parser() -> argparse.ArgumentParser:
     )
     verb.set_defaults(run=verbs.run_bundle)
 
+    verb = subparsers.add_parser(
+        'translate', help='bring the catalogues of other languages up to date'
+    )
+    verb.set_defaults(run=verbs.run_translate)
+
     verb = subparsers.add_parser('collect', help='collect a folder or an archive of submissions')
     text = 'what came in: notebooks named STUDENT_ASSIGNMENT.ipynb, and other names (README.md)'
     verb.add_argument('source', type=Path, metavar='FOLDER|ZIP|TAR', help=text)

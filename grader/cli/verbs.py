@@ -2,6 +2,7 @@
 
 import argparse
 
+from grader.authoring import translate
 from grader.authoring.bundle import bundle
 from grader.authoring.release import release
 from grader.cli.demo import demo
@@ -50,6 +51,13 @@ def run_bundle(course: Course, asked: argparse.Namespace) -> int:
     for path in made.left_out:
         print(f'left out: {path}')
     print(f'{asked.file}: {len(made.files)} files, {made.bytes / 1e6:.1f} MB')
+    return 0
+
+
+def run_translate(course: Course, asked: argparse.Namespace) -> int:
+    """Bring locale/ up to date with the English texts, and list what is to be translated."""
+    for line in translate.lines(translate.update(course)):
+        print(line)
     return 0
 
 

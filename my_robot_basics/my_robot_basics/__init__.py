@@ -13,6 +13,7 @@ The nodes of the lessons are `hello_node`, `kinematics_node`, `kinematics_publis
 - `exchange`: What crosses between a notebook's kernel and a check's: questions and replies.
 - `feedback`: What a check tells: its exception, and what of it a student may read.
 - `drawing`: Pictures of the arm as PNG, and a picture's alternative text.
+- `language`: Other languages than English: what is translated, and how it is found.
 - `session`: What a process needs to take part: a ROS domain, environment, other nodes in it.
 """
 
@@ -22,6 +23,7 @@ LAYERS = (
     'kinematics_node',
     'kinematics_publisher',
     'kinematics_subscriber',
+    'language',
     'session',
     'drawing',
     'feedback',

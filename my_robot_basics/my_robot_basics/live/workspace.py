@@ -5,6 +5,7 @@ Run as a module, it is `./course workspace`. Imports nothing that is slow.
 
 import argparse
 import filecmp
+import os
 import shutil
 import sys
 from collections.abc import Iterator
@@ -64,12 +65,12 @@ def make_workspace(*, refresh: bool = False) -> None:
 
 
 def _show_in_file_browser(workspace: Path) -> None:
-    """Link to the course's own workspace from the folder that JupyterLab serves."""
-    link = LESSONS / workspace.name
     if workspace != LESSONS.parent / workspace.name or not LESSONS.is_dir():
         return
-    if not link.exists() and not link.is_symlink():
-        link.symlink_to(Path('..', workspace.name))
+    for folder in (LESSONS, *(page.parent for page in LESSONS.glob('*/index.ipynb'))):
+        link = folder / workspace.name
+        if not link.exists() and not link.is_symlink():
+            link.symlink_to(os.path.relpath(workspace, folder))
 
 
 def copy() -> Path:

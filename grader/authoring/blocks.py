@@ -1,0 +1,83 @@
+"""Split a text into the blocks that are translated one by one: paragraphs, lists, table rows.
+
+A block is what stands between blank lines, outside of fenced code; each row of a table is one of
+its own, so that a change of one row leaves the others as they are.
+"""
+
+import re
+from collections.abc import Iterator, Mapping
+
+FENCE = re.compile(r' {0,3}(```|~~~)')
+_MARK_SCHEME = re.compile(r'### BEGIN MARK SCHEME\n.*?### END MARK SCHEME', re.DOTALL)
+_NO_WORDS = re.compile(
+    r'```.*?```|~~~.*?~~~|`[^`]*`|\$[^$]*\$|\]\([^)]*\)|<[^>]*>|&\w+;', re.DOTALL
+)
+_WORD = re.compile(r'[^\W\d_]{2,}')
+
+
+def split_blocks(text: str) -> list[str]:
+    """Return blocks and what stands between them, by turns; joined they are the text again.
+
+    Every second item, from the second on, is a block.
+    """
+    pieces = ['']
+    is_block = False
+    for line, kind in _lines(text):
+        begins_anew = kind == 'row' or (kind == 'block' and pieces[-1].startswith('|'))
+        if (kind != 'gap') != is_block or (is_block and begins_anew):
+            if is_block and kind != 'gap':
+                pieces.append('')  # nothing but the end of a line lies between two rows
+            pieces.append('')
+            is_block = kind != 'gap'
+        pieces[-1] += line
+    return list(_with_line_ends_between(pieces))
+
+
+def _lines(text: str) -> Iterator[tuple[str, str]]:
+    """Yield each line with what it is: 'block', 'row' of a table, or 'gap'."""
+    fenced = False
+    for line in text.splitlines(keepends=True):
+        if FENCE.match(line):
+            fenced = not fenced
+            yield line, 'block'
+        elif fenced or line.strip():
+            yield line, 'row' if not fenced and line.startswith('|') else 'block'
+        else:
+            yield line, 'gap'
+
+
+def _with_line_ends_between(pieces: list[str]) -> Iterator[str]:
+    """Yield the pieces, the last line end of each block moved to what stands behind it."""
+    moved = ''
+    for index, piece in enumerate(pieces):
+        if index % 2 == 0:
+            yield moved + piece
+            moved = ''
+        else:
+            kept = piece.rstrip('\n')
+            moved = piece[len(kept) :]
+            yield kept
+    if moved:
+        yield moved
+
+
+def has_words(block: str) -> bool:
+    """Whether a block says something to translate: code, formulas and addresses do not."""
+    return bool(_WORD.search(_NO_WORDS.sub(' ', block)))
+
+
+def without_mark_scheme(text: str) -> str:
+    """Return a text without what only instructors read of it."""
+    return _MARK_SCHEME.sub('', text)
+
+
+def translatable(text: str) -> list[str]:
+    """Return the blocks of a text that say something, in order."""
+    return [block for block in split_blocks(text)[1::2] if has_words(block)]
+
+
+def translate_blocks(text: str, translations: Mapping[str, str]) -> str:
+    """Return a text with each block that has one replaced by its translation."""
+    pieces = split_blocks(text)
+    pieces[1::2] = [translations.get(block, block) for block in pieces[1::2]]
+    return ''.join(pieces)

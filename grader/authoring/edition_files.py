@@ -1,0 +1,55 @@
+"""Write the editions: what is built in English, once more in each other language."""
+
+import shutil
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+import nbformat
+
+from grader.authoring.blocks import translatable
+from grader.authoring.editions import Edition, editions, is_translated
+from grader.authoring.index import write_pages
+from grader.common.files import write_whole
+from grader.course import Course
+
+
+def write_editions(
+    course: Course,
+    names: Iterable[str],
+    built: Path,
+    *,
+    metadata: dict,
+    say: Callable[[str], None] = lambda line: None,
+) -> None:
+    """Write the lessons of those names, and the pages, into a folder of `built` for each language.
+
+    `metadata` is that of the page of contents. `say` gets a line for each lesson of which
+    something stays English.
+    """
+    for edition in editions(course):
+        _write_lessons(edition, names, built, say)
+        folder = built / edition.language
+        folder.mkdir(exist_ok=True)
+        write_pages(course, folder, metadata=metadata, edition=edition)
+
+
+def _write_lessons(
+    edition: Edition,
+    names: Iterable[str],
+    built: Path,
+    say: Callable[[str], None],
+) -> None:
+    """Write the lessons of those names, as they are built in English, in an edition's folder."""
+    for name in names:
+        folder = built / edition.language / name
+        shutil.copytree(built / name, folder)
+        english = nbformat.read(built / name / f'{name}.ipynb', as_version=4)
+        translated = edition.notebook(name, english)
+        write_whole(folder / f'{name}.ipynb', nbformat.writes(translated) + '\n')
+        texts = [cell.source for cell in english.cells if is_translated(cell)]
+        if missing := edition.missing(name, texts):
+            blocks = sum(len(translatable(text)) for text in texts)
+            say(
+                f'{edition.language}: {len(missing)} of {blocks} blocks of {name} are in English:'
+                ' ./course translate lists them'
+            )

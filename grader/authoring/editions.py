@@ -1,0 +1,84 @@
+"""The editions of the course: the same release in another language, in notebooks/LANGUAGE/.
+
+Only what people read is translated, block by block. Code, outputs, ids and marks are those of the
+English release, so an answer from any edition is graded by the same source. A block without a
+translation stays English.
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import nbformat
+from babel.messages.pofile import PoFileError
+from my_robot_basics.language.catalogues import (
+    ENGLISH,
+    catalogue_path,
+    languages,
+    read_translations,
+)
+from my_robot_basics.validate.cells import KEY, role
+from nbformat import NotebookNode
+
+from grader.authoring.blocks import translatable, translate_blocks
+from grader.common.errors import CourseError
+from grader.course import Course
+
+LANGUAGE = 'language'
+"""Under KEY in the metadata of a notebook that is not in English."""
+
+
+@dataclass(frozen=True)
+class Edition:
+    """A language of the course, and what was translated into it."""
+
+    language: str = ENGLISH
+    locale: Path | None = None
+    """The folder of the catalogues; none for English."""
+    _parts: dict[str, dict[str, str]] = field(default_factory=dict, compare=False)
+
+    def translations(self, part: str) -> Mapping[str, str]:
+        """Return the translated blocks of a lesson or a page, by their English.
+
+        Raises CourseError where the catalogue is damaged.
+        """
+        if self.locale is None:
+            return {}
+        if part not in self._parts:
+            try:
+                self._parts[part] = read_translations(self.locale, self.language, part)
+            except (PoFileError, UnicodeDecodeError) as error:
+                path = catalogue_path(self.locale, self.language, part)
+                raise CourseError(f'{path} cannot be read: {error}') from None
+        return self._parts[part]
+
+    def text(self, part: str, english: str) -> str:
+        """Return a text of a page in this language."""
+        return translate_blocks(english, self.translations(part))
+
+    def notebook(self, name: str, english: NotebookNode) -> NotebookNode:
+        """Return a lesson in this language: its text cells are translated, nothing else."""
+        notebook = nbformat.from_dict(english)
+        if self.language == ENGLISH:
+            return notebook
+        for cell in notebook.cells:
+            if is_translated(cell):
+                cell.source = self.text(name, cell.source)
+        notebook.metadata.setdefault(KEY, NotebookNode())[LANGUAGE] = self.language
+        return notebook
+
+    def missing(self, part: str, texts: Iterable[str]) -> list[str]:
+        """Return the blocks of the English texts that this language does not have."""
+        known = self.translations(part)
+        return [block for text in texts for block in translatable(text) if block not in known]
+
+
+def editions(course: Course) -> list[Edition]:
+    """Return the editions beside the English one, sorted by language."""
+    locale = course.root / 'locale'
+    return [Edition(language, locale) for language in languages(locale)]
+
+
+def is_translated(cell: NotebookNode) -> bool:
+    """Whether a cell is text of the lesson: what students write, and its stub, are theirs."""
+    return cell.cell_type == 'markdown' and role(cell) == 'text'

@@ -1,0 +1,112 @@
+"""`./course translate`: bring the catalogues up to date with the English, and tell what is left.
+
+A text that has changed a little keeps its translation as *fuzzy*, with the English that it was
+made for: the release shows the new English until somebody has looked at it and removed the mark.
+"""
+
+import io
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from babel.messages.catalog import Catalog, Message
+from babel.messages.pofile import PoFileError, read_po, write_po
+from my_robot_basics.language.catalogues import MESSAGES, catalogue_path, languages
+
+from grader.authoring.translatable import Texts, parts_of
+from grader.common.errors import CourseError
+from grader.common.files import write_whole
+from grader.course import Course
+
+_KEPT = re.compile(r'Language:|Plural-Forms|MIME-Version|Content-')
+"""What the head of a catalogue says. Git knows better who wrote what and when."""
+
+
+@dataclass(frozen=True)
+class PartReport:
+    """How far a part is translated into a language."""
+
+    language: str
+    part: str
+    texts: int
+    """How many there are in English."""
+    missing: tuple[tuple[str, str], ...]
+    """Where, and the English: there is no translation."""
+    outdated: tuple[tuple[str, str], ...]
+    """There is one for another English, or one that somebody has to look at."""
+
+
+def update(course: Course) -> list[PartReport]:
+    """Write the catalogues of each language anew from the English; return what is left to do.
+
+    Translations stay; those whose English is gone are dropped. Raises CourseError where a
+    catalogue can't be read.
+    """
+    locale, reports = course.root / 'locale', []
+    parts = parts_of(course)
+    for language in languages(locale):
+        for part, texts in parts.items():
+            path = catalogue_path(locale, language, part)
+            catalogue = _updated(path, language, texts)
+            write_whole(path, _as_text(catalogue).encode())
+            reports.append(_report(language, part, texts, catalogue))
+        for path in sorted((locale / language / MESSAGES).glob('*.po')):
+            if path.stem not in parts:
+                raise CourseError(f'{path} belongs to no lesson, page or program: remove it')
+    return reports
+
+
+def _updated(path: Path, language: str, texts: Texts) -> Catalog:
+    template = Catalog(project='my_robot_basics', fuzzy=False)
+    for text, places in texts.items():
+        template.add(text, auto_comments=list(dict.fromkeys(places)))
+    catalogue = _read(path, language)
+    catalogue.update(template, update_creation_date=False)
+    catalogue.obsolete.clear()
+    return catalogue
+
+
+def _read(path: Path, language: str) -> Catalog:
+    if not path.exists():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        return Catalog(locale=language, project='my_robot_basics', header_comment='#', fuzzy=False)
+    try:
+        with path.open('rb') as file:
+            return read_po(file, locale=language, ignore_obsolete=True, abort_invalid=True)
+    except (PoFileError, UnicodeDecodeError) as error:
+        raise CourseError(f'{path} cannot be read: {error}') from None
+
+
+def _as_text(catalogue: Catalog) -> str:
+    written = io.BytesIO()
+    write_po(written, catalogue, width=0, no_location=True, include_previous=True)
+    head, gap, rest = written.getvalue().decode().partition('\n\n')
+    kept = [line for line in head.splitlines() if line[:1] != '"' or _KEPT.match(line, 1)]
+    return '\n'.join(kept).removeprefix('#\n') + gap + rest
+
+
+def _report(language: str, part: str, texts: Texts, catalogue: Catalog) -> PartReport:
+    left: dict[bool, list[tuple[str, str]]] = {True: [], False: []}
+    for text, places in texts.items():
+        message = catalogue[text]
+        assert isinstance(message, Message)  # it was just updated
+        if not message.string or message.fuzzy:
+            left[bool(message.string)].append((places[0], text))
+    return PartReport(language, part, len(texts), tuple(left[False]), tuple(left[True]))
+
+
+def lines(reports: list[PartReport], *, most: int = 10) -> Iterator[str]:
+    """Yield what to print: a line for each part, and the texts that are left, shortened."""
+    if not reports:
+        yield 'No other language: make a folder such as locale/zh_CN/LC_MESSAGES/'
+    for report in reports:
+        done = report.texts - len(report.missing) - len(report.outdated)
+        yield f'{report.language}  {report.part}: {done} of {report.texts}'
+        if done == 0:
+            continue  # nobody has begun: each of them would be listed
+        for word, left in (('out of date', report.outdated), ('missing', report.missing)):
+            for place, text in left[:most]:
+                yield f'    {word}: {place}: {" ".join(text.split()):.60}'
+            if len(left) > most:
+                yield f'    {word}: {len(left) - most} more'

@@ -1,0 +1,45 @@
+"""What was translated: locale/LANGUAGE/LC_MESSAGES/PART.po, gettext's files.
+
+A part is a lesson, a page beside the lessons, or a part of the software. What is missing or fuzzy
+there stays English.
+"""
+
+from pathlib import Path
+
+ENGLISH = 'en'
+"""The language of the source: it needs no catalogue."""
+MESSAGES = 'LC_MESSAGES'
+"""gettext's name for the folder of a language's catalogues."""
+
+
+def languages(locale: Path) -> list[str]:
+    """Return the languages that have a folder with catalogues in `locale`, sorted: ['zh_CN']."""
+    return sorted(folder.parent.name for folder in locale.glob(f'*/{MESSAGES}') if folder.is_dir())
+
+
+def catalogue_path(locale: Path, language: str, part: str) -> Path:
+    """Return where the translations of a part lie."""
+    return locale / language / MESSAGES / f'{part}.po'
+
+
+def read_translations(locale: Path, language: str, part: str) -> dict[str, str]:
+    """Return each English text of a part with its translation; {} where there is no catalogue.
+
+    Raises babel.messages.pofile.PoFileError where the file is damaged.
+    """
+    from babel.messages.pofile import read_po  # takes 50 ms; English readers do without
+
+    path = catalogue_path(locale, language, part)
+    if not path.is_file():
+        return {}
+    with path.open('rb') as file:
+        catalogue = read_po(file, locale=language, abort_invalid=True)
+    return {
+        message.id: message.string
+        for message in catalogue
+        if isinstance(message.id, str)
+        and isinstance(message.string, str)
+        and message.id
+        and message.string
+        and not message.fuzzy
+    }

@@ -1,0 +1,260 @@
+"""The catalogues follow the English texts, and a translation keeps what has to be kept."""
+
+import re
+
+import pytest
+from course_maker import TOY, make_course, toy_lesson, write_source
+from my_robot_basics.language.catalogues import catalogue_path, languages, read_translations
+
+from grader.authoring.blocks import split_blocks, translatable, translate_blocks
+from grader.authoring.editions import editions, is_translated
+from grader.authoring.translatable import parts_of
+from grader.authoring.translate import lines, update
+from grader.authoring.translation_faults import faults_of, read_glossary, unknown_terms
+from grader.common.errors import CourseError
+from grader.course import ROOT, Course
+
+# --- blocks --------------------------------------------------------------------------------------
+
+
+def texts(course):
+    """Yield all texts of the course that are translated."""
+    for name in course.assignments():
+        for cell in course.source(name).cells:
+            if is_translated(cell):
+                yield cell.source
+    for page in ('terms.md', 'what_next.md', 'students.md'):
+        yield (course.root / 'solutions' / page).read_text(encoding='utf-8')
+
+
+def test_blocks_and_what_is_between_them_are_the_text_again():
+    whole = list(texts(Course()))
+    assert len(whole) > 100
+    for text in whole:
+        pieces = split_blocks(text)
+        assert ''.join(pieces) == text
+        assert not ''.join(pieces[::2]).strip()
+        assert all(block.strip() and not block.endswith('\n') for block in pieces[1::2])
+
+
+def test_a_block_ends_at_a_blank_line_and_each_row_of_a_table_is_one():
+    text = 'One\ntwo.\n\n| a | b |\n|---|---|\n| `c` | 3 |\nnext\n\n```\nx\n\ny\n```\nend\n'
+    assert split_blocks(text)[1::2] == [
+        *('One\ntwo.', '| a | b |', '|---|---|', '| `c` | 3 |', 'next', '```\nx\n\ny\n```\nend'),
+    ]
+    assert translatable(
+        '| a | be |\n|---|---|\n| `c` | 3 |\n\n`code`\n\n$alpha$\n\n## Exercise: `a`'
+    ) == [
+        '| a | be |',
+        '## Exercise: `a`',
+    ]
+
+
+def test_a_block_without_a_translation_stays_english():
+    assert translate_blocks('One.\n\nTwo.\n', {'Two.': '二。'}) == 'One.\n\n二。\n'
+
+
+# --- catalogues ----------------------------------------------------------------------------------
+
+OPENING = """\
+# A toy
+
+You double numbers. There are two ways.
+
+| check | points |
+|---|---|
+| `double` | 3 |
+
+Add a number to itself, or multiply it by 2.
+"""
+CHINESE = {
+    '# A toy': '# 玩具',
+    'You double numbers. There are two ways.': '把数翻倍。有两种办法。',
+    '| check | points |': '| 检查 | 分 |',
+    'Add a number to itself, or multiply it by 2.': '把数与自己相加，或者乘以 2。',
+}
+
+
+@pytest.fixture
+def course(tmp_path):
+    """A small course of which every block is translated."""
+    course = make_course(tmp_path)
+    write_opening(course, OPENING)
+    (course.root / 'locale/zh_CN/LC_MESSAGES').mkdir(parents=True)
+    update(course)
+    translate(course, CHINESE)
+    update(course)
+    return course
+
+
+def write_opening(course, text):
+    lesson = toy_lesson()
+    lesson.cells[0].source = text
+    write_source(course, lesson)
+
+
+def translate(course, translations):
+    path = catalogue_path(course.root / 'locale', 'zh_CN', TOY)
+    text = path.read_text(encoding='utf-8')
+    for english, chinese in translations.items():
+        text = text.replace(
+            f'msgid "{english}"\nmsgstr ""', f'msgid "{english}"\nmsgstr "{chinese}"'
+        )
+    path.write_text(text, encoding='utf-8')
+
+
+def of_the_toy(reports):
+    (report,) = (each for each in reports if each.part == TOY)
+    return report
+
+
+def test_what_is_translated_is_read_back(course):
+    locale = course.root / 'locale'
+    assert languages(locale) == ['zh_CN']
+    assert read_translations(locale, 'zh_CN', TOY) == CHINESE
+    assert read_translations(locale, 'zh_CN', 'no such part') == {}
+    report = of_the_toy(update(course))
+    assert (report.texts, report.missing, report.outdated) == (4, (), ())
+
+
+def test_an_update_without_a_change_changes_no_file(course):
+    path = catalogue_path(course.root / 'locale', 'zh_CN', TOY)
+    before = path.read_bytes()
+    update(course)
+    assert path.read_bytes() == before
+    assert b'Date' not in before
+
+
+def test_the_edit_of_one_sentence_puts_one_block_out_of_date(course):
+    write_opening(course, OPENING.replace('two ways', 'three ways'))
+    report = of_the_toy(update(course))
+    assert report.outdated == (('title', 'You double numbers. There are three ways.'),)
+    assert report.missing == ()
+    path = catalogue_path(course.root / 'locale', 'zh_CN', TOY)
+    text = path.read_text(encoding='utf-8')
+    assert '#| msgid "You double numbers. There are two ways."' in text
+    assert '把数翻倍' in text
+    (edition,) = editions(course)
+    assert edition.text(TOY, 'You double numbers. There are three ways.').startswith('You double')
+    said = '\n'.join(lines([report]))
+    assert f'zh_CN  {TOY}: 3 of 4' in said
+    assert 'out of date: title: You double numbers. There are three ways.' in said
+
+
+def test_before_any_update_the_edited_block_is_english_and_nothing_else_changes(course):
+    (edition,) = editions(course)
+    edited = OPENING.replace('two ways', 'three ways')
+    before, after = edition.text(TOY, OPENING), edition.text(TOY, edited)
+    assert edition.missing(TOY, [edited]) == ['You double numbers. There are three ways.']
+    changed = [
+        (one, other)
+        for one, other in zip(before.splitlines(), after.splitlines(), strict=True)
+        if one != other
+    ]
+    assert changed == [
+        (CHINESE['You double numbers. There are two ways.'], edited.splitlines()[2])
+    ]
+
+
+def test_a_block_that_is_gone_leaves_the_catalogue(course):
+    write_opening(course, OPENING.replace('You double numbers. There are two ways.\n\n', ''))
+    assert of_the_toy(update(course)).texts == 3
+    path = catalogue_path(course.root / 'locale', 'zh_CN', TOY)
+    assert '翻倍' not in path.read_text(encoding='utf-8')
+
+
+def test_a_damaged_catalogue_is_named(course):
+    path = catalogue_path(course.root / 'locale', 'zh_CN', TOY)
+    path.write_text('msgid "A"\nmsgstr "B\nno quotes\n', encoding='utf-8')
+    with pytest.raises(CourseError, match=rf'{TOY}\.po cannot be read: '):
+        update(course)
+    (edition,) = editions(course)
+    with pytest.raises(CourseError, match=rf'{TOY}\.po cannot be read: '):
+        edition.translations(TOY)
+
+
+def test_a_catalogue_of_no_part_is_named(course):
+    catalogue_path(course.root / 'locale', 'zh_CN', 'gone').write_text('', encoding='utf-8')
+    with pytest.raises(CourseError, match=r'gone\.po belongs to no lesson'):
+        update(course)
+
+
+def test_what_only_instructors_read_is_not_translated():
+    parts = parts_of(Course())
+    everything = '\n'.join(text for part in parts.values() for text in part)
+    assert 'MARK SCHEME' not in everything
+    assert 'Half a point for each' not in everything
+
+
+# --- what a translation keeps --------------------------------------------------------------------
+
+FAULTS = {
+    'a code span': ('Call `run()` twice.', '把 `Run()` 调用两次。', 'code'),
+    'a number': ('It takes 20 s.', '需要 2 s。', 'numbers: 20 lost'),
+    'a link': ('See [terms](../terms.md).', '见[术语](terms.md)。', 'where a link leads'),
+    'a column': ('| one | two |', '| 一 |', 'columns'),
+    'an item': ('- one\n- two', '- 一、二', 'items'),
+    'a heading': ('## The arm', '# 机械臂', 'heading'),
+    'a formula': ('So $a + b$ counts.', '$a - b$ 才算。', 'formula'),
+    'a placeholder': ('{name} is late', '{who} 来晚了', 'placeholders'),
+    'fenced code': ('```\nls\n```', '```\nll\n```', 'fenced code'),
+    'bold type': ('a **node** and', '节点和', 'bold type'),
+    'bold type that shows': ('**Predict:** when?', '**预测：**何时？', 'not shown in bold'),
+    'a bold link': ('a **[node](t.md)** is', '**[节点](t.md)**是', 'not shown in bold'),
+    'spaces': ('the node `a` is', '节点`a`是', 'no space between'),
+    'marks': ('A node, a topic', '节点, 话题', 'a Latin mark'),
+    'spaces at marks': ('A node, a topic', '节点， 话题', 'a space beside'),
+}
+
+
+@pytest.mark.parametrize(('english', 'chinese', 'said'), FAULTS.values(), ids=FAULTS)
+def test_each_fault_of_a_translation_is_found(english, chinese, said):
+    assert re.search(said, '\n'.join(faults_of(english, chinese)))
+
+
+GOOD = {
+    'Call `run()` **twice** in 2.5 s.': '在 2.5 s 内**两次**调用 `run()`。',
+    '| **all** | [one](a.md) |': '| **全部** | [一](a.md) |',
+    'A **[node](t.md)** is here (really).': '[**节点**](t.md)就在这里（真的）。',
+    '**Predict:** what?\n- a\n- b': '**预测**：是什么？\n- 甲\n- 乙',
+    '3D at https://a.org': '三维，见 https://a.org',
+}
+
+
+@pytest.mark.parametrize(('english', 'chinese'), GOOD.items())
+def test_a_good_translation_has_no_fault(english, chinese):
+    assert list(faults_of(english, chinese)) == []
+
+
+def test_a_term_that_is_not_the_glossarys_is_found():
+    glossary = {'topic': ['话题'], 'end effector': ['末端执行器', '末端']}
+    assert list(unknown_terms('Two topics.', '两个主题。', glossary)) == ['topic: expected 话题']
+    assert list(unknown_terms('The `topic`; an end effector.', '末端。', glossary)) == []
+
+
+# --- the course's own translations ---------------------------------------------------------------
+
+TRANSLATED = {
+    (language, part): read_translations(ROOT / 'locale', language, part)
+    for language in languages(ROOT / 'locale')
+    for part in parts_of(Course())
+}
+
+
+@pytest.mark.parametrize(('language', 'part'), TRANSLATED)
+def test_translations_keep_what_has_to_be_kept(language, part):
+    assert {
+        english: faults
+        for english, text in TRANSLATED[language, part].items()
+        if (faults := list(faults_of(english, text)))
+    } == {}
+
+
+@pytest.mark.parametrize(('language', 'part'), TRANSLATED)
+def test_translations_use_the_terms_of_the_glossary(language, part):
+    glossary = read_glossary(ROOT / 'locale' / language / 'glossary.txt')
+    assert {
+        english: unknown
+        for english, text in TRANSLATED[language, part].items()
+        if (unknown := list(unknown_terms(english, text, glossary)))
+    } == {}
