@@ -102,6 +102,15 @@ def test_it_holds_what_students_need_and_nothing_else(made, fresh_lessons, tmp_p
     assert {name for name in found if name.startswith(ours)} == set(tracked)
 
 
+def test_it_holds_each_edition(course, fresh_lessons, tmp_path):
+    (course.root / 'locale/zh_CN/LC_MESSAGES').mkdir(parents=True)
+    release(course)
+    bundle(course, tmp_path / 'students.zip')
+    found = names(tmp_path / 'students.zip')
+    assert {f'notebooks/zh_CN/{TOY}/{TOY}.ipynb', 'notebooks/zh_CN/index.ipynb'} < found
+    assert f'notebooks/{TOY}/{TOY}.ipynb' in found
+
+
 def test_it_asks_for_nothing_that_only_the_course_needs(made, fresh_lessons, tmp_path):
     bundle(made, tmp_path / 'students.zip')
     pins = (unpacked(tmp_path / 'students.zip', tmp_path) / 'environment.txt').read_text()

@@ -20,7 +20,7 @@ KNOWN = {path.name for folder in FOLDERS for path in folder.iterdir() if path.is
     'gradebook',  # made by the grader
     'ros_ws',
 }
-NEW = re.compile('example|docs/reference/')
+NEW = re.compile('example|docs/reference/|(locale|notebooks)/de/')
 """Files and folders that a document tells its reader to make."""
 PATH = re.compile(r'(?<![\w/.:~$-])([\w.]+)(/[\w./*-]*[\w/*])')
 MODULE = re.compile(r'(?<![\w/.@-])((?:grader|my_robot_basics|launcher)(?:\.[a-z_]\w*)+)')

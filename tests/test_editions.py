@@ -4,10 +4,14 @@ import re
 
 import nbformat
 import pytest
+from course_maker import TOY, make_course
+from my_robot_basics.language.catalogues import catalogue_path
 from my_robot_basics.validate.cells import KEY
 
 from grader.authoring.editions import LANGUAGE, editions, is_translated
 from grader.authoring.leaks import files_in
+from grader.authoring.release import release, stale_or_leaking
+from grader.common.errors import CourseError
 from grader.course import ROOT, Course
 
 COURSE = Course()
@@ -20,6 +24,49 @@ def both(language, name):
     """Return the English lesson and that of another language, as they are given out."""
     folder = ROOT / 'notebooks' / language / name
     return COURSE.release(name), nbformat.read(folder / f'{name}.ipynb', as_version=4)
+
+
+@pytest.fixture
+def toy(tmp_path):
+    """A small course whose first heading is translated."""
+    course = make_course(tmp_path)
+    (course.root / 'locale/zh_CN/LC_MESSAGES').mkdir(parents=True)
+    put(course, '# A toy', '# 玩具')
+    return course
+
+
+def put(course, english, translated):
+    path = catalogue_path(course.root / 'locale', 'zh_CN', TOY)
+    path.write_text(f'msgid "{english}"\nmsgstr "{translated}"\n', encoding='utf-8')
+
+
+@pytest.mark.starts
+def test_a_release_makes_an_edition_for_each_folder_of_locale(toy):
+    said = []
+    assert f'zh_CN/{TOY}/{TOY}.ipynb' in release(toy, say=said.append)
+    made = nbformat.read(toy.root / f'notebooks/zh_CN/{TOY}/{TOY}.ipynb', as_version=4)
+    assert [cell.source for cell in made.cells if is_translated(cell)] == ['# 玩具']
+    assert [line for line in said if 'in English' in line] == []
+    assert stale_or_leaking(toy) == []
+    assert release(toy) == []
+    put(toy, '# A toy', '# 玩偶')
+    stale = f'notebooks/zh_CN/{TOY}/{TOY}.ipynb is not what solutions/ gives'
+    assert [line.partition(':')[0] for line in stale_or_leaking(toy)] == [stale]
+
+
+@pytest.mark.starts
+def test_a_release_says_how_much_is_not_translated(toy):
+    put(toy, '# Another toy', '# 玩具')
+    said = []
+    release(toy, say=said.append)
+    assert f'zh_CN: 1 of 1 blocks of {TOY} are in English: ./course translate lists them' in said
+
+
+@pytest.mark.starts
+def test_a_translation_that_tells_an_answer_is_not_released(toy):
+    put(toy, '# A toy', '# return x + x  # the secret answer')
+    with pytest.raises(CourseError, match=r'nothing was released.*secret answer'):
+        release(toy)
 
 
 def test_there_is_a_chinese_edition():

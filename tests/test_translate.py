@@ -125,6 +125,16 @@ def test_an_update_without_a_change_changes_no_file(course):
     assert b'Date' not in before
 
 
+def test_a_second_update_of_a_new_catalogue_changes_nothing(course):
+    path = catalogue_path(course.root / 'locale', 'zh_CN', TOY)
+    path.unlink()
+    update(course)
+    before = path.read_bytes()
+    assert before.startswith(b'msgid ""')
+    update(course)
+    assert path.read_bytes() == before
+
+
 def test_the_edit_of_one_sentence_puts_one_block_out_of_date(course):
     write_opening(course, OPENING.replace('two ways', 'three ways'))
     report = of_the_toy(update(course))

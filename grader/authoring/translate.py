@@ -82,8 +82,8 @@ def _as_text(catalogue: Catalog) -> str:
     written = io.BytesIO()
     write_po(written, catalogue, width=0, no_location=True, include_previous=True)
     head, gap, rest = written.getvalue().decode().partition('\n\n')
-    kept = [line for line in head.splitlines() if line[:1] != '"' or _KEPT.match(line, 1)]
-    return '\n'.join(kept).removeprefix('#\n') + gap + rest
+    kept = [line for line in head.splitlines() if line[:3] == 'msg' or _KEPT.match(line, 1)]
+    return '\n'.join(kept) + gap + rest
 
 
 def _report(language: str, part: str, texts: Texts, catalogue: Catalog) -> PartReport:
