@@ -51,7 +51,7 @@ def test_a_release_makes_an_edition_for_each_folder_of_locale(toy):
     assert release(toy) == []
     put(toy, '# A toy', '# 玩偶')
     stale = f'notebooks/zh_CN/{TOY}/{TOY}.ipynb is not what solutions/ gives'
-    assert [line.partition(':')[0] for line in stale_or_leaking(toy)] == [stale]
+    assert stale in [line.partition(':')[0] for line in stale_or_leaking(toy)]
 
 
 @pytest.mark.starts
