@@ -6,7 +6,7 @@ import subprocess
 import sys
 
 import pytest
-from ros2_command import TIMEOUT_SEC, on_the_graph, own_domain
+from ros2_command import NODES, TIMEOUT_SEC, on_the_graph, own_domain
 
 pytest.importorskip(
     'ros2cli', reason='no ros2cli to compare with: source a ROS 2 Jazzy installation to run this'
@@ -17,6 +17,7 @@ OURS += '; sys.exit(main.main())'
 REAL = 'import sys; from ros2cli.cli import main; sys.exit(main())'
 DIRECT = '--no-daemon', '--spin-time', '2'
 TOPIC = '/kinematics/joint_states'
+PARAMETER_FILE = NODES / 'parameters.yaml'
 
 COMMANDS = [
     ('topic', 'list', '-t', *DIRECT),
@@ -62,6 +63,22 @@ COMMANDS = [
     ('param', 'get', '/arm/everything', 'some_bytes', '--hide-type', *DIRECT),
     ('param', 'set', '/arm/everything', 'a_string', 'other', *DIRECT),
     ('param', 'get', '/nobody', 'x', *DIRECT),
+    ('param', 'dump', '/foo/test_node', *DIRECT),
+    ('param', 'dump', '/foo/without_value', *DIRECT),
+    ('param', 'dump', '/nobody', *DIRECT),
+    ('param', 'describe', '/foo/constrained', 'rate_hz', 'seed', 'robot', *DIRECT),
+    ('param', 'describe', '/foo/constrained', 'seed', 'nothing', *DIRECT),
+    ('param', 'set', '/foo/constrained', 'even', '3', *DIRECT),
+    ('param', 'set', '/foo/constrained', 'rate_hz', '0.5', *DIRECT),
+    ('param', 'set', '/foo/constrained', 'rate_hz', '7', *DIRECT),
+    ('param', 'set', '/foo/constrained', 'robot', 'other', *DIRECT),
+    ('param', 'set', '/foo/constrained', 'nothing', '1', *DIRECT),
+    ('param', 'delete', '/foo/constrained', 'even', *DIRECT),
+    ('param', 'delete', '/foo/constrained', 'nothing', *DIRECT),
+    ('param', 'delete', '/nobody', 'x', *DIRECT),
+    ('param', 'load', '/foo/constrained', str(PARAMETER_FILE), *DIRECT),
+    ('param', 'load', '/foo/constrained', str(PARAMETER_FILE), '--no-use-wildcard', *DIRECT),
+    ('param', 'load', '/nobody', 'x', *DIRECT),
     ('interface', 'list'),
     ('interface', 'show', 'sensor_msgs/msg/JointState'),
     ('interface', 'show', 'sensor_msgs/msg/PointCloud2', '--all-comments'),
@@ -78,8 +95,8 @@ COMMANDS = [
 
 @pytest.fixture(scope='module', autouse=True)
 def system():
-    topics = '/everything_is_up', TOPIC, '/_other_type_is_up'
-    nodes = 'everything', 'five_hz', 'other_type'
+    topics = '/everything_is_up', TOPIC, '/_other_type_is_up', '/_constrained_is_up'
+    nodes = 'everything', 'five_hz', 'other_type', 'parameters'
     with own_domain(), on_the_graph(*nodes, topics=topics):
         yield
 

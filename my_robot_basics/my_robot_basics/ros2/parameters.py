@@ -2,6 +2,7 @@
 
 import argparse
 import math
+import sys
 from typing import Any
 
 from my_robot_basics.ros2 import arguments, completion
@@ -44,14 +45,17 @@ class ParameterServices:
         """The rcl_interfaces ParameterValue of each parameter; none if one is not declared."""
         return self._answer(self._client.get_parameters(names)).values
 
+    def descriptors(self, names: list[str]) -> list[Any]:
+        """The rcl_interfaces ParameterDescriptor of each; none if one is not declared."""
+        return self._answer(self._client.describe_parameters(names)).descriptors
+
     def types(self, names: list[str]) -> dict[str, int]:
         """The rcl_interfaces ParameterType of each parameter."""
-        descriptors = self._answer(self._client.describe_parameters(names)).descriptors
-        return {descriptor.name: descriptor.type for descriptor in descriptors}
+        return {descriptor.name: descriptor.type for descriptor in self.descriptors(names)}
 
-    def set(self, parameter: Any) -> Any:
-        """Set an rcl_interfaces Parameter, and return the SetParametersResult."""
-        return self._answer(self._client.set_parameters([parameter])).results[0]
+    def set(self, *parameters: Any) -> list[Any]:
+        """Set rcl_interfaces Parameters, and return the SetParametersResult of each."""
+        return self._answer(self._client.set_parameters(parameters)).results
 
     def _answer(self, future: Any) -> Any:
         self._graph.spin_until(future.done, timeout_sec=TIMEOUT_SEC)
@@ -86,16 +90,14 @@ def type_names() -> dict[int, str]:
     }
 
 
-def add_one_parameter(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of a verb that is about one parameter of one node."""
+def add_node(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of a verb that is about one node."""
     arguments.add_discovery(parser)
     node_name = parser.add_argument('node_name', help='Name of the ROS node')
     completion.offer(node_name, completion.node_names)
     parser.add_argument(
         '--include-hidden-nodes', action='store_true', help='Consider hidden nodes as well'
     )
-    parameter_name = parser.add_argument('parameter_name', help='Name of the parameter')
-    completion.offer(parameter_name, parameter_names)
     parser.add_argument(
         '--timeout',
         metavar='N',
@@ -103,6 +105,13 @@ def add_one_parameter(parser: argparse.ArgumentParser) -> None:
         default=1,
         help='Wait for N seconds until node becomes available (default %(default)s sec)',
     )
+
+
+def add_one_parameter(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of a verb that is about one parameter of one node."""
+    add_node(parser)
+    parameter_name = parser.add_argument('parameter_name', help='Name of the parameter')
+    completion.offer(parameter_name, parameter_names)
 
 
 def parameter_names(parsed_args: argparse.Namespace, **_: object) -> list[str]:
@@ -115,12 +124,25 @@ def parameter_names(parsed_args: argparse.Namespace, **_: object) -> list[str]:
 def services_of(graph: Graph, args: argparse.Namespace) -> ParameterServices:
     """The services of the node in the arguments, once it is there; raises CommandError."""
     node_name = absolute(args.node_name)
-    is_there = graph.wait_for_node(
-        node_name,
-        include_hidden=args.include_hidden_nodes,
-        timeout_sec=math.inf if args.timeout < 0 else args.timeout,
-    )
-    if not is_there:
-        raise CommandError('Node not found')
+    timeout_sec = math.inf if args.timeout < 0 else args.timeout
+
+    def is_there(within_sec: float) -> bool:
+        hidden = args.include_hidden_nodes
+        return graph.wait_for_node(node_name, include_hidden=hidden, timeout_sec=within_sec)
+
+    # the time is for a node that is still to come: a busy machine finds the others later
     graph.settle()
+    if not is_there(0.0):
+        if not is_there(timeout_sec):
+            raise CommandError('Node not found')
+        graph.settle()
     return ParameterServices(graph, node_name)
+
+
+def say_result(result: Any, successful: str, failed: str) -> None:
+    """Print what came of setting one parameter, with the node's reason, as ros2cli does."""
+    reason = f': {result.reason}' if result.reason else ''
+    if result.successful:
+        print(f'{successful}{reason}')
+    else:
+        print(f'{failed}{reason}', file=sys.stderr)

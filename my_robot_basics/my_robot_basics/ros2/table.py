@@ -28,8 +28,7 @@ COMMANDS = {
     'node': Command('Various node related sub-commands', verbs=('info', 'list')),
     'param': Command(
         'Various param related sub-commands',
-        verbs=('get', 'list', 'set'),
-        elsewhere=('delete', 'describe', 'dump', 'load'),
+        verbs=('delete', 'describe', 'dump', 'get', 'list', 'load', 'set'),
     ),
     'pkg': Command(
         'Various package related sub-commands',

@@ -1,7 +1,6 @@
 """Set parameter."""
 
 import argparse
-import sys
 
 from my_robot_basics.ros2 import parameters
 from my_robot_basics.ros2.errors import CommandError
@@ -26,9 +25,5 @@ def main(args: argparse.Namespace) -> None:
         raise CommandError(f'The passed value is not YAML: {error}') from None
     with Graph(args) as graph:
         parameter = Parameter(name=args.parameter_name, value=value)
-        result = parameters.services_of(graph, args).set(parameter)
-    reason = f': {result.reason}' if result.reason else ''
-    if result.successful:
-        print(f'Set parameter successful{reason}')
-    else:
-        print(f'Setting parameter failed{reason}', file=sys.stderr)
+        [result] = parameters.services_of(graph, args).set(parameter)
+    parameters.say_result(result, 'Set parameter successful', 'Setting parameter failed')
