@@ -103,12 +103,17 @@ def test_it_holds_what_students_need_and_nothing_else(made, fresh_lessons, tmp_p
 
 
 def test_it_holds_each_edition(course, fresh_lessons, tmp_path):
-    (course.root / 'locale/zh_CN/LC_MESSAGES').mkdir(parents=True)
+    catalogue = course.root / 'locale/zh_CN/LC_MESSAGES/students.po'
+    catalogue.parent.mkdir(parents=True)
+    catalogue.write_text('msgid "## How you work"\nmsgstr "## 怎样学习"\n', encoding='utf-8')
     release(course)
     bundle(course, tmp_path / 'students.zip')
     found = names(tmp_path / 'students.zip')
     assert {f'notebooks/zh_CN/{TOY}/{TOY}.ipynb', 'notebooks/zh_CN/index.ipynb'} < found
     assert f'notebooks/{TOY}/{TOY}.ipynb' in found
+    folder = unpacked(tmp_path / 'students.zip', tmp_path)
+    assert '\n## How you work\n' in (folder / 'README.md').read_text(encoding='utf-8')
+    assert '\n## 怎样学习\n' in (folder / 'README.zh_CN.md').read_text(encoding='utf-8')
 
 
 def test_it_asks_for_nothing_that_only_the_course_needs(made, fresh_lessons, tmp_path):

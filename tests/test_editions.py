@@ -94,6 +94,8 @@ def test_the_text_is_what_the_catalogue_says(language, name):
         if is_translated(ours):
             assert theirs.source == EDITIONS[language].text(name, ours.source)
     shown = '\n'.join(cell.source for cell in other.cells)
+    for page in (ROOT / 'notebooks' / language / name).glob('*.html'):
+        shown += page.read_text(encoding='utf-8')
     assert [text for text in translations.values() if text not in shown] == []
 
 

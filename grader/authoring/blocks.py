@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 FENCE = re.compile(r' {0,3}(```|~~~)')
 _MARK_SCHEME = re.compile(r'### BEGIN MARK SCHEME\n.*?### END MARK SCHEME', re.DOTALL)
 _NO_WORDS = re.compile(
-    r'```.*?```|~~~.*?~~~|`[^`]*`|\$[^$]*\$|\]\([^)]*\)|<[^>]*>|&\w+;', re.DOTALL
+    r'```.*?```|~~~.*?~~~|`[^`]*`|<code>.*?</code>|\$[^$]*\$|\]\([^)]*\)|<[^>]*>|&\w+;', re.DOTALL
 )
 _WORD = re.compile(r'[^\W\d_]{2,}')
 
@@ -64,6 +64,26 @@ def _with_line_ends_between(pieces: list[str]) -> Iterator[str]:
 def has_words(block: str) -> bool:
     """Whether a block says something to translate: code, formulas and addresses do not."""
     return bool(_WORD.search(_NO_WORDS.sub(' ', block)))
+
+
+_ELEMENT = re.compile(r'<(h[1-6]|p|td|th|li|title|caption)\b[^>]*>(.+?)(?=</\1>)')
+"""An element of a page that stands in one line; its second group is what it says."""
+_LANGUAGE = re.compile(r'(<html lang=)"[^"]*"')
+
+
+def translatable_html(page: str) -> list[str]:
+    """Return what the elements of an HTML page say, in order."""
+    return [text for _, text in _ELEMENT.findall(page) if has_words(text)]
+
+
+def translate_html(page: str, translations: Mapping[str, str], language: str) -> str:
+    """Return an HTML page with each text that has one replaced by its translation."""
+    code = language.replace('_', '-')
+    page = _LANGUAGE.sub(rf'\1"{code}"', page)
+    return _ELEMENT.sub(
+        lambda found: found[0].removesuffix(found[2]) + translations.get(found[2], found[2]),
+        page,
+    )
 
 
 def without_mark_scheme(text: str) -> str:

@@ -105,6 +105,10 @@ def _contents(course: Course, faults: list[str]) -> Iterator[tuple[str, bytes]]:
                 faults.append(f'{path} does not say what students need: run .ci/pin.py')
             content += b'\n'
         yield f'{FOLDER}/{name}', content
+        if name == 'README.md':
+            for edition in editions(course):
+                text = edition.text(Path(README).stem, content.decode())
+                yield f'{FOLDER}/README.{edition.language}.md', text.encode()
 
 
 def _paths(course: Course, faults: list[str]) -> Iterator[str]:

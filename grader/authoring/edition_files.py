@@ -6,7 +6,7 @@ from pathlib import Path
 
 import nbformat
 
-from grader.authoring.blocks import translatable
+from grader.authoring.blocks import translatable, translatable_html, translate_html
 from grader.authoring.editions import Edition, editions, is_translated
 from grader.authoring.index import write_pages
 from grader.common.files import write_whole
@@ -46,10 +46,14 @@ def _write_lessons(
         english = nbformat.read(built / name / f'{name}.ipynb', as_version=4)
         translated = edition.notebook(name, english)
         write_whole(folder / f'{name}.ipynb', nbformat.writes(translated) + '\n')
-        texts = [cell.source for cell in english.cells if is_translated(cell)]
-        if missing := edition.missing(name, texts):
-            blocks = sum(len(translatable(text)) for text in texts)
+        blocks = [b for c in english.cells if is_translated(c) for b in translatable(c.source)]
+        for page in sorted(folder.glob('*.html')):
+            text = page.read_text(encoding='utf-8')
+            blocks += translatable_html(text)
+            translated_page = translate_html(text, edition.translations(name), edition.language)
+            write_whole(page, translated_page)
+        if missing := [block for block in blocks if block not in edition.translations(name)]:
             say(
-                f'{edition.language}: {len(missing)} of {blocks} blocks of {name} are in English:'
-                ' ./course translate lists them'
+                f'{edition.language}: {len(missing)} of {len(blocks)} blocks of {name} are in'
+                ' English: ./course translate lists them'
             )

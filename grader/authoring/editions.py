@@ -5,7 +5,7 @@ English release, so an answer from any edition is graded by the same source. A b
 translation stays English.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -20,7 +20,7 @@ from my_robot_basics.language.catalogues import (
 from my_robot_basics.validate.cells import KEY, role
 from nbformat import NotebookNode
 
-from grader.authoring.blocks import translatable, translate_blocks
+from grader.authoring.blocks import translate_blocks
 from grader.common.errors import CourseError
 from grader.course import Course
 
@@ -66,11 +66,6 @@ class Edition:
                 cell.source = self.text(name, cell.source)
         notebook.metadata.setdefault(KEY, NotebookNode())[LANGUAGE] = self.language
         return notebook
-
-    def missing(self, part: str, texts: Iterable[str]) -> list[str]:
-        """Return the blocks of the English texts that this language does not have."""
-        known = self.translations(part)
-        return [block for text in texts for block in translatable(text) if block not in known]
 
 
 def editions(course: Course) -> list[Edition]:

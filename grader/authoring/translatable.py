@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from grader.authoring import index
-from grader.authoring.blocks import translatable, without_mark_scheme
+from grader.authoring.blocks import translatable, translatable_html, without_mark_scheme
 from grader.authoring.editions import is_translated
 from grader.course import Course
 
@@ -33,6 +33,9 @@ def _lesson(course: Course, name: str) -> Texts:
         if is_translated(cell):
             for block in translatable(without_mark_scheme(cell.source)):
                 texts.setdefault(block, []).append(cell.id)
+    for page in sorted(course.source_path(name).parent.glob('*.html')):
+        for text in translatable_html(page.read_text(encoding='utf-8')):
+            texts.setdefault(text, []).append(page.name)
     return texts
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 _FENCED = re.compile(r'```.*?```', re.DOTALL)
-_CODE = re.compile(r'`[^`]+`')
+_CODE = re.compile(r'`[^`]+`|<code>[^<]*</code>')
 _KEPT: dict[str, re.Pattern[str]] = {
     'code': _CODE,
     'fenced code': _FENCED,
@@ -17,6 +17,7 @@ _KEPT: dict[str, re.Pattern[str]] = {
     'a heading': re.compile(r'^#+ ', re.MULTILINE),
     'items of a list': re.compile(r'^ *(?:-|\d+\.) ', re.MULTILINE),
     'columns of a table': re.compile(r'(?<!\\)\|'),
+    'a tag': re.compile(r'</?[a-z][^>]*>'),
     'bold type': re.compile(r'\*\*'),
 }
 _PLACEHOLDER = re.compile(r'\{\w*\}')
@@ -27,6 +28,7 @@ _LATIN_MARK = re.compile(rf'(?<={_HAN})[,;:!?()](?!\S*`)|(?<={_HAN})\.(?=\s|$)|[
 _SPACED_MARK = re.compile(
     r'(?<![|\s]) (?=[，。；：！？、）》])|(?<=[，。；：！？、（《）》]) (?=[^|\s])'
 )
+_EMPHASISED = re.compile(r'\*[^*\n]+\*')
 _LINK_END = re.compile(r'\]\([^)]*\)')
 _ELSEWHERE = re.compile(r'\[[^\]]*\]\(https?:[^)]*\)')
 """A link to an English page has its English name."""
@@ -97,7 +99,12 @@ def read_glossary(path: Path) -> dict[str, list[str]]:
 def unknown_terms(
     english: str, translated: str, glossary: Mapping[str, Sequence[str]]
 ) -> Iterator[str]:
-    """Yield each term of the English block whose translation is none of the glossary's."""
+    """Yield each term of the English block whose translation is none of the glossary's.
+
+    What is emphasised and kept word for word, such as *Publisher count*, is what a program prints.
+    """
+    for kept in filter(translated.__contains__, _EMPHASISED.findall(english)):
+        english = english.replace(kept, '')
     text = _CODE.sub('', _FENCED.sub('', _LINK_END.sub(']', _ELSEWHERE.sub('', english))))
     for term, allowed in glossary.items():
         is_there = re.search(rf'\b{re.escape(term)}s?\b', text, re.IGNORECASE)
