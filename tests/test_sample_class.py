@@ -238,6 +238,12 @@ def visible_parts_alone(notebook, assignment):
 
 
 def numberless(reasons):
-    """Reasons by cell, in one line and without numbers: poses are random, rates are measured."""
+    """Reasons by cell, in one line and without numbers: poses are random, rates are measured.
+
+    How long a check waited is no part of them, and whether it did neither: it does not where no
+    thread or process could still make an endpoint, and the whole lesson in one kernel has some.
+    """
+    waited = re.compile(r' in \d+(\.\d+)? s\b')
     number = re.compile(r'-?\d+(\.\d+)?(e-?\d+)?')
-    return {name: number.sub('#', ' '.join(reason.split())) for name, reason in reasons.items()}
+    lines = {name: waited.sub('', ' '.join(reason.split())) for name, reason in reasons.items()}
+    return {name: number.sub('#', line) for name, line in lines.items()}
