@@ -15,6 +15,7 @@ from pathlib import Path
 
 from launcher.environment import Environment
 from launcher.installer import Installer, version_of, writing
+from launcher.interfaces import FOREIGN_HEADERS, LINE, fix_exports, tell_python
 from launcher.messages import LauncherError, say
 from launcher.shares import KERNELS, TOOLS, UNDERLAY, make_tools, tell_ament, tell_jupyter
 
@@ -42,7 +43,8 @@ def made_packages(environment: Environment) -> str:
         files += [root / 'pyproject.toml', root / 'grader/kernels/kernelspec/kernel.json']
     texts = [file.read_text(encoding='utf-8') for file in files]
     wheel = hashlib.sha256((root / interfaces_wheel(root)).read_bytes()).hexdigest()
-    return ''.join([*texts, wheel, UNDERLAY, KERNELS, str(TOOLS)])
+    shares = [UNDERLAY, KERNELS, str(TOOLS), FOREIGN_HEADERS.pattern, LINE]
+    return ''.join([*texts, wheel, *shares])
 
 
 def interfaces_wheel(root: Path) -> str:
@@ -139,6 +141,8 @@ def install_packages(installer: Installer) -> None:
         tell_ament(environment)
         tell_jupyter(environment)
         make_tools(environment)
+        fix_exports(environment)
+        tell_python(environment)
         remember(environment, made_packages)
 
 

@@ -1,4 +1,4 @@
-"""What an editable install leaves out of .venv: ROS's index, Jupyter's folders, the two tools."""
+"""What an editable install leaves out of .venv: ROS's index, Jupyter's folders, the tools."""
 
 import os
 import re
@@ -7,8 +7,9 @@ from pathlib import Path
 
 from launcher.environment import Environment
 
-TOOLS = {'ros2': 'ros2.main', 'topic_doctor': 'doctor.main'}
-"""The two tools and their modules. setup.py names the nodes alone, which students build, too."""
+TOOLS = {'ros2': 'ros2.main', 'topic_doctor': 'doctor.main', 'colcon': 'ros2.colcon'}
+"""The tools and their modules: colcon, too, says in a sentence what it lacks. setup.py names the
+nodes alone, which students build, too."""
 TOOL = r"""#!/bin/sh
 # PYTHON_ARGCOMPLETE_OK
 # {name}, of the package that is installed here
@@ -72,8 +73,9 @@ def point(link: Path, target: Path) -> None:
 
 
 def make_tools(environment: Environment) -> None:
-    """Write the two tools."""
+    """Write the tools; a new file each, for an installer may have linked colcon elsewhere."""
     for name, module in TOOLS.items():
         tool = environment.venv / 'bin' / name
+        tool.unlink(missing_ok=True)
         tool.write_text(TOOL.format(name=name, module=module), encoding='utf-8')
         os.chmod(tool, 0o755)

@@ -1,22 +1,38 @@
 """What a machine has on which nobody has used this course yet."""
 
 import os
+import re
 import shutil
 import sys
 from pathlib import Path
 
 KEPT = ('LANG', 'http_proxy', 'https_proxy', 'no_proxy', 'SSL_CERT_FILE', 'PIP_CONFIG_FILE')
 KEPT += ('HTTP_PROXY', 'HTTPS_PROXY', 'PIP_INDEX_URL', 'UV_INDEX_URL', 'UV_DEFAULT_INDEX')
+COMPILERS = re.compile(
+    r'(.*-)?(cc|gcc|c\+\+|g\+\+|cpp|clang|clang\+\+|c[89]9|make|gmake|cmake|ninja)(-[\d.]+)?'
+)
+
+
+def programs_without_compilers(folder: Path) -> Path:
+    """Return a new folder with this machine's programs, but for those that build others."""
+    folder.mkdir()
+    for place in ('/usr/local/bin', '/usr/bin', '/bin'):
+        for program in Path(place).iterdir():
+            link = folder / program.name
+            if not COMPILERS.fullmatch(program.name) and not os.path.lexists(link):
+                link.symlink_to(program)
+    return folder
 
 
 def fresh_environment(folder: Path) -> dict[str, str]:
-    """Return the variables of a fresh machine: no .venv, no settings, a home in `folder`."""
+    """Return the variables of a fresh machine: no .venv, no compiler, a home in `folder`."""
     home, tools = folder / 'home', folder / 'tools'
     home.mkdir()
     tools.mkdir()
     (tools / 'python3').symlink_to(sys._base_executable)
     environment = {name: os.environ[name] for name in KEPT if name in os.environ}
-    environment |= {'HOME': str(home), 'PATH': f'{tools}:/usr/local/bin:/usr/bin:/bin'}
+    programs = programs_without_compilers(folder / 'programs')
+    environment |= {'HOME': str(home), 'PATH': f'{tools}:{programs}'}
     for name in ('.config/pip/pip.conf', '.pip/pip.conf'):  # how this machine reaches a registry
         if (there := Path.home() / name).is_file():
             (home / name).parent.mkdir(parents=True)

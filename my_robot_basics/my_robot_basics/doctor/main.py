@@ -58,6 +58,9 @@ def main(argv: list[str] | None = None) -> int:
         )
     except KeyboardInterrupt:
         return INTERRUPTED
+    except CommandError as error:
+        print(error, file=sys.stderr)
+        return USAGE
     print(tell(diagnosis))
     return FAULT if diagnosis.findings else WELL
 

@@ -4,7 +4,7 @@ import os
 import sys
 
 from my_robot_basics.ros2.errors import CommandError
-from my_robot_basics.session import lessons
+from my_robot_basics.session import lessons, overlays
 from my_robot_basics.session.classroom import FAST_DISCOVERY, HIGHEST_DOMAIN
 
 _joined: lessons.RunningLesson | None = None
@@ -25,6 +25,9 @@ def enter() -> None:
     if not os.environ.get('ROS_DOMAIN_ID'):
         os.environ['ROS_DOMAIN_ID'] = _domain_to_join()
     _put_last('AMENT_PREFIX_PATH', sys.prefix)  # a workspace that was sourced comes first
+    if '_ARGCOMPLETE' not in os.environ:
+        for sentence in overlays.faults(os.environ):
+            overlays.say(sentence)
 
 
 def _domain_to_join() -> str:

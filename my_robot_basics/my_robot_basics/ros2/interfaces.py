@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from my_robot_basics.ros2.errors import CommandError
+from my_robot_basics.session import overlays
 
 KINDS = ('msg', 'srv', 'action')
 
@@ -96,6 +97,11 @@ def _class(name: str, kind: str) -> Any:
         return getattr(importlib.import_module('.'.join(parts[:2])), parts[2], None)
     except ModuleNotFoundError:
         return None
+    except ImportError as error:
+        # a workspace's package that is only half built was told of when the command began
+        said = overlays.was_said(str(error))
+        reason = 'for the reason above' if said else f'because: {error}'
+        raise CommandError(f'{name} cannot be loaded, {reason}') from error
 
 
 def _did_you_mean(name: str, kind: str) -> str:

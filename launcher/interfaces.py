@@ -1,0 +1,48 @@
+"""What workspaces need of .venv: CMake files without foreign paths, and a line for Python."""
+
+import os
+import re
+from pathlib import Path
+
+from launcher.environment import Environment
+from launcher.installer import version_of
+from launcher.shares import point
+
+EXPORTS = 'share/*/cmake/export_*__rosidl_generator_pyExport.cmake'
+"""What CMake reads of an interface package's Python part."""
+FOREIGN_HEADERS = re.compile(r'(INTERFACE_INCLUDE_DIRECTORIES) "/opt/python/[^"]*"')
+"""Python's and NumPy's, where they lie on the machine that made the wheels: CMake refuses a
+folder that does not exist. Whoever compiles such a part names its own Python's headers anyway."""
+SOURCED = 'my_robot_basics/my_robot_basics/session/sourced.py'
+MODULE = 'my_robot_basics_sourced'
+LINE = f"import os; os.environ.get('PYTHONPATH') and __import__('{MODULE}').start()\n"
+"""What each Python of .venv runs first: `.pth` files are read by name, and that of ROS's wheels,
+ros_wheels_bootstrapper.pth, starts Python again."""
+
+
+def fix_exports(environment: Environment) -> None:
+    """Take the paths of another machine out of the CMake files of ROS's wheels.
+
+    Each is replaced whole: uv links the files of .venv to those of its cache.
+    """
+    for file in sorted(environment.venv.glob(EXPORTS)):
+        text = file.read_text(encoding='utf-8')
+        fixed = FOREIGN_HEADERS.sub(r'\1 ""', text)
+        if fixed != text:
+            replace(file, fixed)
+
+
+def tell_python(environment: Environment) -> None:
+    """Let each Python of .venv look at the workspace that its terminal has sourced."""
+    version = version_of(environment.python).rpartition('.')[0]
+    packages = environment.venv / f'lib/python{version}/site-packages'
+    packages.mkdir(parents=True, exist_ok=True)
+    point(packages / f'{MODULE}.py', environment.root / SOURCED)
+    replace(packages / f'{MODULE}.pth', LINE)
+
+
+def replace(file: Path, text: str) -> None:
+    """Put a new file in the place of one that may be linked elsewhere, too."""
+    part = file.with_name(f'{file.name}.part')
+    part.write_text(text, encoding='utf-8')
+    os.replace(part, file)

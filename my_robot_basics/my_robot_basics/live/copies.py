@@ -1,0 +1,60 @@
+"""A package of the course, and the student's own copy of it in the workspace."""
+
+import filecmp
+import shutil
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+LEFTOVERS = ('.', '__pycache__', 'build', 'install', 'log')
+"""How folders begin that programs leave behind."""
+
+
+@dataclass(frozen=True)
+class Copied:
+    """What is copied from where to where."""
+
+    source: Path
+    """The package in the course."""
+    target: Path
+    """The student's copy."""
+    patterns: tuple[str, ...]
+    """What the package consists of, as its builder needs it."""
+
+    def make(self) -> None:
+        """Copy in a way that leaves nothing half done."""
+        unfinished = self.target.with_name(f'.{self.target.name}.part')
+        shutil.rmtree(unfinished, ignore_errors=True)
+        for path in self._files():
+            target = unfinished / path.relative_to(self.source)
+            target.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(path, target)
+        unfinished.rename(self.target)
+
+    def move_aside(self, shelf: Path) -> Path:
+        """Put the student's folder beside those of earlier times; return where it is now."""
+        number = 1 + sum(1 for _ in shelf.glob(f'{self.target.name}_*'))
+        return self.target.rename(shelf / f'{self.target.name}_{number}')
+
+    def differences(self) -> list[str]:
+        """In words, file by file, how the copy differs from the package."""
+        if not self.target.exists():
+            return []
+        ours = {path.relative_to(self.source) for path in self._files()}
+        there = (
+            path.relative_to(self.target) for path in self.target.rglob('*') if path.is_file()
+        )
+        theirs = {
+            name
+            for name in there
+            if not any(part.startswith(LEFTOVERS) for part in name.parts[:-1])
+        }
+        words = dict.fromkeys(theirs - ours, 'new') | dict.fromkeys(ours - theirs, 'missing')
+        for name in ours & theirs:
+            if not filecmp.cmp(self.target / name, self.source / name, shallow=False):
+                words[name] = 'changed'
+        return [f'{words[name]:8} {name}' for name in sorted(words)]
+
+    def _files(self) -> Iterator[Path]:
+        for pattern in self.patterns:
+            yield from (path for path in sorted(self.source.glob(pattern)) if path.is_file())

@@ -1,0 +1,37 @@
+"""The command `colcon` of .venv: colcon itself, which says in a sentence what it lacks.
+
+Without a compiler, CMake would fail after two dozen lines, none of which says what to install.
+"""
+
+import os
+import sys
+from pathlib import Path
+
+from colcon_core.command import main as run_colcon
+from colcon_core.event.output import StderrLine
+from colcon_ros.task.ament_cmake.build import AmentCmakeBuildTask
+
+from my_robot_basics.session import build_tools
+
+OLDEST_POLICY = '3.5'
+"""CMake 4 refuses files that were written for an older CMake, unless it is told this."""
+
+
+def main() -> int:
+    """Run colcon on the command line, and return its exit status."""
+    os.environ['VIRTUAL_ENV'] = sys.prefix  # the Python that CMake is to take
+    os.environ.setdefault('CMAKE_POLICY_VERSION_MINIMUM', OLDEST_POLICY)
+    os.environ['PATH'] = os.pathsep.join([str(Path(sys.prefix, 'bin')), os.environ['PATH']])
+    AmentCmakeBuildTask.build = _build
+    return run_colcon()
+
+
+async def _build(task: AmentCmakeBuildTask) -> int:
+    """Build a package as colcon does, if this machine can."""
+    if sentence := build_tools.why_not(task.context.pkg.name):
+        task.context.put_event_into_queue(StderrLine(f'{sentence}\n'.encode()))
+        return 1
+    return await _build_with_cmake(task)
+
+
+_build_with_cmake = AmentCmakeBuildTask.build

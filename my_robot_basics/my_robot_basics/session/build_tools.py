@@ -1,0 +1,43 @@
+"""What a machine needs to compile a package of interfaces, beside what .venv has."""
+
+import os
+import shutil
+import sys
+import sysconfig
+from pathlib import Path
+
+
+def missing() -> dict[str, str]:
+    """Return what this machine lacks, and the package of Debian or Ubuntu that has it."""
+    header = Path(sysconfig.get_path('include'), 'Python.h')
+    python = 'python{}.{}-dev'.format(*sys.version_info)
+    wanted = {
+        'gcc': (_is_here('CC', 'cc', 'gcc', 'clang'), 'build-essential'),
+        'g++': (_is_here('CXX', 'c++', 'g++', 'clang++'), 'build-essential'),
+        'make': (_is_here('', 'make', 'gmake'), 'build-essential'),
+        'cmake': (_is_here('CMAKE_COMMAND', 'cmake'), 'cmake'),
+        f'Python.h of Python {python[6:-4]}': (header.is_file(), python),
+    }
+    return {name: package for name, (is_here, package) in wanted.items() if not is_here}
+
+
+def why_not(package: str) -> str:
+    """Why a package of interfaces cannot be compiled here, in a sentence; '' where it can."""
+    lacking = missing()
+    if not lacking:
+        return ''
+    *most, last = lacking
+    names = f'{", ".join(most)} and {last} are' if most else f'{last} is'
+    instead = ''
+    if Path(sys.prefix, 'share', package, 'package.xml').is_file():
+        instead = f'; until then, the {package} that the course has installed goes on working'
+    return (
+        f'{package} cannot be built on this machine: {names} missing; to get what is missing on '
+        f'Debian and Ubuntu: sudo apt install {" ".join(dict.fromkeys(lacking.values()))}{instead}'
+    )
+
+
+def _is_here(variable: str, *programs: str) -> bool:
+    """Whether the program that a variable names, or else one of these, can be run."""
+    named = os.environ.get(variable, '').split()[:1]
+    return any(map(shutil.which, named or programs))

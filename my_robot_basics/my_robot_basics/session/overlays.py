@@ -1,0 +1,175 @@
+"""Interface packages that were built in a workspace: can they be used, and if not, why not.
+
+Read by its path, too, before a package of the course can be imported (sourced.py): imports
+nothing but the standard library.
+"""
+
+import json
+import os
+import shlex
+import sys
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+INDEX = 'share/ament_index/resource_index/rosidl_interfaces'
+"""Where ROS looks for packages with .msg, .srv and .action files: a file for each, which lists
+them."""
+LAYOUT = '.colcon_install_layout'
+"""The file by which colcon knows its install folder; a robot's /opt/ros has none."""
+LIBRARIES = (
+    *('rosidl_generator_c', 'rosidl_generator_py', 'rosidl_typesupport_c'),
+    *('rosidl_typesupport_fastrtps_c', 'rosidl_typesupport_introspection_c'),
+)
+"""What a Python node loads of a package that colcon has built: lib<package>__<name>.so."""
+ELF = b'\x7fELF'
+"""How a library begins; that of a build that was cut short may be empty."""
+
+
+@dataclass(frozen=True)
+class Overlay:
+    """A package of interfaces in the folder in which colcon has installed it."""
+
+    prefix: Path
+    """install/PACKAGE of a workspace, or its install/ after `colcon build --merge-install`."""
+    package: str
+
+    @property
+    def is_merged(self) -> bool:
+        """Whether all packages of the workspace share the folder."""
+        return (self.prefix / LAYOUT).is_file()
+
+    @property
+    def workspace(self) -> Path:
+        """The folder that holds src/, build/ and install/."""
+        return self.prefix.parent if self.is_merged else self.prefix.parent.parent
+
+    @property
+    def python_folder(self) -> Path:
+        """Where the package's Python modules lie, from the prefix, for the Python that runs."""
+        version = '{}.{}'.format(*sys.version_info)
+        return Path('lib', f'python{version}', 'site-packages', self.package)
+
+    def fault(self) -> str:
+        """Why nothing can be done with it, and what to do, in a sentence; '' if all is there."""
+        if not (self.prefix / self.python_folder).is_dir():
+            for other in sorted(self.prefix.glob(f'lib/python3.*/site-packages/{self.package}')):
+                built = other.parts[-3].removeprefix('python')
+                this = '{}.{}'.format(*sys.version_info)
+                return self._so(f'was built for Python {built}, and this is Python {this}')
+        for file in self._needed():
+            if not (self.prefix / file).exists():
+                return self._so(f'is only half built, without {file}')
+            if file.suffix == '.so' and not _is_library(self.prefix / file):
+                return self._so(f'is only half built: {file} is empty or cut short')
+        return ''
+
+    def difference(self) -> str:
+        """How it differs from its sources, or from the course's, in a sentence; '' if in nothing.
+
+        Its nodes run, but they do not meet those that use the other.
+        """
+        shared = self.prefix / 'share' / self.package
+        for file in self._definitions():
+            source = self.workspace / 'src' / self.package / file
+            if source.is_file() and source.read_bytes() != (shared / file).read_bytes():
+                return self._so(f'was built before {file} in src was changed')
+        for file in self._definitions():
+            name = Path('share', self.package, file).with_suffix('.json')
+            ours, theirs = (_type_hashes(Path(root, name)) for root in (sys.prefix, self.prefix))
+            if ours and ours != theirs:
+                return (
+                    f'{self.package} in {self.prefix} has another {file} than the course, so that '
+                    'nodes that use it do not meet those that use the one of the course: go on '
+                    'with it if that is what you want, or take the file of the course '
+                    f'(./course workspace --refresh {self.package}) and build again'
+                )
+        return ''
+
+    def _needed(self) -> Iterator[Path]:
+        """What must exist, from the prefix."""
+        yield Path(INDEX, self.package)
+        for file in self._definitions():
+            yield Path('share', self.package, file)
+            yield self.python_folder / file.parent / '__init__.py'
+        yield from (Path('lib', f'lib{self.package}__{name}.so') for name in LIBRARIES)
+        yield self.python_folder / f'{self.package}_s__rosidl_typesupport_c.so'
+
+    def _definitions(self) -> list[Path]:
+        """Its .msg, .srv and .action files, as ROS's index lists them."""
+        index = self.prefix / INDEX / self.package
+        listed = index.read_text(encoding='utf-8').split() if index.is_file() else []
+        return [Path(file) for file in listed if not file.endswith('.idl')]
+
+    def _so(self, fault: str) -> str:
+        folders, option = f'build/{self.package} install/{self.package}', ''
+        if self.is_merged:
+            folders, option = 'build install', '--merge-install '
+        return (
+            f'{self.package} in {self.prefix} {fault}: build it again, with `cd '
+            f'{_quoted(self.workspace)} && rm -rf {folders} && colcon build {option}'
+            f'--packages-select {self.package} && source install/setup.bash`'
+        )
+
+
+def sourced(variables: Mapping[str, str]) -> Iterator[Overlay]:
+    """Yield the packages of interfaces in the workspaces that a terminal has sourced."""
+    for prefix in _prefixes(variables):
+        if any((folder / LAYOUT).is_file() for folder in (prefix, prefix.parent)):
+            yield from (Overlay(prefix, file.name) for file in sorted(prefix.glob(f'{INDEX}/*')))
+
+
+def faults(variables: Mapping[str, str]) -> Iterator[str]:
+    """Yield a sentence for all that is wrong with the workspaces that a terminal has sourced."""
+    yield from (gone(prefix) for prefix in _prefixes(variables) if not prefix.exists())
+    for overlay in sourced(variables):
+        if sentence := overlay.fault() or overlay.difference():
+            yield sentence
+
+
+def gone(prefix: Path) -> str:
+    """What to say of a folder that a terminal has sourced, and that is no longer there."""
+    return (
+        f'{prefix} is gone, and this terminal still looks for its package there: build the '
+        'package again, or open a new terminal, which takes that of the course if there is one'
+    )
+
+
+def say(sentence: str) -> None:
+    """Tell the user, once in a process."""
+    if sentence not in _said:
+        _said.add(sentence)
+        print(f'course: {sentence}', file=sys.stderr)
+
+
+def was_said(sentence: str) -> bool:
+    """Whether the user knows it already."""
+    return sentence in _said
+
+
+_said: set[str] = set()
+
+
+def _prefixes(variables: Mapping[str, str]) -> Iterator[Path]:
+    for folder in variables.get('AMENT_PREFIX_PATH', '').split(os.pathsep):
+        if folder and folder != sys.prefix:
+            yield Path(folder)
+
+
+def _is_library(file: Path) -> bool:
+    with file.open('rb') as content:
+        return content.read(len(ELF)) == ELF
+
+
+def _type_hashes(file: Path) -> dict[str, str]:
+    """The hash of each type in what rosidl has written of a file; {} where there is none."""
+    if not file.is_file():
+        return {}
+    listed = json.loads(file.read_text(encoding='utf-8'))['type_hashes']
+    return {each['type_name']: each['hash_string'] for each in listed}
+
+
+def _quoted(workspace: Path) -> str:
+    """A workspace as a terminal of the course understands it."""
+    known = os.environ.get('ROS_WS')
+    return '"$ROS_WS"' if known and Path(known) == workspace else shlex.quote(str(workspace))

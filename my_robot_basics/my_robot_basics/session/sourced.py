@@ -1,0 +1,110 @@
+"""What each Python of .venv begins with in a terminal in which a workspace was sourced.
+
+`./course` links it into .venv as a module of its own: PYTHONPATH may name the student's copy of
+the package first. Imports nothing that is slow.
+"""
+
+import os
+import sys
+from importlib.machinery import ModuleSpec, PathFinder
+from importlib.util import module_from_spec, spec_from_file_location
+from types import ModuleType
+
+STARTED = '_ROS_WHEELS_BOOTSTRAP_COMPLETE'
+"""Set where ROS's wheels have started Python again, with their libraries."""
+LAYOUT = '.colcon_install_layout'
+
+
+def start() -> None:
+    """Load libraries in the order in which the workspaces were sourced, and look at packages."""
+    if STARTED not in os.environ:
+        _start_again()
+    sys.meta_path.insert(0, Guard())
+
+
+def _start_again() -> None:
+    """Start Python again as ROS's wheels do, but with the libraries in an order.
+
+    Theirs comes out of a set. So a package of which both a workspace and .venv have libraries
+    would be loaded half from the one, half from the other, each time in another way.
+    """
+    site_packages = '{}/lib/python{}.{}/site-packages'.format(sys.prefix, *sys.version_info)
+    ours = [f'{sys.prefix}/lib']
+    with os.scandir(site_packages) as entries:
+        ours += sorted(
+            entry.path
+            for entry in entries
+            if entry.name.startswith('ros_') and entry.name.endswith('.libs')
+        )
+    given = [f for f in os.environ.get('LD_LIBRARY_PATH', '').split(os.pathsep) if f]
+    built = [folder for folder in given if _is_built(folder)]
+    others = [folder for folder in given if folder not in built and folder not in ours]
+    os.environ['LD_LIBRARY_PATH'] = os.pathsep.join([*built, *ours, *others])
+    os.environ[STARTED] = '1'
+    os.execv(sys.executable, sys.orig_argv)
+
+
+def _is_built(folder: str) -> bool:
+    """Whether it is the lib/ of a package that colcon has installed, alone or with all others."""
+    above = os.path.dirname(folder)
+    return any(os.path.exists(f'{f}/{LAYOUT}') for f in (above, os.path.dirname(above)))
+
+
+class Guard:
+    """Is asked first for each module; stops one that was built wrong, and says why."""
+
+    def __init__(self) -> None:
+        self.folders = [f for f in os.environ.get('PYTHONPATH', '').split(os.pathsep) if f]
+
+    def find_spec(
+        self, name: str, path: object = None, target: object = None
+    ) -> ModuleSpec | None:
+        """Return None, and Python goes on to look for the module as always.
+
+        Raises ImportError for a package of interfaces in a workspace that cannot be loaded.
+        """
+        if path is not None or '.' in name:
+            return None
+        for folder in self.folders:
+            if os.path.isdir(f'{folder}/{name}'):
+                _look_at(folder, name)
+                return None
+            if f'/install/{name}/lib/' in folder and not os.path.exists(folder):
+                return _instead(folder, name)
+        return None
+
+
+def _look_at(folder: str, name: str) -> None:
+    """Raise ImportError where the package cannot be loaded; say where it is another one."""
+    with os.scandir(f'{folder}/{name}') as entries:
+        if not any(entry.name.startswith((f'{name}_s__', f'_{name}_s.')) for entry in entries):
+            return  # no package of interfaces
+    checks = _checks()
+    overlay = checks.Overlay(checks.Path(folder).parents[2], name)
+    if fault := overlay.fault():
+        raise ImportError(fault, name=name)
+    if difference := overlay.difference():
+        checks.say(difference)
+
+
+def _instead(folder: str, name: str) -> ModuleSpec | None:
+    """Find the module elsewhere, and say so; raises ModuleNotFoundError if it is nowhere."""
+    checks = _checks()
+    sentence = checks.gone(checks.Path(folder).parents[2])
+    if found := PathFinder.find_spec(name):
+        checks.say(sentence)
+        return found
+    raise ModuleNotFoundError(sentence, name=name)
+
+
+def _checks() -> ModuleType:
+    """The module overlays, under its own name: who imports it later gets the same."""
+    name = 'my_robot_basics.session.overlays'
+    if name not in sys.modules:
+        file = os.path.join(os.path.dirname(os.path.realpath(__file__)), 'overlays.py')
+        spec = spec_from_file_location(name, file)
+        assert spec is not None  # it is a file of ours
+        assert spec.loader is not None
+        sys.modules[name] = module_from_spec(spec)
+        spec.loader.exec_module(sys.modules[name])
+    return sys.modules[name]

@@ -1,0 +1,280 @@
+"""Packages of interfaces that a workspace has built: which is used, and what is said of a bad one.
+
+What is built here is the course's wheel, laid out as colcon would; test_colcon.py builds for real.
+"""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from importlib import metadata
+from pathlib import Path
+
+import pytest
+from my_robot_basics.session import overlays
+from ros2_command import ros2
+
+ROOT = Path(__file__).parents[1]
+NAME = 'arm_interfaces'
+PYTHON = 'python{}.{}'.format(*sys.version_info)
+OTHER = 'python3.10'
+MODULES = f'lib/{PYTHON}/site-packages/{NAME}'
+DEFINITION = f'share/{NAME}/srv/SolveIK.srv'
+PATIENCE_SEC = 60
+MAPPED = f"""
+from rclpy.serialization import serialize_message
+from {NAME}.srv import SolveIK
+serialize_message(SolveIK.Request())  # the last of the libraries are loaded by name, only now
+files = [line.split(maxsplit=5)[5:] for line in open('/proc/self/maps')]
+print(*sorted({{file.strip() for file, in filter(None, files) if '{NAME}' in file}}), sep='\\n')
+"""
+
+
+class Built:
+    """A workspace in which the package was built, and a terminal that has sourced it."""
+
+    def __init__(self, workspace, merged=False):
+        self.workspace = workspace
+        self.prefix = workspace / ('install' if merged else f'install/{NAME}')
+        self.modules = self.prefix / MODULES
+        for name in ('package.xml', 'srv', 'action'):
+            copy = shutil.copy if '.' in name else shutil.copytree
+            (workspace / 'src' / NAME).mkdir(parents=True, exist_ok=True)
+            copy(ROOT / NAME / name, workspace / 'src' / NAME / name)
+        installed = metadata.distribution(NAME)
+        for file in installed.files:
+            source = Path(installed.locate_file(file)).resolve()
+            target = self.prefix / source.relative_to(sys.prefix)
+            if '.dist-info' not in str(file) and '__pycache__' not in str(file):
+                target.parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy(source, target)
+        (module,) = self.modules.glob('*.abi3.so')
+        module.rename(module.with_name(module.name.replace('.abi3', '')))
+        libraries = self.prefix / 'lib'
+        shutil.copy(
+            libraries / f'lib{NAME}__rosidl_generator_c.so',
+            libraries / f'lib{NAME}__rosidl_generator_py.so',
+        )
+        (workspace / 'install/.colcon_install_layout').write_text(
+            'merged\n' if merged else 'isolated\n'
+        )
+
+    def variables(self, version=PYTHON):
+        """What its setup.bash sets."""
+        clean = {
+            name: value
+            for name, value in os.environ.items()
+            if name not in ('LD_LIBRARY_PATH', '_ROS_WHEELS_BOOTSTRAP_COMPLETE')
+        }
+        return clean | {
+            'AMENT_PREFIX_PATH': f'{self.prefix}:{sys.prefix}',
+            'PYTHONPATH': f'{self.prefix}/lib/{version}/site-packages',
+            'LD_LIBRARY_PATH': f'{self.prefix}/lib',
+            'ROS_WS': str(self.workspace),
+        }
+
+    def python(self, code, **variables):
+        return subprocess.run(
+            [sys.executable, '-P', '-c', code],
+            env=self.variables() | variables,
+            capture_output=True,
+            text=True,
+            timeout=PATIENCE_SEC,
+        )
+
+    def shown(self):
+        """What `ros2 interface show` answers, without the tests' own libraries."""
+        return ros2('interface', 'show', f'{NAME}/srv/SolveIK', **self.variables())
+
+    def again(self, folders=f'build/{NAME} install/{NAME}', option=''):
+        """The way out that each sentence ends with."""
+        return (
+            f': build it again, with `cd "$ROS_WS" && rm -rf {folders} && colcon build {option}'
+            f'--packages-select {NAME} && source install/setup.bash`'
+        )
+
+
+@pytest.fixture
+def built(tmp_path):
+    return Built(tmp_path / 'ros ws')
+
+
+def the_sentence(built, **variables):
+    """What an import says, and `ros2`: both say the same."""
+    imported = built.python(f'import {NAME}.srv', **variables)
+    assert imported.returncode == 1, imported.stdout
+    kind, _, sentence = imported.stderr.splitlines()[-1].partition(': ')
+    assert kind == 'ImportError'
+    shown = ros2('interface', 'show', f'{NAME}/srv/SolveIK', **built.variables() | variables)
+    assert shown.err.splitlines()[0] == f'course: {sentence}'
+    beginning = f'{NAME} in {built.prefix} '
+    assert sentence.startswith(beginning)
+    return sentence.removeprefix(beginning)
+
+
+# --- which one is used ---------------------------------------------------------------------------
+
+
+@pytest.mark.starts
+@pytest.mark.parametrize('seed', range(6))
+def test_all_of_it_is_loaded_from_the_workspace(built, seed):
+    # ROS's wheels put the folders of libraries into a set, whose order goes by this seed
+    loaded = built.python(MAPPED, PYTHONHASHSEED=str(seed))
+    assert (loaded.returncode, loaded.stderr) == (0, '')
+    files = [Path(line) for line in loaded.stdout.splitlines()]
+    assert len(files) >= 4
+    assert [file for file in files if not file.is_relative_to(built.prefix)] == []
+
+
+@pytest.mark.starts
+def test_ros2_shows_the_one_in_the_workspace_and_says_nothing_of_a_sound_one(built):
+    for file in (built.prefix / DEFINITION, built.workspace / f'src/{NAME}/srv/SolveIK.srv'):
+        file.write_text(file.read_text() + '# mine\n')
+    assert built.shown().out.endswith('# mine\n')
+    assert built.shown().err == ''
+
+
+@pytest.mark.starts
+def test_the_libraries_of_a_robots_ros_stay_behind_those_of_the_wheels(built, tmp_path):
+    robot = tmp_path / 'opt/ros/jazzy/lib'
+    robot.mkdir(parents=True)
+    order = built.python(
+        'import os; print(os.environ["LD_LIBRARY_PATH"])',
+        LD_LIBRARY_PATH=f'{robot}:{built.prefix}/lib',
+    ).stdout.split(':')
+    assert order[:2] == [f'{built.prefix}/lib', f'{sys.prefix}/lib']
+    assert order[-1].rstrip() == str(robot)
+
+
+def test_python_looks_at_it_before_the_wheels_start_python_again():
+    (packages,) = Path(sys.prefix).glob('lib/python*/site-packages')
+    names = sorted(file.name for file in packages.glob('*.pth'))  # site reads them in this order
+    ours, theirs = 'my_robot_basics_sourced.pth', 'ros_wheels_bootstrapper.pth'
+    assert names.index(ours) < names.index(theirs)
+
+
+# --- what is said of a bad one -------------------------------------------------------------------
+
+
+@pytest.mark.starts
+def test_built_for_another_python(built):
+    (built.prefix / 'lib' / PYTHON).rename(built.prefix / 'lib' / OTHER)
+    variables = {'PYTHONPATH': built.variables(OTHER)['PYTHONPATH']}
+    this = PYTHON.removeprefix('python')
+    assert the_sentence(built, **variables) == (
+        f'was built for Python 3.10, and this is Python {this}{built.again()}'
+    )
+
+
+@pytest.mark.starts
+@pytest.mark.parametrize(
+    'file',
+    [
+        f'lib/lib{NAME}__rosidl_typesupport_fastrtps_c.so',
+        f'{MODULES}/{NAME}_s__rosidl_typesupport_c.so',
+        f'{MODULES}/srv/__init__.py',
+        DEFINITION,
+    ],
+)
+def test_half_built(built, file):
+    (built.prefix / file).unlink()
+    if file.startswith(MODULES) and file.endswith('.so'):
+        (built.modules / f'_{NAME}_s.ep.rosidl_typesupport_c.c').touch()  # colcon leaves it there
+    assert the_sentence(built) == f'is only half built, without {file}{built.again()}'
+
+
+@pytest.mark.starts
+def test_a_library_that_was_cut_short(built):
+    file = f'lib/lib{NAME}__rosidl_typesupport_c.so'
+    (built.prefix / file).write_bytes(b'')
+    assert (
+        the_sentence(built) == f'is only half built: {file} is empty or cut short{built.again()}'
+    )
+
+
+@pytest.mark.starts
+def test_half_built_in_one_folder_with_all_packages(tmp_path):
+    built = Built(tmp_path / 'ros_ws', merged=True)
+    (built.prefix / DEFINITION).unlink()
+    again = built.again('build install', '--merge-install ')
+    assert the_sentence(built) == f'is only half built, without {DEFINITION}{again}'
+
+
+@pytest.mark.starts
+def test_a_command_that_needs_it_ends_with_the_sentence(built):
+    (built.prefix / f'lib/lib{NAME}__rosidl_generator_c.so').unlink()
+    call = ros2('service', 'call', '/solve_ik', f'{NAME}/srv/SolveIK', **built.variables())
+    sentence, *rest = call.err.splitlines()
+    assert (call.status, call.out) == (1, '')
+    assert 'is only half built' in sentence
+    assert rest == [f'{NAME}/srv/SolveIK cannot be loaded, for the reason above']
+
+
+def runs_but_says(built):
+    """What an import says that goes well, and `ros2`: both say the same."""
+    imported = built.python(f'import {NAME}.srv; print({NAME}.__file__)')
+    assert Path(imported.stdout.strip()) == built.modules / '__init__.py'
+    assert imported.stderr == built.shown().err
+    assert built.shown().status == 0
+    beginning = f'course: {NAME} in {built.prefix} '
+    assert imported.stderr.startswith(beginning)
+    return imported.stderr.removeprefix(beginning).removesuffix('\n')
+
+
+@pytest.mark.starts
+def test_older_than_its_sources(built):
+    (built.workspace / f'src/{NAME}/srv/SolveIK.srv').write_text('float64 x\n---\n')
+    assert runs_but_says(built) == (
+        f'was built before srv/SolveIK.srv in src was changed{built.again()}'
+    )
+
+
+@pytest.mark.starts
+def test_another_type_than_the_courses(built):
+    file = built.prefix / f'share/{NAME}/srv/SolveIK.json'
+    described = json.loads(file.read_text())
+    for each in described['type_hashes']:
+        each['hash_string'] = 'RIHS01_' + 64 * '0'
+    file.write_text(json.dumps(described))
+    said = runs_but_says(built)
+    assert said.startswith('has another srv/SolveIK.srv than the course, so that nodes that use ')
+    assert f'(./course workspace --refresh {NAME})' in said
+
+
+def test_a_package_that_the_course_has_not_is_compared_with_none(built):
+    own = overlays.Overlay(built.prefix, NAME)
+    assert own.difference() == ''
+    for folder in ('share', 'lib'):
+        for path in sorted(built.prefix.glob(f'{folder}/**/*{NAME}*'), reverse=True):
+            path.rename(path.with_name(path.name.replace(NAME, 'own_interfaces')))
+    assert overlays.Overlay(built.prefix, 'own_interfaces').difference() == ''
+
+
+@pytest.mark.starts
+def test_a_folder_that_is_gone(built):
+    shutil.rmtree(built.workspace / 'install')
+    sentence = (
+        f'{built.prefix} is gone, and this terminal still looks for its package there: build the '
+        'package again, or open a new terminal, which takes that of the course if there is one'
+    )
+    imported = built.python(f'import {NAME}; print({NAME}.__file__)')
+    assert imported.stdout.strip().startswith(sys.prefix)
+    assert imported.stderr == f'course: {sentence}\n'
+    assert built.shown().err == f'course: {sentence}\n'
+    assert 'float64[] elbow_up' in built.shown().out  # that of the course
+    folder = built.prefix.with_name('own_interfaces')
+    missing = built.python(
+        'import own_interfaces', PYTHONPATH=f'{folder}/lib/{PYTHON}/site-packages'
+    )
+    assert missing.stderr.splitlines()[-1] == (
+        'ModuleNotFoundError: ' + sentence.replace(str(built.prefix), str(folder))
+    )
+
+
+@pytest.mark.starts
+def test_a_robots_own_packages_are_not_looked_at(built):
+    (built.workspace / 'install/.colcon_install_layout').unlink()  # as in /opt/ros
+    (built.prefix / DEFINITION).unlink()
+    assert ros2('topic', 'list', '--help', **built.variables()).err == ''
+    assert list(overlays.faults(built.variables())) == []
