@@ -9,6 +9,7 @@ without an error has passed.
 - messages to a node: `topic(name).publish(...)`
 - a node that republishes: `relay(source, to=target)`
 - a server of the student's: `service(name, type).call(request)`
+- an action server of the student's: `action(name, type).send_goal(goal)`
 - a client of the student's: `serve(name, type, answer, ...)`, the check's own server
 - a node's log: `rosout(node_name)`
 - nodes, publishers and subscriptions: `graph()`
@@ -23,6 +24,7 @@ _HOMES = {
     'topic': 'checks.topics',
     'relay': 'checks.relays',
     'service': 'checks.services',
+    'action': 'checks.actions',
     'serve': 'checks.servers',
     'rosout': 'checks.logs',
     'graph': 'graph.graphs',
@@ -38,6 +40,8 @@ _HOMES = {
     'Relay': 'checks.relays',
     'Service': 'checks.services',
     'Server': 'checks.servers',
+    'Action': 'checks.actions',
+    'Outcome': 'checks.actions',
     'Log': 'checks.logs',
     'Record': 'checks.node_log',
     'GraphSnapshot': 'graph.snapshot',
@@ -45,7 +49,12 @@ _HOMES = {
     'StagePublisher': 'checks.delivery_experiment',
     'StageSubscription': 'checks.delivery_experiment',
 }
-_MODULES = {'ik': 'checks.ik', 'joints': 'checks.joints', 'student': 'exchange.student'}
+_MODULES = {
+    'ik': 'checks.ik',
+    'joints': 'checks.joints',
+    'moves': 'checks.moves',
+    'student': 'exchange.student',
+}
 
 __all__ = [*_HOMES, *_MODULES]
 

@@ -91,12 +91,16 @@ class SimulatedClock:
         A node's executor takes the tick in one pass and fires its timers in the next, and it
         answers one question a pass: the second answer tells that both are over.
         """
-        self.now_ns += step_ns
-        self._tick_ns.append(self.now_ns)
+        self.show(self.now_ns + step_ns)
+        self.acknowledge()
+        self._expect_time_left()
+
+    def show(self, time_ns: int) -> None:
+        """Move the clock to a time, and wait for nobody."""
+        self.now_ns = time_ns
+        self._tick_ns.append(time_ns)
         self._tick_wall_ns.append(time.time_ns())
         self._publish()
-        self._barrier(questions=2)
-        self._expect_time_left()
 
     def time_ns(self, wall_ns: int) -> int:
         """What `/clock` showed at a wall time (a message's source timestamp), in ns; 0 before."""
@@ -115,7 +119,8 @@ class SimulatedClock:
     def _publish(self) -> None:
         self._publisher.publish(Clock(clock=Time(nanoseconds=self.now_ns).to_msg()))
 
-    def _barrier(self, questions: int = 1) -> None:
+    def acknowledge(self, questions: int = 2) -> None:
+        """Wait until every node has answered so many questions. Raises Inconclusive."""
         watch = Stopwatch()
         asked = [self._ask(client) for client in self._barriers.values() for _ in range(questions)]
         if not self._answered(asked, SLOWEST_BARRIER_SEC):
@@ -155,7 +160,7 @@ class SimulatedClock:
         self._answered(self._set_all(dict.fromkeys(self._former, True)), FIRST_ANSWER_SEC)
         self._watcher.spin_until_free(self._is_subscribed_to, free_sec=FIRST_ANSWER_SEC)
         self._publish()
-        self._barrier()
+        self.acknowledge(questions=1)
 
     def _is_subscribed_to(self) -> bool:
         self._publish()

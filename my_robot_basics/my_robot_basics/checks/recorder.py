@@ -46,5 +46,9 @@ class Recorder:
         """How many messages were sent after that wall time."""
         return sum(sent_ns > wall_ns for _, sent_ns in self.received)
 
+    def close(self) -> None:
+        """Receive no more."""
+        self._node.destroy_subscription(self._subscription)
+
     def _receive(self, message: Any, info: dict) -> None:
         self.received.append((message, info['source_timestamp']))

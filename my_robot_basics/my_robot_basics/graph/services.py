@@ -1,5 +1,6 @@
 """Services on the graph: which nodes serve one, which ask, and with which type."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from rclpy.node import Node
@@ -12,11 +13,13 @@ _OF_EVERY_NODE = frozenset(
     """describe_parameters get_parameter_types get_parameters list_parameters set_parameters
     set_parameters_atomically get_type_description""".split()  # noqa: SIM905
 )
+LookUp = Callable[[str, str], list[tuple[str, list[str]]]]
+"""What a node of that name and namespace has at one end: names, each with its types."""
 
 
 @dataclass(frozen=True)
 class ServiceGraph:
-    """Who serves and who asks, without the nodes whose names start with `_`."""
+    """Who serves and who asks, without the nodes whose names start with `_`; of actions, too."""
 
     node_names: tuple[str, ...]
     """Full names of all nodes, sorted."""
@@ -28,9 +31,10 @@ class ServiceGraph:
     def why_none(self, name: str, *, maker: str) -> str:
         """What to try where nobody is at that end of a service: one clause.
 
-        `maker` is 'create_service' or 'create_client'.
+        `maker` is 'create_service' or 'create_client', 'ActionServer' or 'ActionClient'.
         """
-        ends = self.servers if maker == 'create_service' else self.clients
+        is_served = maker in ('create_service', 'ActionServer')
+        ends = self.servers if is_served else self.clients
         if not self.node_names:
             return 'the node is not running, so run the cell that starts it and read its output'
         if near := similar(name, [each for each in ends if each != name]):
@@ -39,11 +43,18 @@ class ServiceGraph:
                 return f"{uses}: a name without a leading / is relative to its node's namespace"
             return f'{uses}, so compare the spelling'
         runs = theirs(', '.join(self.node_names))
-        return f'{runs} runs, so look at the service name in {maker}(…) and that the node calls it'
+        kind = 'action' if maker.startswith('Action') else 'service'
+        return f'{runs} runs, so look at the {kind} name in {maker}(…) and that the node calls it'
 
 
 def take(node: Node) -> ServiceGraph:
     """The services as a node sees them now."""
+    ends = node.get_service_names_and_types_by_node, node.get_client_names_and_types_by_node
+    return take_ends(node, *ends)
+
+
+def take_ends(node: Node, look_up_servers: LookUp, look_up_clients: LookUp) -> ServiceGraph:
+    """What these find for each node that a node sees now."""
     nodes = [
         (name, namespace)
         for name, namespace in node.get_node_names_and_namespaces()
@@ -53,10 +64,7 @@ def take(node: Node) -> ServiceGraph:
     clients: dict[str, dict[str, tuple[str, ...]]] = {}
     for name, namespace in nodes:
         full_name = f'{namespace.rstrip("/")}/{name}'
-        for ends, look_up in (
-            (servers, node.get_service_names_and_types_by_node),
-            (clients, node.get_client_names_and_types_by_node),
-        ):
+        for ends, look_up in ((servers, look_up_servers), (clients, look_up_clients)):
             try:
                 found = look_up(name, namespace)
             except RuntimeError:  # it has gone meanwhile

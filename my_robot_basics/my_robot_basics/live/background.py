@@ -6,6 +6,8 @@ from collections.abc import Callable
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 
+from my_robot_basics.live.destroying import destroy
+
 JOIN_TIMEOUT_SEC = 1.0
 """How long a callback may still run before its node is destroyed under it."""
 
@@ -91,5 +93,5 @@ class Background:
         executor = self.node.executor
         if executor is not None:
             executor.remove_node(self.node)
-        self.node.destroy_node()
+        destroy(self.node)
         self._executor.shutdown()

@@ -12,6 +12,7 @@ from rclpy.signals import SignalHandlerOptions, uninstall_signal_handlers
 
 from my_robot_basics.live import harmless_errors, node_file, notebook, spinning
 from my_robot_basics.live.background import Background
+from my_robot_basics.live.destroying import destroy
 from my_robot_basics.live.naming import announce_name
 from my_robot_basics.live.panel import STOPPED, NodePanel, Panel
 from my_robot_basics.live.refusals import is_made, no_node_yet, not_a_class
@@ -82,7 +83,7 @@ def launch(
     except BaseException as error:
         too_soon = isinstance(error, AttributeError) and error.obj is node and not is_made(node)
         if is_made(node):
-            node.destroy_node()  # or the publishers that it has made would live on
+            destroy(node)  # or the publishers that it has made would live on
         panel.show('its constructor failed')
         panel.close('its constructor failed')
         if too_soon:

@@ -15,6 +15,7 @@ from rclpy.context import Context
 from rclpy.executors import Executor, TimeoutException, TimeoutObject
 from rclpy.node import Node
 
+from my_robot_basics.live.destroying import destroy
 from my_robot_basics.live.patching import patch
 from my_robot_basics.session.errors import LiveError, in_lines
 
@@ -107,7 +108,7 @@ def _explaining_spin(spin: Callable[..., None]) -> Callable[..., None]:
             )
             spin(node, executor)
         except KeyboardInterrupt:
-            node.destroy_node()
+            destroy(node)
             raise SpinInterrupted(
                 f'rclpy.spin was interrupted, and {name} is stopped. To go on, write {made} '
                 f'in place of the lines that make {name} and spin it, and run this cell again: '

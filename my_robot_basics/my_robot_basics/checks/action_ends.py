@@ -1,0 +1,194 @@
+"""The check's ends of an action: what is sent to its server, and all that the server says."""
+
+import time
+import uuid
+from collections.abc import Callable
+from typing import Any
+
+from action_msgs.msg import GoalInfo, GoalStatus
+from rclpy.qos import QoSProfile, qos_profile_action_status_default
+from rclpy.task import Future
+from unique_identifier_msgs.msg import UUID
+
+from my_robot_basics.checks.recorder import Recorder
+from my_robot_basics.graph.watcher import Watcher
+
+DEPTH = 5000
+"""Queue of the feedback: more messages than any move can bring."""
+STATUS_NAMES = {
+    GoalStatus.STATUS_UNKNOWN: 'unknown',
+    GoalStatus.STATUS_ACCEPTED: 'accepted',
+    GoalStatus.STATUS_EXECUTING: 'executing',
+    GoalStatus.STATUS_CANCELING: 'canceling',
+    GoalStatus.STATUS_SUCCEEDED: 'succeeded',
+    GoalStatus.STATUS_CANCELED: 'canceled',
+    GoalStatus.STATUS_ABORTED: 'aborted',
+}
+TERMINAL = 'succeeded', 'canceled', 'aborted'
+"""A goal of these is over."""
+
+
+class SentGoal:
+    """A goal that a check has sent, and what came of it so far."""
+
+    def __init__(
+        self, goal: Any, goal_id: UUID, ends: 'ActionEnds', ask_for_result: Callable[[], Future]
+    ) -> None:
+        self.goal = goal
+        """The goal's message."""
+        self.id = goal_id
+        self.sent_ns = time.time_ns()
+        """When it was sent, on the wall clock."""
+        self._ends, self._ask_for_result = ends, ask_for_result
+        self._result: Future | None = None
+        self.answer: Future = Future()
+        """The server's answer to it; set by who sends it."""
+
+    @property
+    def is_accepted(self) -> bool:
+        """Whether the server has accepted it; False where it has not answered."""
+        return bool(self.answer.done() and self.answer.result().accepted)
+
+    @property
+    def status(self) -> str:
+        """The last one that the server published, or that of the result; '' for none."""
+        if self.has_result():
+            return STATUS_NAMES.get(self._response().status, 'unknown')
+        statuses = self.statuses()
+        return statuses[-1][1] if statuses else ''
+
+    @property
+    def result(self) -> Any:
+        """The result's message, or None."""
+        return self._response().result if self.has_result() else None
+
+    def ask_for_result(self) -> None:
+        """Ask the server to send the result once there is one. Only an accepted goal has one."""
+        self._result = self._ask_for_result()
+
+    def has_result(self) -> bool:
+        """Whether the result was received."""
+        return self._result is not None and self._result.done()
+
+    def is_over(self) -> bool:
+        """Whether the server says that the goal has ended, by its status or the result."""
+        return self.status in TERMINAL or self.has_result()
+
+    def statuses(self) -> list[tuple[int, str]]:
+        """Each other status that was published, and when: wall time in ns."""
+        found: list[tuple[int, str]] = []
+        for message, sent_ns in self._ends.statuses.received:
+            for each in message.status_list:
+                name = STATUS_NAMES.get(each.status, 'unknown')
+                is_mine = _same(each.goal_info.goal_id, self.id)
+                if is_mine and (not found or found[-1][1] != name):
+                    found.append((sent_ns, name))
+        return found
+
+    def feedback(self) -> list[tuple[int, Any]]:
+        """The feedback so far, and when it was sent: wall time in ns."""
+        return [
+            (sent_ns, message.feedback)
+            for message, sent_ns in self._ends.feedback.received
+            if _same(message.goal_id, self.id)
+        ]
+
+    def feedback_count(self) -> int:
+        """How much feedback of the action has come since the goal was sent; quick to tell."""
+        return len(self._ends.feedback.received) - self._received_before
+
+    def begin(self, received_before: int) -> None:
+        """Count feedback from here on."""
+        self._received_before = received_before
+
+    def over_ns(self) -> int:
+        """When the server said that it was over: wall time in ns; 0 where it has not."""
+        return next((at for at, name in self.statuses() if name in TERMINAL), 0)
+
+    def _response(self) -> Any:
+        assert self._result is not None
+        return self._result.result()
+
+
+class ActionEnds:
+    """Three clients and two subscriptions: what makes an action client."""
+
+    def __init__(self, watcher: Watcher, name: str, type_: type) -> None:
+        """Nothing is sent yet; wait for `is_connected`."""
+        self._node = watcher.node
+        impl = type_.Impl  # type: ignore[attr-defined]
+        self._impl = impl
+        kinds = {
+            'send_goal': impl.SendGoalService,
+            'get_result': impl.GetResultService,
+            'cancel_goal': impl.CancelGoalService,
+        }
+        self._clients = {
+            end: self._node.create_client(kind, f'{name}/_action/{end}')
+            for end, kind in kinds.items()
+        }
+        self.feedback = Recorder(
+            watcher,
+            topic_name=f'{name}/_action/feedback',
+            type_=impl.FeedbackMessage,
+            qos_profile=QoSProfile(depth=DEPTH),
+        )
+        self.statuses = Recorder(
+            watcher,
+            topic_name=f'{name}/_action/status',
+            type_=impl.GoalStatusMessage,
+            qos_profile=qos_profile_action_status_default,
+        )
+
+    def is_connected(self) -> bool:
+        """Whether all five ends have met a server."""
+        ready = all(client.service_is_ready() for client in self._clients.values())
+        return ready and self.feedback.is_connected() and self.statuses.is_connected()
+
+    def send(self, goal: Any) -> SentGoal:
+        """Send a goal; it does not wait for the answer."""
+        goal_id = UUID(uuid=list(uuid.uuid4().bytes))
+        sent = SentGoal(goal, goal_id, self, lambda: self._ask_for_result(goal_id))
+        sent.begin(len(self.feedback.received))
+        request = self._impl.SendGoalService.Request(goal_id=goal_id, goal=goal)
+        sent.answer = self._clients['send_goal'].call_async(request)
+        return sent
+
+    def cancel(self, sent: SentGoal) -> Future:
+        """Ask to cancel a goal; the answer is a CancelGoal.Response."""
+        return self._cancel(GoalInfo(goal_id=sent.id))
+
+    def cancel_all(self) -> Future:
+        """Ask to cancel every goal of the server."""
+        return self._cancel(GoalInfo())
+
+    def has_active(self) -> bool:
+        """Whether a goal of anybody's is not over, as the server last said."""
+        heard = self.statuses.messages()
+        return bool(heard) and any(
+            STATUS_NAMES.get(each.status) not in TERMINAL for each in heard[-1].status_list
+        )
+
+    def leave(self) -> None:
+        """Be gone, as a client that has crashed."""
+        for client in self._clients.values():
+            self._node.destroy_client(client)
+        self.feedback.close()
+        self.statuses.close()
+
+    def _cancel(self, goal_info: GoalInfo) -> Future:
+        request = self._impl.CancelGoalService.Request(goal_info=goal_info)
+        return self._clients['cancel_goal'].call_async(request)
+
+    def _ask_for_result(self, goal_id: UUID) -> Future:
+        request = self._impl.GetResultService.Request(goal_id=goal_id)
+        return self._clients['get_result'].call_async(request)
+
+
+def cancels(response: Any, sent: SentGoal) -> bool:
+    """Whether the answer to `cancel` says that this goal is being cancelled."""
+    return any(_same(info.goal_id, sent.id) for info in response.goals_canceling)
+
+
+def _same(one: UUID, other: UUID) -> bool:
+    return bytes(one.uuid) == bytes(other.uuid)

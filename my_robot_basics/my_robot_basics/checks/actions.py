@@ -1,0 +1,70 @@
+"""An action as a check sees it: send its server a goal, and say why no answer comes."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import Any
+
+from my_robot_basics.checks.open_action import OpenAction
+from my_robot_basics.graph.watcher import Watcher
+
+RESULT_SEC = 10.0
+"""How long `send_goal` waits for the end of a goal, of time that was free."""
+
+
+def action(name: str, type_: type) -> 'Action':
+    """The action of that (absolute) name and type, to be sent goals.
+
+    `outcome = action('/move_arm', MoveArm).send_goal(MoveArm.Goal(position=[0.5, 0.2]))`
+    """
+    return Action(name, type_)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How a goal ended."""
+
+    status: str
+    """'rejected', 'succeeded', 'canceled' or 'aborted'."""
+    result: Any
+    """The result's message; None where it was rejected."""
+    feedback: tuple[Any, ...]
+    """The feedback's messages."""
+
+
+@dataclass(frozen=True)
+class Action:
+    """What a check may do with an action that the student's node serves."""
+
+    name: str
+    """Absolute: '/move_arm'."""
+    type: type
+    """Its class, such as `arm_interfaces.action.MoveArm`."""
+    follows: dict[str, bool] = field(default_factory=dict, compare=False, repr=False)
+    """Of each node that served it, whether it follows a clock that is driven."""
+
+    def send_goal(self, goal: Any, *, cancel_after_sec: float | None = None) -> Outcome:
+        """Send a goal, ask to cancel it after a while of wall time, and wait for its end.
+
+        Raises CheckFailed where there is no server, one of another type, or more than one; and
+        where no answer comes, or no end in RESULT_SEC of time that was free, with the reason.
+        """
+        with self.opened() as server:
+            sent = server.send(goal)
+            if not sent.is_accepted:
+                return Outcome('rejected', None, ())
+            if cancel_after_sec is not None:
+                server.watcher.spin_for(cancel_after_sec)
+                server.answer_to(server.ends.cancel(sent), what='the request to cancel')
+            if not server.watcher.spin_until_free(sent.has_result, free_sec=RESULT_SEC):
+                server.fail_without_end(sent, f'in {RESULT_SEC:g} s')
+            feedback = tuple(message for _, message in sent.feedback())
+            return Outcome(sent.status, sent.result, feedback)
+
+    @contextmanager
+    def opened(self) -> Iterator[OpenAction]:
+        """Meet the server, and see that no goal of earlier is left. Raises CheckFailed."""
+        with Watcher() as watcher:
+            server = OpenAction(watcher, self.name, self.type)
+            server.meet()
+            yield server

@@ -1,0 +1,164 @@
+"""Whether a cancelled goal stops the arm behind `/move_arm`, and leaves it ready for the next."""
+
+from typing import Any
+
+from my_robot_basics.checks.action_ends import SentGoal, cancels
+from my_robot_basics.checks.actions import Action
+from my_robot_basics.checks.arm_looks import look
+from my_robot_basics.checks.arm_moves import expect_result, is_near
+from my_robot_basics.checks.arm_stops import ON_LINE_RAD, expect_canceled, expect_on_the_way
+from my_robot_basics.checks.watched_arm import Pose, WatchedArm, accepted, far_rad, goal
+from my_robot_basics.feedback.errors import expect, fail
+
+STOP_SEC = 0.2
+SLACK_SEC, WALL_SLACK_SEC = 0.06, 0.15
+"""A step of the clock; what a thread may be late on the wall clock."""
+NEXT_SPEED = 0.4
+EARLY_PART = 0.8
+MOST_TIMES, MORE_SEC = 3.0, 1.0
+ANSWER_SEC = 5.0
+"""How long the answer may take of a server that gives it at the end of the move alone."""
+BLOCKED = (
+    "the execute callback keeps the node's only thread: wait with `await sleep(self, …)` in place "
+    'of time.sleep(…), or use a MultiThreadedExecutor'
+)
+
+
+def expect_cancels(
+    action: Action,
+    position: Pose,
+    *,
+    speed: float,
+    start: Pose = (0.0, 0.0),
+    after: float = 0.4,
+) -> None:
+    """A goal that is cancelled after that part of its move stops the arm within 0.2 s, on the way.
+
+    It is canceled, its result holds where the arm is, and the next move begins there, and is not
+    stopped. Raises CheckFailed.
+    """
+
+    def stops(arm: WatchedArm) -> None:
+        sent = arm.send(arm.goal(position, speed=speed))
+        wanted_sec = far_rad(arm.start, position) / sent.goal.speed
+        arm.time.let_pass(sent.is_over, seconds=after * wanted_sec)
+        expect(
+            not sent.is_over(),
+            expected=f'a move that takes {wanted_sec:.1f} s',
+            seen='it over before it could be cancelled',
+            hint='move the arm a little in each step, by speed × the time of the step',
+            cause='the move is over too soon to be cancelled',
+        )
+        _cancel(arm, sent, wanted_sec=wanted_sec)
+        expect_result(arm, sent)
+        expect_canceled(arm, sent)
+        expect_on_the_way(arm, sent, position)
+        _expect_goes_on(arm, sent)
+
+    look(action, stops, start=start)
+
+
+def expect_late_cancel(action: Action, position: Pose, *, start: Pose = (0.0, 0.0)) -> None:
+    """A request to cancel that comes after the end changes nothing, for the next goal neither.
+
+    Raises CheckFailed.
+    """
+
+    def outlasts(arm: WatchedArm) -> None:
+        sent = arm.send(arm.goal(position, speed=2.0))
+        arm.time.wait(sent.is_over, seconds=MOST_TIMES * far_rad(arm.start, position) + MORE_SEC)
+        ended = sent.status
+        arm.server.answer_to(arm.server.ends.cancel(sent), what='a request to cancel that is late')
+        expect(
+            sent.status == ended,
+            expected=f'a goal that is over to stay {ended}',
+            seen=f'it {sent.status} after a late request to cancel',
+            hint='a goal has one end: leave it alone afterwards',
+            cause='a late request to cancel changes a goal',
+        )
+        back, arm.start = arm.start, tuple(position)
+        _expect_moves_on(arm, back)
+
+    look(action, outlasts, start=start)
+
+
+def _cancel(arm: WatchedArm, sent: SentGoal, *, wanted_sec: float) -> None:
+    """Ask to cancel: it is accepted, and the goal is over in time. Raises CheckFailed."""
+    began_ns = arm.time.now_ns()
+    asked = arm.server.ends.cancel(sent)
+    arm.server.watcher.spin_until_free(asked.done, free_sec=ANSWER_SEC)
+    was_over = sent.is_over()
+    response = arm.server.answer_to(asked, what='the request to cancel')
+    if not cancels(response, sent):
+        _fail_refused(arm, response, was_over=was_over)
+    slack_sec = SLACK_SEC if arm.time.is_driven else WALL_SLACK_SEC
+    if arm.time.wait(sent.is_over, seconds=STOP_SEC + slack_sec):
+        return
+    if not arm.time.wait(sent.is_over, seconds=MOST_TIMES * wanted_sec):
+        arm.server.fail_without_end(sent, 'after the request to cancel was accepted')
+    over_sec = (arm.time.at_ns(sent.over_ns()) - began_ns) / 1e9
+    hint = 'look at goal_handle.is_cancel_requested in each step, and take steps more often'
+    if sent.status != 'canceled':
+        hint = (
+            'the move goes on in spite of the request: look at goal_handle.is_cancel_requested in '
+            'each step, and if it is True, call goal_handle.canceled() and return the result'
+        )
+    fail(
+        expected=f'the goal to be canceled within {STOP_SEC} s',
+        seen=f'it {sent.status} after {over_sec:.1f} s',
+        hint=hint,
+        cause='the arm does not stop in time',
+        doubt=arm.doubt(),
+    )
+
+
+def _fail_refused(arm: WatchedArm, response: Any, *, was_over: bool) -> None:
+    if was_over or response.return_code == response.ERROR_GOAL_TERMINATED:
+        fail(
+            expected='an answer to the request to cancel while the arm moves',
+            seen='it at the end of the move',
+            hint=BLOCKED,
+            cause='a request to cancel is answered too late',
+            doubt=arm.doubt(),
+        )
+    fail(
+        expected='the request to cancel to be accepted',
+        seen='it rejected',
+        hint='give ActionServer a cancel_callback that returns CancelResponse.ACCEPT: without '
+        'one, rclpy rejects every request',
+        cause='a request to cancel is rejected',
+    )
+
+
+def _expect_goes_on(arm: WatchedArm, sent: SentGoal) -> None:
+    """The next goal begins where the arm was stopped."""
+    back, stopped = arm.start, tuple(sent.result.position)
+    arm.start = stopped
+    moved = _expect_moves_on(arm, back)
+    feedback = moved.feedback()
+    near_rad = (STOP_SEC + SLACK_SEC) * moved.goal.speed + ON_LINE_RAD
+    if feedback and len(feedback[0][1].position) == len(back):
+        seen = list(feedback[0][1].position)
+        expect(
+            is_near(seen, stopped, near_rad),
+            expected=f'the next move to begin at {[round(each, 3) for each in stopped]}',
+            seen=f'{[round(each, 3) for each in seen]}',
+            hint='a move begins where the arm was stopped: remember its position in each step',
+            cause='the next move begins elsewhere',
+        )
+
+
+def _expect_moves_on(arm: WatchedArm, position: Pose) -> SentGoal:
+    """The next goal is accepted, and is not stopped."""
+    far = far_rad(arm.start, position)
+    sent = accepted(arm.server, goal(position, speed=max(NEXT_SPEED, far / 2.0)))
+    wanted_sec = far / sent.goal.speed
+    arm.time.wait(sent.is_over, seconds=MOST_TIMES * wanted_sec + MORE_SEC)
+    expect(
+        sent.is_over() and sent.status != 'canceled',
+        expected='the next goal to be reached',
+        seen=f'it {sent.status}',
+        hint='a request to cancel is for one goal: forget it when the next one begins',
+        cause='the next goal is stopped, too',
+    )
+    return sent

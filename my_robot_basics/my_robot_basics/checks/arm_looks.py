@@ -1,0 +1,113 @@
+"""Look at a server of `/move_arm` on the robot's clock, or on the wall clock if it ignores that.
+
+A server that sleeps on wall time, or lets nothing else run meanwhile, gets short moves there.
+"""
+
+from collections.abc import Callable
+from typing import TypeVar
+
+from rcl_interfaces.srv import GetParameters
+
+from arm_interfaces.action import MoveArm
+from my_robot_basics.checks.actions import Action
+from my_robot_basics.checks.clock import Inconclusive, SimulatedClock
+from my_robot_basics.checks.open_action import OpenAction
+from my_robot_basics.checks.robot_time import DrivenTime, WallTime
+from my_robot_basics.checks.services import PARAMETERS_SEC
+from my_robot_basics.checks.watched_arm import HASTE_SEC, Pose, WatchedArm, goal
+
+T = TypeVar('T')
+
+STEP_NS = 50_000_000
+"""Steps of the robot's clock: two of them between feedback at 10 Hz."""
+PROBE_RAD, PROBE_SEC = 0.4, 0.6
+"""A move that tells which clock the server follows. …"""
+PROBE_ASK_SEC = 0.1
+"""… So long after its start, the node is asked something else."""
+PROBE_MOST_SEC = 3.0
+
+
+def look(action: Action, body: Callable[[WatchedArm], T], *, start: Pose) -> T:
+    """What `body` makes of the server, with the arm at `start`. Raises what it raises.
+
+    On the robot's clock where the node follows it; else, or if that clock can't be driven, on the
+    wall clock.
+    """
+    with action.opened() as server:
+        on_wall = WatchedArm(server, WallTime(server.watcher), tuple(start))
+        on_wall.move(start)
+        if _follows(action, on_wall):
+            try:
+                return _driven(server, body, tuple(start))
+            except Inconclusive:
+                on_wall.move(start)
+        on_wall.time = WallTime(server.watcher)
+        try:
+            return body(on_wall)
+        finally:
+            on_wall.settle()
+
+
+def _driven(server: OpenAction, body: Callable[[WatchedArm], T], start: tuple[float, ...]) -> T:
+    with SimulatedClock(server.watcher, needed={server.node_name}) as clock:
+        beats = server.ends.feedback.received
+        time = DrivenTime(server.watcher, clock, step_ns=STEP_NS, beat=lambda: len(beats))
+        arm = WatchedArm(server, time, start)
+        try:
+            return body(arm)
+        finally:
+            arm.settle()
+
+
+def _follows(action: Action, arm: WatchedArm) -> bool:
+    """Whether the node follows a clock that is driven; told once for each server."""
+    node_name = arm.server.node_name
+    if node_name not in action.follows:
+        is_free = _answers_while_it_moves(arm)
+        arm.settle()
+        action.follows[node_name] = is_free and _waits_for_the_clock(arm)
+        arm.move(arm.start)
+    return action.follows[node_name]
+
+
+def _probe(arm: WatchedArm) -> MoveArm.Goal:
+    """A goal that takes PROBE_SEC, towards the middle."""
+    first, *others = arm.start
+    first += PROBE_RAD if first < 0.0 else -PROBE_RAD
+    return goal([first, *others], speed=PROBE_RAD / PROBE_SEC)
+
+
+def _answers_while_it_moves(arm: WatchedArm) -> bool:
+    """Whether the node answers other questions in the midst of a move.
+
+    One that does not has no turn for `/clock`: asleep on it, it would never wake up.
+    """
+    watcher = arm.server.watcher
+    asks = watcher.node.create_client(GetParameters, f'{arm.server.node_name}/get_parameters')
+    watcher.spin_until(asks.service_is_ready, timeout_sec=PARAMETERS_SEC)
+    sent = arm.send(_probe(arm))
+    watcher.spin_until(sent.is_over, timeout_sec=PROBE_ASK_SEC)
+    asked = asks.call_async(GetParameters.Request(names=['use_sim_time']))
+    watcher.spin_until_free(lambda: asked.done() or sent.is_over(), free_sec=HASTE_SEC)
+    is_free = asked.done() and not sent.is_over()
+    watcher.node.destroy_client(asks)
+    arm.time.wait(sent.is_over, seconds=HASTE_SEC)
+    return is_free
+
+
+def _waits_for_the_clock(arm: WatchedArm) -> bool:
+    """Whether a move stands still while the robot's clock does, and goes on with it."""
+
+    def waits(driven: WatchedArm) -> bool:
+        assert isinstance(driven.time, DrivenTime)
+        sent = driven.send(_probe(driven))
+        driven.time.hold(PROBE_SEC)
+        if sent.is_over() or sent.feedback_count() > 1:
+            return False
+        return driven.time.wait(sent.is_over, seconds=PROBE_MOST_SEC)
+
+    try:
+        arm.move(arm.start)
+        return _driven(arm.server, waits, arm.start)
+    except Inconclusive:
+        return False

@@ -1,0 +1,150 @@
+"""Whether the arm behind `/move_arm` gets where it is sent, at the speed asked for."""
+
+import math
+from collections.abc import Sequence
+
+from my_robot_basics.checks import joints
+from my_robot_basics.checks.action_ends import ActionEnds, SentGoal
+from my_robot_basics.checks.actions import Action
+from my_robot_basics.checks.arm_looks import look
+from my_robot_basics.checks.arm_speed import expect_speed
+from my_robot_basics.checks.watched_arm import Pose, WatchedArm, far_rad
+from my_robot_basics.feedback.errors import expect, fail, shorten
+
+WITHIN_RAD = 0.005
+"""An arm that is so near has arrived."""
+MOST_TIMES = 3.0
+"""A move is waited for so many times as long as it is to take."""
+MORE_SEC = 1.0
+"""… And so much longer."""
+MEET_SEC = 2.0
+"""How long a second client may take to meet the server, …"""
+SEEN_SEC = 0.3
+"""… And a status to come."""
+LEAVES_SPEED = 0.5
+"""Of a move whose client leaves, in rad/s."""
+
+
+def expect_reaches(
+    action: Action, position: Pose, *, speed: float, start: Pose = (0.0, 0.0)
+) -> None:
+    """The arm goes from `start` to a position (rad) at that speed (rad/s), and the goal succeeds.
+
+    The result holds the position. Raises CheckFailed.
+    """
+
+    def arrives(arm: WatchedArm) -> None:
+        sent = _arrive(arm, position, speed=speed)
+        expect_speed(arm, sent, position)
+
+    look(action, arrives, start=start)
+
+
+def expect_serves_on(action: Action, position: Pose, *, start: Pose = (0.0, 0.0)) -> None:
+    """A client sends a goal and vanishes; the next client's goal is served all the same.
+
+    Raises CheckFailed.
+    """
+
+    def serves_on(arm: WatchedArm) -> None:
+        vanishes = ActionEnds(arm.server.watcher, arm.server.name, arm.server.type)
+        arm.server.watcher.spin_until(vanishes.is_connected, timeout_sec=MEET_SEC)
+        sent = arm.server.send(arm.goal(position, speed=LEAVES_SPEED), ends=vanishes)
+        vanishes.leave()
+        ends = arm.server.ends
+        arm.server.watcher.spin_until(ends.has_active, timeout_sec=SEEN_SEC)
+        wanted_sec = far_rad(arm.start, position) / sent.goal.speed
+        if not arm.time.wait(
+            lambda: not ends.has_active(), seconds=MOST_TIMES * wanted_sec + MORE_SEC
+        ):
+            arm.server.fail_without_end(sent, 'after its client has left')
+        back = arm.start
+        arm.start = tuple(position)
+        _arrive(arm, back, speed=LEAVES_SPEED)
+
+    look(action, serves_on, start=start)
+
+
+def _arrive(arm: WatchedArm, position: Pose, *, speed: float) -> SentGoal:
+    """Send the arm there; the goal, which has succeeded. Raises CheckFailed."""
+    sent = arm.send(arm.goal(position, speed=speed))
+    wanted_sec = far_rad(arm.start, position) / sent.goal.speed
+    most_sec = MOST_TIMES * wanted_sec + MORE_SEC
+    if not arm.time.wait(sent.is_over, seconds=most_sec):
+        arm.server.fail_without_end(sent, f'in {most_sec:.0f} s of a move that takes a third')
+    _expect_succeeded(arm, sent)
+    _expect_arrived(sent, position, start=arm.start)
+    return sent
+
+
+def _expect_succeeded(arm: WatchedArm, sent: SentGoal) -> None:
+    expect_result(arm, sent)
+    if sent.status != 'succeeded':
+        fail(
+            expected='the goal to be succeeded at its end',
+            seen=f'it {sent.status}',
+            hint=_why_not(arm, sent),
+            cause=f'a goal that was reached is {sent.status}',
+        )
+
+
+def expect_result(arm: WatchedArm, sent: SentGoal) -> None:
+    """The result of a goal that is over arrives. Raises CheckFailed."""
+    expect(
+        arm.has_result(sent),
+        expected='a result',
+        seen=f'the status {sent.status}, and no result',
+        hint='end the execute callback with `return MoveArm.Result(position=…)`, in each branch',
+        cause='there is no result',
+    )
+
+
+def why_aborted(arm: WatchedArm, sent: SentGoal, *, instead: str) -> str:
+    """What to try where a goal was aborted; `instead` is the call that is missing."""
+    log = arm.server.log
+    if raised := log.raised(since_ns=sent.sent_ns):
+        return raised
+    if log.was_not_set(since_ns=sent.sent_ns):
+        return (
+            f'call goal_handle.{instead}() before the execute callback returns: rclpy takes a '
+            'goal whose state nobody has set for aborted'
+        )
+    return f'call goal_handle.{instead}(), and not abort()'
+
+
+def _why_not(arm: WatchedArm, sent: SentGoal) -> str:
+    if sent.status == 'aborted':
+        return why_aborted(arm, sent, instead='succeed')
+    return 'call goal_handle.succeed() when the arm is there'
+
+
+def _expect_arrived(sent: SentGoal, position: Pose, *, start: Pose) -> None:
+    seen = list(sent.result.position)
+    if not is_near(seen, position):
+        fail(
+            expected=f'result.position {[round(each, 3) for each in position]}',
+            seen=shorten([round(each, 3) for each in seen]),
+            hint=why_off(seen, position, start=start),
+            cause='the result does not hold the position',
+        )
+
+
+def is_near(seen: Sequence[float], wanted: Pose, within_rad: float = WITHIN_RAD) -> bool:
+    """Whether all joints are there."""
+    return len(seen) == len(wanted) and all(
+        abs(a - b) <= within_rad for a, b in zip(seen, wanted, strict=True)
+    )
+
+
+def why_off(seen: Sequence[float], wanted: Pose, *, start: Pose) -> str:
+    """What to try where a position is another one than wanted."""
+    if not seen:
+        return 'fill in the position: MoveArm.Result(position=…)'
+    if is_near(seen, start):
+        return 'this is where the arm was: put in where it is in the end'
+    if is_near(seen, [math.degrees(each) for each in wanted], within_rad=0.5):
+        return 'these are degrees: all positions of MoveArm are in radians'
+    if is_near(seen, [math.radians(each) for each in wanted], within_rad=1e-3):
+        return 'the positions of MoveArm are in radians already'
+    why = joints.why_off(seen, [math.degrees(each) for each in wanted])
+    return why if 'convert' not in why else 'put in the positions of both joints, in radians'

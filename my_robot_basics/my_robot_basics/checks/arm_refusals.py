@@ -1,0 +1,103 @@
+"""Which goals `/move_arm` accepts: possible ones, one at a time."""
+
+import math
+
+from arm_interfaces.action import MoveArm
+from my_robot_basics.checks.action_ends import ActionEnds
+from my_robot_basics.checks.actions import Action
+from my_robot_basics.checks.arm_looks import look
+from my_robot_basics.checks.watched_arm import Pose, WatchedArm, accepted, far_rad, goal
+from my_robot_basics.feedback.errors import expect, fail
+
+LIMITS_RAD = math.radians(90.0), math.radians(120.0)
+"""Of joint1 and joint2, on both sides."""
+TOO_MANY_SPEED = 0.2
+"""Of a move in which a second goal comes, in rad/s."""
+BEFORE_PART = 0.3
+"""It comes after this part of the move."""
+EARLY_PART = 0.8
+"""A move that is over sooner was stopped."""
+MOST_TIMES, MORE_SEC = 3.0, 1.0
+CLIENT_SEC = 2.0
+
+
+def expect_rejects(action: Action, *goals: MoveArm.Goal) -> None:
+    """Each goal is rejected. Raises CheckFailed."""
+    with action.opened() as server:
+        for wrong in goals:
+            sent = server.send(wrong)
+            if sent.is_accepted:
+                server.ends.cancel(sent)
+                shown = [round(each, 3) for each in wrong.position]
+                fail(
+                    expected=f'the goal {shown} at {wrong.speed:.3g} rad/s to be rejected',
+                    seen='it accepted',
+                    hint=_why_wrong(wrong),
+                    cause=f'{_what_is_wrong(wrong)} is accepted',
+                )
+
+
+def expect_accepts(action: Action, *positions: Pose) -> None:
+    """Goals with these positions (rad) are accepted, one after the other. Raises CheckFailed."""
+
+    def accepts(arm: WatchedArm) -> None:
+        for position in positions:
+            arm.move(position)
+
+    look(action, accepts, start=(0.0, 0.0))
+
+
+def expect_one_at_a_time(
+    action: Action, first: Pose, second: Pose, *, start: Pose = (0.0, 0.0)
+) -> None:
+    """While the arm moves, another client's goal is rejected; the move goes on; then it is free.
+
+    Positions are in rad. Raises CheckFailed.
+    """
+
+    def refuses(arm: WatchedArm) -> None:
+        server = arm.server
+        other = ActionEnds(server.watcher, server.name, server.type)
+        server.watcher.spin_until(other.is_connected, timeout_sec=CLIENT_SEC)
+        moving = arm.send(arm.goal(first, speed=TOO_MANY_SPEED))
+        wanted_sec = far_rad(arm.start, first) / moving.goal.speed
+        arm.time.let_pass(moving.is_over, seconds=BEFORE_PART * wanted_sec)
+        too_many = server.send(goal(second, speed=TOO_MANY_SPEED), ends=other)
+        # a server that lets nothing else run meanwhile answers when the arm is at rest
+        if too_many.is_accepted and not moving.is_over():
+            fail(
+                expected='a goal that comes while the arm moves to be rejected',
+                seen='it accepted',
+                hint='remember that the arm moves, and return GoalResponse.REJECT meanwhile',
+                cause='a second goal is accepted',
+            )
+        arm.time.wait(moving.is_over, seconds=MOST_TIMES * wanted_sec + MORE_SEC)
+        expect(
+            moving.is_over() and arm.seconds(moving) >= EARLY_PART * wanted_sec,
+            expected='the first goal to go on when a second one is rejected',
+            seen='it ended early' if moving.is_over() else 'it not end',
+            hint='leave the goal that moves alone: the goal callback alone answers the second',
+            cause='a second goal disturbs the first',
+        )
+        arm.settle()
+        accepted(server, goal(second, speed=TOO_MANY_SPEED))
+
+    look(action, refuses, start=start)
+
+
+def _what_is_wrong(wrong: MoveArm.Goal) -> str:
+    if len(wrong.position) != len(LIMITS_RAD):
+        return 'a goal with another number of angles'
+    if not all(map(math.isfinite, [*wrong.position, wrong.speed])):
+        return 'a goal with NaN'
+    return 'a goal without a positive speed' if wrong.speed <= 0.0 else 'a goal out of range'
+
+
+def _why_wrong(wrong: MoveArm.Goal) -> str:
+    if len(wrong.position) != len(LIMITS_RAD):
+        return 'a goal has two angles: look at len(goal.position)'
+    if not all(map(math.isfinite, [*wrong.position, wrong.speed])):
+        return 'each comparison with NaN is False, so ask what is right: `goal.speed > 0`, say'
+    if wrong.speed <= 0.0:
+        return 'reject a goal whose speed is not above 0'
+    return 'compare with radians(90) and radians(120): the positions are in radians'

@@ -1,0 +1,198 @@
+"""Whether the feedback of `/move_arm` tells where the arm is."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from my_robot_basics.checks.action_ends import SentGoal
+from my_robot_basics.checks.actions import Action
+from my_robot_basics.checks.arm_looks import look
+from my_robot_basics.checks.watched_arm import Pose, WatchedArm, far_rad
+from my_robot_basics.feedback.errors import fail
+
+WANTED_HZ, LEAST_HZ = 10.0, 9.5
+LARGEST_GAP_SEC = 0.35
+"""More between two messages is a pause."""
+FEWEST = 5
+ON_LINE_RAD = 0.01
+PROGRESS_PART = 0.06
+"""So much of the way may the arm be ahead of a steady move, or behind it."""
+MOST_TIMES = 3.0
+
+
+def expect_feedback(
+    action: Action, position: Pose, *, speed: float, start: Pose = (0.0, 0.0)
+) -> None:
+    """Feedback tells at 10 Hz or more where the arm is on its way from `start` to a position.
+
+    That is a straight line, in rad. Raises CheckFailed.
+    """
+
+    def reports(arm: WatchedArm) -> None:
+        sent = arm.send(arm.goal(position, speed=speed))
+        wanted_sec = far_rad(arm.start, position) / sent.goal.speed
+        arm.time.wait(sent.is_over, seconds=MOST_TIMES * wanted_sec)
+        arm.server.watcher.spin_for(0.0)
+        reported = MoveReport(arm, sent, tuple(position))
+        reported.expect_enough()
+        reported.expect_positions()
+        reported.expect_line()
+        reported.expect_steady()
+        reported.expect_remaining()
+
+    look(action, reports, start=start)
+
+
+@dataclass
+class MoveReport:
+    """The feedback on one move."""
+
+    arm: WatchedArm
+    sent: SentGoal
+    end: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        """Take what has come."""
+        found = self.sent.feedback()
+        self.times = np.array([self.arm.time.at_ns(sent_ns) / 1e9 for sent_ns, _ in found])
+        self.messages = [message for _, message in found]
+
+    def expect_enough(self) -> None:
+        """There is feedback, at 10 Hz or more, without pauses."""
+        count = len(self.messages)
+        if not count:
+            server = self.arm.server
+            raised = server.raised.hint() or server.log.raised(since_ns=self.sent.sent_ns)
+            fail(
+                expected='feedback during the move',
+                seen='none',
+                hint=raised or 'call goal_handle.publish_feedback(…) in each step of the move',
+                cause='there is no feedback',
+            )
+        seconds = self.arm.seconds(self.sent)
+        rate_hz = (count - 1) / max(np.ptp(self.times), 1e-9) if count >= FEWEST else 0.0
+        largest_sec = max(np.diff(self.times), default=seconds)
+        if count < FEWEST or min(rate_hz, count / max(seconds, 1e-9)) < LEAST_HZ:
+            fail(
+                expected=f'feedback at {WANTED_HZ:g} Hz or more',
+                seen=f'{count} message{"" if count == 1 else "s"} in {seconds:.1f} s',
+                hint='publish feedback in each step of the move, and take at least ten a second',
+                cause='there is too little feedback',
+                doubt=self.arm.doubt(),
+            )
+        if largest_sec > LARGEST_GAP_SEC:
+            fail(
+                expected=f'feedback at {WANTED_HZ:g} Hz or more',
+                seen=f'a pause of {largest_sec:.1f} s',
+                hint='publish feedback in each step of the move',
+                cause='there are pauses in the feedback',
+                doubt=self.arm.doubt(),
+            )
+
+    def expect_positions(self) -> None:
+        """Each holds the positions of both joints, in radians."""
+        for message in self.messages:
+            seen = list(message.position)
+            if len(seen) != len(self.end) or not all(map(math.isfinite, seen)):
+                self._fail_position(
+                    seen, 'put one position for each joint into feedback.position', 'two positions'
+                )
+        last = list(self.messages[-1].position)
+        far_deg = [math.degrees(each) for each in self.end]
+        if np.allclose(last, far_deg, atol=0.1 * max(map(abs, far_deg))):
+            self._fail_position(
+                last, 'these are degrees: all positions of MoveArm are in radians', 'radians'
+            )
+
+    def expect_line(self) -> None:
+        """All positions are on the straight line from where the arm was to the goal."""
+        positions = self._positions()
+        if np.ptp(positions, axis=0).max() < ON_LINE_RAD:
+            self._fail_position(
+                positions[-1],
+                'feedback holds the same position all the time: put in where the arm is now',
+                'positions on the way to the goal',
+            )
+        off = self._off_line(positions, self.arm.start)
+        if off.max() <= ON_LINE_RAD:
+            return
+        hint = 'move both joints by the same part of their ways, so that they arrive together'
+        if self._off_line(positions, (0.0,) * len(self.end)).max() <= ON_LINE_RAD:
+            hint = 'start from where the arm is, at each goal'
+        self._fail_position(positions[int(off.argmax())], hint, 'positions on a straight line')
+
+    def expect_steady(self) -> None:
+        """The arm moves steadily along it, as time passes."""
+        parts = self._parts(self._positions())
+        on_the_way = parts < 1.0 - 1e-6
+        times, parts = self.times[on_the_way], parts[on_the_way]
+        if len(times) < FEWEST:
+            self._fail_steady('tell where the arm is while it moves, not where it is to go')
+        if np.diff(parts).min() < -PROGRESS_PART:
+            self._fail_steady('the arm moves back and forth: see how the position is computed')
+        steady = np.interp(times, [times[0], times[-1]], [parts[0], parts[-1]])
+        if np.abs(parts - steady).max() > PROGRESS_PART:
+            self._fail_steady('move at one speed from start to goal, and publish each position')
+
+    def expect_remaining(self) -> None:
+        """`remaining` is what the joint that is farthest away has still to go, in rad."""
+        left = np.abs(np.array(self.end) - self._positions())
+        seen = np.array([message.remaining for message in self.messages])
+        if np.abs(seen - left.max(axis=1)).max() <= ON_LINE_RAD:
+            return
+        causes = {
+            'it is 0 all the time: fill in feedback.remaining': np.zeros(len(left)),
+            'it is in radians, too': np.degrees(left.max(axis=1)),
+            'it is of the one joint that is farthest away, not the sum': left.sum(axis=1),
+            'it is of the one joint that is farthest away': left.min(axis=1),
+            'it is an angle, not the distance of both': np.hypot(*left.T),
+            'it is what is left, not what is done': np.abs(
+                self._positions() - np.array(self.arm.start)
+            ).max(axis=1),
+        }
+        found = [why for why, other in causes.items() if np.abs(seen - other).max() <= 0.02]
+        worst = int(np.abs(seen - left.max(axis=1)).argmax())
+        fail(
+            expected=f'remaining {left.max(axis=1)[worst]:.3f} rad at {self._shown(worst)}',
+            seen=f'{seen[worst]:.3f}',
+            hint=found[0] if found else 'compute it from the goal and the position of each step',
+            cause='feedback.remaining is wrong',
+        )
+
+    def _positions(self) -> np.ndarray:
+        return np.array([list(message.position) for message in self.messages])
+
+    def _parts(self, positions: np.ndarray) -> np.ndarray:
+        ways = np.array(self.end) - np.array(self.arm.start)
+        joint = int(np.abs(ways).argmax())
+        return np.asarray((positions[:, joint] - self.arm.start[joint]) / ways[joint])
+
+    def _off_line(self, positions: np.ndarray, start: Sequence[float]) -> np.ndarray:
+        """How far each position is from the line, in rad."""
+        begin, ways = np.array(start), np.array(self.end) - np.array(start)
+        joint = int(np.abs(ways).argmax())
+        parts = np.clip((positions[:, joint] - begin[joint]) / ways[joint], 0.0, 1.0)
+        return np.asarray(np.abs(positions - (begin + parts[:, None] * ways)).max(axis=1))
+
+    def _shown(self, index: int) -> str:
+        return str([round(each, 3) for each in self.messages[index].position])
+
+    def _fail_position(self, seen: Sequence[float], hint: str, expected: str) -> None:
+        shown = [round(float(each), 3) for each in seen]
+        fail(
+            expected=f'{expected} in the feedback',
+            seen=f'{shown}',
+            hint=hint,
+            cause='feedback.position is wrong',
+        )
+
+    def _fail_steady(self, hint: str) -> None:
+        fail(
+            expected='positions that go steadily from start to goal',
+            seen='others',
+            hint=hint,
+            cause='feedback.position is wrong',
+            doubt=self.arm.doubt(),
+        )

@@ -1,0 +1,71 @@
+"""What `/move_arm` is to do, for grade cells; positions in radians, speeds in radians a second."""
+
+import math
+import random
+
+from arm_interfaces.action import MoveArm
+from my_robot_basics.checks.arm_cancels import expect_cancels, expect_late_cancel
+from my_robot_basics.checks.arm_moves import expect_reaches, expect_serves_on
+from my_robot_basics.checks.arm_refusals import (
+    LIMITS_RAD,
+    expect_accepts,
+    expect_one_at_a_time,
+    expect_rejects,
+)
+from my_robot_basics.checks.arm_reports import expect_feedback
+from my_robot_basics.checks.watched_arm import goal
+
+__all__ = [
+    'choose',
+    'choose_near_limits',
+    'choose_wrong',
+    'expect_accepts',
+    'expect_cancels',
+    'expect_feedback',
+    'expect_late_cancel',
+    'expect_one_at_a_time',
+    'expect_reaches',
+    'expect_rejects',
+    'expect_serves_on',
+    'goal',
+]
+
+BEYOND_RAD = 0.03
+"""So far beyond a limit are goals that are wrong, or within it, if they are right."""
+
+
+def choose(numbers: random.Random, *, joint1_sign: int = 1) -> tuple[float, float]:
+    """A position with joint1 on that side, so that two with different signs are far apart.
+
+    Joint2 moves less than joint1 does, and not in proportion.
+    """
+    first = joint1_sign * numbers.uniform(0.7, 1.4)
+    return round(first, 3), round(numbers.choice((-1, 1)) * numbers.uniform(0.15, 0.6), 3)
+
+
+def choose_wrong(numbers: random.Random) -> list[MoveArm.Goal]:
+    """Goals to be rejected: out of range, with another number of angles, with NaN, and too slow.
+
+    Each is wrong in one way alone.
+    """
+    inside, sign = choose(numbers), numbers.choice((-1, 1))
+    first, second = LIMITS_RAD
+    beyond = numbers.uniform(BEYOND_RAD, 0.3)
+    wrong = [
+        goal((sign * (first + beyond), inside[1])),
+        goal((inside[0], -sign * (second + beyond))),
+        goal(inside[:1]),
+        goal((*inside, numbers.uniform(-0.5, 0.5))),
+        goal((math.nan, inside[1])),
+        goal((inside[0], math.nan)),
+        goal(inside, speed=-numbers.uniform(0.1, 1.0)),
+        goal(inside, speed=math.nan),
+    ]
+    numbers.shuffle(wrong)
+    return wrong
+
+
+def choose_near_limits(numbers: random.Random) -> list[tuple[float, float]]:
+    """Positions just within the limits, on each side."""
+    first, second = (limit - BEYOND_RAD * numbers.uniform(0.5, 1.0) for limit in LIMITS_RAD)
+    return [(first, -second), (-first, second)]

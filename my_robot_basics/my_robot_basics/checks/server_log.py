@@ -1,0 +1,58 @@
+"""What rclpy's action server logs of the callbacks that it calls, as everybody can read it."""
+
+from typing import Any
+
+from rcl_interfaces.msg import Log
+from rclpy.qos import DurabilityPolicy, QoSProfile
+
+from my_robot_basics.checks.callbacks import FIX_FIRST
+from my_robot_basics.feedback import hidden
+from my_robot_basics.feedback.errors import shorten
+from my_robot_basics.graph.message_info import with_info
+from my_robot_basics.graph.watcher import Watcher
+
+DEPTH = 100
+LOG_SEC = 0.2
+"""How long a line may come behind what it explains."""
+_RAISED = 'Error raised in execute callback: '
+_NOT_SET = 'Goal state not set'
+_NO_RESPONSE = 'did not return a GoalResponse'
+
+
+class ServerLog:
+    """The lines of one node's action servers on `/rosout`; they tell where to look, no more."""
+
+    def __init__(self, watcher: Watcher, node_name: str) -> None:
+        """Listen from now on; what was logged shortly before comes, too."""
+        self._watcher = watcher
+        self._logger = node_name.strip('/').replace('/', '.')
+        self._lines: list[tuple[int, str]] = []
+        latched = QoSProfile(depth=DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        watcher.node.create_subscription(Log, '/rosout', with_info(self._receive), latched)
+
+    def raised(self, *, since_ns: int) -> str:
+        """A clause on what the execute callback raised since a wall time, or ''."""
+        said = self._find(_RAISED, since_ns)
+        if not said:
+            return ''
+        why = hidden.theirs(shorten(said.removeprefix(_RAISED), 100))
+        return f'the execute callback raised an exception ({why}), {FIX_FIRST}'
+
+    def was_not_set(self, *, since_ns: int) -> bool:
+        """Whether the execute callback ended without succeed(), abort() or canceled()."""
+        return bool(self._find(_NOT_SET, since_ns))
+
+    def had_no_response(self, *, since_ns: int) -> bool:
+        """Whether the goal callback returned no GoalResponse."""
+        return bool(self._find(_NO_RESPONSE, since_ns))
+
+    def _find(self, part: str, since_ns: int) -> str:
+        def found() -> list[str]:
+            return [line for at, line in self._lines if at >= since_ns and part in line]
+
+        self._watcher.spin_until(lambda: bool(found()), timeout_sec=LOG_SEC)
+        return next(iter(found()), '')
+
+    def _receive(self, message: Any, info: dict) -> None:
+        if message.name == self._logger or message.name.startswith(f'{self._logger}.'):
+            self._lines.append((info['source_timestamp'], message.msg))

@@ -1,0 +1,119 @@
+"""The arm behind `/move_arm`, and the time in which a check watches it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from arm_interfaces.action import MoveArm
+from my_robot_basics.checks.action_ends import SentGoal
+from my_robot_basics.checks.open_action import OpenAction
+from my_robot_basics.checks.robot_time import DrivenTime, WallTime
+from my_robot_basics.feedback.errors import CheckFailed, Starved, fail
+
+Pose = Sequence[float]
+"""Positions of joint1 and joint2, in radians."""
+
+HASTE = 100.0
+"""Speed, in rad/s, of a move that only brings the arm somewhere."""
+HASTE_SEC = 4.0
+"""It may take so long, of time that was free."""
+WALL_SEC = 2.0
+"""How long a move takes on the wall clock."""
+RESULT_SEC = 1.0
+"""How long a result may come behind the status, of time that was free."""
+SETTLE_SEC = 5.0
+CROWDED_PART = 0.05
+"""So much of a look in which processes had to wait for a processor makes it a doubtful one."""
+
+
+def goal(position: Pose, *, speed: float = 1.0) -> MoveArm.Goal:
+    """A goal for `/move_arm`: positions in rad, the speed in rad/s."""
+    return MoveArm.Goal(position=list(position), speed=speed)
+
+
+def far_rad(start: Pose, end: Pose) -> float:
+    """How far the faster joint has to go, in rad."""
+    return max(abs(b - a) for a, b in zip(start, end, strict=True))
+
+
+@dataclass
+class WatchedArm:
+    """The server, met, with its arm at rest at `start`, and the time in which it is watched."""
+
+    server: OpenAction
+    time: DrivenTime | WallTime
+    start: tuple[float, ...]
+    """Where the arm is, in rad, if the server does what it was asked to."""
+
+    def goal(self, position: Pose, *, speed: float) -> MoveArm.Goal:
+        """A goal with that speed; on the wall clock with one for a short move."""
+        if not self.time.is_driven:
+            speed = max(speed, far_rad(self.start, position) / WALL_SEC)
+        return goal(position, speed=speed)
+
+    def send(self, wanted: MoveArm.Goal) -> SentGoal:
+        """Send a goal that has to be accepted. Raises CheckFailed."""
+        return accepted(self.server, wanted)
+
+    def move(self, position: Pose) -> None:
+        """Bring the arm there in haste, whatever becomes of the goal."""
+        sent = self.send(goal(position, speed=HASTE))
+        self.time.wait(sent.is_over, seconds=HASTE_SEC)
+        self.settle()
+        self.start = tuple(position)
+
+    def seconds(self, sent: SentGoal) -> float:
+        """How long a goal that is over has taken, in seconds of this time."""
+        began_ns = sent.statuses()[0][0] if sent.statuses() else sent.sent_ns
+        over_ns = self.time.at_ns(sent.over_ns()) if sent.over_ns() else self.time.now_ns()
+        return (over_ns - self.time.at_ns(began_ns)) / 1e9
+
+    def has_result(self, sent: SentGoal) -> bool:
+        """Whether the result comes, now that the goal is over."""
+        return self.server.watcher.spin_until_free(sent.has_result, free_sec=RESULT_SEC)
+
+    def doubt(self) -> type[CheckFailed]:
+        """What to raise for what a machine that is too busy may have done."""
+        if isinstance(self.time, WallTime):
+            crowded_sec, wall_sec = self.time.crowded_sec(), self.time.wall_sec()
+            return Starved if crowded_sec > CROWDED_PART * wall_sec else CheckFailed
+        return CheckFailed
+
+    def settle(self) -> None:
+        """Bring each goal to its end that has none yet."""
+        ends, watcher = self.server.ends, self.server.watcher
+        watcher.spin_until(lambda: not ends.has_active(), timeout_sec=0.05)
+        if not ends.has_active():
+            return
+        asked = ends.cancel_all()
+        if isinstance(self.time, DrivenTime):
+            self.time.push(lambda: not ends.has_active(), wall_sec=SETTLE_SEC)
+        else:
+            watcher.spin_until_free(
+                lambda: asked.done() and not ends.has_active(), free_sec=SETTLE_SEC
+            )
+
+
+def accepted(server: OpenAction, wanted: MoveArm.Goal) -> SentGoal:
+    """Send a goal that has to be accepted. Raises CheckFailed with the reason."""
+    was_accepted = bool(server.ends.statuses.received)
+    sent = server.send(wanted)
+    if not sent.is_accepted:
+        shown = [round(each, 3) for each in wanted.position]
+        fail(
+            expected=f'the goal {shown} at {wanted.speed:.3g} rad/s to be accepted',
+            seen='it rejected',
+            hint=_why_rejected(server, sent, was_accepted=was_accepted),
+            cause='a goal within the limits is rejected',
+        )
+    return sent
+
+
+def _why_rejected(server: OpenAction, sent: SentGoal, *, was_accepted: bool) -> str:
+    if server.log.had_no_response(since_ns=sent.sent_ns):
+        return 'end the goal callback with `return GoalResponse.ACCEPT` or `GoalResponse.REJECT`'
+    if was_accepted:
+        return (
+            'the goal before it was accepted, and has ended: see that the node knows that the arm '
+            'moves no longer, and that positions are compared in rad'
+        )
+    return 'return GoalResponse.ACCEPT for two angles within the limits (in rad) and a speed > 0'

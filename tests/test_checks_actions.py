@@ -1,0 +1,354 @@
+"""A node that serves an action: right in whatever way it waits, and looked for where it is not."""
+
+import math
+import random
+import threading
+import time
+
+import pytest
+from my_robot_basics.checks import CheckFailed, action, moves, open_action
+from nodes.running import imported, running
+from rclpy.action import ActionServer, GoalResponse
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.duration import Duration
+from rclpy.executors import MultiThreadedExecutor
+from rclpy.node import Node
+from rclpy.task import Future
+from std_srvs.srv import Trigger
+
+from arm_interfaces.action import MoveArm
+from my_robot_basics import live
+
+MoveArmServer = imported('move_arm_server').MoveArmServer
+STEP_SEC = imported('move_arm_server').STEP_SEC
+STOPS = []
+"""What ends the threads that nodes have made for themselves."""
+
+
+@pytest.fixture
+def run():
+    yield live.run
+    while STOPS:
+        STOPS.pop()()
+    live.stop()
+
+
+def check_all():
+    """All that the exercise asks for, as its grade cells do."""
+    move_arm, numbers = action('/move_arm', MoveArm), random.Random(7)
+    moves.expect_reaches(move_arm, (1.2, -0.6), speed=0.02)
+    far = moves.choose(numbers, joint1_sign=-1)
+    moves.expect_reaches(move_arm, far, speed=0.1, start=moves.choose(numbers))
+    moves.expect_serves_on(move_arm, moves.choose(numbers))
+    moves.expect_feedback(move_arm, (1.2, -0.6), speed=0.1)
+    moves.expect_cancels(move_arm, (1.2, -0.6), speed=0.2)
+    moves.expect_late_cancel(move_arm, moves.choose(numbers))
+    moves.expect_accepts(move_arm, *moves.choose_near_limits(numbers))
+    moves.expect_one_at_a_time(move_arm, (0.9, 0.3), (-0.5, 1.0))
+    moves.expect_rejects(move_arm, *moves.choose_wrong(numbers))
+
+
+# --- right ones, on the robot's clock ------------------------------------------------------------
+
+
+class TimerDriven(MoveArmServer):
+    """One timer moves the arm; the execute callback waits for the end."""
+
+    def __init__(self, **kwargs):
+        super().__init__(**kwargs)
+        self.goal_handle = None
+        self.create_timer(STEP_SEC, self.tick)
+
+    async def execute(self, handle):
+        self.begin(handle)
+        self.goal_handle, self.end = handle, Future()
+        return await self.end
+
+    def tick(self):
+        if self.goal_handle is None:
+            return
+        if not self.goal_handle.is_cancel_requested:
+            self.step(self.goal_handle)
+        if self.goal_handle.is_cancel_requested or self.part == 1.0:
+            handle, self.goal_handle = self.goal_handle, None
+            self.end.set_result(self.finish(handle))
+
+
+class HandlesAccepted(TimerDriven):
+    """The goal is taken by handle_accepted_callback, and executed for its result alone."""
+
+    def make_server(self, **callbacks):
+        return super().make_server(handle_accepted_callback=self.take, **callbacks)
+
+    def take(self, handle):
+        self.waiting = handle
+        handle.execute()
+
+
+class FixedSteps(MoveArmServer):
+    """Adds speed × step, whatever the clock says."""
+
+    def step(self, handle):
+        done = self.part * self.seconds + STEP_SEC
+        self.part = min(1.0, done / self.seconds) if self.seconds else 1.0
+        self.position = self.on_the_way()
+        self.report(handle)
+
+
+class CoroutineCallbacks(MoveArmServer):
+    async def judge(self, goal):
+        return super().judge(goal)
+
+    async def cancel(self, handle):
+        return super().cancel(handle)
+
+
+class Threads(MoveArmServer):
+    """A blocking execute callback, and threads enough."""
+
+    def __init__(self, **kwargs):
+        self.lock = threading.Lock()
+        super().__init__(**kwargs)
+        executor = MultiThreadedExecutor(4, context=self.context)
+        executor.add_node(self)
+        STOPS.append(executor.shutdown)
+        threading.Thread(target=executor.spin, daemon=True).start()
+
+    def make_server(self, **callbacks):
+        group = ReentrantCallbackGroup()
+        return super().make_server(callback_group=group, **callbacks)
+
+    def judge(self, goal):
+        with self.lock:
+            return super().judge(goal)
+
+    def execute(self, handle):
+        self.begin(handle)
+        while self.part < 1.0 and not handle.is_cancel_requested:
+            self.wait()
+            self.step(handle)
+        return self.finish(handle)
+
+    def wait(self):
+        self.get_clock().sleep_for(Duration(seconds=STEP_SEC), context=self.context)
+
+
+class ThreadsWithARate(Threads):
+    def execute(self, handle):
+        self.rate = self.create_rate(1.0 / STEP_SEC)
+        try:
+            return super().execute(handle)
+        finally:
+            self.destroy_rate(self.rate)
+
+    def wait(self):
+        self.rate.sleep()
+
+
+class ThreadsFixedSteps(Threads, FixedSteps):
+    pass
+
+
+class ThreadsOddSteps(Threads):
+    """Sleeps that are no multiple of any step of the check's clock, and adds them up."""
+
+    ODD_SEC = 0.033
+
+    def wait(self):
+        self.get_clock().sleep_for(Duration(seconds=self.ODD_SEC), context=self.context)
+
+    def step(self, handle):
+        done = self.part * self.seconds + self.ODD_SEC
+        self.part = min(1.0, done / self.seconds) if self.seconds else 1.0
+        self.position = self.on_the_way()
+        self.report(handle)
+
+
+class FlagInExecute(MoveArmServer):
+    """Remembers that the arm moves when it begins to."""
+
+    def judge(self, goal):
+        is_free = self.is_possible(goal) and not self.is_moving
+        return GoalResponse.ACCEPT if is_free else GoalResponse.REJECT
+
+    def begin(self, handle):
+        self.is_moving = True
+        super().begin(handle)
+
+
+class AsksTheHandle(MoveArmServer):
+    """Knows no flag: the goal that was accepted last is active, or not."""
+
+    last = None
+
+    def make_server(self, **callbacks):
+        return super().make_server(handle_accepted_callback=self.take, **callbacks)
+
+    def take(self, handle):
+        self.last = handle
+        handle.execute()
+
+    def judge(self, goal):
+        is_busy = self.last is not None and self.last.is_active
+        is_free = self.is_possible(goal) and not is_busy
+        return GoalResponse.ACCEPT if is_free else GoalResponse.REJECT
+
+
+ON_ITS_CLOCK = [
+    MoveArmServer,
+    TimerDriven,
+    HandlesAccepted,
+    FixedSteps,
+    CoroutineCallbacks,
+    Threads,
+    ThreadsWithARate,
+    ThreadsFixedSteps,
+    ThreadsOddSteps,
+    FlagInExecute,
+    AsksTheHandle,
+]
+
+
+@pytest.mark.parametrize('node_class', ON_ITS_CLOCK)
+def test_who_serves_right_passes_in_whatever_way(run, node_class):
+    run(node_class)
+    check_all()
+
+
+def test_a_program_of_its_own_passes():
+    with running('move_arm_server'):
+        check_all()
+
+
+def test_a_robot_minute_is_driven(run):
+    """Were it not, it would last a minute, or be a short move on the wall clock."""
+    run(MoveArmServer)
+    move_arm = action('/move_arm', MoveArm)
+    began = time.monotonic()
+    moves.expect_reaches(move_arm, (1.2, -0.6), speed=0.02)
+    assert move_arm.follows == {'/move_arm_server': True}
+    assert time.monotonic() - began < 60.0
+
+
+# --- right ones, on the wall clock ---------------------------------------------------------------
+
+
+class WallThreads(Threads):
+    """Sleeps on wall time."""
+
+    def wait(self):
+        time.sleep(STEP_SEC)
+
+
+class ThreadOfItsOwn(MoveArmServer):
+    """A thread for each goal, which sleeps on wall time; one executor thread is enough then."""
+
+    async def execute(self, handle):
+        self.begin(handle)
+        end = Future(executor=self.executor)
+        threading.Thread(target=self.work, args=(handle, end), daemon=True).start()
+        return await end
+
+    def work(self, handle, end):
+        while self.part < 1.0 and not handle.is_cancel_requested:
+            time.sleep(STEP_SEC)
+            self.step(handle)
+        end.set_result(self.finish(handle))
+        self.executor.wake()
+
+
+class NoParameterServices(MoveArmServer):
+    def __init__(self):
+        super().__init__(start_parameter_services=False)
+
+
+ON_THE_WALL_CLOCK = [WallThreads, ThreadOfItsOwn, NoParameterServices]
+
+
+@pytest.mark.parametrize('node_class', ON_THE_WALL_CLOCK)
+def test_who_ignores_the_clock_passes_with_short_moves(run, node_class):
+    run(node_class)
+    check_all()
+
+
+# --- no answer, no server ------------------------------------------------------------------------
+
+
+@pytest.fixture
+def impatient(monkeypatch):
+    """Wait for what does not come no longer than it takes to be sure."""
+    monkeypatch.setattr(open_action, 'SERVER_SEC', 1.0)
+
+
+class Elsewhere(Node):
+    def __init__(self, name='/move_it', type_=MoveArm, *, node_name='move_arm_server'):
+        super().__init__(node_name)
+        if type_ is MoveArm:
+            ActionServer(self, type_, name, print)
+        else:
+            self.create_service(type_, name, print)
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'message'),
+    [
+        (
+            (),
+            'a server of the action /move_arm, saw none.*: /move_arm_server uses /move_it, so co',
+        ),
+        (('~/move_arm',), 'saw none.*/move_arm_server uses /move_arm_server/move_arm'),
+        (('/unlike',), r'/move_arm_server runs, so look at the action name in ActionServer\(…\)'),
+        (('/move_arm', Trigger), r'runs, so look at the action name in ActionServer\(…\)'),
+    ],
+)
+@pytest.mark.usefixtures('impatient')
+def test_a_missing_server_is_looked_for(run, arguments, message):
+    run(Elsewhere, *arguments)
+    with pytest.raises(CheckFailed, match=message):
+        action('/move_arm', MoveArm).send_goal(moves.goal((0.5, 0.2)))
+
+
+@pytest.mark.usefixtures('impatient')
+def test_two_servers_are_one_too_many(run):
+    run(MoveArmServer, key='one')
+    run(Elsewhere, '/move_arm', node_name='another', key='two')
+    with pytest.raises(CheckFailed, match=r'one server of the action /move_arm, saw 2 \(/anoth'):
+        action('/move_arm', MoveArm).send_goal(moves.goal((0.5, 0.2)))
+
+
+@pytest.mark.usefixtures('impatient')
+def test_without_a_node_the_cell_that_starts_it_is_named():
+    with pytest.raises(CheckFailed, match='the node is not running, so run the cell that starts'):
+        action('/move_arm', MoveArm).send_goal(moves.goal((0.5, 0.2)))
+
+
+# --- checks of one's own -------------------------------------------------------------------------
+
+
+def test_send_goal_tells_how_a_goal_ended(run):
+    run(MoveArmServer)
+    move_arm = action('/move_arm', MoveArm)
+    outcome = move_arm.send_goal(moves.goal((0.5, 0.2), speed=5.0))
+    assert outcome.status == 'succeeded'
+    assert list(outcome.result.position) == pytest.approx([0.5, 0.2])
+    assert outcome.feedback[-1].remaining == 0.0
+    assert move_arm.send_goal(moves.goal((9.0, 0.2))).status == 'rejected'
+    slow = move_arm.send_goal(moves.goal((-0.5, 0.2), speed=0.1), cancel_after_sec=0.2)
+    assert slow.status == 'canceled'
+    assert 0.0 < slow.result.position[0] < 0.5
+
+
+def test_wrong_goals_are_wrong_in_one_way():
+    for seed in range(50):
+        for wrong in moves.choose_wrong(random.Random(seed)):
+            is_finite = all(map(math.isfinite, [*wrong.position, wrong.speed]))
+            faults = [
+                len(wrong.position) != 2,
+                not is_finite,
+                is_finite and wrong.speed <= 0.0,
+                len(wrong.position) == 2
+                and (
+                    abs(wrong.position[0]) > math.pi / 2 or abs(wrong.position[1]) > math.pi / 1.5
+                ),
+            ]
+            assert sum(faults) == 1

@@ -1,0 +1,53 @@
+"""A node that is stopped is gone with its action servers and clients, even while it is kept."""
+
+import pytest
+from my_robot_basics.checks import action, graph, moves
+from nodes.running import imported
+from rclpy.action import ActionClient
+from rclpy.node import Node
+
+from arm_interfaces.action import MoveArm
+from my_robot_basics import live
+
+MoveArmServer = imported('move_arm_server').MoveArmServer
+
+
+class Client(Node):
+    def __init__(self):
+        super().__init__('client')
+        self.client = ActionClient(self, MoveArm, '/move_arm')
+
+
+class Fails(MoveArmServer):
+    def __init__(self):
+        super().__init__()
+        raise RuntimeError('no', self)
+
+
+@pytest.fixture
+def run():
+    yield live.run
+    live.stop()
+
+
+@pytest.mark.parametrize('node_class', [MoveArmServer, Client])
+def test_a_stopped_node_leaves_the_graph(run, node_class):
+    node = run(node_class)
+    name = node.get_fully_qualified_name()
+    assert name in graph().nodes()
+    live.stop()
+    assert name not in graph().nodes()
+
+
+def test_who_fails_in_the_constructor_leaves_it_too(run):
+    with pytest.raises(RuntimeError, match='no') as failure:
+        run(Fails)
+    assert '/move_arm_server' not in graph().nodes()
+    assert failure.value.args[1].server is not None
+
+
+def test_the_server_of_a_node_that_is_replaced_answers_no_more(run):
+    first = run(MoveArmServer)
+    run(MoveArmServer)
+    assert action('/move_arm', MoveArm).send_goal(moves.goal((0.2, 0.1))).status == 'succeeded'
+    assert first.position == [0.0, 0.0]
