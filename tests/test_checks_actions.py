@@ -226,7 +226,7 @@ def test_a_robot_minute_is_driven(run):
     move_arm = action('/move_arm', MoveArm)
     began = time.monotonic()
     moves.expect_reaches(move_arm, (1.2, -0.6), speed=0.02)
-    assert move_arm.follows == {'/move_arm_server': True}
+    assert move_arm.known.follows == {'/move_arm_server': True}
     assert time.monotonic() - began < 60.0
 
 

@@ -1,5 +1,6 @@
 """An action as a check sees it: send its server a goal, and say why no answer comes."""
 
+import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -32,6 +33,16 @@ class Outcome:
     """The feedback's messages."""
 
 
+@dataclass
+class Known:
+    """What need not be found out once more."""
+
+    follows: dict[str, bool] = field(default_factory=dict)
+    """Of each node that served the action, whether it follows a clock that is driven."""
+    longest_sec: float = math.inf
+    """For how long of the robot's time the machine can drive that clock."""
+
+
 @dataclass(frozen=True)
 class Action:
     """What a check may do with an action that the student's node serves."""
@@ -40,8 +51,8 @@ class Action:
     """Absolute: '/move_arm'."""
     type: type
     """Its class, such as `arm_interfaces.action.MoveArm`."""
-    follows: dict[str, bool] = field(default_factory=dict, compare=False, repr=False)
-    """Of each node that served it, whether it follows a clock that is driven."""
+    known: Known = field(default_factory=Known, compare=False, repr=False)
+    """What looks at it have shown so far."""
 
     def send_goal(self, goal: Any, *, cancel_after_sec: float | None = None) -> Outcome:
         """Send a goal, ask to cancel it after a while of wall time, and wait for its end.

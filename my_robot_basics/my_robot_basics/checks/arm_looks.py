@@ -3,6 +3,7 @@
 A server that sleeps on wall time, or lets nothing else run meanwhile, gets short moves there.
 """
 
+import math
 from collections.abc import Callable
 from typing import TypeVar
 
@@ -25,6 +26,10 @@ PROBE_RAD, PROBE_SEC = 0.4, 0.6
 PROBE_ASK_SEC = 0.1
 """… So long after its start, the node is asked something else."""
 PROBE_MOST_SEC = 3.0
+CROWDED_SEC = 6.0
+"""How long a move takes at most on the robot's clock where the machine is too busy for more; …"""
+WALL_SEC = 2.0
+"""… And on the wall clock."""
 
 
 def look(action: Action, body: Callable[[WatchedArm], T], *, start: Pose) -> T:
@@ -34,13 +39,16 @@ def look(action: Action, body: Callable[[WatchedArm], T], *, start: Pose) -> T:
     wall clock.
     """
     with action.opened() as server:
-        on_wall = WatchedArm(server, WallTime(server.watcher), tuple(start))
+        on_wall = WatchedArm(server, WallTime(server.watcher), tuple(start), WALL_SEC)
         on_wall.move(start)
         if _follows(action, on_wall):
-            try:
-                return _driven(server, body, tuple(start))
-            except Inconclusive:
-                on_wall.move(start)
+            for longest_sec in math.inf, CROWDED_SEC:
+                if longest_sec <= action.known.longest_sec:
+                    try:
+                        return _driven(server, body, tuple(start), longest_sec)
+                    except Inconclusive:
+                        action.known.longest_sec = CROWDED_SEC
+                        on_wall.move(start)
         on_wall.time = WallTime(server.watcher)
         try:
             return body(on_wall)
@@ -48,11 +56,16 @@ def look(action: Action, body: Callable[[WatchedArm], T], *, start: Pose) -> T:
             on_wall.settle()
 
 
-def _driven(server: OpenAction, body: Callable[[WatchedArm], T], start: tuple[float, ...]) -> T:
+def _driven(
+    server: OpenAction,
+    body: Callable[[WatchedArm], T],
+    start: tuple[float, ...],
+    longest_sec: float = math.inf,
+) -> T:
     with SimulatedClock(server.watcher, needed={server.node_name}) as clock:
         beats = server.ends.feedback.received
         time = DrivenTime(server.watcher, clock, step_ns=STEP_NS, beat=lambda: len(beats))
-        arm = WatchedArm(server, time, start)
+        arm = WatchedArm(server, time, start, longest_sec)
         try:
             return body(arm)
         finally:
@@ -62,12 +75,12 @@ def _driven(server: OpenAction, body: Callable[[WatchedArm], T], start: tuple[fl
 def _follows(action: Action, arm: WatchedArm) -> bool:
     """Whether the node follows a clock that is driven; told once for each server."""
     node_name = arm.server.node_name
-    if node_name not in action.follows:
+    if node_name not in action.known.follows:
         is_free = _answers_while_it_moves(arm)
         arm.settle()
-        action.follows[node_name] = is_free and _waits_for_the_clock(arm)
+        action.known.follows[node_name] = is_free and _waits_for_the_clock(arm)
         arm.move(arm.start)
-    return action.follows[node_name]
+    return action.known.follows[node_name]
 
 
 def _probe(arm: WatchedArm) -> MoveArm.Goal:

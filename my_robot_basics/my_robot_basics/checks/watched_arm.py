@@ -1,5 +1,6 @@
 """The arm behind `/move_arm`, and the time in which a check watches it."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -16,8 +17,6 @@ HASTE = 100.0
 """Speed, in rad/s, of a move that only brings the arm somewhere."""
 HASTE_SEC = 4.0
 """It may take so long, of time that was free."""
-WALL_SEC = 2.0
-"""How long a move takes on the wall clock."""
 RESULT_SEC = 1.0
 """How long a result may come behind the status, of time that was free."""
 SETTLE_SEC = 5.0
@@ -43,12 +42,12 @@ class WatchedArm:
     time: DrivenTime | WallTime
     start: tuple[float, ...]
     """Where the arm is, in rad, if the server does what it was asked to."""
+    longest_sec: float = math.inf
+    """No move takes longer."""
 
     def goal(self, position: Pose, *, speed: float) -> MoveArm.Goal:
-        """A goal with that speed; on the wall clock with one for a short move."""
-        if not self.time.is_driven:
-            speed = max(speed, far_rad(self.start, position) / WALL_SEC)
-        return goal(position, speed=speed)
+        """A goal with that speed, or with a higher one where the move has to be short."""
+        return goal(position, speed=max(speed, far_rad(self.start, position) / self.longest_sec))
 
     def send(self, wanted: MoveArm.Goal) -> SentGoal:
         """Send a goal that has to be accepted. Raises CheckFailed."""
