@@ -4,18 +4,24 @@ import os
 import shutil
 import subprocess
 import sys
+from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
+from action_msgs.msg import GoalStatus, GoalStatusArray
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.ros2.verbs.topic_hz import Rate
+from rclpy.action import ActionClient, ActionServer, CancelResponse, GoalResponse
 from rclpy.action.client import ClientGoalHandle
 from rclpy.action.server import ServerGoalHandle
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
-from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.qos import QoSProfile, ReliabilityPolicy, qos_profile_action_status_default
+from rclpy.task import Future
 from std_msgs.msg import Int32, String
+
+from arm_interfaces.action import MoveArm
 
 EXECUTORS = """
 import rclpy
@@ -167,3 +173,70 @@ def test_an_action_is_made_with_rclpy_action():
     """Lesson 7; an action can be cancelled, and tells of its progress."""
     assert callable(ClientGoalHandle.cancel_goal_async)
     assert callable(ServerGoalHandle.publish_feedback)
+
+
+@pytest.mark.starts
+@pytest.mark.parametrize('end', ['succeed', 'canceled', 'abort'])
+def test_a_goal_that_is_being_cancelled_ends_as_its_server_says(end):
+    """Lesson 9: the arm may still move; `canceled()` ends the goal, as the others would."""
+    asked = Future()
+
+    def accept(_):
+        asked.set_result(None)
+        return CancelResponse.ACCEPT
+
+    async def execute(handle):
+        await asked
+        getattr(handle, end)()
+        return MoveArm.Result()
+
+    with Watcher() as watcher, served(watcher, execute, cancel_callback=accept) as client:
+        handle = answer(watcher, client.send_goal_async(MoveArm.Goal()))
+        canceling = answer(watcher, handle.cancel_goal_async()).goals_canceling
+        assert [info.goal_id for info in canceling] == [handle.goal_id]
+        status = answer(watcher, handle.get_result_async()).status
+    ends = {'succeed': 'SUCCEEDED', 'canceled': 'CANCELED', 'abort': 'ABORTED'}
+    assert status == getattr(GoalStatus, f'STATUS_{ends[end]}')
+
+
+@pytest.mark.starts
+def test_a_rejected_goal_never_has_a_state():
+    """Lesson 9: there is nothing of it on the status topic, and there is of the next one."""
+    told = []
+
+    async def execute(handle):
+        handle.succeed()
+        return MoveArm.Result()
+
+    def judge(goal):
+        return GoalResponse.ACCEPT if goal.speed else GoalResponse.REJECT
+
+    def is_told(goal):
+        ids = [each.goal_info.goal_id for message in told for each in message.status_list]
+        return goal.goal_id in ids
+
+    with Watcher() as watcher, served(watcher, execute, goal_callback=judge) as client:
+        qos_profile = qos_profile_action_status_default
+        topic_name = '/_move/_action/status'
+        watcher.node.create_subscription(GoalStatusArray, topic_name, told.append, qos_profile)
+        rejected = answer(watcher, client.send_goal_async(MoveArm.Goal()))
+        accepted = answer(watcher, client.send_goal_async(MoveArm.Goal(speed=1.0)))
+        assert (rejected.accepted, accepted.accepted) == (False, True)
+        answer(watcher, accepted.get_result_async())
+        assert watcher.spin_until(lambda: is_told(accepted), timeout_sec=10.0)
+    assert not is_told(rejected)
+
+
+@contextmanager
+def served(watcher, execute, **callbacks):
+    server = ActionServer(watcher.node, MoveArm, '/_move', execute, **callbacks)
+    client = ActionClient(watcher.node, MoveArm, '/_move')
+    assert watcher.spin_until(client.server_is_ready, timeout_sec=10.0)
+    yield client
+    client.destroy()
+    server.destroy()
+
+
+def answer(watcher, future):
+    assert watcher.spin_until(future.done, timeout_sec=10.0)
+    return future.result()

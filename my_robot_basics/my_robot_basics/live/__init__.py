@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from my_robot_basics.live.entry_points import add_entry_point
     from my_robot_basics.live.exercise import reset, run_answer
     from my_robot_basics.live.follow import follow_arm
+    from my_robot_basics.live.goal_view import follow_goal
     from my_robot_basics.live.graph_picture import show_graph
     from my_robot_basics.live.node_file import show_workspace
     from my_robot_basics.live.qos_offers import show_offers
@@ -38,6 +39,7 @@ __all__ = [
     'domain',
     'drag_target',
     'follow_arm',
+    'follow_goal',
     'make_workspace',
     'measure_pairs',
     'move_arm',
@@ -74,6 +76,7 @@ _MODULES = {
     'drag_target': 'target',
     'move_arm': 'sliders',
     'follow_arm': 'follow',
+    'follow_goal': 'goal_view',
     'show_graph': 'graph_picture',
     'show_queues': 'queue_picture',
     'show_service': 'service_picture',

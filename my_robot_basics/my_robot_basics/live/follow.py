@@ -56,13 +56,14 @@ class ArmView:
     """Takes a panel's place: what this node has to show is a picture."""
 
     _what = 'two-link arm that follows'
+    _make_picture = ArmPicture
 
     def __init__(self, topic_name: str, *, l1: float, l2: float) -> None:
         """Draw the axes of the picture."""
         self.received = threading.Event()
         self._topic_name = topic_name
         self._text = f'{self._what} {topic_name}'
-        self._picture = ArmPicture(l1=l1, l2=l2)
+        self._picture = self._make_picture(l1=l1, l2=l2)
         self._pose: tuple[float, float] | None = None
         self._ignored = 0
         self._trouble = f'waiting for messages on {topic_name}'
