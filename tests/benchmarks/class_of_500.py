@@ -3,13 +3,15 @@
     .venv/bin/python tests/benchmarks/class_of_500.py [--students 500] [--workers N]
     .venv/bin/python tests/benchmarks/class_of_500.py --kill run worker
     .venv/bin/python tests/benchmarks/class_of_500.py --steady 200 [--at GRADEBOOK]
+    .venv/bin/python tests/benchmarks/class_of_500.py --steady 20 --lesson 08_services
 
 `--kill run` grades the class once more, ends the run in mid-class with SIGKILL, twice, goes on
 each time, and compares all that is in the gradebook with that of the run which nobody ended.
 `--kill worker` does so to a worker process, twice, while the run goes on. `--steady` grades an
 honest class, one right answer of each lesson, so many times instead, beside two busy loops, and
-counts the scores that differ; `--at` goes on with one that was ended. Ends with 1 where a score
-is wrong.
+counts the scores that differ; `--at` goes on with one that was ended. With `--lesson` it grades
+all samples of that lesson instead, right and wrong, and looks at the reasons, too. Ends with 1
+where a score is wrong.
 """
 
 import argparse
@@ -33,10 +35,11 @@ def main() -> int:
     parser.add_argument('--kill', nargs='+', choices=('run', 'worker'), default=())
     parser.add_argument('--steady', type=int, metavar='TIMES')
     parser.add_argument('--at', type=Path, metavar='GRADEBOOK')
+    parser.add_argument('--lesson', default='', help='for --steady; default: all')
     asked = parser.parse_args()
     options = ['--workers', asked.workers] if asked.workers else []
     if asked.steady:
-        return steady(asked.steady, options, asked.at)
+        return steady(asked.steady, options, asked.at, asked.lesson)
     papers = synthetic_class(asked.students, seed=asked.seed)
     course, status = _whole_class(papers, options)
     differs = [killed(what, course, papers, options) for what in asked.kill]

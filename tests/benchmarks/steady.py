@@ -3,6 +3,9 @@
 A round is one right answer of each lesson; from round to round a lesson's right answers come in
 turn, so that every `-pass-` sample is graded, most of them several times. Each line tells of all
 rounds so far: a run that was cut short has said what it found.
+
+For one lesson a round is all of its samples, the wrong ones, too: these have to fail for the
+reasons that they should.
 """
 
 import os
@@ -10,15 +13,17 @@ import statistics
 import time
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 import psutil
 from measuring import ROW, Course, busy, course_command, minutes, new_course, watch
-from sample_class import PATHS, assignment_of
+from sample_class import EXPECTED, PATHS, assignment_of
 from synthetic_class import Paper, synthetic_class, wrong_scores, zip_up
 
 from grader.collect.collect import collect
+from grader.storage.records import verdicts
 
 RIGHT = tuple(name for name in PATHS if '-pass-' in name)
 LESSONS = len({assignment_of(PATHS[name]) for name in RIGHT})
@@ -30,12 +35,24 @@ def honest_rounds(rounds: int) -> list[Paper]:
     return synthetic_class(LESSONS * rounds, samples=RIGHT)
 
 
-def steady(rounds: int, options: Sequence[str], folder: Path | None) -> int:
+def lesson_rounds(rounds: int, lesson: str) -> list[Paper]:
+    """Return the papers of so many rounds of all samples of one lesson, in the same way."""
+    samples = [name for name in PATHS if assignment_of(PATHS[name]) == lesson]
+    by_sample = [synthetic_class(rounds, samples=[name]) for name in samples]
+    in_turn = [paper for one_of_each in zip(*by_sample, strict=True) for paper in one_of_each]
+    return [
+        replace(paper, student_id=f'student_{number:04}')
+        for number, paper in enumerate(in_turn, start=1)
+    ]
+
+
+def steady(rounds: int, options: Sequence[str], folder: Path | None, lesson: str = '') -> int:
     """Grade so many rounds under load; return 1 where a score differs or is missing.
 
     In a `folder` of a run that was ended, only what is missing there is graded.
     """
-    papers = honest_rounds(rounds)
+    papers = lesson_rounds(rounds, lesson) if lesson else honest_rounds(rounds)
+    size = len(papers) // rounds
     course = Course(gradebook=folder.resolve()) if folder else new_course('steady')
     print(
         f'{len(papers)} gradings in {rounds} rounds; go on with --at {course.gradebook}',
@@ -45,8 +62,8 @@ def steady(rounds: int, options: Sequence[str], folder: Path | None) -> int:
     archive = course.gradebook.with_name('class.zip')
     zip_up(papers, archive)
     list(collect(course, archive))
-    progress = _Progress(course, papers)
-    ends = range(LESSONS, len(papers) + 1, LESSONS)
+    progress = _Progress(course, papers, size)
+    ends = range(size, len(papers) + 1, size)
     with busy(BUSY_LOOPS):
         watched = watch(
             course_command(course, 'grade', *options),
@@ -59,19 +76,19 @@ def steady(rounds: int, options: Sequence[str], folder: Path | None) -> int:
 class _Progress:
     """Counts what differs, round by round, and at the end once more in all that is stored."""
 
-    def __init__(self, course: Course, papers: Sequence[Paper]) -> None:
-        self._course, self._papers = course, papers
+    def __init__(self, course: Course, papers: Sequence[Paper], size: int) -> None:
+        self._course, self._papers, self._size = course, papers, size
         self._wrong: list[str] = []
         self._loads: list[float] = []
         self._began = time.perf_counter()
 
     def tell(self, end: int, _: psutil.Process) -> None:
         """Look at the round that ended with so many gradings, and print where it stands."""
-        found = wrong_scores(self._course, self._papers[end - LESSONS : end])
+        found = _differences(self._course, self._papers[end - self._size : end])
         self._wrong += found
         self._loads.append(os.getloadavg()[0])
         print(
-            f'round {end // LESSONS}: {self._standing(end)}, load {self._loads[-1]:.1f}',
+            f'round {end // self._size}: {self._standing(end)}, load {self._loads[-1]:.1f}',
             flush=True,
         )
         _show(found)
@@ -79,13 +96,13 @@ class _Progress:
     def conclude(self, done: int, from_before: int) -> int:
         """Compare all that is stored, and print the figure; return 1 where something differs."""
         graded = self._papers[:done]
-        self._wrong = wrong_scores(self._course, graded)
+        self._wrong = _differences(self._course, graded)
         times = Counter(paper.sample for paper in graded)
         print(f'\n{self._standing(done)}')
         _show(self._wrong)
         if times:
             print(
-                f'{len(times)} of {len(RIGHT)} right samples, each graded {min(times.values())} '
+                f'{len(times)} samples, each graded {min(times.values())} '
                 f'to {max(times.values())} times; {from_before} in an earlier run'
             )
         if self._loads:
@@ -98,9 +115,23 @@ class _Progress:
     def _standing(self, done: int) -> str:
         scores = sum(len(paper.expected) for paper in self._papers[:done])
         return (
-            f'{done} gradings, {len(self._wrong)} of {scores} scores differ, '
+            f'{done} gradings, {len(self._wrong)} of {scores} scores or reasons differ, '
             f'{minutes(time.perf_counter() - self._began)}'
         )
+
+
+def _differences(course: Course, papers: Sequence[Paper]) -> list[str]:
+    """Return a line for each score that is not what it should be, and for each such reason."""
+    wrong = wrong_scores(course, papers)
+    for paper in papers:
+        found = verdicts(course, paper.student_id, paper.assignment)
+        for name, (_, *words) in EXPECTED[paper.sample].items():
+            said = found.get(name, {})
+            told = ' | '.join([said.get('reason', ''), *said.get('notes', ())])
+            if missing := [word for word in words if word not in told]:
+                whose = f'{paper.student_id} {name} ({paper.sample})'
+                wrong.append(f'{whose}: expected {missing}, the reason is: {told}')
+    return wrong
 
 
 def _show(wrong: Sequence[str]) -> None:
