@@ -20,6 +20,7 @@ ATTACKS = (
     r'|exits|forges_a_verdict|html_and_escapes|ignores_interrupts|kills_everything'
     r'|leaves_a_daemon|patches_what_checks_use|returns_a_pickle|shadows_modules'
     r'|robot_(forges_what_nodes_say|speaks_in_every_domain)'
+    r'|client_(counts_ahead|publishes_both_branches)|server_sends_huge_arrays'
     r'|brings_(links|modules_of_ours)|edits_its_checks|skips_its_checks'
 )
 ORDINARY = {

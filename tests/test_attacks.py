@@ -28,7 +28,7 @@ from attacks.corpus import (
     NAMES,
     OTHERS,
     ROBOT,
-    add_robot_lesson,
+    add_robot_lessons,
     assignment_of,
     attack,
     earns,
@@ -67,7 +67,7 @@ class Class:
 def grade_class(root, names, backend):
     """Grade attacks, several at a time, honest students in between."""
     course = released_course(root)
-    add_robot_lesson(course)
+    add_robot_lessons(course)
     course.gradebook.mkdir(exist_ok=True)
     with (
         socket.create_server(('127.0.0.1', 0)) as server,

@@ -4,54 +4,67 @@ from types import SimpleNamespace
 
 import pytest
 from my_robot_basics.checks import pulse
-from my_robot_basics.checks.clock import Inconclusive
 
 
 class Fake:
-    """A watcher whose every look takes LOOK_SEC; a beat comes at each of some looks."""
+    """A watcher on a clock of its own, which messages reach at some of its seconds."""
 
-    def __init__(self, beats_at, *, free_share):
-        self.beats_at, self.free_share = set(beats_at), free_share
-        self.looks, self.received = 0, []
+    def __init__(self, beats_sec, *, free_share):
+        self.beats_sec, self.free_share = list(beats_sec), free_share
+        self.now_sec, self.received = 0.0, []
 
     def spin_until(self, done, *, timeout_sec):
-        self.looks += 1
-        if self.looks in self.beats_at:
-            self.received.append(self.looks)
-        return done()
+        end_sec = self.now_sec + timeout_sec
+        while self.beats_sec and self.beats_sec[0] <= end_sec:
+            self.now_sec = max(self.now_sec, self.beats_sec.pop(0))
+            self.received.append(self.now_sec)
+            if done():
+                return True
+        self.now_sec = end_sec
+        return False
 
     def stopwatch(self):
-        began = self.looks
+        began_sec = self.now_sec
         return SimpleNamespace(
-            free_sec=lambda: (self.looks - began) * pulse.LOOK_SEC * self.free_share
+            wall_sec=lambda: self.now_sec - began_sec,
+            free_sec=lambda: (self.now_sec - began_sec) * self.free_share,
         )
 
 
+def every(period_sec, *, start_sec=0.0, end_sec=60.0):
+    return [start_sec + period_sec * n for n in range(round((end_sec - start_sec) / period_sec))]
+
+
+def pausing(*, start_sec, end_sec, then_sec=0.1):
+    """Ten times a second, but for a pause; once in `then_sec` behind it."""
+    return [*every(0.1, end_sec=start_sec), *every(then_sec, start_sec=end_sec)]
+
+
 CROWDED, FREE = 0.0, 1.0
-SHORT, LONG = ([*range(1, 4), *range(end, 1000)] for end in (34, 64))
 
 
 @pytest.mark.parametrize(
-    ('beats_at', 'free_share', 'goes_on'),
+    ('beats_sec', 'free_share', 'goes_on'),
     [
-        (range(1, 1000), FREE, True),
-        (range(1, 1000), CROWDED, True),
+        (every(0.1), FREE, True),
+        (every(0.1), CROWDED, True),
         ([], FREE, False),
         ([], CROWDED, False),
-        (range(1, 4), FREE, False),
-        (SHORT, FREE, False),  # it waited for three seconds
-        (LONG, FREE, False),
-        (SHORT, CROWDED, True),  # nobody had a processor for three seconds
+        (pausing(start_sec=0.5, end_sec=1.0), FREE, True),
+        (pausing(start_sec=0.5, end_sec=1.6), FREE, False),  # it waited for a second
+        (pausing(start_sec=0.5, end_sec=2.5), CROWDED, True),  # or had no processor
+        (pausing(start_sec=0.5, end_sec=4.5), CROWDED, False),  # too long for that, …
+        (pausing(start_sec=0.5, end_sec=4.5, then_sec=1.2), CROWDED, True),  # … unless it goes on
+        (pausing(start_sec=0.5, end_sec=40.0), CROWDED, False),
+        ([0.01] * 100, FREE, False),  # counted ahead
+        ([0.01] * 100, CROWDED, False),
+        ([*[0.01] * 100, *every(0.1, start_sec=10.0)], CROWDED, False),
     ],
 )
-def test_only_time_that_was_free_counts(monkeypatch, beats_at, free_share, goes_on):
-    fake = Fake(beats_at, free_share=free_share)
+def test_only_a_silence_that_the_machine_does_not_explain_counts(
+    monkeypatch, beats_sec, free_share, goes_on
+):
+    fake = Fake(beats_sec, free_share=free_share)
     monkeypatch.setattr(pulse, 'Stopwatch', fake.stopwatch)
     monkeypatch.setattr(pulse.student, 'times_raised', lambda name: 0)
-
-    def refuse(*_, **__):
-        raise Inconclusive('its parameter services do not answer')
-
-    monkeypatch.setattr(pulse, 'SimulatedClock', refuse)
-    recorder = SimpleNamespace(received=fake.received, publishers=lambda: ('/ik_client',))
-    assert pulse.Pulse(fake, recorder).goes_on() is goes_on
+    assert pulse.Pulse(fake, SimpleNamespace(received=fake.received)).goes_on() is goes_on

@@ -8,10 +8,11 @@ from functools import partial
 import pytest
 import rclpy
 from geometry_msgs.msg import Point
-from my_robot_basics.checks import CheckFailed, ik, serve, servers
+from my_robot_basics.checks import CheckFailed, holding_server, ik, serve, servers
 from nodes.running import imported, running
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import MultiThreadedExecutor
+from rclpy.node import Node
 from std_srvs.srv import Trigger
 
 from arm_interfaces.srv import SolveIK
@@ -253,6 +254,21 @@ def test_who_waits_for_a_server_that_is_not_there_is_told(run):
         check_never_blocks()
 
 
+class CountsAhead(WaitsForTheServer):
+    def ask(self, target):
+        if not self.client.service_is_ready():
+            for _ in range(100):
+                self.say_alive()
+        super().ask(target)
+
+
+@pytest.mark.usefixtures('impatient')
+def test_who_counts_ahead_has_to_go_on_all_the_same(run):
+    run(CountsAhead)
+    with pytest.raises(CheckFailed, match='while there is no server, saw it stand still'):
+        check_never_blocks()
+
+
 # --- who is wrong otherwise ----------------------------------------------------------------------
 
 
@@ -335,6 +351,65 @@ def test_what_is_wrong_is_named(run, node_class, message):
         check_asks()
 
 
+class SolvesAtOnce(IKClient):
+    def ask(self, target):
+        super().ask(target)
+        self.send(ik.solve(SolveIK.Request(target=target)).elbow_up)
+
+    def answer(self, response):
+        pass
+
+
+class BothBranches(IKClient):
+    def answer(self, response):
+        for position in (response.elbow_down, response.elbow_up):
+            super().send(position)
+
+
+class Twice(IKClient):
+    def send(self, position):
+        for _ in range(2):
+            super().send(position)
+
+
+ANOTHER = r'expected one message on /kinematics/joint_states for each response, and no other, saw '
+
+
+@pytest.mark.parametrize(
+    ('node_class', 'hint'),
+    [
+        (SolvesAtOnce, 'publish the angles of the response, not a solution of your own'),
+        (BothBranches, 'this is elbow_down: publish the angles of response.elbow_up alone'),
+        (Twice, 'publish the angles of the response, not a solution of your own, and once'),
+    ],
+)
+def test_who_publishes_more_than_the_response_is_told(run, node_class, hint):
+    run(node_class)
+    with pytest.raises(CheckFailed, match=f'{ANOTHER}.*{hint}'):
+        check_never_blocks()
+
+
+def test_who_publishes_more_is_found_before_the_end(run):
+    run(Twice)
+    with pytest.raises(CheckFailed, match='/kinematics/joint_states'):
+        check_asks()
+
+
+class AsksAgain(IKClient):
+    """Asks a hundred times a second, whether anything has arrived or not."""
+
+    def __init__(self):
+        super().__init__()
+        self.create_timer(0.01, lambda: self.ask(Point(x=1.2, y=0.4)))
+
+
+def test_who_asks_without_end_is_stopped(run, monkeypatch):
+    monkeypatch.setattr(holding_server, 'MOST_REQUESTS', 20)
+    run(AsksAgain)
+    with pytest.raises(CheckFailed, match=r'for each message, saw 20 of them: ask once in the'):
+        check_never_blocks()
+
+
 class AsksElsewhere(IKClient):
     def create_client(self, type_, name):
         return super().create_client(type_, '/solve_it')
@@ -360,6 +435,23 @@ def test_a_client_of_something_else_is_found(run, node_class, message):
     run(node_class)
     with pytest.raises(CheckFailed, match=message):
         check_asks()
+
+
+class ServesLater(IKClient):
+    """Brings a server along once it is asked, in a node that no list of the course's has."""
+
+    def ask(self, target):
+        self.own = Node('_own', context=self.context)
+        STOPS.append(self.own.destroy_node)
+        self.own.create_service(SolveIK, '/solve_ik', lambda request, response: response)
+        super().ask(target)
+
+
+@pytest.mark.parametrize('check', [check_asks, check_never_blocks])
+def test_a_server_that_comes_later_is_found(run, check):
+    run(ServesLater)
+    with pytest.raises(CheckFailed, match='no server of /solve_ik but that of this check, saw on'):
+        check()
 
 
 def test_another_server_is_named(run):

@@ -12,17 +12,21 @@ from grader.course import Course
 
 FOLDER = Path(__file__).parent / 'answers'
 ANSWERS = {path.stem: path for path in sorted(FOLDER.glob('*.py'))}
-"""Attacks that are an answer; those that begin with `robot_` are one to lesson 3."""
-PUBLISHER = Path(__file__).with_name('publisher.py')
-"""What stands before those."""
+"""Attacks that are an answer: one to the lesson of their first word in KINDS, or to the toy's."""
 OTHERS = {
     name: function
     for name, function in vars(notebooks).items()
     if inspect.isfunction(function) and function.__module__ == notebooks.__name__
 }
 NAMES = [*ANSWERS, *OTHERS]
-ROBOT = '03_publisher'
-FULL = {TOY: 3.0, ROBOT: 5.0}
+ROBOT, SERVICES = '03_publisher', '08_services'
+FULL = {TOY: 3.0, ROBOT: 5.0, SERVICES: 7.0}
+KINDS = {
+    'robot': (ROBOT, 'five_hz', 'publisher.py'),
+    'server': (SERVICES, 'ik_service', 'server.py'),
+    'client': (SERVICES, 'ik_client', 'client.py'),
+}
+"""The lesson and its exercise that attacks are an answer to, and the honest code before them."""
 HONEST = 'def double(x):\n    return x + x'
 HONEST_ROBOT = FOLDER.parents[1] / 'submissions' / '03_publisher-pass-steady_clock_timer.ipynb'
 CANARY = 'hidden canary'
@@ -33,7 +37,11 @@ LEFT = ('loaded_by_the_grader', 'evil_kernel', 'slipped')
 
 def assignment_of(name: str) -> str:
     """Return the lesson that an attack is handed in for."""
-    return ROBOT if name.startswith('robot_') else TOY
+    return _kind(name)[0]
+
+
+def _kind(name: str) -> tuple[str, str, str]:
+    return KINDS.get(name.partition('_')[0], (TOY, '', ''))
 
 
 def earns(name: str) -> float:
@@ -55,19 +63,25 @@ def attack(
         submit(course, student, notebook)
         return
     source = ANSWERS[name].read_text(encoding='utf-8')
-    if assignment_of(name) == ROBOT:
-        source = f'{PUBLISHER.read_text(encoding="utf-8")}\n\n{source}'
+    assignment, exercise, honest = _kind(name)
+    if honest:
+        before = Path(__file__).with_name(honest).read_text(encoding='utf-8')
+        source = f'{before}\n\n{source}'
     source = source.replace('GRADEBOOK', str(gradebook or course.gradebook))
-    hand_in(course, student, source.replace('PORT', str(port)), assignment_of(name))
+    hand_in(course, student, source.replace('PORT', str(port)), assignment, exercise)
 
 
-def hand_in(course: Course, student: str, answer: str, assignment: str) -> None:
-    """Hand in a lesson with one answer typed in."""
+def hand_in(
+    course: Course, student: str, answer: str, assignment: str, exercise: str = ''
+) -> None:
+    """Hand in a lesson with one answer typed in: that of an exercise, if it has several."""
     notebook = course.release(assignment)
     (cell,) = (
         cell
         for cell in notebook.cells
-        if cell.cell_type == 'code' and cell.metadata.get('nbgrader', {}).get('solution')
+        if cell.cell_type == 'code'
+        and cell.metadata.get('nbgrader', {}).get('solution')
+        and cell.metadata.nbgrader.grade_id.startswith(exercise)
     )
     cell.source = answer
     path = course.folder('submitted', student, assignment) / f'{assignment}.ipynb'
@@ -85,8 +99,8 @@ def hand_in_honestly(course: Course, student: str, assignment: str = TOY) -> Non
     path.write_bytes(HONEST_ROBOT.read_bytes())
 
 
-def add_robot_lesson(course: Course) -> None:
-    """Let a course of the toy lesson have lesson 3, too."""
+def add_robot_lessons(course: Course) -> None:
+    """Let a course of the toy lesson have those with nodes, too."""
     for step in ('solutions', 'notebooks'):
-        here = Path(__file__).parents[2] / step / ROBOT
-        (course.root / step / ROBOT).symlink_to(here)
+        for lesson in (ROBOT, SERVICES):
+            (course.root / step / lesson).symlink_to(Path(__file__).parents[2] / step / lesson)

@@ -37,7 +37,7 @@ from attacks.corpus import (
     LEFT,
     NAMES,
     ROBOT,
-    add_robot_lesson,
+    add_robot_lessons,
     assignment_of,
     attack,
     earns,
@@ -124,7 +124,7 @@ def _course(root: Path) -> Course:
     lesson.metadata.kernelspec = {'name': 'python3', 'display_name': '', 'language': 'python'}
     write_source(course, lesson)
     release(course, TOY)
-    add_robot_lesson(course)
+    add_robot_lessons(course)
     return course
 
 

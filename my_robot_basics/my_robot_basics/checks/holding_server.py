@@ -6,6 +6,11 @@ from typing import Any
 from rclpy.node import Node
 from rclpy.service import Service
 
+from my_robot_basics.feedback.errors import expect
+
+MOST_REQUESTS = 500
+"""A client that asks once for each message comes to a few."""
+
 
 class HoldingServer:
     """Serves as soon as `start` was called, on a node that somebody else spins."""
@@ -16,7 +21,9 @@ class HoldingServer:
         """`answer(request)` returns the response."""
         self.name, self.type, self.answer = name, type_, answer
         self.requests: list[Any] = []
-        """All that it was asked, in order."""
+        """All that it was asked, in order; MOST_REQUESTS of them raise CheckFailed."""
+        self.sent: list[Any] = []
+        """All responses that have left."""
         self.starts = 0
         """How often it was started."""
         self._node = node
@@ -33,7 +40,7 @@ class HoldingServer:
             if self._holds:
                 self._held.append((send, response, header))
             else:
-                send(response, header)
+                self._send(send, response, header)
 
         # the executor calls it with what _take returns
         service.send_response = send_or_hold  # type: ignore[method-assign]
@@ -44,7 +51,12 @@ class HoldingServer:
         """Be absent: a request that comes now is lost, and so is one that has no answer yet."""
         if self._service is not None:
             self._node.destroy_service(self._service)
+            self._service = None
         self._held.clear()
+
+    def is_there(self) -> bool:
+        """Whether it serves now."""
+        return self._service is not None
 
     def hold(self) -> None:
         """Take requests, and keep the answers until `release`."""
@@ -54,13 +66,24 @@ class HoldingServer:
         """Send the answers that were kept, with `reverse` the last one first; hold no longer."""
         self._holds = False
         for send, response, header in reversed(self._held) if reverse else self._held:
-            send(response, header)
+            self._send(send, response, header)
         self._held = []
 
     def holds_any(self) -> bool:
         """Whether an answer is kept back."""
         return bool(self._held)
 
+    def _send(self, send: Callable[[Any, Any], None], response: Any, header: Any) -> None:
+        self.sent.append(response)
+        send(response, header)
+
     def _take(self, request: Any, _: Any) -> Any:
         self.requests.append(request)
+        expect(
+            len(self.requests) < MOST_REQUESTS,
+            expected=f'a request to {self.name} for each message',
+            seen=f'{MOST_REQUESTS} of them',
+            hint='ask once in the callback, in no loop and no timer of its own',
+            cause=f'{self.name} is asked again and again',
+        )
         return self.answer(request)

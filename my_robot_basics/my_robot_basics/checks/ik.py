@@ -6,38 +6,21 @@ from typing import Any
 
 from geometry_msgs.msg import Point
 
-from arm_interfaces.srv import SolveIK
 from my_robot_basics.checks import joints
+from my_robot_basics.checks.elbow_up import expect_elbow_up, expect_no_others, is_elbow_up
 from my_robot_basics.checks.servers import Server
 from my_robot_basics.checks.services import Service
+from my_robot_basics.checks.solutions import request, solve
 from my_robot_basics.feedback.errors import expect, fail, shorten
-from my_robot_basics.two_link_kinematics import L1, L2, inverse_kinematics
+from my_robot_basics.two_link_kinematics import inverse_kinematics
+
+__all__ = ['expect_elbow_up', 'request', 'solve']
 
 UP, DOWN = 'elbow_up', 'elbow_down'
+MOST_ANGLES = 20
+"""What is looked at of a branch, which has two: a response may have millions."""
 NEAR_M = 1e-6
 """A request for a target is no further off."""
-
-
-def request(x: float, y: float) -> SolveIK.Request:
-    """A request for a target, in metres."""
-    return SolveIK.Request(target=Point(x=x, y=y))
-
-
-def solve(asked: SolveIK.Request, *, l1: float = L1, l2: float = L2) -> SolveIK.Response:
-    """The right response to a request.
-
-    With other lengths of the links, in metres, it is one that only who is answered can know.
-    """
-    response = SolveIK.Response()
-    try:
-        branches_deg = inverse_kinematics(asked.target.x, asked.target.y, l1, l2)
-    except ValueError as error:
-        response.message = str(error)
-        return response
-    response.reachable = True
-    response.elbow_up = [math.radians(angle) for angle in branches_deg[UP]]
-    response.elbow_down = [math.radians(angle) for angle in branches_deg[DOWN]]
-    return response
 
 
 def expect_solutions(service: Service, *targets: tuple[float, float]) -> None:
@@ -57,7 +40,7 @@ def expect_solutions(service: Service, *targets: tuple[float, float]) -> None:
         )
         branches_deg = inverse_kinematics(x, y)
         for branch, other in ((UP, DOWN), (DOWN, UP)):
-            position = list(getattr(response, branch))
+            position = list(getattr(response, branch)[:MOST_ANGLES])
             if not _is_pose(position, branches_deg[branch]):
                 fail(
                     expected=f'{branch} of {_rad(branches_deg[branch])} rad for {where}',
@@ -82,11 +65,11 @@ def expect_refusals(service: Service, *targets: tuple[float, float]) -> None:
             hint='inverse_kinematics raises ValueError there: catch it, and leave reachable False',
             cause=f'{what} is called reachable',
         )
-        angles = [*response.elbow_up, *response.elbow_down]
+        angles = len(response.elbow_up) + len(response.elbow_down)
         expect(
             not angles,
             expected=f'no angles for ({x:g}, {y:g})',
-            seen=f'{len(angles)}',
+            seen=f'{angles}',
             hint='leave elbow_up and elbow_down empty',
             cause=f'{what} has angles',
         )
@@ -115,6 +98,7 @@ def expect_never_blocks(server: Server, *targets: tuple[float, float]) -> None:
     server.hold()
     ask(server, *first)
     server.expect_alive('the server takes its time')
+    expect_no_others(server)
     server.release()
     expect_elbow_up(server, *first)
     server.stop()
@@ -122,6 +106,9 @@ def expect_never_blocks(server: Server, *targets: tuple[float, float]) -> None:
     server.expect_alive('there is no server')
     server.start()
     expect_answer(server, *third)
+    # the second one, too, where it was kept
+    server.made.wait_for_rest(is_elbow_up, leads=lambda response: response.reachable)
+    expect_no_others(server)
 
 
 def ask(server: Server, x: float, y: float) -> None:
@@ -135,34 +122,13 @@ def ask(server: Server, x: float, y: float) -> None:
     )
 
 
-def expect_elbow_up(server: Server, x: float, y: float) -> None:
-    """The client publishes the elbow-up pose that the server answers for a target."""
-    response = server.answer(request(x, y))
-    up_deg, down_deg = (
-        [math.degrees(angle) for angle in branch]
-        for branch in (response.elbow_up, response.elbow_down)
-    )
-    right = joints.in_radians(up_deg)
-
-    def why_wrong(message: Any) -> str:
-        if joints.agree(joints.pose(message), joints.in_radians(down_deg)):
-            return 'this is elbow_down: publish the angles of response.elbow_up'
-        own_deg = [math.degrees(angle) for angle in solve(request(x, y)).elbow_up]
-        if own_deg and joints.agree(joints.pose(message), joints.in_radians(own_deg)):
-            return 'publish the angles of the response, not a solution of your own'
-        return joints.why_wrong(message, up_deg)
-
-    server.expect(
-        lambda message: joints.agree(joints.pose(message), right),
-        expected=f'the elbow-up pose {right}',
-        hint=why_wrong,
-    )
-
-
 def expect_no_answer(server: Server, x: float, y: float) -> None:
     """The client asks for a target out of reach, and publishes nothing. Raises CheckFailed."""
+    expect_no_others(server)
     ask(server, x, y)
-    server.expect_nothing(hint='publish only where response.reachable is True')
+    server.expect_nothing(
+        made_of=is_elbow_up, hint='publish only where response.reachable is True'
+    )
 
 
 def _is_pose(position: Sequence[float], pose_deg: Sequence[float]) -> bool:

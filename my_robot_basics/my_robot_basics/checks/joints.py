@@ -9,6 +9,8 @@ from sensor_msgs.msg import JointState
 from my_robot_basics.feedback.errors import expect
 
 EXACT_RAD = 2e-4
+MOST_JOINTS = 100
+"""What has more is no pose of an arm, and is not looked at."""
 CLOSE_RAD = 0.02
 """Who rounds to two decimals is no further off."""
 
@@ -21,9 +23,12 @@ def make(numbers: random.Random, *names: str) -> JointState:
 def pose(message: JointState) -> dict[str, float]:
     """Return each joint's position, to four decimals.
 
-    Nothing where names and positions differ in number, or a name is there twice.
+    Nothing where names and positions differ in number, a name is there twice, or there are too
+    many.
     """
-    if len(message.name) != len(message.position) or len({*message.name}) != len(message.name):
+    if len(message.name) != len(message.position) or len(message.name) > MOST_JOINTS:
+        return {}
+    if len({*message.name}) != len(message.name):
         return {}
     pairs = zip(message.name, message.position, strict=True)
     return {name: round(position, 4) for name, position in pairs}

@@ -1,32 +1,40 @@
 """Whether a node goes on while something else takes its time, by a topic on which it counts.
 
-A machine that is short of time is no node that waits. On the clock that the check drives, only
-ticks count that the node has acknowledged. On the wall clock, only time counts in which no process
-waited for a processor, and the notebook has to answer questions meanwhile.
+A machine that is short of time is no node that waits: where no time is free, only a pause counts
+that is far longer than those after it. The notebook has to answer questions meanwhile.
 """
 
-from my_robot_basics.checks.clock import Inconclusive, SimulatedClock
+from dataclasses import dataclass
+
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.exchange import student
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
 
-STEP_NS = 100_000_000
-TICKS = 20
-"""Steps of the robot's clock: two of its seconds."""
-MOST_TICKS_STILL = 5
-"""Who counts at 10 Hz is silent for no longer."""
-BEATS = 12
-"""So many on the wall clock are enough; …"""
+BEATS, SPAN_SEC = 12, 1.2
+"""So many, in no less time, are enough: who counts ahead has to go on then; …"""
 STILL_SEC = 0.8
 """… a silence is so long, of time that was free, and …"""
 LOOKS = 8
 """… holds so many questions that the notebook answered. …"""
-CROWDED_LOOKS = 40
-"""… Where no time is free, so many prove that its process has its turns, and the node none."""
+CROWDED_SEC, CROWDED_LOOKS = 2.5, 10
+"""… Where no time is free, so long a pause is a silence, too, …"""
+MOST_TIMES = 4.0
+"""… unless it is less than so many times as long as another one, once the node counts again, …"""
 AGAIN_TIMES = 3
-"""A second look takes so many times as much of all three."""
+"""… which it has to do in so many times as much of both."""
 LOOK_SEC = 0.1
+
+
+@dataclass(frozen=True)
+class _Pause:
+    """The time before a beat, or until enough is known without one."""
+
+    sec: float
+    is_over: bool
+    """Whether the beat has come."""
+    was_free: bool = False
+    """Whether enough of the time was free."""
 
 
 class Pulse:
@@ -34,53 +42,39 @@ class Pulse:
 
     def __init__(self, watcher: Watcher, recorder: Recorder) -> None:
         self._watcher, self._recorder = watcher, recorder
-        self._was_free = False
 
     def goes_on(self) -> bool:
-        """Whether it counts now, on the wall clock.
-
-        A silence without enough free time leaves a doubt: then two seconds of the robot's clock
-        decide, or a longer look. They come later, for a clock that was driven, and given back, may
-        keep a timer silent for as long as it was ahead.
-        """
-        if self._beats():
-            return True
-        return not self._was_free and (self._ticks() or self._beats(times=AGAIN_TIMES))
-
-    def _ticks(self) -> bool:
-        """Whether it counts on the robot's clock; False proves nothing."""
-        try:
-            with SimulatedClock(self._watcher, needed=set(self._recorder.publishers())) as clock:
-                still = 0
-                for _ in range(TICKS):
-                    before = len(self._recorder.received)
-                    clock.tick(STEP_NS)
-                    still = 0 if len(self._recorder.received) > before else still + 1
-                    if still > MOST_TICKS_STILL:
-                        return False
-        except Inconclusive:
-            return False
-        return True
-
-    def _beats(self, *, times: int = 1) -> bool:
-        """Whether it counts on the wall clock, without a silence among the first BEATS."""
-        began = len(self._recorder.received)
-        while len(self._recorder.received) - began < BEATS:
-            if self._is_silent(times):
+        """Whether it counts now, without a silence."""
+        watch, beats = Stopwatch(), 0
+        while beats < BEATS or watch.wall_sec() < SPAN_SEC:
+            pause = self._pause()
+            if pause.was_free:
                 return False
+            if not pause.is_over:
+                return self._is_usual(pause)
+            beats += 1
         return True
 
-    def _is_silent(self, times: int) -> bool:
-        """Whether no beat comes for so long; it returns at a beat."""
+    def _is_usual(self, pause: _Pause) -> bool:
+        """Whether a machine that is short of time explains a pause, by those that come later."""
+        rest = self._pause(times=AGAIN_TIMES)
+        if not rest.is_over:
+            return False
+        later_sec = max(self._pause().sec for _ in range(BEATS))
+        return pause.sec + rest.sec < MOST_TIMES * later_sec
+
+    def _pause(self, *, times: int = 1) -> _Pause:
+        """Wait for a beat, no longer than until it is known that this is a silence."""
         before, watch, looks = len(self._recorder.received), Stopwatch(), 0
-        while looks < times * CROWDED_LOOKS and (
-            looks < times * LOOKS or watch.free_sec() < times * STILL_SEC
-        ):
+        while True:
             if self._watcher.spin_until(
                 lambda: len(self._recorder.received) > before, timeout_sec=LOOK_SEC
             ):
-                return False
+                return _Pause(watch.wall_sec(), is_over=True)
             student.times_raised('')  # its process has had a turn when that is answered
             looks += 1
-        self._was_free = watch.free_sec() >= times * STILL_SEC
-        return True
+            sec = watch.wall_sec()
+            if looks >= LOOKS and watch.free_sec() >= STILL_SEC:
+                return _Pause(sec, is_over=False, was_free=True)
+            if looks >= times * CROWDED_LOOKS and sec >= times * CROWDED_SEC:
+                return _Pause(sec, is_over=False)

@@ -10,6 +10,8 @@ from my_robot_basics.checks.callbacks import Raised
 from my_robot_basics.checks.holding_server import HoldingServer
 from my_robot_basics.checks.pulse import Pulse
 from my_robot_basics.checks.recorder import Recorder
+from my_robot_basics.checks.responses import Made, MadeOf, of_none
+from my_robot_basics.checks.sole_server import expect_no_other
 from my_robot_basics.checks.topics import Topic
 from my_robot_basics.checks.waiting_clients import (
     waits_for_answer,
@@ -18,8 +20,6 @@ from my_robot_basics.checks.waiting_clients import (
     why_not_published,
 )
 from my_robot_basics.feedback.errors import expect, fail, shorten
-from my_robot_basics.feedback.hidden import theirs
-from my_robot_basics.graph import services
 from my_robot_basics.graph.watcher import Watcher
 
 TIMEOUT_SEC = 4.0
@@ -52,18 +52,12 @@ def serve(
     """
     with Watcher() as watcher:
         answers, beats = (Topic(topic_name).listen(watcher) for topic_name in (to, alive))
-        others = services.take(watcher.node).servers.get(name, {})
-        expect(
-            not others,
-            expected=f'no server of {name} but that of this check',
-            seen=theirs(', '.join(sorted(others))),
-            hint='stop that node: here, the check itself answers',
-            cause=f'another node serves {name}',
-        )
         served = {'name': name, 'type_': type_, 'answer': answer}
         server = Server(watcher, asked_on=asked_on, answers=answers, beats=beats, **served)
+        server.expect_alone()
         server.start()
         yield server
+        server.expect_alone()
 
 
 class Server(HoldingServer):
@@ -77,6 +71,8 @@ class Server(HoldingServer):
         self.asked_on = asked_on
         self._watcher, self._answers, self._beats = watcher, answers, beats
         self._raised = Raised({*answers.publishers(), *beats.publishers()})
+        self.made = Made(watcher, answers, self.sent)
+        """The messages on `to`, beside the responses."""
         self._publisher: Publisher | None = None
         self._seen = self._known_starts = 0
 
@@ -85,6 +81,7 @@ class Server(HoldingServer):
         if self._publisher is None:
             self._publisher = Topic(self.asked_on).meet(self._watcher, type(message))
         self._seen = len(self._answers.received)
+        self.made.begin()
         self._publisher.publish(message)
 
     def ask(
@@ -141,10 +138,13 @@ class Server(HoldingServer):
             cause=wrong if others else f'{self.name} has answered, and nothing is published',
         )
 
-    def expect_nothing(self, *, hint: str) -> None:
-        """Nothing comes on `to` in QUIET_SEC after what was last asked for. Raises CheckFailed."""
+    def expect_nothing(self, *, hint: str, made_of: MadeOf = of_none) -> None:
+        """Nothing comes on `to` in QUIET_SEC, but what is made of a response: see `Made`.
+
+        Raises CheckFailed.
+        """
         self._watcher.spin_for(QUIET_SEC)
-        others = self._answers.messages()[self._seen :]
+        others = self.made.others(made_of)
         expect(
             not others,
             expected=f'no message on {self._answers.topic_name}',
@@ -157,10 +157,15 @@ class Server(HoldingServer):
     def expect_alive(self, meanwhile: str) -> None:
         """The node goes on counting on `alive`. `meanwhile`: what happens, as a clause.
 
-        Raises CheckFailed where the count stands still: see `Pulse`.
+        Raises CheckFailed where the count stands still (see `Pulse`), or another node serves.
         """
         if not self._goes_on():
             self._fail_still(meanwhile)
+        self.expect_alone()
+
+    def expect_alone(self) -> None:
+        """No other node serves. Raises CheckFailed."""
+        expect_no_other(self._watcher, self.name, own=int(self.is_there()))
 
     def _why_not_asked(self) -> str:
         return why_not_asked(

@@ -20,7 +20,7 @@ def waits_for_server(name: str) -> str:
     """The node has not asked, and nothing of it runs."""
     return (
         f'it waits for `{name}` inside a callback, and no other callback runs meanwhile; look at '
-        'service_is_ready(), which returns at once, and ask with call_async'
+        'service_is_ready(), which returns at once, and ask with call_async and add_done_callback'
     )
 
 

@@ -1,0 +1,84 @@
+"""Which messages of a node are made of responses that were sent to it, each of one of its own."""
+
+import time
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from my_robot_basics.checks.recorder import Recorder
+from my_robot_basics.feedback.errors import fail, shorten
+from my_robot_basics.graph.watcher import Watcher
+
+MadeOf = Callable[[Any, Any], bool]
+"""Whether a message is made of a response."""
+OWED_SEC = 0.5
+"""How long a node may take to publish what it owes, of time that was free."""
+
+
+def of_none(_message: Any, _response: Any) -> bool:
+    """No message is made of any response."""
+    return False
+
+
+class Made:
+    """The messages on a topic, since `begin`, beside the responses of a server."""
+
+    def __init__(self, watcher: Watcher, recorder: Recorder, sent: Sequence[Any]) -> None:
+        """`sent`: the responses so far; more come."""
+        self._watcher, self._recorder, self._sent = watcher, recorder, sent
+        self._left: list[Any] = []
+        self._others: list[Any] = []
+        self._read = self._taken = 0
+        self._began_ns = 0
+
+    def begin(self) -> None:
+        """Count what is sent from now on; only the first call does that.
+
+        A late joiner may receive what was published for another server, before this one.
+        """
+        self._began_ns = self._began_ns or time.time_ns()
+
+    def others(self, made_of: MadeOf) -> list[Any]:
+        """The messages that are made of no response, or of one that has its message."""
+        self._look(made_of)
+        return self._others
+
+    def expect_no_others(self, made_of: MadeOf, *, hint: Callable[[Any], str]) -> None:
+        """Each message so far is made of a response that was sent, no two of the same one.
+
+        `hint(message)` says what is wrong with another one. Raises CheckFailed.
+        """
+        topic_name = self._recorder.topic_name
+        if others := self.others(made_of):
+            fail(
+                expected=f'one message on {topic_name} for each response, and no other',
+                seen=shorten(others[0]),
+                hint=hint(others[0]),
+                cause=f'a message on {topic_name} that should not be',
+            )
+
+    def wait_for_rest(self, made_of: MadeOf, *, leads: Callable[[Any], bool]) -> None:
+        """Wait for the message of each response that `leads` to one, so far as it comes.
+
+        Else the next check might receive it.
+        """
+
+        def is_all() -> bool:
+            self._look(made_of)
+            return not any(map(leads, self._left))
+
+        self._watcher.spin_until_free(is_all, free_sec=OWED_SEC)
+
+    def _look(self, made_of: MadeOf) -> None:
+        self._left += self._sent[self._taken :]
+        self._taken = len(self._sent)
+        new, self._read = self._recorder.received[self._read :], len(self._recorder.received)
+        for message, sent_ns in new:
+            if sent_ns >= self._began_ns and not self._use(message, made_of):
+                self._others.append(message)
+
+    def _use(self, message: Any, made_of: MadeOf) -> bool:
+        for number, response in enumerate(self._left):
+            if made_of(message, response):
+                del self._left[number]
+                return True
+        return False

@@ -1,0 +1,30 @@
+"""A request to `/solve_ik`, and the right response to it."""
+
+import math
+
+from geometry_msgs.msg import Point
+
+from arm_interfaces.srv import SolveIK
+from my_robot_basics.two_link_kinematics import L1, L2, inverse_kinematics
+
+
+def request(x: float, y: float) -> SolveIK.Request:
+    """A request for a target, in metres."""
+    return SolveIK.Request(target=Point(x=x, y=y))
+
+
+def solve(asked: SolveIK.Request, *, l1: float = L1, l2: float = L2) -> SolveIK.Response:
+    """The right response to a request.
+
+    With other lengths of the links, in metres, it is one that only who is answered can know.
+    """
+    response = SolveIK.Response()
+    try:
+        branches_deg = inverse_kinematics(asked.target.x, asked.target.y, l1, l2)
+    except ValueError as error:
+        response.message = str(error)
+        return response
+    response.reachable = True
+    response.elbow_up = [math.radians(angle) for angle in branches_deg['elbow_up']]
+    response.elbow_down = [math.radians(angle) for angle in branches_deg['elbow_down']]
+    return response

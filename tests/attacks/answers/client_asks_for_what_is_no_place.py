@@ -1,0 +1,13 @@
+"""Asks for targets that are no numbers, or as far away as numbers go, before the right one."""  # earns 4
+
+import math
+
+FAR = (math.nan, math.inf, -math.inf, 1.7e308, -1.7e308, 5e-324)
+
+
+class IKClient(IKClient):
+    def ask(self, target):
+        for x in FAR:
+            for y in FAR:
+                self.client.call_async(SolveIK.Request(target=Point(x=x, y=y)))
+        super().ask(target)

