@@ -8,7 +8,7 @@ import time
 
 import pytest
 from my_robot_basics.doctor import looking
-from my_robot_basics.doctor.looking import diagnose
+from my_robot_basics.doctor.diagnosing import diagnose
 from my_robot_basics.live import run, stop
 from my_robot_basics.session import classroom
 from nodes.patient import (
@@ -41,7 +41,7 @@ def _brief_looks(monkeypatch):
 
 
 def first_finding(**options):
-    diagnosis = diagnose(TOPIC, domain_id=classroom.enter(), **options)
+    (diagnosis,) = diagnose(TOPIC, domain_id=classroom.enter(), **options)
     assert diagnosis.findings, 'nothing was found'
     return diagnosis.findings[0]
 
@@ -56,7 +56,7 @@ def wait_for(done):
 def assert_well(listener):
     before = len(listener.heard)
     assert wait_for(lambda: len(listener.heard) > before)
-    assert diagnose(TOPIC, domain_id=classroom.enter()).findings == ()
+    assert diagnose(TOPIC, domain_id=classroom.enter())[0].findings == ()
 
 
 def named(name):
@@ -118,7 +118,7 @@ def test_a_wrong_line_is_named_first_and_fixed(fault):
     edits[source] = [(line, wrong)]
     run(node_class(TALKER, *edits[TALKER]))
     run(node_class(LISTENER, *edits[LISTENER]))
-    found = first_finding(listen_sec=1.5)
+    found = first_finding(seconds=1.5)
     assert title in found.title
     if found.code.startswith('self.subscription'):
         # whichever end was planted: the fix may be for the other one
@@ -134,7 +134,7 @@ def test_a_wrong_line_is_named_first_and_fixed(fault):
 def test_a_clock_that_nobody_drives_is_named_and_given_back():
     run(node_class(TALKER), parameter_overrides=[Parameter('use_sim_time', value=True)])
     listener = run(node_class(LISTENER))
-    found = first_finding(listen_sec=2.0)
+    found = first_finding(seconds=2.0)
     assert found.title == 'use_sim_time without a /clock'
     words = shlex.split(found.code)
     assert words[:2] == ['$', 'ros2']
@@ -146,7 +146,7 @@ def test_a_clock_that_nobody_drives_is_named_and_given_back():
 def test_a_publisher_that_nobody_spins():
     listener = run(node_class(LISTENER))
     with process(program(TALKER, (SPIN, DEAD))):
-        found = wait_for_finding('the node is not spinning', listen_sec=2.0)
+        found = wait_for_finding('the node is not spinning', seconds=2.0)
     with process(program(TALKER, (SPIN, found.code))):
         assert wait_for(lambda: listener.heard)
 
@@ -165,7 +165,7 @@ def test_a_type_that_is_not_installed_here(monkeypatch):
     listener = run(node_class(LISTENER))
     with process(program(TALKER)):
         assert wait_for(lambda: listener.heard)
-        assert diagnose(TOPIC, domain_id=classroom.enter()).findings == ()
+        assert diagnose(TOPIC, domain_id=classroom.enter())[0].findings == ()
         # as for somebody whose environment lacks the package
         monkeypatch.setitem(sys.modules, 'sensor_msgs.msg', None)
         found = first_finding()
@@ -200,12 +200,12 @@ def test_a_latched_message_that_came_too_early():
     )
     run(node_class(TALKER, (PUBLISHER, latched), (TIMER, 'self.publish()')))
     listener = run(node_class(LISTENER))
-    found = first_finding(listen_sec=1.0)
+    found = first_finding(seconds=1.0)
     assert found.title == 'joined too late'
     assert not listener.heard
     listener = run(node_class(LISTENER, (SUBSCRIPTION, found.code)))
     assert wait_for(lambda: listener.heard)
-    assert diagnose(TOPIC, domain_id=classroom.enter(), listen_sec=1.0).findings == ()
+    assert diagnose(TOPIC, domain_id=classroom.enter(), seconds=1.0)[0].findings == ()
 
 
 def test_a_queue_that_is_shorter_than_a_burst(monkeypatch):

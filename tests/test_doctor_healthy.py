@@ -6,7 +6,7 @@ import time
 
 import pytest
 from builtin_interfaces.msg import Time
-from my_robot_basics.doctor.looking import diagnose
+from my_robot_basics.doctor.diagnosing import diagnose
 from my_robot_basics.doctor.report import tell
 from my_robot_basics.live import run, stop
 from my_robot_basics.session import classroom
@@ -113,7 +113,7 @@ def start_system(rng):
 def assert_well(seed):
     try:
         topic_name = start_system(random.Random(seed))
-        diagnosis = diagnose(topic_name, domain_id=classroom.enter())
+        (diagnosis,) = diagnose(topic_name, domain_id=classroom.enter())
     finally:
         stop()
     assert not diagnosis.findings, f'seed {seed}: {tell(diagnosis)}'

@@ -7,7 +7,7 @@ import pytest
 from jupyter_client.manager import start_new_kernel
 from my_robot_basics.doctor.main import main
 from my_robot_basics.live import run, stop, why
-from my_robot_basics.live.doctor import NoTopicName
+from my_robot_basics.live.doctor import NoSuchName
 from nodes.patient import LISTENER, TALKER, TOPIC, node_class
 
 
@@ -35,10 +35,10 @@ def test_a_fault_and_then_all_is_well(capfd):
 @pytest.mark.parametrize(
     ('words', 'complaint'),
     [
-        ([], 'the following arguments are required: topic_name'),
-        (['/a b'], "'/a b' is not a topic name"),
-        ([''], "'' is not a topic name"),
-        (['/a//b'], "'/a//b' is not a topic name"),
+        ([], 'the following arguments are required: name'),
+        (['/a b'], "'/a b' is not the name of a topic or a service"),
+        ([''], "'' is not the name of a topic or a service"),
+        (['/a//b'], "'/a//b' is not the name of a topic or a service"),
         ([TOPIC, '--seconds', 'x'], "invalid time in seconds value: 'x'"),
         ([TOPIC, '--seconds', '-1'], "invalid time in seconds value: '-1'"),
         ([TOPIC, '--seconds', 'nan'], "invalid time in seconds value: 'nan'"),
@@ -73,9 +73,9 @@ def test_help_needs_no_ros():
 
 
 def test_a_notebook_asks_for_a_topic_with_an_impossible_name():
-    with pytest.raises(NoTopicName, match='is not a topic name'):
+    with pytest.raises(NoSuchName, match='is not the name of a topic or a service'):
         why('/joint states')
-    with pytest.raises(NoTopicName, match='is not a text: expected the name of a topic'):
+    with pytest.raises(NoSuchName, match='is not a text: expected the name of a topic'):
         why(why)
 
 
@@ -110,4 +110,6 @@ def test_a_notebook_shows_the_answer_and_a_picture_as_often_as_it_is_asked(cell)
         assert shown['metadata']['image/png']['alt'] == shown['data']['text/plain']
         assert 'broken: no publisher' in shown['data']['text/plain']
     (error,) = cell("live.why('a b')")
-    assert ' '.join(error['traceback']).startswith("NoTopicName: 'a b' is not a topic name (")
+    assert ' '.join(error['traceback']).startswith(
+        "NoSuchName: 'a b' is not the name of a topic or a service ("
+    )

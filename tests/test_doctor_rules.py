@@ -6,10 +6,12 @@ import time
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from my_robot_basics.doctor import picture, report
+from my_robot_basics.doctor import picture, report, rules, service_rules
+from my_robot_basics.doctor.callback import Callback
 from my_robot_basics.doctor.evidence import Endpoint, Evidence, NodeState, ReceivedMessage
 from my_robot_basics.doctor.remaps import of_command
-from my_robot_basics.doctor.rules import RULES, judge, qos
+from my_robot_basics.doctor.rules import judge, qos
+from my_robot_basics.doctor.service_evidence import ServiceEvidence, Unanswered
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session import classroom
 from rclpy.duration import Duration
@@ -102,7 +104,7 @@ def end(kind, node_name, *, topic_name=TOPIC, type_name='sensor_msgs/msg/JointSt
     return Endpoint(
         kind=kind,
         node_name=node_name,
-        topic_name=topic_name,
+        name=topic_name,
         type_name=type_name,
         qos_profile=infinite(QoSProfile(depth=depth or 10)),
         depth=depth,
@@ -119,7 +121,7 @@ def healthy(*, rate_hz=5.0, number=10, position=(0.4, -1.1), names=('joint1', 'j
         message.header.stamp.nanosec = int(sent_sec % 1 * 1e9)
         received.append(ReceivedMessage(message=message, sent_sec=sent_sec))
     return Evidence(
-        topic_name=TOPIC,
+        name=TOPIC,
         endpoints=(end('publisher', '/talker'), end('subscription', '/listener')),
         nodes={'/talker': NodeState(answers=True), '/listener': NodeState(answers=True)},
         received=tuple(received),
@@ -248,7 +250,7 @@ def test_the_waiting_one_of_two_similar_names_is_meant():
 
 
 def test_a_misspelt_question_is_answered_with_the_right_one():
-    asked = replaced(topic_name='/kinematic/joint_state', **SILENT)
+    asked = replaced(name='/kinematic/joint_state', **SILENT)
     first = judge(asked).findings[0]
     assert first.code == f'$ topic_doctor {TOPIC}'
 
@@ -260,13 +262,16 @@ def test_an_empty_domain_sends_to_the_others():
     assert not any('--domains' in finding.fix for finding in judge(looked).findings)
 
 
-def test_every_rule_is_in_the_table():
+@pytest.mark.parametrize('table', [rules, service_rules], ids=lambda table: table.__name__)
+def test_every_rule_is_in_its_table(table):
     from importlib import resources
 
-    folder = resources.files('my_robot_basics.doctor.rules')
+    folder = resources.files(table)
     files = {f.name.removesuffix('.py') for f in folder.iterdir() if f.name.endswith('.py')}
-    tabled = {rule.__module__.rpartition('.')[2] for rule in RULES}
-    assert tabled == files - {'__init__'}
+    tabled = [rule.__module__.rpartition('.') for rule in table.RULES]
+    assert {name for package, _, name in tabled if package == table.__name__} == (
+        files - {'__init__'}
+    )
 
 
 @pytest.mark.parametrize(
@@ -310,5 +315,143 @@ def test_the_report_names_rate_and_faults_in_order():
 )
 def test_the_picture_says_in_words_what_it_shows(evidence, text):
     diagnosis = judge(evidence)
+    assert text in picture.describe(diagnosis)
+    assert picture.draw(diagnosis).startswith(b'\x89PNG')
+
+
+NAME = '/close_gripper'
+GRIPPER, WAVER = '/gripper', '/waver'
+
+
+def service_end(kind, node_name, *, name=NAME, type_name='std_srvs/srv/SetBool'):
+    return Endpoint(kind=kind, node_name=node_name, name=name, type_name=type_name)
+
+
+SERVES, ASKS = service_end('server', GRIPPER), service_end('client', WAVER)
+
+
+def healthy_service(**changes):
+    evidence = ServiceEvidence(
+        name=NAME,
+        endpoints=(SERVES, ASKS),
+        nodes={GRIPPER: NodeState(answers=True), WAVER: NodeState(answers=True)},
+        looked_sec=0.1,
+    )
+    return dataclasses.replace(evidence, **changes)
+
+
+def silent(node_name, **changes):
+    nodes = healthy_service().nodes | {node_name: NodeState(answers=False)}
+    return healthy_service(nodes=nodes, looked_sec=3.0, **changes)
+
+
+def callback(node_name, name, **changes):
+    return Callback(node_name=node_name, name=name, line='line 4: …', seconds=5.9, **changes)
+
+
+DEADLOCK = callback(
+    WAVER, 'ask', waits_in='call', waits_for=NAME, keeps='executor', holds=(WAVER,)
+)
+WORKING = callback(GRIPPER, 'move', service_name=NAME, holds=(GRIPPER,))
+WAITING = callback(WAVER, 'ask', waits_in='wait_for_service', waits_for=NAME, holds=(WAVER,))
+ELSEWHERE = dataclasses.replace(DEADLOCK, node_name='/other', holds=('/other',))
+HERE = frozenset({GRIPPER, WAVER})
+UNANSWERED = (Unanswered(node_name=WAVER, seconds=1.2),)
+
+
+@pytest.mark.parametrize(
+    ('evidence', 'titles'),
+    [
+        (healthy_service(), []),
+        (healthy_service(endpoints=(SERVES,)), []),
+        (healthy_service(endpoints=(ASKS,)), ['no server']),
+        (
+            healthy_service(endpoints=(ASKS,), missing_participants=1),
+            ['a process that cannot be discovered', 'no server'],
+        ),
+        (
+            healthy_service(endpoints=(ASKS,), elsewhere={7: (SERVES,)}),
+            ['another domain ID', 'no server'],
+        ),
+        (
+            healthy_service(endpoints=(ASKS,), callbacks=(WAITING,)),
+            ['no server', 'a callback waits for the server'],
+        ),
+        (healthy_service(callbacks=(WAITING,)), []),  # it has come just now
+        (
+            healthy_service(
+                endpoints=(SERVES, service_end('client', WAVER, type_name='std_srvs/srv/Trigger'))
+            ),
+            ['types differ'],
+        ),
+        (
+            silent(WAVER, callbacks=(DEADLOCK,)),
+            ['a callback waits for its own executor (deadlock)'],
+        ),
+        (healthy_service(callbacks=(ELSEWHERE,)), []),
+        (healthy_service(raised={GRIPPER: 'TypeError'}), ['the callback returned no response']),
+        (healthy_service(raised={GRIPPER: 'ValueError: x'}), ['the callback raised']),
+        (healthy_service(raised={'/other': 'TypeError'}), []),
+        (silent(GRIPPER, callbacks=(WORKING,)), ['a callback has not returned']),
+        (silent(GRIPPER), ['the node answers nothing']),
+        (silent(GRIPPER, visible=HERE, unspun=HERE), ['the node is not spinning']),
+        (silent(GRIPPER, visible=HERE), []),  # it is spun: the machine is slow
+        (silent(WAVER, visible=HERE, unspun=HERE), []),  # it may be spun when it asks
+        (
+            silent(WAVER, visible=HERE, unspun=HERE, unanswered=UNANSWERED),
+            ['the node is not spinning'],
+        ),
+        (healthy_service(visible=HERE, unanswered=UNANSWERED), []),
+    ],
+)
+def test_what_follows_from_what_was_seen_of_a_service(evidence, titles):
+    assert [finding.title for finding in service_rules.judge(evidence).findings] == titles
+
+
+@pytest.mark.parametrize(
+    ('evidence', 'told'),
+    [
+        (healthy_service(), f'All is well on {NAME}: {GRIPPER} serves, {WAVER} asks.'),
+        (healthy_service(endpoints=(SERVES,)), f'All is well on {NAME}: {GRIPPER} serves, nobody'),
+        (healthy_service(visible=HERE, unanswered=UNANSWERED), f'one of {WAVER} has no response'),
+        (silent(WAVER, callbacks=(DEADLOCK,)), 'it has waited for at least 5 s'),
+        (silent(GRIPPER), 'it has answered nothing for at least 3 s'),
+    ],
+)
+def test_a_report_on_a_service(evidence, told):
+    assert told in ' '.join(report.tell(service_rules.judge(evidence)).split())
+
+
+@pytest.mark.parametrize(
+    'evidence',
+    [
+        # a request waits because its node can't take the response: it is not lost
+        silent(WAVER, visible=HERE, unanswered=UNANSWERED, callbacks=(DEADLOCK,)),
+        # nobody can look into the server: it may be at work
+        healthy_service(visible=frozenset({WAVER}), unanswered=UNANSWERED),
+    ],
+)
+def test_a_request_is_called_lost_only_if_it_is(evidence):
+    assert 'has no response' not in report.summary(evidence)
+
+
+def test_a_callback_that_holds_a_topic_up_is_named_there_too():
+    waits = dataclasses.replace(DEADLOCK, node_name='/talker', holds=('/talker',))
+    seen = replaced(nodes={'/talker': NodeState(answers=False)}, callbacks=(waits,), **SILENT)
+    assert judge(seen).findings[0].title == 'a callback waits for its own executor (deadlock)'
+    assert [each.title for each in judge(seen).findings if 'spinning' in each.title] == []
+
+
+@pytest.mark.starts
+@pytest.mark.parametrize(
+    ('evidence', 'text'),
+    [
+        (healthy_service(), f'{GRIPPER} serves, {WAVER} asks'),
+        (healthy_service(endpoints=(ASKS,)), 'broken: no server (no server)'),
+        (silent(WAVER, callbacks=(DEADLOCK,)), f'broken: {WAVER} (a callback waits'),
+    ],
+)
+def test_the_picture_of_a_service_says_in_words_what_it_shows(evidence, text):
+    diagnosis = service_rules.judge(evidence)
     assert text in picture.describe(diagnosis)
     assert picture.draw(diagnosis).startswith(b'\x89PNG')

@@ -36,12 +36,13 @@ class Questions:
             if client.service_is_ready()
         }
 
-    def answers(self) -> dict[str, NodeState]:
+    def unanswered(self) -> set[str]:
+        """The nodes that were asked and have not answered yet."""
+        return {name for name, future in self._asked.items() if not future.done()}
+
+    def answers(self, *, timeout_sec: float = ANSWER_SEC) -> dict[str, NodeState]:
         """What is known of each node that was asked, after a short wait."""
-        futures = self._asked.values()
-        self._watcher.spin_until(
-            lambda: all(future.done() for future in futures), timeout_sec=ANSWER_SEC
-        )
+        self._watcher.spin_until(lambda: not self.unanswered(), timeout_sec=timeout_sec)
         return {name: _state(future) for name, future in self._asked.items()}
 
 

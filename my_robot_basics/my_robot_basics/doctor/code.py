@@ -5,11 +5,22 @@ from my_robot_basics.doctor.evidence import Kind
 _BEGINNINGS = {
     'publisher': 'self.publisher = self.create_publisher',
     'subscription': 'self.subscription = self.create_subscription',
+    'client': 'self.client = self.create_client',
+    'server': 'self.service = self.create_service',
 }
-_CALLBACKS = {'publisher': '', 'subscription': 'self.receive, '}
+_REST = {
+    'publisher': ', {}',
+    'subscription': ', self.receive, {}',
+    'client': '',
+    'server': ', self.answer',
+}
+_TYPES = {'publisher': 'JointState', 'subscription': 'JointState'}
 
 
-def create(kind: Kind, *, type_name: str, topic_name: str, qos_profile: str = '10') -> str:
-    """The call that makes an endpoint, its QoS profile given as Python or as a queue's depth."""
-    type_ = type_name.rpartition('/')[2] or 'JointState'
-    return f"{_BEGINNINGS[kind]}({type_}, '{topic_name}', {_CALLBACKS[kind]}{qos_profile})"
+def create(kind: Kind, *, type_name: str, name: str, qos_profile: str = '10') -> str:
+    """The call that makes an endpoint of a topic or a service of that name.
+
+    A topic's QoS profile is given as Python or as a queue's depth.
+    """
+    type_ = type_name.rpartition('/')[2] or _TYPES.get(kind, 'SetBool')
+    return f"{_BEGINNINGS[kind]}({type_}, '{name}'{_REST[kind].format(qos_profile)})"

@@ -3,31 +3,41 @@
 import itertools
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
-from rclpy.qos import QoSProfile
+from rclpy.qos import QoSProfile, qos_profile_services_default
+
+from my_robot_basics.doctor.callback import Callback
 
 LARGEST_PAUSE_SEC = 0.005
 """Messages of one burst follow each other at least as fast as this …"""
 PART_OF_PERIOD = 0.25
 """… and within this part of the mean time between two: a fast, steady flow is no burst."""
 
-Kind = Literal['publisher', 'subscription']
-VERBS: dict[Kind, str] = {'publisher': 'publishes', 'subscription': 'subscribes'}
+Kind = Literal['publisher', 'subscription', 'client', 'server']
+VERBS: dict[Kind, str] = {
+    'publisher': 'publishes',
+    'subscription': 'subscribes',
+    'client': 'asks',
+    'server': 'serves',
+}
 """What a node with such an endpoint does."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Endpoint:
-    """One end of a topic, on one node."""
+    """One end of a topic or of a service, on one node."""
 
     kind: Kind
     node_name: str
     """Full name, such as `/kinematics_publisher`."""
-    topic_name: str
+    name: str
+    """Of the topic or the service."""
     type_name: str
     """Such as `sensor_msgs/msg/JointState`."""
-    qos_profile: QoSProfile = field(compare=False)
+    qos_profile: QoSProfile = field(
+        compare=False, default_factory=lambda: qos_profile_services_default
+    )
     """As the graph tells it: without queue depth and history, which DDS does not transmit."""
     depth: int | None = None
     """Length of its queue, known for nodes of this process alone."""
@@ -62,14 +72,56 @@ class Remap:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Evidence:
-    """The graph around one topic, and what was received on it."""
+class Seen:
+    """The graph around one topic, or around one service."""
 
-    topic_name: str
+    name: str
+    """The full name that was asked about."""
     endpoints: tuple[Endpoint, ...]
-    """Of all topics but ROS's own; those of hidden nodes are left out."""
+    """Of all topics (or all services) but ROS's own; those of hidden nodes are left out."""
     nodes: dict[str, NodeState]
     """Full names of all nodes that are not hidden."""
+    remaps: tuple[Remap, ...] = ()
+    domain_id: int = 0
+    missing_participants: int = 0
+    """Participants of this domain on this machine that are not on the graph."""
+    elsewhere: dict[int, tuple[Endpoint, ...]] = field(default_factory=dict)
+    """Endpoints of the name in other domains of this machine, where these were looked at."""
+    callbacks: tuple[Callback, ...] = ()
+    """Those of this process that went on all the time; none are known of other processes."""
+
+    KINDS: ClassVar[tuple[Kind, Kind]]
+    """Both ends, in the direction in which data (or a request) goes."""
+    OF: ClassVar[str]
+    """What links an end to a name: a publisher *on* a topic, a server *of* a service."""
+    NEEDED: ClassVar[tuple[Kind, ...]]
+    """The ends without which something is wrong."""
+
+    def ends(self, kind: Kind) -> tuple[Endpoint, ...]:
+        """The ends of that kind on the name that was asked about."""
+        return tuple(end for end in self.endpoints if (end.kind, end.name) == (kind, self.name))
+
+    def all_ends(self) -> tuple[Endpoint, ...]:
+        """The ends of both kinds."""
+        first, second = map(self.ends, self.KINDS)
+        return first + second
+
+    def busy(self, node_name: str) -> bool:
+        """Whether a callback of this process keeps the node's other callbacks from running."""
+        return any(node_name in each.holds for each in self.callbacks)
+
+    def state(self, node_name: str) -> NodeState:
+        """What a node answered."""
+        return self.nodes.get(node_name, NodeState(answers=None))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Evidence(Seen):
+    """The graph around one topic, and what was received on it."""
+
+    KINDS, OF = ('publisher', 'subscription'), 'on'
+    NEEDED = KINDS
+
     has_clock: bool = False
     """Whether somebody publishes `/clock`."""
     received: tuple[ReceivedMessage, ...] = ()
@@ -78,12 +130,6 @@ class Evidence:
     """When the doctor began to listen, on the wall clock."""
     unknown_types: tuple[str, ...] = ()
     """Types of the topic's publishers that are not installed here: nobody could listen in."""
-    remaps: tuple[Remap, ...] = ()
-    domain_id: int = 0
-    missing_participants: int = 0
-    """Participants of this domain on this machine that are not on the graph."""
-    elsewhere: dict[int, tuple[Endpoint, ...]] = field(default_factory=dict)
-    """Endpoints of the topic in other domains of this machine, where these were looked at."""
 
     @cached_property
     def publishers(self) -> tuple[Endpoint, ...]:
@@ -94,16 +140,6 @@ class Evidence:
     def subscriptions(self) -> tuple[Endpoint, ...]:
         """Those of the topic."""
         return self.ends('subscription')
-
-    def ends(self, kind: Kind) -> tuple[Endpoint, ...]:
-        """The topic's publishers or its subscriptions."""
-        return tuple(
-            end for end in self.endpoints if (end.kind, end.topic_name) == (kind, self.topic_name)
-        )
-
-    def state(self, node_name: str) -> NodeState:
-        """What a node answered."""
-        return self.nodes.get(node_name, NodeState(answers=None))
 
     @cached_property
     def fresh(self) -> tuple[ReceivedMessage, ...]:
@@ -152,5 +188,5 @@ class Finding:
 class Diagnosis:
     """The evidence and what follows from it, the likeliest first; no finding: all is well."""
 
-    evidence: Evidence
+    evidence: Seen
     findings: tuple[Finding, ...]

@@ -8,11 +8,13 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
-from my_robot_basics.doctor import remaps, rules
+from my_robot_basics.doctor import remaps
 from my_robot_basics.doctor.asking import Questions
-from my_robot_basics.doctor.evidence import Diagnosis, Endpoint, Evidence, Kind, ReceivedMessage
+from my_robot_basics.doctor.evidence import Endpoint, Evidence, Kind, ReceivedMessage
+from my_robot_basics.doctor.inside import Inside
 from my_robot_basics.graph import graphs, participants
 from my_robot_basics.graph.message_info import with_info
+from my_robot_basics.graph.snapshot import GraphSnapshot
 from my_robot_basics.graph.watcher import HIDDEN, Watcher
 from my_robot_basics.ros2.interfaces import message_class
 from my_robot_basics.session import domain
@@ -33,55 +35,40 @@ ANNOUNCEMENTS = 'ros_discovery_info'
 _PLUMBING = ('/clock', '/parameter_events', '/rosout')
 
 
-def diagnose(
-    topic_name: str,
-    *,
-    domain_id: int,
-    other_domains: bool = False,
-    listen_sec: float = LISTEN_SEC,
-) -> Diagnosis:
-    """Look at a topic (its full name) in a ROS domain, and judge what is seen there.
-
-    Listens until enough has arrived, at most `listen_sec` seconds. With `other_domains` the other
-    domains in use on this machine are looked at too, where an end is missing.
-    """
-    with Watcher(domain_id=domain_id) as watcher:
-        evidence = _look(watcher, topic_name, domain_id=domain_id, listen_sec=listen_sec)
-    if other_domains and not (evidence.publishers and evidence.subscriptions):
-        elsewhere = {
-            other: _look_into(other, topic_name)
-            for other in DOMAINS
-            if other != domain_id and participants.count(other)
-        }
-        evidence = dataclasses.replace(evidence, elsewhere=elsewhere)
-    return rules.judge(evidence)
+def other_domains(domain_id: int) -> Iterator[int]:
+    """The other domains that are in use on this machine."""
+    return (other for other in DOMAINS if other != domain_id and participants.count(other))
 
 
-def _look(watcher: Watcher, topic_name: str, *, domain_id: int, listen_sec: float) -> Evidence:
-    graph = graphs.take(watcher)
+def look(
+    watcher: Watcher, graph: GraphSnapshot, topic_name: str, *, domain_id: int, listen_sec: float
+) -> Evidence:
+    """What can be seen of a topic, from a watcher that has taken the graph."""
     if not (graph.publishers(topic_name) and graph.subscriptions(topic_name)):
         # before anybody is called missing
         watcher.spin_until(
-            lambda: _missing_participants(watcher.node, domain_id) <= 0, timeout_sec=MISSING_SEC
+            lambda: missing_participants(watcher.node, domain_id) <= 0, timeout_sec=MISSING_SEC
         )
         graph = graphs.take(watcher)
     endpoints = tuple(endpoints_of(watcher.node))
-    ends = {end.node_name for end in endpoints if end.topic_name == topic_name}
+    ends = {end.node_name for end in endpoints if end.name == topic_name}
     evidence = Evidence(
-        topic_name=topic_name,
+        name=topic_name,
         endpoints=endpoints,
         nodes={},
         has_clock=bool(watcher.node.get_publishers_info_by_topic('/clock')),
         remaps=remaps.of_this_machine(),
         domain_id=domain_id,
-        missing_participants=_missing_participants(watcher.node, domain_id),
+        missing_participants=missing_participants(watcher.node, domain_id),
     )
+    view = Inside()
+    view.look()
     questions = Questions(watcher, sorted(ends))
     if evidence.publishers:
         evidence = _listen(watcher, evidence, listen_sec=listen_sec)
-    return dataclasses.replace(
-        evidence, nodes=dict.fromkeys(graph.nodes(), questions.UNASKED) | questions.answers()
-    )
+    answers = dict.fromkeys(graph.nodes(), questions.UNASKED) | questions.answers()
+    view.look()
+    return dataclasses.replace(evidence, nodes=answers, callbacks=view.lasting())
 
 
 def _listen(watcher: Watcher, evidence: Evidence, *, listen_sec: float) -> Evidence:
@@ -112,7 +99,7 @@ def _listen(watcher: Watcher, evidence: Evidence, *, listen_sec: float) -> Evide
             return False
         return time.time() - fresh[0].sent_sec >= ENOUGH_SEC
 
-    watcher.node.create_subscription(type_, evidence.topic_name, with_info(receive), qos_profile)
+    watcher.node.create_subscription(type_, evidence.name, with_info(receive), qos_profile)
     watcher.spin_until(is_enough, timeout_sec=listen_sec)
     return dataclasses.replace(
         evidence,
@@ -120,13 +107,6 @@ def _listen(watcher: Watcher, evidence: Evidence, *, listen_sec: float) -> Evide
         listened_sec=time.monotonic() - started,
         began_sec=began_sec,
     )
-
-
-def _look_into(domain_id: int, topic_name: str) -> tuple[Endpoint, ...]:
-    """The endpoints of a topic in another domain."""
-    with Watcher(domain_id=domain_id) as watcher:
-        graphs.take(watcher)
-        return tuple(end for end in endpoints_of(watcher.node) if end.topic_name == topic_name)
 
 
 def endpoints_of(node: Node) -> Iterator[Endpoint]:
@@ -147,7 +127,7 @@ def endpoints_of(node: Node) -> Iterator[Endpoint]:
                 yield Endpoint(
                     kind=kind,
                     node_name=node_name,
-                    topic_name=topic_name,
+                    name=topic_name,
                     type_name=info.topic_type,
                     qos_profile=info.qos_profile,
                     depth=depths.get((kind, node_name, topic_name)),
@@ -166,7 +146,7 @@ def _depths() -> dict[tuple[Kind, str, str], int]:
     return found
 
 
-def _missing_participants(node: Node, domain_id: int) -> int:
+def missing_participants(node: Node, domain_id: int) -> int:
     """How many participants this machine has in the domain that are not on the graph."""
     received = node.get_publishers_info_by_topic(ANNOUNCEMENTS, no_mangle=True)
     return participants.count(domain_id) - len(received)

@@ -4,7 +4,7 @@ import argparse
 import os
 import sys
 
-from my_robot_basics.doctor.names import full_topic_name
+from my_robot_basics.doctor.names import full_name
 from my_robot_basics.ros2 import completion, environment
 from my_robot_basics.ros2.errors import CommandError
 
@@ -12,15 +12,21 @@ WELL, FAULT, USAGE, INTERRUPTED = 0, 1, 2, 130
 
 
 def main(argv: list[str] | None = None) -> int:
-    """Say why nothing arrives on a topic; 0: all is well, 1: a fault was named, 2: usage."""
+    """Say why nothing arrives on a topic, or why a service does not answer.
+
+    0: all is well, 1: a fault was named, 2: wrong usage.
+    """
     parser = argparse.ArgumentParser(
         'topic_doctor',
-        description='Find out why no messages arrive on a topic, and how to fix it.',
+        description='Find out why no messages arrive on a topic, or why a service does not answer,'
+        ' and how to fix it. A service is never called.',
         epilog='Exit status: 0 when all is well, 1 when a fault was found, 2 on wrong usage.',
     )
     completion.offer(
-        parser.add_argument('topic_name', help='for example /kinematics/joint_states'),
-        completion.topic_names,
+        parser.add_argument(
+            'name', help='of the topic or the service, for example /kinematics/joint_states'
+        ),
+        completion.topic_and_service_names,
     )
     parser.add_argument(
         '--domains',
@@ -31,7 +37,8 @@ def main(argv: list[str] | None = None) -> int:
         '--seconds',
         type=_seconds,
         default=6.0,
-        help='how long to wait for messages at most (default: %(default)s)',
+        help='how long to wait for messages, or for a callback to return, at most'
+        ' (default: %(default)s)',
     )
     if '_ARGCOMPLETE' in os.environ:
         from argcomplete import autocomplete
@@ -41,28 +48,28 @@ def main(argv: list[str] | None = None) -> int:
     args = parser.parse_args(argv)
     environment.enter()
     try:
-        topic_name, domain_id = full_topic_name(args.topic_name), environment.domain_id()
+        name, domain_id = full_name(args.name), environment.domain_id()
     except (ValueError, CommandError) as error:
         parser.error(str(error))
     environment.say_where()
     try:
         # rclpy takes its time, and `--help` needs none of it
-        from my_robot_basics.doctor.looking import diagnose
+        from my_robot_basics.doctor.diagnosing import diagnose
         from my_robot_basics.doctor.report import tell
 
-        diagnosis = diagnose(
-            topic_name,
+        found = diagnose(
+            name,
             domain_id=domain_id,
             other_domains=args.domains,
-            listen_sec=args.seconds,
+            seconds=args.seconds,
         )
     except KeyboardInterrupt:
         return INTERRUPTED
     except CommandError as error:
         print(error, file=sys.stderr)
         return USAGE
-    print(tell(diagnosis))
-    return FAULT if diagnosis.findings else WELL
+    print('\n\n'.join(map(tell, found)))
+    return FAULT if any(each.findings for each in found) else WELL
 
 
 def _seconds(text: str) -> float:

@@ -1,14 +1,14 @@
-"""Topic names as people type them."""
+"""Names of topics and services as people type them."""
 
 
-def full_topic_name(text: str) -> str:
+def full_name(text: str) -> str:
     """The full name, with its slash in front; raises ValueError for what can't be a name."""
     from rclpy.exceptions import InvalidTopicNameException
     from rclpy.validate_full_topic_name import validate_full_topic_name
 
     if not isinstance(text, str):
         raise ValueError(
-            f'{text!r:.60} is not a text: expected the name of a topic, such as '
+            f'{text!r:.60} is not a text: expected the name of a topic or a service, such as '
             "'/kinematics/joint_states'"
         )
     name = text if text.startswith('/') else f'/{text}'
@@ -17,7 +17,7 @@ def full_topic_name(text: str) -> str:
     except InvalidTopicNameException as error:
         reason = str(error).splitlines()[0].rstrip(':. ')
         raise ValueError(
-            f'{text!r} is not a topic name ({reason}): expected one'
+            f'{text!r} is not the name of a topic or a service ({reason}): expected one'
             ' such as /kinematics/joint_states'
         ) from None
     return name

@@ -3,7 +3,7 @@
 import io
 from typing import TYPE_CHECKING
 
-from my_robot_basics.doctor.evidence import Diagnosis, Endpoint, Kind
+from my_robot_basics.doctor.evidence import Diagnosis, Endpoint, Evidence, Kind
 from my_robot_basics.doctor.report import summary
 
 if TYPE_CHECKING:
@@ -14,29 +14,29 @@ if TYPE_CHECKING:
 # Okabe and Ito's colours are told apart by everyone; a broken edge is dashed and crossed, too
 WELL, BROKEN, TOPIC = '#0072b2', '#d55e00', '#f0f0f0'
 ROW = 0.9
-COLUMNS: dict[str, float] = {'publisher': 0.0, 'topic': 1.0, 'subscription': 2.0}
+LEFT, MIDDLE, RIGHT = 0.0, 1.0, 2.0
 
 
 def describe(diagnosis: Diagnosis) -> str:
     """The picture in words, for those who can't see it."""
     if not diagnosis.findings:
-        return f'graph of {diagnosis.evidence.topic_name}: {summary(diagnosis.evidence)}'
+        return f'graph of {diagnosis.evidence.name}: {summary(diagnosis.evidence)}'
     first = diagnosis.findings[0]
     where = ', '.join(sorted({end.node_name for end in first.broken})) or f'no {first.missing}'
     return (
-        f'graph of {diagnosis.evidence.topic_name}: {summary(diagnosis.evidence)};'
+        f'graph of {diagnosis.evidence.name}: {summary(diagnosis.evidence)};'
         f' broken: {where} ({first.title})'
     )
 
 
 def draw(diagnosis: Diagnosis) -> bytes:
-    """Publishers, the topic and subscriptions from left to right, as a PNG."""
+    """Publishers, or clients, on the left, subscriptions, or servers, on the right; as a PNG."""
     from matplotlib.figure import Figure  # takes a second
 
     evidence = diagnosis.evidence
     first = diagnosis.findings[0] if diagnosis.findings else None
     columns: dict[Kind, list[Endpoint | None]] = {}
-    for kind in 'publisher', 'subscription':
+    for kind in evidence.KINDS:
         there = evidence.ends(kind)
         away = [
             end for end in (first.broken if first else ()) if end.kind == kind and end not in there
@@ -49,23 +49,24 @@ def draw(diagnosis: Diagnosis) -> bytes:
     axes = figure.add_subplot()
     axes.set(xlim=(-0.5, 2.5), ylim=(-0.5 * ROW * rows - 0.2, 0.5 * ROW * rows + 0.2))
     axes.set_axis_off()
-    axes.set_title(first.title if first else f'all is well: {evidence.rate_hz:.3g} Hz')
-    box(axes, COLUMNS['topic'], 0.0, evidence.topic_name, style='round4', face=TOPIC)
-    for kind, ends in columns.items():
+    rate = f': {evidence.rate_hz:.3g} Hz' if isinstance(evidence, Evidence) else ''
+    axes.set_title(first.title if first else f'all is well{rate}')
+    box(axes, MIDDLE, 0.0, evidence.name, style='round4', face=TOPIC)
+    for x, (kind, ends) in zip((LEFT, RIGHT), columns.items(), strict=True):
         for row, end in enumerate(ends):
             y = ROW * ((len(ends) - 1) / 2 - row)
             is_broken = end is None or (first is not None and end in first.broken)
-            way = [(COLUMNS[kind], y), (COLUMNS['topic'], 0.0)]
-            start, stop = way if kind == 'publisher' else reversed(way)
+            way = [(x, y), (MIDDLE, 0.0)]
+            start, stop = way if x == LEFT else reversed(way)
             arrow(axes, start, stop, is_broken=is_broken)
-            box(axes, COLUMNS[kind], y, _label(end, kind, evidence.topic_name), face='white')
+            box(axes, x, y, _label(end, kind, evidence.name), face='white')
     return png(figure)
 
 
-def _label(end: Endpoint | None, kind: Kind, topic_name: str) -> str:
+def _label(end: Endpoint | None, kind: Kind, name: str) -> str:
     if end is None:
         return f'no {kind}'
-    elsewhere = f'\n({end.topic_name})' if end.topic_name != topic_name else ''
+    elsewhere = f'\n({end.name})' if end.name != name else ''
     return end.node_name + elsewhere
 
 

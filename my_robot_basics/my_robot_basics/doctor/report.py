@@ -2,9 +2,16 @@
 
 import textwrap
 
-from my_robot_basics.doctor.evidence import Diagnosis, Evidence, Finding, Kind
+from my_robot_basics.doctor.evidence import VERBS, Diagnosis, Evidence, Finding, Kind, Seen
+from my_robot_basics.doctor.service_evidence import ServiceEvidence
 from my_robot_basics.session.errors import COLUMNS
 
+_PLURALS: dict[Kind, str] = {
+    'publisher': 'publish',
+    'subscription': 'subscribe',
+    'client': 'ask',
+    'server': 'serve',
+}
 INDENT = ' ' * 13
 """Below the words of a paragraph, whose labels stand before them."""
 
@@ -13,21 +20,25 @@ def tell(diagnosis: Diagnosis) -> str:
     """The whole answer: one paragraph a fault, the likeliest first, or that all is well."""
     evidence = diagnosis.evidence
     if not diagnosis.findings:
-        return f'All is well on {evidence.topic_name}: {summary(evidence)}.'
+        return f'All is well on {evidence.name}: {summary(evidence)}.'
     many = len(diagnosis.findings) > 1
     lines = [
-        f'Something is wrong on {evidence.topic_name}'
+        f'Something is wrong on {evidence.name}'
         f'{", the likeliest first" if many else ""}: {summary(evidence)}.'
     ]
     lines += [_paragraph(i, finding) for i, finding in enumerate(diagnosis.findings, start=1)]
     return '\n\n'.join(lines)
 
 
-def summary(evidence: Evidence) -> str:
-    """Which nodes are there, and what was received: one clause."""
-    senders = _names(evidence, 'publisher', 'publishes', 'publish')
-    listeners = _names(evidence, 'subscription', 'subscribes', 'subscribe')
-    return f'{senders}, {listeners}{_received(evidence)}'
+def summary(evidence: Seen) -> str:
+    """Which nodes are there, and what was seen of them: one clause."""
+    first, second = evidence.KINDS if isinstance(evidence, Evidence) else evidence.KINDS[::-1]
+    told = f'{_names(evidence, first)}, {_names(evidence, second)}'
+    if isinstance(evidence, Evidence):
+        told += _received(evidence)
+    if isinstance(evidence, ServiceEvidence) and evidence.servers:
+        told += _lost(evidence)
+    return told
 
 
 def _received(evidence: Evidence) -> str:
@@ -43,11 +54,25 @@ def _received(evidence: Evidence) -> str:
     return f', no new message in {evidence.listened_sec:.1f} s{latched}'
 
 
-def _names(evidence: Evidence, kind: Kind, verb: str, plural: str) -> str:
+def _lost(evidence: ServiceEvidence) -> str:
+    """A note on requests that were sent in vain; who asks again is answered, so it is no fault."""
+    idle = all(end.node_name in evidence.visible for end in evidence.servers)
+    spun = [e.node_name for e in evidence.unanswered if evidence.state(e.node_name).answers]
+    names = sorted({*spun})
+    if not names or not idle:
+        return ''
+    return (
+        f'; no server works on a request, and one of {" and ".join(names)} has no response: it'
+        ' was sent while there was no server (service_is_ready() tells), or its callback raised'
+    )
+
+
+def _names(evidence: Seen, kind: Kind) -> str:
     names = sorted({end.node_name for end in evidence.ends(kind)})
     if not names:
-        return f'nobody {verb}'
-    return f'{" and ".join(names)} {verb if len(names) == 1 else plural}'
+        return f'nobody {VERBS[kind]}'
+    verb = VERBS[kind] if len(names) == 1 else _PLURALS[kind]
+    return f'{" and ".join(names)} {verb}'
 
 
 def _paragraph(number: int, finding: Finding) -> str:

@@ -9,10 +9,11 @@ from my_robot_basics.feedback.hidden import theirs
 from my_robot_basics.graph.snapshot import similar
 from my_robot_basics.graph.watcher import HIDDEN
 
-_OF_EVERY_NODE = frozenset(
+OF_EVERY_NODE = frozenset(
     """describe_parameters get_parameter_types get_parameters list_parameters set_parameters
     set_parameters_atomically get_type_description""".split()  # noqa: SIM905
 )
+"""The services that every node has, by the last part of their names."""
 LookUp = Callable[[str, str], list[tuple[str, list[str]]]]
 """What a node of that name and namespace has at one end: names, each with its types."""
 
@@ -70,7 +71,7 @@ def take_ends(node: Node, look_up_servers: LookUp, look_up_clients: LookUp) -> S
             except RuntimeError:  # it has gone meanwhile
                 continue
             for service_name, types in found:
-                if service_name.rpartition('/')[2] not in _OF_EVERY_NODE:
+                if service_name.rpartition('/')[2] not in OF_EVERY_NODE:
                     ends.setdefault(service_name, {})[full_name] = tuple(types)
     names = tuple(sorted({f'{namespace.rstrip("/")}/{name}' for name, namespace in nodes}))
     return ServiceGraph(names, servers, clients)

@@ -1,9 +1,10 @@
-"""Why nothing arrives on a topic, said and drawn in the notebook."""
+"""Why nothing arrives on a topic, or a service does not answer, said and drawn in the notebook."""
 
 import html
 
-from my_robot_basics.doctor import looking, names, picture, report
-from my_robot_basics.live import notebook
+from my_robot_basics.doctor import diagnosing, names, picture, report
+from my_robot_basics.doctor.evidence import Diagnosis
+from my_robot_basics.live import notebook, troubles
 from my_robot_basics.session import classroom
 from my_robot_basics.session.errors import LiveError
 
@@ -11,22 +12,34 @@ STYLE = 'margin:0;font-size:13px;word-break:normal'
 """As large as other outputs, and broken between words: a line of code may be a long one."""
 
 
-class NoTopicName(LiveError):
-    """What was asked about can't be the name of a topic."""
+class NoSuchName(LiveError):
+    """What was asked about can't be the name of a topic or a service."""
 
 
-def why(topic_name: str, *, domains: bool = False) -> None:
-    """Look at a topic and print why messages do not arrive there, the likeliest cause first.
+def why(name: str, *, domains: bool = False) -> None:
+    """Print why messages do not arrive on a topic, or why a service does not answer.
 
-    Each cause comes with what was expected, what was seen, and what to do; below stands a picture
-    of the graph with the broken edge marked. When all is well it says so, with the rate. With
-    `domains` it looks at the other ROS domains of this machine, too. Raises NoTopicName.
+    The likeliest cause comes first. Each comes with what was expected, what was seen, and what to
+    do; below stands a picture of the graph with the broken edge marked. When all is well it says
+    so, with the rate of a topic. A service is not called; callbacks that wait are found in nodes
+    of this notebook. With `domains` it looks at the other ROS domains of this machine, too. Raises
+    NoSuchName.
     """
     try:
-        full_name = names.full_topic_name(topic_name)
+        full_name = names.full_name(name)
     except ValueError as error:
-        raise NoTopicName(str(error)) from None
-    diagnosis = looking.diagnose(full_name, domain_id=classroom.enter(), other_domains=domains)
+        raise NoSuchName(str(error)) from None
+    found = diagnosing.diagnose(
+        full_name,
+        domain_id=classroom.enter(),
+        other_domains=domains,
+        raised=troubles.of_service,
+    )
+    for diagnosis in found:
+        _show(diagnosis)
+
+
+def _show(diagnosis: Diagnosis) -> None:
     told = report.tell(diagnosis)
     if not notebook.in_kernel():
         print(told)

@@ -56,7 +56,7 @@ def arrows_of(nodes: Iterable[str], endpoints: Iterable[Endpoint]) -> Arrows:
     """Make the graph of nodes (full names, those without endpoints too) and their endpoints."""
     found: dict[Box, set[Box]] = {Box(name): set() for name in nodes}
     for end in endpoints:
-        node, topic = Box(end.node_name), Box(end.topic_name, end.type_name)
+        node, topic = Box(end.node_name), Box(end.name, end.type_name)
         start, stop = (node, topic) if end.kind == 'publisher' else (topic, node)
         found.setdefault(start, set()).add(stop)
         found.setdefault(stop, set())

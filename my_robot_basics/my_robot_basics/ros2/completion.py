@@ -21,6 +21,16 @@ def topic_names(parsed_args: argparse.Namespace, **_: object) -> list[str]:
         return [name for name, _ in graph.topics(include_hidden=include_hidden)]
 
 
+def topic_and_service_names(parsed_args: argparse.Namespace, **_: object) -> list[str]:
+    """Topics, and services without those that every node has."""
+    from my_robot_basics.graph.services import OF_EVERY_NODE
+
+    with Graph(parsed_args) as graph:
+        graph.settle()
+        names = [name for name, _ in graph.topics() + graph.services()]
+    return [name for name in names if name.rpartition('/')[2] not in OF_EVERY_NODE]
+
+
 def topic_types(parsed_args: argparse.Namespace, **_: object) -> list[str]:
     """The type that the topic has; all message types if it has none yet."""
     with Graph(parsed_args) as graph:

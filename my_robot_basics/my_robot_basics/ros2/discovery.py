@@ -34,11 +34,15 @@ _ROS_PREFIXES = ('rt/', 'rq/', 'rr/')
 """Of the DDS names of ROS topics, and of the two topics of a service."""
 
 
-def settle(node: 'Node', wait: Callable[[float], None]) -> None:
-    """Wait, by `wait` with a time in seconds, until the graph that a node sees has settled."""
+def settle(node: 'Node', wait: Callable[[float], None], *, domain_id: int | None = None) -> None:
+    """Wait, by `wait` with a time in seconds, until the graph that a node sees has settled.
+
+    The node is in the ROS domain of that ID; by default in the environment's.
+    """
     from my_robot_basics.graph import entities
 
-    domain_id = environment.domain_id()
+    if domain_id is None:
+        domain_id = environment.domain_id()
     with entities.Reader(node) as reader:
         started = changed = asked = time.monotonic()
         pause_sec = 0.0

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable
 
 from my_robot_basics.doctor.evidence import Diagnosis, Evidence, Finding
 from my_robot_basics.doctor.rules import (
+    blocks_itself,
     degrees,
     discovery_range,
     late_joiner,
@@ -14,6 +15,7 @@ from my_robot_basics.doctor.rules import (
     no_publisher,
     no_subscription,
     not_installed,
+    not_returning,
     not_spinning,
     other_domain,
     qos,
@@ -36,6 +38,8 @@ RULES: tuple[Callable[[Evidence], Iterable[Finding]], ...] = (
     not_installed.examine,
     qos.examine,
     no_clock.examine,
+    blocks_itself.examine,
+    not_returning.examine,
     not_spinning.examine,
     silent_publisher.examine,
     late_joiner.examine,

@@ -2,12 +2,12 @@
 
 from collections.abc import Iterator
 
-from my_robot_basics.doctor.evidence import VERBS, Evidence, Finding
+from my_robot_basics.doctor.evidence import Finding, Seen
 
 
-def examine(evidence: Evidence) -> Iterator[Finding]:
+def examine(evidence: Seen) -> Iterator[Finding]:
     """Suspect the discovery range where an end is missing and a process can't be discovered."""
-    missing = next((k for k in VERBS if not evidence.ends(k)), None)
+    missing = next((k for k in evidence.NEEDED if not evidence.ends(k)), None)
     if missing is None or evidence.missing_participants <= 0:
         return
     number = evidence.missing_participants

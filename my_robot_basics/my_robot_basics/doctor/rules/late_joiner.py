@@ -31,7 +31,7 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
             code=code.create(
                 'subscription',
                 type_name=subscription.type_name,
-                topic_name=evidence.topic_name,
+                name=evidence.name,
                 qos_profile=wanted,
             ),
             broken=(subscription,),

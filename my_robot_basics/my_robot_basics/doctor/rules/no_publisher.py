@@ -20,11 +20,9 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
         )
     yield Finding(
         title='no publisher',
-        expected=f'a publisher on {evidence.topic_name}',
+        expected=f'a publisher on {evidence.name}',
         seen=f'none; running: {running}' if running else 'none, and no node is running',
         fix=fix,
-        code=code.create(
-            'publisher', type_name=(types or [''])[0], topic_name=evidence.topic_name
-        ),
+        code=code.create('publisher', type_name=(types or [''])[0], name=evidence.name),
         missing='publisher',
     )

@@ -14,11 +14,9 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
     types = [end.type_name for end in evidence.publishers]
     yield Finding(
         title='no subscription',
-        expected=f'a subscription on {evidence.topic_name}',
+        expected=f'a subscription on {evidence.name}',
         seen=f'none; the publisher belongs to {senders}' if senders else 'none',
         fix='start the node that subscribes, and check that its constructor has this line',
-        code=code.create(
-            'subscription', type_name=(types or [''])[0], topic_name=evidence.topic_name
-        ),
+        code=code.create('subscription', type_name=(types or [''])[0], name=evidence.name),
         missing='subscription',
     )

@@ -9,7 +9,7 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
     """Name silent publishers, and subscriptions, whose nodes answer no question."""
     ends = (() if evidence.received else evidence.publishers) + evidence.subscriptions
     for end in ends:
-        if evidence.state(end.node_name).answers is not False:
+        if evidence.busy(end.node_name) or evidence.state(end.node_name).answers is not False:
             continue
         job = 'its timers fire' if end.kind == 'publisher' else 'the callback is called'
         yield Finding(

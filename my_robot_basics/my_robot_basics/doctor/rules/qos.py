@@ -32,7 +32,7 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
                 code=code.create(
                     'subscription',
                     type_name=subscription.type_name,
-                    topic_name=evidence.topic_name,
+                    name=evidence.name,
                     qos_profile=_modest(offered, asked),
                 ),
                 broken=(subscription,),

@@ -2,25 +2,23 @@
 
 from collections.abc import Iterator
 
-from my_robot_basics.doctor.evidence import Evidence, Finding
+from my_robot_basics.doctor.evidence import Finding, Seen
 
 
-def examine(evidence: Evidence) -> Iterator[Finding]:
+def examine(evidence: Seen) -> Iterator[Finding]:
     """Show the command without the remapping rule that moved an end away."""
-    for kind in 'publisher', 'subscription':
+    for kind in evidence.NEEDED:
         if evidence.ends(kind):
             continue
         for remap in evidence.remaps:
             moved = [
-                end
-                for end in evidence.endpoints
-                if (end.kind, end.topic_name) == (kind, remap.instead)
+                end for end in evidence.endpoints if (end.kind, end.name) == (kind, remap.instead)
             ]
-            if remap.name != evidence.topic_name or not moved:
+            if remap.name != evidence.name or not moved:
                 continue
             yield Finding(
                 title='remapped',
-                expected=f'a {kind} on {evidence.topic_name}',
+                expected=f'a {kind} {evidence.OF} {evidence.name}',
                 seen=f'{moved[0].node_name} was started with -r {remap.name}:={remap.instead},'
                 ' and uses that name instead',
                 fix='stop it, and start it without the rule',

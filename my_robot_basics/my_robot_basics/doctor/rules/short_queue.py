@@ -32,7 +32,7 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
             code=code.create(
                 end.kind,
                 type_name=end.type_name,
-                topic_name=evidence.topic_name,
+                name=evidence.name,
                 qos_profile=str(depth),
             ),
             broken=(end,),

@@ -16,7 +16,7 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
         alive = 'is spun, and' if state.answers else 'is on the graph, and'
         yield Finding(
             title='the timer never fires',
-            expected=f'messages of {publisher.node_name} on {evidence.topic_name}',
+            expected=f'messages of {publisher.node_name} on {evidence.name}',
             seen=f'it {alive} sent none in {evidence.listened_sec:.1f} s',
             fix='check that the constructor creates a timer, that its period is in seconds and'
             ' that the callback calls publish',

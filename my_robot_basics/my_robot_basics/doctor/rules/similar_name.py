@@ -1,66 +1,97 @@
-"""An end is missing, and another topic has a name that may have been meant."""
+"""An end is missing, and another one has a name that may have been meant."""
 
 import difflib
 from collections.abc import Iterator
 
 from my_robot_basics.doctor import code
-from my_robot_basics.doctor.evidence import VERBS, Endpoint, Evidence, Finding, Kind
+from my_robot_basics.doctor.evidence import VERBS, Endpoint, Finding, Kind, Seen
 
 CUTOFF = 0.75
 
 
-def examine(evidence: Evidence) -> Iterator[Finding]:
+def examine(evidence: Seen) -> Iterator[Finding]:
     """Show the edit, or the name to ask for where nobody uses the one that was given."""
-    if not (evidence.publishers or evidence.subscriptions):
+    if not any(evidence.ends(kind) for kind in evidence.KINDS):
         yield from _misspelt_question(evidence)
         return
-    for kind, verb in VERBS.items():
+    for kind in evidence.KINDS:
         if evidence.ends(kind):
             continue
+        verb = f'{VERBS[kind]} on' if kind in ('publisher', 'subscription') else VERBS[kind]
         for end in _similar(evidence, kind)[:1]:
-            how = _difference(end.topic_name, evidence.topic_name)
+            how = _difference(end.name, evidence.name)
+            wrong, right = _wrong_end(evidence, end)
             yield Finding(
                 title=f'a similar name: {how}',
-                expected=f'a {kind} on {evidence.topic_name}',
-                seen=f'none, and {end.node_name} {verb} on {end.topic_name} ({how})',
-                fix=f'if {evidence.topic_name} is right, write it in {end.node_name} (or start '
-                f'that with --ros-args -r {end.topic_name}:={evidence.topic_name})',
-                code=code.create(kind, type_name=end.type_name, topic_name=evidence.topic_name),
-                broken=(end,),
+                expected=f'a {kind} {evidence.OF} {evidence.name}',
+                seen=f'none, and {end.node_name} {verb} {end.name} ({how}){_why(wrong, right)}',
+                fix=f'if {right} is right, write it in {wrong.node_name} (or start '
+                f'that with --ros-args -r {wrong.name}:={right})',
+                code=code.create(wrong.kind, type_name=wrong.type_name, name=right),
+                broken=(wrong,),
                 missing=kind,
             )
 
 
-def _misspelt_question(evidence: Evidence) -> Iterator[Finding]:
-    for end in _similar(evidence, 'publisher')[:1] or _similar(evidence, 'subscription')[:1]:
-        how = _difference(end.topic_name, evidence.topic_name)
+def _wrong_end(evidence: Seen, other: Endpoint) -> tuple[Endpoint, str]:
+    """The end to edit, and the name that it should have: who made a name relative meant another.
+
+    If nobody did, the name that was asked about is right.
+    """
+    for end in evidence.endpoints:
+        if end.name == evidence.name and _is_relative(end, other.name):
+            return end, other.name
+    return other, evidence.name
+
+
+def _is_relative(end: Endpoint, name: str) -> bool:
+    """Whether the end would have this name if its own were not in its node's namespace."""
+    return end.name != name and end.name == f'{end.node_name.rpartition("/")[0]}{name}'
+
+
+def _why(end: Endpoint, name: str) -> str:
+    if not _is_relative(end, name):
+        return ''
+    return f": in {end.node_name}, a name without a leading / begins with the node's namespace"
+
+
+def _misspelt_question(evidence: Seen) -> Iterator[Finding]:
+    first, second = evidence.KINDS if evidence.OF == 'on' else reversed(evidence.KINDS)
+    for end in _similar(evidence, first)[:1] or _similar(evidence, second)[:1]:
+        how = _difference(end.name, evidence.name)
         yield Finding(
             title=f'a similar name: {how}',
-            expected=f'a node that uses {evidence.topic_name}',
-            seen=f'none, and {end.node_name} uses {end.topic_name} ({how})',
-            fix='run the doctor on that topic, if it is the one you mean',
-            code=f'$ topic_doctor {end.topic_name}',
+            expected=f'a node that uses {evidence.name}',
+            seen=f'none, and {end.node_name} uses {end.name} ({how})',
+            fix='run the doctor on that name, if it is the one you mean',
+            code=f'$ topic_doctor {end.name}',
             broken=(end,),
             missing=end.kind,
         )
 
 
-def _similar(evidence: Evidence, kind: Kind) -> list[Endpoint]:
-    """Ends of that kind on topics of similar names; first those that wait for the other end."""
+def _similar(evidence: Seen, kind: Kind) -> list[Endpoint]:
+    """Ends of that kind with similar names; first those that wait for the other end."""
     met = {
-        end.topic_name
+        end.name
         for end in evidence.endpoints
         if end.kind != kind  # somebody is there at the other end
     }
     near = [
         end
         for end in evidence.endpoints
-        if end.kind == kind and _likeness(end.topic_name, evidence.topic_name) >= CUTOFF
+        if end.kind == kind
+        and are_similar(end.name, evidence.name)
+        # a server of another name has its own clients, or none yet
+        and (kind != 'client' or end.name not in met)
     ]
-    wanted = evidence.topic_name
-    return sorted(
-        near, key=lambda end: (end.topic_name in met, -_likeness(end.topic_name, wanted))
-    )
+    wanted = evidence.name
+    return sorted(near, key=lambda end: (end.name in met, -_likeness(end.name, wanted)))
+
+
+def are_similar(one: str, other: str) -> bool:
+    """Whether one of two names may have been meant where the other one is used."""
+    return _likeness(one, other) >= CUTOFF
 
 
 def _likeness(one: str, other: str) -> float:
@@ -80,5 +111,5 @@ def _difference(one: str, other: str) -> str:
     return 'the spelling differs'
 
 
-def _last(topic_name: str) -> str:
-    return topic_name.rpartition('/')[2].lower()
+def _last(name: str) -> str:
+    return name.rpartition('/')[2].lower()

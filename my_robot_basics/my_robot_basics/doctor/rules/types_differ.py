@@ -20,6 +20,6 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
             f' {subscription.type_name}: no message arrives',
             fix=f'import and use the same type in {subscription.node_name}'
             f' (from {type_name.replace("/", ".").rpartition(".")[0]})',
-            code=code.create('subscription', type_name=type_name, topic_name=evidence.topic_name),
+            code=code.create('subscription', type_name=type_name, name=evidence.name),
             broken=(subscription,),
         )

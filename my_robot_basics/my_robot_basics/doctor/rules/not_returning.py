@@ -1,0 +1,39 @@
+"""A callback goes on and on, and meanwhile nothing else of its node can run."""
+
+from collections.abc import Iterator
+
+from my_robot_basics.doctor.callback import Callback
+from my_robot_basics.doctor.evidence import Finding, Seen
+from my_robot_basics.doctor.rules.blocks_itself import ASK, LATER
+
+
+def examine(evidence: Seen) -> Iterator[Finding]:
+    """Name the callback, how long it was seen, and where it is."""
+    for each in evidence.callbacks:
+        serves = each.service_name == evidence.name
+        ends = [
+            end
+            for end in evidence.all_ends()
+            if end.node_name in each.holds or (serves and end.node_name == each.node_name)
+        ]
+        if not ends or each.keeps or each.waits_in == 'wait_for_service':
+            continue
+        job = 'its response is sent' if serves else f'{ends[0].node_name} can go on'
+        yield Finding(
+            title='a callback has not returned',
+            expected=f'the callback {each.name} of {each.node_name} to return, so that {job}',
+            seen=f'it has been running for at least {int(each.seconds)} s, and is in'
+            f' {each.line or "a line that is not known"}{_meanwhile(each)}',
+            fix=LATER
+            if each.asks
+            else 'if it waits for something that does not come, end that; if it only takes long,'
+            ' wait, or make the long task an action',
+            code=ASK if each.asks else '',
+            broken=tuple(ends[:1]),
+        )
+
+
+def _meanwhile(callback: Callback) -> str:
+    if not callback.asks:
+        return ''
+    return f"; until it returns, the response of {callback.asks} can't be taken"

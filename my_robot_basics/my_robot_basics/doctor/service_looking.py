@@ -1,0 +1,104 @@
+"""Gathers the evidence on a service: the graph, what nodes answer, what their callbacks do.
+
+The service is never called: who knows what that would set in motion.
+"""
+
+from collections.abc import Callable, Mapping
+
+from rclpy.node import Node
+
+from my_robot_basics.doctor import inside, remaps
+from my_robot_basics.doctor.asking import Questions
+from my_robot_basics.doctor.evidence import Endpoint, Kind, NodeState
+from my_robot_basics.doctor.inside import SURE_SEC, Inside
+from my_robot_basics.doctor.looking import missing_participants
+from my_robot_basics.doctor.service_evidence import ServiceEvidence, Unanswered
+from my_robot_basics.graph import services
+from my_robot_basics.graph.watcher import Watcher
+from my_robot_basics.session.pressure import Stopwatch
+
+SILENT_SEC = 3.0
+"""So long a node has to answer a question, if no callback is known that keeps it busy."""
+EVERY_SEC = 0.05
+CROWDED_TIMES = 2.5
+"""How many times as long it may all take where processes have to wait for a processor."""
+
+Raised = Callable[[str], Mapping[str, str]]
+
+
+def endpoints_of(node: Node) -> tuple[Endpoint, ...]:
+    """All ends of services that are neither ROS's own nor those of hidden nodes."""
+    ends = services.take(node)
+    kinds: dict[Kind, dict] = {'client': ends.clients, 'server': ends.servers}
+    return tuple(
+        Endpoint(kind=kind, node_name=node_name, name=name, type_name=type_name)
+        for kind, found in kinds.items()
+        for name, nodes in sorted(found.items())
+        for node_name, types in sorted(nodes.items())
+        for type_name in types
+    )
+
+
+def look(
+    watcher: Watcher, name: str, *, domain_id: int, raised: Raised, look_sec: float
+) -> ServiceEvidence:
+    """What can be seen of a service, from a watcher that knows the graph.
+
+    `raised` tells, by their nodes, what its callbacks have raised. It ends as soon as
+    nothing goes on that takes longer to judge, at most after `look_sec` of time that was free.
+    """
+    endpoints = endpoints_of(watcher.node)
+    names = sorted({end.node_name for end in endpoints if end.name == name})
+    questions, view, watch = Questions(watcher, names), Inside(name), Stopwatch()
+    while watch.free_sec() < look_sec and watch.wall_sec() < CROWDED_TIMES * look_sec:
+        view.look()
+        if _is_enough(name, questions, view, names, watch):
+            break
+        watcher.spin_for(EVERY_SEC)
+    looked_sec = watch.free_sec()
+    unspun = view.unspun() if watch.wall_sec() >= SURE_SEC else frozenset()
+    answers = questions.answers(timeout_sec=0.0)
+    if looked_sec < SILENT_SEC:
+        # too early to say of any other node that it does not answer
+        unknown = questions.unanswered() - unspun
+        answers = {node_name: answers[node_name] for node_name in answers.keys() - unknown}
+    return ServiceEvidence(
+        name=name,
+        endpoints=endpoints,
+        nodes=dict.fromkeys(services.take(watcher.node).node_names, NodeState(answers=None))
+        | answers,
+        remaps=remaps.of_this_machine(),
+        domain_id=domain_id,
+        missing_participants=missing_participants(watcher.node, domain_id),
+        callbacks=view.lasting(),
+        looked_sec=looked_sec,
+        raised=raised(name),
+        visible=inside.visible(),
+        unspun=unspun,
+        taken=inside.taken(),
+        unanswered=tuple(
+            Unanswered(node_name=node_name, seconds=seconds)
+            for node_name, seconds in view.unanswered(at_least_sec=SURE_SEC).items()
+        ),
+    )
+
+
+def _is_enough(
+    name: str, questions: Questions, view: Inside, names: list[str], watch: Stopwatch
+) -> bool:
+    """Whether a longer look would tell nothing new."""
+    going_on = [
+        each
+        for each in view.callbacks(at_least_sec=EVERY_SEC / 2)
+        if {*each.holds} & {*names}
+        or (each.node_name in names and (each.keeps or each.service_name == name))
+    ]
+    if going_on:
+        return any(each.is_sure() and each.seconds >= SURE_SEC for each in going_on)
+    lost = view.unanswered(at_least_sec=0.0)
+    if any(seconds < SURE_SEC for seconds in lost.values()):
+        return False
+    silent = questions.unanswered()
+    if watch.wall_sec() >= SURE_SEC:
+        silent -= view.unspun()
+    return not silent or watch.free_sec() >= SILENT_SEC

@@ -1,0 +1,26 @@
+"""Nobody serves the service."""
+
+from collections.abc import Iterator
+
+from my_robot_basics.doctor import code
+from my_robot_basics.doctor.evidence import Finding
+from my_robot_basics.doctor.service_evidence import ServiceEvidence
+
+
+def examine(evidence: ServiceEvidence) -> Iterator[Finding]:
+    """Say who asks in vain, and who runs."""
+    if evidence.servers:
+        return
+    asking = sorted({end.node_name for end in evidence.clients})
+    types = [end.type_name for end in evidence.clients]
+    others = ', '.join(name for name in evidence.nodes if name not in asking)
+    seen = f'none; {" and ".join(asking) or "nobody"} {"ask" if len(asking) > 1 else "asks"} it'
+    yield Finding(
+        title='no server',
+        expected=f'a server of {evidence.name}',
+        seen=f'{seen}, and {f"these run, too: {others}" if others else "no other node runs"}',
+        fix='start the node that serves it, and check that its constructor has this line; a'
+        ' request that is sent before is lost, so ask for it again',
+        code=code.create('server', type_name=(types or [''])[0], name=evidence.name),
+        missing='server',
+    )

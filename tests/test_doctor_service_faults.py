@@ -1,0 +1,380 @@
+"""Planted faults of services: each is named first; where the fix is a line, that line fixes it."""
+
+import contextlib
+import re
+import shlex
+import threading
+import time
+
+import pytest
+from my_robot_basics.doctor import inside
+from my_robot_basics.doctor.diagnosing import diagnose
+from my_robot_basics.live import run, stop, troubles
+from my_robot_basics.session import classroom, domain
+from my_robot_basics.session.neighbours import nodes_here
+from nodes.patient import process
+from nodes.patient_services import (
+    ASK,
+    ASKER,
+    CLIENT,
+    DEF_ASK,
+    IF_READY,
+    IN_GROUP,
+    NAME,
+    RETURN,
+    SERVER,
+    SERVICE,
+    SPIN,
+    WORK,
+    node_class,
+    program,
+)
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
+from rclpy.context import Context
+from rclpy.executors import MultiThreadedExecutor
+from rclpy.node import Node
+from std_srvs.srv import SetBool
+
+TIMEOUT_SEC = 20.0
+DEAD = 'while rclpy.ok(): time.sleep(0.1)'
+CALL = 'self.client.call(request, timeout_sec=30.0)'
+SPIN_HERE = (
+    'rclpy.spin_until_future_complete(self, self.client.call_async(request), timeout_sec=30.0)'
+)
+ASYNC = (DEF_ASK, f'async {DEF_ASK}')
+AWAIT = 'await self.client.call_async(request)'
+POLL = (
+    'future = self.client.call_async(request)\n'
+    '            while not future.done() and rclpy.ok(): time.sleep(0.05)'
+)
+
+
+@pytest.fixture(autouse=True)
+def _stop():
+    yield
+    for client in [client for node in nodes_here() for client in node.clients]:
+        for future in [*client._pending_requests.values()]:
+            future.set_result(None)  # or the callbacks that wait would outlive their nodes
+    stop()
+
+
+def findings(name=NAME, **options):
+    (diagnosis,) = diagnose(
+        name, domain_id=classroom.enter(), raised=troubles.of_service, **options
+    )
+    return diagnosis.findings
+
+
+def first_finding(name=NAME, **options):
+    found = findings(name, **options)
+    assert found, 'nothing was found'
+    return found[0]
+
+
+def wait_for(done):
+    deadline = time.monotonic() + TIMEOUT_SEC
+    while not done() and time.monotonic() < deadline:
+        time.sleep(0.02)
+    return done()
+
+
+def assert_well(asker):
+    assert wait_for(lambda: asker.answered)
+    assert findings() == ()
+
+
+def start(asker_edits, **options):
+    """A server, and a client that begins to wait."""
+    run(node_class(SERVER))
+    asker = run(node_class(ASKER, *asker_edits), **options)
+    assert wait_for(lambda: asker.timer.is_canceled())
+    return asker
+
+
+NAMES = {
+    # what is planted: the node's source, the line, what stands there instead, the title
+    'server misspelt': (SERVER, SERVICE, '/close_griper', 'the spelling differs'),
+    'client misspelt': (ASKER, IN_GROUP, '/close_griper', 'the spelling differs'),
+    'case': (SERVER, SERVICE, '/Close_Gripper', 'upper and lower case differ'),
+    'namespace': (SERVER, SERVICE, '/left/close_gripper', 'the namespace differs'),
+}
+
+
+@pytest.mark.parametrize('fault', NAMES)
+def test_a_wrong_name_is_named_first_and_fixed(fault):
+    source, line, name, title = NAMES[fault]
+    edits = {SERVER: [], ASKER: []}
+    edits[source] = [(line, line.replace(NAME, name))]
+    run(node_class(SERVER, *edits[SERVER]))
+    run(node_class(ASKER, *edits[ASKER]))
+    found = first_finding()
+    assert title in found.title
+    run(node_class(SERVER, *([(SERVICE, found.code)] if source is SERVER else [])))
+    assert_well(run(node_class(ASKER, *([(line, found.code)] if source is ASKER else []))))
+
+
+@pytest.mark.parametrize('asked', [NAME, f'/left{NAME}'])
+def test_a_relative_name_is_named_where_it_is_written(asked):
+    run(node_class(SERVER))
+    relative = (IN_GROUP, IN_GROUP.replace(NAME, NAME[1:]))
+    run(node_class(ASKER, relative), namespace='/left')
+    found = first_finding(asked)
+    assert "in /left/asker, a name without a leading / begins with the node's namespace" in (
+        found.seen
+    )
+    asker = run(node_class(ASKER, (IN_GROUP, found.code)), namespace='/left')
+    assert_well(asker)
+
+
+def test_a_client_without_a_server():
+    run(node_class(ASKER))
+    found = first_finding()
+    assert found.title == 'no server'
+    assert '/asker asks it' in found.seen
+    run(node_class(SERVER, (SERVICE, found.code)))
+    assert wait_for(lambda: findings() == ())
+
+
+def test_two_types():
+    # in one process rclpy itself refuses the second one
+    run(node_class(ASKER, (IN_GROUP, CLIENT.replace('SetBool', 'Trigger'))))
+    with process(program(SERVER)):
+        found = wait_for_finding('types differ')
+        assert '/server serves std_srvs/srv/SetBool' in found.seen
+        assert_well(run(node_class(ASKER, (IN_GROUP, found.code))))
+
+
+def wait_for_finding(title, **options):
+    """The first finding, once the other process is up."""
+    deadline = time.monotonic() + TIMEOUT_SEC
+    while (found := first_finding(**options)).title != title and time.monotonic() < deadline:
+        pass
+    assert found.title == title
+    return found
+
+
+DEADLOCKS = {
+    'call': ([(ASK, CALL)], 'its executor has one thread'),
+    'spin in a callback': ([(ASK, SPIN_HERE)], 'the client is in the same callback group'),
+    'await in the default group': ([ASYNC, (ASK, AWAIT)], 'the client is in the same callback'),
+    'call when a future is done': (
+        [('self.answered += 1', CALL.replace('request', 'SetBool.Request()'))],
+        'its executor has one thread',
+    ),
+}
+
+
+@pytest.mark.parametrize('fault', DEADLOCKS)
+def test_a_client_that_blocks_its_own_executor(fault):
+    edits, why = DEADLOCKS[fault]
+    asker = start(edits)
+    assert wait_for(lambda: asker.client._pending_requests)
+    found = first_finding()
+    assert 'deadlock' in found.title
+    name = 'receive' if 'done' in fault else 'ask'
+    assert f'the callback {name} of /asker to return' in found.expected
+    assert NAME in found.seen
+    assert why in found.seen
+    assert not asker.answered
+    assert not any('not spinning' in each.title for each in findings())
+    assert_well(start([(ASK, found.code)]))
+
+
+@contextlib.contextmanager
+def spun(node, executor):
+    """Let an executor spin a node in a thread of its own."""
+    executor.add_node(node)
+    ending = threading.Event()
+
+    def spin():
+        while not ending.is_set():
+            executor.spin_once(timeout_sec=0.1)
+
+    thread = threading.Thread(target=spin)
+    thread.start()
+    try:
+        yield
+    finally:
+        ending.set()
+        for future in [*node.client._pending_requests.values()]:
+            future.set_result(None)
+        thread.join()
+        node.destroy_node()
+        executor.shutdown()
+
+
+@pytest.mark.parametrize(
+    ('group', 'threads', 'why'),
+    [
+        (MutuallyExclusiveCallbackGroup, 2, 'the client is in the same callback group'),
+        (ReentrantCallbackGroup, 1, 'all threads of its executor wait like this'),
+        (ReentrantCallbackGroup, 2, None),
+    ],
+)
+@pytest.mark.filterwarnings('ignore:MultiThreadedExecutor is used with a single thread')
+def test_calls_in_several_threads(group, threads, why):
+    run(node_class(SERVER, (WORK, 'time.sleep(1.5)')))
+    asker = node_class(ASKER, (ASK, CALL))(group=group())
+    with spun(asker, MultiThreadedExecutor(threads)):
+        assert wait_for(lambda: asker.client._pending_requests)
+        found = findings()
+    assert [each.title for each in found] == (
+        ['a callback waits for its own executor (deadlock)'] if why else []
+    )
+    assert why is None or why in found[0].seen
+
+
+def test_a_server_that_calls_itself():
+    other = '/open_gripper'
+    asks = f"self.create_client(SetBool, '{other}').call(request, timeout_sec=30.0)"
+    serves = f"{SERVICE}; self.create_service(SetBool, '{other}', self.answer)"
+    run(node_class(SERVER, (SERVICE, serves), (WORK, asks)))
+    run(node_class(ASKER))
+    assert wait_for(lambda: inside_callbacks('answer'))
+    found = first_finding()
+    assert 'the callback answer of /server to return' in found.expected
+    assert other in found.seen
+
+
+def inside_callbacks(name):
+    view = inside.Inside()
+    view.look()
+    return [each for each in view.callbacks(at_least_sec=0.0) if each.name == name]
+
+
+def test_a_callback_that_looks_again_and_again_for_its_response():
+    asker = start([(ASK, POLL)])
+    found = first_finding()
+    assert found.title == 'a callback has not returned'
+    assert f"until it returns, the response of {NAME} can't be taken" in found.seen
+    assert not asker.answered
+    assert_well(start([(ASK, found.code)]))
+
+
+def test_a_callback_that_waits_for_an_absent_server():
+    run(node_class(ASKER, (IF_READY, 'if self.client.wait_for_service(30.0):')))
+    assert wait_for(lambda: inside_callbacks('ask'))
+    first, second = findings()
+    assert first.title == 'no server'
+    assert second.title == 'a callback waits for the server'
+    assert 'it has waited in wait_for_service (line ' in second.seen
+    asker = run(node_class(ASKER, (IF_READY, second.code)))
+    run(node_class(SERVER))
+    assert_well(asker)
+
+
+def test_a_server_that_returns_no_response():
+    run(node_class(SERVER, (RETURN, 'pass')))
+    run(node_class(ASKER))
+    assert wait_for(lambda: troubles.of_service(NAME))
+    found = first_finding()
+    assert found.title == 'the callback returned no response'
+    run(node_class(SERVER, (RETURN, found.code)))
+    assert_well(run(node_class(ASKER)))
+
+
+def test_a_server_that_raises():
+    run(node_class(SERVER, (WORK, "raise ValueError('it is jammed')")))
+    run(node_class(ASKER))
+    assert wait_for(lambda: troubles.of_service(NAME))
+    found = first_finding()
+    assert found.title == 'the callback raised'
+    assert 'ValueError: it is jammed' in found.seen
+    run(node_class(SERVER))
+    assert_well(run(node_class(ASKER)))
+
+
+def test_what_another_callback_raised_is_not_laid_to_the_service():
+    run(node_class(SERVER, (SERVICE, f'{SERVICE}; self.create_timer(0.1, lambda: 1 / 0)')))
+    asker = run(node_class(ASKER))
+    assert wait_for(lambda: troubles.times('/server') > 1)
+    assert_well(asker)
+
+
+def test_a_server_whose_callback_does_not_return():
+    server = run(node_class(SERVER, (WORK, 'while rclpy.ok() and self.taken: time.sleep(0.05)')))
+    asker = run(node_class(ASKER))
+    assert wait_for(lambda: server.taken)
+    found = first_finding()
+    assert found.title == 'a callback has not returned'
+    assert 'the callback answer of /server to return, so that its response is sent' in (
+        found.expected
+    )
+    assert 'line ' in found.seen
+    server.taken = 0
+    assert_well(asker)
+
+
+def test_a_server_that_nobody_spins():
+    server = node_class(SERVER)()
+    asker = run(node_class(ASKER))
+    assert wait_for(lambda: asker.timer.is_canceled())
+    found = first_finding()
+    assert found.title == 'the node is not spinning'
+    assert 'no thread spins it' in found.seen
+    server.destroy_node()
+    run(node_class(SERVER))
+    assert_well(run(node_class(ASKER)))
+
+
+def test_a_server_of_another_process_that_nobody_spins():
+    with process(program(SERVER, (SPIN, DEAD))):
+        assert wait_for(has_server)
+        found = first_finding()
+        assert found.title == 'the node answers nothing'
+        assert re.search('answered nothing for at least [3-9] s', found.seen)
+    with process(program(SERVER, (SPIN, found.code))):
+        assert_well(run(node_class(ASKER)))
+
+
+def has_server():
+    node = Node('looks')
+    try:
+        return node.create_client(SetBool, NAME).wait_for_service(timeout_sec=1.0)
+    finally:
+        node.destroy_node()
+
+
+def test_a_client_that_nobody_spins_and_that_waits():
+    run(node_class(SERVER))
+    user = Node('user')
+    client = user.create_client(SetBool, NAME)
+    assert client.wait_for_service(timeout_sec=TIMEOUT_SEC)
+    assert findings() == ()  # it may be spun later, when it asks
+    client.call_async(SetBool.Request())
+    found = first_finding()
+    user.destroy_node()
+    assert found.title == 'the node is not spinning'
+    assert 'so that responses are taken' in found.expected
+
+
+def test_a_client_whose_node_was_taken_from_its_executor():
+    asker = start([(ASK, SPIN_HERE.replace('30.0', '0.5'))])
+    assert wait_for(lambda: asker not in asker.executor.get_nodes())
+    found = first_finding()
+    assert found.title == 'the node is not spinning'
+    assert 'spin_until_future_complete' in found.seen
+
+
+def test_a_remapped_server():
+    run(node_class(ASKER))
+    command = program(SERVER, ('rclpy.init()', 'import sys; rclpy.init(args=sys.argv)'))
+    with process([*command, '--ros-args', '-r', f'{NAME}:=/elsewhere']):
+        found = wait_for_finding('remapped')
+    with process(shlex.split(found.code.removeprefix('$ '))):
+        assert_well(run(node_class(ASKER)))
+
+
+def test_a_server_in_another_domain():
+    claim = domain.claim()
+    name = f'{NAME}_{claim.domain_id}'  # tests beside this one have servers, too
+    run(node_class(ASKER, (IN_GROUP, IN_GROUP.replace(NAME, name))))
+    context = Context()
+    context.init(domain_id=claim.domain_id)
+    server = node_class(SERVER, (SERVICE, SERVICE.replace(NAME, name)))(context=context)
+    found = first_finding(name, other_domains=True)
+    server.destroy_node()
+    context.try_shutdown()
+    claim.release()
+    assert found.title == 'another domain ID'
+    assert f'/server serves there in domain {claim.domain_id}' in found.seen
