@@ -322,7 +322,7 @@ def test_a_server_of_another_process_that_nobody_spins():
         assert wait_for(has_server)
         found = first_finding()
         assert found.title == 'the node answers nothing'
-        assert re.search('answered nothing for at least [3-9] s', found.seen)
+        assert re.search(r'answered nothing for at least \d+ s', found.seen)
     with process(program(SERVER, (SPIN, found.code))):
         assert_well(run(node_class(ASKER)))
 

@@ -18,7 +18,9 @@ from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
 
 SILENT_SEC = 3.0
-"""So long a node has to answer a question, if no callback is known that keeps it busy."""
+"""So long a node has to answer a question, of time that was free, …"""
+SILENT_MOST_SEC = 15.0
+"""… or so long, where no time is free. No callback may be known that keeps it busy."""
 EVERY_SEC = 0.05
 CROWDED_TIMES = 2.5
 """How many times as long it may all take where processes have to wait for a processor."""
@@ -55,10 +57,9 @@ def look(
         if _is_enough(name, questions, view, names, watch):
             break
         watcher.spin_for(EVERY_SEC)
-    looked_sec = watch.free_sec()
     unspun = view.unspun() if watch.wall_sec() >= SURE_SEC else frozenset()
     answers = questions.answers(timeout_sec=0.0)
-    if looked_sec < SILENT_SEC:
+    if not _is_long(watch):
         # too early to say of any other node that it does not answer
         unknown = questions.unanswered() - unspun
         answers = {node_name: answers[node_name] for node_name in answers.keys() - unknown}
@@ -71,7 +72,7 @@ def look(
         domain_id=domain_id,
         missing_participants=missing_participants(watcher.node, domain_id),
         callbacks=view.lasting(),
-        looked_sec=looked_sec,
+        looked_sec=watch.wall_sec(),
         raised=raised(name),
         visible=inside.visible(),
         unspun=unspun,
@@ -101,4 +102,9 @@ def _is_enough(
     silent = questions.unanswered()
     if watch.wall_sec() >= SURE_SEC:
         silent -= view.unspun()
-    return not silent or watch.free_sec() >= SILENT_SEC
+    return not silent or _is_long(watch)
+
+
+def _is_long(watch: Stopwatch) -> bool:
+    """Whether a node that is spun would have answered."""
+    return watch.free_sec() >= SILENT_SEC or watch.wall_sec() >= SILENT_MOST_SEC
