@@ -36,6 +36,7 @@ def endpoints_of(node: Node) -> tuple[Endpoint, ...]:
         Endpoint(kind=kind, node_name=node_name, name=name, type_name=type_name)
         for kind, found in kinds.items()
         for name, nodes in sorted(found.items())
+        if '/_' not in name  # an action's, or hidden
         for node_name, types in sorted(nodes.items())
         for type_name in types
     )
