@@ -11,6 +11,7 @@ without an error has passed.
 - a server of the student's: `service(name, type).call(request)`
 - an action server of the student's: `action(name, type).send_goal(goal)`
 - a client of the student's: `serve(name, type, answer, ...)`, the check's own server
+- an action client of the student's: `action_server(name, type, ...)`, the check's own server
 - a node's log: `rosout(node_name)`
 - nodes, publishers and subscriptions: `graph()`
 - predictions: `Predictions`
@@ -25,6 +26,7 @@ _HOMES = {
     'relay': 'checks.relays',
     'service': 'checks.services',
     'action': 'checks.actions',
+    'action_server': 'checks.action_servers',
     'serve': 'checks.servers',
     'rosout': 'checks.logs',
     'graph': 'graph.graphs',
@@ -42,6 +44,7 @@ _HOMES = {
     'Server': 'checks.servers',
     'Action': 'checks.actions',
     'Outcome': 'checks.actions',
+    'ServedAction': 'checks.served_action',
     'Log': 'checks.logs',
     'Record': 'checks.node_log',
     'GraphSnapshot': 'graph.snapshot',
@@ -53,6 +56,7 @@ _MODULES = {
     'ik': 'checks.ik',
     'joints': 'checks.joints',
     'moves': 'checks.moves',
+    'replies': 'checks.replies',
     'student': 'exchange.student',
 }
 

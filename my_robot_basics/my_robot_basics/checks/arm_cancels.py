@@ -5,16 +5,15 @@ from typing import Any
 from my_robot_basics.checks.action_ends import SentGoal, cancels
 from my_robot_basics.checks.actions import Action
 from my_robot_basics.checks.arm_looks import look
-from my_robot_basics.checks.arm_moves import expect_result, is_near
-from my_robot_basics.checks.arm_stops import ON_LINE_RAD, expect_canceled, expect_on_the_way
+from my_robot_basics.checks.arm_moves import expect_result
+from my_robot_basics.checks.arm_stops import expect_begins_at, expect_canceled, expect_on_the_way
 from my_robot_basics.checks.watched_arm import Pose, WatchedArm, accepted, far_rad, goal
 from my_robot_basics.feedback.errors import expect, fail
 
 STOP_SEC = 0.2
 SLACK_SEC, WALL_SLACK_SEC = 0.06, 0.15
 """A step of the clock; what a thread may be late on the wall clock."""
-NEXT_SPEED = 0.4
-EARLY_PART = 0.8
+NEXT_SPEED, NEXT_LEAST_RAD = 0.4, 0.1
 MOST_TIMES, MORE_SEC = 3.0, 1.0
 ANSWER_SEC = 5.0
 """How long the answer may take of a server that gives it at the end of the move alone."""
@@ -52,8 +51,15 @@ def expect_cancels(
         _cancel(arm, sent, wanted_sec=wanted_sec)
         expect_result(arm, sent)
         expect_canceled(arm, sent)
-        expect_on_the_way(arm, sent, position)
-        _expect_goes_on(arm, sent)
+        began, stopped = arm.start, list(sent.result.position)
+        if stopped:
+            expect_on_the_way(sent, position, start=began)
+            arm.start = tuple(stopped)
+        moved = _expect_moves_on(arm, began)
+        expect_begins_at(arm, moved)
+        # a server that fills in no result at all is told so by the check of those
+        if not stopped and moved.result is not None and moved.result.position:
+            expect_on_the_way(sent, position, start=began)
 
     look(action, stops, start=start)
 
@@ -130,27 +136,9 @@ def _fail_refused(arm: WatchedArm, response: Any, *, was_over: bool) -> None:
     )
 
 
-def _expect_goes_on(arm: WatchedArm, sent: SentGoal) -> None:
-    """The next goal begins where the arm was stopped."""
-    back, stopped = arm.start, tuple(sent.result.position)
-    arm.start = stopped
-    moved = _expect_moves_on(arm, back)
-    feedback = moved.feedback()
-    near_rad = (STOP_SEC + SLACK_SEC) * moved.goal.speed + ON_LINE_RAD
-    if feedback and len(feedback[0][1].position) == len(back):
-        seen = list(feedback[0][1].position)
-        expect(
-            is_near(seen, stopped, near_rad),
-            expected=f'the next move to begin at {[round(each, 3) for each in stopped]}',
-            seen=f'{[round(each, 3) for each in seen]}',
-            hint='a move begins where the arm was stopped: remember its position in each step',
-            cause='the next move begins elsewhere',
-        )
-
-
 def _expect_moves_on(arm: WatchedArm, position: Pose) -> SentGoal:
     """The next goal is accepted, and is not stopped."""
-    far = far_rad(arm.start, position)
+    far = max(far_rad(arm.start, position), NEXT_LEAST_RAD)
     sent = accepted(arm.server, goal(position, speed=max(NEXT_SPEED, far / 2.0)))
     wanted_sec = far / sent.goal.speed
     arm.time.wait(sent.is_over, seconds=MOST_TIMES * wanted_sec + MORE_SEC)
@@ -161,4 +149,5 @@ def _expect_moves_on(arm: WatchedArm, position: Pose) -> SentGoal:
         hint='a request to cancel is for one goal: forget it when the next one begins',
         cause='the next goal is stopped, too',
     )
+    arm.has_result(sent)
     return sent

@@ -1,0 +1,47 @@
+"""Why a node sends no goal, or makes nothing of how one ended: one clause each."""
+
+from collections.abc import Collection
+
+from my_robot_basics.checks.callbacks import Raised
+from my_robot_basics.checks.open_action import type_name
+from my_robot_basics.checks.services import answers_parameters
+from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.graph import actions
+from my_robot_basics.graph.watcher import Watcher
+
+WAITS = (
+    'it waits inside a callback, and no answer is delivered meanwhile: use send_goal_async and '
+    'get_result_async, each with add_done_callback'
+)
+
+
+def why_no_goal(
+    watcher: Watcher,
+    name: str,
+    type_: type,
+    *,
+    node_names: Collection[str],
+    raised: Raised,
+    asked_on: str,
+) -> str:
+    """What to try where no goal comes for a message on `asked_on`."""
+    if hint := raised.hint():
+        return hint
+    ends = actions.take(watcher.node)
+    clients = ends.clients.get(name, {})
+    if not clients:
+        return ends.why_none(name, maker='ActionClient')
+    types = {each for found in clients.values() for each in found}
+    if type_name(type_) not in types:
+        asks_for = theirs(' and '.join(sorted(types)))
+        return f'it sends goals of {asks_for}, so compare the type in ActionClient(…)'
+    hint = f'call send_goal_async(goal) for each message on {asked_on}'
+    return why_silent(watcher, hint, node_names=node_names, raised=raised)
+
+
+def why_silent(watcher: Watcher, hint: str, *, node_names: Collection[str], raised: Raised) -> str:
+    """What to try where nothing comes of an answer; `hint` is for one that waits for nothing."""
+    if why := raised.hint():
+        return why
+    is_free = all(answers_parameters(watcher, name) for name in set(node_names))
+    return hint if is_free else WAITS

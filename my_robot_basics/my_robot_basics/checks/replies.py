@@ -1,0 +1,188 @@
+"""What a client of `/move_arm` is to do with what its server answers; positions in radians."""
+
+import random
+from collections.abc import Sequence
+from typing import NoReturn
+
+from sensor_msgs.msg import JointState
+
+from arm_interfaces.action import MoveArm
+from my_robot_basics.checks import joints
+from my_robot_basics.checks.scripted_action import Ending, ReceivedGoal
+from my_robot_basics.checks.served_action import ServedAction
+from my_robot_basics.checks.watched_arm import Pose
+
+SPEED = 0.5
+"""What the client is to ask for, in rad/s."""
+EXACT = 1e-6
+OUTCOMES: tuple[Ending, ...] = ('succeeded', 'aborted')
+_RESULT = 'publish the outcome when the result is there: future.result().status tells how it ended'
+_WORDS = {
+    'cancelled': 'write canceled with one l, as ROS does',
+    'succeed': 'write succeeded',
+    'success': 'write succeeded',
+}
+
+
+def choose(numbers: random.Random, count: int) -> list[tuple[float, float]]:
+    """So many positions, each another one."""
+    chosen: list[tuple[float, float]] = []
+    while len(chosen) < count:
+        pose = round(numbers.uniform(-1.4, 1.4), 3), round(numbers.uniform(-2.0, 2.0), 3)
+        if all(abs(pose[0] - other[0]) > 0.05 for other in chosen):
+            chosen.append(pose)
+    return chosen
+
+
+def choose_outcomes(numbers: random.Random) -> dict[str, tuple[float, float]]:
+    """A position for each outcome that `expect_outcomes` knows, in some order."""
+    words = ['succeeded', 'rejected', 'aborted']
+    numbers.shuffle(words)
+    return dict(zip(words, choose(numbers, len(words)), strict=True))
+
+
+def expect_outcomes(server: ServedAction, **positions: Pose) -> None:
+    """Each position becomes a goal that ends as its word says, and the outcome is that word.
+
+    `expect_outcomes(server, succeeded=(0.5, 0.2), rejected=(1.0, 0.4))`. Raises CheckFailed.
+    """
+    for word, position in positions.items():
+        if word == 'rejected':
+            _expect_rejected(server, position)
+        elif word in OUTCOMES:
+            goal = ask(server, position)
+            server.expect_no_outcome('the goal has not ended')
+            goal.finish('succeeded' if word == 'succeeded' else 'aborted')
+            _expect(server, word)
+        else:
+            _refuse(word)
+
+
+def expect_patience(server: ServedAction, early: Pose, later: Pose) -> None:
+    """A pose that comes while there is no server, which then starts, takes its time, and succeeds.
+
+    The client sends a goal for the later pose. Raises CheckFailed.
+    """
+    server.publish(_pose(early))
+    server.start()
+    goal = ask(server, later)
+    server.forget_outcomes()  # the early pose may have become a goal, which has succeeded
+    server.expect_no_outcome('the server takes its time')
+    goal.finish('succeeded')
+    _expect(server, 'succeeded')
+
+
+def expect_cancel(server: ServedAction, position: Pose) -> None:
+    """An obstacle cancels the goal, which is canceled then. Raises CheckFailed."""
+    goal = ask(server, position)
+    _expect_cancel_of(server, goal)
+
+
+def expect_no_cancel(server: ServedAction, position: Pose) -> None:
+    """An obstacle that is there before the goal, or is there no longer, cancels nothing.
+
+    Raises CheckFailed.
+    """
+    server.say_obstacle(is_there=True)
+    goal = ask(server, position)
+    server.say_obstacle(is_there=False)
+    server.expect_no_cancel_of(goal)
+    goal.finish('succeeded')
+    _expect(server, 'succeeded')
+
+
+def expect_refused_cancel(server: ServedAction, position: Pose) -> None:
+    """The server rejects the request to cancel: the goal succeeds all the same.
+
+    Raises CheckFailed.
+    """
+    server.cancels = False
+    goal = ask(server, position)
+    server.expect_cancel_of(goal)
+    server.expect_no_outcome('the goal has not ended')
+    goal.finish('succeeded')
+    _expect(server, 'succeeded')
+    server.cancels = True
+
+
+def expect_cancel_in_spite_of_a_second_goal(
+    server: ServedAction, first: Pose, second: Pose
+) -> None:
+    """While the first goal moves, a second one is rejected; an obstacle cancels the first.
+
+    Raises CheckFailed.
+    """
+    goal = ask(server, first)
+    _expect_rejected(server, second)
+    _expect_cancel_of(server, goal)
+
+
+def ask(server: ServedAction, position: Pose, *, accepts: bool = True) -> ReceivedGoal:
+    """The goal that the client sends for a position. Raises CheckFailed."""
+    server.accepts = accepts
+
+    def is_it(request: MoveArm.Goal) -> bool:
+        return _is_near(request.position, position) and abs(request.speed - SPEED) < EXACT
+
+    def why(request: MoveArm.Goal) -> str:
+        if _is_near(request.position, position):
+            return 'give each goal the speed that the task names'
+        return _why_other(request.position, position)
+
+    return server.ask(_pose(position), is_it=is_it, hint=why)
+
+
+def _expect_rejected(server: ServedAction, position: Pose) -> None:
+    ask(server, position, accepts=False)
+    _expect(server, 'rejected')
+    server.accepts = True
+
+
+def _expect_cancel_of(server: ServedAction, goal: ReceivedGoal) -> None:
+    server.expect_cancel_of(goal)
+    server.expect_no_outcome('the server has not said how the goal ended')
+    goal.finish('canceled')
+    _expect(server, 'canceled')
+
+
+def _expect(server: ServedAction, word: str) -> None:
+    def why(seen: str) -> str:
+        if seen.lower() == word:
+            return 'write the word in lower case'
+        if seen.strip().lower() in _WORDS:
+            return _WORDS[seen.strip().lower()]
+        if seen.isdigit():
+            return 'publish the word for the status, not its number'
+        if word == 'rejected':
+            return (
+                'a goal that is not accepted has no result: look at goal_handle.accepted in the '
+                'callback of send_goal_async'
+            )
+        return _RESULT
+
+    server.expect_outcome(word, hint=why)
+
+
+def _pose(position: Pose) -> JointState:
+    return JointState(name=['joint1', 'joint2'], position=list(position))
+
+
+def _is_near(seen: Sequence[float], wanted: Pose) -> bool:
+    return len(seen) == len(wanted) and all(
+        abs(a - b) < EXACT for a, b in zip(seen, wanted, strict=True)
+    )
+
+
+def _why_other(seen: Sequence[float], wanted: Pose) -> str:
+    if not seen:
+        return 'fill in goal.position: MoveArm.Goal(position=…, speed=…)'
+    if joints.agree(
+        {str(i): each for i, each in enumerate(seen)},
+        {str(i): each for i, each in enumerate(reversed(wanted))},
+    ):
+        return 'the joints are swapped'
+    return 'put the positions of the pose into goal.position, as they are: in radians'
+
+
+def _refuse(word: str) -> NoReturn:
+    raise ValueError(f'expect_outcomes knows succeeded, rejected and aborted, not {word}')

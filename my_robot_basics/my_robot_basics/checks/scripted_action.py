@@ -1,0 +1,102 @@
+"""A server of an action that accepts, rejects and ends goals as the check tells it to."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+from rclpy.action import ActionServer, CancelResponse, GoalResponse
+from rclpy.action.server import ServerGoalHandle
+from rclpy.node import Node
+from rclpy.task import Future
+
+Ending = Literal['succeeded', 'aborted', 'canceled']
+
+
+@dataclass
+class ReceivedGoal:
+    """A goal that the server was sent."""
+
+    request: Any
+    """The goal's message."""
+    is_accepted: bool
+    end: Future = field(default_factory=Future)
+    """Set to how it is to end."""
+    cancels: int = 0
+    """How often it was asked to cancel it."""
+    received_ns: int = field(default_factory=time.time_ns)
+    """When it came: wall time in ns."""
+
+    def finish(self, ending: Ending) -> None:
+        """Let it end so."""
+        self.end.set_result(ending)
+
+
+class ScriptedActionServer:
+    """Serves as soon as `start` was called, on a node that somebody else spins."""
+
+    def __init__(self, node: Node, *, name: str, type_: type) -> None:
+        self.name, self.type = name, type_
+        self.goals: list[ReceivedGoal] = []
+        """All that it was sent, in order."""
+        self.is_expected: Callable[[Any], bool] = lambda _: False
+        """Whether a goal is the one that the check waits for; any other succeeds at once."""
+        self.accepts = True
+        """Whether it accepts that one."""
+        self.cancels = True
+        """Whether it accepts a request to cancel."""
+        self.starts = 0
+        """How often it was started."""
+        self._node = node
+        self._server: ActionServer | None = None
+        self._executed: list[ReceivedGoal] = []
+
+    def start(self) -> None:
+        """Serve."""
+        self._server = ActionServer(
+            self._node,
+            self.type,
+            self.name,
+            self._execute,
+            goal_callback=self._judge,
+            cancel_callback=self._cancel,
+            handle_accepted_callback=self._take,
+        )
+        self._handles: dict[bytes, ReceivedGoal] = {}
+        self.starts += 1
+
+    def stop(self) -> None:
+        """Be absent."""
+        if self._server is not None:
+            self._server.destroy()
+            self._server = None
+
+    def _judge(self, request: Any) -> GoalResponse:
+        is_expected = self.is_expected(request)
+        accepts = self.accepts or not is_expected
+        received = ReceivedGoal(request, accepts)
+        self.goals.append(received)
+        if not is_expected:
+            received.finish('succeeded')
+        if accepts:
+            self._executed.append(received)
+        return GoalResponse.ACCEPT if accepts else GoalResponse.REJECT
+
+    def _take(self, handle: ServerGoalHandle) -> None:
+        self._handles[bytes(handle.goal_id.uuid)] = self._executed.pop(0)
+        handle.execute()
+
+    async def _execute(self, handle: ServerGoalHandle) -> Any:
+        received = self._handles[bytes(handle.goal_id.uuid)]
+        ending = await received.end
+        if ending == 'succeeded':
+            handle.succeed()
+        elif ending == 'aborted':
+            handle.abort()
+        else:
+            handle.canceled()
+        return self.type.Result()  # type: ignore[attr-defined]
+
+    def _cancel(self, handle: ServerGoalHandle) -> CancelResponse:
+        self._handles[bytes(handle.goal_id.uuid)].cancels += 1
+        return CancelResponse.ACCEPT if self.cancels else CancelResponse.REJECT

@@ -1,0 +1,192 @@
+"""The check's own server of an action, and what a node makes of how its goals end."""
+
+from collections.abc import Callable
+from typing import Any
+
+from rclpy.publisher import Publisher
+from std_msgs.msg import Bool
+
+from my_robot_basics.checks.callbacks import Raised
+from my_robot_basics.checks.goal_senders import why_no_goal, why_silent
+from my_robot_basics.checks.recorder import Recorder
+from my_robot_basics.checks.scripted_action import ReceivedGoal, ScriptedActionServer
+from my_robot_basics.checks.services import answers_parameters
+from my_robot_basics.checks.topics import Topic
+from my_robot_basics.feedback.errors import expect, fail, shorten
+from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.graph.watcher import Watcher
+
+REPLY_SEC = 4.0
+"""How long to wait for a goal, a request to cancel or an outcome, of time that was free."""
+QUIET_SEC = 0.5
+"""How long to listen for what must not come."""
+AGAIN_SEC = 1.0
+"""Who has only just met the server may lose a goal: until one has arrived, the message that leads
+to it is published again so often."""
+MEET_SEC = 2.0
+
+
+class ServedAction(ScriptedActionServer):
+    """What `action_server` yields, while it lasts."""
+
+    def __init__(
+        self,
+        watcher: Watcher,
+        *,
+        name: str,
+        type_: type,
+        asked_on: str,
+        cancelled_on: str,
+        outcomes: Recorder,
+    ) -> None:
+        super().__init__(watcher.node, name=name, type_=type_)
+        self.asked_on, self.cancelled_on = asked_on, cancelled_on
+        self._watcher, self._outcomes = watcher, outcomes
+        self._raised = Raised(set(outcomes.publishers()))
+        self._publishers: dict[str, Publisher] = {}
+        self._known_starts = self._before = 0
+
+    def publish(self, message: Any) -> None:
+        """Publish a message that is to lead to a goal, without waiting for one."""
+        self._publish(self.asked_on, message)
+
+    def ask(
+        self, message: Any, *, is_it: Callable[[Any], bool], hint: Callable[[Any], str]
+    ) -> ReceivedGoal:
+        """Publish a message on `asked_on`; the goal that it leads to, for which `is_it` holds.
+
+        It is accepted if `accepts` is True. `hint(request)` says what is wrong with another one.
+        Raises CheckFailed where none comes in REPLY_SEC of time that was free, with the reason.
+        """
+        self.is_expected = is_it
+        self._meet_client()
+        before, self._before = len(self.goals), len(self._outcomes.received)
+
+        def found() -> list[ReceivedGoal]:
+            return [goal for goal in self.goals[before:] if is_it(goal.request)]
+
+        self.publish(message)
+        for _ in range(round(REPLY_SEC / AGAIN_SEC)):
+            if self._watcher.spin_until_free(lambda: bool(found()), free_sec=AGAIN_SEC):
+                self._known_starts = self.starts
+                self._let_client_know()
+                return found()[0]
+            if self._known_starts < self.starts and len(self.goals) == before:
+                self.publish(message)
+        others = self.goals[before:]
+        fail(
+            expected=f'a goal for {self.name} for the message on {self.asked_on}',
+            seen=shorten(others[-1].request) if others else f'none in {REPLY_SEC:g} s',
+            hint=hint(others[-1].request) if others else self._why_no_goal(),
+            cause=f'{self.name} is sent {"another goal" if others else "no goal"}',
+        )
+
+    def say_obstacle(self, is_there: bool) -> None:
+        """Publish on `cancelled_on`."""
+        self._before = len(self._outcomes.received)
+        self._publish(self.cancelled_on, Bool(data=is_there))
+
+    def expect_cancel_of(self, goal: ReceivedGoal) -> None:
+        """A request comes to cancel that goal for True on `cancelled_on`. Raises CheckFailed."""
+        self.say_obstacle(is_there=True)
+        for _ in range(round(REPLY_SEC / AGAIN_SEC)):
+            if self._watcher.spin_until_free(lambda: goal.cancels > 0, free_sec=AGAIN_SEC):
+                return
+            # it may have come before the client knew that its goal was accepted
+            self._publish(self.cancelled_on, Bool(data=True))
+        fail(
+            expected=f'a request to cancel the goal for True on {self.cancelled_on}',
+            seen=f'none in {REPLY_SEC:g} s',
+            hint=self._why_silent('call cancel_goal_async() of the goal handle that was accepted'),
+            cause='the goal is not cancelled',
+        )
+
+    def expect_no_cancel_of(self, goal: ReceivedGoal) -> None:
+        """No request comes to cancel it for a while. Raises CheckFailed."""
+        self._watcher.spin_until(lambda: goal.cancels > 0, timeout_sec=QUIET_SEC)
+        expect(
+            not goal.cancels,
+            expected=f'no request to cancel the goal for False on {self.cancelled_on}',
+            seen='one',
+            hint='look at message.data: only True asks to cancel',
+            cause='a goal is cancelled without an obstacle',
+        )
+
+    def expect_outcome(self, word: str, *, hint: Callable[[str], str]) -> None:
+        """That word comes on the topic of the outcomes. `hint(seen)` tells of another one.
+
+        Raises CheckFailed where it does not in REPLY_SEC of time that was free.
+        """
+
+        def new() -> list[str]:
+            return [message.data for message in self._outcomes.messages()[self._before :]]
+
+        if self._watcher.spin_until_free(lambda: word in new(), free_sec=REPLY_SEC):
+            self._raised.expect_none()
+            return
+        others = new()
+        topic_name = self._outcomes.topic_name
+        fail(
+            expected=f"'{word}' on {topic_name}",
+            seen=f"'{theirs(shorten(others[-1]))}'" if others else f'none in {REPLY_SEC:g} s',
+            hint=hint(others[-1]) if others else self._why_silent(hint('')),
+            cause=f'{"another" if others else "no"} outcome is published',
+        )
+
+    def forget_outcomes(self) -> None:
+        """What goals of earlier come to counts no more: wait for it, and expect others."""
+        self._watcher.spin_for(QUIET_SEC)
+        self._before = len(self._outcomes.received)
+
+    def expect_no_outcome(self, while_: str) -> None:
+        """Nothing comes there for a while, as `while_`, a clause, is so. Raises CheckFailed."""
+        before = self._before
+        self._watcher.spin_for(QUIET_SEC)
+        others = [message.data for message in self._outcomes.messages()[before:]]
+        expect(
+            not others,
+            expected=f'no outcome while {while_}',
+            seen=f"'{theirs(shorten(others[-1]))}'" if others else '',
+            hint='publish the outcome when the result is there: its status tells how it ended',
+            cause='an outcome is published too soon',
+        )
+        self._raised.expect_none()
+
+    def close(self) -> None:
+        """Let goals end that have not, and be gone."""
+        for goal in self.goals:
+            if not goal.end.done():
+                goal.finish('aborted')
+        self._watcher.spin_for(0.1)
+        self.stop()
+
+    def _publish(self, topic_name: str, message: Any) -> None:
+        if topic_name not in self._publishers:
+            self._publishers[topic_name] = Topic(topic_name).meet(self._watcher, type(message))
+        self._publishers[topic_name].publish(message)
+
+    def _meet_client(self) -> None:
+        """Wait for who sends goals: it meets the server at about the same time."""
+        if self._known_starts < self.starts:
+            node = self._watcher.node
+            self._watcher.spin_until(
+                lambda: node.count_clients(f'{self.name}/_action/send_goal') > 0,
+                timeout_sec=MEET_SEC,
+            )
+            self._watcher.spin_for(QUIET_SEC)
+
+    def _let_client_know(self) -> None:
+        """Wait until it has had turns enough to receive the answer to its goal."""
+        for name in {*self._outcomes.publishers()}:
+            answers_parameters(self._watcher, name)
+
+    def _why_no_goal(self) -> str:
+        return why_no_goal(
+            self._watcher, self.name, self.type, asked_on=self.asked_on, **self._who()
+        )
+
+    def _why_silent(self, hint: str) -> str:
+        return why_silent(self._watcher, hint, **self._who())
+
+    def _who(self) -> dict[str, Any]:
+        return {'node_names': self._outcomes.publishers(), 'raised': self._raised}

@@ -1,0 +1,389 @@
+"""A node that sends goals: right in whatever way, and told the cause where an outcome is wrong."""
+
+import collections
+import random
+import threading
+import time
+
+import pytest
+import rclpy
+from my_robot_basics.checks import CheckFailed, action_server, replies, served_action
+from nodes.running import imported, running
+from rclpy.action import ActionClient
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.executors import MultiThreadedExecutor
+
+from arm_interfaces.action import MoveArm
+from my_robot_basics import live
+
+MoveArmClient = imported('move_arm_client').MoveArmClient
+MoveArmServer = imported('move_arm_server').MoveArmServer
+WORDS = imported('move_arm_client').WORDS
+
+ENDS = {'asked_on': '/goal_pose', 'to': '/move_arm_client/outcome', 'cancelled_on': '/obstacle'}
+STOPS = []
+"""What ends the threads that nodes have made for themselves."""
+
+
+@pytest.fixture
+def run():
+    yield live.run
+    while STOPS:
+        STOPS.pop()()
+    live.stop()
+
+
+@pytest.fixture
+def impatient(monkeypatch):
+    """Wait for what does not come no longer than it takes to be sure."""
+    monkeypatch.setattr(served_action, 'REPLY_SEC', 2.0)
+
+
+def check_outcomes():
+    """What the grade cell `move_arm_client_outcomes` does."""
+    numbers = random.Random(3)
+    with action_server('/move_arm', MoveArm, **ENDS) as server:
+        replies.expect_outcomes(
+            server, succeeded=(1.2, -0.6), rejected=(1.8, 0.4), aborted=(-0.3, 0.9)
+        )
+    with action_server('/move_arm', MoveArm, **ENDS, starts=False) as server:
+        replies.expect_patience(server, *replies.choose(numbers, 2))
+        replies.expect_outcomes(server, **replies.choose_outcomes(numbers))
+
+
+def check_cancels():
+    """What the grade cell `move_arm_client_cancels` does."""
+    numbers = random.Random(4)
+    with action_server('/move_arm', MoveArm, **ENDS) as server:
+        replies.expect_no_cancel(server, (-0.3, 0.9))
+        replies.expect_cancel(server, (1.2, -0.6))
+        replies.expect_cancel_in_spite_of_a_second_goal(server, (0.4, 0.4), (0.8, -0.2))
+    with action_server('/move_arm', MoveArm, **ENDS) as server:
+        replies.expect_cancel(server, *replies.choose(numbers, 1))
+        replies.expect_refused_cancel(server, *replies.choose(numbers, 1))
+
+
+# --- right ones ----------------------------------------------------------------------------------
+
+
+class Lambdas(MoveArmClient):
+    """Publishes at once what is known, by lambdas."""
+
+    def answered(self, future):
+        handle = future.result()
+        if handle.accepted:
+            self.goal_handle = handle
+            result = handle.get_result_async()
+            result.add_done_callback(lambda done: self.tell(WORDS[done.result().status]))
+        else:
+            self.tell('rejected')
+
+
+class Awaits(MoveArmClient):
+    """One coroutine from the goal to its end, in a group that lets others run."""
+
+    def __init__(self):
+        self.group = ReentrantCallbackGroup()
+        super().__init__()
+
+    def create_subscription(self, *arguments, **options):
+        return super().create_subscription(*arguments, callback_group=self.group, **options)
+
+    async def send(self, pose):
+        handle = await self.client.send_goal_async(MoveArm.Goal(position=pose.position, speed=0.5))
+        if not handle.accepted:
+            return self.tell('rejected')
+        self.goal_handle = handle
+        response = await handle.get_result_async()
+        self.tell(WORDS[response.status])
+
+
+class Blocks(Awaits):
+    """Calls and waits, with threads enough."""
+
+    def __init__(self):
+        super().__init__()
+        executor = MultiThreadedExecutor(6, context=self.context)
+        executor.add_node(self)
+        STOPS.append(executor.shutdown)
+        threading.Thread(target=executor.spin, daemon=True).start()
+
+    def send(self, pose):
+        goal = MoveArm.Goal(position=pose.position, speed=0.5)
+        future = self.client.send_goal_async(goal)
+        if not self.has(future):
+            return
+        if not future.result().accepted:
+            self.tell('rejected')
+            return
+        self.goal_handle = future.result()
+        result = self.goal_handle.get_result_async()
+        if self.has(result):
+            self.tell(WORDS[result.result().status])
+
+    def has(self, future):
+        end = time.monotonic() + 20.0
+        while not future.done() and time.monotonic() < end and self.context.ok():
+            time.sleep(0.01)
+        return future.done()
+
+
+class WaitsForTheServer(MoveArmClient):
+    """Waits in the callback until there is one, and for no answer."""
+
+    def send(self, pose):
+        self.client.wait_for_server()
+        super().send(pose)
+
+
+class Queue(MoveArmClient):
+    """A timer that works off what arrived."""
+
+    def __init__(self):
+        super().__init__()
+        self.poses = collections.deque()
+        self.create_timer(0.05, self.look)
+
+    def send(self, pose):
+        self.poses.append(pose)
+
+    def look(self):
+        while self.poses and self.client.server_is_ready():
+            super().send(self.poses.popleft())
+
+
+class RepublishesFeedback(MoveArmClient):
+    def send(self, pose):
+        goal = MoveArm.Goal(position=pose.position, speed=0.5)
+        sent = self.client.send_goal_async(goal, feedback_callback=lambda _: None)
+        sent.add_done_callback(self.answered)
+
+
+RIGHT = [
+    MoveArmClient,
+    Lambdas,
+    Awaits,
+    Blocks,
+    WaitsForTheServer,
+    Queue,
+    RepublishesFeedback,
+]
+
+
+@pytest.mark.parametrize('node_class', RIGHT)
+def test_who_sends_right_passes_in_whatever_way(run, node_class):
+    run(node_class)
+    check_outcomes()
+    check_cancels()
+
+
+def test_a_program_of_its_own_passes():
+    with running('move_arm_client'):
+        check_outcomes()
+        check_cancels()
+
+
+# --- wrong outcomes ------------------------------------------------------------------------------
+
+
+class AlwaysSucceeded(MoveArmClient):
+    def ended(self, future):
+        self.goal_handle = None
+        self.tell('succeeded')
+
+
+class IgnoresRejection(MoveArmClient):
+    def answered(self, future):
+        if future.result().accepted:
+            super().answered(future)
+
+
+class AsksTheRejectedOne(MoveArmClient):
+    def answered(self, future):
+        future.result().get_result_async().add_done_callback(self.ended)
+
+    def ended(self, future):
+        self.tell(WORDS.get(future.result().status, 'aborted'))
+
+
+class TellsAtOnce(MoveArmClient):
+    def answered(self, future):
+        self.tell('succeeded' if future.result().accepted else 'rejected')
+        self.goal_handle = future.result()
+
+
+class Numbers(MoveArmClient):
+    def ended(self, future):
+        self.tell(str(future.result().status))
+
+
+class Capitals(MoveArmClient):
+    def tell(self, word):
+        super().tell(word.upper())
+
+
+class NoResult(MoveArmClient):
+    def answered(self, future):
+        if not future.result().accepted:
+            self.tell('rejected')
+
+
+class Degrees(MoveArmClient):
+    def send(self, pose):
+        pose.position = [57.29577951 * each for each in pose.position]
+        super().send(pose)
+
+
+class OtherSpeed(MoveArmClient):
+    def send(self, pose):
+        goal = MoveArm.Goal(position=pose.position, speed=1.0)
+        self.client.send_goal_async(goal).add_done_callback(self.answered)
+
+
+class Raises(MoveArmClient):
+    def ended(self, future):
+        self.tell(WORDS[future.result().status_of_the_goal])
+
+
+class SendsAndWaits(MoveArmClient):
+    def send(self, pose):
+        future = self.client.send_goal_async(MoveArm.Goal(position=pose.position, speed=0.5))
+        rclpy.spin_until_future_complete(self, future, timeout_sec=20.0)
+        self.answered(future)
+
+
+class Sleeps(MoveArmClient):
+    def send(self, pose):
+        future = self.client.send_goal_async(MoveArm.Goal(position=pose.position, speed=0.5))
+        is_over = threading.Event()
+        STOPS.append(is_over.set)
+        while not future.done() and not is_over.wait(0.05):
+            pass
+
+
+class OtherAction(MoveArmClient):
+    def __init__(self):
+        super().__init__()
+        self.client.destroy()
+        self.client = ActionClient(self, MoveArm, '/move_it')
+
+
+class NeverSends(MoveArmClient):
+    def send(self, pose):
+        pass
+
+
+IN_CALLBACK = 'it waits inside a callback, and no answer is delivered meanwhile: use send_goal_asy'
+WRONG_OUTCOMES = [
+    (
+        AlwaysSucceeded,
+        r"expected 'aborted' on .*saw 'succeeded': publish the outcome when the res",
+    ),
+    (
+        IgnoresRejection,
+        "expected 'rejected' on .*saw none.*: a goal that is not accepted has no r",
+    ),
+    (
+        AsksTheRejectedOne,
+        "expected 'rejected' on .*saw 'aborted': a goal that is not accepted has",
+    ),
+    (TellsAtOnce, "no outcome while the goal has not ended, saw 'succeeded': publish the outcome"),
+    (Numbers, "expected 'succeeded' on .*saw '4': publish the word for the status, not its num"),
+    (Capitals, "expected 'succeeded' on .*saw 'SUCCEEDED': write the word in lower case"),
+    (
+        NoResult,
+        "expected 'succeeded' on .*saw none.*: publish the outcome when the result is ther",
+    ),
+    (Degrees, 'put the positions of the pose into goal.position, as they are: in radians'),
+    (OtherSpeed, 'saw .*speed=1.0.*: give each goal the speed that the task names'),
+    (Raises, r"expected 'succeeded' on .*its callback raised AttributeError.*so fix that first"),
+    (SendsAndWaits, IN_CALLBACK),
+    (Sleeps, IN_CALLBACK),
+    (OtherAction, '/move_arm_client uses /move_it, so compare the spelling'),
+    (NeverSends, r'expected a goal .*saw none.*: call send_goal_async\(goal\) for each message'),
+]
+
+
+@pytest.mark.parametrize(('node_class', 'message'), WRONG_OUTCOMES)
+@pytest.mark.usefixtures('impatient')
+def test_a_wrong_outcome_is_named(run, node_class, message):
+    run(node_class)
+    with pytest.raises(CheckFailed, match=message):
+        check_outcomes()
+
+
+# --- wrong at obstacles --------------------------------------------------------------------------
+
+
+class CancelsForFalse(MoveArmClient):
+    def obstacle(self, message):
+        message.data = True
+        super().obstacle(message)
+
+
+class NeverCancels(MoveArmClient):
+    def obstacle(self, message):
+        pass
+
+
+class HasNoHandleYet(MoveArmClient):
+    def obstacle(self, message):
+        if message.data:
+            self.goal_handle.cancel_goal_async()
+
+
+class TellsBeforeTheServer(MoveArmClient):
+    def obstacle(self, message):
+        if message.data and self.goal_handle is not None:
+            self.goal_handle.cancel_goal_async()
+            self.tell('canceled')
+
+
+class KeepsTheRejectedOne(MoveArmClient):
+    def answered(self, future):
+        super().answered(future)
+        self.goal_handle = future.result()
+
+
+class WritesTwoLs(MoveArmClient):
+    def tell(self, word):
+        super().tell('cancelled' if word == 'canceled' else word)
+
+
+class BlindToObstacles(MoveArmClient):
+    def create_subscription(self, type_, name, *arguments):
+        name = '/obstacles' if name == '/obstacle' else name
+        return super().create_subscription(type_, name, *arguments)
+
+
+WRONG_CANCELS = [
+    (
+        CancelsForFalse,
+        'no request to cancel the goal for False .*: look at message.data: only Tru',
+    ),
+    (
+        NeverCancels,
+        r'expected a request to cancel .*saw none.*: call cancel_goal_async\(\) of the',
+    ),
+    (HasNoHandleYet, "AttributeError: 'NoneType' object has no attribute 'cancel_goal_async'"),
+    (TellsBeforeTheServer, "no outcome while the server has not said.*, saw 'canceled': publish"),
+    (KeepsTheRejectedOne, r'expected a request to cancel .*saw none'),
+    (WritesTwoLs, "expected 'canceled' on .*saw 'cancelled': write canceled with one l"),
+    (BlindToObstacles, '/move_arm_client uses /obstacles, so compare the spelling'),
+]
+
+
+@pytest.mark.parametrize(('node_class', 'message'), WRONG_CANCELS)
+@pytest.mark.usefixtures('impatient')
+def test_a_wrong_cancel_is_named_and_outcomes_are_right(run, node_class, message):
+    run(node_class)
+    check_outcomes()
+    with pytest.raises(CheckFailed, match=message):
+        check_cancels()
+
+
+def test_another_server_is_one_too_many(run):
+    run(MoveArmClient)
+    run(MoveArmServer)
+    with pytest.raises(CheckFailed, match='saw /move_arm_server: stop that node'):
+        check_outcomes()
