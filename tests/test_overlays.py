@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 from my_robot_basics.session import overlays
-from ros2_command import ros2
+from ros2_command import SCRIPT, own_domain, ros2, started
 
 ROOT = Path(__file__).parents[1]
 NAME = 'arm_interfaces'
@@ -278,3 +278,32 @@ def test_a_robots_own_packages_are_not_looked_at(built):
     (built.prefix / DEFINITION).unlink()
     assert ros2('topic', 'list', '--help', **built.variables()).err == ''
     assert list(overlays.faults(built.variables())) == []
+
+
+ASKER = f"""
+import rclpy
+from {NAME}.srv import SolveIK
+rclpy.init()
+node = rclpy.create_node('asker')
+publisher = node.create_publisher(SolveIK.Request, '/requests', 1)
+print('there', flush=True)
+rclpy.spin(node)
+"""
+
+
+@pytest.mark.starts
+def test_the_doctor_ends_with_the_sentence(built):
+    (built.prefix / f'lib/lib{NAME}__rosidl_generator_c.so').unlink()
+    with own_domain(), started(sys.executable, '-P', '-c', ASKER) as asker:
+        assert asker.stdout.readline() == 'there\n'
+        doctor = subprocess.run(
+            [SCRIPT.with_name('topic_doctor'), '/requests'],
+            env=built.variables() | {'ROS_DOMAIN_ID': os.environ['ROS_DOMAIN_ID']},
+            capture_output=True,
+            text=True,
+            timeout=PATIENCE_SEC,
+        )
+    sentence, last = doctor.stderr.splitlines()
+    assert (doctor.returncode, doctor.stdout) == (2, '')
+    assert 'is only half built' in sentence
+    assert last == f'{NAME}/srv/SolveIK_Request cannot be loaded, for the reason above'
