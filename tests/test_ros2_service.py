@@ -52,6 +52,13 @@ SHOWN = [
     ('list', lines(ECHO, *built_in('/my_ns/echo_server'))),
     ('list -t', TYPED),
     ('list -c', '8\n'),
+    ('list -t -c', '8\n'),
+    ('find std_srvs/SetBool', ''),
+    ('find -c not_a_service_type', '0\n'),
+    (
+        'type /my_ns/echo_server/get_type_description',
+        'type_description_interfaces/srv/GetTypeDescription\n',
+    ),
     ('find std_srvs/srv/SetBool', lines(ECHO)),
     ('find --include-hidden-services std_srvs/srv/SetBool', lines(HIDDEN, ECHO)),
     ('find -c std_srvs/srv/SetBool', '1\n'),
@@ -91,6 +98,29 @@ def test_a_call_shows_request_and_response(words, stdin, data):
     assert result.status == 0
 
 
+PARAMETER = (
+    '{name: a, value: {type: 3, integer_value: -1, double_value: 0.1, string_value: bazbar}}'
+)
+VALUE = (
+    'rcl_interfaces.msg.ParameterValue(type=3, bool_value=False, integer_value=-1, '
+    "double_value=0.1, string_value='bazbar', byte_array_value=[], bool_array_value=[], "
+    'integer_array_value=[], double_array_value=[], string_array_value=[])'
+)
+
+
+def test_a_call_takes_values_of_every_kind():
+    service = '/my_ns/echo_server/set_parameters', 'rcl_interfaces/srv/SetParameters'
+    result = ros2('service', 'call', *service, f'{{parameters: [{PARAMETER}]}}')
+    assert result.out.removeprefix(WAITING) == (
+        'requester: making request: rcl_interfaces.srv.SetParameters_Request(parameters='
+        f"[rcl_interfaces.msg.Parameter(name='a', value={VALUE})])\n\n"
+        'response:\nrcl_interfaces.srv.SetParameters_Response(results=['
+        'rcl_interfaces.msg.SetParametersResult(successful=False, '
+        "reason='Invalid access to undeclared parameter(s): []')])\n\n"
+    )
+    assert (result.err, result.status) == ('', 0)
+
+
 def test_a_repeated_call_goes_on_until_a_signal():
     call = 'service', 'call', '-r', '5', ECHO, 'std_srvs/srv/SetBool', '{data: true}'
     with started(SCRIPT, *call) as process:
@@ -116,6 +146,8 @@ INVALID = 'The passed service type is invalid'
 REFUSED = [
     ('type /not_a_service', '', 1),
     ('type /my_ns/_echo', '', 1),
+    ('type my_ns/echo', '', 1),
+    ('info my_ns/echo', "Unknown service 'my_ns/echo'\n", 1),
     ('info /not_a_service', "Unknown service '/not_a_service'\n", 1),
     ('info /my_ns/_echo', "Unknown service '/my_ns/_echo'\n", 1),
     ('call /x os/path', f'{INVALID}\n', 1),
@@ -124,6 +156,14 @@ REFUSED = [
     ('call /x std_msgs/msg/String', 'The passed type is not a service\n', 1),
     ('call /x std_srvs/SetBool [1]', 'Failed to populate field: '
      "Value '[1]' is expected to be a dictionary but is a list\n", 1),
+    ('call /x std_srvs/SetBool 3', 'Failed to populate field: '
+     "Value '3' is expected to be a dictionary but is a int\n", 1),
+    ('call /x a/b/c/d', f'{INVALID}\n', 1),
+    ('call /x std_srvs/SetBool -r -1', 'rate must be greater than zero\n', 1),
+    ('call /x std_srvs/SetBool {data:[}', 'The passed value is not YAML: '
+     'while parsing a flow node\n'
+     "expected the node content, but found '}'\n"
+     '  in "<unicode string>", line 1, column 8:\n    {data:[}\n           ^\n', 1),
     ('call /x std_srvs/SetBool {date:}', 'Failed to populate field: '
      "date: std_srvs/srv/SetBool_Request has no field 'date': did you mean data?\n", 1),
     ('call /x std_srvs/SetBool -r 0', 'rate must be greater than zero\n', 1),
