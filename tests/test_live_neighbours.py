@@ -1,10 +1,13 @@
 """Which nodes of this process are found, and that nothing else is touched on the way."""
 
+import subprocess
 import sys
 import threading
+import time
 
+import pytest
 import rclpy
-from my_robot_basics.session.neighbours import nodes_here
+from my_robot_basics.session.neighbours import Neighbours, nodes_here
 from rclpy.context import Context
 from rclpy.node import Node
 
@@ -49,3 +52,27 @@ def test_a_thread_that_builds_tuples_is_not_disturbed():
         builder.join()
         sys.setswitchinterval(interval)
     assert errors == []
+
+
+TALKER = """
+import time, rclpy
+rclpy.init()
+node = rclpy.create_node('talker')
+time.sleep(60)
+"""
+
+
+@pytest.mark.starts
+def test_who_was_killed_is_no_neighbour_any_more():
+    """It says nothing of its end, and is on the graph until its lease is over."""
+    neighbours = Neighbours()
+    neighbours.meet()
+    try:
+        with subprocess.Popen([sys.executable, '-c', TALKER]) as process:
+            while not neighbours._is_announced('/talker'):
+                assert process.poll() is None
+                time.sleep(0.01)
+            process.kill()
+        assert not neighbours.have('/talker')
+    finally:
+        neighbours.leave()
