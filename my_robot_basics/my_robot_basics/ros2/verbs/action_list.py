@@ -2,20 +2,13 @@
 
 import argparse
 
+from my_robot_basics.ros2 import names_and_types
 from my_robot_basics.ros2.graph import Graph
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
-    parser.add_argument(
-        '-t', '--show-types', action='store_true', help='Additionally show the action type'
-    )
-    parser.add_argument(
-        '-c',
-        '--count-actions',
-        action='store_true',
-        help='Only display the number of actions discovered',
-    )
+    names_and_types.add_list_options(parser, 'action')
 
 
 def main(args: argparse.Namespace) -> None:
@@ -23,8 +16,4 @@ def main(args: argparse.Namespace) -> None:
     with Graph(args) as graph:
         graph.settle()
         actions = graph.actions()
-    if args.count_actions:
-        print(len(actions))
-        return
-    for name, types in actions:
-        print(f'{name} [{", ".join(types)}]' if args.show_types else name)
+    names_and_types.print_list(actions, count=args.count, show_types=args.show_types)

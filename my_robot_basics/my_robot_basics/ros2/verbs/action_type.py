@@ -2,7 +2,7 @@
 
 import argparse
 
-from my_robot_basics.ros2 import completion
+from my_robot_basics.ros2 import completion, names_and_types
 from my_robot_basics.ros2.graph import Graph
 
 
@@ -20,8 +20,5 @@ def main(args: argparse.Namespace) -> int:
     """Run the verb."""
     with Graph(args) as graph:
         graph.settle()
-        actions = dict(graph.actions())
-    if args.action_name not in actions:
-        return 1
-    print(*actions[args.action_name], sep='\n')
-    return 0
+        actions = graph.actions()
+    return names_and_types.print_types(actions, args.action_name)

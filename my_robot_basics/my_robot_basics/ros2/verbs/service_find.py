@@ -2,7 +2,7 @@
 
 import argparse
 
-from my_robot_basics.ros2 import arguments, completion
+from my_robot_basics.ros2 import arguments, completion, names_and_types
 from my_robot_basics.ros2.graph import Graph
 
 
@@ -16,12 +16,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         ),
         completion.service_types,
     )
-    parser.add_argument(
-        '-c',
-        '--count-services',
-        action='store_true',
-        help='Only display the number of services discovered',
-    )
+    names_and_types.add_count(parser, 'service')
     arguments.add_hidden_services(parser)
 
 
@@ -30,9 +25,4 @@ def main(args: argparse.Namespace) -> None:
     with Graph(args) as graph:
         graph.settle()
         services = graph.services(include_hidden=args.include_hidden_services)
-    found = [name for name, types in services if args.service_type in types]
-    if args.count_services:
-        print(len(found))
-    else:
-        for name in found:
-            print(name)
+    names_and_types.print_with_type(services, args.service_type, count=args.count)

@@ -2,7 +2,7 @@
 
 import argparse
 
-from my_robot_basics.ros2 import completion
+from my_robot_basics.ros2 import completion, names_and_types
 from my_robot_basics.ros2.graph import Graph
 
 
@@ -21,8 +21,5 @@ def main(args: argparse.Namespace) -> int:
     """Run the verb."""
     with Graph(args) as graph:
         graph.settle()
-        services = dict(graph.services(include_hidden=args.include_hidden_services))
-    if args.service_name not in services:
-        return 1
-    print(*services[args.service_name], sep='\n')
-    return 0
+        services = graph.services(include_hidden=args.include_hidden_services)
+    return names_and_types.print_types(services, args.service_name)

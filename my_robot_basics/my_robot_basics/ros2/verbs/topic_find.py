@@ -2,7 +2,7 @@
 
 import argparse
 
-from my_robot_basics.ros2 import arguments, completion
+from my_robot_basics.ros2 import arguments, completion, names_and_types
 from my_robot_basics.ros2.graph import Graph
 
 
@@ -16,12 +16,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         ),
         completion.message_types,
     )
-    parser.add_argument(
-        '-c',
-        '--count-topics',
-        action='store_true',
-        help='Only display the number of topics discovered',
-    )
+    names_and_types.add_count(parser, 'topic')
     arguments.add_hidden_topics(parser)
 
 
@@ -30,9 +25,4 @@ def main(args: argparse.Namespace) -> None:
     with Graph(args) as graph:
         graph.settle()
         topics = graph.topics(include_hidden=args.include_hidden_topics)
-    found = [name for name, types in topics if args.topic_type in types]
-    if args.count_topics:
-        print(len(found))
-    else:
-        for name in found:
-            print(name)
+    names_and_types.print_with_type(topics, args.topic_type, count=args.count)

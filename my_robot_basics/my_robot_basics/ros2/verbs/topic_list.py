@@ -3,22 +3,14 @@
 import argparse
 from collections.abc import Callable
 
-from my_robot_basics.ros2 import arguments
+from my_robot_basics.ros2 import arguments, names_and_types
 from my_robot_basics.ros2.graph import Graph
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
     arguments.add_discovery(parser)
-    parser.add_argument(
-        '-t', '--show-types', action='store_true', help='Additionally show the topic type'
-    )
-    parser.add_argument(
-        '-c',
-        '--count-topics',
-        action='store_true',
-        help='Only display the number of topics discovered',
-    )
+    names_and_types.add_list_options(parser, 'topic')
     arguments.add_hidden_topics(parser)
     parser.add_argument(
         '-v', '--verbose', action='store_true', help='List full details about each topic'
@@ -30,14 +22,11 @@ def main(args: argparse.Namespace) -> None:
     with Graph(args) as graph:
         graph.settle()
         topics = graph.topics(include_hidden=args.include_hidden_topics)
-        if args.count_topics:
-            print(len(topics))
-        elif args.verbose and topics:
+        if args.verbose and topics and not args.count:
             _print_ends('Published', 'publisher', topics, graph.node.count_publishers)
             _print_ends('Subscribed', 'subscriber', topics, graph.node.count_subscribers)
         else:
-            for name, types in topics:
-                print(f'{name} [{", ".join(types)}]' if args.show_types else name)
+            names_and_types.print_list(topics, count=args.count, show_types=args.show_types)
 
 
 def _print_ends(

@@ -2,7 +2,7 @@
 
 import argparse
 
-from my_robot_basics.ros2 import arguments, completion
+from my_robot_basics.ros2 import arguments, completion, names_and_types
 from my_robot_basics.ros2.graph import Graph
 
 
@@ -21,8 +21,5 @@ def main(args: argparse.Namespace) -> int:
     """Run the verb."""
     with Graph(args) as graph:
         graph.settle()
-        topics = dict(graph.topics(include_hidden=args.include_hidden_topics))
-    if args.topic_name not in topics:
-        return 1
-    print(*topics[args.topic_name], sep='\n')
-    return 0
+        topics = graph.topics(include_hidden=args.include_hidden_topics)
+    return names_and_types.print_types(topics, args.topic_name)
