@@ -1,13 +1,10 @@
 """The sockets between the grader and one kernel."""
 
-import asyncio
-import contextlib
-import queue
-from pathlib import Path
 from typing import cast
 
 import zmq.asyncio
 from jupyter_client import AsyncKernelClient, AsyncKernelManager
+from my_robot_basics.validate.connecting import wait_for_sockets, wait_for_welcome
 from my_robot_basics.validate.limits import MAX_MESSAGE_BYTES, MAX_MESSAGES_WAITING
 from my_robot_basics.validate.messages import Messages, unpacked
 
@@ -29,24 +26,21 @@ class KernelConnection:
     async def connect(self, manager: AsyncKernelManager) -> None:
         """Wait until the kernel's sockets are there, and until it knows that we listen.
 
-        jupyter_client's wait_for_ready asks and flushes by fractions of a second; a kernel says
-        itself when it has taken a subscription, and what it is sent earlier waits in its queue.
         Raises RoomFailure where its process ends instead.
         """
-        while not Path(f'{manager.ip}-{manager.iopub_port}').exists():
-            await _expect_alive(manager)
-            await asyncio.sleep(0.01)
+
+        async def expect_alive() -> None:
+            if not await manager.is_alive():
+                raise RoomFailure('its process ended')
+
+        await wait_for_sockets(manager, expect_alive)
         self._client = client = manager.client(context=self.context)
         client.session.unpack = unpacked
         client.start_channels(hb=False)
         self._messages = Messages(client)
         for channel in (client.iopub_channel, client.shell_channel):
             self._monitors.append(channel.socket.get_monitor_socket(zmq.EVENT_DISCONNECTED))
-        kind = None
-        while kind != 'iopub_welcome':
-            await _expect_alive(manager)
-            with contextlib.suppress(queue.Empty):
-                kind = (await client.get_iopub_msg(timeout=0.5))['msg_type']
+        await wait_for_welcome(client, expect_alive)
 
     @property
     def client(self) -> AsyncKernelClient:
@@ -73,8 +67,3 @@ class KernelConnection:
         if self._client is not None:
             self._client.stop_channels()
         self.context.destroy(linger=0)
-
-
-async def _expect_alive(manager: AsyncKernelManager) -> None:
-    if not await manager.is_alive():
-        raise RoomFailure('its process ended')

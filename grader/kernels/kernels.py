@@ -84,15 +84,8 @@ class GradingKernel:
             result.died = True
             return result
         connection = self._connection
-        request = connection.client.execute(
-            code,
-            store_history=False,
-            user_expressions=expressions,
-            allow_stdin=on_input is not None,
-            stop_on_error=False,
-        )
-        done = asyncio.ensure_future(connection.messages.follow(request, result, on_input))
-        try:
+        cell = connection.messages.run(code, result, on_input=on_input, expressions=expressions)
+        async with cell as done:
             result.timed_out = not await finished(
                 done,
                 timeout_sec,
@@ -109,10 +102,6 @@ class GradingKernel:
                 if not await finished_in_grace(done, self._is_alive):
                     self._ended_by_us = self.alive
                     await self._kill()
-        finally:
-            done.cancel()
-            with contextlib.suppress(asyncio.CancelledError):
-                await done
         result.died = not self.alive
         result.close()
         return result

@@ -2,7 +2,7 @@
 
 import asyncio
 import shutil
-from collections.abc import Awaitable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from my_robot_basics.session.domain import Claim, claim
@@ -16,6 +16,7 @@ from my_robot_basics.validate.questions import (
     as_expression,
     reply_of,
 )
+from my_robot_basics.validate.together import together
 
 from grader.common.errors import RoomFailure
 from grader.kernels.kernel_exits import Doing, signal_name, whose_memory
@@ -55,7 +56,7 @@ class GradingRooms:
         """Start both kernels, and see a message cross from one to the other."""
         try:
             await self._open()
-            await _together(self._prepare_student(), self._prepare_test())
+            await together(self._prepare_student(), self._prepare_test())
             files = str(self._student.place.inside / 'given' / 'files')
             await self._prepare(self._student, STUDENT_GOES.format(files=files))
         except BaseException as error:
@@ -175,14 +176,3 @@ class GradingRooms:
         if not run.ran_to_end:
             seen = run.error.evalue if run.error else 'it did not end'
             raise RoomFailure(f'the {kernel.room} room could not be made ready: {seen}')
-
-
-async def _together(*work: Awaitable[None]) -> None:
-    """Wait for all of it; when some fails the rest is called off: nothing goes on alone."""
-    tasks = [asyncio.ensure_future(each) for each in work]
-    try:
-        await asyncio.gather(*tasks)
-    finally:
-        for task in tasks:
-            task.cancel()
-        await asyncio.gather(*tasks, return_exceptions=True)

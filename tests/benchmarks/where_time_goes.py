@@ -19,12 +19,14 @@ import nbformat
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / 'tests')]
 
+from my_robot_basics.validate import judging
 from sample_class import PATHS, assignment_of
 
 from grader.course import Course
 from grader.judging import execute
 from grader.kernels import fork_client, fork_servers
 from grader.kernels.isolation import require_isolation
+from grader.kernels.kernel_connection import KernelConnection
 from grader.kernels.kernels import GradingKernel
 from grader.kernels.provisioner import SandboxProvisioner
 from grader.kernels.rooms import GradingRooms
@@ -44,13 +46,13 @@ WATCHED = {
     'build the room': (fork_client, '_built'),
     'fork the kernel': (fork_client, '_forked'),
     'IPython starts': (SandboxProvisioner, 'post_launch'),
-    'connect to it': (GradingKernel, '_connect'),
+    'connect to it': (KernelConnection, 'connect'),
     'student cells': (GradingRooms, 'run_student_cell'),
     'checks': (GradingRooms, 'run_check'),
     'end it all': (GradingRooms, '__aexit__'),
     'start a kernel': (GradingKernel, 'start'),
     'open the rooms': (GradingRooms, '__aenter__'),
-    'all of it': (execute, '_try_plans'),
+    'all of it': (judging, '_try_plans'),
 }
 """Parts, and what is timed. The last three hold others in them."""
 PAIRED = ('build the room', 'fork the kernel', 'IPython starts', 'connect to it', 'start a kernel')

@@ -4,7 +4,6 @@ import asyncio
 import contextlib
 import math
 import os
-import queue
 import signal
 from pathlib import Path
 
@@ -12,6 +11,7 @@ import psutil
 from jupyter_client import AsyncKernelClient, AsyncKernelManager
 
 from my_robot_basics.session.pressure import Stopwatch
+from my_robot_basics.validate.connecting import wait_for_sockets, wait_for_welcome
 from my_robot_basics.validate.errors import RoomFailure
 from my_robot_basics.validate.forks import ForkedKernel, ForkServer
 from my_robot_basics.validate.messages import Messages, OnInput
@@ -71,22 +71,14 @@ class LocalKernel:
         if not self.alive:
             result.died = True
             return result
-        assert self._client is not None  # it is alive
         busy_sec = self._forked.busy_sec()
 
         def is_enough() -> bool:
             free_for_sec = max(watch.free_sec(), self._forked.busy_sec() - busy_sec)
             return result.flooded or free_for_sec >= free_sec
 
-        request = self._client.execute(
-            code,
-            store_history=False,
-            user_expressions=expressions,
-            allow_stdin=on_input is not None,
-            stop_on_error=False,
-        )
-        done = asyncio.ensure_future(self._messages.follow(request, result, on_input))
-        try:
+        cell = self._messages.run(code, result, on_input=on_input, expressions=expressions)
+        async with cell as done:
             result.timed_out = not await finished(done, timeout_sec, self._is_alive, is_enough)
             if result.timed_out and not result.flooded and free_sec < math.inf:
                 result.cut_after_sec = watch.wall_sec()
@@ -94,10 +86,6 @@ class LocalKernel:
                 self._forked.interrupt()
                 if not await finished_in_grace(done, self._is_alive):
                     await self._kill()
-        finally:
-            done.cancel()
-            with contextlib.suppress(asyncio.CancelledError):
-                await done
         result.died = not self.alive
         result.close()
         return result
@@ -120,18 +108,11 @@ class LocalKernel:
         return self._process
 
     async def _connect(self) -> None:
-        """Wait until the kernel says that it has taken our subscription to its outputs."""
-        while not Path(f'{self._manager.ip}-{self._manager.iopub_port}').exists():
-            self._expect_alive()
-            await asyncio.sleep(0.01)
+        await wait_for_sockets(self._manager, self._expect_alive)
         self._client = client = self._manager.client()
         client.start_channels(hb=False)
         self._messages = Messages(client)
-        kind = None
-        while kind != 'iopub_welcome':
-            self._expect_alive()
-            with contextlib.suppress(queue.Empty):
-                kind = (await client.get_iopub_msg(timeout=0.5))['msg_type']
+        await wait_for_welcome(client, self._expect_alive)
 
     async def _kill(self) -> None:
         """Kill the kernel, and what left its process group but kept its environment."""
@@ -144,7 +125,7 @@ class LocalKernel:
                 if process.environ().get('IPYTHONDIR') == self._environment['IPYTHONDIR']:
                     process.send_signal(signal.SIGKILL)
 
-    def _expect_alive(self) -> None:
+    async def _expect_alive(self) -> None:
         if not self._forked.alive:
             raise RoomFailure('a kernel did not start: its process ended')
 

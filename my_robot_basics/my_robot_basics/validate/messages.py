@@ -1,8 +1,9 @@
 """What a kernel says while it runs a cell, on three channels at once."""
 
 import asyncio
+import contextlib
 import json
-from collections.abc import Awaitable, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable
 
 import zmq
 from jupyter_client import AsyncKernelClient
@@ -24,6 +25,34 @@ class Messages:
         """Read from a client whose channels are open."""
         self._client = client
         self._displays = Displays()
+
+    @contextlib.asynccontextmanager
+    async def run(
+        self,
+        code: str,
+        result: CellRun,
+        *,
+        on_input: OnInput | None = None,
+        expressions: dict[str, str] | None = None,
+    ) -> AsyncIterator[asyncio.Future]:
+        """Let the kernel run a cell; what this gives is done when the cell is. Nobody waits on.
+
+        Afterwards nothing is read for that cell any more.
+        """
+        request = self._client.execute(
+            code,
+            store_history=False,
+            user_expressions=expressions,
+            allow_stdin=on_input is not None,
+            stop_on_error=False,
+        )
+        done = asyncio.ensure_future(self.follow(request, result, on_input))
+        try:
+            yield done
+        finally:
+            done.cancel()
+            with contextlib.suppress(asyncio.CancelledError):
+                await done
 
     async def follow(self, request: str, result: CellRun, on_input: OnInput | None) -> None:
         """Gather a cell's outputs until the kernel has replied and is idle again."""
