@@ -40,6 +40,33 @@ def test_lines_are_cut_by_columns(text, width, shown):
     assert columns(pad(shown, 10)) == 10
 
 
+@pytest.mark.parametrize(
+    ('text', 'width'),
+    [
+        ('Zoë', 3),
+        ('Zoe\u0308', 3),
+        ('王小明', 6),
+        ('नमस्ते', 4),
+        ('ไทย', 3),
+        ('👩\u200d🔬', 2),
+        ('👍🏽', 2),
+        ('❤\ufe0f', 2),
+        ('a\x07b', 2),
+    ],
+)
+def test_a_line_has_the_columns_that_a_terminal_gives_it(text, width):
+    assert columns(text) == width
+
+
+@pytest.mark.parametrize(
+    ('text', 'width', 'shown'),
+    [('👩\u200d🔬👩\u200d🔬', 3, '👩\u200d🔬…'), ('नमस्ते', 3, 'नम…'), ('❤\ufe0fab', 3, '❤\ufe0f…')],
+)
+def test_a_line_is_cut_between_characters_that_a_reader_sees(text, width, shown):
+    assert shorten(text, width) == shown
+    assert columns(shown) <= width
+
+
 HONEST = [
     '王小明', 'Ångström', 'محمد علي', 'دانش‌آموز', 'नमस्ते', 'क्‍ष', 'Zoë',
     '葛\U000e0100飾', '🤖', '👩\u200d🔬', '👍🏽', '❤\ufe0f', '3\ufe0f\u20e3', 'θ1 = 23.4°', 'ﷺ',

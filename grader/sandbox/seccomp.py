@@ -3,10 +3,7 @@
 What is unknown here ends with ENOSYS, as on a Linux too old to have it, so that the C library and
 Python take another way. Some that are allowed are looked at more closely, by their arguments.
 
-libseccomp would write such a program, too. But pyseccomp, its binding on PyPI, had its last
-release in 2021, and Debian's is for Debian's own Python alone; both want the C library, which
-a process that is not root can't install. The program is short, for one kind of machine, and
-`tests/test_seccomp.py` runs it instruction by instruction.
+docs/decisions.md says why libseccomp does not write it.
 """
 
 import struct

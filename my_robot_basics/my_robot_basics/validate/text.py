@@ -3,6 +3,9 @@
 import re
 import unicodedata
 
+from wcwidth import iter_graphemes
+from wcwidth import width as width_of
+
 _JOINERS = '\u200c\u200d'
 """Not printable, and part of how some alphabets and some emoji are spelled."""
 _SELECTORS = '\u180b-\u180d\u180f\ufe00-\ufe0f\U000e0100-\U000e01ef'
@@ -51,20 +54,21 @@ def _joins(character: str) -> bool:
 
 
 def shorten(text: str, width: int) -> str:
-    """Return at most `width` columns of a line, an ellipsis where something was cut."""
+    """Return at most `width` columns of a line, an ellipsis where something was cut.
+
+    It is cut between what a reader takes for characters: an emoji of several stays whole.
+    """
     if columns(text) <= width:
         return text
-    taken = 0
-    for index, character in enumerate(text):
-        taken += columns(character)
+    kept, taken = '', 0
+    for grapheme in iter_graphemes(text):
+        taken += columns(grapheme)
         if taken >= width:
-            return text[:index] + '…'
-    raise AssertionError('a line that is too wide is wider than that somewhere')
+            break
+        kept += grapheme
+    return kept + '…'
 
 
 def columns(text: str) -> int:
-    """Return how many columns of a terminal a line takes: ideographs take two."""
-    return sum(
-        0 if unicodedata.combining(c) else 2 if unicodedata.east_asian_width(c) in 'WF' else 1
-        for c in text
-    )
+    """Return how many columns of a terminal a line takes; controls take none."""
+    return width_of(text, control_codes='ignore')
