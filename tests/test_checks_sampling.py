@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import pytest
-from my_robot_basics.checks import CheckFailed, topic, topic_ends, topics, wall_recording
+from my_robot_basics.checks import CheckFailed, topic, topic_endpoints, topics, wall_recording
 from my_robot_basics.checks import recording as recording_module
 from my_robot_basics.checks.clock import SimulatedClock
 from my_robot_basics.checks.recording import Recording, Sample
@@ -58,7 +58,7 @@ def test_on_a_busy_machine_the_clock_is_driven_for_a_shorter_time(monkeypatch):
 def test_the_first_look_stands_when_the_node_has_gone(monkeypatch):
     with running('too_slow'):
         recording = topic(TOPIC).record(seconds=10.0)
-    monkeypatch.setattr(topic_ends, 'PUBLISHER_SEC', 1.0)
+    monkeypatch.setattr(topic_endpoints, 'PUBLISHER_SEC', 1.0)
     with pytest.raises(CheckFailed, match=r'saw 4\.(75|8) Hz over 10 s \(47 messages\)'):
         recording.assert_rate(hz=5.0)
 

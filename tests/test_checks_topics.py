@@ -11,7 +11,7 @@ from functools import partial
 import pytest
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import Point
-from my_robot_basics.checks import CheckFailed, graph, student, topic, topic_ends
+from my_robot_basics.checks import CheckFailed, graph, student, topic, topic_endpoints
 from my_robot_basics.exchange import settled
 from nodes.running import imported, running
 from rclpy.node import Node
@@ -122,7 +122,7 @@ def test_stamps_of_a_node_that_ignores_the_clock_are_on_the_wall_clock(run):
     ],
 )
 def test_silence_is_explained(monkeypatch, capfd, node, reason):
-    monkeypatch.setattr(topic_ends, 'PUBLISHER_SEC', 3.0)
+    monkeypatch.setattr(topic_endpoints, 'PUBLISHER_SEC', 3.0)
     with running(node), pytest.raises(CheckFailed, match=reason):
         topic(TOPIC).record()
     assert capfd.readouterr().err == ''
@@ -152,7 +152,7 @@ def test_bytes_that_are_no_message_are_silence():
 
 
 def test_no_node_at_all_is_said(monkeypatch):
-    monkeypatch.setattr(topic_ends, 'PUBLISHER_SEC', 0.5)
+    monkeypatch.setattr(topic_endpoints, 'PUBLISHER_SEC', 0.5)
     with pytest.raises(CheckFailed, match=r'saw none: the node is not running'):
         topic(TOPIC).record()
 
@@ -325,7 +325,7 @@ def test_the_watcher_can_not_be_reached(run):
 
 
 def test_nobody_waits_long_for_what_the_notebook_says_it_has_not_got(run, monkeypatch):
-    monkeypatch.setattr(topic_ends, 'ABSENT_SEC', 0.6)
+    monkeypatch.setattr(topic_endpoints, 'ABSENT_SEC', 0.6)
     run(Node, 'idle').create_publisher(JointState, '/elsewhere', 10)
     assert student.has_endpoint('/elsewhere')
     assert not student.has_endpoint(TOPIC)
@@ -334,8 +334,8 @@ def test_nobody_waits_long_for_what_the_notebook_says_it_has_not_got(run, monkey
 
 
 def test_what_cannot_come_any_more_is_not_waited_for(run, monkeypatch):
-    monkeypatch.setattr(topic_ends, 'ABSENT_SEC', 20.0)
-    monkeypatch.setattr(topic_ends, 'PUBLISHER_SEC', 20.0)
+    monkeypatch.setattr(topic_endpoints, 'ABSENT_SEC', 20.0)
+    monkeypatch.setattr(topic_endpoints, 'PUBLISHER_SEC', 20.0)
     for may_come in '_threads', '_processes', '_tasks', '_alarm':  # those of pytest
         monkeypatch.setattr(settled, may_come, lambda: False)
     run(Node, 'idle').create_subscription(JointState, TOPIC, print, 10)

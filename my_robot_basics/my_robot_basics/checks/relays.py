@@ -8,13 +8,13 @@ from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.serialization import serialize_message
 
-from my_robot_basics.checks import relay_ends
+from my_robot_basics.checks import relay_endpoints
 from my_robot_basics.checks.callbacks import Raised
 from my_robot_basics.checks.carried import Carried
 from my_robot_basics.checks.latched import said_to_nobody
 from my_robot_basics.checks.passage import QUIET_SEC, Passage
 from my_robot_basics.checks.recorder import Recorder
-from my_robot_basics.checks.relay_ends import Ends
+from my_robot_basics.checks.relay_endpoints import RelayEndpoints
 from my_robot_basics.checks.variety import filled, varied
 from my_robot_basics.feedback.errors import fail
 from my_robot_basics.graph.watcher import Watcher
@@ -60,12 +60,12 @@ class Relay:
         """
         make_message = filled(make_message)
         with Watcher() as watcher:
-            ends = Ends(self.source, self.to)
+            endpoints = RelayEndpoints(self.source, self.to)
             first = make_message()
-            recorder = ends.listen(watcher, type(first))
+            recorder = endpoints.listen(watcher, type(first))
             raised = Raised(recorder.publishers())
-            publisher = ends.publish_to_node(watcher, type(first), qos_profile)
-            ends.expect_one_profile(watcher)
+            publisher = endpoints.publish_to_node(watcher, type(first), qos_profile)
+            endpoints.expect_one_profile(watcher)
             self._expect_out(watcher, recorder, first, raised, again=publisher)
             watcher.spin_for(QUIET_SEC)
             self._expect_passage(watcher, recorder, publisher, make_message, raised)
@@ -79,13 +79,13 @@ class Relay:
         """
         make_message = filled(make_message)
         with Watcher() as watcher:
-            ends = Ends(self.source, self.to)
+            endpoints = RelayEndpoints(self.source, self.to)
             message_type = type(make_message())
-            recorder = ends.listen(watcher, message_type)
+            recorder = endpoints.listen(watcher, message_type)
             raised = Raised(recorder.publishers())
-            ends.expect_transient_local(watcher)
-            ends.expect_type(watcher, message_type)
-            ends.expect_one_profile(watcher)
+            endpoints.expect_transient_local(watcher)
+            endpoints.expect_type(watcher, message_type)
+            endpoints.expect_one_profile(watcher)
             for number in range(times):
                 with said_to_nobody(self.source, make_message) as (message, publisher):
                     self._expect_out(watcher, recorder, message, raised)
@@ -110,7 +110,7 @@ class Relay:
         source_recorder = Recorder(
             watcher, topic_name=self.source, type_=recorder.type, qos_profile=EVERYTHING
         )
-        watcher.spin_until(source_recorder.is_connected, timeout_sec=relay_ends.TIMEOUT_SEC)
+        watcher.spin_until(source_recorder.is_connected, timeout_sec=relay_endpoints.TIMEOUT_SEC)
         watcher.spin_for(QUIET_SEC)
         passage = Passage(watcher, recorder, publish=publisher.publish, what=self._what)
         messages = varied(make_message)
@@ -155,7 +155,7 @@ class Relay:
     ) -> None:
         """Wait for the message on `to`; publish it `again` and again meanwhile."""
         before = len(recorder.messages())
-        for times in range(1, round(relay_ends.TIMEOUT_SEC / AGAIN_SEC) + 1):
+        for times in range(1, round(relay_endpoints.TIMEOUT_SEC / AGAIN_SEC) + 1):
             if again is not None:
                 again.publish(message)
             if watcher.spin_until(
@@ -170,7 +170,7 @@ class Relay:
         fail(
             expected=f'a message from {self.source} to be republished on {self.to}, unchanged',
             seen=f'{"only others" if has_others else "none"} in {times * AGAIN_SEC:g} s',
-            hint=Ends(self.source, self.to).why_lost(
+            hint=RelayEndpoints(self.source, self.to).why_lost(
                 watcher, is_latched=again is None, has_others=has_others
             )
             + self._what_differs(others, message),

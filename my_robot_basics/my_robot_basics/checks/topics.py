@@ -11,7 +11,7 @@ from my_robot_basics.checks import sampling, wall_recording
 from my_robot_basics.checks.clock_use import are_left_alone
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.recording import Recording
-from my_robot_basics.checks.topic_ends import ACQUAINTANCE_SEC, TopicEnds
+from my_robot_basics.checks.topic_endpoints import ACQUAINTANCE_SEC, TopicEndpoints
 from my_robot_basics.exchange import student
 from my_robot_basics.feedback.errors import CheckFailed, Disturbed, expect, fail, shorten
 from my_robot_basics.graph.raised import what_raised
@@ -41,7 +41,7 @@ def topic(name: str) -> 'Topic':
     return Topic(name)
 
 
-class Topic(TopicEnds):
+class Topic(TopicEndpoints):
     """What a check may do with one topic; each call is a ROS node of its own while it lasts."""
 
     def record(self, seconds: float = 10.0, step_sec: float = 0.1) -> Recording:

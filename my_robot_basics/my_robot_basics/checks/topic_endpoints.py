@@ -1,5 +1,7 @@
 """The two ends of a topic: meet the notebook's subscription, or listen to its publisher."""
 
+from collections.abc import Callable
+
 from rclpy.publisher import Publisher
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
@@ -8,6 +10,7 @@ from my_robot_basics.exchange import student, values
 from my_robot_basics.feedback.errors import fail
 from my_robot_basics.feedback.hidden import theirs
 from my_robot_basics.graph import graphs
+from my_robot_basics.graph.snapshot import GraphSnapshot
 from my_robot_basics.graph.watcher import Watcher
 
 PUBLISHER_SEC = 10.0
@@ -19,7 +22,7 @@ ACQUAINTANCE_SEC = 0.5
 """How long a BEST_EFFORT subscription is given to meet the publisher, and to read what it sent."""
 
 
-class TopicEnds:
+class TopicEndpoints:
     """One topic, and the endpoints that a check makes on it."""
 
     def __init__(self, name: str) -> None:
@@ -50,17 +53,20 @@ class TopicEnds:
         infos = graphs.subscription_infos(watcher.node, self.name)
         return any(info.qos_profile.reliability == ReliabilityPolicy.BEST_EFFORT for info in infos)
 
-    def listen(self, watcher: Watcher) -> Recorder:
+    def listen(
+        self, watcher: Watcher, *, take: Callable[[Watcher], GraphSnapshot] = graphs.take
+    ) -> Recorder:
         """Subscribe with the publishers' own type and QoS; wait for them first.
 
-        Raises CheckFailed when there is no publisher, or no one type.
+        `take` gives the graph where a missing publisher is looked for. Raises CheckFailed when
+        there is no publisher, or no one type.
         """
         timeout_sec = self.timeout_for(watcher, PUBLISHER_SEC, end='publishers')
         if not graphs.wait_for_publisher(watcher, self.name, timeout_sec=timeout_sec):
             fail(
                 expected=f'a publisher on {self.name}',
                 seen=graphs.none_in(timeout_sec),
-                hint=graphs.take(watcher).why_no_message(self.name),
+                hint=take(watcher).why_no_message(self.name),
             )
         message_type = self._message_type(watcher)
         offers = graphs.publisher_infos(watcher.node, self.name)

@@ -31,7 +31,7 @@ SECOND_SEC = 0.1
 
 
 @dataclass(frozen=True)
-class Ends:
+class RelayEndpoints:
     """What a relay subscribes to, and what it publishes on."""
 
     source: str
@@ -39,15 +39,7 @@ class Ends:
 
     def listen(self, watcher: Watcher, type_: type) -> Recorder:
         """Listen on `to`; a VOLATILE publisher is waited for until it knows of the listener."""
-        topic = Topic(self.to)
-        timeout_sec = topic.timeout_for(watcher, TIMEOUT_SEC, end='publishers')
-        if not graphs.wait_for_publisher(watcher, self.to, timeout_sec=timeout_sec):
-            fail(
-                expected=f'a publisher on {self.to}',
-                seen=graphs.none_in(timeout_sec),
-                hint=self._graph(watcher).why_no_message(self.to),
-            )
-        recorder = topic.listen(watcher)
+        recorder = Topic(self.to).listen(watcher, take=self._graph)
         expect(
             recorder.type is type_,
             expected=f'{type_.__name__} messages on {self.to}',
