@@ -23,7 +23,7 @@ async def opened(*, room='student', seed='', fresh=False):
     """Return a sandbox and a kernel in it; it is forked, unless it has to be started `fresh`."""
     sandbox = Sandbox(slot=next(SLOTS))
     await sandbox.open()
-    kernel = GradingKernel(room=room, domain_id=DOMAIN, seed=seed, place=sandbox.place(room))
+    kernel = GradingKernel(room=room, domain_id=DOMAIN, seed=seed, paths=sandbox.paths(room))
     with pytest.MonkeyPatch.context() as patch:
         if fresh:
             patch.setitem(fork_servers._unfit, room, 'the test says so')

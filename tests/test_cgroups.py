@@ -58,7 +58,7 @@ def kernels(request, loop, sandbox):
                 if request.param == 'started':
                     patch.setitem(fork_servers._unfit, room, 'the test says so')
                 kernels[room] = GradingKernel(
-                    room=room, domain_id=DOMAIN, place=sandbox.place(room)
+                    room=room, domain_id=DOMAIN, paths=sandbox.paths(room)
                 )
                 await kernels[room].start()
                 assert bool(kernels[room].why_not_warm) is (request.param == 'started')
@@ -122,7 +122,7 @@ for _ in range(500):
 def test_memory_of_all_kinds_is_counted_and_only_the_room_pays(loop, monkeypatch, code):
     monkeypatch.setattr(module, 'ROOM_MEMORY_BYTES', LIMIT)
     sandbox, student = loop.run(opened())
-    test = GradingKernel(room='test', domain_id=DOMAIN, place=sandbox.place('test'))
+    test = GradingKernel(room='test', domain_id=DOMAIN, paths=sandbox.paths('test'))
     loop.run(test.start())
     rooms = [sandbox.cgroup(room) for room in ('student', 'test')]
     assert [room.memory_limit_bytes for room in rooms] == [LIMIT, LIMIT]
@@ -190,9 +190,9 @@ from grader.sandbox.sandbox import Sandbox
 async def main():
     sandbox = Sandbox(slot=304)
     await sandbox.open()
-    place = sandbox.place('student')
-    subprocess.Popen([*place.prefix, 'sleep', '4240'], env=place.environment,
-                     pass_fds=place.pass_fds)
+    paths = sandbox.paths('student')
+    subprocess.Popen([*paths.prefix, 'sleep', '4240'], env=paths.environment,
+                     pass_fds=paths.pass_fds)
     print(*sandbox._cgroups.folders, sep=chr(0), flush=True)
     time.sleep(1000)
 asyncio.run(main())

@@ -166,7 +166,7 @@ def test_what_can_not_be_forked_is_started_and_says_why(
     monkeypatch.setattr(fork_servers, '_PROGRAM', program)
     sandbox = Sandbox(slot=next(SLOTS))
     loop.run(sandbox.open())
-    kernel = GradingKernel(room='student', domain_id=DOMAIN, place=sandbox.place('student'))
+    kernel = GradingKernel(room='student', domain_id=DOMAIN, paths=sandbox.paths('student'))
     loop.run(kernel.start())
     try:
         assert why in kernel.why_not_warm

@@ -527,7 +527,7 @@ def test_a_long_path_for_temporary_files_is_not_used_for_sockets(monkeypatch, tm
     monkeypatch.setattr(tempfile, 'tempdir', str(tmp_path / ('x' * 100)))
     kernel = GradingKernel(room='student', domain_id=DOMAIN)
     try:
-        assert len(f'{kernel.place.sockets}/zmq-10') < 107
+        assert len(f'{kernel.paths.sockets}/zmq-10') < 107
     finally:
         asyncio.run(kernel.stop())
     assert not Path(kernel.folder).exists()

@@ -20,7 +20,7 @@ from grader.kernels.kernels import GradingKernel
 from grader.sandbox import bubblewrap, cgroups, memory_watch
 from grader.sandbox import sandbox as module
 from grader.sandbox.bubblewrap import FIRST_USER, slot_user
-from grader.sandbox.kernel_paths import Place
+from grader.sandbox.kernel_paths import KernelPaths
 from grader.sandbox.limits import ROOM_DISK_BYTES, ROOM_FILES, ROOM_TERMINALS, process_limits
 from grader.sandbox.sandbox import Sandbox
 from grader.sandbox.seccomp import PROTOCOLS
@@ -56,11 +56,11 @@ def shared(loop):
 
 def begin(sandbox, code, *, room='student'):
     """Start Python in a room, told what a kernel there is told."""
-    place = sandbox.place(room)
+    paths = sandbox.paths(room)
     return subprocess.Popen(
-        [*place.prefix, sys.executable, '-c', code],
-        env=place.environment | {'LD_LIBRARY_PATH': os.environ.get('LD_LIBRARY_PATH', '')},
-        pass_fds=place.pass_fds,
+        [*paths.prefix, sys.executable, '-c', code],
+        env=paths.environment | {'LD_LIBRARY_PATH': os.environ.get('LD_LIBRARY_PATH', '')},
+        pass_fds=paths.pass_fds,
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
@@ -78,12 +78,12 @@ def inside(request, loop):
     """Return what Python printed in a room: a process of its own, or a kernel that was forked."""
 
     async def in_a_kernel(sandbox, code, room):
-        kernel = GradingKernel(room=room, domain_id=0, place=sandbox.place(room))
+        kernel = GradingKernel(room=room, domain_id=0, paths=sandbox.paths(room))
         await kernel.start()
         assert kernel.why_not_warm == ''
         ran = await kernel.run(code, timeout_sec=120.0)
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(Place, 'remove', lambda place: None)  # others will live there
+            patch.setattr(KernelPaths, 'remove', lambda paths: None)  # others will live there
             await kernel.stop()
         return ''.join(o.get('text', '') or o.evalue for o in ran.outputs).strip()
 
@@ -540,11 +540,11 @@ from grader.sandbox.sandbox import Sandbox
 async def main():
     sandbox = Sandbox(slot=303)
     await sandbox.open()
-    place = sandbox.place('student')
+    paths = sandbox.paths('student')
     code = "import subprocess, time; subprocess.Popen(['sleep', '1000'], start_new_session=True); "
     code += "print(flush=True); time.sleep(1000)"
-    room = subprocess.Popen([*place.prefix, {sys.executable!r}, '-c', code], text=True,
-        env=place.environment, pass_fds=place.pass_fds, stdout=subprocess.PIPE)
+    room = subprocess.Popen([*paths.prefix, {sys.executable!r}, '-c', code], text=True,
+        env=paths.environment, pass_fds=paths.pass_fds, stdout=subprocess.PIPE)
     room.stdout.readline()
     print(sandbox._holder.pid, flush=True)
     time.sleep(1000)

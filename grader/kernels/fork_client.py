@@ -14,7 +14,7 @@ from grader.common.errors import RoomFailure
 from grader.common.file_wait import readable
 from grader.kernels.fork_servers import MAX_ANSWER, RoomForkServer, expect_fit, send
 from grader.kernels.forked_kernel import Forked
-from grader.sandbox.kernel_paths import Keeper, Place
+from grader.sandbox.kernel_paths import Keeper, KernelPaths
 from grader.sandbox.limits import OUT_OF_MEMORY_SCORE, process_limits
 from grader.sandbox.seccomp import seccomp_filter
 from grader.sandbox.seccomp_notify import signals_filter
@@ -23,13 +23,13 @@ _TIMEOUT_SEC = 60.0
 _NAMESPACES = ('user', 'mnt', 'net', 'pid', 'ipc', 'uts', 'cgroup')
 
 
-async def fork_into(place: Place, *, room: str, environment: dict[str, str]) -> Forked:
-    """Build the room of a place, and fork a kernel of the 'student' or 'test' kind into it.
+async def fork_into(paths: KernelPaths, *, room: str, environment: dict[str, str]) -> Forked:
+    """Build a room, and fork a kernel of the 'student' or 'test' kind into it.
 
     Raises NoWarmKernel where none can be forked, and RoomFailure where the room can't be built.
     """
     expect_fit(room)
-    ordered = keeper_of(place)
+    ordered = keeper_of(paths)
     keeper = subprocess.Popen(
         ordered.command,
         bufsize=0,
@@ -43,7 +43,7 @@ async def fork_into(place: Place, *, room: str, environment: dict[str, str]) -> 
     try:
         async with asyncio.timeout(_TIMEOUT_SEC):
             first = await _built(keeper, ordered.told)
-            return Forked(keeper, *await _forked(place, room, environment, first))
+            return Forked(keeper, *await _forked(paths, room, environment, first))
     except BaseException:
         keeper.kill()
         keeper.wait()
@@ -53,10 +53,10 @@ async def fork_into(place: Place, *, room: str, environment: dict[str, str]) -> 
         keeper.stdout.close()
 
 
-def keeper_of(place: Place) -> Keeper:
-    """Return the keeper of a place in a sandbox: no other place is forked into."""
-    assert place.keeper is not None
-    return place.keeper
+def keeper_of(paths: KernelPaths) -> Keeper:
+    """Return the keeper of a sandboxed room: nothing else is forked into."""
+    assert paths.keeper is not None
+    return paths.keeper
 
 
 async def _built(keeper: subprocess.Popen, told: int) -> int:
@@ -70,20 +70,20 @@ async def _built(keeper: subprocess.Popen, told: int) -> int:
 
 
 async def _forked(
-    place: Place, room: str, environment: dict[str, str], first: int
+    paths: KernelPaths, room: str, environment: dict[str, str], first: int
 ) -> tuple[int, int, socket.socket]:
     """Fork a kernel into the room of a first process.
 
     Return its pidfd, the listener of its signals (-1 for none), and where its end is told.
     """
-    order = json.dumps(_order(place, environment, first)).encode()
+    order = json.dumps(_order(paths, environment, first)).encode()
     ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     ours.setblocking(False)
     try:
         with contextlib.ExitStack() as opened:
             files = [os.pidfd_open(first)]
             opened.callback(os.close, files[0])
-            for path in keeper_of(place).entrances:
+            for path in keeper_of(paths).entrances:
                 files.append(os.open(path, os.O_WRONLY))
                 opened.callback(os.close, files[-1])
             socket.send_fds(ours, [order], files)
@@ -95,19 +95,19 @@ async def _forked(
         raise
 
 
-def _order(place: Place, environment: dict[str, str], first: int) -> dict:
+def _order(paths: KernelPaths, environment: dict[str, str], first: int) -> dict:
     """Return what a forked process must know to become a kernel in the room of a first process."""
-    folder = str(place.inside / 'home' / 'work')
+    folder = str(paths.inside / 'home' / 'work')
     return {
-        'user': keeper_of(place).user,
+        'user': keeper_of(paths).user,
         'namespaces': [k for k in _NAMESPACES if _namespace(first, k) != _namespace('self', k)],
         'folder': folder,
         'limits': list(process_limits().items()),
         'oom_score_adj': OUT_OF_MEMORY_SCORE,
         'environment': environment | {'PWD': folder},
-        'seccomp': seccomp_filter(counted=bool(keeper_of(place).entrances)).hex(),
+        'seccomp': seccomp_filter(counted=bool(keeper_of(paths).entrances)).hex(),
         'signals': signals_filter().hex(),
-        'command': place.kernel_command(),
+        'command': paths.kernel_command(),
     }
 
 

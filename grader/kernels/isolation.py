@@ -117,8 +117,8 @@ async def _fork_one() -> str:
     sandbox = Sandbox(slot=0)
     try:
         await sandbox.open()
-        place = sandbox.place('student')
-        (await fork_into(place, room='student', environment=place.environment)).kill()
+        paths = sandbox.paths('student')
+        (await fork_into(paths, room='student', environment=paths.environment)).kill()
     except NoWarmKernel as problem:
         return str(problem)
     finally:
@@ -159,11 +159,11 @@ async def _run_nothing() -> str:
     sandbox = Sandbox(slot=0)
     try:
         await sandbox.open()
-        place = sandbox.place('student')
+        paths = sandbox.paths('student')
         tried = subprocess.run(
-            [*place.prefix, sys.executable, '-c', ''],
-            env=place.environment,
-            pass_fds=place.pass_fds,
+            [*paths.prefix, sys.executable, '-c', ''],
+            env=paths.environment,
+            pass_fds=paths.pass_fds,
             capture_output=True,
             text=True,
         )

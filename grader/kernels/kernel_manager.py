@@ -8,7 +8,7 @@ from jupyter_client.kernelspec import KernelSpec, KernelSpecManager
 from zmq.asyncio import Context
 
 from grader.kernels.provisioner import NAME
-from grader.sandbox.kernel_paths import Place
+from grader.sandbox.kernel_paths import KernelPaths
 
 
 class OurKernelSpec(KernelSpecManager):
@@ -28,30 +28,30 @@ class OurKernelSpec(KernelSpecManager):
         )
 
 
-def manager_of(place: Place, context: Context) -> AsyncKernelManager:
-    """Return what starts, interrupts and ends a kernel in a place."""
+def manager_of(paths: KernelPaths, context: Context) -> AsyncKernelManager:
+    """Return what starts, interrupts and ends the kernel with these paths."""
     specs = OurKernelSpec()
-    specs.argv = tuple(place.command())
-    if place.closed:
+    specs.argv = tuple(paths.command())
+    if paths.sandboxed:
         specs.metadata = {'kernel_provisioner': {'provisioner_name': NAME}}
     return AsyncKernelManager(
         context=context,
         kernel_spec_manager=specs,
         transport='ipc',
-        ip=str(place.sockets / 'zmq'),
-        connection_file=str(place.folder / 'connection.json'),
+        ip=str(paths.sockets / 'zmq'),
+        connection_file=str(paths.folder / 'connection.json'),
     )
 
 
 async def launch(
-    manager: AsyncKernelManager, place: Place, room: str, environment: dict[str, str]
+    manager: AsyncKernelManager, paths: KernelPaths, room: str, environment: dict[str, str]
 ) -> None:
-    """Start a kernel in its place: in a sandbox, or with the grading user's rights."""
-    if place.closed:
-        await manager.start_kernel(place=place, room=room, env=environment)
+    """Start a kernel: in a sandbox, or with the grading user's rights."""
+    if paths.sandboxed:
+        await manager.start_kernel(paths=paths, room=room, env=environment)
         return
     manager.write_connection_file()
-    place.tell(Path(manager.connection_file))
+    paths.write_connection_file(Path(manager.connection_file))
     await manager.start_kernel(
-        cwd=place.folder / 'home' / 'work', env=environment, stdout=DEVNULL, stderr=DEVNULL
+        cwd=paths.folder / 'home' / 'work', env=environment, stdout=DEVNULL, stderr=DEVNULL
     )

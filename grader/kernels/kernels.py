@@ -16,7 +16,7 @@ from grader.kernels.kernel_exits import Ending, is_from_outside
 from grader.kernels.kernel_manager import launch, manager_of
 from grader.kernels.leftovers import kill_leftovers
 from grader.kernels.provisioner import SandboxProvisioner
-from grader.sandbox.kernel_paths import Place, environment_of, open_place
+from grader.sandbox.kernel_paths import KernelPaths, environment_of, make_paths
 from grader.sandbox.signals import killed_processes
 
 START_TIMEOUT_SEC = 60.0
@@ -29,17 +29,17 @@ class GradingKernel:
     """One kernel in an empty folder of its own; everything of it goes with stop()."""
 
     def __init__(
-        self, *, room: str, domain_id: int, seed: str = '', place: Place | None = None
+        self, *, room: str, domain_id: int, seed: str = '', paths: KernelPaths | None = None
     ) -> None:
         """Prepare a kernel of the 'student' or the 'test' room in a ROS domain.
 
-        It lives in `place`, or else has the grading user's rights.
+        It lives at `paths`, or else has the grading user's rights.
         """
         self.room = room
-        self.place = place or open_place(room)
-        self._environment = environment_of(self.place, room=room, domain_id=domain_id, seed=seed)
+        self.paths = paths or make_paths(room)
+        self._environment = environment_of(self.paths, room=room, domain_id=domain_id, seed=seed)
         self._connection = KernelConnection()
-        self._manager = manager_of(self.place, self._connection.context)
+        self._manager = manager_of(self.paths, self._connection.context)
         self._ending: Ending | None = None
         self._ended_by_us = False
         self.alive = False
@@ -47,7 +47,7 @@ class GradingKernel:
     @property
     def folder(self) -> Path:
         """The grader's folder for this kernel."""
-        return self.place.folder
+        return self.paths.folder
 
     @property
     def why_not_warm(self) -> str:
@@ -57,7 +57,7 @@ class GradingKernel:
     async def start(self) -> 'GradingKernel':
         """Start the kernel and wait until its outputs are received; raises RoomFailure."""
         try:
-            await launch(self._manager, self.place, self.room, self._environment)
+            await launch(self._manager, self.paths, self.room, self._environment)
             async with asyncio.timeout(START_TIMEOUT_SEC):
                 await self._connection.connect(self._manager)
         except Exception as error:
@@ -112,7 +112,7 @@ class GradingKernel:
         If it has the grading user's rights, nobody knows who sent a signal.
         """
         if self._ending is None and not self._ended_by_us and not await self._is_alive():
-            if self.place.closed:
+            if self.paths.sandboxed:
                 self._ending = await self._in_sandbox().ending()
             else:
                 provisioner = cast(LocalProvisioner, self._manager.provisioner)
@@ -125,7 +125,7 @@ class GradingKernel:
 
         They are known while nobody in the room has asked how they ended.
         """
-        signals = self._in_sandbox().signals if self.place.closed and self.alive else None
+        signals = self._in_sandbox().signals if self.paths.sandboxed and self.alive else None
         if signals is None:
             return 0
         for number, ids in killed_processes(signals.pid):
@@ -141,10 +141,10 @@ class GradingKernel:
                 await asyncio.wait_for(self._exited(), STOP_GRACE_SEC)
         await self._kill()
         self._connection.close()
-        self.place.remove()
+        self.paths.remove()
 
     def _in_sandbox(self) -> SandboxProvisioner:
-        """Return what runs the kernel of a closed place: its kernelspec names that."""
+        """Return what runs a sandboxed kernel: its kernelspec names that."""
         return cast(SandboxProvisioner, self._manager.provisioner)
 
     async def _lives_on(self) -> bool:
@@ -167,7 +167,7 @@ class GradingKernel:
                 # else it would be sent an interrupt, and that be waited for
                 await provisioner.wait()
             await self._manager.shutdown_kernel(now=True)
-        if not self.place.closed:
+        if not self.paths.sandboxed:
             folder = self._environment['IPYTHONDIR']
             await kill_leftovers(folder, timeout_sec=STOP_GRACE_SEC)
 

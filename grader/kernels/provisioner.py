@@ -22,7 +22,7 @@ from grader.kernels.fork_client import fork_into
 from grader.kernels.fork_servers import NoWarmKernel
 from grader.kernels.forked_kernel import Forked
 from grader.kernels.kernel_exits import Ending
-from grader.sandbox.kernel_paths import Place, environment_of
+from grader.sandbox.kernel_paths import KernelPaths, environment_of
 from grader.sandbox.sandbox import Sandbox
 from grader.sandbox.seccomp_notify import SHIM, signals_filter
 from grader.sandbox.signals import Signals
@@ -34,10 +34,10 @@ NAME = 'my_robot_basics_sandbox'
 """Of the kernelspec, and of this provisioner's entry point."""
 
 
-def made_in(place: Place) -> Path:
+def made_in(paths: KernelPaths) -> Path:
     """Return where a room's kernel makes its sockets."""
-    assert place.made is not None  # every room says it
-    return place.made
+    assert paths.made is not None  # every room says it
+    return paths.made
 
 
 class SandboxProvisioner(LocalProvisioner):
@@ -47,7 +47,7 @@ class SandboxProvisioner(LocalProvisioner):
     """Why the kernel was started the slow way, where it was."""
     signals: Signals | None = None
     """What the room's processes send each other."""
-    _place: Place
+    _paths: KernelPaths
     _pins: dict[str, int]
     _room = 'student'
     _sandbox: Sandbox | None = None
@@ -59,29 +59,29 @@ class SandboxProvisioner(LocalProvisioner):
         return self.parent
 
     async def pre_launch(
-        self, *, place: Place | None = None, room: str = 'student', **kwargs: Any
+        self, *, paths: KernelPaths | None = None, room: str = 'student', **kwargs: Any
     ) -> dict[str, Any]:
-        """Prepare the room: the given `place`, or one in a sandbox of this kernel's own.
+        """Prepare the room: with the given `paths`, or in a sandbox of this kernel's own.
 
         In one of its own a kernel is told nothing of the caller's environment. Raises RoomFailure.
         """
         self._room, self._pins, manager = room, {}, self._manager
-        if place is None:
-            place = await self._open()
+        if paths is None:
+            paths = await self._open()
             assert self._claim is not None  # from _open
-            kwargs['env'] = environment_of(place, room=room, domain_id=self._claim.domain_id)
-            manager.transport, manager.ip = 'ipc', str(place.sockets / 'zmq')
-        self._place = place
+            kwargs['env'] = environment_of(paths, room=room, domain_id=self._claim.domain_id)
+            manager.transport, manager.ip = 'ipc', str(paths.sockets / 'zmq')
+        self._paths = paths
         kwargs = await super().pre_launch(**kwargs)
         for port in manager.ports:  # of a former kernel, on a restart
-            (made_in(place) / f'zmq-{port}').unlink(missing_ok=True)
-        place.tell(Path(manager.connection_file))
-        return kwargs | {'cmd': place.command()}
+            (made_in(paths) / f'zmq-{port}').unlink(missing_ok=True)
+        paths.write_connection_file(Path(manager.connection_file))
+        return kwargs | {'cmd': paths.command()}
 
     async def launch_kernel(self, cmd: list[str], **kwargs: Any) -> KernelConnectionInfo:
         """Fork the kernel, or start it: in the same room, and with no more rights."""
         try:
-            forked = await fork_into(self._place, room=self._room, environment=kwargs['env'])
+            forked = await fork_into(self._paths, room=self._room, environment=kwargs['env'])
         except NoWarmKernel as problem:
             self.why_not_warm = str(problem)
             return await self._started(kwargs['env'])
@@ -108,12 +108,12 @@ class SandboxProvisioner(LocalProvisioner):
             python = [sys.executable, '-I', '-S', '-c', SHIM]
             shim = [*python, str(theirs.fileno()), signals_filter().hex()]
             info = await super().launch_kernel(
-                [*self._place.prefix, *shim, *self._place.kernel_command()],
+                [*self._paths.prefix, *shim, *self._paths.kernel_command()],
                 env=environment,
                 cwd='/',
                 stdout=DEVNULL,
                 stderr=DEVNULL,
-                pass_fds=(*self._place.pass_fds, theirs.fileno()),
+                pass_fds=(*self._paths.pass_fds, theirs.fileno()),
             )
             theirs.close()
             async with asyncio.timeout(START_TIMEOUT_SEC):
@@ -133,20 +133,20 @@ class SandboxProvisioner(LocalProvisioner):
         await super().post_launch(**kwargs)
         names = [f'zmq-{port}' for port in self._manager.ports]
         async with asyncio.timeout(START_TIMEOUT_SEC):
-            while not all((made_in(self._place) / name).exists() for name in names):
+            while not all((made_in(self._paths) / name).exists() for name in names):
                 if await self.poll() is not None:
                     raise RoomFailure('its process ended')
                 await asyncio.sleep(0.01)
         for name in names:
-            pin = os.open(made_in(self._place) / name, os.O_PATH | os.O_NOFOLLOW)
+            pin = os.open(made_in(self._paths) / name, os.O_PATH | os.O_NOFOLLOW)
             self._pins[name] = pin
-            (self._place.sockets / name).symlink_to(f'/proc/self/fd/{pin}')
+            (self._paths.sockets / name).symlink_to(f'/proc/self/fd/{pin}')
 
     async def cleanup(self, restart: bool = False) -> None:
         """Close the sandbox, if it is this kernel's own."""
         await super().cleanup(restart=restart)
         for name, pin in self._pins.items():
-            (self._place.sockets / name).unlink(missing_ok=True)
+            (self._paths.sockets / name).unlink(missing_ok=True)
             os.close(pin)
         self._pins = {}
         if self.signals is not None:
@@ -159,7 +159,7 @@ class SandboxProvisioner(LocalProvisioner):
     def resolve_path(self, path_str: str) -> None:
         """Tell no path: the kernel's files are not on this machine's disk."""
 
-    async def _open(self) -> Place:
+    async def _open(self) -> KernelPaths:
         if self._sandbox is None:
             self._claim = claim()
             self._sandbox = Sandbox(slot=self._claim.domain_id)
@@ -168,7 +168,7 @@ class SandboxProvisioner(LocalProvisioner):
             except BaseException:
                 await self._close()
                 raise
-        return self._sandbox.place('student')
+        return self._sandbox.paths('student')
 
     async def _close(self) -> None:
         assert self._sandbox is not None

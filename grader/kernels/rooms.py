@@ -57,7 +57,7 @@ class GradingRooms:
         try:
             await self._open()
             await together(self._prepare_student(), self._prepare_test())
-            files = str(self._student.place.inside / 'given' / 'files')
+            files = str(self._student.paths.inside / 'given' / 'files')
             await self._prepare(self._student, STUDENT_GOES.format(files=files))
         except BaseException as error:
             await self.__aexit__()
@@ -146,9 +146,9 @@ class GradingRooms:
         self._test = self._kernel('test', seed=self._seed)
 
     def _kernel(self, room: str, *, seed: str = '') -> GradingKernel:
-        place = self._sandbox.place(room) if self._sandbox else None
+        paths = self._sandbox.paths(room) if self._sandbox else None
         assert self._claim is not None  # from _open
-        kernel = GradingKernel(room=room, domain_id=self._claim.domain_id, seed=seed, place=place)
+        kernel = GradingKernel(room=room, domain_id=self._claim.domain_id, seed=seed, paths=paths)
         self._kernels.append(kernel)
         return kernel
 
@@ -161,9 +161,9 @@ class GradingRooms:
             raise failed[0]
 
     async def _prepare_student(self) -> None:
-        place = self._student.place
+        paths = self._student.paths
         for file in self._extra_files:
-            shutil.copyfile(file, place.files / file.name)
+            shutil.copyfile(file, paths.files / file.name)
         await self._student.start()
         await self._prepare(self._student, STUDENT_COMES)
 

@@ -47,8 +47,8 @@ class Keeper:
 
 
 @dataclass(frozen=True)
-class Place:
-    """The place of one kernel: what it is `given`, its sockets in `kernel`, its own in `home`."""
+class KernelPaths:
+    """Where one kernel lives: what it is `given`, its sockets in `kernel`, its own in `home`."""
 
     folder: Path
     """The grader's folder for it; it holds `given`."""
@@ -68,7 +68,7 @@ class Place:
     """Where a forked kernel can join."""
 
     @property
-    def closed(self) -> bool:
+    def sandboxed(self) -> bool:
         """Whether what runs there has neither the rights nor the network of the grading user."""
         return bool(self.prefix)
 
@@ -88,7 +88,7 @@ class Place:
         """Return the command of a kernel that lives there."""
         return [*self.prefix, *self.kernel_command()]
 
-    def tell(self, connection_file: Path) -> None:
+    def write_connection_file(self, connection_file: Path) -> None:
         """Write the kernel's own connection file: it may know its sockets by another path."""
         told = json.loads(connection_file.read_text(encoding='utf-8'))
         told['ip'] = str(self.inside / 'kernel' / 'zmq')
@@ -106,14 +106,14 @@ def make_folder(name: str) -> Path:
     return folder
 
 
-def open_place(room: str) -> Place:
-    """Return a place with the rights and the network of the grading user."""
+def make_paths(room: str) -> KernelPaths:
+    """Return the paths of a kernel with the rights and the network of the grading user."""
     folder = make_folder(room)
     (folder / 'kernel').mkdir()
     (folder / 'home' / 'work').mkdir(parents=True)
     names = ('PATH', 'HOME', 'TMPDIR', 'AMENT_PREFIX_PATH')
     environment = {name: os.environ[name] for name in names if name in os.environ}
-    return Place(folder, folder / 'kernel', inside=folder, environment=environment)
+    return KernelPaths(folder, folder / 'kernel', inside=folder, environment=environment)
 
 
 def passed_on() -> dict[str, str]:
@@ -122,14 +122,16 @@ def passed_on() -> dict[str, str]:
     return environment | _ALWAYS
 
 
-def environment_of(place: Place, *, room: str, domain_id: int, seed: str = '') -> dict[str, str]:
+def environment_of(
+    paths: KernelPaths, *, room: str, domain_id: int, seed: str = ''
+) -> dict[str, str]:
     """Return what a kernel's process is told: nothing of the caller's own, but where things are.
 
     Only the test room is told the seed.
     """
-    home = place.inside / 'home'
+    home = paths.inside / 'home'
     environment = passed_on()
-    environment |= place.environment | {
+    environment |= paths.environment | {
         'MY_ROBOT_BASICS_ROOM': room,
         'MY_ROBOT_BASICS_DOMAIN_ID': str(domain_id),
         'RCUTILS_LOGGING_USE_STDOUT': '1',

@@ -24,7 +24,7 @@ from grader.sandbox.bubblewrap import (
 from grader.sandbox.cgroup_hierarchies import NoCgroups
 from grader.sandbox.cgroups import MemoryEvents, RoomCgroup, SandboxCgroups, joining
 from grader.sandbox.holder import Holder
-from grader.sandbox.kernel_paths import Keeper, Place, make_folder
+from grader.sandbox.kernel_paths import Keeper, KernelPaths, make_folder
 from grader.sandbox.limits import let_us_open_more
 from grader.sandbox.memory_watch import watch_memory
 from grader.sandbox.seccomp import seccomp_filter
@@ -75,11 +75,11 @@ class Sandbox:
             return cgroup.memory_events()
         return MemoryEvents(limit_reached=bool(self._killed), killed=len(self._killed))
 
-    def place(self, room: str) -> Place:
-        """Return the place of the 'student' or the 'test' kernel, for one command."""
+    def paths(self, room: str) -> KernelPaths:
+        """Return the paths of the 'student' or the 'test' kernel, for one command."""
         seccomp = self._filter()
         prefix = self._room_command(room, seccomp)
-        return Place(
+        return KernelPaths(
             self._folders[room],
             self._folders[room],
             inside=INSIDE,

@@ -156,15 +156,15 @@ async def _in_a_sandbox(course: Path, assignment: str) -> dict | None:
     sandbox = Sandbox(slot=SLOT)
     try:
         await sandbox.open()
-        place = sandbox.place('student')
-        shutil.copytree(course, place.files / 'course', symlinks=True)
-        shutil.copy(INSIDE, place.files)
-        script = place.inside / 'given' / 'files' / INSIDE.name
+        paths = sandbox.paths('student')
+        shutil.copytree(course, paths.files / 'course', symlinks=True)
+        shutil.copy(INSIDE, paths.files)
+        script = paths.inside / 'given' / 'files' / INSIDE.name
         process = await asyncio.create_subprocess_exec(
-            *(*place.prefix, sys.executable, '-P', str(script)),
+            *(*paths.prefix, sys.executable, '-P', str(script)),
             *(str(STOCK_COURSE), assignment, str(PORT)),
-            env=place.environment,
-            pass_fds=place.pass_fds,
+            env=paths.environment,
+            pass_fds=paths.pass_fds,
             cwd='/',
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
