@@ -28,7 +28,7 @@ async def opened(*, room='student', seed='', fresh=False):
         if fresh:
             patch.setitem(fork_servers._unfit, room, 'the test says so')
         await kernel.start()
-    assert kernel.why_not_warm == ('the test says so' if fresh else '')
+    assert kernel.why_not_forked == ('the test says so' if fresh else '')
     return sandbox, kernel
 
 

@@ -61,7 +61,7 @@ def kernels(request, loop, sandbox):
                     room=room, domain_id=DOMAIN, paths=sandbox.paths(room)
                 )
                 await kernels[room].start()
-                assert bool(kernels[room].why_not_warm) is (request.param == 'started')
+                assert bool(kernels[room].why_not_forked) is (request.param == 'started')
         return kernels
 
     async def end():

@@ -1,4 +1,4 @@
-"""A kernel that is forked warm is the kernel that would have been started: no more, no less."""
+"""A forked kernel is the kernel that would have been started: no more, no less."""
 
 import ast
 import asyncio
@@ -173,10 +173,10 @@ print(sorted({os.path.dirname(getattr(m, '__file__', None) or '') for m in sys.m
 
 
 def test_a_forked_kernel_has_imported_more_but_nothing_of_the_grader(forked, started, said):
-    warm_ones = set(ast.literal_eval(said(forked, MODULES)))
-    assert set(ast.literal_eval(said(started, MODULES))) <= warm_ones
-    assert {'rclpy', 'numpy', 'matplotlib.pyplot', 'sensor_msgs.msg'} <= warm_ones
-    assert [name for name in warm_ones if name.split('.')[0] in ('grader', 'nbgrader')] == []
+    in_forked = set(ast.literal_eval(said(forked, MODULES)))
+    assert set(ast.literal_eval(said(started, MODULES))) <= in_forked
+    assert {'rclpy', 'numpy', 'matplotlib.pyplot', 'sensor_msgs.msg'} <= in_forked
+    assert [name for name in in_forked if name.split('.')[0] in ('grader', 'nbgrader')] == []
     # neither under a name that a student may give to a module
     folders = ast.literal_eval(said(forked, FOLDERS))
     assert [folder for folder in folders if Path(folder).is_relative_to(ROOT / 'grader')] == []

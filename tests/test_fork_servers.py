@@ -169,7 +169,7 @@ def test_what_can_not_be_forked_is_started_and_says_why(
     kernel = GradingKernel(room='student', domain_id=DOMAIN, paths=sandbox.paths('student'))
     loop.run(kernel.start())
     try:
-        assert why in kernel.why_not_warm
+        assert why in kernel.why_not_forked
         commands = [process.info['cmdline'] for process in psutil.process_iter(['cmdline'])]
         assert [command for command in commands if command and str(program) in command] == []
         assert printed(loop, kernel, 'print(1)') == '1\n'

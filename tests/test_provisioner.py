@@ -137,7 +137,7 @@ def test_a_kernel_is_forked_and_restarted_in_its_sandbox(left):
     async def life():
         manager = AsyncKernelManager(kernel_name=NAME)
         await manager.start_kernel()
-        assert manager.provisioner.why_not_warm == ''
+        assert manager.provisioner.why_not_forked == ''
         assert manager.provisioner.resolve_path('/etc/passwd') is None
         said = [await first_word(manager, "open('kept', 'w').close()")]
         await manager.restart_kernel(now=True)

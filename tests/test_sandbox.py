@@ -80,7 +80,7 @@ def inside(request, loop):
     async def in_a_kernel(sandbox, code, room):
         kernel = GradingKernel(room=room, domain_id=0, paths=sandbox.paths(room))
         await kernel.start()
-        assert kernel.why_not_warm == ''
+        assert kernel.why_not_forked == ''
         ran = await kernel.run(code, timeout_sec=120.0)
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(KernelPaths, 'remove', lambda paths: None)  # others will live there
@@ -637,7 +637,7 @@ async def main():
         run = await rooms.run_check(
             'from my_robot_basics.checks import student; print(student.value("x"))')
         print(run.outputs[0].text.strip())
-        print(rooms._student.why_not_warm or 'forked')
+        print(rooms._student.why_not_forked or 'forked')
 """
     done = as_ordinary_user(tmp_path_factory.mktemp('home'), code)
     assert done.stdout.splitlines() == ['1000', '7', 'forked'], done.stderr

@@ -13,7 +13,7 @@ import subprocess
 from grader.common.errors import RoomFailure
 from grader.common.file_wait import readable
 from grader.kernels.fork_servers import MAX_ANSWER, RoomForkServer, expect_fit, send
-from grader.kernels.forked_kernel import Forked
+from grader.kernels.forked_kernel import ForkedProcess
 from grader.sandbox.kernel_paths import Keeper, KernelPaths
 from grader.sandbox.limits import OUT_OF_MEMORY_SCORE, process_limits
 from grader.sandbox.seccomp import seccomp_filter
@@ -23,10 +23,12 @@ _TIMEOUT_SEC = 60.0
 _NAMESPACES = ('user', 'mnt', 'net', 'pid', 'ipc', 'uts', 'cgroup')
 
 
-async def fork_into(paths: KernelPaths, *, room: str, environment: dict[str, str]) -> Forked:
+async def fork_into(
+    paths: KernelPaths, *, room: str, environment: dict[str, str]
+) -> ForkedProcess:
     """Build a room, and fork a kernel of the 'student' or 'test' kind into it.
 
-    Raises NoWarmKernel where none can be forked, and RoomFailure where the room can't be built.
+    Raises NoForkedKernel where none can be forked, and RoomFailure where the room can't be built.
     """
     expect_fit(room)
     ordered = keeper_of(paths)
@@ -43,7 +45,7 @@ async def fork_into(paths: KernelPaths, *, room: str, environment: dict[str, str
     try:
         async with asyncio.timeout(_TIMEOUT_SEC):
             first = await _built(keeper, ordered.told)
-            return Forked(keeper, *await _forked(paths, room, environment, first))
+            return ForkedProcess(keeper, *await _forked(paths, room, environment, first))
     except BaseException:
         keeper.kill()
         keeper.wait()

@@ -25,7 +25,7 @@ _PROGRAM = Path(__file__).with_name('forkserver')
 _ALL_SEALS = fcntl.F_SEAL_SEAL | fcntl.F_SEAL_SHRINK | fcntl.F_SEAL_GROW | fcntl.F_SEAL_WRITE
 
 
-class NoWarmKernel(Exception):
+class NoForkedKernel(Exception):
     """Why kernels can't be forked on this machine; they can be started all the same."""
 
 
@@ -59,7 +59,7 @@ class RoomForkServer:
         self._first.wait()
         self._has_forked = True
 
-    def failure(self) -> NoWarmKernel:
+    def failure(self) -> NoForkedKernel:
         """Return why it ended; to be called when it has.
 
         Where it has never forked, the next one would not, either: none is started any more.
@@ -67,7 +67,7 @@ class RoomForkServer:
         problem = self._last_words()
         if not self._has_forked:
             _unfit[self._room] = problem
-        return NoWarmKernel(problem)
+        return NoForkedKernel(problem)
 
     def close(self) -> None:
         """Let it end; what it has forked lives on."""
@@ -90,15 +90,15 @@ _lock = threading.Lock()
 
 
 def expect_fit(room: str) -> None:
-    """Raise NoWarmKernel where it is known that no kernel can be forked for this room."""
+    """Raise NoForkedKernel where it is known that no kernel can be forked for this room."""
     if room in _unfit:
-        raise NoWarmKernel(_unfit[room])
+        raise NoForkedKernel(_unfit[room])
 
 
 def send(errand: socket.socket, *, room: str) -> RoomForkServer:
     """Give an errand to the server of a room, a new one where there is none or it has ended.
 
-    Raises NoWarmKernel where that ends, too.
+    Raises NoForkedKernel where that ends, too.
     """
     with _lock:
         for _ in range(2):
@@ -108,7 +108,7 @@ def send(errand: socket.socket, *, room: str) -> RoomForkServer:
                 return server
             except OSError:
                 _servers.pop(room).close()
-    raise NoWarmKernel('the process that forks them ends at once')
+    raise NoForkedKernel('the process that forks them ends at once')
 
 
 def close_servers() -> None:

@@ -18,7 +18,7 @@ _TOLD_SEC = 5.0
 """How long its parent may take to tell how a kernel ended."""
 
 
-class Forked:
+class ForkedProcess:
     """A kernel that was forked into a room, as subprocess.Popen would be it."""
 
     stdin = stdout = stderr = None

@@ -12,7 +12,7 @@ from functools import cache
 from grader.common.errors import CourseError
 from grader.common.pool import Pool
 from grader.kernels.fork_client import fork_into
-from grader.kernels.fork_servers import NoWarmKernel
+from grader.kernels.fork_servers import NoForkedKernel
 from grader.sandbox.cgroup_hierarchies import scoped
 from grader.sandbox.remedies import remedy
 from grader.sandbox.sandbox import Sandbox
@@ -119,7 +119,7 @@ async def _fork_one() -> str:
         await sandbox.open()
         paths = sandbox.paths('student')
         (await fork_into(paths, room='student', environment=paths.environment)).kill()
-    except NoWarmKernel as problem:
+    except NoForkedKernel as problem:
         return str(problem)
     finally:
         await sandbox.close()

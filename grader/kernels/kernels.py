@@ -50,9 +50,9 @@ class GradingKernel:
         return self.paths.folder
 
     @property
-    def why_not_warm(self) -> str:
+    def why_not_forked(self) -> str:
         """Why a kernel in a sandbox was started and not forked; '' where it was."""
-        return self._in_sandbox().why_not_warm
+        return self._in_sandbox().why_not_forked
 
     async def start(self) -> 'GradingKernel':
         """Start the kernel and wait until its outputs are received; raises RoomFailure."""

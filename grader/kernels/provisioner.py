@@ -19,8 +19,8 @@ from my_robot_basics.session.domain import Claim, claim
 from grader.common.errors import RoomFailure
 from grader.common.file_wait import readable
 from grader.kernels.fork_client import fork_into
-from grader.kernels.fork_servers import NoWarmKernel
-from grader.kernels.forked_kernel import Forked
+from grader.kernels.fork_servers import NoForkedKernel
+from grader.kernels.forked_kernel import ForkedProcess
 from grader.kernels.kernel_exits import Ending
 from grader.sandbox.kernel_paths import KernelPaths, environment_of
 from grader.sandbox.sandbox import Sandbox
@@ -41,9 +41,9 @@ def made_in(paths: KernelPaths) -> Path:
 
 
 class SandboxProvisioner(LocalProvisioner):
-    """Runs one kernel in a room, forked warm where this machine can."""
+    """Runs one kernel in a room, forked from a preloaded process where this machine can."""
 
-    why_not_warm = ''
+    why_not_forked = ''
     """Why the kernel was started the slow way, where it was."""
     signals: Signals | None = None
     """What the room's processes send each other."""
@@ -82,8 +82,8 @@ class SandboxProvisioner(LocalProvisioner):
         """Fork the kernel, or start it: in the same room, and with no more rights."""
         try:
             forked = await fork_into(self._paths, room=self._room, environment=kwargs['env'])
-        except NoWarmKernel as problem:
-            self.why_not_warm = str(problem)
+        except NoForkedKernel as problem:
+            self.why_not_forked = str(problem)
             return await self._started(kwargs['env'])
         # it has what jupyter_client asks of a process
         self.process = forked  # type: ignore[assignment]
@@ -92,7 +92,7 @@ class SandboxProvisioner(LocalProvisioner):
 
     async def ending(self) -> Ending:
         """Return how the kernel ended; to be called once when it has, before its cleanup."""
-        if isinstance(self.process, Forked):
+        if isinstance(self.process, ForkedProcess):
             return await self.process.ending()
         assert self.process is not None  # it was started
         status = self.process.returncode
@@ -151,7 +151,7 @@ class SandboxProvisioner(LocalProvisioner):
         self._pins = {}
         if self.signals is not None:
             self.signals.close()
-        if isinstance(self.process, Forked):
+        if isinstance(self.process, ForkedProcess):
             self.process.close()
         if self._sandbox is not None and not restart:
             await self._close()
