@@ -1,6 +1,6 @@
 """Fork a kernel into a room: build the room, send the order for it, and wait for the answer.
 
-The order goes, as an errand, through a server of `servers` to a process that this has forked.
+The order goes over a connection that a fork server has passed on to a process of its own.
 """
 
 import asyncio
@@ -113,15 +113,15 @@ def _order(paths: KernelPaths, environment: dict[str, str], first: int) -> dict:
     }
 
 
-async def _answer(errand: socket.socket, server: RoomForkServer) -> tuple[int, int]:
-    """Return the pidfd and the listener that come over an errand, when the kernel is ready."""
+async def _answer(connection: socket.socket, server: RoomForkServer) -> tuple[int, int]:
+    """Return the pidfd and the listener that come over a connection, when the kernel is ready."""
     found: dict[bytes, int] = {}
     problem = ''
     try:
         while not problem and set(found) != {b'kernel', b'ready'}:
-            await readable(errand.fileno())
+            await readable(connection.fileno())
             try:
-                text, files, _, _ = socket.recv_fds(errand, MAX_ANSWER, 1)
+                text, files, _, _ = socket.recv_fds(connection, MAX_ANSWER, 1)
             except ConnectionResetError:  # nobody has read what was sent
                 text, files = b'', []
             if not text:

@@ -33,7 +33,7 @@ class RoomForkServer:
     """A process that forks kernels, as long as this one lives and does not close it."""
 
     def __init__(self, room: str) -> None:
-        """Start it for the 'student' or the 'test' room; it takes errands while it imports."""
+        """Start it for the 'student' or the 'test' room; it takes connections while it imports."""
         self._room, self._has_forked = room, False
         self._control, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         with theirs, _python() as python:
@@ -50,9 +50,9 @@ class RoomForkServer:
                 start_new_session=True,
             )
 
-    def send(self, errand: socket.socket) -> None:
-        """Let it fork a process for an errand. Raises OSError where it has ended."""
-        socket.send_fds(self._control, [b'.'], [errand.fileno()])
+    def send(self, connection: socket.socket) -> None:
+        """Let it fork a process for a connection. Raises OSError where it has ended."""
+        socket.send_fds(self._control, [b'.'], [connection.fileno()])
 
     def settle(self) -> None:
         """Forget the process that it was forked from; to be called when it has answered."""
@@ -95,8 +95,8 @@ def expect_fit(room: str) -> None:
         raise NoForkedKernel(_unfit[room])
 
 
-def send(errand: socket.socket, *, room: str) -> RoomForkServer:
-    """Give an errand to the server of a room, a new one where there is none or it has ended.
+def send(connection: socket.socket, *, room: str) -> RoomForkServer:
+    """Pass a connection on to the server of a room, a new one where there is none or it has ended.
 
     Raises NoForkedKernel where that ends, too.
     """
@@ -104,7 +104,7 @@ def send(errand: socket.socket, *, room: str) -> RoomForkServer:
         for _ in range(2):
             server = _servers.get(room) or _servers.setdefault(room, RoomForkServer(room))
             try:
-                server.send(errand)
+                server.send(connection)
                 return server
             except OSError:
                 _servers.pop(room).close()

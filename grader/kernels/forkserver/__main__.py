@@ -1,7 +1,7 @@
 """A program that has imported what a kernel needs, and forks kernels into rooms.
 
 It is run by its folder, so that nothing of the grader is loaded with it: whatever this process
-holds, each kernel can read. An errand, the order for one kernel, goes to a process that was forked
+holds, each kernel can read. The connection with the order for one kernel goes to a process forked
 for it, so that no order is ever here: what one room is told stays unknown to the next.
 """
 
@@ -21,7 +21,7 @@ _PR_SET_CHILD_SUBREAPER = 36
 
 
 def main(control: socket.socket, room: str) -> None:
-    """Import, then fork a kernel for each errand that comes; returns in the kernels alone.
+    """Import, then fork a kernel for each connection that comes; returns in the kernels alone.
 
     Why it can't go on, it says over `control`. It ends when the process at the other end does.
     """
@@ -44,12 +44,12 @@ def main(control: socket.socket, room: str) -> None:
         word, sockets, _, _ = socket.recv_fds(control, 1, 1)
         if not word:
             raise SystemExit
-        errand = socket.socket(fileno=sockets[0])
+        connection = socket.socket(fileno=sockets[0])
         if os.fork() == 0:
             control.close()
-            privilege_drop.become_a_kernel(errand, made)
+            privilege_drop.become_a_kernel(connection, made)
             return
-        errand.close()
+        connection.close()
 
 
 def _leave_no_names() -> None:

@@ -28,8 +28,8 @@ _PR_SET_NO_NEW_PRIVS, _PR_CAP_AMBIENT = 38, 47
 _SECCOMP_MODE_FILTER, _CLEAR_ALL, _CAPABILITIES_V3 = 2, 4, 0x20080522
 
 
-def become_a_kernel(errand: socket.socket, made: dict[str, str]) -> None:
-    """Do as ordered, in the room of an errand, and return where only the kernel is left to start.
+def become_a_kernel(connection: socket.socket, made: dict[str, str]) -> None:
+    """Do as ordered, in the room that comes with the order, and return where only the kernel is left to start.
 
     `made` is what imports have put into the environment. The process that was forked first can't
     enter a PID namespace itself: its child does, and it stays to tell how that ended. Neither
@@ -37,7 +37,7 @@ def become_a_kernel(errand: socket.socket, made: dict[str, str]) -> None:
     """
     try:
         signal.signal(signal.SIGCHLD, signal.SIG_DFL)
-        text, (room, *cgroups), _, _ = socket.recv_fds(errand, _MAX_ORDER, _MAX_FILES)
+        text, (room, *cgroups), _, _ = socket.recv_fds(connection, _MAX_ORDER, _MAX_FILES)
         for entrance in cgroups:
             os.write(entrance, b'0')  # this process joins, and what it forks is born there
         order = json.loads(text)
@@ -49,30 +49,30 @@ def become_a_kernel(errand: socket.socket, made: dict[str, str]) -> None:
         os.setpgrp()
         if child := os.fork():
             os.setpgid(0, ours)  # what the kernel sends to its group must not reach this process
-            socket.send_fds(errand, [b'kernel'], [os.pidfd_open(child)])
-            _tell_the_end(errand, child)
-        listener = _settle(order, keep=errand.fileno())
-        socket.send_fds(errand, [b'ready'], [listener] if listener >= 0 else [])
+            socket.send_fds(connection, [b'kernel'], [os.pidfd_open(child)])
+            _tell_the_end(connection, child)
+        listener = _settle(order, keep=connection.fileno())
+        socket.send_fds(connection, [b'ready'], [listener] if listener >= 0 else [])
         # not before: Linux lets nobody send a file who has more under way than this limit
         _limit(order, only_files=True)
     except BaseException as error:
-        errand.send(f'{type(error).__name__}: {error}'[:2000].encode())
+        connection.send(f'{type(error).__name__}: {error}'[:2000].encode())
         os._exit(1)
     if listener >= 0:
         os.close(listener)
-    errand.close()
+    connection.close()
 
 
-def _tell_the_end(errand: socket.socket, child: int) -> NoReturn:
+def _tell_the_end(connection: socket.socket, child: int) -> NoReturn:
     """Wait for a kernel, and tell its status and its seconds of processor time: only a parent can.
 
     Nothing in the room sees this process, or can send it a signal.
     """
     _drop_capabilities()
-    close_all_but(errand.fileno())
+    close_all_but(connection.fileno())
     _, status, used = os.wait4(child, 0)
     with contextlib.suppress(OSError):  # the process that wanted to know has ended
-        errand.send(json.dumps([status, used.ru_utime + used.ru_stime]).encode())
+        connection.send(json.dumps([status, used.ru_utime + used.ru_stime]).encode())
     os._exit(0)
 
 
