@@ -77,18 +77,18 @@ def ran(loop, kernel, code):
     return loop.run(kernel.run(code, timeout_sec=60.0))
 
 
-def inhabitants(cgroup, controller='memory'):
+def pids(cgroup, controller='memory'):
     return {int(pid) for pid in (cgroup.folders[controller] / 'cgroup.procs').read_text().split()}
 
 
 def test_a_kernel_and_all_that_it_starts_are_in_their_rooms_cgroup(loop, sandbox, kernels):
     for room, kernel in kernels.items():
         cgroup = sandbox.cgroup(room)
-        before = inhabitants(cgroup)
+        before = pids(cgroup)
         ran(loop, kernel, "import subprocess; p = subprocess.Popen(['sleep', '1000'])")
         for controller in cgroup.folders:
-            assert len(inhabitants(cgroup, controller) - before) == 1
-    student, test = (inhabitants(sandbox.cgroup(room)) for room in ('student', 'test'))
+            assert len(pids(cgroup, controller) - before) == 1
+    student, test = (pids(sandbox.cgroup(room)) for room in ('student', 'test'))
     assert not student & test
     assert os.getpid() not in student | test
 
@@ -158,7 +158,7 @@ def test_nothing_is_left_of_a_sandbox_whoever_is_still_in_it(loop):
     ]
     strangers = subprocess.Popen(command, stdout=subprocess.PIPE, start_new_session=True)
     strangers.stdout.readline()
-    assert len(inhabitants(sandbox.cgroup('student'))) == 2
+    assert len(pids(sandbox.cgroup('student'))) == 2
     loop.run(sandbox.close())
     assert not any(folder.exists() for folder in folders)
     assert strangers.wait(60) == -signal.SIGKILL

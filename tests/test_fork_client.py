@@ -317,7 +317,7 @@ def test_root_gives_the_kernels_of_each_slot_a_user_of_its_own(forked, own):
 # -- its life -------------------------------------------------------------------------------------
 
 
-def inhabitants(network):
+def pids(network):
     return [p for p in psutil.pids() if _network(p) == network]
 
 
@@ -335,19 +335,19 @@ def _network(pid):
 def test_a_room_ends_with_its_kernel(loop, code):
     sandbox, kernel = loop.run(opened())
     network = _network(sandbox._holder.pid)
-    before = len(inhabitants(network))
+    before = len(pids(network))
     linger = "import subprocess; subprocess.Popen(['sleep', '4243'], start_new_session=True)"
     loop.run(kernel.run(linger, timeout_sec=60.0))
     run = loop.run(kernel.run(f'{code}\nwhile True: pass', timeout_sec=5.0))
     assert (run.died, kernel.alive) == (True, False) or '-1' in code
     loop.run(kernel.stop())
     deadline = time.monotonic() + 60
-    while len(inhabitants(network)) > before - 4 and time.monotonic() < deadline:
+    while len(pids(network)) > before - 4 and time.monotonic() < deadline:
         time.sleep(0.02)
     # bubblewrap, the room's keeper, the kernel, its parent
-    assert len(inhabitants(network)) == before - 4
+    assert len(pids(network)) == before - 4
     loop.run(sandbox.close())
-    assert inhabitants(network) == []
+    assert pids(network) == []
 
 
 def test_a_kernel_that_can_not_enter_its_room_is_the_graders_failure(loop, monkeypatch):

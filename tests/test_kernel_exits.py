@@ -1,4 +1,4 @@
-"""Kernels that end while they are graded: whose doing that is, and what comes of it."""
+"""Kernels that end while they are graded: who is responsible, and what comes of it."""
 
 import asyncio
 import contextlib
@@ -17,7 +17,7 @@ from test_execute import GOOD, handed_in, lesson
 from grader.judging import execute as module
 from grader.judging.execute import execute
 from grader.kernels import fork_servers
-from grader.kernels.kernel_exits import Doing, Ending
+from grader.kernels.kernel_exits import Ending, Responsibility
 from grader.kernels.rooms import GradingRooms
 from grader.sandbox import cgroups
 from grader.sandbox.cgroup_hierarchies import NoCgroups, hierarchies
@@ -356,26 +356,26 @@ def test_memory_that_runs_out_elsewhere_is_no_zero(monkeypatch):
 
 NO_MEMORY_LOST = MemoryEvents()
 ENDINGS = [
-    (Ending(0), NO_MEMORY_LOST, Doing.STUDENTS),
-    (Ending(9, sent=True), NO_MEMORY_LOST, Doing.STUDENTS),
-    (Ending(9), NO_MEMORY_LOST, Doing.NOT_SHOWN),
-    (Ending(15), NO_MEMORY_LOST, Doing.NOT_SHOWN),
-    (Ending(64), NO_MEMORY_LOST, Doing.NOT_SHOWN),
-    (Ending(None), NO_MEMORY_LOST, Doing.NOT_SHOWN),
-    (Ending(11), NO_MEMORY_LOST, Doing.DOUBTFUL),
-    (Ending(31), NO_MEMORY_LOST, Doing.DOUBTFUL),
-    (Ending(9), MemoryEvents(limit_reached=True, killed=1), Doing.DOUBTFUL),
-    (Ending(9), MemoryEvents(limit_reached=False, killed=1), Doing.NOT_SHOWN),
-    (Ending(9), MemoryEvents(limit_reached=True, killed=0), Doing.NOT_SHOWN),
-    (Ending(15), MemoryEvents(limit_reached=True, killed=1), Doing.NOT_SHOWN),
+    (Ending(0), NO_MEMORY_LOST, Responsibility.STUDENTS),
+    (Ending(9, sent=True), NO_MEMORY_LOST, Responsibility.STUDENTS),
+    (Ending(9), NO_MEMORY_LOST, Responsibility.NOT_SHOWN),
+    (Ending(15), NO_MEMORY_LOST, Responsibility.NOT_SHOWN),
+    (Ending(64), NO_MEMORY_LOST, Responsibility.NOT_SHOWN),
+    (Ending(None), NO_MEMORY_LOST, Responsibility.NOT_SHOWN),
+    (Ending(11), NO_MEMORY_LOST, Responsibility.DOUBTFUL),
+    (Ending(31), NO_MEMORY_LOST, Responsibility.DOUBTFUL),
+    (Ending(9), MemoryEvents(limit_reached=True, killed=1), Responsibility.DOUBTFUL),
+    (Ending(9), MemoryEvents(limit_reached=False, killed=1), Responsibility.NOT_SHOWN),
+    (Ending(9), MemoryEvents(limit_reached=True, killed=0), Responsibility.NOT_SHOWN),
+    (Ending(15), MemoryEvents(limit_reached=True, killed=1), Responsibility.NOT_SHOWN),
 ]
 
 
-@pytest.mark.parametrize(('ending', 'memory', 'doing'), ENDINGS)
-def test_only_what_can_be_shown_is_the_students(ending, memory, doing):
-    assert ending.whose(memory)[0] is doing
+@pytest.mark.parametrize(('ending', 'memory', 'responsibility'), ENDINGS)
+def test_only_what_can_be_shown_is_the_students(ending, memory, responsibility):
+    assert ending.whose(memory)[0] is responsibility
 
 
 def test_too_much_processor_time_is_the_students_own():
     ending = Ending(9, cpu_sec=max(PROCESS_LIMITS.values()))
-    assert ending.whose(NO_MEMORY_LOST)[0] is Doing.STUDENTS
+    assert ending.whose(NO_MEMORY_LOST)[0] is Responsibility.STUDENTS

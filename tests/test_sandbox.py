@@ -512,7 +512,7 @@ time.sleep(1000)
 """
 
 
-def inhabitants(network):
+def pids(network):
     found = []
     for pid in psutil.pids():
         with contextlib.suppress(OSError):
@@ -528,9 +528,9 @@ def test_nothing_outlives_the_sandbox(loop, code):
     network = os.readlink(f'/proc/{sandbox._holder.pid}/ns/net')
     room = begin(sandbox, code)
     room.stdout.read(1)
-    assert len(inhabitants(network)) >= 1
+    assert len(pids(network)) >= 1
     loop.run(sandbox.close())
-    assert inhabitants(network) == []
+    assert pids(network) == []
     room.wait(30)
 
 
@@ -557,13 +557,13 @@ def test_nothing_outlives_a_grader_that_is_killed():
         [sys.executable, '-c', GRADER], stdout=subprocess.PIPE, text=True, cwd=ROOT
     )
     network = os.readlink(f'/proc/{int(grader.stdout.readline())}/ns/net')
-    assert len(inhabitants(network)) > 4
+    assert len(pids(network)) > 4
     grader.send_signal(signal.SIGKILL)
     grader.wait()
     deadline = time.monotonic() + 60
-    while inhabitants(network) and time.monotonic() < deadline:
+    while pids(network) and time.monotonic() < deadline:
         time.sleep(0.02)
-    assert inhabitants(network) == []
+    assert pids(network) == []
 
 
 def test_a_kill_in_the_room_kills_only_the_room(shared):

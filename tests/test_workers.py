@@ -90,8 +90,8 @@ def test_one_process_grades_as_many_as_it_takes_at_a_time_before_another_is_begu
     with Workers(2, command=COMMAND) as backend:
         for number in (1, 2, 3):
             backend.submit(task(course, f'# wait {mark}'))
-            wait_for(lambda number=number: sum(w.load for w in backend._team) == number)
-            loads.append([worker.load for worker in backend._team])
+            wait_for(lambda number=number: sum(w.load for w in backend._processes) == number)
+            loads.append([worker.load for worker in backend._processes])
         mark.touch()
     assert loads == [[1], [2], [2, 1]]
 
@@ -141,7 +141,7 @@ def test_a_worker_that_hangs_is_replaced(course, tmp_path, monkeypatch):
         work = backend.submit(task(course, f'# stop {mark}'))
         wait_for(mark.exists)
         (hung,) = team()
-        (worker,) = backend._team
+        (worker,) = backend._processes
         wait_for(lambda: worker._missed > 50)
         monkeypatch.setattr(worker_process, 'MOST_MISSED', 50)
         wait_for(lambda: worker.ended)
@@ -175,7 +175,7 @@ def test_more_are_in_flight_while_processors_stand_idle(
     with Workers(1, command=COMMAND) as backend:
         backend.submit(task(course)).result()
         under_way = [backend.submit(task(course, f'# wait {mark}')) for _ in range(8)]
-        (worker,) = backend._team
+        (worker,) = backend._processes
         wait_for(lambda: worker.load == allowed == backend._gate.allowed)
         mark.touch()
         assert [outcomes(work.result()) for work in under_way] == [['passed', 'passed']] * 8

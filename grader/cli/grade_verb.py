@@ -23,7 +23,7 @@ from grader.workers.workers import Workers
 
 def run_grade(course: Course, asked: argparse.Namespace) -> int:
     """Grade, a row for each submission, and write the report. 1 where one could not be graded."""
-    backend = _crew(asked)
+    backend = _backend(asked)
     submissions = find_submissions(course, assignment=asked.assignment, student_id=asked.student)
     if asked.store and asked.seed == RECORDED:
         raise CourseError('--store needs --seed HEX: what is recorded is stored already')
@@ -64,7 +64,7 @@ def run_grade(course: Course, asked: argparse.Namespace) -> int:
     return 1 if failed else 0
 
 
-def _crew(asked: argparse.Namespace) -> Backend | None:
+def _backend(asked: argparse.Namespace) -> Backend | None:
     certificates = Certificates(asked.tls_ca_file, asked.tls_cert, asked.tls_key)
     if not asked.dask:
         if certificates != Certificates():

@@ -56,7 +56,7 @@ class KernelConnection:
 
     @property
     def is_cut_off(self) -> bool:
-        """Whether a connection has ended: by the kernel's end, by its doing, or by a message.
+        """Whether a connection has ended: by the kernel's end, by what it did, or by a message.
 
         ZMQ ends one whose message is larger than MAX_MESSAGE_BYTES; nothing comes on it any more.
         """

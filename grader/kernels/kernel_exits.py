@@ -1,4 +1,4 @@
-"""How a kernel ended, and whose doing that can be shown to be."""
+"""How a kernel ended, and who can be shown to have caused it."""
 
 import resource
 import signal
@@ -16,8 +16,8 @@ _TERMINALS = {'SIGHUP', 'SIGINT', 'SIGQUIT'}
 """What Linux sends to a process whose terminal is closed, or where such keys come."""
 
 
-class Doing(Enum):
-    """Whose doing the end of a kernel is."""
+class Responsibility(Enum):
+    """Who is responsible for the end of a kernel."""
 
     STUDENTS = 'their code did it'
     DOUBTFUL = 'their code seems to have done it: it would do it again'
@@ -35,31 +35,37 @@ class Ending:
     cpu_sec: float = 0.0
     """The time that it kept a processor busy."""
 
-    def whose(self, memory: MemoryEvents) -> tuple[Doing, str]:
-        """Return whose doing it is, and what to say of it; '' for an ordinary exit."""
+    def whose(self, memory: MemoryEvents) -> tuple[Responsibility, str]:
+        """Return who is responsible, and what to say of it; '' for an ordinary exit."""
         if self.signal is None:
-            return Doing.NOT_SHOWN, 'nobody knows how it ended'
+            return Responsibility.NOT_SHOWN, 'nobody knows how it ended'
         if self.signal == 0:
-            return Doing.STUDENTS, ''
+            return Responsibility.STUDENTS, ''
         name = signal_name(self.signal)
         if self.sent:
-            return Doing.STUDENTS, f'your code sent it {name}'
+            return Responsibility.STUDENTS, f'your code sent it {name}'
         if self.signal == signal.SIGKILL and memory.killed:
             return whose_memory(memory)
         if self.cpu_sec >= (most := PROCESS_LIMITS[resource.RLIMIT_CPU]):
-            return Doing.STUDENTS, f'it kept a processor busy for more than {most} s'
+            return Responsibility.STUDENTS, f'it kept a processor busy for more than {most} s'
         if name in _CRASHES:
-            return Doing.DOUBTFUL, f'it crashed with {name}'
+            return Responsibility.DOUBTFUL, f'it crashed with {name}'
         if name in _OWN:
-            return Doing.DOUBTFUL, f'{name} ended it, which Linux sends for what a process does'
-        return Doing.NOT_SHOWN, f'{name} ended it, and nothing in its room had sent that'
+            return (
+                Responsibility.DOUBTFUL,
+                f'{name} ended it, which Linux sends for what a process does',
+            )
+        return Responsibility.NOT_SHOWN, f'{name} ended it, and nothing in its room had sent that'
 
 
-def whose_memory(memory: MemoryEvents) -> tuple[Doing, str]:
-    """Return whose doing it is that a process was ended for want of memory, and what to say."""
+def whose_memory(memory: MemoryEvents) -> tuple[Responsibility, str]:
+    """Return who is responsible where a process was ended for want of memory, and what to say."""
     if memory.limit_reached:
-        return Doing.DOUBTFUL, f'your code used more than {ROOM_MEMORY_BYTES / 2**20:,.0f} MB'
-    return Doing.NOT_SHOWN, 'Linux ended it, because memory ran out outside of its room'
+        return (
+            Responsibility.DOUBTFUL,
+            f'your code used more than {ROOM_MEMORY_BYTES / 2**20:,.0f} MB',
+        )
+    return Responsibility.NOT_SHOWN, 'Linux ended it, because memory ran out outside of its room'
 
 
 def is_from_outside(number: int) -> bool:

@@ -120,7 +120,7 @@ class GradingKernel:
                 self._ending = Ending(max(0, -(provisioner.process.returncode or 0)))
         return self._ending
 
-    def strangers_signal(self) -> int:
+    def foreign_signal(self) -> int:
         """Return what signal from outside ended a process that the kernel started, or 0.
 
         They are known while nobody in the room has asked how they ended.

@@ -19,7 +19,7 @@ from my_robot_basics.validate.questions import (
 from my_robot_basics.validate.together import together
 
 from grader.common.errors import RoomFailure
-from grader.kernels.kernel_exits import Doing, signal_name, whose_memory
+from grader.kernels.kernel_exits import Responsibility, signal_name, whose_memory
 from grader.kernels.kernels import GradingKernel
 from grader.sandbox.cgroups import MemoryEvents
 from grader.sandbox.sandbox import Sandbox
@@ -42,7 +42,7 @@ class GradingRooms:
 
         Unless `isolated`, what runs in them has the grading user's rights. `doubts` is shared
         by all rooms of an exercise: what its code seems to have done. The first time counts as
-        a failure of the room, the second one as its own doing.
+        a failure of the room, the second one as its own.
         """
         self._extra_files = tuple(extra_files)
         self._seed = seed
@@ -100,7 +100,7 @@ class GradingRooms:
         """Run a grade cell, passing its questions on to the student's kernel.
 
         Raises RoomFailure where it failed and something ended a process of the student's that
-        nothing shows to be their doing.
+        nothing shows to have been theirs.
         """
         run = await self._test.run(
             source, timeout_sec=CHECK_TIMEOUT_SEC, on_input=self._ask_student
@@ -110,23 +110,25 @@ class GradingRooms:
         return run
 
     async def _expect_fair(self) -> str:
-        """Return what of the student's doing ended a process of theirs; '' where nothing is told.
+        """Return what the student did to end a process of theirs; '' where nothing tells.
 
         Raises RoomFailure where nothing shows that it was theirs.
         """
         memory = self._sandbox.memory_events('student') if self._sandbox else MemoryEvents()
-        doing, why = Doing.STUDENTS, ''
+        responsibility, why = Responsibility.STUDENTS, ''
         if ending := await self._student.ending():
-            doing, why = ending.whose(memory)
+            responsibility, why = ending.whose(memory)
         elif memory.killed:
-            doing, why = whose_memory(memory)
-        elif number := self._student.strangers_signal():
-            doing = Doing.NOT_SHOWN
+            responsibility, why = whose_memory(memory)
+        elif number := self._student.foreign_signal():
+            responsibility = Responsibility.NOT_SHOWN
             why = f'{signal_name(number)} ended a process in it that nothing in it had sent'
         first = not self._doubts
-        if doing is not Doing.STUDENTS:
+        if responsibility is not Responsibility.STUDENTS:
             self._doubts.append(why)
-        if doing is Doing.NOT_SHOWN or (doing is Doing.DOUBTFUL and first):
+        if responsibility is Responsibility.NOT_SHOWN or (
+            responsibility is Responsibility.DOUBTFUL and first
+        ):
             raise RoomFailure(f'the student room came to an end that is no verdict: {why}')
         return why
 

@@ -54,7 +54,7 @@ class Holder:
         self.pid = int(line)
         self._network = os.open(f'/proc/{self.pid}/ns/net', os.O_RDONLY)
 
-    def inhabitants(self) -> Iterator[int]:
+    def pids(self) -> Iterator[int]:
         """Yield the processes that have this sandbox's network."""
         if self._network < 0:
             return
@@ -71,7 +71,7 @@ class Holder:
         if self._process is None:
             return
         _kill(self._process)
-        while left := list(self.inhabitants()):
+        while left := list(self.pids()):
             for pid in left:
                 with contextlib.suppress(ProcessLookupError):
                     os.kill(pid, signal.SIGKILL)

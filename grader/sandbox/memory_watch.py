@@ -15,16 +15,16 @@ WATCH_EVERY_SEC = 0.5
 _OWN = re.compile(r'^Rss(?:Anon|Shmem):\s+(\d+) kB$', re.MULTILINE)
 
 
-async def watch_memory(inhabitants: Callable[[], Iterable[int]], killed: set[int]) -> None:
+async def watch_memory(pids: Callable[[], Iterable[int]], killed: set[int]) -> None:
     """Keep all processes of each room within its memory: the largest ends first.
 
-    `inhabitants` returns the processes of all rooms; those that were ended for it are added to
+    `pids` returns the processes of all rooms; those that were ended for it are added to
     `killed`. It goes on until it is cancelled.
     """
     while True:
         await asyncio.sleep(WATCH_EVERY_SEC)
         rooms: dict[int, dict[int, int]] = defaultdict(dict)
-        for pid in inhabitants():
+        for pid in pids():
             with contextlib.suppress(OSError):  # it has ended meanwhile
                 rooms[os.stat(f'/proc/{pid}/ns/pid').st_ino][pid] = _own_memory(pid)
         for used in rooms.values():

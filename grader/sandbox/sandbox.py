@@ -58,9 +58,7 @@ class Sandbox:
         self._make_cgroups()
         await self._holder.start()
         if self._cgroups is None:
-            self._watch = asyncio.ensure_future(
-                watch_memory(self._holder.inhabitants, self._killed)
-            )
+            self._watch = asyncio.ensure_future(watch_memory(self._holder.pids, self._killed))
 
     def cgroup(self, room: str) -> RoomCgroup | None:
         """Return the cgroup of a room; None where this machine gives us none."""

@@ -49,7 +49,7 @@ class Workers:
         )
         self._each = -(-least // self._number)
         self._command = command or scoped(COMMAND)
-        self._team: list[WorkerProcess] = []
+        self._processes: list[WorkerProcess] = []
         self._pool = Pool(self.capacity)
 
     def __enter__(self) -> Self:
@@ -98,9 +98,9 @@ class Workers:
 
         One takes some seconds to begin: for two submissions it is not worth while.
         """
-        self._team = [worker for worker in self._team if not worker.ended]
-        idlest = min(self._team, key=lambda worker: worker.load, default=None)
-        if idlest is None or (idlest.load >= self._each and len(self._team) < self._number):
+        self._processes = [worker for worker in self._processes if not worker.ended]
+        idlest = min(self._processes, key=lambda worker: worker.load, default=None)
+        if idlest is None or (idlest.load >= self._each and len(self._processes) < self._number):
             idlest = WorkerProcess(self._command)
-            self._team.append(idlest)
+            self._processes.append(idlest)
         return idlest

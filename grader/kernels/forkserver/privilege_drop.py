@@ -29,7 +29,7 @@ _SECCOMP_MODE_FILTER, _CLEAR_ALL, _CAPABILITIES_V3 = 2, 4, 0x20080522
 
 
 def become_a_kernel(connection: socket.socket, made: dict[str, str]) -> None:
-    """Do as ordered, in the room that comes with the order, and return where only the kernel is left to start.
+    """Do as ordered, in the room that is sent, and return where only the kernel is left to start.
 
     `made` is what imports have put into the environment. The process that was forked first can't
     enter a PID namespace itself: its child does, and it stays to tell how that ended. Neither
