@@ -191,7 +191,7 @@ def test_what_the_lesson_shows_is_run_for_the_names_that_an_answer_needs(area, e
     ).source = area
     notebook = restore(submitted, template).notebook
     first = next(plans(notebook, find_exercises(notebook)[0]))
-    assert [notebook.cells[i].source for i in first.borrowed] == expected
+    assert [notebook.cells[i].source for i in first.demonstrations] == expected
     own = ["reset('area')", area]
     assert sorted(sources(notebook, first)) == sorted(['import math', *expected, *own])
 
@@ -206,7 +206,7 @@ def test_all_that_is_shown_before_runs_first_where_names_are_looked_up_by_other_
     first = next(plans(notebook, exercise))
     assert first.why == 'with all that the lesson shows'
     assert sources(notebook, first) == ['import math', 'shown = 1', "reset('area')", area]
-    assert first.borrowed == ()
+    assert first.demonstrations == ()
 
 
 @pytest.mark.parametrize(
@@ -235,7 +235,7 @@ def test_a_helper_that_is_lent_brings_what_it_needs_along():
     notebook = lesson(area='def area(r): return h(r)', at_start='def h(r): return shown')
     first = next(plans(notebook, find_exercises(notebook)[0]))
     assert first.why == LENT
-    assert [notebook.cells[i].source for i in first.borrowed] == ['shown = 1']
+    assert [notebook.cells[i].source for i in first.demonstrations] == ['shown = 1']
 
 
 def sources(notebook, plan):
@@ -244,13 +244,13 @@ def sources(notebook, plan):
 
 def test_what_each_plan_runs():
     notebook = lesson(at_start='early = 1', at_end='late = 2')
-    alone, lent, whole = (
+    alone, others, whole = (
         sources(notebook, p) for p in plans(notebook, find_exercises(notebook)[1])
     )
     node = 'class Talker: pass\nrate_hz = 5'
     own = ["reset('Talker', 'rate_hz')", node, "run_answer('Talker')"]
     assert alone == ['import math', 'import cmath', *own]
-    assert lent == [
+    assert others == [
         'early = 1', 'import math', 'def area(r): return r', '# try it', 'import cmath', *own,
         '# try that',
     ]  # fmt: skip
@@ -273,6 +273,6 @@ def test_no_plan_writes_or_runs_a_program_of_the_lesson(magic, area):
 
 def test_a_lent_cell_from_below_does_not_bring_the_other_exercises_along():
     notebook = lesson(area='area = h', node='rate_hz = 1', at_end='h = 2')
-    lent = next(plans(notebook, find_exercises(notebook)[0]))
-    assert 'h = 2' in sources(notebook, lent)
-    assert 'rate_hz = 1' not in sources(notebook, lent)
+    others = next(plans(notebook, find_exercises(notebook)[0]))
+    assert 'h = 2' in sources(notebook, others)
+    assert 'rate_hz = 1' not in sources(notebook, others)

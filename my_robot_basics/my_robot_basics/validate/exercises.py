@@ -31,7 +31,7 @@ class Plan:
 
     cells: tuple[int, ...]
     why: str
-    borrowed: tuple[int, ...] = ()
+    demonstrations: tuple[int, ...] = ()
     """Those of them that the lesson shows, run for the names that they bind."""
 
 
@@ -48,7 +48,7 @@ def find_exercises(notebook: NotebookNode) -> tuple[Exercise, ...]:
 
 
 def plans(notebook: NotebookNode, exercise: Exercise) -> Iterator[Plan]:
-    """Yield what to run, least first: the answer alone, with what it lacks, the whole lesson.
+    """Yield what to run, least first: the answer alone, with what it missing, the whole lesson.
 
     The first plan is left out where the text shows already that the answer needs a name that
     only another of the student's cells binds. Demonstrations come with the names that they bind:
@@ -57,21 +57,21 @@ def plans(notebook: NotebookNode, exercise: Exercise) -> Iterator[Plan]:
     cells = notebook.cells
     own = (exercise.reset, exercise.answer, *exercise.run)
     setup = [i for i, cell in enumerate(cells) if role(cell) == 'setup' and i < exercise.reset]
-    lacks = _lacks(cells, exercise, setup)
-    lent = [
+    missing = _missing(cells, exercise, setup)
+    others = [
         i
         for i, cell in enumerate(cells)
         if i != exercise.answer
         and _is_students(cell)
-        and (i < _end(exercise) or names_of(cell.source).bound & lacks)
+        and (i < _end(exercise) or names_of(cell.source).bound & missing)
     ]
     alone = {*setup, *own}
     if names_of(cells[exercise.answer].source).needs_more:
         yield _with_all_shown(cells, exercise)
-    elif not lent or not _lends(cells, lent, lacks):
+    elif not others or not _binds_what_is_missing(cells, others, missing):
         yield _with_what_is_shown(cells, exercise, alone, why='the answer alone')
-    if lent:
-        yield _with_what_is_shown(cells, exercise, alone | {*lent}, why='with your other cells')
+    if others:
+        yield _with_what_is_shown(cells, exercise, alone | {*others}, why='with your other cells')
     whole = [i for i, cell in enumerate(cells) if _is_code(cell) and not _is_apart(cell)]
     yield Plan(
         cells=tuple(i for i in whole if role(cells[i]) not in ('grade', 'locked') or i in own),
@@ -89,10 +89,10 @@ def plan_for_names(
     cells = notebook.cells
     more = _with_all_shown(cells, exercise)
     binds = {i for i, cell in enumerate(cells) if _is_code(cell) and _binds(cell, names)}
-    lent = {i for i in binds if _is_students(cells[i])}
-    if not (binds & {*more.cells, *lent}) - {*plan.cells}:
+    others = {i for i in binds if _is_students(cells[i])}
+    if not (binds & {*more.cells, *others}) - {*plan.cells}:
         return None
-    return Plan(tuple(sorted({*more.cells, *lent})), why='with what binds a name that it needs')
+    return Plan(tuple(sorted({*more.cells, *others})), why='with what binds a name that it needs')
 
 
 def _with_all_shown(cells: list[NotebookNode], exercise: Exercise) -> Plan:
@@ -132,16 +132,18 @@ def _end(exercise: Exercise) -> int:
     return max((exercise.answer, *exercise.run, *exercise.grades))
 
 
-def _lacks(cells: list[NotebookNode], exercise: Exercise, setup: list[int]) -> frozenset[str]:
+def _missing(cells: list[NotebookNode], exercise: Exercise, setup: list[int]) -> frozenset[str]:
     """Names that the answer needs, or owes, and that neither it nor the setup binds."""
     answer = names_of(cells[exercise.answer].source)
     return (answer.needed | set(exercise.defines)) - answer.bound - _bound(cells, setup)
 
 
-def _lends(cells: list[NotebookNode], lent: list[int], lacks: frozenset[str]) -> bool:
+def _binds_what_is_missing(
+    cells: list[NotebookNode], others: list[int], missing: frozenset[str]
+) -> bool:
     """Whether one of these cells binds a name that is lacking, as far as its text tells."""
-    names = [names_of(cells[i].source) for i in lent]
-    return bool(lacks) and any(each.binds_more or each.bound & lacks for each in names)
+    names = [names_of(cells[i].source) for i in others]
+    return bool(missing) and any(each.binds_more or each.bound & missing for each in names)
 
 
 def _with_what_is_shown(
@@ -149,17 +151,17 @@ def _with_what_is_shown(
 ) -> Plan:
     """Plan the chosen cells, and what the lesson shows that binds a name which they need."""
     shown = [i for i, c in enumerate(cells) if _is_code(c) and role(c) in ('demo', 'setup')]
-    borrowed: set[int] = set()
+    demonstrations: set[int] = set()
     todo = [(exercise.answer, names_of(cells[i].source).needed) for i in chosen]
     while todo:
         place, needed = todo.pop()
-        for name in needed - _bound(cells, chosen | borrowed):
+        for name in needed - _bound(cells, chosen | demonstrations):
             binding = [i for i in shown if name in names_of(cells[i].source).bound]
             # of several, the one that ran last when the lesson was read from top to bottom
             nearest = [i for i in binding if i < place][-1:] or binding[:1]
-            borrowed.update(nearest)
+            demonstrations.update(nearest)
             todo += [(i, names_of(cells[i].source).needed) for i in nearest]
-    return Plan(tuple(sorted(chosen | borrowed)), why, tuple(sorted(borrowed)))
+    return Plan(tuple(sorted(chosen | demonstrations)), why, tuple(sorted(demonstrations)))
 
 
 def _bound(cells: list[NotebookNode], indexes: Iterable[int]) -> set[str]:

@@ -164,7 +164,7 @@ def _name(cells: list[NotebookNode], index: int) -> str:
 
 def _lacks_a_name(runs: dict[int, CellRun], exercise: Exercise, plan: Plan) -> bool:
     """Whether the answer, or starting it, stopped for want of a name, or may when it is called."""
-    if not all(runs[i].ran_to_end for i in plan.borrowed):
+    if not all(runs[i].ran_to_end for i in plan.demonstrations):
         return True  # what the lesson shows may need more than names
     return any(
         (error := runs[i].error) is not None and error.ename == 'NameError'
