@@ -5,7 +5,7 @@ from contextlib import nullcontext
 
 import pytest
 from my_robot_basics.checks import CheckFailed, relay
-from my_robot_basics.checks.latched import said_to_nobody
+from my_robot_basics.checks.latched import published_before_discovery
 from nodes.running import imported, running
 from rclpy.node import Node
 from std_msgs.msg import String
@@ -41,7 +41,10 @@ def test_nobody_gets_what_was_said_before_without_asking_for_it(run, place, time
         live.wait_until(lambda: greeter.publish(String(data='hello')) or 'hello' in heard, 20.0)
         probe.destroy_publisher(greeter)
         for _ in range(times):
-            with said_to_nobody('/arm_description', description) as (message, publisher):
+            with published_before_discovery('/arm_description', description) as (
+                message,
+                publisher,
+            ):
                 said_before.add(message.data)
                 # what comes later does arrive, and messages of a publisher keep their order
                 later = description()

@@ -88,7 +88,7 @@ def test_the_fix_of_any_profile_is_content_with_the_offer(offered, asked):
     given_, wanted = infinite(QoSProfile(**offered)), infinite(QoSProfile(**asked))
     gaps = qos.incompatible(given_, wanted)
     if gaps:
-        fixed = eval(qos._modest(given_, wanted), {**globals()})
+        fixed = eval(qos._compatible_profile(given_, wanted), {**globals()})
         assert qos.incompatible(given_, infinite(fixed)) == {}
 
 

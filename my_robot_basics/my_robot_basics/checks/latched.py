@@ -12,12 +12,12 @@ from my_robot_basics.graph.watcher import Watcher
 LATCHED = QoSProfile(
     depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL
 )
-MOST_STRANGERS = 100
+MOST_PARTICIPANTS = 100
 """How often to try to publish before discovery is done; most often the first time will do."""
 
 
 @contextmanager
-def said_to_nobody(
+def published_before_discovery(
     topic_name: str, make_message: Callable[[], Any]
 ) -> Iterator[tuple[Any, Publisher]]:
     """Yield a message that was published when its publisher's participant knew of nobody.
@@ -25,7 +25,7 @@ def said_to_nobody(
     The participant stays, to be met. Where discovery was faster, all begins again: a node that had
     met the publisher before it spoke gets the message without having asked for it.
     """
-    for _ in range(MOST_STRANGERS):
+    for _ in range(MOST_PARTICIPANTS):
         with Watcher() as stranger:
             message = make_message()
             publisher = stranger.node.create_publisher(type(message), topic_name, LATCHED)
@@ -33,4 +33,4 @@ def said_to_nobody(
             if publisher.get_subscription_count() == 0:
                 yield message, publisher
                 return
-    raise RuntimeError(f'discovery was faster than a first message, {MOST_STRANGERS} times')
+    raise RuntimeError(f'discovery was faster than a first message, {MOST_PARTICIPANTS} times')

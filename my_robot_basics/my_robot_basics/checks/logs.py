@@ -9,7 +9,7 @@ from my_robot_basics.checks.node_log import NodeLog
 from my_robot_basics.feedback.errors import fail
 from my_robot_basics.graph.raised import what_raised
 
-AFTERTHOUGHT_SEC = 0.3
+EXTRA_SEC = 0.3
 """How long angles may come behind a warning …"""
 WARNED_SEC = 0.1
 """… And a warning behind the angles: a later one is found with the next target."""
@@ -145,7 +145,7 @@ class Log(NodeLog):
 
         # angles may come just behind the warning, and so may a second one, which is no answer to
         # the next target
-        if self.wait_for(has_angles, timeout_sec=AFTERTHOUGHT_SEC):
+        if self.wait_for(has_angles, timeout_sec=EXTRA_SEC):
             fail(
                 expected=f'no angles from {self.node_name} for a target out of reach',
                 seen=self.shown('INFO'),

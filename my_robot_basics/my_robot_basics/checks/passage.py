@@ -47,7 +47,7 @@ PAIR_GAP_SEC = 0.01
 """Two messages so near to each other: a node that keeps only the latest for a timer loses one."""
 MOST_GAP_SEC, MOST_APART = 0.015, 20
 """A busy machine lets more time pass between them: so many such pairs prove nothing."""
-WHOLE_PAIRS, MOST_TORN = 2, 6
+WHOLE_PAIRS, MOST_SPLIT = 2, 6
 """So many pairs have to come out, before so many did not: a queue of depth 1 may lose one."""
 PAUSE_SEC = 1.1
 PAUSES = 3
@@ -112,8 +112,8 @@ class Passage:
 
     def loses_one_of_two(self, messages: Iterator[Sent]) -> bool:
         """Whether of two messages in quick succession mostly one alone comes out."""
-        whole = torn = apart = 0
-        while whole < WHOLE_PAIRS and torn < MOST_TORN and not self._is_over(LAST_SEC):
+        whole = split = apart = 0
+        while whole < WHOLE_PAIRS and split < MOST_SPLIT and not self._is_over(LAST_SEC):
             first, gap = next(messages), Stopwatch()
             self._waiting = [first]
             self._publish(first.message)
@@ -121,12 +121,12 @@ class Passage:
             is_apart = gap.wall_sec() > MOST_GAP_SEC
             self._send(next(messages))
             if self._waiting:
-                torn += 1
+                split += 1
             elif is_apart and apart < MOST_APART:
                 apart += 1
             else:
                 whole += 1
-        return torn >= MOST_TORN
+        return split >= MOST_SPLIT
 
     def loses_after_a_pause(self, messages: Iterator[Sent]) -> bool:
         """Whether a message that comes after a pause never comes out."""

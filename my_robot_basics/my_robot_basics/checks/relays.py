@@ -11,7 +11,7 @@ from rclpy.serialization import serialize_message
 from my_robot_basics.checks import relay_endpoints
 from my_robot_basics.checks.callbacks import Raised
 from my_robot_basics.checks.carried import Carried
-from my_robot_basics.checks.latched import said_to_nobody
+from my_robot_basics.checks.latched import published_before_discovery
 from my_robot_basics.checks.passage import QUIET_SEC, Passage
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.relay_endpoints import RelayEndpoints
@@ -87,7 +87,7 @@ class Relay:
             endpoints.expect_type(watcher, message_type)
             endpoints.expect_one_profile(watcher)
             for number in range(times):
-                with said_to_nobody(self.source, make_message) as (message, publisher):
+                with published_before_discovery(self.source, make_message) as (message, publisher):
                     self._expect_out(watcher, recorder, message, raised)
                     # one behind the other, should there be two
                     watcher.spin_for(QUIET_SEC)

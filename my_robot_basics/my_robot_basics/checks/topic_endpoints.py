@@ -18,7 +18,7 @@ ABSENT_SEC = 3.0
 """How long to wait for an endpoint that the notebook's own process says it has not got."""
 DEPTH = 5000
 """Queue of a recording: more messages than any look can bring (KEEP_LAST overwrites)."""
-ACQUAINTANCE_SEC = 0.5
+DISCOVERY_SEC = 0.5
 """How long a BEST_EFFORT subscription is given to meet the publisher, and to read what it sent."""
 
 
@@ -45,7 +45,7 @@ class TopicEndpoints:
         ):
             self._fail_no_subscription(watcher, type_, timeout_sec=timeout_sec)
         # a BEST_EFFORT one may not know yet of a publisher that knows of it
-        watcher.spin_for(ACQUAINTANCE_SEC if self.sends_once(watcher) else 0.0)
+        watcher.spin_for(DISCOVERY_SEC if self.sends_once(watcher) else 0.0)
         return publisher
 
     def sends_once(self, watcher: Watcher) -> bool:

@@ -11,7 +11,7 @@ from my_robot_basics.checks import sampling, wall_recording
 from my_robot_basics.checks.clock_use import are_left_alone
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.recording import Recording
-from my_robot_basics.checks.topic_endpoints import ACQUAINTANCE_SEC, TopicEndpoints
+from my_robot_basics.checks.topic_endpoints import DISCOVERY_SEC, TopicEndpoints
 from my_robot_basics.exchange import student
 from my_robot_basics.feedback.errors import CheckFailed, Disturbed, expect, fail, shorten
 from my_robot_basics.graph.raised import what_raised
@@ -19,7 +19,7 @@ from my_robot_basics.graph.watcher import Watcher
 
 ONCE_MORE_SEC = 2.0
 """How long to wait for the answer to what is sent a second time."""
-AFTERTHOUGHT_SEC = 0.3
+EXTRA_SEC = 0.3
 """How long to listen for what must not come beside the right message."""
 LATE_SEC = 0.02
 """A machine that keeps a check waiting so long may make an honest node miss a period."""
@@ -81,7 +81,7 @@ class Topic(TopicEndpoints):
             for message in messages:
                 publisher.publish(message)
             publisher.wait_for_all_acked(Duration(seconds=2))
-            watcher.spin_for(ACQUAINTANCE_SEC if self.sends_once(watcher) else 0.0)
+            watcher.spin_for(DISCOVERY_SEC if self.sends_once(watcher) else 0.0)
 
     def wait_for(
         self,
@@ -120,7 +120,7 @@ class Topic(TopicEndpoints):
                 lambda: bool(found() or wrong()), timeout_sec=timeout_sec
             )
             if is_decided and (once or never is not None):
-                watcher.spin_for(AFTERTHOUGHT_SEC)
+                watcher.spin_for(EXTRA_SEC)
             received = recorder.messages()
             if wrong() or not found():
                 if not received and after is not None:

@@ -18,7 +18,7 @@ from my_robot_basics.live.panel import STOPPED, NodePanel, Panel
 from my_robot_basics.live.refusals import is_made, no_node_yet, not_a_class
 from my_robot_basics.session import classroom
 from my_robot_basics.session.errors import NotRunnable
-from my_robot_basics.session.neighbours import Neighbours, bury_the_dead
+from my_robot_basics.session.neighbours import Neighbours, destroy_orphans
 
 N = TypeVar('N', bound=Node)
 
@@ -129,7 +129,7 @@ def _ensure_rclpy() -> None:
     # rclpy.init() in a student's cell listens for Ctrl-C: after one, a thread of rclpy shuts down
     # every context of this process, on a busy machine only when the next node has begun
     uninstall_signal_handlers()
-    bury_the_dead()
+    destroy_orphans()
     if not rclpy.ok():
         rclpy.try_shutdown()  # a context that was shut down by hand cannot be initialised again
         rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)

@@ -11,7 +11,7 @@ from my_robot_basics.live import runner
 
 TOPIC = '/kinematics/joint_states'
 PERIOD_SEC = 0.1
-WARMTH = '/kinematics/joint_temperature'
+TEMPERATURE = '/kinematics/joint_temperature'
 TOOL = '/kinematics/tool_point'
 
 
@@ -23,9 +23,9 @@ class UnknownRobot(Node):
         self._parts: list[Node] = []
         self._publishers_and_messages: list[tuple[Publisher, Any]] = []
         # no table of them can be imported: a running system is to be asked
-        self._add('encoder_board', publishes=(TOPIC, WARMTH))
+        self._add('encoder_board', publishes=(TOPIC, TEMPERATURE))
         self._add('self_test', publishes=(TOPIC,), subscribes=(TOPIC,))
-        self._add('motor_guard', subscribes=(TOPIC, WARMTH))
+        self._add('motor_guard', subscribes=(TOPIC, TEMPERATURE))
         self._add('pose_logger', subscribes=(TOPIC,))
         self._add('tool_tracker', publishes=(TOOL,), subscribes=(TOPIC,))
         # and those that only seem to belong there
@@ -104,6 +104,6 @@ def _message(topic_name: str) -> JointState | Point | Temperature:
     """What goes over a topic of the robot; angles in rad, metres, degrees Celsius."""
     if topic_name == TOOL:
         return Point(x=1.2, y=0.8)
-    if topic_name == WARMTH:
+    if topic_name == TEMPERATURE:
         return Temperature(temperature=41.0)
     return JointState(name=['joint1', 'joint2'], position=[0.3, -0.6])

@@ -10,10 +10,10 @@ from rclpy.node import Node
 
 from my_robot_basics.session import classroom
 
-MEETING_SEC = 0.3
+DISCOVERY_SEC = 0.3
 """How long a new observer needs, most often, to discover the nodes of other processes."""
 
-PARTING_SEC = 6.0
+REMOVAL_SEC = 6.0
 """How long a node that is gone may be on the graph: its process says so in one datagram, and where
 that was lost, or it was killed, it is forgotten when its lease of five seconds is over."""
 
@@ -53,8 +53,8 @@ class Neighbours:
         if any(node.get_fully_qualified_name() == name for node in nodes_here()):
             return True
         if not classroom.in_grading_room():  # where nobody else can have come
-            time.sleep(max(0.0, self._since + MEETING_SEC - time.monotonic()))
-        deadline = time.monotonic() + PARTING_SEC
+            time.sleep(max(0.0, self._since + DISCOVERY_SEC - time.monotonic()))
+        deadline = time.monotonic() + REMOVAL_SEC
         while self._is_announced(name):
             if time.monotonic() > deadline:
                 return True
@@ -69,7 +69,7 @@ class Neighbours:
         }
 
 
-def bury_the_dead() -> None:
+def destroy_orphans() -> None:
     """Destroy nodes whose context was shut down: they are of no use, but still on the graph."""
     for node in nodes_here(alive=False):
         node.destroy_node()

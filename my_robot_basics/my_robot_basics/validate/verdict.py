@@ -173,8 +173,8 @@ def _trouble(name: str, run: CellRun) -> str | None:
 
 
 def _who_ended_it(own: list[tuple[str, CellRun]]) -> str:
-    culprits = [sentence for each in own if (sentence := _trouble(*each))]
-    return culprits[0] if culprits else 'something that your code left running ended it'
+    causes = [sentence for each in own if (sentence := _trouble(*each))]
+    return causes[0] if causes else 'something that your code left running ended it'
 
 
 def _what_happened(run: CellRun) -> str:

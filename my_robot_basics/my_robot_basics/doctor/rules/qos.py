@@ -33,13 +33,13 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
                     'subscription',
                     type_name=subscription.type_name,
                     name=evidence.name,
-                    qos_profile=_modest(offered, asked),
+                    qos_profile=_compatible_profile(offered, asked),
                 ),
                 broken=(subscription,),
             )
 
 
-def _modest(offered: QoSProfile, asked: QoSProfile) -> str:
+def _compatible_profile(offered: QoSProfile, asked: QoSProfile) -> str:
     """A profile in Python that the offer satisfies, and no more modest than need be."""
     gaps = incompatible(offered, asked)
     reliable = asked.reliability == ReliabilityPolicy.RELIABLE and 'RELIABILITY' not in gaps

@@ -86,15 +86,15 @@ def _similar(evidence: Seen, kind: Kind) -> list[Endpoint]:
         and (kind != 'client' or end.name not in met)
     ]
     wanted = evidence.name
-    return sorted(near, key=lambda end: (end.name in met, -_likeness(end.name, wanted)))
+    return sorted(near, key=lambda end: (end.name in met, -_similarity(end.name, wanted)))
 
 
 def are_similar(one: str, other: str) -> bool:
     """Whether one of two names may have been meant where the other one is used."""
-    return _likeness(one, other) >= CUTOFF
+    return _similarity(one, other) >= CUTOFF
 
 
-def _likeness(one: str, other: str) -> float:
+def _similarity(one: str, other: str) -> float:
     """0 to 1; the same last part counts as much as a small slip of the pen."""
     if _last(one) == _last(other):
         return 0.9
