@@ -3,8 +3,8 @@
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
-from my_robot_basics.checks.carried import Carried
 from my_robot_basics.checks.recorder import Recorder
+from my_robot_basics.checks.relay_faults import RelayFaults
 from my_robot_basics.checks.variety import Sent
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
@@ -76,7 +76,7 @@ class Passage:
         self._slowest_sec = 0.0
         self._watch = Stopwatch()
 
-    def carry(self, messages: Iterator[Sent]) -> Carried:
+    def carry(self, messages: Iterator[Sent]) -> RelayFaults:
         """Publish each once the one before has come out or is late, until enough came in a row.
 
         The others of a crowd may push one out of a queue: such a loss counts for nothing.
@@ -101,8 +101,10 @@ class Passage:
         copies = min(doubled) if len(doubled) >= FEWEST_COPIES else 1
         is_enough = in_a_row >= _fewest(row) or len(self._waiting) < FEWEST_LOST
         if late < MOST_LATE and is_enough:
-            return Carried(copies=copies)
-        return Carried(late=late, lost=tuple(sent.kind for sent in self._waiting), copies=copies)
+            return RelayFaults(copies=copies)
+        return RelayFaults(
+            late=late, lost=tuple(sent.kind for sent in self._waiting), copies=copies
+        )
 
     def invents(self, sent: Iterable[Any]) -> bool:
         """Whether messages came out that are not among those that anybody `sent`."""

@@ -10,11 +10,11 @@ from rclpy.serialization import serialize_message
 
 from my_robot_basics.checks import relay_endpoints
 from my_robot_basics.checks.callbacks import Raised
-from my_robot_basics.checks.carried import Carried
 from my_robot_basics.checks.latched import published_before_discovery
 from my_robot_basics.checks.passage import QUIET_SEC, Passage
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.relay_endpoints import RelayEndpoints
+from my_robot_basics.checks.relay_faults import RelayFaults
 from my_robot_basics.checks.variety import filled, varied
 from my_robot_basics.feedback.errors import fail
 from my_robot_basics.graph.watcher import Watcher
@@ -95,7 +95,7 @@ class Relay:
                         self._is_same(received, message) for received in recorder.messages()
                     )
                     if count > 1:
-                        self._fail(*Carried(copies=count).fault())
+                        self._fail(*RelayFaults(copies=count).fault())
                     if number + 1 == times:
                         self._expect_passage(watcher, recorder, publisher, make_message, raised)
 

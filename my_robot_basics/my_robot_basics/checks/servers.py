@@ -6,9 +6,9 @@ from typing import Any, NoReturn
 
 from rclpy.publisher import Publisher
 
-from my_robot_basics.checks.callbacks import Raised
+from my_robot_basics.checks.callbacks import CallbackErrors
 from my_robot_basics.checks.holding_server import HoldingServer
-from my_robot_basics.checks.pulse import Pulse
+from my_robot_basics.checks.heartbeat import Heartbeat
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.responses import Made, MadeOf, of_none
 from my_robot_basics.checks.sole_server import expect_no_other
@@ -70,7 +70,7 @@ class Server(HoldingServer):
         super().__init__(watcher.node, **served)
         self.asked_on = asked_on
         self._watcher, self._answers, self._beats = watcher, answers, beats
-        self._raised = Raised({*answers.publishers(), *beats.publishers()})
+        self._raised = CallbackErrors({*answers.publishers(), *beats.publishers()})
         self.made = Made(watcher, answers, self.sent)
         """The messages on `to`, beside the responses."""
         self._publisher: Publisher | None = None
@@ -157,7 +157,7 @@ class Server(HoldingServer):
     def expect_alive(self, meanwhile: str) -> None:
         """The node goes on counting on `alive`. `meanwhile`: what happens, as a clause.
 
-        Raises CheckFailed where the count stands still (see `Pulse`), or another node serves.
+        Raises CheckFailed where the count stands still (see `Heartbeat`), or another node serves.
         """
         if not self._goes_on():
             self._fail_still(meanwhile)
@@ -176,7 +176,7 @@ class Server(HoldingServer):
         return why_not_published(self.name, goes_on=self._goes_on)
 
     def _goes_on(self) -> bool:
-        return Pulse(self._watcher, self._beats).goes_on()
+        return Heartbeat(self._watcher, self._beats).goes_on()
 
     def _fail_still(self, meanwhile: str) -> NoReturn:
         why = waits_for_answer if self.holds_any() else waits_for_server

@@ -3,7 +3,7 @@
 from types import SimpleNamespace
 
 import pytest
-from my_robot_basics.checks import pulse
+from my_robot_basics.checks import heartbeat
 
 
 class Fake:
@@ -65,6 +65,6 @@ def test_only_a_silence_that_the_machine_does_not_explain_counts(
     monkeypatch, beats_sec, free_share, goes_on
 ):
     fake = Fake(beats_sec, free_share=free_share)
-    monkeypatch.setattr(pulse, 'Stopwatch', fake.stopwatch)
-    monkeypatch.setattr(pulse.student, 'times_raised', lambda name: 0)
-    assert pulse.Pulse(fake, SimpleNamespace(received=fake.received)).goes_on() is goes_on
+    monkeypatch.setattr(heartbeat, 'Stopwatch', fake.stopwatch)
+    monkeypatch.setattr(heartbeat.student, 'times_raised', lambda name: 0)
+    assert heartbeat.Heartbeat(fake, SimpleNamespace(received=fake.received)).goes_on() is goes_on

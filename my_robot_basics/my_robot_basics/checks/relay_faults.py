@@ -8,7 +8,7 @@ CALLBACK = 'publish in every call of the callback'
 
 
 @dataclass(frozen=True)
-class Carried:
+class RelayFaults:
     """What was amiss: how many messages were late, which of them never came, and what came twice.
 
     Each that is late was not there before the next one was sent.
