@@ -16,7 +16,7 @@ from grader.notebook.restore import AssignmentTemplate
 from grader.notebook.submission import Submission, read_submission
 from grader.storage.backups import bring_in_order
 from grader.storage.database import in_sentences, one_engine
-from grader.storage.gradebook import Stored, store
+from grader.storage.gradebook import StoredResult, store
 from grader.storage.late_penalties import deadlines
 from grader.storage.lock import gradebook_lock
 from grader.storage.pipeline import prepared_template
@@ -37,7 +37,7 @@ AHEAD = 4
 
 
 @dataclass(frozen=True)
-class Graded:
+class GradedSubmission:
     """A submission that was judged, and is not stored yet."""
 
     submission: Submission
@@ -53,7 +53,7 @@ class SubmissionOutcome:
 
     student_id: str
     assignment: str
-    stored: Stored | None
+    stored: StoredResult | None
     """What the gradebook holds now; None where nothing could be stored."""
     reason: str
     seconds: float | None = None
@@ -94,7 +94,7 @@ def grade_all(
         isolated = backend.require_isolation(trust_students=trust_students)
         assignments = _prepare(course, submissions, seed=seed, isolated=isolated)
 
-        def start(found: SubmissionFolder) -> 'Future[Graded]':
+        def start(found: SubmissionFolder) -> 'Future[GradedSubmission]':
             if found.problem:
                 raise CourseError(found.problem)
             submission = read_submission(
@@ -104,7 +104,7 @@ def grade_all(
             its_seed = assignment.seed_of(submission.student_id)
             key = key_of(submission, assignment.conditions, seed=its_seed)
             if not force and (earlier := find_earlier_result(course, submission, key)):
-                return completed(Graded(submission, earlier))
+                return completed(GradedSubmission(submission, earlier))
             judged = submit_for_grading(  # restores it here; runs and judges it in a worker
                 submission,
                 assignment.template,
@@ -137,12 +137,14 @@ def _prepare(
     return prepared
 
 
-def _graded(submission: Submission, result: Result, key: str) -> Graded:
+def _graded(submission: Submission, result: Result, key: str) -> GradedSubmission:
     remember(result.notebook, key)
-    return Graded(submission, result.notebook, seconds=result.seconds)
+    return GradedSubmission(submission, result.notebook, seconds=result.seconds)
 
 
-def _store(course: Course, found: SubmissionFolder, work: 'Future[Graded]') -> SubmissionOutcome:
+def _store(
+    course: Course, found: SubmissionFolder, work: 'Future[GradedSubmission]'
+) -> SubmissionOutcome:
     """Wait until a submission is judged, and store it; say why where that can't be done."""
     stored, reason, seconds, reused = None, found.problem, None, False
     which = printable(f'{found.assignment} of {found.student_id}')

@@ -9,7 +9,7 @@ import zipfile
 import pytest
 
 from grader.collect import archive_entries, archives
-from grader.collect.archives import Allowance, unpack
+from grader.collect.archives import UnpackLimits, unpack
 
 A_ZIP, A_TAR = 'x.zip', 'x.tar.gz'
 
@@ -36,7 +36,7 @@ def members(archive, *, files=100, size=10_000_000):
     aside = archive.parent / 'aside'
     shutil.rmtree(aside, ignore_errors=True)
     aside.mkdir()
-    left = Allowance(files, size)
+    left = UnpackLimits(files, size)
     found = list(unpack(archive, name=archive.name, aside=aside, left=left, wanted=lambda n: True))
     # whatever happens: plain files under names of ours, and none that nobody was told of
     assert set(aside.rglob('*')) == {m.file for m in found if m.file}

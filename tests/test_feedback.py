@@ -6,7 +6,7 @@ import pytest
 from course_maker import PIXEL, TOY, answered, executed, released_course, submit
 from nbformat.v4 import new_code_cell, new_output
 
-from grader.common.parsing import Limits, TooHard, parse
+from grader.common.parsing import Limits, ParsingFailed, parse
 from grader.course import Course
 from grader.notebook.restore import KEY, restore
 from grader.notebook.submission import read_submission
@@ -203,7 +203,7 @@ def test_text_that_takes_for_ever_is_shown_as_it_was_typed(course, monkeypatch):
 def test_a_page_that_can_t_be_made_at_all_costs_no_other(course, monkeypatch):
     def too_hard(function, notebook, about, *more, limits):
         if about['student'] == 'eve':
-            raise TooHard('it takes too much memory')
+            raise ParsingFailed('it takes too much memory')
         return parse(function, notebook, about, *more, limits=limits)
 
     for student in ('eve', 'zoe'):

@@ -1,6 +1,6 @@
 import pytest
 
-from grader.report.message_groups import Said, grouped, numberless
+from grader.report.message_groups import CellMessage, grouped, numberless
 
 
 @pytest.mark.parametrize(
@@ -17,12 +17,12 @@ def test_reasons_are_grouped_by_their_words_without_the_numbers(reason, words):
 
 def test_what_differs_in_numbers_alone_is_one_reason_of_each_assignment():
     said = [
-        Said('ada', 'one', 'a', 'saw 1'),
-        Said('bob', 'one', 'b', 'saw 2'),
-        Said('bob', 'one', 'a', 'saw 3'),
-        Said('eve', 'two', '', 'saw 1'),
-        Said('\x1b', 'two', '', 'saw 1'),
-        Said('zoe', 'two', 'a', 'heard 1'),
+        CellMessage('ada', 'one', 'a', 'saw 1'),
+        CellMessage('bob', 'one', 'b', 'saw 2'),
+        CellMessage('bob', 'one', 'a', 'saw 3'),
+        CellMessage('eve', 'two', '', 'saw 1'),
+        CellMessage('\x1b', 'two', '', 'saw 1'),
+        CellMessage('zoe', 'two', 'a', 'heard 1'),
     ]
     found = [(r.assignment, r.words, r.example, r.students, r.checks) for r in grouped(said)]
     assert found == [
@@ -46,5 +46,7 @@ def test_what_differs_in_numbers_alone_is_one_reason_of_each_assignment():
     ],
 )
 def test_a_number_that_is_the_same_for_all_is_told(one, other, words):
-    [reason] = grouped([Said('ada', 'one', 'a', one), Said('bob', 'one', 'a', other)])
+    [reason] = grouped(
+        [CellMessage('ada', 'one', 'a', one), CellMessage('bob', 'one', 'a', other)]
+    )
     assert reason.words == words

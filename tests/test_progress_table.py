@@ -7,13 +7,13 @@ from dataclasses import replace
 from grader.grade import SubmissionOutcome
 from grader.report import progress_table
 from grader.report.progress_table import print_rows, why
-from grader.storage.gradebook import Stored
+from grader.storage.gradebook import StoredResult
 from grader.storage.submitted import SubmissionFolder
 
 SAID = {
-    'ada': Stored(score=5.0, max_score=5.0, former=None, pending=False, reason=''),
-    'bob': Stored(score=2.0, max_score=5.0, former=None, pending=False, reason='?'),
-    'eve': Stored(score=5.0, max_score=5.0, former=None, pending=True, reason='?'),
+    'ada': StoredResult(score=5.0, max_score=5.0, former=None, pending=False, reason=''),
+    'bob': StoredResult(score=2.0, max_score=5.0, former=None, pending=False, reason='?'),
+    'eve': StoredResult(score=5.0, max_score=5.0, former=None, pending=True, reason='?'),
 }
 
 

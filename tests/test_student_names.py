@@ -3,7 +3,7 @@ from pathlib import Path
 import pytest
 
 from grader.collect.platforms import student_in
-from grader.common.student_names import Unclear, problem_of_id
+from grader.common.student_names import UnclearOwner, problem_of_id
 
 
 @pytest.mark.parametrize(
@@ -23,7 +23,7 @@ def test_what_a_course_management_system_adds_is_no_part_of_a_name(name, student
 
 
 def test_what_can_be_no_name_is_refused():
-    with pytest.raises(Unclear, match='no name of a student'):
+    with pytest.raises(UnclearOwner, match='no name of a student'):
         student_in('..')
 
 

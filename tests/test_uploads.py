@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from grader.collect import uploads
-from grader.collect.archives import Allowance
+from grader.collect.archives import UnpackLimits
 from grader.collect.uploads import look_into
 from grader.common.errors import CourseError
 
@@ -111,7 +111,7 @@ def test_what_one_archive_used_up_is_gone_for_all(source, tmp_path, monkeypatch)
     found = seen(source, tmp_path)
     assert found['ada.zip/a.py'] == b'x' * 600
     assert 'a bomb?' in found['bob.zip/a.py']
-    whole = Allowance(10, 10)
+    whole = UnpackLimits(10, 10)
     part = whole.part(files=4, bytes=40)
     assert (part.files, part.bytes) == (4, 10)
 

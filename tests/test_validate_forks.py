@@ -10,7 +10,7 @@ from my_robot_basics.session.pressure import Stopwatch
 from my_robot_basics.validate import run
 from my_robot_basics.validate.errors import RoomFailure
 from my_robot_basics.validate.forks import ForkServer
-from my_robot_basics.validate.judging import Judged
+from my_robot_basics.validate.judging import JudgedExercise
 from my_robot_basics.validate.kernel import LocalKernel
 
 NOTHING_SHARED = """
@@ -106,7 +106,7 @@ def test_two_exercises_are_judged_at_a_time_and_told_in_the_lessons_order(tmp_pa
         for _ in range(3):
             await asyncio.sleep(0)
         now.remove(exercise.name)
-        return Judged({}, {})
+        return JudgedExercise({}, {})
 
     monkeypatch.setattr(run, 'judge_exercise', judge)
     told = asyncio.run(run.validate(answered('07_common_errors', tmp_path), None))

@@ -35,17 +35,17 @@ _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EMFILE)
 
 
 @dataclass
-class Allowance:
+class UnpackLimits:
     """What may still be unpacked."""
 
     files: int
     bytes: int
 
-    def part(self, *, files: int, bytes: int) -> 'Allowance':
+    def part(self, *, files: int, bytes: int) -> 'UnpackLimits':
         """Return an allowance of its own for one archive, within this one."""
-        return Allowance(min(files, self.files), min(bytes, self.bytes))
+        return UnpackLimits(min(files, self.files), min(bytes, self.bytes))
 
-    def less(self, part: 'Allowance', left: 'Allowance') -> None:
+    def less(self, part: 'UnpackLimits', left: 'UnpackLimits') -> None:
         """Take off what was used of a part."""
         self.files -= part.files - left.files
         self.bytes -= part.bytes - left.bytes
@@ -65,7 +65,7 @@ class Member:
 
 
 def unpack(
-    archive: Path, *, name: str, aside: Path, left: Allowance, wanted: Callable[[str], bool]
+    archive: Path, *, name: str, aside: Path, left: UnpackLimits, wanted: Callable[[str], bool]
 ) -> Iterator[Member]:
     """Yield what an archive holds; copies of wanted files, told by their names, lie in `aside`.
 
@@ -87,7 +87,7 @@ def unpack(
         yield Member((), problem=_broken(error))
 
 
-def _copied(entry: ArchiveEntry, aside: Path, left: Allowance) -> tuple[Path | None, str]:
+def _copied(entry: ArchiveEntry, aside: Path, left: UnpackLimits) -> tuple[Path | None, str]:
     """Copy an entry to a name of ours; return that, or why not."""
     most = min(MAX_FILE_BYTES, left.bytes)
     problem = f'over {most / 1e6:.0f} MB once unpacked: a bomb?'

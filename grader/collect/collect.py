@@ -14,7 +14,7 @@ from functools import cache
 from pathlib import Path
 
 from grader.collect.matching import MatchedFile, match
-from grader.collect.platform_ids import Numbers
+from grader.collect.platform_ids import StudentNumbers
 from grader.collect.submission_folders import (
     contents,
     contents_of_earlier,
@@ -73,7 +73,7 @@ def collect(course: Course, source: Path, *, file_times: bool = False) -> Iterat
                 students=known_students(course),
                 file_times=file_times,
             )
-            problems = Numbers(course).take(hand_ins)
+            problems = StudentNumbers(course).take(hand_ins)
             for each, problem in zip(hand_ins, problems, strict=True):
                 yield _row(course, each, problem, grades)
         except OSError as error:

@@ -34,7 +34,7 @@ class MatchedFile:
 
 
 @dataclass(frozen=True)
-class Left:
+class UntakenFile:
     """A file that was not taken."""
 
     incoming: Incoming
@@ -49,21 +49,21 @@ def match(
     *,
     students: Iterable[str] = (),
     file_times: bool = False,
-) -> tuple[list[MatchedFile], list[Left]]:
+) -> tuple[list[MatchedFile], list[UntakenFile]]:
     """Sort what came in: submissions, each student's in their order, and the rest with reasons.
 
     `students` are those who are known from before. `file_times` takes the time of a file for the
     time it was handed in, where nothing else tells.
     """
-    rest = [Left(each, each.problem) for each in found if each.problem]
+    rest = [UntakenFile(each, each.problem) for each in found if each.problem]
     beside: dict[tuple[str, ...], dict[str, Incoming]] = defaultdict(dict)
     for each in (each for each in found if not each.problem and not is_notebook(each)):
         if wanted(each.parts[-1]):
             beside[each.parts[:-1]][each.parts[-1]] = each
         else:
-            rest.append(Left(each, 'neither a notebook nor Python', matters=False))
+            rest.append(UntakenFile(each, 'neither a notebook nor Python', matters=False))
     owners, remarks, problems = find_owners(found, assignments, students)
-    rest += [Left(each, problem) for each, problem in problems.items()]
+    rest += [UntakenFile(each, problem) for each, problem in problems.items()]
     hand_ins, used = [], set()
     for notebook, owner in owners.items():
         files = beside[notebook.parts[:-1]] if owner.by_folder or notebook.archive else {}
@@ -96,19 +96,21 @@ def match(
     return _in_order(hand_ins, rest), rest
 
 
-def _not_taken(each: Incoming, *, in_upload: bool) -> Left:
+def _not_taken(each: Incoming, *, in_upload: bool) -> UntakenFile:
     """Say why a file that lies beside notebooks goes with none of them."""
     if each.parts[-1] != TIMESTAMP:
-        return Left(each, "it lies beside no notebook, or beside several students'", matters=False)
+        return UntakenFile(
+            each, "it lies beside no notebook, or beside several students'", matters=False
+        )
     if each.archive or in_upload:
         where = 'archive' if each.archive else 'upload'
-        return Left(each, f"a time in a student's own {where} is not believed")
+        return UntakenFile(each, f"a time in a student's own {where} is not believed")
     if date_of(each.readable) is None:
-        return Left(each, 'it holds no date')
-    return Left(each, 'it lies beside no notebook of one student')
+        return UntakenFile(each, 'it holds no date')
+    return UntakenFile(each, 'it lies beside no notebook of one student')
 
 
-def _in_order(hand_ins: list[MatchedFile], rest: list[Left]) -> list[MatchedFile]:
+def _in_order(hand_ins: list[MatchedFile], rest: list[UntakenFile]) -> list[MatchedFile]:
     """Sort by student, assignment and time; what can't be put in an order joins the rest."""
     whose: dict[tuple[str, str], list[MatchedFile]] = defaultdict(list)
     for each in hand_ins:
@@ -121,11 +123,13 @@ def _in_order(hand_ins: list[MatchedFile], rest: list[Left]) -> list[MatchedFile
             continue
         if _all_alike(several):
             ordered.append(several[0])
-            rest += [Left(each.notebook, 'the same again', matters=False) for each in several[1:]]
+            rest += [
+                UntakenFile(each.notebook, 'the same again', matters=False) for each in several[1:]
+            ]
             continue
         others = f'one of {len(several)} notebooks for {assignment} by {student}'
         reason = f'{others}, and nothing tells which is the latest'
-        rest += [Left(each.notebook, reason) for each in several]
+        rest += [UntakenFile(each.notebook, reason) for each in several]
     return ordered
 
 

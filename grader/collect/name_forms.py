@@ -12,7 +12,7 @@ _BETWEEN = '_+- .'
 
 
 @dataclass(frozen=True)
-class Named:
+class AssignmentName:
     """A name that ends with an assignment's."""
 
     who: str
@@ -20,13 +20,13 @@ class Named:
 
 
 @dataclass(frozen=True)
-class Exchanged(Named):
+class ExchangeName(AssignmentName):
     """The name of a folder of nbgrader's exchange."""
 
     when: str
 
 
-class Forms:
+class NameForms:
     """Names that hold one of the assignments'."""
 
     def __init__(self, assignments: Iterable[str]) -> None:
@@ -36,7 +36,7 @@ class Forms:
             rf'(?P<who>.+)\+(?P<what>{one_of})\+(?P<when>\d{{4}}-[^+]+)(\+[\w=-]+)?'
         )
 
-    def named(self, name: str) -> Named | None:
+    def named(self, name: str) -> AssignmentName | None:
         """Split STUDENT_ASSIGNMENT, and STUDENT_ASSIGNMENT-1; None where it is no such name.
 
         A regular expression would take a time that grows with the square of a name's length.
@@ -45,13 +45,13 @@ class Forms:
             for what in self._known:
                 who = whole.removesuffix(what)
                 if who != whole and len(who) > 1 and who[-1] in _BETWEEN:
-                    return Named(who.rstrip(_BETWEEN) or who[0], what)
+                    return AssignmentName(who.rstrip(_BETWEEN) or who[0], what)
         return None
 
-    def exchanged(self, name: str) -> Exchanged | None:
+    def exchanged(self, name: str) -> ExchangeName | None:
         """Split STUDENT+ASSIGNMENT+TIME; None where it is no such name."""
         found = self._exchange.fullmatch(name)
-        return Exchanged(found['who'], found['what'], found['when']) if found else None
+        return ExchangeName(found['who'], found['what'], found['when']) if found else None
 
     def who(self, name: str) -> str:
         """Return whom a folder or an archive may be named after."""

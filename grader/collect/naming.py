@@ -10,10 +10,10 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from grader.collect.incoming import Incoming, is_notebook
-from grader.collect.name_forms import Forms, bare, stem_of
+from grader.collect.name_forms import NameForms, bare, stem_of
 from grader.collect.platforms import PlatformLabel, label_in, student_in
 from grader.common.dates import date_in
-from grader.common.student_names import Unclear, is_nobody, same_person
+from grader.common.student_names import UnclearOwner, is_nobody, same_person
 
 _AGAIN = re.compile(r'-\d+(?=$|\.(zip|tar|tgz|tbz2|txz)\b)', re.IGNORECASE)
 """What a platform puts behind the name of what is handed in again."""
@@ -52,7 +52,7 @@ class Naming:
     ) -> None:
         """Look at all that came in; `students` are those who are known from before."""
         self._known = frozenset(assignments)
-        self._forms = Forms(self._known)
+        self._forms = NameForms(self._known)
         notebooks = [each for each in found if is_notebook(each)]
         self._by_platform = self._all_by_platform(notebooks, list(students))
         self._shared = len(shared_folders([each.parts[:-1] for each in notebooks]))
@@ -60,7 +60,7 @@ class Naming:
         self._several = len({name.who for name in named if name}) > 1
 
     def owner(self, each: Incoming) -> Owner:
-        """Return whose notebook it is. Raises Unclear."""
+        """Return whose notebook it is. Raises UnclearOwner."""
         at = self._decides(each)
         if at is None:
             return self._owner_by_file_name(each)
@@ -76,7 +76,7 @@ class Naming:
             stem = _AGAIN.sub('', stem)
         if exchanged := self._forms.exchanged(name):
             if stem != exchanged.what or inside:
-                raise Unclear(f'in the exchange, {exchanged.what}.ipynb was expected here')
+                raise UnclearOwner(f'in the exchange, {exchanged.what}.ipynb was expected here')
             when = date_in(re.sub(r'(\d\d)_(\d\d)_(\d\d)', r'\1:\2:\3', exchanged.when))
             return Owner(student_in(exchanged.who), stem, True, when, above=above)
         assignment = self._assignment(stem, each.parts[:-1])
@@ -84,7 +84,7 @@ class Naming:
         if (named := self._forms.named(stem)) and not same_person(named.who, student):
             where = f'in the archive of {student}' if each.archive else f'in a folder {student}'
             where = f'in what {student} handed in' if label else where
-            raise Unclear(
+            raise UnclearOwner(
                 f"it is named after {named.who}, and {where}: rename it if it is {student}'s, "
                 'or else collect it by itself'
             )
@@ -109,7 +109,7 @@ class Naming:
     def _decides(self, each: Incoming) -> int | None:
         """Return which part of its path says whose it is; None where only the file's name does.
 
-        Raises Unclear where there may be several.
+        Raises UnclearOwner where there may be several.
         """
         if self._by_platform:
             return self._first_by_platform(each)
@@ -119,14 +119,14 @@ class Naming:
             candidates = self._candidates(folders, 0)  # all that came in may be one student's
         if not candidates:
             if each.archive:
-                raise Unclear(f'nothing says whose it is: {EXPECTED}')
+                raise UnclearOwner(f'nothing says whose it is: {EXPECTED}')
             return len(folders) if label_in(each.parts[-1]) else None
         first, *others = candidates
         if label_in(folders[first]) or self._forms.exchanged(folders[first]):
             return first
         names = [self._forms.who(folders[at]) for at in (first, *others)]
         if not all(same_person(name, names[0]) for name in names):
-            raise Unclear(
+            raise UnclearOwner(
                 f'it may be of {" or of ".join(names)}: collect the folder by itself in which the '
                 "students' folders lie, or rename it"
             )
@@ -141,25 +141,25 @@ class Naming:
         stem = stem_of(each.parts[-1])
         assignment = self._assignment(stem, each.parts[:-1])
         if stem in self._known:
-            raise Unclear(f'nothing says whose it is: {EXPECTED}')
+            raise UnclearOwner(f'nothing says whose it is: {EXPECTED}')
         named = self._forms.named(stem)
         assert named is not None  # else it had no assignment
         student = student_in(named.who)
         return Owner(student, assignment, by_folder=False, above=each.parts[:-1])
 
     def _assignment(self, stem: str, folders: Sequence[str]) -> str:
-        """Return the assignment that a file is named after. Raises Unclear."""
+        """Return the assignment that a file is named after. Raises UnclearOwner."""
         named = self._forms.named(stem)
         if stem not in self._known and not named:
             known = ', '.join(sorted(self._known))
-            raise Unclear(f'named after no assignment: {EXPECTED}, with {known}')
+            raise UnclearOwner(f'named after no assignment: {EXPECTED}, with {known}')
         assignment = named.what if named else stem
         for folder in reversed(folders):
             name = bare(folder)
             of = self._forms.named(name)
             other = name if name in self._known else of.what if of else assignment
             if other != assignment:
-                raise Unclear(f'it lies in a folder of another assignment, {other}')
+                raise UnclearOwner(f'it lies in a folder of another assignment, {other}')
         return assignment
 
     def _all_by_platform(self, notebooks: Sequence[Incoming], students: Sequence[str]) -> bool:

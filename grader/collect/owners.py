@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from grader.collect.incoming import Incoming, is_notebook
 from grader.collect.naming import Naming, Owner
-from grader.common.student_names import Unclear, spellings
+from grader.common.student_names import UnclearOwner, spellings
 
 
 def find_owners(
@@ -19,7 +19,7 @@ def find_owners(
     for each in filter(is_notebook, found):
         try:
             owners[each] = naming.owner(each)
-        except Unclear as unclear:
+        except UnclearOwner as unclear:
             problems[each] = str(unclear)
     numbers = defaultdict(set)
     for owner in owners.values():

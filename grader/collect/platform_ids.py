@@ -18,7 +18,7 @@ from grader.course import Course
 FILE = 'numbers.json'
 
 
-class Numbers:
+class StudentNumbers:
     """What is known of the students' numbers; who changes one holds the gradebook's lock."""
 
     def __init__(self, course: Course) -> None:

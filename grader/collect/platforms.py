@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import Literal
 
-from grader.common.student_names import Unclear, problem_of_id
+from grader.common.student_names import UnclearOwner, problem_of_id
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -97,13 +97,13 @@ def label_in(name: str) -> PlatformLabel | None:
 
 
 def student_in(name: str) -> str:
-    """Return the student's name in a name. Raises Unclear."""
+    """Return the student's name in a name. Raises UnclearOwner."""
     name = unicodedata.normalize('NFC', name)
     if label := label_in(name):
         name = label.who
     name = name.strip(' ')
     if problem := problem_of_id(name):
-        raise Unclear(problem)
+        raise UnclearOwner(problem)
     return name
 
 

@@ -11,11 +11,11 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from grader.collect.archive_entries import ARCHIVE, MAX_PARTS
-from grader.collect.archives import MAX_FILE_BYTES, Allowance, unpack
+from grader.collect.archives import MAX_FILE_BYTES, UnpackLimits, unpack
 from grader.collect.incoming import Incoming, as_json, from_json
 from grader.collect.platforms import label_in
 from grader.common.errors import CourseError
-from grader.common.parsing import Limits, TooHard, parse
+from grader.common.parsing import Limits, ParsingFailed, parse
 from grader.notebook.submission import TIMESTAMP
 
 ALL = {'files': 100_000, 'bytes': 8_000_000_000}
@@ -38,7 +38,7 @@ def look_into(source: Path, aside: Path) -> Iterator[Incoming]:
     Links are not followed. An archive in it is taken for a student's. Raises CourseError where
     there is nothing of the kind.
     """
-    left = Allowance(**ALL)
+    left = UnpackLimits(**ALL)
     # the name of one student's upload says whose it is; a class's may look like one of Canvas's
     name = source.resolve().name
     upload = (name,) if (label := label_in(name)) and label.platform.is_plain else ()
@@ -67,7 +67,7 @@ def look_into(source: Path, aside: Path) -> Iterator[Incoming]:
 
 def read_apart(way: str, outer: dict, name: str, aside: str, left: dict) -> dict:
     """Do in a process of its own what `_apart` asks for: JSON comes, and JSON goes."""
-    allowance, archive = Allowance(**left), from_json(outer)
+    allowance, archive = UnpackLimits(**left), from_json(outer)
     if way == 'inside':
         found = _inside(archive, name, Path(aside), allowance)
     else:
@@ -76,14 +76,14 @@ def read_apart(way: str, outer: dict, name: str, aside: str, left: dict) -> dict
 
 
 def _apart(
-    way: str, outer: Incoming, name: str, aside: Path, left: Allowance, limits: Limits
+    way: str, outer: Incoming, name: str, aside: Path, left: UnpackLimits, limits: Limits
 ) -> Iterator[Incoming]:
     """Yield what is in an archive, 'inside' alone or 'opened' with the archives in it."""
     own = tempfile.mkdtemp(dir=aside)
     arguments = (way, as_json(outer), name, own, asdict(left))
     try:
         said = parse('grader.collect.uploads:read_apart', *arguments, limits=limits)
-    except TooHard as why:
+    except ParsingFailed as why:
         shutil.rmtree(own)
         yield replace(
             outer,
@@ -103,7 +103,7 @@ def wanted(name: str) -> bool:
     )
 
 
-def _opened(each: Incoming, aside: Path, left: Allowance, *, nested: int) -> Iterator[Incoming]:
+def _opened(each: Incoming, aside: Path, left: UnpackLimits, *, nested: int) -> Iterator[Incoming]:
     """Yield a file; of an archive, what is in it."""
     if each.problem or each.litter:
         yield each
@@ -121,7 +121,7 @@ def _opened(each: Incoming, aside: Path, left: Allowance, *, nested: int) -> Ite
         left.less(before, part)
 
 
-def _inside(outer: Incoming, name: str, aside: Path, left: Allowance) -> Iterator[Incoming]:
+def _inside(outer: Incoming, name: str, aside: Path, left: UnpackLimits) -> Iterator[Incoming]:
     for member in unpack(outer.readable, name=name, aside=aside, left=left, wanted=wanted):
         parts = outer.parts + member.parts
         yield Incoming(

@@ -5,7 +5,7 @@ import logging
 from grader.common.text import visible
 
 
-class Visible(logging.Filter):
+class VisibleFilter(logging.Filter):
     """Spell out escapes, controls and marks of direction; the lines of a traceback stay."""
 
     def filter(self, record: logging.LogRecord) -> bool:
@@ -17,7 +17,7 @@ class Visible(logging.Filter):
 
 
 NBGRADER_LOGGING = {
-    'filters': {'visible': {'()': 'grader.common.logs.Visible'}},
+    'filters': {'visible': {'()': 'grader.common.logs.VisibleFilter'}},
     'handlers': {'console': {'filters': ['visible']}},
 }
 """nbgrader's setting `logging_config` for the same in its own commands."""
@@ -26,5 +26,5 @@ NBGRADER_LOGGING = {
 def log_visibly() -> None:
     """Log to stderr, unless something else was set up."""
     handler = logging.StreamHandler()
-    handler.addFilter(Visible())
+    handler.addFilter(VisibleFilter())
     logging.basicConfig(handlers=[handler])

@@ -37,14 +37,14 @@ class Limits:
     """Of addresses, what the process begins with included: about 0.3 GB."""
 
 
-class TooHard(Exception):
+class ParsingFailed(Exception):
     """Says in a few words why a text was not read to its end."""
 
 
 def parse(function: str, *arguments: object, limits: Limits | None = None) -> Any:
     """Call `module:function` on JSON in a process with limits; return its answer.
 
-    Raises TooHard where it does not come to one, OSError where that is the disk's fault, and
+    Raises ParsingFailed where it does not come to one, OSError where that is the disk's fault, and
     CourseError where there is no such process.
     """
     return _SERVER.ask(function, arguments, limits or Limits())
@@ -70,7 +70,7 @@ class _Server:
                 return found
             case {'errno': int(number)}:
                 raise OSError(number, os.strerror(number))
-        raise TooHard(answer['why'])
+        raise ParsingFailed(answer['why'])
 
     def end(self) -> None:
         """End it with whatever it has forked."""

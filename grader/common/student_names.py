@@ -28,7 +28,7 @@ _BESIDE_THEM = frozenset(
 )
 
 
-class Unclear(Exception):
+class UnclearOwner(Exception):
     """Says in a sentence why a file is nobody's."""
 
 

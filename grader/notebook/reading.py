@@ -8,7 +8,7 @@ from my_robot_basics.validate.pictures import KINDS
 from nbformat import NotebookNode
 
 from grader.common.errors import CourseError, UnreadableSubmission
-from grader.common.parsing import TooHard, parse
+from grader.common.parsing import ParsingFailed, parse
 from grader.notebook import raw_notebook
 from grader.notebook.raw_notebook import MAX_CELLS, MAX_CHARACTERS, MAX_PICTURES
 
@@ -70,7 +70,7 @@ def read_notebook(path: Path) -> NotebookNode:
     """
     try:
         said = parse(f'{raw_notebook.__name__}:read', str(path))
-    except TooHard as why:
+    except ParsingFailed as why:
         raise UnreadableSubmission(
             f'{path.name} is not read, for {why}: choose "Clear All Outputs" in JupyterLab, save, '
             'and submit again.'

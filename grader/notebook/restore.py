@@ -22,7 +22,7 @@ class AssignmentTemplate:
 
 
 @dataclass(frozen=True)
-class Restored:
+class RestoredNotebook:
     """A notebook with every cell of its source, in the source's order, and what was restored."""
 
     notebook: NotebookNode
@@ -51,7 +51,7 @@ def make_template(source: NotebookNode, release: NotebookNode) -> AssignmentTemp
     return AssignmentTemplate(notebook=notebook, released=released)
 
 
-def restore(submitted: NotebookNode, template: AssignmentTemplate) -> Restored:
+def restore(submitted: NotebookNode, template: AssignmentTemplate) -> RestoredNotebook:
     """Build the notebook that is graded: the template's cells and the student's answers.
 
     Locked and grade cells come from the template, whatever became of them. An answer that was
@@ -72,7 +72,7 @@ def restore(submitted: NotebookNode, template: AssignmentTemplate) -> Restored:
     restored = nbformat.v4.new_notebook(cells=cells)
     restored.metadata = nbformat.from_dict(template.notebook.metadata)
     restored.metadata[KEY] = {'notes': notes, 'title': title_of(template.notebook)}
-    return Restored(notebook=restored, notes=tuple(notes))
+    return RestoredNotebook(notebook=restored, notes=tuple(notes))
 
 
 def _match(submitted: NotebookNode, template: NotebookNode) -> dict[int, _Found]:

@@ -10,7 +10,7 @@ from nbgrader.preprocessors import ClearHiddenTests, GetGrades
 from traitlets.config import Config
 
 from grader.common.files import write_whole
-from grader.common.parsing import Limits, TooHard, parse
+from grader.common.parsing import Limits, ParsingFailed, parse
 from grader.course import Course
 from grader.notebook.restore import KEY, grade_id
 from grader.storage.gradebook import recover
@@ -63,11 +63,11 @@ class FeedbackPage(Exporter):
 
 
 def _page(notebook: NotebookNode, about: dict) -> str:
-    """Return the page, made in a process with limits. Raises TooHard where that can't be."""
+    """Return the page, made in a process with limits. Raises ParsingFailed where that can't be."""
     about = {key: about[key] for key in ABOUT if key in about}
     try:
         return parse('grader.report.page:page', notebook, about, limits=LIMITS)
-    except TooHard as why:
+    except ParsingFailed as why:
         said = f'Your text is shown as you typed it: {why} to show it as it is meant.'
         return parse('grader.report.page:page', notebook, about, said, limits=LIMITS)
 
@@ -92,7 +92,7 @@ def write_feedback(
         try:
             at = resources_of(course, assignment, student)
             html, _ = exporter.from_notebook_node(notebook, at)
-        except TooHard as why:
+        except ParsingFailed as why:
             say(f'{assignment} of {student} has no page of feedback, for {why}')
             continue
         place = course.folder('feedback', student, assignment) / f'{assignment}.html'

@@ -13,7 +13,7 @@ from markupsafe import Markup
 from nbconvert import HTMLExporter
 from nbconvert import filters as nbconvert_filters
 
-from grader.common.parsing import Limits, TooHard, parse
+from grader.common.parsing import Limits, ParsingFailed, parse
 from grader.common.text import visible
 
 LIMITS = Limits(cpu_sec=5)
@@ -89,6 +89,6 @@ def _once(function: str, text: str) -> str:
 def _limited(function: str, text: str, *more: object) -> str:
     try:
         return parse(function, text, *more, limits=LIMITS)
-    except TooHard as why:
+    except ParsingFailed as why:
         shown = Markup('<p><strong>Shown as it was typed: {}.</strong></p><pre>{}</pre>')
         return shown.format(f'{why}', visible(text))

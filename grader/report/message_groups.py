@@ -12,7 +12,7 @@ _MANY = re.compile(r'…(, …)+')
 
 
 @dataclass(frozen=True)
-class Said:
+class CellMessage:
     """What was said of one graded cell of one student, or of all that was handed in."""
 
     student_id: str
@@ -34,7 +34,7 @@ class Reason:
     checks: tuple[str, ...]
 
 
-def grouped(all_said: Iterable[Said]) -> list[Reason]:
+def grouped(all_said: Iterable[CellMessage]) -> list[Reason]:
     """Group what was said by its words; the most common comes first. All of it is printable."""
     found = defaultdict(list)
     for said in all_said:

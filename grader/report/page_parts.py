@@ -20,7 +20,7 @@ _BASE64 = re.compile(r'[A-Za-z0-9+/=\s]+')
 
 
 @dataclass(frozen=True)
-class Piece:
+class CellOutput:
     """Something that a cell printed or drew."""
 
     kind: str
@@ -47,7 +47,7 @@ class CheckedCell:
     hint: str
     notes: tuple[str, ...]
     comment: str
-    pieces: tuple[Piece, ...]
+    outputs: tuple[CellOutput, ...]
     source: str
     """What students may read of the check."""
 
@@ -59,14 +59,14 @@ class PageSection:
     name: str
     answer: str = ''
     is_text: bool = False
-    pieces: list[Piece] = field(default_factory=list)
+    outputs: list[CellOutput] = field(default_factory=list)
     checks: list[CheckedCell] = field(default_factory=list)
     comment: str = ''
 
 
 def find_sections(
     notebook: NotebookNode,
-) -> tuple[list[PageSection], list[tuple[str, list[Piece]]]]:
+) -> tuple[list[PageSection], list[tuple[str, list[CellOutput]]]]:
     """Return the exercises, and the other cells that have outputs."""
     sections, others = [PageSection('')], []
     for cell in notebook.cells:
@@ -75,15 +75,15 @@ def find_sections(
             marks = cell.metadata.nbgrader
             sections.append(PageSection(name, cell.source, cell.cell_type == 'markdown'))
             sections[-1].comment = marks.get('comment') or ''
-            sections[-1].pieces += _pieces(cell)
+            sections[-1].outputs += _outputs(cell)
             if marks.get('grade'):
                 sections[-1].checks.append(_check(cell))
         elif kind == 'grade':
             sections[-1].checks.append(_check(cell))
         elif kind == 'locked' and name.startswith(f'{sections[-1].name}-'):
-            sections[-1].pieces += _pieces(cell)
+            sections[-1].outputs += _outputs(cell)
         elif cell.cell_type == 'code' and cell.get('outputs'):
-            others.append((cell.source, list(_pieces(cell))))
+            others.append((cell.source, list(_outputs(cell))))
     return sections, others
 
 
@@ -105,7 +105,7 @@ def _check(cell: NotebookNode) -> CheckedCell:
         reason=reason,
         notes=tuple(verdict.get('notes', ())),
         comment='' if is_answer else marks.get('comment') or '',
-        pieces=() if is_answer else tuple(_pieces(cell, about=title, reason=reason)),
+        outputs=() if is_answer else tuple(_outputs(cell, about=title, reason=reason)),
         source='' if is_answer else cell.source.strip(),
         **(said.groupdict() if said else {'expected': '', 'seen': '', 'hint': ''}),
     )
@@ -126,7 +126,9 @@ def _missing_reason(status: str, *, is_answer: bool) -> str:
     return 'The reason is unknown.' if status == 'missed' else ''
 
 
-def _pieces(cell: NotebookNode, *, about: str = '', reason: str | None = None) -> Iterator[Piece]:
+def _outputs(
+    cell: NotebookNode, *, about: str = '', reason: str | None = None
+) -> Iterator[CellOutput]:
     """Yield a cell's outputs, in forms that can do nothing: text, PNG and JPEG.
 
     Of a check, which has a `reason`, it is what stands beside that and the points.
@@ -146,7 +148,7 @@ def _pieces(cell: NotebookNode, *, about: str = '', reason: str | None = None) -
         yield from show_data({**picture, 'text/plain': name}, about, is_drawn=False)
 
 
-def show_data(data: dict, about: str, *, is_drawn: bool = True) -> Iterator[Piece]:
+def show_data(data: dict, about: str, *, is_drawn: bool = True) -> Iterator[CellOutput]:
     """Yield the first form of some output's data that can do nothing: a picture, or text."""
     described = str(data.get('text/plain', ''))
     for kind in KINDS:
@@ -156,14 +158,14 @@ def show_data(data: dict, about: str, *, is_drawn: bool = True) -> Iterator[Piec
                 return
             described = '' if described.startswith('<') else described  # "<Figure size 640x480 …>"
             alt = described or (f'Picture of: {about}' if about else 'Picture that this cell drew')
-            yield Piece(kind, ''.join(data[kind].split()), alt, is_drawn)
+            yield CellOutput(kind, ''.join(data[kind].split()), alt, is_drawn)
             return
     if described:
         yield _text_piece('text', described)
 
 
-def _text_piece(kind: str, text: str) -> Piece:
+def _text_piece(kind: str, text: str) -> CellOutput:
     text = strip_ansi(text).rstrip('\n')
     if (more := len(text) - MAX_TEXT_CHARACTERS) > 0:
         text = f'{text[:MAX_TEXT_CHARACTERS]}\n[{more:,} more characters]'
-    return Piece(kind, visible(text))
+    return CellOutput(kind, visible(text))

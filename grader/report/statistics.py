@@ -11,7 +11,7 @@ from nbformat import NotebookNode
 from grader.course import Course
 from grader.grade import SubmissionOutcome
 from grader.notebook.restore import KEY, grade_id
-from grader.report.message_groups import Reason, Said, grouped
+from grader.report.message_groups import CellMessage, Reason, grouped
 from grader.storage.records import CellScore, graded_notebook, records, verdicts_in
 
 WRITTEN = 'a written answer that a person reads'
@@ -108,7 +108,7 @@ def _assignments(
     course: Course,
     whose: dict[tuple, SubmissionOutcome],
     of_cells: dict[tuple, list[CellScore]],
-    failures: list[Said],
+    failures: list[CellMessage],
 ) -> Iterable[AssignmentStatistics]:
     for name in sorted({assignment for _, assignment in whose}):
         stored = [
@@ -137,7 +137,9 @@ def _assignments(
         )
 
 
-def _check(cells: list[CellScore], title: str | None, failures: list[Said]) -> CheckStatistics:
+def _check(
+    cells: list[CellScore], title: str | None, failures: list[CellMessage]
+) -> CheckStatistics:
     scored = [record for record in cells if record.score is not None]
     passed = sum(
         record.score is not None and record.score >= record.max_score for record in scored
@@ -153,29 +155,31 @@ def _check(cells: list[CellScore], title: str | None, failures: list[Said]) -> C
     )
 
 
-def _failures(notebooks: dict[tuple[str, str], NotebookNode]) -> Iterable[Said]:
+def _failures(notebooks: dict[tuple[str, str], NotebookNode]) -> Iterable[CellMessage]:
     for whose, notebook in notebooks.items():
         for name, verdict in verdicts_in(notebook).items():
             if verdict.get('outcome') in ('partial', 'failed'):
-                yield Said(*whose, name, verdict.get('details') or verdict.get('reason', ''))
+                yield CellMessage(
+                    *whose, name, verdict.get('details') or verdict.get('reason', '')
+                )
 
 
 def _looks(
     rows: Sequence[SubmissionOutcome],
     of_cells: dict[tuple, list[CellScore]],
     notebooks: dict[tuple[str, str], NotebookNode],
-) -> Iterable[Said]:
+) -> Iterable[CellMessage]:
     for row in rows:
         whose = row.student_id, row.assignment
         if row.stored is None:
-            yield Said(*whose, '', row.reason)
+            yield CellMessage(*whose, '', row.reason)
             continue
         notebook = notebooks[whose]
         if problem := notebook.metadata.get(KEY, {}).get('problem'):
-            yield Said(*whose, '', f'unreadable, so it earned nothing: {problem}')
+            yield CellMessage(*whose, '', f'unreadable, so it earned nothing: {problem}')
             continue
         verdicts = verdicts_in(notebook)
         for record in of_cells[whose]:
             if record.score is None:
                 reason = verdicts.get(record.grade_id, {}).get('reason') or WRITTEN
-                yield Said(*whose, record.grade_id, reason)
+                yield CellMessage(*whose, record.grade_id, reason)

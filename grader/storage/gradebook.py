@@ -26,7 +26,7 @@ _BEGUN = '.{}.ipynb.begun'
 
 
 @dataclass(frozen=True)
-class Stored:
+class StoredResult:
     """What the gradebook holds for a submission, once it was graded."""
 
     score: float
@@ -49,7 +49,7 @@ def register_before_autograde(*, assignment: str, **_: object) -> None:
         register(course, name)
 
 
-def store(course: Course, submission: Submission, graded: NotebookNode) -> Stored:
+def store(course: Course, submission: Submission, graded: NotebookNode) -> StoredResult:
     """Store an executed notebook: its scores, and the notebook itself under autograded/.
 
     The same nbgrader passes do it as in `nbgrader autograde`. Manual scores stay, the submitted
@@ -72,7 +72,7 @@ def store(course: Course, submission: Submission, graded: NotebookNode) -> Store
         begun.unlink(missing_ok=True)
         raise
     assert now is not None  # it was stored
-    return Stored(
+    return StoredResult(
         score=now[0],
         max_score=now[1],
         former=former[0] if former else None,

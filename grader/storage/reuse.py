@@ -14,7 +14,7 @@ from grader.course import Course
 from grader.notebook.restore import KEY, grade_id, role
 from grader.notebook.submission import TIMESTAMP, Submission
 from grader.storage.database import connected
-from grader.storage.gradebook import Stored, submitted_notebook, waits_for_a_person
+from grader.storage.gradebook import StoredResult, submitted_notebook, waits_for_a_person
 from grader.storage.pipeline import apply, first_reason, resources_of
 
 LATE = ('grader.storage.late_penalties.LatePenalties',)
@@ -58,7 +58,7 @@ def find_earlier_result(course: Course, submission: Submission, key: str) -> Not
 
 def refresh_late_penalty(
     course: Course, submission: Submission, graded: NotebookNode
-) -> Stored | None:
+) -> StoredResult | None:
     """Return what the gradebook holds for a kept notebook, the late penalty counted anew.
 
     Manual scores are left as they are. None where the gradebook holds anything else for it.
@@ -73,7 +73,7 @@ def refresh_late_penalty(
     with connected(course.db_url) as book:
         found = submitted_notebook(book, student, assignment)
         assert found is not None  # as before
-        return Stored(
+        return StoredResult(
             score=_score(found),
             max_score=found.max_score,
             former=former,

@@ -9,7 +9,7 @@ from my_robot_basics.graph.raised import what_raised
 FIX_FIRST = 'so fix that first: rclpy.spin would have ended there'
 
 
-class Raised:
+class CallbackErrors:
     """The exceptions of nodes' callbacks since this was made, where live spins them."""
 
     def __init__(self, node_names: Iterable[str]) -> None:

@@ -10,7 +10,7 @@ from rclpy.publisher import Publisher
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
 from my_robot_basics.checks import answers
-from my_robot_basics.checks.callbacks import Raised
+from my_robot_basics.checks.callbacks import CallbackErrors
 from my_robot_basics.checks.topics import Topic
 from my_robot_basics.feedback.errors import fail, shorten
 from my_robot_basics.graph import graphs
@@ -59,7 +59,7 @@ class NodeLog:
             self._watcher.__exit__()
             raise
         self.mark()
-        self._raised = Raised([self.node_name])
+        self._raised = CallbackErrors([self.node_name])
         return self
 
     def __exit__(self, *_: object) -> None:

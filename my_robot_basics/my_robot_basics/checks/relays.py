@@ -9,7 +9,7 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.serialization import serialize_message
 
 from my_robot_basics.checks import relay_endpoints
-from my_robot_basics.checks.callbacks import Raised
+from my_robot_basics.checks.callbacks import CallbackErrors
 from my_robot_basics.checks.latched import published_before_discovery
 from my_robot_basics.checks.passage import QUIET_SEC, Passage
 from my_robot_basics.checks.recorder import Recorder
@@ -24,7 +24,7 @@ EVERYTHING = QoSProfile(depth=5000, reliability=ReliabilityPolicy.BEST_EFFORT)
 AGAIN_SEC = 0.1
 """How long to wait for a message to come out before it is sent once more."""
 TIMES_RAISED = 10
-"""After so many such times, a callback that raised has decided: see `Raised.expect_none`."""
+"""After so many times, a callback that raised has decided: see `CallbackErrors.expect_none`."""
 
 
 def relay(source: str, *, to: str, fields: Sequence[str] = ()) -> 'Relay':
@@ -63,7 +63,7 @@ class Relay:
             endpoints = RelayEndpoints(self.source, self.to)
             first = make_message()
             recorder = endpoints.listen(watcher, type(first))
-            raised = Raised(recorder.publishers())
+            raised = CallbackErrors(recorder.publishers())
             publisher = endpoints.publish_to_node(watcher, type(first), qos_profile)
             endpoints.expect_one_profile(watcher)
             self._expect_out(watcher, recorder, first, raised, again=publisher)
@@ -82,7 +82,7 @@ class Relay:
             endpoints = RelayEndpoints(self.source, self.to)
             message_type = type(make_message())
             recorder = endpoints.listen(watcher, message_type)
-            raised = Raised(recorder.publishers())
+            raised = CallbackErrors(recorder.publishers())
             endpoints.expect_transient_local(watcher)
             endpoints.expect_type(watcher, message_type)
             endpoints.expect_one_profile(watcher)
@@ -105,7 +105,7 @@ class Relay:
         recorder: Recorder,
         publisher: Publisher,
         make_message: Callable[[], Any],
-        raised: Raised,
+        raised: CallbackErrors,
     ) -> None:
         source_recorder = Recorder(
             watcher, topic_name=self.source, type_=recorder.type, qos_profile=EVERYTHING
@@ -149,7 +149,7 @@ class Relay:
         watcher: Watcher,
         recorder: Recorder,
         message: Any,
-        raised: Raised,
+        raised: CallbackErrors,
         *,
         again: Publisher | None = None,
     ) -> None:

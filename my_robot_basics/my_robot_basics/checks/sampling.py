@@ -30,7 +30,7 @@ COARSE_STEPS = 4
 """… Coarse ones take a slow timer less time; so many of them fit in its period at least."""
 
 
-class Silent(Inconclusive):
+class NoMessage(Inconclusive):
     """No message came for as long as one is waited for."""
 
 
@@ -155,7 +155,7 @@ def _same_period(
         while ticks < ticks_least:
             ticks += _tick_to_message(recorder, clock, step_ns=step_ns)
             messages += 1
-    except Silent:
+    except NoMessage:
         return None
     recorded_ns = messages * 1e9 / recording.rate_hz
     unsure_ns = step_ns + messages * recording.step_sec * 1e9 / len(recording.messages)
@@ -171,4 +171,4 @@ def _tick_to_message(recorder: Recorder, clock: SimulatedClock, *, step_ns: int)
         clock.tick(step_ns)
         if len(recorder.received) > before:
             return ticks
-    raise Silent(f"no message arrived in {FIRST_MESSAGE_SEC:g} s of the robot's time")
+    raise NoMessage(f"no message arrived in {FIRST_MESSAGE_SEC:g} s of the robot's time")

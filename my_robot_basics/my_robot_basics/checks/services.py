@@ -7,7 +7,7 @@ from typing import Any, NoReturn
 from rcl_interfaces.srv import GetParameters
 from rclpy.task import Future
 
-from my_robot_basics.checks.callbacks import Raised
+from my_robot_basics.checks.callbacks import CallbackErrors
 from my_robot_basics.exchange import student
 from my_robot_basics.feedback.errors import expect, fail
 from my_robot_basics.feedback.hidden import theirs
@@ -55,7 +55,7 @@ class Service:
         """
         with Watcher() as watcher:
             server = self._meet(watcher)
-            raised = Raised([server])
+            raised = CallbackErrors([server])
             client = watcher.node.create_client(self.type, self.name)
             watcher.spin_until(client.service_is_ready, timeout_sec=SERVER_SEC)
             asked = [client.call_async(request) for request in requests]
@@ -103,7 +103,7 @@ class Service:
         return next(iter(found))
 
     def _fail_unanswered(
-        self, watcher: Watcher, server: str, raised: Raised, answered: int, asked: int
+        self, watcher: Watcher, server: str, raised: CallbackErrors, answered: int, asked: int
     ) -> NoReturn:
         seen = 'none' if not answered else f'{answered} of {asked}'
         fail(
@@ -113,7 +113,7 @@ class Service:
             cause=f'{self.name} does not answer',
         )
 
-    def _why_unanswered(self, watcher: Watcher, server: str, raised: Raised) -> str:
+    def _why_unanswered(self, watcher: Watcher, server: str, raised: CallbackErrors) -> str:
         if raised.hint():
             # rclpy checks the type of what a callback returns, and says nothing but that
             if student.trouble(server) == 'TypeError':

@@ -22,14 +22,14 @@ from my_robot_basics.validate.names import names_not_defined
 from my_robot_basics.validate.outputs import CellRun
 from my_robot_basics.validate.overdue import judge_overdue
 from my_robot_basics.validate.rooms_interface import OpenRooms, R, Rooms
-from my_robot_basics.validate.second_look import Looks
+from my_robot_basics.validate.second_look import Attempts
 from my_robot_basics.validate.verdict import Verdict, judge, ungraded
 
 Checks = dict[int, tuple[Verdict, list[NotebookNode]]]
 
 
 @dataclass(frozen=True)
-class Judged:
+class JudgedExercise:
     """What came of one exercise; cells are known by their place in the notebook."""
 
     runs: dict[int, CellRun]
@@ -40,14 +40,14 @@ class Judged:
 
 async def judge_exercise(
     notebook: NotebookNode, exercise: Exercise, open_rooms: OpenRooms[R], budget: Budget[R]
-) -> Judged:
+) -> JudgedExercise:
     """Judge one exercise; where the rooms fail, once more in fresh ones.
 
     So it does where the machine, or a check itself, may have made it fail. Where that comes to
     nothing its checks are `ungraded`.
     """
     failure: RoomFailure | None = None
-    looks = Looks(open_rooms)
+    looks = Attempts(open_rooms)
     for _ in range(2):
         try:
             return await _try_plans(notebook, exercise, looks, budget)
@@ -55,12 +55,12 @@ async def judge_exercise(
             failure = error
             await looks.end(error)
     cells = notebook.cells
-    return Judged({}, {i: (ungraded(cells[i], str(failure)), []) for i in exercise.grades})
+    return JudgedExercise({}, {i: (ungraded(cells[i], str(failure)), []) for i in exercise.grades})
 
 
 async def _try_plans(
-    notebook: NotebookNode, exercise: Exercise, looks: Looks[R], budget: Budget[R]
-) -> Judged:
+    notebook: NotebookNode, exercise: Exercise, looks: Attempts[R], budget: Budget[R]
+) -> JudgedExercise:
     todo = list(plans(notebook, exercise))
     for number, plan in enumerate(todo, start=1):
         is_last = number == len(todo)
@@ -79,11 +79,11 @@ async def _try_plan(
     notebook: NotebookNode,
     exercise: Exercise,
     plan: Plan,
-    looks: Looks[R],
+    looks: Attempts[R],
     budget: Budget[R],
     *,
     is_last: bool,
-) -> Judged | None:
+) -> JudgedExercise | None:
     """Judge an exercise after a plan's cells; None where it lacks a name and others are left."""
     async with looks.rooms() as rooms:
         # as they are now: a display that is updated later may show hidden inputs
@@ -96,16 +96,16 @@ async def _try_plan(
             async with looks.rooms() as rooms:
                 await _run_cells(notebook, plan, rooms, budget)
                 checks |= await _told_in_full(notebook, rooms, {i: checks[i] for i in cut})
-    return Judged(runs, checks)
+    return JudgedExercise(runs, checks)
 
 
-def _missing_names(judged: Judged) -> set[str]:
+def _missing_names(judged: JudgedExercise) -> set[str]:
     """Return names for want of which the answer raised when a check called it."""
     lost = [verdict for verdict, _ in judged.checks.values() if verdict.outcome != 'passed']
     return set().union(*(names_not_defined(f'{v.reason} {v.details}') for v in lost))
 
 
-def _points(judged: Judged) -> float:
+def _points(judged: JudgedExercise) -> float:
     return sum(verdict.score or 0.0 for verdict, _ in judged.checks.values())
 
 
@@ -118,7 +118,7 @@ async def _run_cells(
 async def _judge_cells(
     notebook: NotebookNode,
     exercise: Exercise,
-    looks: Looks[R],
+    looks: Attempts[R],
     rooms: R,
     runs: dict[int, CellRun],
 ) -> tuple[Checks, list[int]]:

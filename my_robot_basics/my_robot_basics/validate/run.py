@@ -12,7 +12,7 @@ from my_robot_basics.validate.cell_names import in_words
 from my_robot_basics.validate.cells import grade_id, graded_id, role
 from my_robot_basics.validate.exercises import Exercise, find_exercises
 from my_robot_basics.validate.forks import ForkServer
-from my_robot_basics.validate.judging import Judged, judge_exercise
+from my_robot_basics.validate.judging import JudgedExercise, judge_exercise
 from my_robot_basics.validate.lesson import Lesson, read_lesson
 from my_robot_basics.validate.report import (
     CheckFeedback,
@@ -57,7 +57,7 @@ class _Run:
 
     async def part(self, exercise: Exercise) -> ExerciseFeedback:
         """Judge an exercise by the checks that can be run, when its turn comes."""
-        judged = Judged({}, {})
+        judged = JudgedExercise({}, {})
         runnable = tuple(i for i in exercise.grades if _can_run(self.lesson, i))
         async with self.places:
             if runnable:
@@ -84,7 +84,7 @@ def _can_run(lesson: Lesson, index: int) -> bool:
     return name not in lesson.altered and lesson.hidden.get(name) != 'all'
 
 
-def _part(lesson: Lesson, exercise: Exercise, judged: Judged) -> ExerciseFeedback:
+def _part(lesson: Lesson, exercise: Exercise, judged: JudgedExercise) -> ExerciseFeedback:
     checks = []
     for index in exercise.grades:
         verdict, outputs = judged.checks.get(index, (None, []))

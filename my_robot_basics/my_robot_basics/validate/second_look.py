@@ -40,7 +40,7 @@ class Doubt(RoomFailure):
         super().__init__(f'{why} ({said.strip()})')
 
 
-class Looks(Generic[R]):
+class Attempts(Generic[R]):
     """The looks at one exercise: whom each of them may still blame."""
 
     def __init__(self, open_rooms: OpenRooms[R]) -> None:
