@@ -27,8 +27,8 @@ def main(arguments: list[str] | None = None, *, course: Course | None = None) ->
         except CourseError as error:
             print(f'course: {printable(error)}', file=sys.stderr)
             return 1
-        except KeyboardInterrupt as told:
-            kept = f'{told}' or 'What was finished is kept'
+        except KeyboardInterrupt as interrupt:
+            kept = f'{interrupt}' or 'What was finished is kept'
             with contextlib.suppress(OSError):  # SIGHUP: the terminal is gone
                 print(f'\ncourse: stopped. {kept}; run it again to go on.', file=sys.stderr)
             return stop.status

@@ -78,11 +78,11 @@ def _compared(name: str, now: Mapping, stored: Mapping[str, Mapping]) -> tuple[s
         (now.get(key) or None) == (then.get(key) or None)
         for key in ('outcome', 'reason', 'earned')
     )
-    line = f'  {name}  {_told(now)}'
-    return (f'{line}  as stored', True) if same else (f'{line}  STORED: {_told(then)}', False)
+    line = f'  {name}  {_in_words(now)}'
+    return (f'{line}  as stored', True) if same else (f'{line}  STORED: {_in_words(then)}', False)
 
 
-def _told(verdict: Mapping) -> str:
+def _in_words(verdict: Mapping) -> str:
     said = verdict.get('outcome') or 'nothing'
     reason = verdict.get('details') or verdict.get('reason')
     return printable(f'{said}: {reason}' if reason else said)

@@ -46,8 +46,8 @@ def leaks_beside(course: Course, files: Mapping[str, bytes]) -> Iterator[str]:
         for name, content in files.items():
             text = _text(name, content)
             found = sorted(line for line in secret if line in text)
-            telling = [line for line in found if line in tests and len(line) > COMMON_PHRASE]
-            for line in telling or found[1:]:
+            revealing = [line for line in found if line in tests and len(line) > COMMON_PHRASE]
+            for line in revealing or found[1:]:
                 yield f'{name} shows a line of an answer or a hidden test: {line!r}'
     for name, content in files.items():
         for mark in MARKS:
@@ -78,13 +78,13 @@ def _secret_lines(cell: NotebookNode) -> Iterator[str]:
     lines = list(_marked_lines(cell))
     marks = cell.metadata.get('nbgrader', {})
     all_of_it = marks.get('solution') and not any(hidden for _, hidden in lines)
-    yield from _telling(line for line, hidden in lines if hidden or all_of_it)
+    yield from _revealing(line for line, hidden in lines if hidden or all_of_it)
 
 
 def _open_lines(cell: NotebookNode) -> Iterator[str]:
     """Yield the lines that everybody may read, stripped."""
     if not set(_secret_lines(cell)) or any(hidden for _, hidden in _marked_lines(cell)):
-        yield from _telling(line for line, hidden in _marked_lines(cell) if not hidden)
+        yield from _revealing(line for line, hidden in _marked_lines(cell) if not hidden)
 
 
 def _marked_lines(cell: NotebookNode) -> Iterator[tuple[str, bool]]:
@@ -99,7 +99,7 @@ def _marked_lines(cell: NotebookNode) -> Iterator[tuple[str, bool]]:
             yield line, hidden
 
 
-def _telling(lines: Iterable[str]) -> Iterator[str]:
+def _revealing(lines: Iterable[str]) -> Iterator[str]:
     """Yield what a line says; a bracket or a bare word says nothing."""
     yield from (s for line in lines if len(s := line.strip()) > 5 and ' ' in s)
 

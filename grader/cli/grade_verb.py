@@ -45,9 +45,9 @@ def run_grade(course: Course, asked: argparse.Namespace) -> int:
         for row in print_rows(graded, submissions):
             rows.append(row)
     except KeyboardInterrupt:
-        graded.close()  # ends all that runs, before anybody is told so
-        told = f'{len(rows)} of {len(submissions)} submissions are graded and stored'
-        raise KeyboardInterrupt(told) from None
+        graded.close()  # ends all that runs, before anybody reads that
+        summary = f'{len(rows)} of {len(submissions)} submissions are graded and stored'
+        raise KeyboardInterrupt(summary) from None
     report = write_report(course, run, rows)
     if changed := changes(rows):
         print(f'{len(changed)} score{"s" * (len(changed) > 1)} changed:')

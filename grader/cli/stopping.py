@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
 
-_TOLD_BY = (signal.SIGTERM, signal.SIGHUP)
+_SIGNALS = (signal.SIGTERM, signal.SIGHUP)
 
 
 class Stop:
@@ -20,7 +20,7 @@ class Stop:
         """The exit status of a process that a signal ended."""
         return 128 + self._number
 
-    def told(self, number: int, frame: FrameType | None) -> None:
+    def handle(self, number: int, frame: FrameType | None) -> None:
         """Pass a signal on to the handler of Ctrl-C that is set now."""
         self._number = signal.Signals(number)
         answer = signal.getsignal(signal.SIGINT)
@@ -35,9 +35,9 @@ def stoppable() -> Iterator[Stop]:
     For the main thread alone: Python tells no other one of signals.
     """
     stop = Stop()
-    ours = [each for each in _TOLD_BY if signal.getsignal(each) is signal.SIG_DFL]
+    ours = [each for each in _SIGNALS if signal.getsignal(each) is signal.SIG_DFL]
     for number in ours:
-        signal.signal(number, stop.told)
+        signal.signal(number, stop.handle)
     try:
         yield stop
     finally:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import my_robot_basics
 
-TOLD = ('ros-jazzy-rclpy', 'nbgrader', 'ipykernel', 'numpy', 'my_robot_basics')
+REPORTED = ('ros-jazzy-rclpy', 'nbgrader', 'ipykernel', 'numpy', 'my_robot_basics')
 """What is named to people; the hash holds everything that is installed."""
 
 
@@ -19,7 +19,7 @@ def versions() -> dict[str, str]:
     return {
         'Python': platform.python_version(),
         'system': f'{platform.system()} {platform.release()}',
-        **{name: version(name) for name in TOLD},
+        **{name: version(name) for name in REPORTED},
         'grader and my_robot_basics': machinery()[:12],
     }
 

@@ -44,7 +44,7 @@ async def fork_into(
     )
     try:
         async with asyncio.timeout(_TIMEOUT_SEC):
-            first = await _built(keeper, ordered.told)
+            first = await _built(keeper, ordered.info_fd)
             return ForkedProcess(keeper, *await _forked(paths, room, environment, first))
     except BaseException:
         keeper.kill()
@@ -61,14 +61,14 @@ def keeper_of(paths: KernelPaths) -> Keeper:
     return paths.keeper
 
 
-async def _built(keeper: subprocess.Popen, told: int) -> int:
+async def _built(keeper: subprocess.Popen, info_fd: int) -> int:
     """Wait until a room is built; return the process ID of its first process."""
     assert keeper.stdout is not None  # it is a pipe
     await readable(keeper.stdout.fileno())
     said = keeper.stdout.read(MAX_ANSWER)
     if said != b'\n':
         raise RoomFailure(f'the room could not be built: {said.decode(errors="replace").strip()}')
-    return json.loads(os.read(told, MAX_ANSWER))['child-pid']
+    return json.loads(os.read(info_fd, MAX_ANSWER))['child-pid']
 
 
 async def _forked(

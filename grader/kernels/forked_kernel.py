@@ -14,7 +14,7 @@ from grader.kernels.fork_servers import MAX_ANSWER
 from grader.kernels.kernel_exits import Ending
 from grader.sandbox.signals import Signals
 
-_TOLD_SEC = 5.0
+_STATUS_SEC = 5.0
 """How long its parent may take to tell how a kernel ended."""
 
 
@@ -24,14 +24,14 @@ class ForkedProcess:
     stdin = stdout = stderr = None
 
     def __init__(
-        self, room: subprocess.Popen, kernel: int, listener: int, told: socket.socket
+        self, room: subprocess.Popen, kernel: int, listener: int, connection: socket.socket
     ) -> None:
         """Take the process that keeps the room, and a pidfd of the kernel; both end together.
 
-        `told` is where the kernel's parent tells how it ended, `listener` where Linux tells of
+        The kernel's parent says over `connection` how it ended. `listener` is where Linux tells of
         signals that are sent in the room, or -1.
         """
-        self._room, self._kernel, self._told = room, kernel, told
+        self._room, self._kernel, self._connection = room, kernel, connection
         self.signals = Signals(kernel, listener)
         self.pid = room.pid
 
@@ -64,9 +64,9 @@ class ForkedProcess:
     async def ending(self) -> Ending:
         """Return how it ended; to be called once when it has."""
         try:
-            async with asyncio.timeout(_TOLD_SEC):
-                await readable(self._told.fileno())
-            status, cpu_sec = json.loads(self._told.recv(MAX_ANSWER))
+            async with asyncio.timeout(_STATUS_SEC):
+                await readable(self._connection.fileno())
+            status, cpu_sec = json.loads(self._connection.recv(MAX_ANSWER))
         except (TimeoutError, OSError, ValueError):  # its parent was ended, too
             return Ending()
         number = os.WTERMSIG(status) if os.WIFSIGNALED(status) else 0
@@ -75,7 +75,7 @@ class ForkedProcess:
     def close(self) -> None:
         """Forget it, ended or not."""
         self.signals.close()
-        self._told.close()
+        self._connection.close()
 
     def send_signal(self, number: int) -> None:
         """End it, whatever the signal: for an interrupt there are messages."""

@@ -97,10 +97,10 @@ def require_isolation(*, trust_students: bool = False) -> bool:
 def accounting() -> Protection:
     """Return who counts what rooms use, as the processes that grade find it."""
     command = scoped((sys.executable, '-P', '-m', 'grader.sandbox.cgroup_hierarchies'))
-    told = subprocess.run(command, capture_output=True, text=True)
-    if told.returncode == 0:
-        return Protection(f'a cgroup for each room ({told.stdout.strip()})')
-    why = told.stderr.strip().rpartition('\n')[2]
+    tried = subprocess.run(command, capture_output=True, text=True)
+    if tried.returncode == 0:
+        return Protection(f'a cgroup for each room ({tried.stdout.strip()})')
+    why = tried.stderr.strip().rpartition('\n')[2]
     return Protection('a cgroup for each room', why, _CGROUPS)
 
 

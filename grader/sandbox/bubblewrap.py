@@ -86,16 +86,16 @@ def room_command(
     holder: int,
     room: str,
     seccomp: int,
-    told: int | None = None,
+    info_fd: int | None = None,
     counted: bool = True,
 ) -> list[str]:
     """Return how a command begins that runs in a room.
 
-    `holder` is the holder's process ID, `seccomp` the file descriptor of a filter. Where there is
-    one to be `told` on, the command is the room's first process, and it is told which that is.
+    `holder` is the holder's process ID, `seccomp` the file descriptor of a filter. With an
+    `info_fd`, the command is the room's first process, and its ID is written there.
     Unless a cgroup has what it uses `counted`, there is no /dev/zero, which makes memory to share.
     """
-    first = [] if told is None else ['--as-pid-1', '--info-fd', str(told)]
+    first = [] if info_fd is None else ['--as-pid-1', '--info-fd', str(info_fd)]
     disk = f'{DISKS}/{room}'
     accounts = []
     for name in ACCOUNTS:

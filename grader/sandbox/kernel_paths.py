@@ -38,7 +38,7 @@ class Keeper:
     command: tuple[str, ...]
     """Says a line when the room is built."""
     pass_fds: tuple[int, ...]
-    told: int
+    info_fd: int
     """The file descriptor where bubblewrap tells about it."""
     user: int | None
     """Whom root becomes before it joins."""
@@ -90,9 +90,10 @@ class KernelPaths:
 
     def write_connection_file(self, connection_file: Path) -> None:
         """Write the kernel's own connection file: it may know its sockets by another path."""
-        told = json.loads(connection_file.read_text(encoding='utf-8'))
-        told['ip'] = str(self.inside / 'kernel' / 'zmq')
-        (self.folder / 'given' / 'connection.json').write_text(json.dumps(told), encoding='utf-8')
+        connection = json.loads(connection_file.read_text(encoding='utf-8'))
+        connection['ip'] = str(self.inside / 'kernel' / 'zmq')
+        inside = self.folder / 'given' / 'connection.json'
+        inside.write_text(json.dumps(connection), encoding='utf-8')
 
     def remove(self) -> None:
         """Remove the grader's folder."""

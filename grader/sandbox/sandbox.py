@@ -90,24 +90,24 @@ class Sandbox:
 
     def _keeper(self, room: str) -> Keeper:
         seccomp = self._filter()
-        told, tell = os.pipe()
-        self._files += [told, tell]
+        info_fd, tell = os.pipe()
+        self._files += [info_fd, tell]
         cgroup = self.cgroup(room)
         return Keeper(
-            (*self._room_command(room, seccomp, told=tell), *KEEPER),
+            (*self._room_command(room, seccomp, info_fd=tell), *KEEPER),
             (seccomp, tell),
-            told=told,
+            info_fd=info_fd,
             user=self._user,
             entrances=cgroup.entrances if cgroup else (),
         )
 
-    def _room_command(self, room: str, seccomp: int, told: int | None = None) -> list[str]:
+    def _room_command(self, room: str, seccomp: int, info_fd: int | None = None) -> list[str]:
         command = room_command(
             self._user,
             holder=self._holder.pid,
             room=room,
             seccomp=seccomp,
-            told=told,
+            info_fd=info_fd,
             counted=self._cgroups is not None,
         )
         return [*joining(self.cgroup(room)), *command]

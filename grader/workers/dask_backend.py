@@ -113,15 +113,15 @@ class Cluster:
 
     def _look_after(self) -> None:
         """Say so while there is no worker; whatever was being graded waits for one."""
-        told = False
+        warned = False
         while not self._left.wait(LOOK_SEC):
             try:
                 workers = self._client.scheduler_info()['workers']
             except (OSError, ValueError, KeyError):  # no scheduler any more, as its futures tell
                 return
-            if not workers and not told:
+            if not workers and not warned:
                 print(f'waiting: {self._address} has lost all workers', file=sys.stderr)
-            told = not workers
+            warned = not workers
 
 
 def _refused(answer: str) -> dict | None:

@@ -72,7 +72,7 @@ class Predictions:
         right = self._ran - len(self._wrong)
         has_all = self._ran == len(self._keys)
         earned = max((p for least, p in points.items() if has_all and right >= least), default=0)
-        told = [
+        reasons = [
             f'`{each.__name__}` {"arrives" if arrived else "does not arrive"} ({each.__doc__})'
             for each, arrived in self._wrong
         ]
@@ -83,7 +83,7 @@ class Predictions:
             fail(
                 expected='each prediction to match what happens when the check runs it',
                 seen=f'{len(self._wrong)}{rest} wrong{leaves}',
-                hint='; '.join(told),
+                hint='; '.join(reasons),
                 earned=earned,
             )
 

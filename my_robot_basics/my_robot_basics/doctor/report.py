@@ -77,9 +77,9 @@ def _names(evidence: Seen, kind: Kind) -> str:
 
 def _paragraph(number: int, finding: Finding) -> str:
     fix = f'{finding.fix}{":" if finding.code else ""}'
-    told = {'expected': finding.expected, 'saw': finding.seen, 'to do': fix}
+    fields = {'expected': finding.expected, 'saw': finding.seen, 'to do': fix}
     lines = [f'{number}. {finding.title}']
-    for label, text in told.items():
+    for label, text in fields.items():
         lines += textwrap.wrap(
             text,
             COLUMNS,

@@ -52,9 +52,9 @@ def running() -> list[RunningLesson]:
         return []
     found = []
     for row in rows:
-        if told := _ROW.search(row):
-            domain_id, started_nsec, pid = map(int, told.groups()[:3])
-            found.append(RunningLesson(started_nsec, domain_id, pid, told[4]))
+        if match := _ROW.search(row):
+            domain_id, started_nsec, pid = map(int, match.groups()[:3])
+            found.append(RunningLesson(started_nsec, domain_id, pid, match[4]))
     return sorted(lesson for lesson in found if _is_ours(lesson.pid))
 
 

@@ -95,7 +95,7 @@ async def _try_plan(
         with suppress(RoomFailure):  # the verdicts stand, with their causes alone
             async with looks.rooms() as rooms:
                 await _run_cells(notebook, plan, rooms, budget)
-                checks |= await _told_in_full(notebook, rooms, {i: checks[i] for i in cut})
+                checks |= await _explained_in_full(notebook, rooms, {i: checks[i] for i in cut})
     return JudgedExercise(runs, checks)
 
 
@@ -125,7 +125,7 @@ async def _judge_cells(
     """Judge an exercise's grade cells; return what came of them, and whose reasons are cut short.
 
     Once the student's code knows hidden inputs, it may have the visible part of another check say
-    them: that one's reason is told by its cause alone, too.
+    them: that one's reason is explained by its cause alone, too.
     """
     cells = notebook.cells
     own = [(graded_id(cells[i]), runs[i]) for i in (exercise.answer, *exercise.run)]
@@ -145,17 +145,17 @@ async def _judge_cells(
     return checks, cut
 
 
-async def _told_in_full(notebook: NotebookNode, rooms: Rooms, cut: Checks) -> Checks:
+async def _explained_in_full(notebook: NotebookNode, rooms: Rooms, cut: Checks) -> Checks:
     """Give reasons that were cut short in full, from rooms where nobody knows hidden inputs."""
-    told = {}
+    explained = {}
     for index, (verdict, _) in cut.items():
         cell = notebook.cells[index]
         if rooms.student_alive:
             run = await rooms.run_check(marked(visible(cell.source)))
             again = judge(cell, run, [])
             if again.outcome == 'failed':
-                told[index] = replace(verdict, reason=again.reason, details=''), run.outputs
-    return told
+                explained[index] = replace(verdict, reason=again.reason, details=''), run.outputs
+    return explained
 
 
 def _name(cells: list[NotebookNode], index: int) -> str:

@@ -39,8 +39,8 @@ async def validate(path: Path, server: ForkServer, *, say: Say = lambda line: No
     files = [p for p in sorted(path.parent.glob('*.py')) if p.is_file()]
     run = _Run(lesson, partial(LocalRooms, files=files, server=server), say)
     parts = await together(*map(run.part, find_exercises(lesson.notebook)))
-    told = {check.name for part in parts for check in part.checks}
-    parts += [*_by_hand(lesson), *_without_exercise(lesson, told), *_missing(lesson)]
+    named = {check.name for part in parts for check in part.checks}
+    parts += [*_by_hand(lesson), *_without_exercise(lesson, named), *_missing(lesson)]
     report = Report(path.name, tuple(parts), lesson.notes)
     return report.with_words(lambda text: in_words(text, lesson.notebook))
 
@@ -100,9 +100,9 @@ def _by_hand(lesson: Lesson) -> list[ExerciseFeedback]:
     return [ExerciseFeedback(check.name, (), (check,)) for check in checks]
 
 
-def _without_exercise(lesson: Lesson, told: set[str]) -> list[ExerciseFeedback]:
+def _without_exercise(lesson: Lesson, named: set[str]) -> list[ExerciseFeedback]:
     """Tell of the checks whose answer cell, or what begins their exercise, was taken away."""
-    cells = [c for c in lesson.notebook.cells if role(c) == 'grade' and grade_id(c) not in told]
+    cells = [c for c in lesson.notebook.cells if role(c) == 'grade' and grade_id(c) not in named]
     checks = [make_check(lesson, cell, None, []) for cell in cells]
     return [ExerciseFeedback(check.name, (), (check,)) for check in checks]
 

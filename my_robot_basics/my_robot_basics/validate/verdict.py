@@ -76,7 +76,7 @@ def judge(cell: NotebookNode, run: CellRun | None, own: Iterable[tuple[str, Cell
     reason = run.error.evalue.strip() or 'the check failed and gave no reason'
     details = hidden.details_in(run.outputs)
     if run.error.ename == 'AssertionError' and hidden.has_begun(run.outputs):
-        reason, details = _told(reason, cell), reason
+        reason, details = _in_words(reason, cell), reason
     notes += tuple(sentence for each in own if (sentence := _trouble(*each)))
     if run.ending:
         notes += (f'what you started has ended: {run.ending}',)
@@ -150,7 +150,7 @@ def _notes(run: CellRun) -> Iterable[str]:
                 yield line.removeprefix(NOTE)
 
 
-def _told(reason: str, cell: NotebookNode) -> str:
+def _in_words(reason: str, cell: NotebookNode) -> str:
     """What a student reads of an `assert` in a hidden part: words of the lesson's author."""
     words = reason if reason in cell.source else 'the check failed'
     return f'{hidden.PLACE}{words}'
