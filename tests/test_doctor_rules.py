@@ -112,11 +112,11 @@ def end(kind, node_name, *, topic_name=TOPIC, type_name='sensor_msgs/msg/JointSt
 
 
 def healthy(*, rate_hz=5.0, number=10, position=(0.4, -1.1), names=('joint1', 'joint2')):
-    began_sec = time.time()
+    start_sec = time.time()
     received = []
     for i in range(number):
         message = JointState(name=list(names), position=list(position))
-        sent_sec = began_sec + i / rate_hz
+        sent_sec = start_sec + i / rate_hz
         message.header.stamp.sec = int(sent_sec)
         message.header.stamp.nanosec = int(sent_sec % 1 * 1e9)
         received.append(ReceivedMessage(message=message, sent_sec=sent_sec))
@@ -126,7 +126,7 @@ def healthy(*, rate_hz=5.0, number=10, position=(0.4, -1.1), names=('joint1', 'j
         nodes={'/talker': NodeState(answers=True), '/listener': NodeState(answers=True)},
         received=tuple(received),
         listened_sec=number / rate_hz,
-        began_sec=began_sec,
+        start_sec=start_sec,
     )
 
 

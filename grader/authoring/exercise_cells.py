@@ -29,7 +29,7 @@ def outside_of_exercises(notebook: NotebookNode) -> Iterator[str]:
     run, or be judged with the answer before.
     """
     exercises = find_exercises(notebook)
-    begun = {exercise.name for exercise in exercises}
+    with_reset = {exercise.name for exercise in exercises}
     checked = {index for exercise in exercises for index in exercise.grades}
     last = None
     """The last cell that should begin an exercise, or be its answer."""
@@ -41,7 +41,7 @@ def outside_of_exercises(notebook: NotebookNode) -> Iterator[str]:
             last = None
         elif role(cell) == 'answer' and not cell.metadata.nbgrader.get('grade'):
             last = name
-            if name not in begun:
+            if name not in with_reset:
                 yield (
                     f'the answer cell `{name}` begins no exercise: put a Read-only cell with the'
                     f" id `{name}-reset` before it, which calls reset('NAME') with what the"

@@ -1,4 +1,4 @@
-"""The processes that kernels are forked from: begun when the first is needed, ended with this one.
+"""The processes that kernels are forked from: started when one is needed, ended with this one.
 
 There is one for the students' kernels and one for the tests': kernels of one server lie alike in
 memory, and the tests' need not lie as a student may know it. What runs in them is `forkserver`,

@@ -56,7 +56,7 @@ def hierarchies() -> Hierarchies:
 def scoped(command: tuple[str, ...]) -> tuple[str, ...]:
     """Return a command that runs where cgroups can be made, if systemd can give such a place.
 
-    That is a scope: it is begun by `systemd-run`, as the user's own, and ends with the command.
+    That is a scope: it is started by `systemd-run`, as the user's own, and ends with the command.
     """
     found = _found(Path('/proc/self'))
     return (
@@ -138,7 +138,7 @@ def _delegated(folder: Path) -> bool:
 def _move_to_graders(folder: Path) -> None:
     graders = folder / GRADERS
     graders.mkdir(exist_ok=True)
-    for _ in range(_MOVES):  # what is begun meanwhile is in the old one
+    for _ in range(_MOVES):  # what starts meanwhile is in the old one
         processes = _words(folder / 'cgroup.procs')
         if not processes:
             return

@@ -21,8 +21,8 @@ from grader.storage.lock import gradebook_lock
 from grader.storage.pipeline import finish, first_reason, resources_of
 from grader.storage.registering import register
 
-_BEGUN = '.{}.ipynb.begun'
-"""An executed notebook lies beside its place until all of it is stored."""
+_JOURNAL = '.{}.ipynb.begun'
+"""A journal: the executed notebook, kept beside its place until all of it is stored."""
 
 
 @dataclass(frozen=True)
@@ -57,19 +57,19 @@ def store(course: Course, submission: Submission, graded: NotebookNode) -> Store
     Whenever it is ended, `recover` finishes it. Raises GradebookError, and changes nothing, where
     the disk is full or the database can't be had.
     """
-    begun = _begun(course, submission)
+    journal = _journal(course, submission)
     try:
         with in_sentences(course):
             wait_until_free(course)
             former = _find(course, submission)
-            begun.parent.mkdir(parents=True, exist_ok=True)
-            write_whole(begun, nbformat.writes(graded))
+            journal.parent.mkdir(parents=True, exist_ok=True)
+            write_whole(journal, nbformat.writes(graded))
             saved = _finish(course, submission, graded)
             now = _find(course, submission)
     except (GradebookError, OSError):
         raise  # that can be fixed, and then `recover` goes on
     except Exception:
-        begun.unlink(missing_ok=True)
+        journal.unlink(missing_ok=True)
         raise
     assert now is not None  # it was stored
     return StoredResult(
@@ -84,13 +84,13 @@ def store(course: Course, submission: Submission, graded: NotebookNode) -> Store
 
 def recover(course: Course) -> None:
     """Store the rest of what was being stored when a run was killed."""
-    found = sorted(course.folder('autograded', '', '').glob(f'*/*/{_BEGUN.format("*")}'))
+    found = sorted(course.folder('autograded', '', '').glob(f'*/*/{_JOURNAL.format("*")}'))
     if not found:
         return
     with gradebook_lock(course.gradebook):
         make_database(course)
-        for begun in filter(Path.exists, found):
-            student, assignment = begun.parts[-3:-1]
+        for journal in filter(Path.exists, found):
+            student, assignment = journal.parts[-3:-1]
             folder = course.folder('submitted', student, assignment)
             extra = tuple(extra_python_files(folder))
             submission = Submission(
@@ -99,16 +99,16 @@ def recover(course: Course) -> None:
             try:
                 with in_sentences(course):
                     wait_until_free(course)
-                    _finish(course, submission, nbformat.read(begun, as_version=4))
+                    _finish(course, submission, nbformat.read(journal, as_version=4))
             except GradebookError:
                 raise
             except Exception:  # the lesson has changed since, for instance: it is graded again
                 logging.exception('%s of %s is not stored', assignment, printable(student))
-                begun.unlink()
+                journal.unlink()
 
 
 def _finish(course: Course, submission: Submission, graded: NotebookNode) -> NotebookNode:
-    """Store what has begun to be stored: doing it again is the same as doing it once."""
+    """Store what is in the journal: doing it again is the same as doing it once."""
     student, assignment = submission.student_id, submission.assignment
     at = resources_of(course, assignment, student)
     at['nbgrader']['timestamp'], notes = handed_in(submission)
@@ -119,13 +119,13 @@ def _finish(course: Course, submission: Submission, graded: NotebookNode) -> Not
     for extra in (*submission.extra_files, *timestamps(submission)):
         write_whole(folder / extra.name, extra.read_bytes())
     write_whole(folder / f'{assignment}.ipynb', nbformat.writes(saved))
-    _begun(course, submission).unlink()
+    _journal(course, submission).unlink()
     return saved
 
 
-def _begun(course: Course, submission: Submission) -> Path:
+def _journal(course: Course, submission: Submission) -> Path:
     folder = course.folder('autograded', submission.student_id, submission.assignment)
-    return folder / _BEGUN.format(submission.assignment)
+    return folder / _JOURNAL.format(submission.assignment)
 
 
 @contextmanager

@@ -65,11 +65,11 @@ def simulated(
 
 def _hold(watcher: Watcher, recorder: Recorder, clock: SimulatedClock) -> None:
     """The clock stands still: a node that keeps publishing does not follow it."""
-    began_ns = time.time_ns()
+    since_ns = time.time_ns()
     end = time.monotonic() + HOLD_SEC
     while time.monotonic() < end:
         clock.hold(0.05)
-        if recorder.count_since(began_ns) >= 2:
+        if recorder.count_since(since_ns) >= 2:
             raise Inconclusive(IGNORES)
 
 

@@ -53,7 +53,7 @@ class Topic(TopicEndpoints):
         7 s where no second message comes sooner.
         Raises CheckFailed when there is no publisher or no message.
         """
-        began = time.monotonic()
+        start = time.monotonic()
         with Watcher() as watcher:
             recorder = self.listen(watcher)
             sent = watcher.spin_until_free(lambda: bool(recorder.received), free_sec=BEFORE_SEC)
@@ -66,7 +66,7 @@ class Topic(TopicEndpoints):
                 self._expect_ends_by_itself(recorder)
             if not recording.messages:
                 self.fail_silent(watcher, seen=f'no message in {recording.seconds:g} s')
-        left_sec = _looks_sec() - (time.monotonic() - began)
+        left_sec = _looks_sec() - (time.monotonic() - start)
         return self._to_look_again(recording, why, left_sec=left_sec, late_looks=LATE_LOOKS)
 
     def publish(self, *messages: Any, timeout_sec: float = 10.0) -> None:
@@ -149,7 +149,7 @@ class Topic(TopicEndpoints):
             # it may have to wait as long for the message to begin at
             if left_sec < 2.0 * seconds:
                 raise CheckFailed('there is no time for another look')
-            began = time.monotonic()
+            start = time.monotonic()
             with Watcher() as watcher:
                 recorder = self.listen(watcher)
                 again = wall_recording.wall(
@@ -157,7 +157,7 @@ class Topic(TopicEndpoints):
                 )
             if again.late_sec < LATE_SEC or not late_looks:
                 return again
-            left = left_sec - (time.monotonic() - began)
+            left = left_sec - (time.monotonic() - start)
             return self._to_look_again(again, why, left_sec=left, late_looks=late_looks - 1)
 
         return replace(recording, look_again=look_again)

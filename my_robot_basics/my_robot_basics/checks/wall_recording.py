@@ -34,15 +34,15 @@ def wall(
     """
     if not recorder.received and what_raised(recorder.publishers()):
         seconds = timeout_sec = RAISED_SEC
-    began_ns = time.time_ns()
-    if watcher.spin_until(lambda: recorder.count_since(began_ns) > 0, timeout_sec=timeout_sec):
+    since_ns = time.time_ns()
+    if watcher.spin_until(lambda: recorder.count_since(since_ns) > 0, timeout_sec=timeout_sec):
         watcher.late_sec = 0.0
         watcher.spin_for(seconds)
         watcher.spin_until(
-            lambda: recorder.count_since(began_ns) > 1, timeout_sec=timeout_sec - seconds
+            lambda: recorder.count_since(since_ns) > 1, timeout_sec=timeout_sec - seconds
         )
-    sent = [(message, sent_ns) for message, sent_ns in recorder.received if sent_ns > began_ns]
-    start_ns = sent[0][1] if sent else began_ns
+    sent = [(message, sent_ns) for message, sent_ns in recorder.received if sent_ns > since_ns]
+    start_ns = sent[0][1] if sent else since_ns
     samples = [
         Sample(message, (sent_ns - start_ns) / 1e9, sent_ns / 1e9) for message, sent_ns in sent[1:]
     ]

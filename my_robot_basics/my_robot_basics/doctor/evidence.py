@@ -126,7 +126,7 @@ class Evidence(Seen):
     """Whether somebody publishes `/clock`."""
     received: tuple[ReceivedMessage, ...] = ()
     listened_sec: float = 0.0
-    began_sec: float = 0.0
+    start_sec: float = 0.0
     """When the doctor began to listen, on the wall clock."""
     unknown_types: tuple[str, ...] = ()
     """Types of the topic's publishers that are not installed here: nobody could listen in."""
@@ -144,7 +144,7 @@ class Evidence(Seen):
     @cached_property
     def fresh(self) -> tuple[ReceivedMessage, ...]:
         """The messages that were sent while the doctor looked: not those kept for late joiners."""
-        return tuple(each for each in self.received if each.sent_sec >= self.began_sec)
+        return tuple(each for each in self.received if each.sent_sec >= self.start_sec)
 
     @property
     def rate_hz(self) -> float:

@@ -88,13 +88,13 @@ def _listen(watcher: Watcher, evidence: Evidence, *, listen_sec: float) -> Evide
         reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
         durability=DurabilityPolicy.TRANSIENT_LOCAL if keeping else DurabilityPolicy.VOLATILE,
     )
-    began_sec, started = time.time(), time.monotonic()
+    start_sec, started = time.time(), time.monotonic()
 
     def receive(message: object, info: dict) -> None:
         received.append(ReceivedMessage(message=message, sent_sec=info['source_timestamp'] / 1e9))
 
     def is_enough() -> bool:
-        fresh = [each for each in received if each.sent_sec >= began_sec]
+        fresh = [each for each in received if each.sent_sec >= start_sec]
         if len(fresh) < ENOUGH_MESSAGES:
             return False
         return time.time() - fresh[0].sent_sec >= ENOUGH_SEC
@@ -105,7 +105,7 @@ def _listen(watcher: Watcher, evidence: Evidence, *, listen_sec: float) -> Evide
         evidence,
         received=tuple(sorted(received, key=lambda each: each.sent_sec)),
         listened_sec=time.monotonic() - started,
-        began_sec=began_sec,
+        start_sec=start_sec,
     )
 
 

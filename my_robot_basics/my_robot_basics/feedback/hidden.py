@@ -36,7 +36,7 @@ _MEASURED = re.compile(r'(?<![\w.])[-+−]?(\d+\.\d+|\d{3,})(?![\w.]*\d)°?')
 _LIST = re.compile(r'…(, …)+')
 
 _quiet = False
-_began_sec: float | None = None
+_start_sec: float | None = None
 
 
 def is_in_test_room() -> bool:
@@ -46,9 +46,9 @@ def is_in_test_room() -> bool:
 
 def start(*, quiet: bool) -> None:
     """Begin a grade cell."""
-    global _quiet, _began_sec
+    global _quiet, _start_sec
     _quiet = quiet
-    _began_sec = time.monotonic() if _began_sec is None else _began_sec
+    _start_sec = time.monotonic() if _start_sec is None else _start_sec
 
 
 def checked_for_sec() -> float:
@@ -58,7 +58,7 @@ def checked_for_sec() -> float:
     that a callback would not have made it later.
     """
     is_advice = os.environ.get('MY_ROBOT_BASICS_ADVICE') == '1'
-    return time.monotonic() - _began_sec if is_advice and _began_sec is not None else 0.0
+    return time.monotonic() - _start_sec if is_advice and _start_sec is not None else 0.0
 
 
 def begin() -> None:

@@ -24,12 +24,12 @@ class Stopwatch:
     """Measures time from when it is made."""
 
     def __init__(self) -> None:
-        self._began = time.monotonic()
+        self._start = time.monotonic()
         self._crowded_sec = crowded_sec()
 
     def wall_sec(self) -> float:
         """Seconds of steady wall time."""
-        return time.monotonic() - self._began
+        return time.monotonic() - self._start
 
     def free_sec(self) -> float:
         """Seconds of it in which no process had to wait for a processor."""

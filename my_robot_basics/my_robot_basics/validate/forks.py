@@ -18,7 +18,7 @@ import psutil
 from my_robot_basics.validate.errors import RoomFailure
 
 _MARK = 'MY_ROBOT_BASICS_VALIDATE'
-"""Names, in the environment of all that one of these has begun, which one that was."""
+"""Names, in the environment of all that one of these has started, which one that was."""
 _END_SEC = 5.0
 
 
@@ -105,7 +105,7 @@ class ForkedKernel:
         return 0.0
 
     def interrupt(self) -> None:
-        """Interrupt what runs in it, and what it has begun in its group."""
+        """Interrupt what runs in it, and what it has started in its group."""
         self._send(signal.SIGINT)
 
     async def kill(self) -> None:

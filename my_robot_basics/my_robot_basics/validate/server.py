@@ -48,7 +48,7 @@ class ValidateHandler(APIHandler):
             await _end_of(self._process)
 
     def on_connection_close(self) -> None:
-        """End what was begun for somebody who has closed the dialog."""
+        """End what was started for somebody who has closed the dialog."""
         super().on_connection_close()
         if self._process is not None:
             _interrupt(self._process)

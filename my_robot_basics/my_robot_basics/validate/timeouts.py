@@ -40,9 +40,9 @@ async def finished(
 
 async def finished_in_grace(done: asyncio.Future, is_alive: IsAlive) -> bool:
     """Wait for the end of a cell that was interrupted, while processors are free for it."""
-    began, crowded = time.monotonic(), pressure.crowded_sec()
+    start, crowded = time.monotonic(), pressure.crowded_sec()
     while not await finished(done, LOOK_EVERY_SEC, is_alive):
-        waited = time.monotonic() - began
+        waited = time.monotonic() - start
         free = waited - (pressure.crowded_sec() - crowded)
         if free >= INTERRUPT_GRACE_SEC or waited >= INTERRUPT_MOST_SEC:
             return False

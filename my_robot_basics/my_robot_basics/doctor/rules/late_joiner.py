@@ -12,7 +12,7 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
     """Name VOLATILE subscriptions to a topic whose messages were all sent before the look."""
     if evidence.fresh or not evidence.received:
         return
-    ago_sec = evidence.began_sec - evidence.received[-1].sent_sec
+    ago_sec = evidence.start_sec - evidence.received[-1].sent_sec
     for subscription in evidence.subscriptions:
         if subscription.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL:
             continue
