@@ -14,10 +14,10 @@ class Machine:
     """Submissions that go in and out of a gate, while Linux tells what it is made to tell."""
 
     def __init__(self, monkeypatch, *, told_sec=1.0):
-        self.now, self.crowded_sec = 0.0, told_sec
+        self.now, self.stalled_sec = 0.0, told_sec
         clock = types.SimpleNamespace(monotonic=lambda: self.now)
         monkeypatch.setattr(pressure, 'time', clock)
-        monkeypatch.setattr(pressure, 'crowded_sec', lambda: self.crowded_sec)
+        monkeypatch.setattr(pressure, 'stalled_sec', lambda: self.stalled_sec)
         self.gate = AdaptiveSemaphore(least=4, most=9, step=2)
         self.inside = []
 
@@ -36,7 +36,7 @@ class Machine:
     async def after(self, seconds, *, share):
         """Let time go by and one submission end; how many there are with those who follow."""
         self.now += seconds
-        self.crowded_sec += share * seconds
+        self.stalled_sec += share * seconds
         self.inside.pop()
         await self.gate.__aexit__()
         return await self.fill()

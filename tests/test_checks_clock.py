@@ -122,23 +122,23 @@ def test_a_timer_that_was_due_when_the_clock_was_given_back_is_not_left_in_the_f
         assert fired.wait(10.0)
 
 
-@pytest.mark.parametrize(('is_crowded', 'clock_name'), [(True, 'simulated'), (False, 'wall')])
+@pytest.mark.parametrize(('is_busy', 'clock_name'), [(True, 'simulated'), (False, 'wall')])
 def test_slow_answers_tell_of_a_slow_node_only_where_processors_are_free(
-    monkeypatch, is_crowded, clock_name
+    monkeypatch, is_busy, clock_name
 ):
     monkeypatch.setattr(clock, 'SLOWEST_MEDIAN_SEC', 0.0)
-    share = 2.0 if is_crowded else 0.0
-    monkeypatch.setattr(pressure, 'crowded_sec', lambda: share * time.monotonic())
+    share = 2.0 if is_busy else 0.0
+    monkeypatch.setattr(pressure, 'stalled_sec', lambda: share * time.monotonic())
     with running('five_hz'):
         assert topic(TOPIC).record().clock == clock_name
 
 
 @pytest.mark.parametrize(
-    ('answers_after_sec', 'crowded_share', 'in_time'),
+    ('answers_after_sec', 'stalled_share', 'in_time'),
     [(0.4, 0.0, True), (1.0, 0.0, False), (1.0, 0.75, True), (3.0, 1.0, False)],
 )
-def test_a_crowded_machine_gives_more_time_to_answer_but_not_without_end(
-    monkeypatch, answers_after_sec, crowded_share, in_time
+def test_a_busy_machine_gives_more_time_to_answer_but_not_without_end(
+    monkeypatch, answers_after_sec, stalled_share, in_time
 ):
     now = [0.0]
 
@@ -147,7 +147,7 @@ def test_a_crowded_machine_gives_more_time_to_answer_but_not_without_end(
         return done()
 
     monkeypatch.setattr(pressure, 'time', types.SimpleNamespace(monotonic=lambda: now[0]))
-    monkeypatch.setattr(pressure, 'crowded_sec', lambda: crowded_share * now[0])
+    monkeypatch.setattr(pressure, 'stalled_sec', lambda: stalled_share * now[0])
     watcher = Watcher()
     monkeypatch.setattr(watcher, 'spin_until', spin_until)
     is_done = watcher.spin_until_free(lambda: now[0] >= answers_after_sec, free_sec=0.5)
@@ -155,7 +155,7 @@ def test_a_crowded_machine_gives_more_time_to_answer_but_not_without_end(
 
 
 @pytest.mark.parametrize(
-    ('in_room', 'crowded_share', 'after_sec', 'is_left'),
+    ('in_room', 'stalled_share', 'after_sec', 'is_left'),
     [
         (False, 1.0, 16.0, False),
         (True, 0.0, 16.0, False),
@@ -163,12 +163,12 @@ def test_a_crowded_machine_gives_more_time_to_answer_but_not_without_end(
         (True, 1.0, 46.0, False),
     ],
 )
-def test_a_crowded_machine_does_not_use_up_the_time_for_driving_the_clock(
-    monkeypatch, in_room, crowded_share, after_sec, is_left
+def test_a_busy_machine_does_not_use_up_the_time_for_driving_the_clock(
+    monkeypatch, in_room, stalled_share, after_sec, is_left
 ):
     now = [0.0]
     monkeypatch.setattr(pressure, 'time', types.SimpleNamespace(monotonic=lambda: now[0]))
-    monkeypatch.setattr(pressure, 'crowded_sec', lambda: crowded_share * now[0])
+    monkeypatch.setattr(pressure, 'stalled_sec', lambda: stalled_share * now[0])
     monkeypatch.setattr(clock_budget, 'BUDGET_SEC', 15.0)
     monkeypatch.setattr(clock_budget, 'is_in_test_room', lambda: in_room)
     budget = clock_budget.ClockBudget()

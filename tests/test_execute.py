@@ -285,15 +285,15 @@ DOUBTS = {
 
 
 @pytest.mark.parametrize(
-    ('checks', 'others_crowd', 'used_sec', 'outcome', 'opened'), DOUBTS.values(), ids=DOUBTS
+    ('checks', 'is_machine_busy', 'used_sec', 'outcome', 'opened'), DOUBTS.values(), ids=DOUBTS
 )
 def test_what_others_may_be_to_blame_for_is_looked_at_again_and_burning_time_gains_nothing(
-    monkeypatch, checks, others_crowd, used_sec, outcome, opened
+    monkeypatch, checks, is_machine_busy, used_sec, outcome, opened
 ):
     async def answer():
-        return others_crowd
+        return is_machine_busy
 
-    monkeypatch.setattr(second_look, 'others_crowd', answer)
+    monkeypatch.setattr(second_look, 'is_machine_busy', answer)
     rooms = type('GradingRooms', (FakeRooms,), {'checks': deepcopy(checks), 'used_sec': used_sec})
     monkeypatch.setattr(module, 'GradingRooms', rooms)
     execution = execute(handed_in(lesson('a'), a=GOOD))
@@ -304,11 +304,11 @@ def test_what_others_may_be_to_blame_for_is_looked_at_again_and_burning_time_gai
         assert 'a person has to look at it: the machine was too busy' in verdict.reason
 
 
-def test_others_crowd_a_machine_only_where_processes_wait_without_the_answer(monkeypatch):
-    monkeypatch.setattr(second_look, 'CROWD_SEC', 0.05)
+def test_a_machine_is_busy_only_where_processes_wait_without_the_answer(monkeypatch):
+    monkeypatch.setattr(second_look, 'BUSY_LOOK_SEC', 0.05)
     for share, crowd in [(0.0, False), (0.2, False), (0.9, True)]:
-        monkeypatch.setattr(pressure, 'crowded_sec', lambda share=share: share * time.monotonic())
-        assert asyncio.run(second_look.others_crowd()) is crowd
+        monkeypatch.setattr(pressure, 'stalled_sec', lambda share=share: share * time.monotonic())
+        assert asyncio.run(second_look.is_machine_busy()) is crowd
 
 
 def test_a_failure_in_one_exercise_leaves_the_others_their_verdicts(monkeypatch):

@@ -208,18 +208,18 @@ except KeyboardInterrupt:
 """
 
 
-@pytest.mark.parametrize(('is_crowded', 'died'), [(False, True), (True, False)])
-def test_a_crowded_machine_gives_an_interrupted_cell_more_time(
-    monkeypatch, spare, run, is_crowded, died
+@pytest.mark.parametrize(('is_busy', 'died'), [(False, True), (True, False)])
+def test_a_busy_machine_gives_an_interrupted_cell_more_time(
+    monkeypatch, spare, run, is_busy, died
 ):
-    crowded_sec = time.monotonic if is_crowded else lambda: 0.0
-    monkeypatch.setattr(timeouts.pressure, 'crowded_sec', crowded_sec)
+    stalled_sec = time.monotonic if is_busy else lambda: 0.0
+    monkeypatch.setattr(timeouts.pressure, 'stalled_sec', stalled_sec)
     result = run(spare, SLOW_TO_END, timeout_sec=1.5)
     assert (result.timed_out, result.died) == (True, died)
 
 
-def test_no_crowd_gives_more_than_its_limit(monkeypatch, own, run):
-    monkeypatch.setattr(timeouts.pressure, 'crowded_sec', time.monotonic)
+def test_no_busy_machine_gives_more_than_its_limit(monkeypatch, own, run):
+    monkeypatch.setattr(timeouts.pressure, 'stalled_sec', time.monotonic)
     monkeypatch.setattr(timeouts, 'INTERRUPT_MOST_SEC', 1.0)
     assert run(own, IGNORES, timeout_sec=0.5).died
 

@@ -2,7 +2,7 @@
 
 import pytest
 from my_robot_basics.live import measure_pairs, qos_pairs, run, stop, wait_until
-from my_robot_basics.session.errors import WaitedInVain
+from my_robot_basics.session.errors import WaitTimeout
 from rclpy.node import Node
 from rclpy.qos import QoSCompatibility, QoSProfile, ReliabilityPolicy, qos_check_compatible
 
@@ -36,5 +36,5 @@ def test_nothing_stays_on_the_graph_and_nothing_is_logged(witness, capfd):
 
 def test_a_pair_that_tells_nothing_is_no_outcome(monkeypatch):
     monkeypatch.setattr(qos_pairs, 'TIMEOUT_SEC', 0.0)
-    with pytest.raises(WaitedInVain):
+    with pytest.raises(WaitTimeout):
         measure_pairs(PROFILES)

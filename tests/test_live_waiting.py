@@ -90,5 +90,5 @@ def test_in_a_cell_an_error_takes_one_or_two_lines_and_the_progress_is_gone():
     shown, outputs = run_cell(SLOW.format(seconds=60, timeout_sec=1.2))
     assert shown[-1] == {}
     [error] = [output for output in outputs if output.output_type == 'error']
-    assert error.ename == 'WaitedInVain'
+    assert error.ename == 'WaitTimeout'
     assert len('\n'.join(error.traceback).splitlines()) <= 3

@@ -164,13 +164,13 @@ def test_a_worker_that_says_it_has_more_to_say_than_any_result_is_given_up(cours
         assert outcomes(backend.submit(task(course)).result()) == ['passed', 'passed']
 
 
-@pytest.mark.parametrize(('crowded_share', 'allowed'), [(0.0, 3), (1.0, 2)])
+@pytest.mark.parametrize(('stalled_share', 'allowed'), [(0.0, 3), (1.0, 2)])
 def test_more_are_in_flight_while_processors_stand_idle(
-    course, tmp_path, monkeypatch, crowded_share, allowed
+    course, tmp_path, monkeypatch, stalled_share, allowed
 ):
-    watch = SimpleNamespace(wall_sec=lambda: 60.0, free_sec=lambda: 60.0 * (1.0 - crowded_share))
+    watch = SimpleNamespace(wall_sec=lambda: 60.0, free_sec=lambda: 60.0 * (1.0 - stalled_share))
     monkeypatch.setattr(pressure, 'Stopwatch', lambda: watch)
-    monkeypatch.setattr(pressure, 'crowded_sec', lambda: 1.0)
+    monkeypatch.setattr(pressure, 'stalled_sec', lambda: 1.0)
     mark = tmp_path / 'go'
     with Workers(1, command=COMMAND) as backend:
         backend.submit(task(course)).result()

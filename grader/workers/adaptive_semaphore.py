@@ -33,17 +33,17 @@ class AdaptiveSemaphore:
 
     async def __aexit__(self, *_: object) -> None:
         """Leave it to the next, and look how busy the machine is."""
-        if self._watch.wall_sec() >= LOOK_SEC and pressure.crowded_sec():
+        if self._watch.wall_sec() >= LOOK_SEC and pressure.stalled_sec():
             self._follow(1.0 - self._watch.free_sec() / self._watch.wall_sec())
             self._watch = pressure.Stopwatch()
         self._give(1)
 
-    def _follow(self, crowded_share: float) -> None:
+    def _follow(self, stalled_share: float) -> None:
         before = self.allowed
-        if crowded_share < IDLE_SHARE:
+        if stalled_share < IDLE_SHARE:
             self.allowed = min(before + self._step, self._most)
             self._give(self.allowed - before)
-        elif crowded_share > BUSY_SHARE:
+        elif stalled_share > BUSY_SHARE:
             self.allowed = max(before - self._step, self._least)
             self._too_many += before - self.allowed
 

@@ -26,7 +26,7 @@ from my_robot_basics.session.pressure import Stopwatch
 SLOWEST_BARRIER_SEC = 0.5
 SLOWEST_MEDIAN_SEC = 0.02
 FIRST_ANSWER_SEC = 1.0
-"""What a node may take to answer, of time that was free: an honest node on a crowded machine is
+"""What a node may take to answer, of time that was free: an honest node on a busy machine is
 slow, too."""
 RESTORE_SEC = 10.0
 MEDIAN_EVERY = 40

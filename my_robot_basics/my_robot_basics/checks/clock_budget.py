@@ -5,7 +5,7 @@ from my_robot_basics.session.pressure import Stopwatch
 
 BUDGET_SEC = 15.0
 """How long the clock is driven at most, and nbgrader's Validate gives a cell 30 s in all: …"""
-CROWDED_BUDGET_SEC = 45.0
+BUSY_BUDGET_SEC = 45.0
 """… in a room of its own, time in which processes had to wait for a processor does not count,
 within this."""
 
@@ -26,4 +26,4 @@ class ClockBudget:
         wall_sec = self._watch.wall_sec()
         if not is_in_test_room():
             return wall_sec / BUDGET_SEC
-        return max(self._watch.free_sec() / BUDGET_SEC, wall_sec / CROWDED_BUDGET_SEC)
+        return max(self._watch.free_sec() / BUDGET_SEC, wall_sec / BUSY_BUDGET_SEC)

@@ -32,10 +32,10 @@ FEWEST_LOST = 2
 """So many that never came out are no chance then, where later ones did."""
 MOST_LATE = 4
 """So many tell enough: each is waited for, and a BEST_EFFORT end may lose one now and then."""
-CROWD = 50
+FLOOD = 50
 """With so many messages of others while one is waited for, the queue overflows without anybody's
 fault: …"""
-MOST_CROWDED_OUT = 20
+MOST_PUSHED_OUT = 20
 """… So many such losses are no chance, either."""
 FEWEST_COPIES = 2
 """Messages of which there are copies."""
@@ -79,9 +79,9 @@ class Passage:
     def carry(self, messages: Iterator[Sent]) -> RelayFaults:
         """Publish each once the one before has come out or is late, until enough came in a row.
 
-        The others of a crowd may push one out of a queue: such a loss counts for nothing.
+        The others of a flood may push one out of a queue: such a loss counts for nothing.
         """
-        late = in_a_row = crowded_out = 0
+        late = in_a_row = pushed_out = 0
         row = Stopwatch()
         while in_a_row < _fewest(row) and late < MOST_LATE:
             # who swaps two has one in time, and none in a row
@@ -90,8 +90,8 @@ class Passage:
             others, sent = len(self._others), next(messages)
             if self._send(sent):
                 in_a_row += 1
-            elif len(self._others) - others >= CROWD and crowded_out < MOST_CROWDED_OUT:
-                crowded_out += 1
+            elif len(self._others) - others >= FLOOD and pushed_out < MOST_PUSHED_OUT:
+                pushed_out += 1
                 self._waiting.remove(sent)
             else:
                 late, in_a_row, row = late + 1, 0, Stopwatch()

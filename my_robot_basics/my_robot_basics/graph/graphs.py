@@ -104,7 +104,7 @@ def is_settled(watcher: Watcher, node_name: str = '') -> bool:
 
 
 def none_in(seconds: float) -> str:
-    """What was seen of what was waited for in vain."""
+    """What was seen of something that did not come in time."""
     return 'none' if seconds <= SETTLED_SEC else f'none in {seconds:g} s'
 
 

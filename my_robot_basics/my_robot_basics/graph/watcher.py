@@ -26,7 +26,7 @@ MOST_ENDPOINTS = 1_000
 thousands, no look at the graph comes to an end."""
 COUNT_EVERY_SEC = 0.5
 LOOK_EVERY_SEC = 0.05
-CROWDED_TIMES = 5.0
+BUSY_TIMES = 5.0
 """How many times as long an answer may take where processes have to wait for a processor."""
 
 
@@ -109,7 +109,7 @@ class Watcher:
         """
         deadline = time.monotonic() + timeout_sec
         while True:
-            self._expect_no_crowd()
+            self._expect_few_endpoints()
             if done():
                 return True
             left = deadline - time.monotonic()
@@ -133,11 +133,11 @@ class Watcher:
         watch = Stopwatch()
         while not self.spin_until(done, timeout_sec=LOOK_EVERY_SEC):
             waited_sec = watch.wall_sec()
-            if watch.free_sec() >= free_sec or waited_sec >= CROWDED_TIMES * free_sec:
+            if watch.free_sec() >= free_sec or waited_sec >= BUSY_TIMES * free_sec:
                 return False
         return True
 
-    def _expect_no_crowd(self) -> None:
+    def _expect_few_endpoints(self) -> None:
         if time.monotonic() < self._next_count:
             return
         topic_names = [name for name, _ in self.node.get_topic_names_and_types()]

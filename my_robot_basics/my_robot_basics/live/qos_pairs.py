@@ -22,7 +22,7 @@ def measure_pairs(profiles: Mapping[str, QoSProfile]) -> dict[tuple[str, str], s
     """Send a message from each profile to each other one; return what came of it.
 
     The keys are pairs of names, (what is offered, what is asked for). The outcome is 'yes' where
-    the message arrived, else the name of the policy that did not match. Raises WaitedInVain where
+    the message arrived, else the name of the policy that did not match. Raises WaitTimeout where
     a pair tells neither.
     """
     classroom.enter()

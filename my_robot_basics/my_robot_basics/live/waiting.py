@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable
 
 from my_robot_basics.live import notebook
-from my_robot_basics.session.errors import NotRunnable, WaitedInVain
+from my_robot_basics.session.errors import NotRunnable, WaitTimeout
 
 PAUSE_SEC = 0.01
 """Between two looks at the condition."""
@@ -17,7 +17,7 @@ def wait_until(condition: Callable[[], object], timeout_sec: float = 5.0) -> Non
     """Return as soon as condition() is true.
 
     A wait of more than a second shows how long it has taken so far; nothing of that stays in the
-    cell. Raises WaitedInVain, a TimeoutError, when it is still false after `timeout_sec`, and
+    cell. Raises WaitTimeout, a TimeoutError, when it is still false after `timeout_sec`, and
     NotRunnable for a condition that is no function.
     """
     __tracebackhide__ = True
@@ -31,7 +31,7 @@ def wait_until(condition: Callable[[], object], timeout_sec: float = 5.0) -> Non
         while not condition():
             waited_sec = time.monotonic() - start
             if waited_sec >= timeout_sec:
-                raise WaitedInVain(
+                raise WaitTimeout(
                     f'waited {timeout_sec:g} s, and it did not happen: is the node still running, '
                     'and did you run the cells above?'
                 )

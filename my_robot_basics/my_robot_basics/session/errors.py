@@ -30,5 +30,5 @@ class NotRunnable(LiveError):
     """`run`, `run_answer` or `wait_until` was given something that it cannot start or call."""
 
 
-class WaitedInVain(LiveError, TimeoutError):
+class WaitTimeout(LiveError, TimeoutError):
     """What a cell waited for did not happen in time."""

@@ -7,7 +7,7 @@ from pathlib import Path
 CPU = Path('/proc/pressure/cpu')
 
 
-def crowded_sec() -> float:
+def stalled_sec() -> float:
     """For how long so far some process had to wait for a processor, in seconds.
 
     Only differences mean anything. 0.0 where Linux does not tell (psi=0).
@@ -25,7 +25,7 @@ class Stopwatch:
 
     def __init__(self) -> None:
         self._start = time.monotonic()
-        self._crowded_sec = crowded_sec()
+        self._stalled_sec = stalled_sec()
 
     def wall_sec(self) -> float:
         """Seconds of steady wall time."""
@@ -33,4 +33,4 @@ class Stopwatch:
 
     def free_sec(self) -> float:
         """Seconds of it in which no process had to wait for a processor."""
-        return max(0.0, self.wall_sec() - (crowded_sec() - self._crowded_sec))
+        return max(0.0, self.wall_sec() - (stalled_sec() - self._stalled_sec))

@@ -13,13 +13,13 @@ STUDENT_CELLS_BUDGET_SEC = 120.0
 REPLY_TIMEOUT_SEC = 10.0
 """How long the student's kernel may take to answer one question of a check: as for a cell."""
 CHECK_TIMEOUT_SEC = 150.0
-"""A check has time limits of its own, longer ones on a crowded machine; this one ends a check that
+"""A check has time limits of its own, longer ones on a busy machine; this one ends a check that
 lost them."""
 INTERRUPT_GRACE_SEC = 2.0
 """A kernel that ignores an interrupt so long is killed. Time in which processes had to wait for a
 processor does not count, …"""
 INTERRUPT_MOST_SEC = 10.0
-"""… within this: a crowded machine may take seconds to end a node."""
+"""… within this: a busy machine may take seconds to end a node."""
 FLOOD_CHARACTERS = 10_000_000
 """A cell that prints more is stopped as one that never ends: reading on would cost the class a
 processor. An answer prints some lines, a picture is a tenth of a million."""

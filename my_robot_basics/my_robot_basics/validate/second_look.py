@@ -19,9 +19,9 @@ STARVED, DISTURBED = 'Starved', 'Disturbed'
 BUSY_SHARE = 0.25
 """Of one processor: a student's room that uses more, while a check waits for its messages, keeps
 itself waiting. A node that publishes now and then needs a tenth of that."""
-CROWD_SEC = 1.0
+BUSY_LOOK_SEC = 1.0
 """How long to look, with the student's room closed, whether others keep the machine busy …"""
-CROWDED_SHARE = 0.5
+STALLED_SHARE = 0.5
 """… for at least so much of the time."""
 LEAVE_CLOCKS = '''"""The nodes' clocks are left alone"""
 from my_robot_basics.checks import clock_use
@@ -52,7 +52,7 @@ class Attempts(Generic[R]):
     async def end(self, failure: RoomFailure) -> None:
         """Prepare the next look; no room of the exercise is open."""
         self._leaves_clocks = isinstance(failure, Doubt) and failure.kind == DISTURBED
-        self._doubted = (STARVED,) if await others_crowd() else ()
+        self._doubted = (STARVED,) if await is_machine_busy() else ()
 
     @asynccontextmanager
     async def rooms(self) -> AsyncIterator[R]:
@@ -75,11 +75,11 @@ class Attempts(Generic[R]):
         return run
 
 
-async def others_crowd() -> bool:
+async def is_machine_busy() -> bool:
     """Whether processes wait for a processor, for most of a while in which no answer runs."""
     watch = Stopwatch()
-    await asyncio.sleep(CROWD_SEC)
-    return watch.free_sec() <= (1.0 - CROWDED_SHARE) * watch.wall_sec()
+    await asyncio.sleep(BUSY_LOOK_SEC)
+    return watch.free_sec() <= (1.0 - STALLED_SHARE) * watch.wall_sec()
 
 
 def _sec_since(before_sec: float | None, after_sec: float | None) -> float:

@@ -40,10 +40,10 @@ async def finished(
 
 async def finished_in_grace(done: asyncio.Future, is_alive: IsAlive) -> bool:
     """Wait for the end of a cell that was interrupted, while processors are free for it."""
-    start, crowded = time.monotonic(), pressure.crowded_sec()
+    start, stalled = time.monotonic(), pressure.stalled_sec()
     while not await finished(done, LOOK_EVERY_SEC, is_alive):
         waited = time.monotonic() - start
-        free = waited - (pressure.crowded_sec() - crowded)
+        free = waited - (pressure.stalled_sec() - stalled)
         if free >= INTERRUPT_GRACE_SEC or waited >= INTERRUPT_MOST_SEC:
             return False
     return True
