@@ -191,7 +191,7 @@ UNPAIRED = {
     ),
     'another kind of cell': (
         '### BEGIN SOLUTION\n1\n### END SOLUTION',
-        "line 1: 'BEGIN SOLUTION' stands in a cell of another kind: give the cell the type"
+        "line 1: 'BEGIN SOLUTION' is in a cell of another type: give the cell the type"
         " 'Autograded answer' in Create Assignment, or remove the line",
     ),
     'no end of a mark scheme': (

@@ -51,7 +51,7 @@ def _faults(cell: NotebookNode, region: _Region) -> Iterator[str]:
             opened = number
             if region.kind and not cell.metadata.get('nbgrader', {}).get(region.kind):
                 yield (
-                    f'line {number}: {begin!r} stands in a cell of another kind: give the cell'
+                    f'line {number}: {begin!r} is in a cell of another type: give the cell'
                     f' the type {region.type_there!r} in Create Assignment, or remove the line'
                 )
         elif end in line:

@@ -89,7 +89,7 @@ def broken(cleared: str) -> str:
     source = after_stub.sub(lambda found: found[1].replace(BROKEN, ''), cleared)
     if BROKEN.strip() in source:
         raise CourseError(
-            f'a line with {BROKEN.strip()!r} stands by itself: write such lines right behind'
+            f'a line with {BROKEN.strip()!r} is behind no answer: write such lines right behind'
             f' ### END SOLUTION, each beginning with {BROKEN!r}'
         )
     return source

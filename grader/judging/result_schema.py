@@ -113,7 +113,7 @@ def _problems(notebook: NotebookNode, asked: NotebookNode, seed: str) -> Iterato
     if not isinstance(ours.pop('in_sandbox', True), bool):
         yield 'whether it had a sandbox is no yes or no'
     if ours != {'notes': []} | given | {'seed': seed}:
-        yield 'it tells of another restored notebook, or of another seed'
+        yield 'it is about another restored notebook, or another seed'
     for cell, before in zip(notebook.cells, asked.cells, strict=True):
         if cell.cell_type == 'code' and role(before) == 'grade':
             yield from _problems_of_check(cell)

@@ -144,7 +144,7 @@ def _why_wrong(
     if not position:
         return f'fill in both branches: response.{branch} is empty'
     if _is_pose(position, branches_deg[other]):
-        return f'this is {other}: the two branches are swapped, or one stands in both'
+        return f'this is {other}: the two branches are swapped, or one is in both'
     return joints.why_off(list(position), branches_deg[branch])
 
 
