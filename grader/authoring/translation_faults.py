@@ -23,7 +23,7 @@ _KEPT: dict[str, re.Pattern[str]] = {
 _PLACEHOLDER = re.compile(r'\{\w*\}')
 _NUMBER = re.compile(r'(?<![\w.])\d+(?:[.,]\d+)*(?![\w])')
 _HAN = r'[\u3400-\u9fff\uf900-\ufaff]'
-_CROWDED = re.compile(rf'{_HAN}(?=[A-Za-z0-9`$])|(?<=[A-Za-z0-9`$%°])(?={_HAN})')
+_UNSPACED = re.compile(rf'{_HAN}(?=[A-Za-z0-9`$])|(?<=[A-Za-z0-9`$%°])(?={_HAN})')
 _LATIN_MARK = re.compile(rf'(?<={_HAN})[,;:!?()](?!\S*`)|(?<={_HAN})\.(?=\s|$)|[,;:!?](?={_HAN})')
 _SPACED_MARK = re.compile(
     r'(?<![|\s]) (?=[，。；：！？、）》])|(?<=[，。；：！？、（《）》]) (?=[^|\s])'
@@ -53,7 +53,7 @@ def _typography(text: str) -> Iterator[str]:
     text = _FENCED.sub('', text)
     shown = _LINK_END.sub(']', text)
     for what, pattern in (
-        ('no space between Chinese and Latin', _CROWDED),
+        ('no space between Chinese and Latin', _UNSPACED),
         ('a Latin mark in Chinese', _LATIN_MARK),
         ('a space beside a Chinese mark', _SPACED_MARK),
     ):

@@ -135,7 +135,7 @@ def said_in_full() -> Iterator[None]:
         _quiet = former
 
 
-def has_begun(outputs: Iterable[Any]) -> bool:
+def has_started(outputs: Iterable[Any]) -> bool:
     """Whether a cell with these outputs came to its hidden part."""
     return _BEGAN in _said(outputs, _MARK)
 

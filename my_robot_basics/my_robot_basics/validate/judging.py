@@ -138,7 +138,7 @@ async def _judge_cells(
         outputs = run.outputs if run else []
         open_ = judge_overdue(cells[index], run, given_up)
         verdict = open_ or judge(cells[index], run, own)
-        if quiet and verdict.details and not hidden.has_begun(outputs):
+        if quiet and verdict.details and not hidden.has_started(outputs):
             cut.append(index)
         checks[index] = verdict, [] if quiet else outputs
         quiet = quiet or hidden.has_told_inputs(outputs)

@@ -75,7 +75,7 @@ def judge(cell: NotebookNode, run: CellRun | None, own: Iterable[tuple[str, Cell
         raise RoomFailure(f'the check `{name}` came to no verdict: {_what_happened(run)}')
     reason = run.error.evalue.strip() or 'the check failed and gave no reason'
     details = hidden.details_in(run.outputs)
-    if run.error.ename == 'AssertionError' and hidden.has_begun(run.outputs):
+    if run.error.ename == 'AssertionError' and hidden.has_started(run.outputs):
         reason, details = _in_words(reason, cell), reason
     notes += tuple(sentence for each in own if (sentence := _trouble(*each)))
     if run.ending:
