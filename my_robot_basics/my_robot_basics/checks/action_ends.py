@@ -164,9 +164,9 @@ class ActionEnds:
 
     def has_active(self) -> bool:
         """Whether a goal of anybody's is not over, as the server last said."""
-        heard = self.statuses.messages()
-        return bool(heard) and any(
-            STATUS_NAMES.get(each.status) not in TERMINAL for each in heard[-1].status_list
+        received = self.statuses.messages()
+        return bool(received) and any(
+            STATUS_NAMES.get(each.status) not in TERMINAL for each in received[-1].status_list
         )
 
     def leave(self) -> None:

@@ -26,7 +26,7 @@ PROBE_RAD, PROBE_SEC = 0.4, 0.6
 PROBE_ASK_SEC = 0.1
 """… So long after its start, the node is asked something else."""
 PROBE_MOST_SEC = 3.0
-CROWDED_SEC = 6.0
+BUSY_SEC = 6.0
 """How long a move takes at most on the robot's clock where the machine is too busy for more; …"""
 WALL_SEC = 2.0
 """… And on the wall clock."""
@@ -42,12 +42,12 @@ def look(action: Action, body: Callable[[WatchedArm], T], *, start: Pose) -> T:
         on_wall = WatchedArm(server, WallTime(server.watcher), tuple(start), WALL_SEC)
         on_wall.move(start)
         if _follows(action, on_wall):
-            for longest_sec in math.inf, CROWDED_SEC:
+            for longest_sec in math.inf, BUSY_SEC:
                 if longest_sec <= action.known.longest_sec:
                     try:
                         return _driven(server, body, tuple(start), longest_sec)
                     except Inconclusive:
-                        action.known.longest_sec = CROWDED_SEC
+                        action.known.longest_sec = BUSY_SEC
                         on_wall.move(start)
         on_wall.time = WallTime(server.watcher)
         try:

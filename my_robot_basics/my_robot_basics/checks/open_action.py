@@ -5,7 +5,7 @@ from typing import Any, NoReturn
 from rclpy.task import Future
 
 from my_robot_basics.checks.action_ends import TERMINAL, ActionEnds, SentGoal
-from my_robot_basics.checks.callbacks import Raised
+from my_robot_basics.checks.callbacks import CallbackErrors
 from my_robot_basics.checks.server_log import ServerLog
 from my_robot_basics.checks.services import SERVER_SEC, answers_parameters, wait_for_all
 from my_robot_basics.feedback.errors import expect, fail
@@ -30,7 +30,7 @@ class OpenAction:
     def meet(self) -> None:
         """Wait for the one server, and for the end of goals of earlier. Raises CheckFailed."""
         self.node_name = self._find()
-        self.raised = Raised([self.node_name])
+        self.raised = CallbackErrors([self.node_name])
         self.log = ServerLog(self.watcher, self.node_name)
         self.watcher.spin_until(self.ends.is_connected, timeout_sec=SERVER_SEC)
         self.watcher.spin_until(lambda: bool(self.ends.statuses.received), timeout_sec=0.1)

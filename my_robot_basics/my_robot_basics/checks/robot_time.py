@@ -63,7 +63,7 @@ class WallTime:
         """How long ago this was made."""
         return self._watch.wall_sec()
 
-    def crowded_sec(self) -> float:
+    def stalled_sec(self) -> float:
         """For how long processes had to wait for a processor since this was made."""
         return self._watch.wall_sec() - self._watch.free_sec()
 

@@ -20,7 +20,7 @@ HASTE_SEC = 4.0
 RESULT_SEC = 1.0
 """How long a result may come behind the status, of time that was free."""
 SETTLE_SEC = 5.0
-CROWDED_PART = 0.05
+STALLED_PART = 0.05
 """So much of a look in which processes had to wait for a processor makes it a doubtful one."""
 
 
@@ -73,8 +73,8 @@ class WatchedArm:
     def doubt(self) -> type[CheckFailed]:
         """What to raise for what a machine that is too busy may have done."""
         if isinstance(self.time, WallTime):
-            crowded_sec, wall_sec = self.time.crowded_sec(), self.time.wall_sec()
-            return Starved if crowded_sec > CROWDED_PART * wall_sec else CheckFailed
+            stalled_sec, wall_sec = self.time.stalled_sec(), self.time.wall_sec()
+            return Starved if stalled_sec > STALLED_PART * wall_sec else CheckFailed
         return CheckFailed
 
     def settle(self) -> None:
