@@ -40,25 +40,25 @@ def pausing(*, start_sec, end_sec, then_sec=0.1):
     return [*every(0.1, end_sec=start_sec), *every(then_sec, start_sec=end_sec)]
 
 
-CROWDED, FREE = 0.0, 1.0
+BUSY, FREE = 0.0, 1.0
 
 
 @pytest.mark.parametrize(
     ('beats_sec', 'free_share', 'goes_on'),
     [
         (every(0.1), FREE, True),
-        (every(0.1), CROWDED, True),
+        (every(0.1), BUSY, True),
         ([], FREE, False),
-        ([], CROWDED, False),
+        ([], BUSY, False),
         (pausing(start_sec=0.5, end_sec=1.0), FREE, True),
         (pausing(start_sec=0.5, end_sec=1.6), FREE, False),  # it waited for a second
-        (pausing(start_sec=0.5, end_sec=2.5), CROWDED, True),  # or had no processor
-        (pausing(start_sec=0.5, end_sec=4.5), CROWDED, False),  # too long for that, …
-        (pausing(start_sec=0.5, end_sec=4.5, then_sec=1.2), CROWDED, True),  # … unless it goes on
-        (pausing(start_sec=0.5, end_sec=40.0), CROWDED, False),
+        (pausing(start_sec=0.5, end_sec=2.5), BUSY, True),  # or had no processor
+        (pausing(start_sec=0.5, end_sec=4.5), BUSY, False),  # too long for that, …
+        (pausing(start_sec=0.5, end_sec=4.5, then_sec=1.2), BUSY, True),  # … unless it goes on
+        (pausing(start_sec=0.5, end_sec=40.0), BUSY, False),
         ([0.01] * 100, FREE, False),  # counted ahead
-        ([0.01] * 100, CROWDED, False),
-        ([*[0.01] * 100, *every(0.1, start_sec=10.0)], CROWDED, False),
+        ([0.01] * 100, BUSY, False),
+        ([*[0.01] * 100, *every(0.1, start_sec=10.0)], BUSY, False),
     ],
 )
 def test_only_a_silence_that_the_machine_does_not_explain_counts(

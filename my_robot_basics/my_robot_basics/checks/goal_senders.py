@@ -2,7 +2,7 @@
 
 from collections.abc import Collection
 
-from my_robot_basics.checks.callbacks import Raised
+from my_robot_basics.checks.callbacks import CallbackErrors
 from my_robot_basics.checks.open_action import type_name
 from my_robot_basics.checks.services import answers_parameters
 from my_robot_basics.feedback.hidden import theirs
@@ -21,7 +21,7 @@ def why_no_goal(
     type_: type,
     *,
     node_names: Collection[str],
-    raised: Raised,
+    raised: CallbackErrors,
     asked_on: str,
 ) -> str:
     """What to try where no goal comes for a message on `asked_on`."""
@@ -39,7 +39,9 @@ def why_no_goal(
     return why_silent(watcher, hint, node_names=node_names, raised=raised)
 
 
-def why_silent(watcher: Watcher, hint: str, *, node_names: Collection[str], raised: Raised) -> str:
+def why_silent(
+    watcher: Watcher, hint: str, *, node_names: Collection[str], raised: CallbackErrors
+) -> str:
     """What to try where nothing comes of an answer; `hint` is for one that waits for nothing."""
     if why := raised.hint():
         return why

@@ -17,7 +17,7 @@ STILL_SEC = 0.8
 """… a silence is so long, of time that was free, and …"""
 LOOKS = 8
 """… holds so many questions that the notebook answered. …"""
-CROWDED_SEC, BUSY_LOOKS = 2.5, 10
+BUSY_SEC, BUSY_LOOKS = 2.5, 10
 """… Where no time is free, so long a pause is a silence, too, …"""
 MOST_TIMES = 4.0
 """… unless it is less than so many times as long as another one, once the node counts again, …"""
@@ -76,5 +76,5 @@ class Heartbeat:
             sec = watch.wall_sec()
             if looks >= LOOKS and watch.free_sec() >= STILL_SEC:
                 return _Pause(sec, is_over=False, was_free=True)
-            if looks >= times * BUSY_LOOKS and sec >= times * CROWDED_SEC:
+            if looks >= times * BUSY_LOOKS and sec >= times * BUSY_SEC:
                 return _Pause(sec, is_over=False)

@@ -6,7 +6,7 @@ from typing import Any
 from rclpy.publisher import Publisher
 from std_msgs.msg import Bool
 
-from my_robot_basics.checks.callbacks import Raised
+from my_robot_basics.checks.callbacks import CallbackErrors
 from my_robot_basics.checks.goal_senders import why_no_goal, why_silent
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.scripted_action import ReceivedGoal, ScriptedActionServer
@@ -42,7 +42,7 @@ class ServedAction(ScriptedActionServer):
         super().__init__(watcher.node, name=name, type_=type_)
         self.asked_on, self.cancelled_on = asked_on, cancelled_on
         self._watcher, self._outcomes = watcher, outcomes
-        self._raised = Raised(set(outcomes.publishers()))
+        self._raised = CallbackErrors(set(outcomes.publishers()))
         self._publishers: dict[str, Publisher] = {}
         self._known_starts = self._before = 0
 

@@ -7,8 +7,8 @@ from typing import Any, NoReturn
 from rclpy.publisher import Publisher
 
 from my_robot_basics.checks.callbacks import CallbackErrors
-from my_robot_basics.checks.holding_server import HoldingServer
 from my_robot_basics.checks.heartbeat import Heartbeat
+from my_robot_basics.checks.holding_server import HoldingServer
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.responses import Made, MadeOf, of_none
 from my_robot_basics.checks.sole_server import expect_no_other

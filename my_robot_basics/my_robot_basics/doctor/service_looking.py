@@ -22,7 +22,7 @@ SILENT_SEC = 3.0
 SILENT_MOST_SEC = 15.0
 """… or so long, where no time is free. No callback may be known that keeps it busy."""
 EVERY_SEC = 0.05
-CROWDED_TIMES = 2.5
+BUSY_TIMES = 2.5
 """How many times as long it may all take where processes have to wait for a processor."""
 
 Raised = Callable[[str], Mapping[str, str]]
@@ -53,7 +53,7 @@ def look(
     endpoints = endpoints_of(watcher.node)
     names = sorted({end.node_name for end in endpoints if end.name == name})
     questions, view, watch = Questions(watcher, names), Inside(name), Stopwatch()
-    while watch.free_sec() < look_sec and watch.wall_sec() < CROWDED_TIMES * look_sec:
+    while watch.free_sec() < look_sec and watch.wall_sec() < BUSY_TIMES * look_sec:
         view.look()
         if _is_enough(name, questions, view, names, watch):
             break
