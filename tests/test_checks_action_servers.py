@@ -47,7 +47,7 @@ def check_outcomes():
             server, succeeded=(1.2, -0.6), rejected=(1.8, 0.4), aborted=(-0.3, 0.9)
         )
     with action_server('/move_arm', MoveArm, **ENDS, starts=False) as server:
-        replies.expect_patience(server, *replies.choose(numbers, 2))
+        replies.expect_waiting(server, *replies.choose(numbers, 2))
         replies.expect_outcomes(server, **replies.choose_outcomes(numbers))
 
 

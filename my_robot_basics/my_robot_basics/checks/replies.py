@@ -58,7 +58,7 @@ def expect_outcomes(server: ServedAction, **positions: Pose) -> None:
             _refuse(word)
 
 
-def expect_patience(server: ServedAction, early: Pose, later: Pose) -> None:
+def expect_waiting(server: ServedAction, early: Pose, later: Pose) -> None:
     """A pose that comes while there is no server, which then starts, takes its time, and succeeds.
 
     The client sends a goal for the later pose. Raises CheckFailed.
