@@ -339,6 +339,47 @@ def test_validate_says_what_is_wrong_and_then_that_all_is_right(opened):
     assert 'Success' not in said
 
 
+WAITING = """\
+        response = self.client.call(SolveIK.Request(target=target), timeout_sec=60.0)
+        self.receive(response)
+
+    def receive(self, response):
+        if response.reachable:
+            message = JointState(name=['joint1', 'joint2'], position=response.elbow_up)
+"""
+
+
+@pytest.mark.slow  # the dialog is the same, and the grader's tests have these answers
+def test_validate_tells_a_client_that_waits_for_itself_from_one_that_does_not(opened):
+    lesson = opened('08_services')
+    answers = {cell.id: cell.source for cell in solution('08_services').cells}
+    lesson.type('ik_service', answers['ik_service'])
+    head, _, rest = answers['ik_client'].partition('        future = ')
+    lesson.type('ik_client', head + WAITING + rest[rest.index('            message.header') :])
+    said = lesson.validate()
+    assert '✗ The counter goes on while the server takes its time' in said
+    assert 'called `/solve_ik` inside a callback and waited there' in said
+    assert 'use call_async and add_done_callback' in said
+    assert '✓ Each target within reach is answered with both branches, in radians' in said
+    lesson.type('ik_client', answers['ik_client'])
+    said = lesson.validate()
+    assert 'All visible checks pass.' in said
+    assert '✗' not in said
+
+
+@pytest.mark.slow  # a kernel's test has its words, and the lesson's stored output its picture
+def test_the_doctor_draws_where_a_service_is_broken(opened):
+    lesson = opened('08_services')
+    lesson.command('notebook:run-all-above', lesson.index('no_return'))
+    lesson.command('notebook:run-cell', lesson.index('forgetful'))
+    assert errors(lesson.cells) == {}
+    outputs = lesson.shown('forgetful').locator('.jp-OutputArea')
+    expect(outputs).to_contain_text('1. the callback returned no response')
+    image = outputs.locator('img')
+    expect(image).to_have_attribute('alt', re.compile('broken: /gripper'))
+    assert image.evaluate(WIDTH) > 200
+
+
 def test_validate_shows_what_it_does_and_ends_with_its_dialog(lab, opened):
     lesson = opened('03_publisher')
     endless = 'class KinematicsPublisher(Node):\n    def __init__(self):\n        while True: pass'

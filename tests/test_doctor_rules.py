@@ -380,6 +380,29 @@ UNANSWERED = (Unanswered(node_name=WAVER, seconds=1.2),)
         (healthy_service(callbacks=(WAITING,)), []),  # it has come just now
         (
             healthy_service(
+                endpoints=(service_end('server', GRIPPER, name='/close_griper'), ASKS)
+            ),
+            ['a similar name: the spelling differs', 'no server'],
+        ),
+        (
+            healthy_service(
+                endpoints=(SERVES, service_end('client', WAVER, name='/close_griper'))
+            ),
+            ['a similar name: the spelling differs'],
+        ),
+        # that client has a server of its own
+        (
+            healthy_service(
+                endpoints=(
+                    SERVES,
+                    service_end('client', WAVER, name=f'/left{NAME}'),
+                    service_end('server', '/left/gripper', name=f'/left{NAME}'),
+                )
+            ),
+            [],
+        ),
+        (
+            healthy_service(
                 endpoints=(SERVES, service_end('client', WAVER, type_name='std_srvs/srv/Trigger'))
             ),
             ['types differ'],
@@ -406,6 +429,22 @@ UNANSWERED = (Unanswered(node_name=WAVER, seconds=1.2),)
 )
 def test_what_follows_from_what_was_seen_of_a_service(evidence, titles):
     assert [finding.title for finding in service_rules.judge(evidence).findings] == titles
+
+
+@pytest.mark.parametrize(
+    ('asker', 'wrong', 'right'),
+    [
+        # who asks has made the name relative, or has another one in mind
+        (service_end('client', '/left/waver', name=f'/left{NAME}'), '/left/waver', NAME),
+        (service_end('client', '/waver', name=f'/left{NAME}'), GRIPPER, f'/left{NAME}'),
+    ],
+)
+def test_the_end_with_the_relative_name_is_to_be_edited(asker, wrong, right):
+    evidence = healthy_service(name=f'/left{NAME}', endpoints=(SERVES, asker))
+    first = service_rules.judge(evidence).findings[0]
+    assert first.broken[0].node_name == wrong
+    assert first.fix.startswith(f'if {right} is right, write it in {wrong}')
+    assert ('without a leading /' in first.seen) is (wrong != GRIPPER)
 
 
 @pytest.mark.parametrize(
