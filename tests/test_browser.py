@@ -358,7 +358,7 @@ def test_validate_tells_a_client_that_waits_for_itself_from_one_that_does_not(op
     lesson.type('ik_client', head + WAITING + rest[rest.index('            message.header') :])
     said = lesson.validate()
     assert '✗ The counter goes on while the server takes its time' in said
-    assert 'called `/solve_ik` inside a callback and waited there' in said
+    assert 'called /solve_ik inside a callback and waited there' in said
     assert 'use call_async and add_done_callback' in said
     assert '✓ Each target within reach is answered with both branches, in radians' in said
     lesson.type('ik_client', answers['ik_client'])

@@ -8,6 +8,7 @@ from jupyter_client.manager import start_new_kernel
 from my_robot_basics.doctor.main import main
 from my_robot_basics.live import run, stop, why
 from my_robot_basics.live.doctor import NoSuchName
+from nodes import patient_services
 from nodes.patient import LISTENER, TALKER, TOPIC, node_class
 
 
@@ -30,6 +31,18 @@ def test_a_fault_and_then_all_is_well(capfd):
     well, more = capfd.readouterr()
     assert well.startswith(f'All is well on {TOPIC}: /talker publishes, /listener subscribes, ')
     assert err == more == ''
+
+
+@pytest.mark.starts
+def test_a_service_is_asked_about_by_its_name(capfd):
+    run(patient_services.node_class(patient_services.SERVER))
+    assert main([patient_services.NAME.removeprefix('/')]) == 0
+    assert (
+        capfd.readouterr().out == 'All is well on /close_gripper: /server serves, nobody asks.\n'
+    )
+    assert main(['/close_griper']) == 1
+    stop()
+    assert '$ topic_doctor /close_gripper\n' in capfd.readouterr().out
 
 
 @pytest.mark.parametrize(
