@@ -28,8 +28,10 @@ def main() -> int:
 
 async def _build(task: AmentCmakeBuildTask) -> int:
     """Build a package as colcon does, if this machine can."""
-    if sentence := build_tools.why_not(task.context.pkg.name):
-        task.context.put_event_into_queue(StderrLine(f'{sentence}\n'.encode()))
+    name = task.context.pkg.name
+    if sentence := build_tools.why_not(name):
+        others = f'what needs no compiler is built with: colcon build --packages-skip {name}'
+        task.context.put_event_into_queue(StderrLine(f'{sentence}; {others}\n'.encode()))
         return 1
     return await _build_with_cmake(task)
 
