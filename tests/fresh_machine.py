@@ -3,9 +3,11 @@
 import os
 import re
 import shutil
+import subprocess
 import sys
 from pathlib import Path
 
+ROOT = Path(__file__).parents[1]
 KEPT = ('LANG', 'http_proxy', 'https_proxy', 'no_proxy', 'SSL_CERT_FILE', 'PIP_CONFIG_FILE')
 KEPT += ('HTTP_PROXY', 'HTTPS_PROXY', 'PIP_INDEX_URL', 'UV_INDEX_URL', 'UV_DEFAULT_INDEX')
 COMPILERS = re.compile(
@@ -21,6 +23,15 @@ def programs_without_compilers(folder: Path) -> Path:
             link = folder / program.name
             if not COMPILERS.fullmatch(program.name) and not os.path.lexists(link):
                 link.symlink_to(program)
+    return folder
+
+
+def fresh_clone(folder: Path) -> Path:
+    """Return a new folder with all files of the course, and nothing that was made from them."""
+    tracked = subprocess.run(['git', 'ls-files', '-z'], cwd=ROOT, capture_output=True, check=True)
+    for name in tracked.stdout.decode().split('\0')[:-1]:
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(ROOT / name, folder / name)
     return folder
 
 

@@ -9,7 +9,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from fresh_machine import fresh_environment
+from fresh_machine import fresh_clone, fresh_environment
 from synthetic_class import synthetic_class
 
 from grader.authoring.bundle import FOLDER
@@ -112,11 +112,7 @@ def test_the_walk_knows_each_step_of_the_page():
 @pytest.mark.isolation
 @pytest.mark.timeout(3600)
 def test_a_new_instructor_gets_from_the_bundle_to_the_scores(tmp_path):
-    clone = tmp_path / 'clone'
-    tracked = subprocess.run(['git', 'ls-files', '-z'], cwd=ROOT, capture_output=True, check=True)
-    for name in tracked.stdout.decode().split('\0')[:-1]:
-        (clone / name).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy(ROOT / name, clone / name)
+    clone = fresh_clone(tmp_path / 'clone')
     walk = Walk(clone, fresh_environment(tmp_path))
     for command in COMMANDS:
         out, verb = walk.course(command)
