@@ -53,3 +53,12 @@ def test_a_look_at_a_graph_that_never_rests_ends(monkeypatch):
     monkeypatch.setattr(graphs, '_has_unknown', lambda picture: True)
     with Watcher() as here:
         assert graphs.take(here) < 3
+
+
+def test_a_name_that_is_no_text_fails_a_check(node, monkeypatch):
+    def look_up(self):
+        return b'\xff'.decode()
+
+    monkeypatch.setattr(Node, 'get_topic_names_and_types', look_up)
+    with pytest.raises(CheckFailed, match='names and types on the graph that are text, saw bytes'):
+        topic('/talk').wait_for()

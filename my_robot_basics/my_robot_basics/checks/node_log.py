@@ -55,16 +55,16 @@ class NodeLog:
         self._watcher.__enter__()
         try:
             self._meet()
-        except BaseException:
-            self._watcher.__exit__()
+        except BaseException as error:
+            self._watcher.__exit__(type(error), error, None)
             raise
         self.mark()
         self._raised = CallbackErrors([self.node_name])
         return self
 
-    def __exit__(self, *_: object) -> None:
+    def __exit__(self, kind: object, error: BaseException | None, traceback: object) -> None:
         """Stop listening."""
-        self._watcher.__exit__()
+        self._watcher.__exit__(kind, error, traceback)
 
     def mark(self) -> None:
         """Let only records count that are logged from now on."""

@@ -78,12 +78,19 @@ class Watcher:
             self.node = self.add_node('check')
         return self
 
-    def __exit__(self, *_: object) -> None:
-        """Leave it, with all that was made here."""
+    def __exit__(self, _: object, error: BaseException | None, __: object) -> None:
+        """Leave it, with all that was made here. Raises CheckFailed where it could not be read."""
         self._executor.shutdown()
         for node in self._nodes:
             node.destroy_node()
         self.context.shutdown()
+        if isinstance(error, UnicodeDecodeError):
+            # rclpy reads all names at once: one that is no text hides all others
+            fail(
+                expected='names and types on the graph that are text',
+                seen='bytes that are not UTF-8',
+                hint='make nodes, topics and services with rclpy alone, by names of ASCII letters',
+            )
 
     def add_node(self, name: str, *, namespace: str = '', cli_args: Sequence[str] = ()) -> Node:
         """Make one more hidden node, which is spun and destroyed together with the first."""
