@@ -1,4 +1,4 @@
-"""The checks of docs/writing-exercises.md on a server and a client, graded in rooms."""
+"""The checks of docs/writing-exercises.md on servers and clients, graded in rooms."""
 
 import inspect
 import re
@@ -17,21 +17,32 @@ from grader.storage.gradebook import register
 from grader.storage.submitted import find_submissions
 
 PAGE = (ROOT / 'docs/writing-exercises.md').read_text(encoding='utf-8')
-CHECKS = re.findall(r'^```python\n(""".*?)^```', PAGE.partition('## A service')[2], re.M | re.S)
 LESSON = '00_toy'
 SETUP = """\
 import math
 
+from action_msgs.msg import GoalStatus
+from arm_interfaces.action import MoveArm
 from arm_interfaces.srv import SolveIK
 from geometry_msgs.msg import Point
 from my_robot_basics.two_link_kinematics import inverse_kinematics
+from rclpy.action import ActionClient, ActionServer, CancelResponse, GoalResponse
 from rclpy.node import Node
+from rclpy.task import Future
 from sensor_msgs.msg import JointState
-from std_msgs.msg import Int64
+from std_msgs.msg import Bool, Int64, String
+
+LIMITS_RAD, STEP_SEC = (math.radians(90.0), math.radians(120.0)), 0.05
+WORDS = {4: 'succeeded', 5: 'canceled', 6: 'aborted'}
 """
+MODULES = {
+    'IKService': 'ik_service',
+    'IKClient': 'ik_client',
+    'MoveArmServer': 'move_arm_server',
+    'MoveArmClient': 'move_arm_client',
+}
 RIGHT = {
-    name: inspect.getsource(getattr(imported(module), name))
-    for name, module in (('IKService', 'ik_service'), ('IKClient', 'ik_client'))
+    name: inspect.getsource(getattr(imported(module), name)) for name, module in MODULES.items()
 }
 BLOCKS = """\
     def ask(self, target):
@@ -43,11 +54,24 @@ WRONG = {
     'IKClient': re.sub(
         r'    def ask\(.*?    def answer\(', lambda _: BLOCKS, RIGHT['IKClient'], flags=re.S
     ),
+    'MoveArmServer': RIGHT['MoveArmServer'].replace('handle.succeed()', 'pass'),
+    'MoveArmClient': RIGHT['MoveArmClient'].replace("self.tell('rejected')", 'pass'),
 }
 REASONS = {
     'ik_service_answers': 'end the callback with `return response`',
     'ik_client_never_blocks': 'it called `/solve_ik` inside a callback and waited there',
+    'move_arm_server_reaches': 'call goal_handle.succeed() before the execute callback returns',
+    'move_arm_client_outcomes': 'a goal that is not accepted has no result',
 }
+
+
+def checks_of(section):
+    """The checks that a section of the guide shows."""
+    text = PAGE.partition(f'## {section}\n')[2].partition('\n## ')[0]
+    return re.findall(r'^```python\n(""".*?)^```', text, re.M | re.S)
+
+
+CHECKS = [*checks_of('A service'), *checks_of('An action')]
 
 
 def exercise(name, check_id, check):
@@ -56,7 +80,7 @@ def exercise(name, check_id, check):
     reset = f'from my_robot_basics.live import reset\n\nreset({name!r})'
     run = f'from my_robot_basics.live import run_answer\n\nnode = run_answer({name!r})'
     answer = f'### BEGIN SOLUTION\n{RIGHT[name]}### END SOLUTION'
-    exercise_id = '_'.join(check_id.split('_')[:2])
+    exercise_id = MODULES[name]
     for cell_id, source, more in (
         (f'{exercise_id}-reset', reset, {}),
         (exercise_id, answer, {'solution': True, 'locked': False}),
@@ -86,13 +110,13 @@ def test_right_ones_earn_all_and_wrong_ones_read_the_cause(course):
         notebook = course.release(LESSON)
         for cell in notebook.cells:
             for name, answer in answers.items():
-                if cell.id == name.replace('IK', 'ik_').lower():
+                if cell.id == MODULES[name]:
                     cell.source = answer
         path = course.folder('submitted', student, LESSON) / f'{LESSON}.ipynb'
         path.parent.mkdir(parents=True)
         nbformat.write(notebook, path)
     rows = {row.student_id: row for row in grade_all(course, find_submissions(course))}
-    assert rows['right'].stored.score == 4, rows['right'].reason
+    assert rows['right'].stored.score == 2 * len(RIGHT), rows['right'].reason
     assert rows['wrong'].stored.score == 0
     assert main(['scores'], course=course) == 0
     table = (course.gradebook / 'scores.csv').read_text(encoding='utf-8-sig')

@@ -14,6 +14,8 @@ STOP_SEC = 0.2
 SLACK_SEC, WALL_SLACK_SEC = 0.06, 0.15
 """A step of the clock; what a thread may be late on the wall clock."""
 NEXT_SPEED, NEXT_LEAST_RAD = 0.4, 0.1
+EARLY_PART = 0.6
+"""A move that is over sooner was stopped."""
 MOST_TIMES, MORE_SEC = 3.0, 1.0
 ANSWER_SEC = 5.0
 """How long the answer may take of a server that gives it at the end of the move alone."""
@@ -55,8 +57,7 @@ def expect_cancels(
         if stopped:
             expect_on_the_way(sent, position, start=began)
             arm.start = tuple(stopped)
-        moved = _expect_moves_on(arm, began)
-        expect_begins_at(arm, moved)
+        moved = _expect_moves_on(arm, began, former=sent if stopped else None)
         # a server that fills in no result at all is told so by the check of those
         if not stopped and moved.result is not None and moved.result.position:
             expect_on_the_way(sent, position, start=began)
@@ -136,18 +137,23 @@ def _fail_refused(arm: WatchedArm, response: Any, *, was_over: bool) -> None:
     )
 
 
-def _expect_moves_on(arm: WatchedArm, position: Pose) -> SentGoal:
-    """The next goal is accepted, and is not stopped."""
+def _expect_moves_on(
+    arm: WatchedArm, position: Pose, *, former: SentGoal | None = None
+) -> SentGoal:
+    """The next goal is accepted, begins where the `former` was stopped, and is not stopped."""
     far = max(far_rad(arm.start, position), NEXT_LEAST_RAD)
     sent = accepted(arm.server, goal(position, speed=max(NEXT_SPEED, far / 2.0)))
     wanted_sec = far / sent.goal.speed
     arm.time.wait(sent.is_over, seconds=MOST_TIMES * wanted_sec + MORE_SEC)
+    arm.has_result(sent)
+    if former is not None:
+        expect_begins_at(list(former.result.position), sent, former=former)
+    is_early = arm.seconds(sent) < EARLY_PART * wanted_sec
     expect(
-        sent.is_over() and sent.status != 'canceled',
+        sent.is_over() and sent.status != 'canceled' and not is_early,
         expected='the next goal to be reached',
-        seen=f'it {sent.status}',
+        seen=f'it {sent.status} {"too soon" if is_early else "in the end"}',
         hint='a request to cancel is for one goal: forget it when the next one begins',
         cause='the next goal is stopped, too',
     )
-    arm.has_result(sent)
     return sent

@@ -11,13 +11,13 @@ from my_robot_basics.feedback.errors import fail
 TOLERANCE, WALL_TOLERANCE = 0.02, 0.05
 SLACK_SEC = 0.12
 """So much more or less is one step of the server's, and one of the clock."""
-FINEST = 0.0005, 0.8
+FINEST = 0.0005, 0.45
 """A step of the clock, and for how long the arm moves, in seconds: a server whose sleeps are no
 multiple of the clock's steps sleeps longer than it means to, and less so with finer ones. …"""
 FINER = 0.002, 4.0
 """… Where no feedback tells the speed, the move has to be longer."""
 MOST_TIMES = 3.0
-FEWEST = 5
+FEWEST = 4
 """So much feedback tells a speed."""
 JUMP_SEC = 0.3
 """Who needs no longer does not move at a speed."""

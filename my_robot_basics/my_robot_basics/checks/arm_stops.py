@@ -7,7 +7,7 @@ from my_robot_basics.checks.arm_moves import is_near, why_aborted
 from my_robot_basics.checks.watched_arm import Pose, WatchedArm
 from my_robot_basics.feedback.errors import fail, shorten
 
-ON_LINE_RAD = 0.02
+ON_LINE, NEAR_RAD = 0.05, 0.02
 FIRST_SEC = 0.3
 """The first feedback comes so long after the begin of a move, at the latest."""
 
@@ -40,9 +40,9 @@ def expect_on_the_way(sent: SentGoal, position: Pose, *, start: Pose) -> None:
     elif is_near(seen, position):
         hint = 'put in where the arm is, not where it was to go'
     else:
+        parts = [(each - a) / way for each, a, way in zip(seen, start, ways, strict=True) if way]
         part = (seen[joint] - start[joint]) / ways[joint]
-        there = [a + part * way for a, way in zip(start, ways, strict=True)]
-        if not 0.0 < part < 1.0 or not is_near(seen, there, ON_LINE_RAD):
+        if not 0.0 < part < 1.0 or not all(-ON_LINE < each < 1.0 + ON_LINE for each in parts):
             hint = 'put in where the arm was stopped, on its way, in radians'
     if hint:
         fail(
@@ -53,16 +53,20 @@ def expect_on_the_way(sent: SentGoal, position: Pose, *, start: Pose) -> None:
         )
 
 
-def expect_begins_at(arm: WatchedArm, moved: SentGoal) -> None:
-    """The feedback of a move begins where the arm was. Raises CheckFailed."""
-    feedback = moved.feedback()
-    near_rad = FIRST_SEC * moved.goal.speed + ON_LINE_RAD
-    if feedback and len(feedback[0][1].position) == len(arm.start):
-        seen = list(feedback[0][1].position)
-        if not is_near(seen, arm.start, near_rad):
-            fail(
-                expected=f'the next move to begin at {[round(each, 3) for each in arm.start]}',
-                seen=f'{[round(each, 3) for each in seen]}',
-                hint='a move begins where the arm was stopped: remember its position in each step',
-                cause='the next move begins elsewhere',
-            )
+def expect_begins_at(stopped: Pose, moved: SentGoal, *, former: SentGoal) -> None:
+    """The feedback of a move begins where the one before was stopped. Raises CheckFailed.
+
+    Where the feedback on that one tells something else, this tells nothing.
+    """
+    before = [list(message.position) for _, message in former.feedback()]
+    after = [list(message.position) for _, message in moved.feedback()]
+    near_rad = FIRST_SEC * max(former.goal.speed, moved.goal.speed) + NEAR_RAD
+    if not before or not after or not is_near(before[-1], stopped, near_rad):
+        return
+    if len(after[0]) == len(stopped) and not is_near(after[0], stopped, near_rad):
+        fail(
+            expected=f'the next move to begin at {[round(each, 3) for each in stopped]}',
+            seen=f'{[round(each, 3) for each in after[0]]}',
+            hint='a move begins where the arm was stopped: remember its position in each step',
+            cause='the next move begins elsewhere',
+        )

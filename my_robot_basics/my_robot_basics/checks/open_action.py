@@ -13,8 +13,8 @@ from my_robot_basics.feedback.hidden import theirs
 from my_robot_basics.graph import actions, graphs
 from my_robot_basics.graph.watcher import Watcher
 
-REST_SEC = 4.0
-"""How long to wait for goals of earlier, once they are cancelled."""
+REST_SEC = 2.5
+"""How long to wait for the end of goals of earlier, and once more when they are cancelled."""
 
 
 class OpenAction:
@@ -26,6 +26,8 @@ class OpenAction:
         self.ends = ActionEnds(watcher, name, type_)
         self.node_name = ''
         """The full name of the server's node."""
+        self.accepted: SentGoal | None = None
+        """The goal that it has accepted last."""
 
     def meet(self) -> None:
         """Wait for the one server, and for the end of goals of earlier. Raises CheckFailed."""
@@ -35,10 +37,10 @@ class OpenAction:
         self.watcher.spin_until(self.ends.is_connected, timeout_sec=SERVER_SEC)
         self.watcher.spin_until(lambda: bool(self.ends.statuses.received), timeout_sec=0.1)
         if self.ends.has_active():
-            asked = self.ends.cancel_all()
-            self.watcher.spin_until_free(
-                lambda: asked.done() and not self.ends.has_active(), free_sec=REST_SEC
-            )
+            self._wait_for_rest()
+        if self.ends.has_active():
+            self.ends.cancel_all()
+            self._wait_for_rest()
 
     def send(self, goal: Any, *, ends: ActionEnds | None = None) -> SentGoal:
         """Send a goal and wait for the answer, and ask for the result where it is accepted.
@@ -49,6 +51,7 @@ class OpenAction:
         self.answer_to(sent.answer, what='the goal')
         if sent.is_accepted:
             sent.ask_for_result()
+            self.accepted = sent
         return sent
 
     def answer_to(self, asked: Future, *, what: str) -> Any:
@@ -83,6 +86,9 @@ class OpenAction:
                 'goal_handle.execute()'
             )
         return 'end the loop of the execute callback when the arm is there'
+
+    def _wait_for_rest(self) -> None:
+        self.watcher.spin_until_free(lambda: not self.ends.has_active(), free_sec=REST_SEC)
 
     def _find(self) -> str:
         found: dict[str, tuple[str, ...]] = {}

@@ -19,7 +19,8 @@ HASTE_SEC = 4.0
 """It may take so long, of time that was free."""
 RESULT_SEC = 1.0
 """How long a result may come behind the status, of time that was free."""
-SETTLE_SEC = 5.0
+SETTLE_SEC = 3.0
+"""How long goals may take to end when nobody looks any more."""
 STALLED_PART = 0.05
 """So much of a look in which processes had to wait for a processor makes it a doubtful one."""
 
@@ -56,7 +57,8 @@ class WatchedArm:
     def move(self, position: Pose) -> None:
         """Bring the arm there in haste, whatever becomes of the goal."""
         sent = self.send(goal(position, speed=HASTE))
-        self.time.wait(sent.is_over, seconds=HASTE_SEC)
+        if not self.time.wait(sent.is_over, seconds=HASTE_SEC):
+            self.server.fail_without_end(sent, f'in {HASTE_SEC:g} s at {HASTE:g} rad/s')
         self.settle()
         self.start = tuple(position)
 
@@ -83,34 +85,38 @@ class WatchedArm:
         watcher.spin_until(lambda: not ends.has_active(), timeout_sec=0.05)
         if not ends.has_active():
             return
-        asked = ends.cancel_all()
-        if isinstance(self.time, DrivenTime):
-            self.time.push(lambda: not ends.has_active(), wall_sec=SETTLE_SEC)
-        else:
-            watcher.spin_until_free(
-                lambda: asked.done() and not ends.has_active(), free_sec=SETTLE_SEC
-            )
+        for cancel_first in False, True:
+            if cancel_first:  # last: it may leave a wrong server with a wish to stop
+                ends.cancel_all()
+            if isinstance(self.time, DrivenTime):
+                self.time.push(lambda: not ends.has_active(), wall_sec=SETTLE_SEC)
+            else:
+                watcher.spin_until_free(lambda: not ends.has_active(), free_sec=SETTLE_SEC)
+            if not ends.has_active():
+                return
 
 
 def accepted(server: OpenAction, wanted: MoveArm.Goal) -> SentGoal:
     """Send a goal that has to be accepted. Raises CheckFailed with the reason."""
-    was_accepted = bool(server.ends.statuses.received)
+    former = server.accepted
     sent = server.send(wanted)
     if not sent.is_accepted:
         shown = [round(each, 3) for each in wanted.position]
         fail(
             expected=f'the goal {shown} at {wanted.speed:.3g} rad/s to be accepted',
             seen='it rejected',
-            hint=_why_rejected(server, sent, was_accepted=was_accepted),
+            hint=_why_rejected(server, sent, former),
             cause='a goal within the limits is rejected',
         )
     return sent
 
 
-def _why_rejected(server: OpenAction, sent: SentGoal, *, was_accepted: bool) -> str:
+def _why_rejected(server: OpenAction, sent: SentGoal, former: SentGoal | None) -> str:
     if server.log.had_no_response(since_ns=sent.sent_ns):
         return 'end the goal callback with `return GoalResponse.ACCEPT` or `GoalResponse.REJECT`'
-    if was_accepted:
+    if former is not None:
+        if raised := server.log.raised(since_ns=former.sent_ns):
+            return raised
         return (
             'the goal before it was accepted, and has ended: see that the node knows that the arm '
             'moves no longer, and that positions are compared in rad'
