@@ -13,7 +13,8 @@ from grader.course import ROOT, Course
 from grader.report.feedback import write_feedback
 from grader.report.report import Run, write_report
 
-LESSONS = sorted(ROOT.glob('notebooks/**/*.ipynb'))
+RELEASED = ROOT / 'notebooks'
+LESSONS = sorted(RELEASED.glob('**/*.ipynb'))
 OF_THE_THEME = ['.jp-InputPrompt', '.jp-OutputPrompt', '.highlight']
 """Coloured by Jupyter and not by us: the numbers of cells, and the code."""
 LINKS_OF_THE_THEME = {'link-in-text-block': {'enabled': False}}
@@ -77,7 +78,7 @@ def test_axe_finds_what_is_wrong(page):
     assert [rule for rule, *_ in serious(page, html)] == ['image-alt']
 
 
-@pytest.mark.parametrize('path', LESSONS, ids=lambda path: path.stem)
+@pytest.mark.parametrize('path', LESSONS, ids=lambda p: str(p.relative_to(RELEASED)))
 def test_a_released_lesson(page, path):
     html, _ = HTMLExporter().from_notebook_node(nbformat.read(path, as_version=4))
     assert serious(page, html) == []

@@ -30,7 +30,7 @@ def graph(text, nodes=()):
             Endpoint(
                 kind=kind,
                 node_name=node,
-                topic_name=name,
+                name=name,
                 type_name=type_name or STRING,
                 qos_profile=QoSProfile(depth=1),
             )

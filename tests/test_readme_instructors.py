@@ -57,6 +57,9 @@ class Walk:
     def after_release(self, out):
         assert out == 'Nothing has changed.\n'
 
+    def after_translate(self, out):
+        assert self.run('git', 'status', '--short', 'locale') == ''
+
     def after_bundle(self, out):
         """Students unpack it and work in its notebooks; the system packs what they hand in."""
         assert out.startswith('students.zip: ')
