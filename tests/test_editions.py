@@ -6,9 +6,10 @@ import nbformat
 import pytest
 from course_maker import TOY, make_course
 from my_robot_basics.language.catalogues import catalogue_path
+from my_robot_basics.language.speaking import LANGUAGE
 from my_robot_basics.validate.cells import KEY
 
-from grader.authoring.editions import LANGUAGE, editions, is_translated
+from grader.authoring.editions import editions, is_translated
 from grader.authoring.leaks import files_in
 from grader.authoring.release import release, stale_or_leaking
 from grader.common.errors import CourseError

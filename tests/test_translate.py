@@ -230,7 +230,7 @@ FAULTS = {
     'an item': ('- one\n- two', '- 一、二', 'items'),
     'a heading': ('## The arm', '# 机械臂', 'heading'),
     'a formula': ('So $a + b$ counts.', '$a - b$ 才算。', 'formula'),
-    'a placeholder': ('{name} is late', '{who} 来晚了', 'placeholders'),
+    'a placeholder': ('{name} is late', '{who} 来晚了', 'places: {name}, {who}'),
     'fenced code': ('```\nls\n```', '```\nll\n```', 'fenced code'),
     'a tag': ('a <i>topic</i>', '话题', 'a tag'),
     'bold type': ('a **node** and', '节点和', 'bold type'),

@@ -7,6 +7,9 @@ from dataclasses import dataclass
 from fnmatch import fnmatch
 from pathlib import Path
 
+from my_robot_basics.language.catalogues import catalogue_path
+from my_robot_basics.language.speaking import FOR_STUDENTS
+
 from grader.authoring.editions import editions
 from grader.authoring.index import INDEX, copied_pages
 from grader.authoring.leaks import files_in, leaks_beside
@@ -122,6 +125,11 @@ def _paths(course: Course, faults: list[str]) -> Iterator[str]:
             lesson = course.root / folder / assignment
             names = {f'{assignment}.ipynb', *map(str, files_in(lesson))}
             yield from (f'{folder}/{assignment}/{name}' for name in sorted(names))
+    for edition in editions(course):
+        for part in FOR_STUDENTS:
+            catalogue = catalogue_path(Path('locale'), edition.language, part)
+            if (course.root / catalogue).is_file():
+                yield str(catalogue)
     for package, listed in PACKAGES.items():
         yield from (f'{package}/{name}' for name in listed if '*' not in name)
         for path in map(str, files_in(course.root / package)):

@@ -17,15 +17,13 @@ from my_robot_basics.language.catalogues import (
     languages,
     read_translations,
 )
+from my_robot_basics.language.speaking import LANGUAGE
 from my_robot_basics.validate.cells import KEY, role
 from nbformat import NotebookNode
 
 from grader.authoring.blocks import translate_blocks
 from grader.common.errors import CourseError
 from grader.course import Course
-
-LANGUAGE = 'language'
-"""Under KEY in the metadata of a notebook that is not in English."""
 
 
 @dataclass(frozen=True)

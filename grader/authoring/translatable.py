@@ -1,16 +1,39 @@
 """What there is to translate: each English text of the course, in parts, with where it stands."""
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Sequence
 from pathlib import Path
+
+from my_robot_basics.feedback.hidden_source import visible
+from my_robot_basics.language.sentences import JOINED
+from my_robot_basics.validate.cells import role
 
 from grader.authoring import index
 from grader.authoring.blocks import translatable, translatable_html, without_mark_scheme
+from grader.authoring.code_messages import messages_in
 from grader.authoring.editions import is_translated
 from grader.course import Course
 
 Texts = dict[str, list[str]]
 """Where each English text of a part stands, in the order in which they are read."""
 
+MODULES = {
+    'checks': [
+        f'my_robot_basics/my_robot_basics/{package}/*.py'
+        for package in ('checks', 'feedback', 'exchange', 'graph')
+    ],
+    'validate': ['my_robot_basics/my_robot_basics/validate/*.py'],
+    'feedback': [
+        'grader/notebook/*.py',
+        'grader/report/page*.py',
+        'grader/storage/save_grades.py',
+    ],
+}
+"""The modules that say something to students, for each part of the software."""
+PAGE = 'grader/report/page.html.j2'
+_MARKED = re.compile(r"\b_\('((?:[^'\\]|\\.)*)'")
+"""What a template marks as a text to translate."""
+WHEREVER = ['wherever sentences are put together']
 STUDENTS = 'students.md'
 """In solutions/: the README of what students get."""
 
@@ -24,7 +47,36 @@ def parts_of(course: Course) -> dict[str, Texts]:
         if path.is_file():
             blocks = translatable(path.read_text(encoding='utf-8'))
             parts[Path(page).stem] = {block: [page] for block in blocks}
+    parts |= {name: texts for name, texts in _software(course).items() if texts}
     return parts
+
+
+def _software(course: Course) -> dict[str, Texts]:
+    """Return what the software says: its modules, the feedback page, the checks of the lessons."""
+    parts = {part: _modules(course.root, patterns) for part, patterns in MODULES.items()}
+    if parts['checks']:
+        parts['checks'] |= dict.fromkeys(JOINED, WHEREVER)
+    for template in sorted(course.root.glob(PAGE)):
+        for text in _MARKED.findall(template.read_text(encoding='utf-8')):
+            parts['feedback'].setdefault(text, []).append(template.name)
+    for part in ('lesson_checks', 'hidden_checks'):
+        parts[part] = {}
+    for name in course.assignments():
+        for cell in course.source(name).cells:
+            if role(cell) == 'grade' and cell.cell_type == 'code':
+                shown = messages_in(visible(cell.source), title=True)
+                for text in messages_in(cell.source, title=True):
+                    texts = parts['lesson_checks' if text in shown else 'hidden_checks']
+                    texts.setdefault(text, []).append(f'{name}: {cell.id}')
+    return parts
+
+
+def _modules(root: Path, patterns: Sequence[str]) -> Texts:
+    texts: Texts = {}
+    for path in sorted(path for pattern in patterns for path in root.glob(pattern)):
+        for text in messages_in(path.read_text(encoding='utf-8')):
+            texts.setdefault(text, []).append(str(path.relative_to(root)))
+    return texts
 
 
 def _lesson(course: Course, name: str) -> Texts:

@@ -21,6 +21,9 @@ _KEPT: dict[str, re.Pattern[str]] = {
     'bold type': re.compile(r'\*\*'),
 }
 _PLACEHOLDER = re.compile(r'\{\w*\}')
+_UNNAMED = re.compile(r'\{(value|verb)\d*\}')
+_NAME = re.compile(r'\b[\w.]+\(|\b\w+\.\w[\w.]*|\{\w+\}|\w*_\w+|/[\w/]+')
+"""What code calls something, and places."""
 _NUMBER = re.compile(r'(?<![\w.])\d+(?:[.,]\d+)*(?![\w])')
 _HAN = r'[\u3400-\u9fff\uf900-\ufaff]'
 _UNSPACED = re.compile(rf'{_HAN}(?=[A-Za-z0-9`$])|(?<=[A-Za-z0-9`$%°])(?={_HAN})')
@@ -29,6 +32,8 @@ _SPACED_MARK = re.compile(
     r'(?<![|\s]) (?=[，。；：！？、）》])|(?<=[，。；：！？、（《）》]) (?=[^|\s])'
 )
 _EMPHASISED = re.compile(r'\*[^*\n]+\*')
+_RUN = re.compile(r'[A-Za-z][A-Za-z0-9_-]*(?: [A-Za-z0-9_-]+)+')
+"""Several Latin words, one behind the other."""
 _LINK_END = re.compile(r'\]\([^)]*\)')
 _ELSEWHERE = re.compile(r'\[[^\]]*\]\(https?:[^)]*\)')
 """A link to an English page has its English name."""
@@ -43,8 +48,11 @@ def faults_of(english: str, translated: str) -> Iterator[str]:
     plain = [_CODE.sub('', _FENCED.sub('', text)) for text in (english, translated)]
     if lost := _count(_NUMBER, plain[0]) - _count(_NUMBER, plain[1]):
         yield f'numbers: {", ".join(lost)} lost'
-    if set(_PLACEHOLDER.findall(plain[0])) != set(_PLACEHOLDER.findall(plain[1])):
-        yield 'placeholders differ'
+    had, has = (set(_PLACEHOLDER.findall(text)) for text in plain)
+    # the s of a plural and the like: what stands there has no name, and other languages do without
+    gone = {place for place in had - has if not _UNNAMED.fullmatch(place)}
+    if different := gone | (has - had):
+        yield f'places: {", ".join(sorted(different))}'
     yield from _typography(translated)
 
 
@@ -101,11 +109,12 @@ def unknown_terms(
 ) -> Iterator[str]:
     """Yield each term of the English block whose translation is none of the glossary's.
 
-    What is emphasised and kept word for word, such as *Publisher count*, is what a program prints.
+    What is kept word for word, such as *Publisher count* and ros2 node list, is no prose.
     """
-    for kept in filter(translated.__contains__, _EMPHASISED.findall(english)):
-        english = english.replace(kept, '')
+    for kept in (*_EMPHASISED.findall(english), *_RUN.findall(translated)):
+        english = english.replace(kept, '') if kept in translated else english
     text = _CODE.sub('', _FENCED.sub('', _LINK_END.sub(']', _ELSEWHERE.sub('', english))))
+    text = _NAME.sub('', text)
     for term, allowed in glossary.items():
         is_there = re.search(rf'\b{re.escape(term)}s?\b', text, re.IGNORECASE)
         if is_there and not any(word.lower() in translated.lower() for word in allowed):

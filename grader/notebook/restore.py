@@ -5,6 +5,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import nbformat
+from my_robot_basics.language.catalogues import ENGLISH
+from my_robot_basics.language.speaking import LANGUAGE, language_of
 from my_robot_basics.validate.cells import KEY, grade_id, role, roles, title_of
 from nbformat import NotebookNode
 
@@ -72,6 +74,8 @@ def restore(submitted: NotebookNode, template: AssignmentTemplate) -> RestoredNo
     restored = nbformat.v4.new_notebook(cells=cells)
     restored.metadata = nbformat.from_dict(template.notebook.metadata)
     restored.metadata[KEY] = {'notes': notes, 'title': title_of(template.notebook)}
+    if (language := language_of(submitted.metadata)) != ENGLISH:
+        restored.metadata[KEY][LANGUAGE] = language  # of the feedback; grading does not know it
     return RestoredNotebook(notebook=restored, notes=tuple(notes))
 
 

@@ -1,13 +1,15 @@
 """Lay out a graded notebook as one HTML page that needs nothing else and runs nothing."""
 
 import re
-from functools import cache
+from functools import cache, partial
 from html import unescape
 
 import bleach
 import nbformat
 from jinja2 import Template
 from markupsafe import Markup, escape
+from my_robot_basics.language.catalogues import ENGLISH, read_translations
+from my_robot_basics.language.speaking import LOCALE, in_language, language_of, sentences
 from nbconvert.filters import markdown2html
 from pygments import highlight
 from pygments.formatters import HtmlFormatter
@@ -37,7 +39,8 @@ def page(as_json: dict, about: dict, plain: str = '') -> str:
     sections, others = find_sections(notebook)
     ours = notebook.metadata.get(KEY, {})
     problem = ours.get('problem', '')
-    return _template(is_plain=bool(plain)).render(
+    language = language_of(notebook.metadata)
+    return _template(language, is_plain=bool(plain)).render(
         about=about,
         sections=[]
         if problem
@@ -45,7 +48,7 @@ def page(as_json: dict, about: dict, plain: str = '') -> str:
         checks=[check for section in sections for check in section.checks],
         others=others,
         problem=problem,
-        title=ours.get('title', ''),
+        title=_title(ours.get('title', ''), about, language),
         no_sandbox='' if ours.get('in_sandbox', True) else NO_SANDBOX,
         notes=[note for note in (plain, *ours.get('notes', ())) if note not in ('', problem)],
     )
@@ -85,8 +88,24 @@ def _typed(text: str) -> Markup:
     return Markup('<pre>{}</pre>').format(visible(text))
 
 
+def _title(english: str, about: dict, language: str) -> str:
+    """Return the lesson's title as its edition has it."""
+    translations = (
+        read_translations(LOCALE, language, str(about.get('assignment')))
+        if language != ENGLISH
+        else {}
+    )
+    return translations.get(f'# {english}', f'# {english}').removeprefix('# ')
+
+
+def _put(language: str, english: str, **values: object) -> Markup:
+    """Return a text of the page's own in a language, with values in its places."""
+    known = {} if language == ENGLISH else sentences(language).translations
+    return Markup(escape(known.get(english, english))).format(**values)
+
+
 @cache
-def _template(*, is_plain: bool) -> Template:
+def _template(language: str, *, is_plain: bool) -> Template:
     return template(
         'page.html.j2',
         filters={
@@ -95,8 +114,11 @@ def _template(*, is_plain: bool) -> Template:
             'words': _words,
             'sentence': _sentence,
             'number': _number,
+            'said': partial(in_language, language),
         },
         values={
+            '_': partial(_put, language),
+            'language_code': language.replace('_', '-'),
             'code_style': Markup(_CODE.get_style_defs('pre')),
             'dark_code_style': Markup(_CODE_IN_THE_DARK.get_style_defs('pre')),
         },

@@ -17,7 +17,9 @@ class CheckFailed(AssertionError):
 
     def _render_traceback_(self) -> list[str]:
         # IPython asks for this: the sentence alone, never the source of a test.
-        return in_lines(str(self))
+        from my_robot_basics.language.speaking import in_language, language_here
+
+        return in_lines(in_language(language_here(), str(self)))
 
 
 class PartlyRight(CheckFailed):

@@ -2,7 +2,9 @@
 
 import textwrap
 from collections.abc import Iterator
+from functools import partial
 
+from my_robot_basics.language.speaking import in_language, put
 from my_robot_basics.validate.report import MARKS, CheckFeedback, ExerciseFeedback, Report
 
 COLUMNS = 100
@@ -17,25 +19,29 @@ def as_text(report: Report) -> str:
     """Return the report as lines of text."""
     lines = [report.notebook]
     for part in report.parts:
-        lines += ['', *_part(part)]
+        lines += ['', *_part(part, report.language)]
     if report.notes:
-        lines += ['', *(f'note: {note}' for note in report.notes)]
+        lines += ['', *(in_language(report.language, f'note: {note}') for note in report.notes)]
     return '\n'.join([*lines, '', report.summary])
 
 
-def _part(part: ExerciseFeedback) -> Iterator[str]:
+def _part(part: ExerciseFeedback, language: str) -> Iterator[str]:
     yield part.name
     for trouble in part.troubles:
         yield from _indented(trouble)
     for check in part.checks:
-        yield from _check(check)
+        yield from _check(check, language)
 
 
-def _check(check: CheckFeedback) -> Iterator[str]:
-    lost = f'{check.earned:g} of ' if check.outcome in ('failed', 'partial') else ''
-    points = f'{lost}{check.points:g} point{"" if check.points == 1 else "s"}'
+def _check(check: CheckFeedback, language: str) -> Iterator[str]:
+    say = partial(put, language)
+    points = say(
+        '{number} point' if check.points == 1 else '{number} points', number=f'{check.points:g}'
+    )
+    if check.outcome in ('failed', 'partial'):
+        points = say('{earned} of {points}', earned=f'{check.earned:g}', points=points)
     more = MORE.get(check.outcome) or ('more checks at grading' if check.is_partly_hidden else '')
-    about = f'({points}{"; " if more else ""}{more})'
+    about = say('({points}; {more})' if more else '({points})', points=points, more=say(more))
     yield f'  {MARKS[check.outcome]} {check.title} {about}'
     for line in (check.message, *check.notes):
         yield from _indented(line)

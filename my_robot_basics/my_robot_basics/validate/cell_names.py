@@ -7,6 +7,8 @@ import re
 
 from nbformat import NotebookNode
 
+from my_robot_basics.language.catalogues import ENGLISH
+from my_robot_basics.language.speaking import in_language
 from my_robot_basics.validate.cells import KEY, grade_id, graded_id, is_reset, role
 from my_robot_basics.validate.titles import title_of_check
 
@@ -18,9 +20,18 @@ def number_of(cells: list[NotebookNode], index: int) -> int:
     return cells[index].metadata.get(KEY, {}).get('number', index + 1)
 
 
-def in_words(text: str, notebook: NotebookNode) -> str:
-    """Return a sentence with cells named so instead of by their ids; others stay as they are."""
+def in_words(text: str, notebook: NotebookNode, language: str = ENGLISH) -> str:
+    """Return a sentence with cells named so instead of by their ids; others stay as they are.
+
+    In another language than English, their number is put behind their id.
+    """
     places = {grade_id(cell): i for i, cell in enumerate(notebook.cells) if grade_id(cell)}
+    if language != ENGLISH:
+        shown = in_language(language, text)
+        for each in dict.fromkeys(filter(places.__contains__, _NAMED.findall(text))):
+            numbered = f'`{each}` (cell {number_of(notebook.cells, places[each])})'
+            shown = shown.replace(f'`{each}`', in_language(language, numbered))
+        return shown
 
     def name(found: re.Match[str]) -> str:
         index = places.get(found[1])

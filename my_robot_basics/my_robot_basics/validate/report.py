@@ -6,8 +6,11 @@ from typing import Literal
 
 from nbformat import NotebookNode
 
+from my_robot_basics.language.catalogues import ENGLISH
+from my_robot_basics.language.speaking import in_language
 from my_robot_basics.validate.cells import KEY, graded_id
 from my_robot_basics.validate.lesson import Lesson
+from my_robot_basics.validate.report_words import words_around
 from my_robot_basics.validate.titles import title_of_check
 from my_robot_basics.validate.verdict import TROUBLE, UNGRADED, Verdict
 
@@ -55,14 +58,18 @@ class Report:
     notebook: str
     parts: tuple[ExerciseFeedback, ...]
     notes: tuple[str, ...]
+    language: str = ENGLISH
+    """That of the notebook, in which the report is read."""
 
     @property
     def checks(self) -> list[CheckFeedback]:
         """All checks, in order."""
         return [check for part in self.parts for check in part.checks]
 
-    def with_words(self, put: Callable[[str], str]) -> 'Report':
-        """Return the same report with each of its sentences put otherwise."""
+    def with_words(
+        self, put: Callable[[str], str], *, title: Callable[[str], str] = str
+    ) -> 'Report':
+        """Return the same report with each of its sentences, and titles, put otherwise."""
 
         def put_all(lines: tuple[str, ...]) -> tuple[str, ...]:
             return tuple(put(line) for line in lines)
@@ -72,7 +79,12 @@ class Report:
                 part,
                 troubles=put_all(part.troubles),
                 checks=tuple(
-                    replace(check, message=put(check.message), notes=put_all(check.notes))
+                    replace(
+                        check,
+                        title=title(check.title),
+                        message=put(check.message),
+                        notes=put_all(check.notes),
+                    )
                     for check in part.checks
                 ),
             )
@@ -98,11 +110,12 @@ class Report:
         by_hand = sum(check.points for check in self.checks if check.outcome == 'by hand')
         if by_hand:
             said.append(f'A person gives {_points(by_hand)} for what you have written.')
-        return ' '.join(said)
+        return in_language(self.language, ' '.join(said))
 
     def as_data(self) -> dict:
         """Return all of it as what JSON can say."""
-        return asdict(self) | {'summary': self.summary, 'passed': self.passed, 'marks': MARKS}
+        told = {'summary': self.summary, 'passed': self.passed, 'marks': MARKS}
+        return asdict(self) | told | {'words': words_around(self.language)}
 
     def _visible(self) -> str:
         visible = [c for c in self.checks if c.outcome not in ('at grading', 'by hand')]

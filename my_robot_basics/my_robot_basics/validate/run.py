@@ -8,6 +8,7 @@ from pathlib import Path
 
 from nbformat import NotebookNode
 
+from my_robot_basics.language.speaking import in_language, language_of
 from my_robot_basics.validate.cell_names import in_words
 from my_robot_basics.validate.cells import grade_id, graded_id, role
 from my_robot_basics.validate.exercises import Exercise, find_exercises
@@ -41,8 +42,12 @@ async def validate(path: Path, server: ForkServer, *, say: Say = lambda line: No
     parts = await together(*map(run.part, find_exercises(lesson.notebook)))
     named = {check.name for part in parts for check in part.checks}
     parts += [*_by_hand(lesson), *_without_exercise(lesson, named), *_missing(lesson)]
-    report = Report(path.name, tuple(parts), lesson.notes)
-    return report.with_words(lambda text: in_words(text, lesson.notebook))
+    language = language_of(lesson.notebook.metadata)
+    report = Report(path.name, tuple(parts), lesson.notes, language)
+    return report.with_words(
+        lambda text: in_words(text, lesson.notebook, language),
+        title=partial(in_language, language),
+    )
 
 
 @dataclass(frozen=True)

@@ -31,24 +31,27 @@ needs no build. What it shows is text; nothing in a report is read as HTML. */
     return made;
   }
 
-  const points = number => `${number} point${number === 1 ? '' : 's'}`;
+  /** Return a text in the language of a report, with values in its places. */
+  const say = (words, text, values = {}) =>
+    (words[text] ?? text).replace(/\{(\w+)\}/g, (place, name) => values[name] ?? place);
   const MORE = {
     'at grading': 'checked only at grading',
     'by hand': 'a person reads it',
     'not checked': 'could not be checked'
   };
 
-  function showCheck(check, marks) {
+  function showCheck(check, marks, words) {
     const more = MORE[check.outcome] || (check.is_partly_hidden ? 'more checks at grading' : '');
     const missed = ['failed', 'partial'].includes(check.outcome);
-    const score = (missed ? `${check.earned} of ` : '') + points(check.points);
+    const points = say(words, check.points === 1 ? '{number} point' : '{number} points', { number: check.points });
+    const score = missed ? say(words, '{earned} of {points}', { earned: check.earned, points }) : points;
     const row = element('li', check.outcome.replace(' ', '-'));
     const mark = element('span', 'mark', marks[check.outcome]);
     mark.setAttribute('aria-label', check.outcome);
     mark.setAttribute('role', 'img');
     row.append(
       element('div', 'row', mark, element('span', 'title', check.title),
-        element('span', 'points', more ? `${score}, ${more}` : score))
+        element('span', 'points', more ? say(words, '{score}, {more}', { score, more: say(words, more) }) : score))
     );
     if (check.message) row.append(element('p', 'message', check.message));
     for (const note of check.notes) row.append(element('p', 'note', note));
@@ -61,18 +64,23 @@ needs no build. What it shows is text; nothing in a report is read as HTML. */
     if (check.source && missed) {
       const code = document.createElement('pre');
       code.textContent = check.source;
-      row.append(element('details', '', element('summary', '', 'Show the check'), code));
+      row.append(element('details', '', element('summary', '', say(words, 'Show the check')), code));
     }
     return row;
   }
 
   function showReport(body, report) {
+    const dialog = body.closest('.jp-Dialog-content');
+    for (const [part, text] of [['header', 'Validation Results'], ['buttonLabel', 'Close']]) {
+      const shown = dialog?.querySelector(`.jp-Dialog-${part}`);
+      if (shown && report.words[text] !== text) shown.textContent = report.words[text];
+    }
     body.replaceChildren(element('p', report.passed ? 'summary' : 'summary mrb-validate-bad', report.summary));
     for (const note of report.notes) body.append(element('p', 'message', note));
     for (const part of report.parts) {
       body.append(element('h3', '', `\`${part.name}\``));
       for (const trouble of part.troubles) body.append(element('p', 'message', trouble));
-      body.append(element('ul', '', ...part.checks.map(check => showCheck(check, report.marks))));
+      body.append(element('ul', '', ...part.checks.map(check => showCheck(check, report.marks, report.words))));
     }
   }
 

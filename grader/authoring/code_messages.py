@@ -1,0 +1,141 @@
+"""Find the sentences in code that people read: the templates of its string literals.
+
+`f'no message in {seconds:g} s'` is the template `no message in {seconds} s`. What may stand in a
+place, when the code chooses between two words, is found by itself.
+"""
+
+import ast
+import re
+from collections.abc import Iterator
+
+_WORDS = re.compile(
+    r"[^\W\d_]{2,}'?[,;:]?\s+[^\W\d_{]|\} [^\W\d_]{2,}|[^\W\d_]{2,}:? \{|\{\w+\}, "
+)
+_NOISE = re.compile(r'^\s*(import|from) |\n {4}|\\w|\(\?|^\s*[\w/.]+\s*$|%s|\{\w+!r\}')
+_NOT_READ = {'TypeError', 'ValueError', 'KeyError', 'AttributeError', 'RuntimeError', 'compile'}
+"""What mistakes in our own code raise, and patterns."""
+
+_WORD = re.compile(r'[^\W\d_A-Z][\w, ]+')
+_TOLD = {'expected', 'seen', 'hint', 'cause'}
+"""What a check says when it fails."""
+
+
+def messages_in(source: str, *, title: bool = False) -> list[str]:
+    """Return the templates of a module's or cell's sentences, in order, each once.
+
+    With `title`, the first lines of its docstring and of its functions' are: what a check and the
+    parts of an experiment are called.
+    """
+    tree = ast.parse(source)
+    found = [_without_note(text) for text in _visit(tree) if not _NOISE.search(text)]
+    told: list[ast.Module | ast.FunctionDef] = [tree]
+    told += [each for each in tree.body if isinstance(each, ast.FunctionDef)]
+    for node in told:
+        if title and (docstring := ast.get_docstring(node)):
+            found.append(docstring.partition('\n')[0])
+    words = (word for node in ast.walk(tree) for word in _told(node))
+    return list(dict.fromkeys([*found, *words]))
+
+
+def _without_note(text: str) -> str:
+    """Return a text without the mark of a note, which nobody is shown."""
+    rest = text.removeprefix('note: ')
+    return rest if _WORDS.search(rest) else text
+
+
+def _visit(node: ast.AST) -> Iterator[str]:
+    if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
+        return  # a docstring, or a comment
+    if isinstance(node, ast.Call) and _called(node) in _NOT_READ:
+        return
+    if _is_text(node):
+        template, places = _template(node)
+        if _WORDS.search(template):
+            yield template
+        for place in places:
+            yield from _visit(place)
+        return
+    for child in ast.iter_child_nodes(node):
+        yield from _visit(child)
+
+
+def _told(node: ast.AST) -> Iterator[str]:
+    """Yield single words that are told by themselves.
+
+    Those between which the code chooses, but not the s of a plural; and what a check says that it
+    expected or saw.
+    """
+    if isinstance(node, ast.IfExp):
+        yield from _words_of(node)
+    if isinstance(node, ast.AnnAssign | ast.AugAssign) and _name(node.target) == 'TO_SHOW':
+        texts = ast.walk(node.value or node)
+        yield from (str(text.value) for text in texts if isinstance(text, ast.Constant))
+    if isinstance(node, ast.Call):
+        told = [each.value for each in node.keywords if each.arg in _TOLD]
+        yield from _words_of(*told)
+        yield from (
+            text.value
+            for text in told
+            if isinstance(text, ast.Constant) and isinstance(text.value, str)
+        )
+
+
+def _words_of(*expressions: ast.AST) -> Iterator[str]:
+    for expression in expressions:
+        if isinstance(expression, ast.IfExp):
+            yield from _words_of(expression.body, expression.orelse)
+        elif isinstance(expression, ast.BoolOp):
+            yield from _words_of(*expression.values)
+        elif isinstance(expression, ast.Constant) and _WORD.fullmatch(str(expression.value)):
+            yield str(expression.value)
+
+
+def _is_text(node: ast.AST) -> bool:
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
+        return _is_text(node.left) or _is_text(node.right)
+    return isinstance(node, ast.JoinedStr) or (
+        isinstance(node, ast.Constant) and isinstance(node.value, str)
+    )
+
+
+def _template(node: ast.AST) -> tuple[str, list[ast.AST]]:
+    """Return a text with a name for each place, and the expressions that stand there."""
+    names: list[str] = []
+    places: list[ast.AST] = []
+
+    def place(expression: ast.AST) -> str:
+        plain = name = _name(expression)
+        while name in names:
+            name = f'{plain}{len(names) + 1}'
+        names.append(name)
+        places.append(expression)
+        return f'{{{name}}}'
+
+    def text(part: ast.AST) -> str:
+        if isinstance(part, ast.Constant):
+            return str(part.value)
+        if isinstance(part, ast.JoinedStr):
+            return ''.join(map(text, part.values))
+        if isinstance(part, ast.FormattedValue):
+            return place(part.value)
+        if isinstance(part, ast.BinOp) and isinstance(part.op, ast.Add):
+            return text(part.left) + text(part.right)
+        return place(part)
+
+    return text(node), places
+
+
+def _name(expression: ast.AST) -> str:
+    """Return what to call a place: by the variable, attribute or function that stands there."""
+    if isinstance(expression, ast.Call):
+        return _called(expression).strip('_') or 'value'
+    if isinstance(expression, ast.Subscript):
+        return _name(expression.value)
+    if isinstance(expression, ast.Attribute):
+        return expression.attr.strip('_')
+    return expression.id.strip('_') if isinstance(expression, ast.Name) else 'value'
+
+
+def _called(call: ast.Call) -> str:
+    function = call.func
+    return getattr(function, 'attr', getattr(function, 'id', ''))

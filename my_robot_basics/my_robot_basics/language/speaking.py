@@ -1,0 +1,52 @@
+"""Show the software's sentences in the language of a notebook."""
+
+import os
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+
+from my_robot_basics.language.catalogues import ENGLISH, languages, read_translations
+from my_robot_basics.language.sentences import Sentences
+
+LOCALE = Path(__file__).resolve().parents[3] / 'locale'
+"""The catalogues beside the package, in the course and in a student's bundle of it."""
+FOR_STUDENTS = ('checks', 'validate', 'lesson_checks')
+"""The parts of the software that students have, and of the checks that they may read."""
+PARTS = (*FOR_STUDENTS, 'hidden_checks', 'feedback')
+KEY, LANGUAGE = 'my_robot_basics', 'language'
+"""Where in a notebook's metadata its language stands, if it is not English."""
+
+
+def language_of(metadata: Mapping) -> str:
+    """Return the language of a notebook; English where there are no catalogues of what it says."""
+    ours = metadata.get(KEY)
+    said = ours.get(LANGUAGE) if isinstance(ours, Mapping) else None
+    return said if isinstance(said, str) and said in languages(LOCALE) else ENGLISH
+
+
+def language_here() -> str:
+    """Return the language of the notebook whose kernel this is: that of its edition's folder."""
+    known = languages(LOCALE)
+    path = Path(os.environ.get('JPY_SESSION_NAME', ''))
+    named = [part for part in path.parts if part in known]
+    return next(iter(named), ENGLISH)
+
+
+def in_language(language: str, text: str) -> str:
+    """Return a sentence of the software in a language, or as it is where it is not translated."""
+    return text if language == ENGLISH else sentences(language).translate(text)
+
+
+def put(language: str, template: str, **values: object) -> str:
+    """Return a template in a language, with values in its places."""
+    known = {} if language == ENGLISH else sentences(language).translations
+    return known.get(template, template).format(**values)
+
+
+@cache
+def sentences(language: str) -> Sentences:
+    """Return all that the software's catalogues of a language have."""
+    known: dict[str, str] = {}
+    for part in PARTS:
+        known |= read_translations(LOCALE, language, part)
+    return Sentences(known)

@@ -1,0 +1,18 @@
+"""What JupyterLab's dialog, and a terminal, say around a report."""
+
+from my_robot_basics.language.speaking import in_language
+
+TO_SHOW: tuple[str, ...] = (
+    'Validation Results',
+    'Close',
+    'Show the check',
+    'checked only at grading',
+)
+TO_SHOW += ('a person reads it', 'could not be checked', 'more checks at grading')
+TO_SHOW += ('{number} point', '{number} points', '{earned} of {points}', '{score}, {more}')
+TO_SHOW += ('({points}; {more})', '({points})')
+
+
+def words_around(language: str) -> dict[str, str]:
+    """Return each of these texts in a language, by its English."""
+    return {text: in_language(language, text) for text in TO_SHOW}

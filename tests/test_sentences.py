@@ -1,0 +1,226 @@
+"""Sentences that were made in English are shown in the language of a notebook."""
+
+import json
+
+import nbformat
+import pytest
+from my_robot_basics.feedback.errors import CheckFailed
+from my_robot_basics.language import speaking
+from my_robot_basics.language.sentences import MOST_CHARACTERS, Sentences
+from my_robot_basics.language.speaking import in_language, language_of
+from my_robot_basics.validate.as_text import as_text
+from my_robot_basics.validate.cell_names import in_words
+from my_robot_basics.validate.report import CheckFeedback, ExerciseFeedback, Report
+
+from grader.authoring.code_messages import messages_in
+from grader.course import Course
+from grader.notebook.restore import restore
+from grader.report.page import page
+
+CODE = '''
+"""Each value is doubled
+
+More on that.
+"""
+import re
+from x import fail
+
+PATTERN = re.compile('one two (three)')
+
+def check(seen, n):
+    """It is the same for all."""
+    if seen is None:
+        raise ValueError('our own mistake')
+    text = f'over {n:g} s ({len(seen)} message{"" if n == 1 else "s"})'
+    fail(
+        expected=f'{seen.name} {"above" if n else "below"} the line',
+        seen=seen or 'nothing',
+        hint='double {it: twice}, ' + text + ' each time',
+    )
+'''
+
+
+def test_the_sentences_of_code_are_templates_with_a_name_for_each_place():
+    assert messages_in(CODE, title=True) == [
+        'over {n} s ({len} message{value})',
+        '{name} {value} the line',
+        'double {it: twice}, {text} each time',
+        'Each value is doubled',
+        'It is the same for all.',
+        'nothing',
+        'above',
+        'below',
+    ]
+    assert 'Each value is doubled' not in messages_in(CODE)
+
+
+TEMPLATES = {
+    'expected {expected}, saw {seen}: {hint}': '预期：{expected}；实际：{seen}。{hint}',
+    'no message in {seconds} s': '{seconds} s 内没有消息',
+    'over {seconds} s ({n} message{value})': '{seconds} s 内（{n} 条消息）',
+    'the period is in seconds': '周期以秒为单位',
+    '`{name}` to return {wanted}': '`{name}` 返回 {wanted}',
+    'your cell ': '你的单元格 ',
+    ', without quotes': '，不加引号',
+    'it ended': '它结束了',
+    'All checks pass.': '检查全部通过。',
+    '{number} of {total} points are open.': '{total} 分中有 {number} 分未定。',
+    '{one} and {other}': '{one} 和 {other}',
+    '{one} {other}': '{one}，{other}',
+    '{sentence} {other}': '{sentence}{other}',
+    '{name} is {value}': '{name} 为 {value}',
+}
+SAID = {
+    'expected 5.0 Hz, saw no message in 10 s: the period is in seconds': (
+        '预期：5.0 Hz；实际：10 s 内没有消息。周期以秒为单位'
+    ),
+    'expected 5.0 Hz, saw 1.0 Hz over 2 s (1 message): the period is in seconds': (
+        '预期：5.0 Hz；实际：1.0 Hz，2 s 内（1 条消息）。周期以秒为单位'
+    ),
+    'expected `f(is, and)` to return True, saw None: it ended': (
+        '预期：`f(is, and)` 返回 True；实际：None。它结束了'
+    ),
+    'your cell `a` ended': '你的单元格 `a` ended',
+    'True, without quotes': 'True，不加引号',
+    'All checks pass. 1 of 3 points are open.': '检查全部通过。3 分中有 1 分未定。',
+    '/a and /b': '/a 和 /b',
+    'what the student is told and what is not': 'what the student is told and what is not',
+    'nobody knows this sentence': 'nobody knows this sentence',
+    '': '',
+}
+
+
+@pytest.mark.parametrize(('english', 'chinese'), SAID.items())
+def test_a_sentence_is_translated_by_the_templates_that_fit_it(english, chinese):
+    assert Sentences(TEMPLATES).translate(english) == chinese
+
+
+@pytest.mark.parametrize(
+    'text', ['a, b' * 400, 'x is ' * 300, 'a and ' * 300, '. ' * 900, 'x' * (MOST_CHARACTERS + 1)]
+)
+def test_what_a_student_made_up_takes_a_bounded_number_of_tries(text):
+    sentences = Sentences(TEMPLATES)
+    assert isinstance(sentences.translate(text), str)
+    assert sentences._tries < 10_000
+
+
+# --- where they are shown ------------------------------------------------------------------------
+
+REASON = (
+    'expected 5.0 Hz, saw 1.0 Hz over 10 s (10 messages): '
+    'the timer period is in seconds, and period = 1 / rate'
+)
+CHINESE_REASON = (
+    '预期：5.0 Hz；实际：1.0 Hz，10 s 内（10 条消息）。定时器的周期以秒为单位，周期 = 1 / 频率'
+)
+
+
+def test_a_reason_of_the_course_is_told_in_chinese():
+    assert in_language('zh_CN', REASON) == CHINESE_REASON
+    assert in_language('en', REASON) == REASON
+
+
+@pytest.mark.parametrize('said', [None, 'tlh', '../..', 3, ['zh_CN'], {'zh_CN': 1}])
+def test_a_notebook_that_names_no_language_of_ours_is_english(said):
+    assert language_of({'my_robot_basics': {'language': said}}) == 'en'
+    assert language_of({'my_robot_basics': said}) == 'en'
+    assert language_of({}) == 'en'
+
+
+def test_a_notebook_keeps_its_language_where_its_cells_are_restored():
+    course = Course()
+    template = course.template('02_joint_state')
+    release = course.root / 'notebooks'
+    english = course.release('02_joint_state')
+    path = release / 'zh_CN/02_joint_state/02_joint_state.ipynb'
+    chinese = nbformat.read(path, as_version=4)
+    ours, theirs = restore(english, template), restore(chinese, template)
+    assert theirs.notebook.metadata.my_robot_basics.pop('language') == 'zh_CN'
+    assert 'language' not in ours.notebook.metadata.my_robot_basics
+    assert theirs == ours  # not a cell, not a note differs: what is graded has no language
+
+
+def graded(language):
+    verdict = {'role': 'grade', 'outcome': 'failed', 'reason': REASON, 'notes': []}
+    marks = {'grade': True, 'grade_id': 'a', 'points': 2, 'score': 0.0, 'locked': True}
+    source = '"""/kinematics/joint_states carries 5 messages a second"""\npass'
+    cell = nbformat.v4.new_code_cell(
+        source, id='a', metadata={'nbgrader': marks, 'my_robot_basics': verdict}
+    )
+    notebook = nbformat.v4.new_notebook(cells=[cell])
+    notebook.metadata.my_robot_basics = {
+        'notes': ['the cell `a` was changed: the original counts'],
+        'title': '3 · A node that keeps talking',
+        **language,
+    }
+    return notebook
+
+
+ABOUT = {'student': 'ada & bob', 'assignment': '03_publisher', 'score': 0.0, 'max_score': 2.0}
+
+
+def test_the_feedback_page_is_in_the_language_of_the_notebook():
+    html = page(graded({'language': 'zh_CN'}), ABOUT)
+    assert '<html lang="zh-CN">' in html
+    for said in (
+        '<h1>3 · 一直在发布的节点</h1>',
+        '给 ada &amp; bob 的反馈',
+        '0 / 2 分',
+        '/kinematics/joint_states 每秒传送 5 条消息',
+        '✗ 还未通过',
+        '预期：5.0 Hz；实际：1.0 Hz，10 s 内（10 条消息）。',
+        '定时器的周期以秒为单位，周期 = 1 / 频率',
+        '单元格 <code>a</code> 被改动了：以原来的为准',
+    ):
+        assert said in html
+    shown = html.partition('</style>')[2]
+    for english in ('Expected', 'Feedback', 'Summary', 'points<', 'Next step', 'not yet'):
+        assert english not in shown
+
+
+def test_an_english_notebook_has_an_english_page():
+    html = page(graded({}), ABOUT)
+    assert '<html lang="en">' in html
+    assert 'Feedback for ada &amp; bob' in html
+    assert '<p class="total">0 of 2 points</p>' in html
+
+
+def report(language):
+    check = CheckFeedback('a', 'Each message has both names', 2.0, 'failed', True, message=REASON)
+    made = Report('a.ipynb', (ExerciseFeedback('five_hz', (), (check,)),), (), language)
+    return made.with_words(
+        lambda text: in_words(text, nbformat.v4.new_notebook(), language), title=str
+    )
+
+
+def test_validate_speaks_the_language_of_the_notebook():
+    said = ' '.join(as_text(report('zh_CN')).split())
+    assert '✗ Each message has both names （0 / 2 分；评分时还有更多检查）' in said
+    assert CHINESE_REASON.replace(' ', '') in said.replace(' ', '')
+    assert said.endswith('1 项看得见的检查中有 1 项未通过：少了 2 分。')
+    data = json.loads(json.dumps(report('zh_CN').as_data()))
+    assert data['words']['Show the check'] == '显示这项检查'
+    assert data['words']['{earned} of {points}'] == '{earned} / {points}'
+    assert set(report('en').as_data()['words'].items()) == {(text, text) for text in data['words']}
+
+
+def test_a_cell_is_named_by_its_number_in_each_language():
+    cell = nbformat.v4.new_code_cell('', metadata={'nbgrader': {'grade_id': 'five_hz'}})
+    notebook = nbformat.v4.new_notebook(cells=[cell])
+    text = 'the cell `five_hz` was changed: the original counts at grading'
+    shown = in_words(text, notebook, 'zh_CN')
+    assert shown == '单元格 `five_hz`（第 1 个单元格） 被改动了：评分时以原来的为准'
+
+
+def test_a_check_that_is_run_by_hand_speaks_the_language_of_its_edition(monkeypatch):
+    failed = CheckFailed(REASON)
+    monkeypatch.setenv('JPY_SESSION_NAME', '/home/ada/notebooks/03_publisher/03_publisher.ipynb')
+    assert ' '.join(failed._render_traceback_()).endswith(REASON[-20:])
+    monkeypatch.setenv('JPY_SESSION_NAME', 'zh_CN/03_publisher/03_publisher.ipynb')
+    assert '定时器的周期以秒为单位' in ' '.join(failed._render_traceback_())
+    assert str(failed) == REASON
+
+
+def test_without_catalogues_everything_is_english(monkeypatch, tmp_path):
+    monkeypatch.setattr(speaking, 'LOCALE', tmp_path)
+    assert language_of({'my_robot_basics': {'language': 'zh_CN'}}) == 'en'
