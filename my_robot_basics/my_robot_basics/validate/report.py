@@ -80,12 +80,9 @@ class Report:
                 troubles=put_all(part.troubles),
                 checks=tuple(
                     replace(
-                        check,
-                        title=title(check.title),
-                        message=put(check.message),
-                        notes=put_all(check.notes),
+                        c, title=title(c.title), message=put(c.message), notes=put_all(c.notes)
                     )
-                    for check in part.checks
+                    for c in part.checks
                 ),
             )
             for part in self.parts
@@ -115,7 +112,7 @@ class Report:
     def as_data(self) -> dict:
         """Return all of it as what JSON can say."""
         told = {'summary': self.summary, 'passed': self.passed, 'marks': MARKS}
-        return asdict(self) | told | {'words': words_around(self.language)}
+        return {**asdict(self), **told, 'words': words_around(self.language)}
 
     def _visible(self) -> str:
         visible = [c for c in self.checks if c.outcome not in ('at grading', 'by hand')]
