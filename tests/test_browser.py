@@ -74,10 +74,10 @@ class Lab:
                 assert time.monotonic() < deadline, self.log.read_text()
                 time.sleep(0.2)
 
-    def fresh_copy(self, name):
+    def fresh_copy(self, name, language=''):
         """A released lesson that nobody has opened yet, and so without a kernel: its path here."""
         folder = Path(tempfile.mkdtemp(dir=self.folder))
-        shutil.copy(ROOT / 'notebooks' / name / f'{name}.ipynb', folder)
+        shutil.copy(ROOT / 'notebooks' / language / name / f'{name}.ipynb', folder)
         return f'{folder.name}/{name}.ipynb'
 
     def stop(self):
@@ -141,13 +141,14 @@ class Lesson:
         self.page.keyboard.press('Control+A')
         self.page.keyboard.insert_text(text)
 
-    def validate(self):
+    def validate(self, title='Validation Results', close='Close'):
         """Press the button; return what its dialog says in the end."""
         self.page.get_by_role('button', name='Validate').click()
-        dialog = self.page.locator('.jp-Dialog', has_text='Validation Results')
+        dialog = self.page.locator('.jp-Dialog', has=self.page.locator('.mrb-validate-report'))
         dialog.locator('.mrb-validate-summary').wait_for()
+        expect(dialog.locator('.jp-Dialog-header')).to_have_text(title)
         said = dialog.inner_text()
-        dialog.get_by_role('button', name='Close').click()
+        dialog.get_by_role('button', name=close).click()
         expect(dialog).to_have_count(0)
         return ' '.join(said.split())
 
@@ -222,8 +223,8 @@ def opened(lab, page):
     close_all(page)
     lessons = []
 
-    def open_lesson(name):
-        lessons.append(Lesson(page, lab.fresh_copy(name)))
+    def open_lesson(name, language=''):
+        lessons.append(Lesson(page, lab.fresh_copy(name, language)))
         return lessons[-1]
 
     yield open_lesson
@@ -339,6 +340,14 @@ def test_validate_says_what_is_wrong_and_then_that_all_is_right(opened):
     assert 'Success' not in said
 
 
+def test_validate_speaks_the_language_of_the_lesson(opened):
+    lesson = opened('02_joint_state', 'zh_CN')
+    lesson.type('to_joint_state', WRONG)
+    said = lesson.validate('检查结果', '关闭')
+    assert '预期：(30.0, -90.0) 度对应的 [0.5236, -1.5708] rad；实际：[30.0, -90.0]。' in said
+    assert '✗ position 里是两个角度，以弧度为单位 0 / 2 分，评分时还有更多检查' in said
+    assert '✓ name 里依次是 joint1 和 joint2 1 分 ✓' in said
+    assert said.count('显示这项检查') == 1
 WAITING = """\
         response = self.client.call(SolveIK.Request(target=target), timeout_sec=60.0)
         self.receive(response)

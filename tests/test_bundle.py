@@ -116,6 +116,23 @@ def test_it_holds_each_edition(course, fresh_lessons, tmp_path):
     assert '\n## 怎样学习\n' in (folder / 'README.zh_CN.md').read_text(encoding='utf-8')
 
 
+def test_a_catalogue_that_tells_what_no_program_does_is_refused(course, fresh_lessons, tmp_path):
+    catalogue = course.root / 'locale/zh_CN/LC_MESSAGES/checks.po'
+    catalogue.parent.mkdir(parents=True)
+    release(course)
+    program = course.root / 'my_robot_basics/my_robot_basics/hello_node.py'
+    program.write_text(program.read_text(encoding='utf-8') + f'# {ANSWER}\n', encoding='utf-8')
+    said = f'msgid "a"\nmsgstr "{ANSWER.strip()} and def double(x):"\n'
+    catalogue.write_text(said, encoding='utf-8')
+    bundle(course, tmp_path / 'students.zip')  # a line that a program has, too
+    said = CANARY.replace('"', '')
+    catalogue.write_text(f'msgid "a"\nmsgstr "{said}"\n# {CANARY}\n', encoding='utf-8')
+    with pytest.raises(
+        CourseError, match=r'checks\.po shows a line of an answer or a hidden test'
+    ):
+        bundle(course, tmp_path / 'students.zip')
+
+
 def test_it_asks_for_nothing_that_only_the_course_needs(made, fresh_lessons, tmp_path):
     bundle(made, tmp_path / 'students.zip')
     pins = (unpacked(tmp_path / 'students.zip', tmp_path) / 'environment.txt').read_text()

@@ -37,15 +37,18 @@ def leaks_beside(course: Course, files: Mapping[str, bytes]) -> Iterator[str]:
     """Yield what students could learn from files that are no lesson: programs, texts, indexes.
 
     A program may have a line in common with an answer. Two of one assignment are no accident, and
-    neither is a line of a hidden test that is longer than a common phrase.
+    neither is a line of a hidden test that is longer than a common phrase. A catalogue repeats
+    what many programs say: of a line that one of them has, it tells nothing.
     """
+    programs = '\n'.join(_text(name, files[name]) for name in files if name.endswith('.py'))
     for assignment in course.assignments():
         cells = course.source(assignment).cells
         secret = _secrets(cells)
         tests = {line for cell in cells if _is_check(cell) for line in _secret_lines(cell)}
         for name, content in files.items():
             text = _text(name, content)
-            found = sorted(line for line in secret if line in text)
+            said = programs if name.endswith('.po') else ''
+            found = sorted(line for line in secret if line in text and line not in said)
             revealing = [line for line in found if line in tests and len(line) > COMMON_PHRASE]
             for line in revealing or found[1:]:
                 yield f'{name} shows a line of an answer or a hidden test: {line!r}'

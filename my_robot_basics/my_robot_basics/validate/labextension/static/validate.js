@@ -73,7 +73,9 @@ needs no build. What it shows is text; nothing in a report is read as HTML. */
     const dialog = body.closest('.jp-Dialog-content');
     for (const [part, text] of [['header', 'Validation Results'], ['buttonLabel', 'Close']]) {
       const shown = dialog?.querySelector(`.jp-Dialog-${part}`);
-      if (shown && report.words[text] !== text) shown.textContent = report.words[text];
+      if (!shown || report.words[text] === text) continue;
+      shown.textContent = report.words[text];
+      shown.closest('button')?.setAttribute('aria-label', report.words[text]);
     }
     body.replaceChildren(element('p', report.passed ? 'summary' : 'summary mrb-validate-bad', report.summary));
     for (const note of report.notes) body.append(element('p', 'message', note));
