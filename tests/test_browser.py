@@ -348,6 +348,8 @@ def test_validate_speaks_the_language_of_the_lesson(opened):
     assert '✗ position 里是两个角度，以弧度为单位 0 / 2 分，评分时还有更多检查' in said
     assert '✓ name 里依次是 joint1 和 joint2 1 分 ✓' in said
     assert said.count('显示这项检查') == 1
+
+
 WAITING = """\
         response = self.client.call(SolveIK.Request(target=target), timeout_sec=60.0)
         self.receive(response)
