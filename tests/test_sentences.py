@@ -84,6 +84,7 @@ SAID = {
     'True, without quotes': 'True，不加引号',
     'All checks pass. 1 of 3 points are open.': '检查全部通过。3 分中有 1 分未定。',
     '/a and /b': '/a 和 /b',
+    'your cell it ended': '你的单元格它结束了',
     'what the student is told and what is not': 'what the student is told and what is not',
     'nobody knows this sentence': 'nobody knows this sentence',
     '': '',
@@ -127,13 +128,17 @@ def test_a_notebook_that_names_no_language_of_ours_is_english(said):
     assert language_of({}) == 'en'
 
 
-def test_a_notebook_keeps_its_language_where_its_cells_are_restored():
+@pytest.mark.parametrize('name', Course().assignments())
+def test_the_same_answers_in_each_edition_are_graded_as_the_same_notebook(name):
     course = Course()
-    template = course.template('02_joint_state')
-    release = course.root / 'notebooks'
-    english = course.release('02_joint_state')
-    path = release / 'zh_CN/02_joint_state/02_joint_state.ipynb'
-    chinese = nbformat.read(path, as_version=4)
+    template = course.template(name)
+    path = course.root / 'notebooks/zh_CN' / name / f'{name}.ipynb'
+    english, chinese = course.release(name), nbformat.read(path, as_version=4)
+    for notebook in (english, chinese):
+        for cell in notebook.cells:
+            if cell.metadata.get('nbgrader', {}).get('solution'):
+                cell.source = f'{cell.source}\ntext = "我的答案"  # 注释'
+        notebook.cells.insert(3, nbformat.v4.new_code_cell('mine = "试一试"', id='mine'))
     ours, theirs = restore(english, template), restore(chinese, template)
     assert theirs.notebook.metadata.my_robot_basics.pop('language') == 'zh_CN'
     assert 'language' not in ours.notebook.metadata.my_robot_basics
@@ -209,7 +214,7 @@ def test_a_cell_is_named_by_its_number_in_each_language():
     notebook = nbformat.v4.new_notebook(cells=[cell])
     text = 'the cell `five_hz` was changed: the original counts at grading'
     shown = in_words(text, notebook, 'zh_CN')
-    assert shown == '单元格 `five_hz`（第 1 个单元格） 被改动了：评分时以原来的为准'
+    assert shown == '单元格 `five_hz`（第 1 个单元格）被改动了：评分时以原来的为准'
 
 
 def test_a_check_that_is_run_by_hand_speaks_the_language_of_its_edition(monkeypatch):

@@ -37,6 +37,9 @@ MOST_SPLITS = 10
 """In how many ways one template may fit one text."""
 
 _QUOTED = re.compile(r'`[^`]*`|\'[^\']*\'|"[^"]*"')
+_HAN = '[\u3400-\u9fff（），。；：]'
+_IN_HAN = re.compile(rf'({_QUOTED.pattern})|(?<={_HAN}) (?={_HAN})')
+"""A space between Chinese words, beside a place: there is none; and what is quoted."""
 _TWO_WORDS = re.compile(r'[^\W\d_]{2,} [^\W\d_]{2,}')
 _NAME = re.compile(
     r'`[^`]*`|\'[^\']*\'|"[^"]*"|/[\w/]+|\w+\(.*?\)|\b[A-Z_]{2,}\b|\w*[\d_]\w*|\w+Error\b'
@@ -79,7 +82,8 @@ class Sentences:
         if len(text) > MOST_CHARACTERS:
             return text
         self._found, self._tries = {}, 0
-        return self._best(text, 0)[1]
+        shown = self._best(text, 0)[1]
+        return text if shown == text else close_up(shown)
 
     def _best(self, text: str, deep: int) -> tuple[int, str]:
         """Return how many letters stay English, and the text with the fewest of them."""
@@ -144,6 +148,11 @@ def _cuts(template: Template, found: Mapping[str, str]) -> bool:
     return ended or any(
         text.count('(') != text.count(')') and '…' not in text for text in said.values()
     )
+
+
+def close_up(text: str) -> str:
+    """Return a text without spaces between Chinese words, but for what is quoted."""
+    return _IN_HAN.sub(lambda found: found[1] or '', text)
 
 
 def _with_places(text: str, english: str = '') -> str:

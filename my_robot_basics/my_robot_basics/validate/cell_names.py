@@ -8,6 +8,7 @@ import re
 from nbformat import NotebookNode
 
 from my_robot_basics.language.catalogues import ENGLISH
+from my_robot_basics.language.sentences import close_up
 from my_robot_basics.language.speaking import in_language
 from my_robot_basics.validate.cells import KEY, grade_id, graded_id, is_reset, role
 from my_robot_basics.validate.titles import title_of_check
@@ -31,7 +32,7 @@ def in_words(text: str, notebook: NotebookNode, language: str = ENGLISH) -> str:
         for each in dict.fromkeys(filter(places.__contains__, _NAMED.findall(text))):
             numbered = f'`{each}` (cell {number_of(notebook.cells, places[each])})'
             shown = shown.replace(f'`{each}`', in_language(language, numbered))
-        return shown
+        return close_up(shown)
 
     def name(found: re.Match[str]) -> str:
         index = places.get(found[1])
