@@ -187,6 +187,24 @@ class OneJointLate(Reports):
         return {'position': self.position, 'remaining': max(left)}
 
 
+class Accelerates(Reports):
+    """The first half of the way takes most of the time."""
+
+    def on_the_way(self):
+        return [a + self.part**2 * way for a, way in zip(self.start, self.way, strict=True)]
+
+    def told(self, left):
+        return {'position': self.position, 'remaining': max(left)}
+
+
+class Pauses(MoveArmServer):
+    """Tells nothing in the midst of a move."""
+
+    def report(self, handle):
+        if not 0.4 < self.part < 0.7:
+            super().report(handle)
+
+
 # --- cancel --------------------------------------------------------------------------------------
 
 
@@ -341,6 +359,8 @@ WRONG = [
     (TellsTheSum, 'feedback', 'it is of the one joint that is farthest away, not the sum'),
     (TellsNoRemaining, 'feedback', 'it is 0 all the time: fill in feedback.remaining'),
     (OneJointLate, 'feedback', 'move both joints by the same part of their ways, so that they ar'),
+    (Accelerates, 'feedback', 'move at one speed from start to goal, and publish each position'),
+    (Pauses, 'feedback', r'saw a pause of [0-9.]+ s: publish feedback in each step of the move'),
     (NoCancelCallback, 'cancels', 'give ActionServer a cancel_callback that returns CancelRespon'),
     (NeverCanceled, 'cancels', r'call goal_handle.canceled\(\) before the execute callback retur'),
     (SucceedsAllTheSame, 'cancels', r'call goal_handle.canceled\(\), not succeed\(\)'),
