@@ -58,6 +58,9 @@ ORDINARY = {
     'test_ros2_action::test_refuses_as_ros2cli_does': r'(type|info) .*|.*(path|\[1\])',
     'test_ros2_graph::test_prints_what_ros2cli_prints': r'[a-z]+ [a-z]+( [^-\s]\S*)*',
     'test_ros2_graph::test_refuses_as_ros2cli_does': r'(topic info|node info|param list) .*',
+    'test_ros2_param::test_prints_what_ros2cli_prints': r'[a-z]+( [^-\s]\S*)*',
+    'test_ros2_param::test_refuses_as_ros2cli_does': r'.*(test_node|nothing|_path|tangled)',
+    'test_ros2_param::test_what_the_node_refuses_is_told_with_its_reason': r'.*(even|robot)( .*)?',
     'test_ros2_service::test_prints_what_ros2cli_prints': r'[a-z]+( [^-\s]\S*)*',
     'test_ros2_service::test_refuses_as_ros2cli_does': r'(info|call //x) .*|.*(path|\[1\])',
     'test_ros2_streams::test_it_ends_when_nobody_reads_any_more': r'echo|hz|pub',
@@ -115,6 +118,18 @@ ORDINARY = {
     ),
     'test_kernel_exits::test_who_uses_too_much_memory_twice_gets_a_zero_that_says_so': r'forked',
     'test_kernel_exits::test_a_node_that_is_ended_from_outside_is_no_zero': r'forked',
+    'test_checks_parameters::test_an_honest_way_passes': (
+        r'(Adjustable|LimitsInTheDescriptor|ReadsInEachTick|SleepsInAThread)'
+    ),
+    'test_checks_parameters::test_a_mistake_with_the_rate_fails_that_check_alone': (
+        r'(KeepsTheOldTimer|OneBehind)-.*'
+    ),
+    'test_checks_parameters::test_a_mistake_with_refusals_fails_that_check_alone': (
+        r'(SetsThoughRefusing|Corrects)-.*'
+    ),
+    'test_checks_node_commands::test_each_mistake_is_named': (
+        r'-r __ns:=/right( -r __node:=arm( -p seed:=7\.0)?)?'
+    ),
     'test_checks_stamps::test_the_computers_clock_fails_on_both': r'(WallStamp|Steady).*',
     'test_checks_relays::test_a_callback_that_raised_is_named': r'RaisesOnceAfterwards-.*',
     'test_checks_relays::test_where_no_time_is_left_a_few_messages_tell': r'DropsEverySecond',

@@ -8,6 +8,7 @@ import random
 import signal
 
 import rclpy
+from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
@@ -18,16 +19,21 @@ from my_robot_basics.two_link_kinematics import forward_kinematics
 class KinematicsPublisher(Node):
     """Publishes joint angles on /kinematics/joint_states once a second.
 
-    θ1 lies within ±90° and θ2 within ±120°. With the same `seed` the poses are the same again.
+    θ1 lies within ±90° and θ2 within ±120°. With the same parameter `seed` the poses are the
+    same again; without one, it is drawn.
     """
 
     def __init__(self, seed: int | None = None) -> None:
         super().__init__('kinematics_publisher')
-        self.random = random.Random(seed)
+        seed = random.randrange(2**31) if seed is None else seed
+        fixed = ParameterDescriptor(description='Seed of the random poses', read_only=True)
+        self.declare_parameter('seed', seed, fixed)
+        self.random = random.Random(self.get_parameter('seed').value)
         # Queue depth 10: up to ten messages wait for a slow subscription, then the oldest goes.
         self.publisher = self.create_publisher(JointState, '/kinematics/joint_states', 10)
         self.timer = self.create_timer(1.0, self.publish_pose)  # the period, in seconds
-        self.get_logger().info('publishing a random pose on /kinematics/joint_states every second')
+        topic = self.publisher.topic_name  # as it is now: rules may have changed it
+        self.get_logger().info(f'publishing a random pose on {topic} every second')
 
     def publish_pose(self) -> None:
         """Choose a pose, publish it in radians, and log it in degrees."""

@@ -12,6 +12,8 @@ without an error has passed.
 - an action server of the student's: `action(name, type).send_goal(goal)`
 - a client of the student's: `serve(name, type, answer, ...)`, the check's own server
 - an action client of the student's: `action_server(name, type, ...)`, the check's own server
+- a node's parameters: `node_parameters(node_name)`, `rate_parameter(...)`
+- a node that a command line starts: `node_command(name, node_name)`
 - a node's log: `rosout(node_name)`
 - nodes, publishers and subscriptions: `graph()`
 - predictions: `Predictions`
@@ -28,7 +30,10 @@ _HOMES = {
     'action': 'checks.actions',
     'action_server': 'checks.action_servers',
     'serve': 'checks.servers',
+    'node_command': 'checks.node_commands',
     'rosout': 'checks.logs',
+    'node_parameters': 'checks.parameters',
+    'rate_parameter': 'checks.rate_parameters',
     'graph': 'graph.graphs',
     'inputs': 'checks.seeds',
     'expect': 'feedback.errors',
@@ -46,6 +51,9 @@ _HOMES = {
     'Outcome': 'checks.actions',
     'ServedAction': 'checks.served_action',
     'Log': 'checks.logs',
+    'NodeCommand': 'checks.node_commands',
+    'NodeParameters': 'checks.parameters',
+    'RateParameter': 'checks.rate_parameters',
     'Record': 'checks.node_log',
     'GraphSnapshot': 'graph.snapshot',
     'Stage': 'checks.delivery_experiment',

@@ -99,7 +99,7 @@ def is_settled(watcher: Watcher, node_name: str = '') -> bool:
     if names is None or node_name in names:
         return False
     return watcher.spin_until(
-        lambda: {*names} <= {*_node_names(watcher.node)}, timeout_sec=SEEN_SEC
+        lambda: {*names} <= {*node_names(watcher.node)}, timeout_sec=SEEN_SEC
     )
 
 
@@ -109,7 +109,7 @@ def none_in(seconds: float) -> str:
 
 
 def _look(node: Node) -> GraphSnapshot:
-    names = set(_node_names(node))
+    names = set(node_names(node))
     topic_names = [name for name, _ in node.get_topic_names_and_types()]
     return GraphSnapshot(
         node_names=tuple(sorted(names)),
@@ -118,7 +118,8 @@ def _look(node: Node) -> GraphSnapshot:
     )
 
 
-def _node_names(node: Node) -> list[str]:
+def node_names(node: Node) -> list[str]:
+    """Full names of the nodes on the graph, but the course's own."""
     return [
         f'{namespace.rstrip("/")}/{name}'
         for name, namespace in node.get_node_names_and_namespaces()

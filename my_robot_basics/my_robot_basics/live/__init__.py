@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from my_robot_basics.live.arm import show_arm
     from my_robot_basics.live.branches import show_branches
     from my_robot_basics.live.camera import send_pictures
+    from my_robot_basics.live.commands import run_commands
     from my_robot_basics.live.doctor import why
     from my_robot_basics.live.entry_points import add_entry_point
     from my_robot_basics.live.exercise import reset, run_answer
@@ -46,6 +47,7 @@ __all__ = [
     'reset',
     'run',
     'run_answer',
+    'run_commands',
     'send_pictures',
     'show_arm',
     'show_arrivals',
@@ -69,6 +71,7 @@ _MODULES = {
     'stop': 'runner',
     'reset': 'exercise',
     'run_answer': 'exercise',
+    'run_commands': 'commands',
     'show_arm': 'arm',
     'show_branches': 'branches',
     'show_arrivals': 'timeline',

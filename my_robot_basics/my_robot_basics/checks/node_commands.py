@@ -1,0 +1,123 @@
+"""A node that a command line of the notebook starts: its name, its topic, its parameters."""
+
+import math
+import random
+from dataclasses import dataclass
+from typing import Any
+
+from my_robot_basics.checks import remap_hints
+from my_robot_basics.checks.parameters import NodeParameters
+from my_robot_basics.checks.topics import topic
+from my_robot_basics.exchange import student
+from my_robot_basics.feedback.errors import expect, fail, shorten
+from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.graph import graphs
+from my_robot_basics.graph.watcher import Watcher
+from my_robot_basics.ros2 import command_line
+from my_robot_basics.ros2.command_line import CommandLine
+
+NODE_SEC = 4.0
+"""How long the node of a command may take to appear, of time that was free: the cell that starts
+it has waited before."""
+MOST_POSES = 3_600
+"""An hour of poses: which of them is first seen depends on when somebody looks."""
+_PACKAGE, _EXECUTABLE = 'my_robot_basics', 'kinematics_publisher'
+
+
+def node_command(name: str, node_name: str) -> 'NodeCommand':
+    """The node of that full name, which the text of that name in the notebook is to start.
+
+    The text is one command line for `kinematics_publisher`, as `run_commands` takes it. Raises
+    CheckFailed where it is none, and where there is no such node, or two.
+    """
+    text = student.value(name, type=str)
+    try:
+        line = command_line.parse(text, package=_PACKAGE, executable=_EXECUTABLE)
+    except command_line.BadCommandLine as error:
+        fail(
+            expected=f'`{name}` to be one command line that starts {_EXECUTABLE}',
+            seen=theirs(shorten(error.seen)),
+            hint=error.hint,
+            cause=f'`{name}` is no command line',
+        )
+    with Watcher() as watcher:
+        watcher.spin_until_free(
+            lambda: node_name in graphs.node_names(watcher.node), free_sec=NODE_SEC
+        )
+        names = graphs.take(watcher).nodes()
+        count = graphs.node_names(watcher.node).count(node_name)
+    expect(
+        count > 0,
+        expected=f'the node {node_name}',
+        seen=theirs(shorten(', '.join(names))) or 'no node',
+        hint=remap_hints.for_a_name(line, node_name),
+        cause=f'there is no node {node_name}',
+    )
+    expect(
+        count == 1,
+        expected=f'one node {node_name}',
+        seen=f'{count} of that name',
+        hint='give each node a name of its own: run the cell with run_commands once more',
+        cause=f'there are several nodes {node_name}',
+    )
+    return NodeCommand(line, node_name)
+
+
+@dataclass(frozen=True)
+class NodeCommand:
+    """What a check may say about the node of a command line."""
+
+    line: CommandLine
+    node_name: str
+    """Full: '/left/arm'."""
+
+    def expect_publishes(self, topic_name: str, *, instead_of: str) -> None:
+        """It, and nobody else, publishes on that topic, and it does not on the other one."""
+        with Watcher() as watcher:
+            graphs.wait_for_publisher(watcher, topic_name, timeout_sec=1.0)
+            snapshot = graphs.take(watcher)
+        publishers = snapshot.publishers(topic_name)
+        names = [
+            name for name, nodes in snapshot.publisher_names.items() if self.node_name in nodes
+        ]
+        own = [name for name in names if name.endswith('joint_states')]
+        expect(
+            self.node_name in publishers,
+            expected=f'{self.node_name} to publish on {topic_name}',
+            seen=f'it publishes on {theirs(shorten(", ".join(own)))}' if own else 'it does not',
+            hint=remap_hints.for_a_topic(self.line, self.node_name, instead_of),
+            cause=f'{self.node_name} does not publish on {topic_name}',
+        )
+        expect(
+            len(publishers) == 1,
+            expected=f'one publisher on {topic_name}',
+            seen=theirs(shorten(', '.join(publishers))),
+            hint='give each node a topic of its own',
+            cause=f'several nodes publish on {topic_name}',
+        )
+
+    def expect_parameter(self, name: str, value: Any) -> None:
+        """A parameter of it has that value."""
+        seen = NodeParameters(self.node_name).get(name)
+        expect(
+            seen == value,
+            expected=f'{name} = {value} of {self.node_name}',
+            seen=theirs(shorten(repr(seen))),
+            hint=f'give it with -p {name}:={value} after --ros-args, or in a YAML file',
+            cause=f'{name} has another value',
+        )
+
+    def expect_poses(self, topic_name: str, *, seed: int) -> None:
+        """The poses on that topic are those of `kinematics_publisher` with that seed."""
+        numbers = random.Random(seed)
+        poses = {
+            (math.radians(numbers.uniform(-90.0, 90.0)), math.radians(numbers.uniform(-120, 120)))
+            for _ in range(MOST_POSES)
+        }
+        topic(topic_name).wait_for(
+            lambda message: tuple(message.position) in poses,
+            timeout_sec=5.0,
+            expected=f'a pose of the seed {seed} on {topic_name}',
+            seen=lambda message: f'the pose {[round(angle, 3) for angle in message.position]}',
+            hint='the node takes its seed when it starts: give it in the command line',
+        )

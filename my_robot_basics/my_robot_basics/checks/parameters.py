@@ -1,0 +1,115 @@
+"""A node's parameters as a check sees them: ask for them and set them, as `ros2 param` does."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, NoReturn
+
+from rcl_interfaces.msg import SetParametersResult
+from rcl_interfaces.srv import GetParameters, ListParameters, SetParameters
+from rclpy.client import Client
+from rclpy.parameter import Parameter, parameter_value_to_python
+
+from my_robot_basics.checks.callbacks import CallbackErrors
+from my_robot_basics.checks.services import wait_for_all
+from my_robot_basics.feedback.errors import fail, shorten
+from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.graph import graphs
+from my_robot_basics.graph.watcher import Watcher
+
+NODE_SEC = 10.0
+"""How long to wait for a node; less where the notebook says that none can come."""
+SERVICES_SEC = 4.0
+"""How long the services of a node that is there may take to appear, of time that was free."""
+MEETINGS, MEETING_SEC = 4, 1.0
+"""How often a node is asked for nothing, and how long for each answer, of time that was free."""
+_OF_EVERY_NODE = ('use_sim_time', 'start_type_description_service')
+
+
+def node_parameters(node_name: str) -> 'NodeParameters':
+    """The parameters of the node of that full name: `node_parameters('/arm').get('rate_hz')`.
+
+    Raises CheckFailed where there is no such node.
+    """
+    with Watcher() as watcher:
+        timeout_sec = graphs.SETTLED_SEC if graphs.is_settled(watcher, node_name) else NODE_SEC
+        if not watcher.spin_until(
+            lambda: node_name in graphs.node_names(watcher.node), timeout_sec=timeout_sec
+        ):
+            others = ', '.join(sorted(set(graphs.node_names(watcher.node))))
+            fail(
+                expected=f'the node {node_name}',
+                seen=theirs(shorten(others)) or 'no node',
+                hint="run the cell that starts it, and compare its name in super().__init__('…')",
+                cause=f'there is no node {node_name}',
+            )
+    return NodeParameters(node_name)
+
+
+@dataclass(frozen=True)
+class NodeParameters:
+    """What a check may do with the parameters of a node; each call goes over its services."""
+
+    node_name: str
+    """Full: '/adjustable_publisher'."""
+
+    def get(self, name: str) -> Any:
+        """The value of a parameter, as Python has it. Raises CheckFailed where it has none."""
+        request = GetParameters.Request(names=[name])
+        values = self._call('get_parameters', GetParameters, request).values
+        if not values:
+            self._fail_undeclared(name)
+        return parameter_value_to_python(values[0])
+
+    def set(self, name: str, *values: Any) -> Sequence[SetParametersResult]:
+        """Set a parameter to each of these values, one after the other; what the node says."""
+        parameters = [Parameter(name, value=value).to_parameter_msg() for value in values]
+        request = SetParameters.Request(parameters=parameters)
+        return self._call('set_parameters', SetParameters, request).results
+
+    def _fail_undeclared(self, name: str) -> NoReturn:
+        request = ListParameters.Request()
+        names = self._call('list_parameters', ListParameters, request).result.names
+        own = sorted(each for each in names if each not in _OF_EVERY_NODE)
+        fail(
+            expected=f'the parameter {name} of {self.node_name}',
+            seen=theirs(shorten(', '.join(own))) or 'no parameter of its own',
+            hint=f"declare it in the constructor: self.declare_parameter('{name}', …)",
+            cause=f'{name} is not declared',
+        )
+
+    def _call(self, service_name: str, type_: type, request: Any) -> Any:
+        """What the node answers. Raises CheckFailed where it does not, with the reason."""
+        with Watcher() as watcher:
+            client = watcher.node.create_client(type_, f'{self.node_name}/{service_name}')
+            if not watcher.spin_until_free(client.service_is_ready, free_sec=SERVICES_SEC):
+                fail(
+                    expected=f'the parameter services of {self.node_name}',
+                    seen='none',
+                    hint='leave start_parameter_services as it is, and see that the node runs',
+                    cause=f'{self.node_name} has no parameter services',
+                )
+            errors = CallbackErrors([self.node_name])
+            asked = None
+            if self._is_met(watcher, client, type(request)):
+                asked = client.call_async(request)
+                wait_for_all(watcher, [asked], gives_up=lambda: bool(errors.hint()))
+            if asked is None or not asked.done():
+                fail(
+                    expected=f'{self.node_name} to answer {service_name}',
+                    seen='no answer',
+                    hint=errors.hint() or 'see that the node spins, and that no callback waits',
+                    cause=f'{self.node_name} does not answer its parameter services',
+                )
+            errors.expect_none()
+            return asked.result()
+
+    def _is_met(self, watcher: Watcher, client: Client, Request: type) -> bool:
+        """Ask for nothing, until there is an answer; whether there is one.
+
+        A server drops its answer to a client that it has not met, although that one has met it.
+        """
+        for _ in range(MEETINGS):
+            asked = client.call_async(Request())
+            if watcher.spin_until_free(asked.done, free_sec=MEETING_SEC):
+                return True
+        return False

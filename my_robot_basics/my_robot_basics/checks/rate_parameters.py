@@ -1,0 +1,195 @@
+"""A parameter that is the rate of a node, in Hz: it sets the rate, and refuses some values."""
+
+from dataclasses import dataclass
+from typing import NoReturn
+
+from my_robot_basics.checks import parameter_refusals as refusals
+from my_robot_basics.checks.parameters import NodeParameters, node_parameters
+from my_robot_basics.checks.recording import Recording
+from my_robot_basics.checks.topics import topic
+from my_robot_basics.feedback.errors import CheckFailed, Starved, expect, fail, shorten
+from my_robot_basics.feedback.hidden import theirs
+
+RECORD_SEC = 4.0
+NEAR_PART = 0.1
+"""So near to each other are two rates that are the same one, for who asks which one it is …"""
+UNCHANGED_PART = 0.25
+"""… and so near, on a busy machine, is a rate to what it was: refused values are farther away."""
+ANOTHER_HZ = (4.0, 20.0, 8.0)
+"""One of them is neither of the two rates that are in doubt."""
+
+
+def rate_parameter(node_name: str, name: str, *, topic_name: str) -> 'RateParameter':
+    """The parameter of that node, in Hz, which is to set how often it publishes on the topic.
+
+    Raises CheckFailed where there is no such node.
+    """
+    return RateParameter(node_parameters(node_name), name, topic_name)
+
+
+@dataclass(frozen=True)
+class RateParameter:
+    """What a check may say about a parameter that is a rate; each call takes a second or two."""
+
+    parameters: NodeParameters
+    name: str
+    topic_name: str
+
+    def expect_default(self, rate_hz: float) -> None:
+        """It is declared as a double of that value, and the node publishes so often."""
+        self._expect_leaves_others_alone()
+        value = self.parameters.get(self.name)
+        expect(
+            isinstance(value, int | float) and not isinstance(value, bool) and value == rate_hz,
+            expected=f'{self.name} = {rate_hz}',
+            seen=theirs(shorten(repr(value))),
+            hint=f"declare it with its default: self.declare_parameter('{self.name}', {rate_hz}); "
+            'if somebody has set it since, run the node anew',
+            cause=f'another default of {self.name}',
+        )
+        if isinstance(value, int):
+            [result] = self.parameters.set(self.name, rate_hz)
+            if not result.successful:
+                refusals.fail_refused(self.name, rate_hz, result)
+        self._record().assert_rate(rate_hz)
+
+    def expect_takes(self, *rates_hz: float) -> None:
+        """Each of these rates can be set; the last one is the value of the parameter then."""
+        tried = self._in_its_type(rates_hz)
+        for rate_hz, result in zip(tried, self.parameters.set(self.name, *tried), strict=True):
+            if not result.successful:
+                refusals.fail_refused(self.name, rate_hz, result)
+        value = self.parameters.get(self.name)
+        expect(
+            value == tried[-1],
+            expected=f'{self.name} = {tried[-1]:g}, which the node has taken',
+            seen=theirs(shorten(repr(value))),
+            hint='take the value as it is, or refuse it',
+            cause=f'{self.name} has another value than the one that was set',
+        )
+
+    def expect_follows(self, *rates_hz: float) -> None:
+        """The node publishes so often once the parameter is set, to one after the other."""
+        self._expect_leaves_others_alone()
+        for rate_hz in rates_hz:
+            before_hz = self.parameters.get(self.name)
+            self.expect_takes(rate_hz)
+            recording = self._record()
+            try:
+                recording.assert_rate(rate_hz)
+            except CheckFailed as failed:
+                self._explain(failed, recording, float(before_hz), rate_hz)
+
+    def expect_refuses(self, *rates_hz: float) -> None:
+        """Each of these is refused, with a reason, and value and rate stay what they were."""
+        self._expect_leaves_others_alone()
+        kept_hz = self.parameters.get(self.name)
+        self._expect_refused(kept_hz, rates_hz)
+        seen_hz, _ = self._measure()
+        if _are_near(seen_hz, kept_hz, part=UNCHANGED_PART):
+            return
+        # it may have had another rate before: does a value that is refused make a difference?
+        self.parameters.set(self.name, kept_hz)
+        before_hz, _ = self._measure()
+        self._expect_refused(kept_hz, rates_hz)
+        after_hz, doubt = self._measure()
+        expect(
+            any(_are_near(after_hz, hz, part=UNCHANGED_PART) for hz in (before_hz, kept_hz)),
+            expected=f'the same rate as before a value is refused ({before_hz:.3g} Hz)',
+            seen=f'{after_hz:.3g} Hz',
+            hint='look at all values first, and change the timer only if none is refused',
+            cause='a refused value changes the rate all the same',
+            doubt=doubt,
+        )
+
+    def _expect_refused(self, kept_hz: float, rates_hz: tuple[float, ...]) -> None:
+        tried = self._in_its_type(rates_hz)
+        results = self.parameters.set(self.name, *tried)
+        value = self.parameters.get(self.name)
+        corrected = None if value in (kept_hz, *tried) else value
+        for rate_hz, result in zip(tried, results, strict=True):
+            refusals.expect_refused(self.name, rate_hz, result, corrected=corrected)
+        expect(
+            value == kept_hz,
+            expected=f'{self.name} = {kept_hz:g}, as before',
+            seen=theirs(shorten(repr(value))),
+            hint='change nothing where you refuse a value',
+            cause=f'{self.name} is changed by a value that was refused',
+        )
+
+    def _expect_leaves_others_alone(self) -> None:
+        """The callback gets each parameter that is set: also the one that says which clock."""
+        [result] = self.parameters.set('use_sim_time', self.parameters.get('use_sim_time'))
+        if not result.successful:
+            refusals.expect_a_result(result)
+            fail(
+                expected='use_sim_time, another parameter, to be set',
+                seen=f'it refused: {theirs(shorten(result.reason))}',
+                hint='your callback gets each parameter that is set: judge those whose name is '
+                f"'{self.name}'",
+                cause='your callback refuses other parameters',
+            )
+
+    def _explain(
+        self, failed: CheckFailed, recording: Recording, before_hz: float, now_hz: float
+    ) -> NoReturn:
+        """Raise CheckFailed with what makes a node miss a new rate, where that can be told."""
+        seen_hz = recording.rate_hz
+        if _are_near(seen_hz, now_hz):
+            raise failed
+        if _are_near(seen_hz, before_hz + now_hz):
+            seen = f'{seen_hz:.3g} Hz, which is both together'
+            cause = 'the old timer still runs beside the new one'
+            hint = 'call self.destroy_timer(…) for the old timer before you create the next one'
+        elif not _are_near(seen_hz, before_hz):
+            raise failed
+        elif self._lags(before_hz, now_hz):
+            seen = f'{seen_hz:.3g} Hz, the value before'
+            cause = 'the rate is one change behind'
+            hint = (
+                'while add_on_set_parameters_callback decides, get_parameter still returns the old'
+                ' value: use parameter.value of the list that your callback gets'
+            )
+        else:
+            seen = f'{seen_hz:.3g} Hz as before'
+            cause = f'the rate does not follow {self.name}'
+            hint = (
+                'a timer keeps its period: when the parameter changes, destroy the timer and '
+                'create another one, or set timer.timer_period_ns'
+            )
+        fail(
+            expected=f'{now_hz:g} Hz after {self.name} went from {before_hz:g} to {now_hz:g}',
+            seen=seen,
+            hint=hint,
+            cause=cause,
+            doubt=type(failed),
+        )
+
+    def _lags(self, before_hz: float, now_hz: float) -> bool:
+        """Whether the next change brings the rate that this one should have brought."""
+        others = [rate_hz for rate_hz in ANOTHER_HZ if not _are_near(rate_hz, before_hz)]
+        another_hz = next(rate_hz for rate_hz in others if not _are_near(rate_hz, now_hz))
+        self.expect_takes(another_hz)
+        seen_hz, _ = self._measure()
+        return _are_near(seen_hz, now_hz)
+
+    def _in_its_type(self, rates_hz: tuple[float, ...]) -> list[float]:
+        """As integers, where the parameter is one: rclpy refuses any other type by itself."""
+        if isinstance(self.parameters.get(self.name), int):
+            return [int(rate_hz) for rate_hz in rates_hz]
+        return [*rates_hz]
+
+    def _record(self) -> Recording:
+        return topic(self.topic_name).record(seconds=RECORD_SEC)
+
+    def _measure(self) -> tuple[float, type[CheckFailed]]:
+        """How often messages come now, in Hz, 0 where none does; and what to raise of that."""
+        try:
+            recording = self._record()
+        except CheckFailed:
+            return 0.0, CheckFailed
+        return recording.rate_hz, CheckFailed if recording.clock == 'simulated' else Starved
+
+
+def _are_near(rate_hz: float, other_hz: float, *, part: float = NEAR_PART) -> bool:
+    return abs(rate_hz - other_hz) <= part * other_hz

@@ -1,0 +1,50 @@
+"""What is wrong with the rules of a command line, judged by what they should have brought."""
+
+from my_robot_basics.ros2.command_line import CommandLine
+
+_NAMES = '__node', '__name'
+_ENDED = (
+    'both rules are there, so see whether the node has ended: what it said last is below the cell '
+    'with run_commands'
+)
+
+
+def for_a_name(line: CommandLine, node_name: str) -> str:
+    """What to try where a node has not the full name that it was to get: one clause."""
+    rules = dict(line.rules())
+    namespace, _, name = node_name.rpartition('/')
+    given = next((rules[left] for left in _NAMES if left in rules), None)
+    if '__ns' not in rules:
+        return f'a namespace is given by a rule of its own: -r __ns:={namespace}'
+    if not rules['__ns'].startswith('/'):
+        return f'a namespace begins with /: write -r __ns:={namespace}'
+    if given is None:
+        return f'a name is given by a rule of its own: -r __node:={name}'
+    if '/' in given:
+        return f'a name has no /, the namespace is in the other rule: write -r __node:={name}'
+    if (rules['__ns'], given) != (namespace, name):
+        return 'compare both names in the rules of the command line'
+    return _ENDED
+
+
+def for_a_topic(line: CommandLine, node_name: str, topic_name: str) -> str:
+    """What to try where a node still uses a topic that was to be renamed: one clause."""
+    namespace = node_name.rpartition('/')[0]
+    rules = [(left, right) for left, right in line.rules() if not left.startswith('__')]
+    if not rules:
+        return (
+            f'the name of the topic begins with /, so no namespace moves it: add a rule for it, '
+            f'-r {topic_name}:=…'
+        )
+    for left, right in rules:
+        if left.strip('/') and not left.startswith('/') and left != topic_name:
+            return (
+                f'the left side of a rule gets the namespace, too, if it does not begin with /: '
+                f'{left} means {namespace}/{left} here, so write {topic_name}:=…'
+            )
+        if left == topic_name and not right.startswith('/') and '/' in right:
+            return (
+                f'the right side gets the namespace if it does not begin with /: {right} means '
+                f'{namespace}/{right} here'
+            )
+    return f'compare the rule with the name that the topic has now, {topic_name}'

@@ -1,0 +1,107 @@
+"""Command lines of a notebook as processes: `ros2 run`, with no shell between."""
+
+import contextlib
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+from my_robot_basics.ros2 import command_line
+from my_robot_basics.session import classroom
+from my_robot_basics.session.errors import NotRunnable, in_lines
+
+STARTED_SEC = 6.0
+"""How long a cell waits for the first line of its commands, or their end."""
+END_SEC = 5.0
+_PACKAGE = 'my_robot_basics'
+_DIES_WITH_US = (  # a kernel that is killed leaves no node behind
+    'import ctypes, os, sys; ctypes.CDLL(None).prctl(1, 15); os.execv(sys.argv[1], sys.argv[1:])'
+)
+
+_running: list['_Command'] = []
+
+
+class _Command:
+    """One process, and the last line that it has printed."""
+
+    def __init__(self, words: tuple[str, ...]) -> None:
+        ros2 = str(Path(sys.executable).with_name('ros2'))
+        self.process = subprocess.Popen(
+            [sys.executable, '-c', _DIES_WITH_US, ros2, *words[1:]],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            errors='replace',
+            process_group=0,  # an interrupt of the cell is not theirs
+            env={**os.environ, 'PYTHONUNBUFFERED': '1'},
+        )
+        self.last_line = ''
+        self.has_spoken = threading.Event()
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    def _read(self) -> None:
+        for line in self.process.stdout or ():
+            if line.strip() and not line.startswith('[ros2run]'):
+                self.last_line = line.strip()
+                if line.startswith('[INFO]'):  # the log of a node that is up
+                    self.has_spoken.set()
+        self.process.wait()
+        self.has_spoken.set()
+
+    def stop(self) -> None:
+        """End it as Ctrl-C does, and wait for that."""
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(self.process.pid, signal.SIGINT)
+        try:
+            self.process.wait(END_SEC)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+        self._reader.join(END_SEC)
+
+
+def run_commands(*names: str, executable: str = 'kinematics_publisher') -> None:
+    """Start the command line that each of these names of the notebook holds, as one process each.
+
+    Each has to be `ros2 run my_robot_basics EXECUTABLE --ros-args …`; no shell reads it. What ran
+    before is stopped first; `stop()` and `reset()` stop them, too, and they end with the kernel.
+    Where one ends by itself, what it printed last is printed. Raises NotRunnable for what is no
+    such command line.
+    """
+    stop_commands()
+    classroom.enter()
+    lines = {name: _read(name, executable) for name in names}
+    for line in lines.values():
+        _running.append(_Command(line.words))
+    deadline = time.monotonic() + STARTED_SEC
+    for name, command in zip(lines, _running, strict=True):
+        command.has_spoken.wait(max(0.0, deadline - time.monotonic()))
+        if command.process.poll() is None:
+            print(f'{name}: started')
+        else:
+            print(*in_lines(f'{name}: ended by itself: {command.last_line}'), sep='\n')
+
+
+def stop_commands() -> None:
+    """End all that `run_commands` has started."""
+    while _running:
+        _running.pop().stop()
+
+
+def _read(name: str, executable: str) -> command_line.CommandLine:
+    text = vars(sys.modules['__main__']).get(name)
+    if text is None:
+        raise NotRunnable(
+            f'expected a command line {name}, saw nothing of that name: write it in the answer '
+            'cell, and run the cell'
+        )
+    if type(text) is not str:
+        raise NotRunnable(f'expected {name} to be a text, saw {type(text).__name__}: put quotes')
+    try:
+        return command_line.parse(text, package=_PACKAGE, executable=executable)
+    except command_line.BadCommandLine as error:
+        raise NotRunnable(f'{name}: expected one command line, saw {error}') from None

@@ -1,0 +1,70 @@
+"""A command line that starts one executable with `ros2 run`, read without a shell."""
+
+import itertools
+import shlex
+from dataclasses import dataclass
+
+OPTIONS_OF_RULES = '-r', '--remap'
+_OF_A_SHELL = set('();<>|&')
+"""What stands between commands; `shlex` makes words of their own of them."""
+_EXPANDED = '$`'
+"""What a shell puts something else for."""
+MOST_CHARACTERS = 2_000
+
+
+class BadCommandLine(ValueError):
+    """A text that is no such command line: a clause that says what it is, and one what to do."""
+
+    def __init__(self, seen: str, hint: str) -> None:
+        super().__init__(f'{seen}: {hint}')
+        self.seen = seen
+        self.hint = hint
+
+
+@dataclass(frozen=True)
+class CommandLine:
+    """The words of `ros2 run PACKAGE EXECUTABLE --ros-args …`."""
+
+    words: tuple[str, ...]
+
+    def rules(self) -> list[tuple[str, str]]:
+        """Both sides of each remap rule, in their order: ('__ns', '/left')."""
+        pairs = itertools.pairwise(self.words)
+        rules = [rule for option, rule in pairs if option in OPTIONS_OF_RULES]
+        return [(left, right) for left, _, right in (rule.partition(':=') for rule in rules)]
+
+
+def parse(text: str, *, package: str, executable: str) -> CommandLine:
+    """Read a command line that starts this executable, and nothing else.
+
+    What only a shell understands (a second command, `&`, a variable) is refused, as is all that
+    stands before `--ros-args`. Raises BadCommandLine.
+    """
+    start = ['ros2', 'run', package, executable]
+    text = text.strip().replace('\\\n', ' ')
+    if len(text) > MOST_CHARACTERS:
+        raise BadCommandLine(f'{len(text)} characters', 'write one command line')
+    if '\n' in text:
+        raise BadCommandLine('several lines', 'write one line, or end each but the last with \\')
+    if found := [character for character in text if character in _EXPANDED]:
+        raise BadCommandLine(f'a {found[0]}', 'write what you mean in full: no shell reads it')
+    words = _words(text)
+    if found := [word for word in words if set(word) <= _OF_A_SHELL]:
+        hint = 'write one command that starts one node: no shell reads it'
+        raise BadCommandLine(f'the word {found[0] or repr("")}', hint)
+    if words[:4] != start:
+        hint = f'begin with {shlex.join(start)}'
+        raise BadCommandLine(shlex.join(words[:4]) or 'nothing', hint)
+    if words[4:5] != ['--ros-args']:
+        hint = 'write --ros-args after the executable, and rules and parameters after that'
+        raise BadCommandLine(f'{words[4] if words[4:] else "nothing"} after {executable}', hint)
+    return CommandLine(tuple(words))
+
+
+def _words(text: str) -> list[str]:
+    lexer = shlex.shlex(text, posix=True, punctuation_chars=True)
+    lexer.whitespace_split, lexer.commenters = True, ''
+    try:
+        return list(lexer)
+    except ValueError as error:
+        raise BadCommandLine(str(error).lower(), 'close each quotation mark') from None

@@ -1,0 +1,110 @@
+"""Two command lines that start one program twice: each way to write them, and each mistake."""
+
+import sys
+
+import pytest
+from my_robot_basics.checks import CheckFailed, node_command
+from my_robot_basics.live import commands
+
+from my_robot_basics import live
+
+pytestmark = pytest.mark.starts
+START = 'ros2 run my_robot_basics kinematics_publisher --ros-args'
+TOPIC = '/kinematics/joint_states'
+LEFT = f'{START} -r __ns:=/left -r __node:=arm -r {TOPIC}:=/left/joint_states'
+RIGHT = f'{START} -r __ns:=/right -r __node:=arm -r {TOPIC}:=joint_states -p seed:=7'
+
+
+@pytest.fixture
+def start(monkeypatch):
+    # a slow start is not what these tests are about
+    monkeypatch.setattr(commands, 'STARTED_SEC', 60.0)
+
+    def start(left=LEFT, right=RIGHT):
+        for name, text in ('left_arm', left), ('right_arm', right):
+            monkeypatch.setattr(sys.modules['__main__'], name, text, raising=False)
+        live.run_commands('left_arm', 'right_arm')
+
+    yield start
+    live.stop()
+
+
+def look():
+    left = node_command('left_arm', '/left/arm')
+    left.expect_publishes('/left/joint_states', instead_of=TOPIC)
+    right = node_command('right_arm', '/right/arm')
+    right.expect_publishes('/right/joint_states', instead_of=TOPIC)
+    right.expect_parameter('seed', 7)
+    right.expect_poses('/right/joint_states', seed=7)
+
+
+FILE = """
+/**:
+  ros__parameters:
+    seed: 7
+"""
+
+
+def test_full_and_relative_names_pass(start):
+    start()
+    look()
+
+
+def test_quotes_long_options_and_a_file_pass(start, tmp_path):
+    (tmp_path / 'a file.yaml').write_text(FILE)
+    start(
+        left=f'{START} --remap "__ns:=/left" --remap \'__node:=arm\' \\\n'
+        f' -r {TOPIC}:=joint_states',
+        right=f'{START} -r __name:=arm -r __ns:=/right -r {TOPIC}:=/right/joint_states '
+        f'--params-file "{tmp_path}/a file.yaml"',
+    )
+    look()
+
+
+MISTAKES = [
+    ('-r __node:=arm', 'saw .*/arm.*: a namespace is given by a rule of its own: -r __ns:=/right'),
+    ('-r __ns:=right -r __node:=arm', 'a namespace begins with /: write -r __ns:=/right'),
+    ('-r __ns:=/right', 'a name is given by a rule of its own: -r __node:=arm'),
+    ('-r __node:=/right/arm -r __ns:=/right', 'a name has no /, the namespace is in the other'),
+    ('-r __ns:=/rigth -r __node:=arm', 'saw .*/rigth/arm: compare both names in the rules'),
+    ('-r __ns:=/right -r __node:=arm -p seed:=7.0', 'see whether the node has ended'),
+    ('-r __ns:=/right -r __node:=arm', 'saw it publishes on /kinematics/joint_states: the name of '
+     'the topic begins with /, so no namespace moves it'),
+    ('-r __ns:=/right -r __node:=arm -r kinematics/joint_states:=joint_states',
+     'kinematics/joint_states means /right/kinematics/joint_states here'),
+    (f'-r __ns:=/right -r __node:=arm -r {TOPIC}:=right/joint_states',
+     'right/joint_states means /right/right/joint_states here'),
+    (f'-r __ns:=/right -r __node:=arm -r {TOPIC}:=/joint_states', 'compare the rule with the na'),
+    (f'-r __ns:=/right -r __node:=arm -r {TOPIC}:=joint_states',
+     r'expected seed = 7 of /right/arm, saw \d+: give it with -p seed:=7'),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(('rest', 'words'), MISTAKES, ids=[rest for rest, _ in MISTAKES])
+def test_each_mistake_is_named(start, rest, words):
+    start(right=f'{START} {rest}')
+    with pytest.raises(CheckFailed, match=words):
+        look()
+
+
+def test_two_arms_on_one_topic_are_told(start):
+    start(left=LEFT, right=RIGHT.replace(':=joint_states', ':=/left/joint_states'))
+    words = 'expected one publisher on /left/joint_states, saw /left/arm, /right/arm'
+    with pytest.raises(CheckFailed, match=words):
+        look()
+
+
+def test_a_text_that_starts_something_else_is_told(start, monkeypatch):
+    start()
+    monkeypatch.setattr(sys.modules['__main__'], 'left_arm', 'ros2 run my_robot_basics hello_node')
+    with pytest.raises(
+        CheckFailed, match='expected `left_arm` to be one command line that starts'
+    ):
+        look()
+
+
+def test_other_poses_than_those_of_the_seed_are_told(start):
+    start(left=LEFT + ' -p seed:=8')
+    left = node_command('left_arm', '/left/arm')
+    with pytest.raises(CheckFailed, match='expected a pose of the seed 7 on /left/joint_states'):
+        left.expect_poses('/left/joint_states', seed=7)

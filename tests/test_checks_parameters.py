@@ -1,0 +1,119 @@
+"""A parameter that sets a node's rate: every honest way passes, and each mistake is named."""
+
+import pytest
+from my_robot_basics.checks import CheckFailed, node_parameters, rate_parameter
+from nodes.running import imported
+
+from my_robot_basics import live
+
+pytestmark = pytest.mark.starts
+adjustable = imported('adjustable')
+TOPIC = '/kinematics/joint_states'
+
+
+@pytest.fixture
+def run():
+    yield live.run
+    live.stop()
+
+
+def look_at_the_rate():
+    rate = rate_parameter('/adjustable_publisher', 'rate_hz', topic_name=TOPIC)
+    rate.expect_default(5.0)
+    rate.expect_follows(10.0, 2.5)
+
+
+def look_at_refusals():
+    rate = rate_parameter('/adjustable_publisher', 'rate_hz', topic_name=TOPIC)
+    rate.expect_takes(1.0, 50.0, 10.0)
+    rate.expect_refuses(60.0, 0.0, 0.5)
+
+
+HONEST = [
+    adjustable.Adjustable,
+    adjustable.CancelsTheTimer,
+    adjustable.SetsThePeriod,
+    adjustable.ChangesAfterwards,
+    adjustable.LimitsInTheDescriptor,
+    adjustable.ReadsInEachTick,
+    adjustable.SleepsInAThread,
+    adjustable.TypesItself,
+]
+
+
+@pytest.mark.parametrize('NodeClass', HONEST)
+def test_an_honest_way_passes(run, NodeClass):
+    run(NodeClass)
+    look_at_the_rate()
+    look_at_refusals()
+
+
+OF_THE_RATE = [
+    (adjustable.ReadsOnce, 'expected 10 Hz after rate_hz went from 5 to 10, saw 5 Hz as before: '
+     'a timer keeps its period'),
+    (adjustable.KeepsTheOldTimer, r'saw 1\d[.\d]* Hz, which is both together: call self.destroy_'),
+    (adjustable.OneBehind, 'saw 5 Hz, the value before: while add_on_set_parameters_callback '
+     'decides, get_parameter still returns the old value'),
+    (adjustable.Integer, 'a parameter has the type of its default value: declare it with 5.0'),
+    (adjustable.AnotherDefault, 'expected rate_hz = 5.0, saw 1.0: declare it with its default'),
+]  # fmt: skip
+OF_REFUSALS = [
+    (adjustable.SetsThoughRefusing, 'change the timer only if none is refused'),
+    (adjustable.GivesNoReason, 'expected a reason why rate_hz = 60 is refused, saw none: tell'),
+    (adjustable.TakesAll, 'expected rate_hz = 60 to be refused, saw it was taken: return Set'),
+    (adjustable.Corrects, r'saw it was taken, and rate_hz is [\d.]+: do not correct the value'),
+    (adjustable.RefusesTheLimits, 'the limits themselves are allowed'),
+    (adjustable.DividesFirst, 'ZeroDivisionError'),
+]
+OF_BOTH = [
+    (adjustable.NotDeclared, "expected the parameter rate_hz of /adjustable_publisher, saw rate: "
+     'declare it in the constructor'),
+    (adjustable.ReturnsNothing, 'expected a SetParametersResult from your callback, saw some'),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(('NodeClass', 'words'), OF_THE_RATE)
+def test_a_mistake_with_the_rate_fails_that_check_alone(run, NodeClass, words):
+    run(NodeClass)
+    with pytest.raises(CheckFailed, match=words):
+        look_at_the_rate()
+    look_at_refusals()
+
+
+@pytest.mark.parametrize(('NodeClass', 'words'), OF_REFUSALS)
+def test_a_mistake_with_refusals_fails_that_check_alone(run, NodeClass, words):
+    run(NodeClass)
+    look_at_the_rate()
+    with pytest.raises(CheckFailed, match=words):
+        look_at_refusals()
+
+
+@pytest.mark.parametrize(('NodeClass', 'words'), OF_BOTH)
+def test_what_keeps_all_from_working_fails_both(run, NodeClass, words):
+    run(NodeClass)
+    for look in look_at_the_rate, look_at_refusals:
+        with pytest.raises(CheckFailed, match=words):
+            look()
+
+
+def test_a_callback_that_judges_other_parameters_is_told_so(run):
+    run(adjustable.RefusesOthers)
+    words = 'use_sim_time, another parameter, to be set, .* judge those whose name is'
+    with pytest.raises(CheckFailed, match=words):
+        look_at_the_rate()
+
+
+def test_a_node_of_another_name_is_named(run):
+    run(adjustable.FiveHz)
+    words = 'expected the node /adjustable_publisher, saw /kinematics_publisher: run the cell'
+    with pytest.raises(CheckFailed, match=words):
+        look_at_the_rate()
+
+
+def test_parameters_are_read_and_set(run):
+    run(adjustable.Adjustable)
+    parameters = node_parameters('/adjustable_publisher')
+    taken, refused = parameters.set('rate_hz', 7.0, 70.0)
+    assert (taken.successful, refused.successful) == (True, False)
+    assert refused.reason == 'rate_hz is from 1 to 50'
+    assert parameters.get('rate_hz') == 7.0
