@@ -31,8 +31,8 @@ def start(monkeypatch):
 
 def look():
     left = node_command('left_arm', '/left/arm')
-    left.expect_publishes('/left/joint_states', instead_of=TOPIC)
     right = node_command('right_arm', '/right/arm')
+    left.expect_publishes('/left/joint_states', instead_of=TOPIC)
     right.expect_publishes('/right/joint_states', instead_of=TOPIC)
     right.expect_parameter('seed', 7)
     right.expect_poses('/right/joint_states', seed=7)

@@ -56,6 +56,13 @@ CONTRACT = {
         'ik_service': ('IKService', {'ik_service_answers': 2, 'ik_service_unreachable': 1}),
         'ik_client': ('IKClient', {'ik_client_asks': 2, 'ik_client_never_blocks': 2}),
     },
+    '11_parameters': {
+        'adjustable_rate': (
+            'AdjustablePublisher',
+            {'adjustable_rate_follows': 2, 'adjustable_rate_refuses': 1},
+        ),
+        'two_arms': ('left_arm', {'two_arms_graph': 2}),
+    },
 }
 """Assignment -> exercise -> (the name that its answer defines, its grade cells' points)."""
 
@@ -64,6 +71,7 @@ WITHOUT_HIDDEN_PART = {'reach-visible', 'joint_names', 'explain_counts'}
 WITH_RUN_CELL = {
     *('five_hz', 'ik_solver_node', 'find_endpoints', 'compatible_qos'),
     *('fix_topic_name', 'fix_units', 'fix_stamp', 'ik_service', 'ik_client'),
+    *('adjustable_rate', 'two_arms'),
 }
 """Exercises for which a locked cell starts nodes."""
 BY_HAND = {'explain_counts'}

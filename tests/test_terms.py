@@ -8,7 +8,7 @@ import pytest
 from grader.course import ROOT
 
 PAGE = (ROOT / 'solutions' / 'terms.md').read_text(encoding='utf-8')
-ROWS = re.findall(r'^\| (?!term |-)(.+?) \| (.+?) \| \[(\d)\]\((.+?)\) \|$', PAGE, re.MULTILINE)
+ROWS = re.findall(r'^\| (?!term |-)(.+?) \| (.+?) \| \[(\d+)\]\((.+?)\) \|$', PAGE, re.MULTILINE)
 LINKS = set(re.findall(r'\]\((.+?)\)', PAGE))
 each_row = pytest.mark.parametrize(
     ('term', 'meaning', 'number', 'link'), ROWS, ids=[term for term, *_ in ROWS]
@@ -41,7 +41,7 @@ def test_a_term_is_told_in_one_sentence(term, meaning, number, link):
 
 @each_row
 def test_a_term_is_used_in_the_lesson_that_it_names(term, meaning, number, link):
-    assert link.startswith(f'0{number}_')
+    assert link.startswith(f'{number:0>2}_')
     lesson = nbformat.read(ROOT / 'solutions' / link, as_version=4)
     text = '\n'.join(cell.source for cell in lesson.cells)
     assert re.search(rf'\b{re.escape(term.strip("`"))}', text, re.IGNORECASE)

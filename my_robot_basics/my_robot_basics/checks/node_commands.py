@@ -28,7 +28,7 @@ def node_command(name: str, node_name: str) -> 'NodeCommand':
     """The node of that full name, which the text of that name in the notebook is to start.
 
     The text is one command line for `kinematics_publisher`, as `run_commands` takes it. Raises
-    CheckFailed where it is none, and where there is no such node, or two.
+    CheckFailed where it is none. Read all command lines first: where one is none, none is started.
     """
     text = student.value(name, type=str)
     try:
@@ -40,26 +40,6 @@ def node_command(name: str, node_name: str) -> 'NodeCommand':
             hint=error.hint,
             cause=f'`{name}` is no command line',
         )
-    with Watcher() as watcher:
-        watcher.spin_until_free(
-            lambda: node_name in graphs.node_names(watcher.node), free_sec=NODE_SEC
-        )
-        names = graphs.take(watcher).nodes()
-        count = graphs.node_names(watcher.node).count(node_name)
-    expect(
-        count > 0,
-        expected=f'the node {node_name}',
-        seen=theirs(shorten(', '.join(names))) or 'no node',
-        hint=remap_hints.for_a_name(line, node_name),
-        cause=f'there is no node {node_name}',
-    )
-    expect(
-        count == 1,
-        expected=f'one node {node_name}',
-        seen=f'{count} of that name',
-        hint='give each node a name of its own: run the cell with run_commands once more',
-        cause=f'there are several nodes {node_name}',
-    )
     return NodeCommand(line, node_name)
 
 
@@ -72,7 +52,11 @@ class NodeCommand:
     """Full: '/left/arm'."""
 
     def expect_publishes(self, topic_name: str, *, instead_of: str) -> None:
-        """It, and nobody else, publishes on that topic, and it does not on the other one."""
+        """There is one such node; it, and nobody else, publishes on that topic.
+
+        `instead_of` is the topic that the program has without a rule. Raises CheckFailed.
+        """
+        self._expect_node()
         with Watcher() as watcher:
             graphs.wait_for_publisher(watcher, topic_name, timeout_sec=1.0)
             snapshot = graphs.take(watcher)
@@ -94,6 +78,28 @@ class NodeCommand:
             seen=theirs(shorten(', '.join(publishers))),
             hint='give each node a topic of its own',
             cause=f'several nodes publish on {topic_name}',
+        )
+
+    def _expect_node(self) -> None:
+        with Watcher() as watcher:
+            watcher.spin_until_free(
+                lambda: self.node_name in graphs.node_names(watcher.node), free_sec=NODE_SEC
+            )
+            names = graphs.take(watcher).nodes()
+            count = graphs.node_names(watcher.node).count(self.node_name)
+        expect(
+            count > 0,
+            expected=f'the node {self.node_name}',
+            seen=theirs(shorten(', '.join(names))) or 'no node',
+            hint=remap_hints.for_a_name(self.line, self.node_name),
+            cause=f'there is no node {self.node_name}',
+        )
+        expect(
+            count == 1,
+            expected=f'one node {self.node_name}',
+            seen=f'{count} of that name',
+            hint='give each node a name of its own: run the cell with run_commands once more',
+            cause=f'there are several nodes {self.node_name}',
         )
 
     def expect_parameter(self, name: str, value: Any) -> None:
