@@ -6,7 +6,7 @@ import time
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from my_robot_basics.doctor import picture, report, rules, service_rules
+from my_robot_basics.doctor import picture, remaps, report, rules, service_rules
 from my_robot_basics.doctor.callback import Callback
 from my_robot_basics.doctor.evidence import Endpoint, Evidence, NodeState, ReceivedMessage
 from my_robot_basics.doctor.remaps import of_command
@@ -286,6 +286,21 @@ def test_every_rule_is_in_its_table(table):
 def test_remapping_rules_are_read_from_command_lines(words, rules):
     found = of_command(words)
     assert [(remap.command, remap.name, remap.instead) for remap in found] == rules
+
+
+@pytest.mark.parametrize(
+    ('environment', 'domain_id', 'is_seen'),
+    [('ROS_DOMAIN_ID=7', 7, True), ('ROS_DOMAIN_ID=7', 8, False), ('HOME=/', 0, True)],
+)
+def test_who_was_started_in_another_domain_is_not_meant(
+    monkeypatch, tmp_path, environment, domain_id, is_seen
+):
+    process = tmp_path / '4711'
+    process.mkdir()
+    (process / 'cmdline').write_text('talker\0--ros-args\0-r\0/a:=/b\0')
+    (process / 'environ').write_text(f'{environment}\0')
+    monkeypatch.setattr(remaps, 'PROCESSES', tmp_path)
+    assert bool(remaps.of_domain(domain_id)) == is_seen
 
 
 def test_the_report_names_rate_and_faults_in_order():

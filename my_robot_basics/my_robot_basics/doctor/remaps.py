@@ -9,13 +9,14 @@ from my_robot_basics.doctor.evidence import Remap
 PROCESSES = Path('/proc')
 
 
-def of_this_machine() -> tuple[Remap, ...]:
-    """The rules in the command lines that this user may read."""
+def of_domain(domain_id: int) -> tuple[Remap, ...]:
+    """The rules in the command lines of this user's processes in a ROS domain."""
     return tuple(
         remap
         for folder in PROCESSES.iterdir()
         if folder.name.isdigit()
-        for remap in of_command(_command_line(folder))
+        for remap in of_command(_words(folder / 'cmdline'))
+        if _domain(_words(folder / 'environ')) == f'{domain_id}'
     )
 
 
@@ -34,9 +35,14 @@ def _slash(name: str) -> str:
     return name if name.startswith('/') else f'/{name}'
 
 
-def _command_line(folder: Path) -> list[str]:
+def _domain(environment: list[str]) -> str:
+    """The domain ID with which a process was started, 0 where it was given none."""
+    return dict(word.partition('=')[::2] for word in environment).get('ROS_DOMAIN_ID') or '0'
+
+
+def _words(path: Path) -> list[str]:
     try:
-        text = (folder / 'cmdline').read_text(encoding='utf-8', errors='replace')
+        text = path.read_text(encoding='utf-8', errors='replace')
     except OSError:
-        return []  # it has ended just now
+        return []  # it has ended just now, or is another user's
     return [word for word in text.split('\0') if word]

@@ -69,7 +69,7 @@ def look(
         endpoints=endpoints,
         nodes=dict.fromkeys(services.take(watcher.node).node_names, NodeState(answers=None))
         | answers,
-        remaps=remaps.of_this_machine(),
+        remaps=remaps.of_domain(domain_id),
         domain_id=domain_id,
         missing_participants=missing_participants(watcher.node, domain_id),
         callbacks=view.lasting(),
