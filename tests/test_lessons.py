@@ -56,6 +56,21 @@ CONTRACT = {
         'ik_service': ('IKService', {'ik_service_answers': 2, 'ik_service_unreachable': 1}),
         'ik_client': ('IKClient', {'ik_client_asks': 2, 'ik_client_never_blocks': 2}),
     },
+    '09_actions': {
+        'move_arm_server': (
+            'MoveArmServer',
+            {
+                'move_arm_reaches': 2,
+                'move_arm_feedback': 1,
+                'move_arm_cancels': 2,
+                'move_arm_rejects': 1,
+            },
+        ),
+        'move_arm_client': (
+            'MoveArmClient',
+            {'move_arm_client_outcomes': 2, 'move_arm_client_cancels': 2},
+        ),
+    },
     '11_parameters': {
         'adjustable_rate': (
             'AdjustablePublisher',
@@ -71,6 +86,7 @@ WITHOUT_HIDDEN_PART = {'reach-visible', 'joint_names', 'explain_counts'}
 WITH_RUN_CELL = {
     *('five_hz', 'ik_solver_node', 'find_endpoints', 'compatible_qos'),
     *('fix_topic_name', 'fix_units', 'fix_stamp', 'ik_service', 'ik_client'),
+    *('move_arm_server', 'move_arm_client'),
     *('adjustable_rate', 'two_arms'),
 }
 """Exercises for which a locked cell starts nodes."""
@@ -108,9 +124,15 @@ def test_prose_has_20_to_60_words_a_cell(lesson):
 
 
 def test_code_is_short(lesson):
-    lines = {cell.id: len(visible_part(cell.source).splitlines()) for cell in code_cells(lesson)}
+    lines = {cell.id: len(as_released(cell.source).splitlines()) for cell in code_cells(lesson)}
     assert {id_: n for id_, n in lines.items() if n > 25} == {}
     assert median(lines.values()) <= 8
+
+
+def test_answers_are_short(lesson):
+    answers = [cell for cell in code_cells(lesson) if marks(cell).get('solution')]
+    lines = {cell.id: len(cell.source.splitlines()) for cell in answers}
+    assert {id_: n for id_, n in lines.items() if n > 60} == {}
 
 
 def test_lesson_opens_with_its_contract_and_closes_with_points_and_the_next_lesson(lesson, path):
@@ -286,13 +308,7 @@ def test_a_grade_cell_says_what_it_checks_and_needs_nothing_of_the_lesson(lesson
 def test_an_untouched_answer_is_valid_python_with_hints(lesson):
     for cell in code_cells(lesson):
         if marks(cell).get('solution'):
-            released = re.sub(
-                r'( *)### BEGIN SOLUTION.*?### END SOLUTION',
-                r'\1# YOUR CODE HERE',
-                cell.source,
-                flags=re.DOTALL,
-            )
-            released = broken(released)
+            released = broken(as_released(cell.source))
             ast.parse(released)
             assert '# 1. ' in released, cell.id
             is_to_be_fixed = '### BROKEN' in cell.source
@@ -313,6 +329,15 @@ def has_hidden_part(cell):
 
 def visible_part(source):
     return re.sub(r'### BEGIN HIDDEN TESTS.*?### END HIDDEN TESTS\n?', '', source, flags=re.DOTALL)
+
+
+def as_released(source):
+    return re.sub(
+        r'( *)### BEGIN SOLUTION.*?### END SOLUTION',
+        r'\1# YOUR CODE HERE',
+        visible_part(source),
+        flags=re.DOTALL,
+    )
 
 
 def bound(cell):
