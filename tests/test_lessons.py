@@ -5,6 +5,7 @@ import builtins
 import re
 from pathlib import Path
 from statistics import median
+from types import ModuleType
 
 import nbformat
 import pytest
@@ -303,6 +304,22 @@ def test_a_grade_cell_says_what_it_checks_and_needs_nothing_of_the_lesson(lesson
         for source in (cell.source, visible_part(cell.source)):
             assert ast.get_docstring(ast.parse(source)), cell.id
             assert needed_by(source) == set(), cell.id
+
+
+def test_what_a_grade_cell_calls_is_there(lesson):
+    """A check that was renamed would stop the cell at grading, and give no verdict."""
+    for cell in code_cells(lesson):
+        if not marks(cell).get('grade'):
+            continue
+        nodes = list(ast.walk(ast.parse(cell.source)))
+        imports = [node for node in nodes if isinstance(node, ast.Import | ast.ImportFrom)]
+        there = {}
+        exec(ast.unparse(ast.Module(imports, [])), there)  # fails where a name is missing
+        for node in nodes:
+            if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
+                owner = there.get(node.value.id)
+                if isinstance(owner, ModuleType):
+                    assert hasattr(owner, node.attr), f'{cell.id}: {ast.unparse(node)}'
 
 
 def test_an_untouched_answer_is_valid_python_with_hints(lesson):
