@@ -81,6 +81,7 @@ def expect_one_at_a_time(
         )
         arm.settle()
         accepted(server, goal(second, speed=TOO_MANY_SPEED))
+        arm.settle()  # a server that cannot be cancelled would still move when it is asked next
 
     look(action, refuses, start=start)
 
