@@ -20,7 +20,7 @@ HASTE_SEC = 4.0
 RESULT_SEC = 1.0
 """How long a result may come behind the status, of time that was free."""
 SETTLE_SEC = 3.0
-"""How long goals may take to end when nobody looks any more."""
+"""How long goals may take to end when nobody looks any more, of time that was free."""
 STALLED_PART = 0.05
 """So much of a look in which processes had to wait for a processor makes it a doubtful one."""
 
@@ -89,7 +89,7 @@ class WatchedArm:
             if cancel_first:  # last: it may leave a wrong server with a wish to stop
                 ends.cancel_all()
             if isinstance(self.time, DrivenTime):
-                self.time.push(lambda: not ends.has_active(), wall_sec=SETTLE_SEC)
+                self.time.push(lambda: not ends.has_active(), free_sec=SETTLE_SEC)
             else:
                 watcher.spin_until_free(lambda: not ends.has_active(), free_sec=SETTLE_SEC)
             if not ends.has_active():
