@@ -80,6 +80,12 @@ class Spun:
         self.executor.shutdown()
 
 
+@pytest.fixture(scope='module', autouse=True)
+def ros():
+    run(Node, 'first')  # the first run sets ROS up, whichever test comes first
+    stop()
+
+
 def asker(edits, group, make_executor):
     node = node_class(ASKER, *edits)(group=group() if group else None)
     return Spun(node, make_executor())
