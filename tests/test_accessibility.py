@@ -85,6 +85,7 @@ def test_a_released_lesson(page, path):
     assert NO_WORDS not in html
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('name', ['03_publisher-fail-1hz', '03_publisher-zero-not_json'])
 def test_a_page_of_feedback_and_the_report_of_a_run(page, dark_phone, tmp_path, name):
     course = Course(gradebook=tmp_path)

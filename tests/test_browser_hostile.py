@@ -212,6 +212,7 @@ def test_the_report_of_a_run_does_nothing(browser, course):
     assert 'evil &lt;script&gt;' in browser.text()
 
 
+@pytest.mark.slow
 def test_the_formgrader_does_nothing(browser, course, formgrader):
     with Gradebook(course.db_url) as gradebook:
         (submission,) = gradebook.notebook_submissions(TOY, TOY)

@@ -177,6 +177,7 @@ def test_who_sends_right_passes_in_whatever_way(run, node_class):
     check_cancels()
 
 
+@pytest.mark.slow
 def test_a_program_of_its_own_passes():
     with running('move_arm_client'):
         check_outcomes()

@@ -215,6 +215,7 @@ def test_who_serves_right_passes_in_whatever_way(run, node_class):
     check_all()
 
 
+@pytest.mark.slow
 def test_a_program_of_its_own_passes():
     with running('move_arm_server'):
         check_all()

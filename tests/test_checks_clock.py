@@ -82,6 +82,7 @@ def spinning(make_node):
             node.destroy_node()
 
 
+@pytest.mark.slow
 def test_a_check_waits_for_a_node_that_is_slow_to_return():
     # what looks at it next would find it frozen, on a clock that nobody drives any more
     slow_to_return = imported('slow_to_return').SlowToReturn
@@ -122,6 +123,7 @@ def test_a_timer_that_was_due_when_the_clock_was_given_back_is_not_left_in_the_f
         assert fired.wait(10.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(('is_busy', 'clock_name'), [(True, 'simulated'), (False, 'wall')])
 def test_slow_answers_tell_of_a_slow_node_only_where_processors_are_free(
     monkeypatch, is_busy, clock_name
@@ -200,11 +202,13 @@ def look_at_counter(calls_each):
         return sampling.simulated(watcher, recorder, seconds=10.0, step_sec=0.1)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures('patient')
 def test_steps_prove_no_period_that_they_have_made():
     assert look_at_counter(100) == sampling.COUNTS
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures('patient')
 def test_who_counts_the_calls_of_a_timer_is_seen_in_steps_as_fine_as_these():
     recording = look_at_counter(25)
@@ -213,6 +217,7 @@ def test_who_counts_the_calls_of_a_timer_is_seen_in_steps_as_fine_as_these():
     assert len(recording.messages) >= 4
 
 
+@pytest.mark.slow
 def test_coarse_steps_prove_a_slow_period_in_little_time(monkeypatch):
     steps_ns = set()
 
@@ -227,6 +232,7 @@ def test_coarse_steps_prove_a_slow_period_in_little_time(monkeypatch):
     assert steps_ns == {10**8, 5 * 10**8}
 
 
+@pytest.mark.slow
 def test_a_recording_goes_on_until_there_are_messages_enough_to_judge():
     with running('fifth_hz'):
         recording = topic(TOPIC).record(seconds=2.0)

@@ -39,6 +39,7 @@ class WarnsAndRaises(IKSolver):
             raise ValueError('out of reach')
 
 
+@pytest.mark.slow
 def test_a_callback_that_warns_and_raises_does_not_go_on():
     live.run(WarnsAndRaises)
     try:
@@ -87,6 +88,7 @@ def test_what_was_logged_at_another_level_is_shown():
             log.expect_angles(ANGLES, timeout_sec=1.0)
 
 
+@pytest.mark.slow
 def test_an_answer_to_an_older_question_does_not_count():
     with running('ik_solver'):
         with rosout('ik_solver_node') as log:
@@ -121,6 +123,7 @@ def test_a_node_that_does_not_run_is_named(monkeypatch):
         rosout('ik_solver_node').__enter__()
 
 
+@pytest.mark.slow
 def test_a_best_effort_subscription_misses_no_target():
     with running('ik_sensor_data'), rosout('ik_solver_node') as log:
         for _ in range(5):
@@ -128,6 +131,7 @@ def test_a_best_effort_subscription_misses_no_target():
             log.expect_angles(ANGLES)
 
 
+@pytest.mark.slow
 def test_a_second_warning_is_no_answer_to_the_next_target():
     with running('ik_warns_twice'), rosout('ik_solver_node') as log:
         ask(log, TOO_FAR)
@@ -136,6 +140,7 @@ def test_a_second_warning_is_no_answer_to_the_next_target():
         log.expect_angles(ANGLES)
 
 
+@pytest.mark.slow
 def test_what_is_repeated_of_the_target_before_is_no_answer_to_the_next():
     with running('ik_repeats'), rosout('ik_solver_node') as log:
         ask(log, TOO_FAR)
@@ -149,6 +154,7 @@ def test_what_is_repeated_of_the_target_before_is_no_answer_to_the_next():
         log.expect_warning()
 
 
+@pytest.mark.slow
 def test_an_answer_behind_the_warning_is_one_too_many_though_it_was_right_before():
     with running('ik_clings'), rosout('ik_solver_node') as log:
         ask(log, TARGET)
@@ -158,6 +164,7 @@ def test_an_answer_behind_the_warning_is_one_too_many_though_it_was_right_before
             log.expect_warning()
 
 
+@pytest.mark.slow
 def test_a_warning_behind_the_answer_is_not_about_the_target_before():
     with running('ik_always_warns'), rosout('ik_solver_node') as log:
         ask(log, TARGET)

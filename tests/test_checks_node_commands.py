@@ -45,11 +45,13 @@ FILE = """
 """
 
 
+@pytest.mark.slow
 def test_full_and_relative_names_pass(start):
     start()
     look()
 
 
+@pytest.mark.slow
 def test_quotes_long_options_and_a_file_pass(start, tmp_path):
     (tmp_path / 'a file.yaml').write_text(FILE)
     start(
@@ -87,6 +89,7 @@ def test_each_mistake_is_named(start, rest, words):
         look()
 
 
+@pytest.mark.slow
 def test_two_arms_on_one_topic_are_told(start):
     start(left=LEFT, right=RIGHT.replace(':=joint_states', ':=/left/joint_states'))
     words = 'expected one publisher on /left/joint_states, saw /left/arm, /right/arm'

@@ -104,6 +104,7 @@ def course(tmp_path_factory):
     return course
 
 
+@pytest.mark.slow
 @pytest.mark.isolation
 def test_right_ones_earn_all_and_wrong_ones_read_the_cause(course):
     for student, answers in (('right', RIGHT), ('wrong', WRONG)):

@@ -103,6 +103,7 @@ def test_a_callback_that_judges_other_parameters_is_told_so(run):
         look_at_the_rate()
 
 
+@pytest.mark.slow
 def test_a_node_of_another_name_is_named(run):
     run(adjustable.FiveHz)
     words = 'expected the node /adjustable_publisher, saw /kinematics_publisher: run the cell'

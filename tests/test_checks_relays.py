@@ -74,12 +74,14 @@ def test_a_monitor_passes_whatever_it_offers_and_nothing_is_said(run, capfd, off
     assert capfd.readouterr() == ('', '')
 
 
+@pytest.mark.slow
 def test_a_monitor_in_a_process_of_its_own_passes():
     with running('joint_state_monitor'):
         check_delivery()
         check_late_joiner()
 
 
+@pytest.mark.slow
 def test_other_nodes_on_the_topics_are_no_hindrance(run):
     talker = run(Node, 'talker')
     sensor = talker.create_publisher(JointState, '/sensor/joint_states', qos_profile_sensor_data)
@@ -134,6 +136,7 @@ def test_a_message_of_which_a_field_was_changed_does_not_pass(run, impatient, no
     check_late_joiner()
 
 
+@pytest.mark.slow
 def test_fields_that_a_task_does_not_name_may_be_others(run, impatient):
     class Renames(Changes):
         def other(self, message):
@@ -187,6 +190,7 @@ def test_a_subscription_that_asks_for_too_much_is_named(run, asked, reason):
         check_delivery()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('reliability', [RELIABLE, BEST_EFFORT])
 def test_a_volatile_subscription_is_named(run, reliability):
     run(monitor.JointStateMonitor, description=QoSProfile(depth=10, reliability=reliability))
@@ -194,6 +198,7 @@ def test_a_volatile_subscription_is_named(run, reliability):
         check_late_joiner()
 
 
+@pytest.mark.slow
 def test_a_promise_that_nobody_gives_is_named_to_a_late_joiner(run, impatient):
     asked = QoSProfile(
         depth=1,
@@ -206,6 +211,7 @@ def test_a_promise_that_nobody_gives_is_named_to_a_late_joiner(run, impatient):
         check_late_joiner()
 
 
+@pytest.mark.slow
 def test_best_effort_hears_nothing_of_what_was_said_before(run, impatient):
     run(monitor.JointStateMonitor, description=PROFILES['BEST_EFFORT TRANSIENT_LOCAL'])
     with pytest.raises(CheckFailed, match='request RELIABLE, too: only then'):
@@ -223,6 +229,7 @@ def test_a_message_that_was_changed_does_not_pass(run, impatient):
             check()
 
 
+@pytest.mark.slow
 def test_a_callback_that_publishes_nothing_does_not_pass(run, impatient):
     class Silent(monitor.JointStateMonitor):
         def changed(self, publish):
@@ -367,6 +374,7 @@ class RaisesOnceAfterwards(monitor.JointStateMonitor):
         return receive
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ('node_class', 'reason'),
     [
@@ -381,6 +389,7 @@ def test_a_callback_that_raised_is_named(run, node_class, reason):
             check()
 
 
+@pytest.mark.slow
 @pytest.mark.timeout(120)
 def test_a_message_at_which_a_callback_raised_is_not_waited_for(run, monkeypatch):
     class Raises(monitor.JointStateMonitor):
@@ -397,6 +406,7 @@ def test_a_message_at_which_a_callback_raised_is_not_waited_for(run, monkeypatch
             check()
 
 
+@pytest.mark.slow
 def test_what_a_callback_raised_before_the_check_is_not_of_the_other_topic(run):
     class Raises(monitor.JointStateMonitor):
         def changed(self, publish):
@@ -419,6 +429,7 @@ def leisurely(monkeypatch):
     monkeypatch.setattr(passage, 'MOST_SEC', 60.0)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures('leisurely')
 def test_every_hundredth_message_is_missed_where_the_machine_is_quick(run):
     run(DropsEveryHundredth)
@@ -426,6 +437,7 @@ def test_every_hundredth_message_is_missed_where_the_machine_is_quick(run):
         check_delivery()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('node_class', [DropsEverySecond, DropsEveryEleventh])
 def test_where_no_time_is_left_a_few_messages_tell(run, monkeypatch, node_class):
     monkeypatch.setattr(passage, 'SOME_SEC', 0.0)
@@ -443,12 +455,14 @@ def test_without_time_a_right_node_passes(run, monkeypatch):
     check_delivery()
 
 
+@pytest.mark.slow
 def test_a_description_that_comes_out_twice_is_one_too_many(run):
     run(Doubles)
     with pytest.raises(CheckFailed, match='a message that is republished 2 times: subscribe once'):
         check_late_joiner()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ('node_class', 'reason'),
     [
@@ -463,6 +477,7 @@ def test_each_description_that_follows_comes_out_too(run, node_class, reason):
         check_late_joiner()
 
 
+@pytest.mark.slow
 def test_a_timer_that_has_only_the_latest_loses_one_of_two(run):
     class Latest(Counts):
         def __init__(self):
@@ -486,6 +501,7 @@ def test_a_timer_that_has_only_the_latest_loses_one_of_two(run):
             check()
 
 
+@pytest.mark.slow
 def test_what_waits_for_a_timer_is_in_time(run):
     class Queues(Counts):
         def __init__(self):
@@ -506,6 +522,7 @@ def test_what_waits_for_a_timer_is_in_time(run):
     check_late_joiner()
 
 
+@pytest.mark.slow
 def test_a_subscription_of_each_kind_is_no_choice(run):
     class Everything(monitor.JointStateMonitor):
         def pass_on(self, type_, source, to, asked, offered):
@@ -540,6 +557,7 @@ def test_the_wrong_topics_are_named(run, impatient):
         )
 
 
+@pytest.mark.slow
 def test_the_node_at_the_other_end_is_not_at_fault(run):
     arm = run(Node, 'arm', key='arm')
     arm.create_publisher(JointState, '/sensor/joint_states', 10)

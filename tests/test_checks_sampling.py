@@ -54,6 +54,7 @@ def test_on_a_busy_machine_the_clock_is_driven_for_a_shorter_time(monkeypatch):
         recording.assert_rate(hz=5.0)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures('patient')
 def test_the_first_look_stands_when_the_node_has_gone(monkeypatch):
     with running('too_slow'):
@@ -63,6 +64,7 @@ def test_the_first_look_stands_when_the_node_has_gone(monkeypatch):
         recording.assert_rate(hz=5.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ('late_sec', 'validate_sec', 'looks_in_all'),
     [(0.0, 1000.0, 2), (1.0, 1000.0, 4), (1.0, 0.0, 1)],
@@ -112,6 +114,7 @@ def test_honest_nodes_that_are_no_plain_timers_pass(capfd, node, out):
     assert capfd.readouterr() == (out, '')
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ('node', 'seen'),
     [
@@ -143,6 +146,7 @@ def test_the_wall_clock_waits_for_the_next_message_of_a_slow_node():
     assert sample.time_sec == recording.seconds > 0.1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(('timeout_sec', 'seconds'), [(0.4, 0.4), (0.0, 0.1)])
 def test_the_wall_clock_tells_how_long_there_was_nothing(timeout_sec, seconds):
     recording = looked_at('never_spins', timeout_sec=timeout_sec)

@@ -154,12 +154,14 @@ def test_who_asks_right_passes_in_whatever_way(run, node_class):
     check_never_blocks()
 
 
+@pytest.mark.slow
 def test_a_program_of_its_own_passes():
     with running('ik_client'):
         check_asks()
         check_never_blocks()
 
 
+@pytest.mark.slow
 def test_answers_come_out_of_order_where_the_server_says_so(run):
     run(IKClient)
     with server() as serving:
@@ -232,6 +234,7 @@ def test_who_never_gets_an_answer_is_told_why(run, node_class):
     assert str(failure.value).endswith(WAITS)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures('impatient')
 def test_who_gives_up_waiting_is_told_not_to_wait(run):
     run(CallsAWhile)
@@ -262,6 +265,7 @@ class CountsAhead(WaitsForTheServer):
         super().ask(target)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures('impatient')
 def test_who_counts_ahead_has_to_go_on_all_the_same(run):
     run(CountsAhead)
@@ -321,6 +325,7 @@ class Solves(IKClient):
         super().answer(ik.solve(SolveIK.Request(target=self.target)))
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures('impatient')
 def test_who_asks_and_publishes_another_answer_is_found(run):
     run(Solves)
@@ -389,6 +394,7 @@ def test_who_publishes_more_than_the_response_is_told(run, node_class, hint):
         check_never_blocks()
 
 
+@pytest.mark.slow
 def test_who_publishes_more_is_found_before_the_end(run):
     run(Twice)
     with pytest.raises(CheckFailed, match='/kinematics/joint_states'):
@@ -403,6 +409,7 @@ class AsksAgain(IKClient):
         self.create_timer(0.01, lambda: self.ask(Point(x=1.2, y=0.4)))
 
 
+@pytest.mark.slow
 def test_who_asks_without_end_is_stopped(run, monkeypatch):
     monkeypatch.setattr(holding_server, 'MOST_REQUESTS', 20)
     run(AsksAgain)
@@ -454,6 +461,7 @@ def test_a_server_that_comes_later_is_found(run, check):
         check()
 
 
+@pytest.mark.slow
 def test_another_server_is_named(run):
     run(IKClient)
     run(imported('ik_service').IKService)

@@ -96,6 +96,7 @@ def test_who_answers_right_passes_in_whatever_way(run, node_class):
     check_refusals()
 
 
+@pytest.mark.slow
 def test_a_program_of_its_own_passes():
     with running('ik_service'):
         check_answers()

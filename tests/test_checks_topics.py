@@ -71,6 +71,7 @@ def test_a_node_with_its_own_thread_and_context_is_judged_exactly():
     recording.assert_rate(hz=5.0)
 
 
+@pytest.mark.slow
 def test_another_node_of_the_student_is_no_hindrance(run):
     run(imported('five_hz').FiveHz)
     silent = Node('bystander_that_never_spins', context=live.run(Node, 'spins').context)
@@ -79,6 +80,7 @@ def test_another_node_of_the_student_is_no_hindrance(run):
     assert (recording.clock, len(recording.messages)) == ('simulated', 50)
 
 
+@pytest.mark.slow
 def test_a_clock_of_the_student_is_left_alone(run):
     run(imported('five_hz').FiveHz)
     run(Node, 'my_simulator').create_publisher(Clock, '/clock', 10)
@@ -103,6 +105,7 @@ def test_a_wrong_message_fails(run, node_class, reason):
         check_messages(topic(TOPIC).record(seconds=10.0))
 
 
+@pytest.mark.slow
 def test_stamps_of_a_node_that_ignores_the_clock_are_on_the_wall_clock(run):
     run(imported('steady_clock').SteadyClock)
     recording = topic(TOPIC).record()
@@ -128,6 +131,7 @@ def test_silence_is_explained(monkeypatch, capfd, node, reason):
     assert capfd.readouterr().err == ''
 
 
+@pytest.mark.slow
 def test_silence_of_a_node_whose_callback_raised_is_not_waited_on(run):
     class Raises(Node):
         def __init__(self):
@@ -140,6 +144,7 @@ def test_silence_of_a_node_whose_callback_raised_is_not_waited_on(run):
         topic(TOPIC).record()
 
 
+@pytest.mark.slow
 def test_bytes_that_are_no_message_are_silence():
     # in a process of its own: rcl keeps the C library's complaint, and prints it later
     code = f"from my_robot_basics.checks import topic; topic('{TOPIC}').record()"
@@ -210,6 +215,7 @@ def test_a_question_that_nobody_hears_fails(run):
         topic('/questions').publish(Point(), timeout_sec=0.5)
 
 
+@pytest.mark.slow
 def test_the_wrong_answer_is_no_answer(run):
     run(Echo, 10)
     with pytest.raises(CheckFailed, match='expected a message on /answer that answers, saw 1 oth'):
@@ -228,6 +234,7 @@ def test_a_question_to_a_subscription_for_another_type_says_so(run):
     assert 'one is there for geometry_msgs/msg/Point' in str(failed.value)
 
 
+@pytest.mark.slow
 def test_a_best_effort_subscription_gets_the_question(run):
     run(Echo, QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT))
     for number in range(5):
@@ -251,6 +258,7 @@ def test_the_wrong_answer_is_named_in_the_words_of_the_check(run):
     assert str(failed.value) == 'expected 9.0, saw 1.5: count again'
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('right', [0.5, 1.5])
 def test_a_wrong_answer_beside_the_right_one_is_one_too_many(run, right):
     run(Echo, 10)
@@ -265,6 +273,7 @@ def test_a_wrong_answer_beside_the_right_one_is_one_too_many(run, right):
         )
 
 
+@pytest.mark.slow
 @pytest.mark.timeout(60)
 def test_a_wrong_answer_alone_is_not_waited_on(run):
     run(Echo, 10)
@@ -295,6 +304,7 @@ def test_an_answer_that_is_wanted_once_comes_once(run, questions):
         topic('/answer').wait_for(lambda message: message.position[0] == 0.5, once=True, after=ask)
 
 
+@pytest.mark.slow
 def test_an_answer_that_is_repeated_by_a_timer_is_told(run):
     run(Repeats, 10)
     with pytest.raises(CheckFailed, match='expected one message for each that your node receives'):
@@ -305,6 +315,7 @@ def test_an_answer_that_is_repeated_by_a_timer_is_told(run):
         )
 
 
+@pytest.mark.slow
 def test_the_watcher_can_not_be_reached(run):
     run(imported('five_hz').FiveHz)
     seen = set()
@@ -333,6 +344,7 @@ def test_nobody_waits_long_for_what_the_notebook_says_it_has_not_got(run, monkey
         topic(TOPIC).record()
 
 
+@pytest.mark.slow
 def test_what_cannot_come_any_more_is_not_waited_for(run, monkeypatch):
     monkeypatch.setattr(topic_endpoints, 'ABSENT_SEC', 20.0)
     monkeypatch.setattr(topic_endpoints, 'PUBLISHER_SEC', 20.0)

@@ -56,7 +56,7 @@ def test_the_files_that_come_first_are_there():
     assert len(set(LONG)) == len(LONG)
 
 
-@pytest.mark.parametrize('row', [*ordinary.ORDINARY, *sorted(ordinary.SLOW)])
+@pytest.mark.parametrize('row', ordinary.ORDINARY)
 def test_a_row_of_what_an_ordinary_run_takes_names_a_test(row):
     file, _, name = row.partition('::')
     assert f'def {name}(' in FILES[file].read_text(encoding='utf-8')

@@ -103,6 +103,7 @@ def test_a_cluster_grades_as_this_machine_does_and_a_lost_worker_changes_nothing
     assert len(scores(there)) == 3 * len(ANSWERS)
 
 
+@pytest.mark.slow
 def test_a_lost_scheduler_ends_the_run_which_goes_on_with_another_one(
     course, scheduler, start, tmp_path, capsys
 ):
@@ -136,6 +137,7 @@ def test_a_worker_that_is_not_as_we_are_grades_nothing(scheduler, start, environ
         pass
 
 
+@pytest.mark.slow
 def test_a_worker_that_comes_later_is_looked_at_too(course, scheduler, start):
     good = start_worker(start, scheduler.address)
     with Cluster(scheduler.address) as backend:

@@ -57,6 +57,7 @@ def home():
         yield Path(folder)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     'user',
     [

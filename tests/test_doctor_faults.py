@@ -131,6 +131,7 @@ def test_a_wrong_line_is_named_first_and_fixed(fault):
     assert_well(listener)
 
 
+@pytest.mark.slow
 def test_a_clock_that_nobody_drives_is_named_and_given_back():
     run(node_class(TALKER), parameter_overrides=[Parameter('use_sim_time', value=True)])
     listener = run(node_class(LISTENER))
@@ -151,6 +152,7 @@ def test_a_publisher_that_nobody_spins():
         assert wait_for(lambda: listener.heard)
 
 
+@pytest.mark.slow
 def test_two_types():
     # in one process rclpy itself refuses the second one
     other = SUBSCRIPTION.replace('JointState,', 'Point,')
@@ -161,6 +163,7 @@ def test_two_types():
         assert_well(listener)
 
 
+@pytest.mark.slow
 def test_a_type_that_is_not_installed_here(monkeypatch):
     listener = run(node_class(LISTENER))
     with process(program(TALKER)):
@@ -174,6 +177,7 @@ def test_a_type_that_is_not_installed_here(monkeypatch):
         assert 'the package sensor_msgs ' in found.fix
 
 
+@pytest.mark.slow
 def test_a_subscription_that_nobody_spins(tmp_path):
     run(node_class(TALKER))
     note = tmp_path / 'heard'
@@ -194,6 +198,7 @@ def wait_for_finding(title, **options):
     return found
 
 
+@pytest.mark.slow
 def test_a_latched_message_that_came_too_early():
     latched = PUBLISHER.replace(
         '10', 'QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)'
@@ -208,6 +213,7 @@ def test_a_latched_message_that_came_too_early():
     assert diagnose(TOPIC, domain_id=classroom.enter(), seconds=1.0)[0].findings == ()
 
 
+@pytest.mark.slow
 def test_a_queue_that_is_shorter_than_a_burst(monkeypatch):
     monkeypatch.setattr(looking, 'ENOUGH_SEC', 2.5)
     burst = f"[{SEND} for message.header.frame_id in '{'a' * 40}']"
@@ -240,6 +246,7 @@ def stamps(listener):
     return count
 
 
+@pytest.mark.slow
 def test_a_remapped_publisher():
     listener = run(node_class(LISTENER))
     command = program(TALKER, ('rclpy.init()', 'import sys; rclpy.init(args=sys.argv)'))

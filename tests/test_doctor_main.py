@@ -33,6 +33,7 @@ def test_a_fault_and_then_all_is_well(capfd):
     assert err == more == ''
 
 
+@pytest.mark.slow
 @pytest.mark.starts
 def test_a_service_is_asked_about_by_its_name(capfd):
     run(patient_services.node_class(patient_services.SERVER))

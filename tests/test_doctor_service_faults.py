@@ -113,6 +113,7 @@ def test_a_wrong_name_is_named_first_and_fixed(fault):
     assert_well(run(node_class(ASKER, *([(line, found.code)] if source is ASKER else []))))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('asked', [NAME, f'/left{NAME}'])
 def test_a_relative_name_is_named_where_it_is_written(asked):
     run(node_class(SERVER))
@@ -135,6 +136,7 @@ def test_a_client_without_a_server():
     assert wait_for(lambda: findings() == ())
 
 
+@pytest.mark.slow
 def test_two_types():
     # in one process rclpy itself refuses the second one
     run(node_class(ASKER, (IN_GROUP, CLIENT.replace('SetBool', 'Trigger'))))
@@ -203,6 +205,7 @@ def spun(node, executor):
         executor.shutdown()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ('group', 'threads', 'why'),
     [
@@ -224,6 +227,7 @@ def test_calls_in_several_threads(group, threads, why):
     assert why is None or why in found[0].seen
 
 
+@pytest.mark.slow
 def test_a_server_that_calls_itself():
     other = '/open_gripper'
     asks = f"self.create_client(SetBool, '{other}').call(request, timeout_sec=30.0)"
@@ -242,6 +246,7 @@ def inside_callbacks(name):
     return [each for each in view.callbacks(at_least_sec=0.0) if each.name == name]
 
 
+@pytest.mark.slow
 def test_a_callback_that_looks_again_and_again_for_its_response():
     asker = start([(ASK, POLL)])
     found = first_finding()
@@ -251,6 +256,7 @@ def test_a_callback_that_looks_again_and_again_for_its_response():
     assert_well(start([(ASK, found.code)]))
 
 
+@pytest.mark.slow
 def test_a_callback_that_waits_for_an_absent_server():
     run(node_class(ASKER, (IF_READY, 'if self.client.wait_for_service(30.0):')))
     assert wait_for(lambda: inside_callbacks('ask'))
@@ -263,6 +269,7 @@ def test_a_callback_that_waits_for_an_absent_server():
     assert_well(asker)
 
 
+@pytest.mark.slow
 def test_a_server_that_returns_no_response():
     run(node_class(SERVER, (RETURN, 'pass')))
     run(node_class(ASKER))
@@ -273,6 +280,7 @@ def test_a_server_that_returns_no_response():
     assert_well(run(node_class(ASKER)))
 
 
+@pytest.mark.slow
 def test_a_server_that_raises():
     run(node_class(SERVER, (WORK, "raise ValueError('it is jammed')")))
     run(node_class(ASKER))
@@ -284,6 +292,7 @@ def test_a_server_that_raises():
     assert_well(run(node_class(ASKER)))
 
 
+@pytest.mark.slow
 def test_what_another_callback_raised_is_not_laid_to_the_service():
     run(node_class(SERVER, (SERVICE, f'{SERVICE}; self.create_timer(0.1, lambda: 1 / 0)')))
     asker = run(node_class(ASKER))
@@ -291,6 +300,7 @@ def test_what_another_callback_raised_is_not_laid_to_the_service():
     assert_well(asker)
 
 
+@pytest.mark.slow
 def test_a_server_whose_callback_does_not_return():
     server = run(node_class(SERVER, (WORK, 'while rclpy.ok() and self.taken: time.sleep(0.05)')))
     asker = run(node_class(ASKER))
@@ -305,6 +315,7 @@ def test_a_server_whose_callback_does_not_return():
     assert_well(asker)
 
 
+@pytest.mark.slow
 def test_a_server_that_nobody_spins():
     server = node_class(SERVER)()
     asker = run(node_class(ASKER))
@@ -317,6 +328,7 @@ def test_a_server_that_nobody_spins():
     assert_well(run(node_class(ASKER)))
 
 
+@pytest.mark.slow
 def test_a_server_of_another_process_that_nobody_spins():
     with process(program(SERVER, (SPIN, DEAD))):
         assert wait_for(has_server)
@@ -335,6 +347,7 @@ def has_server():
         node.destroy_node()
 
 
+@pytest.mark.slow
 def test_a_client_that_nobody_spins_and_that_waits():
     run(node_class(SERVER))
     user = Node('user')
@@ -348,6 +361,7 @@ def test_a_client_that_nobody_spins_and_that_waits():
     assert 'so that responses are taken' in found.expected
 
 
+@pytest.mark.slow
 def test_a_client_whose_node_was_taken_from_its_executor():
     asker = start([(ASK, SPIN_HERE.replace('30.0', '0.5'))])
     assert wait_for(lambda: asker not in asker.executor.get_nodes())
@@ -356,6 +370,7 @@ def test_a_client_whose_node_was_taken_from_its_executor():
     assert 'spin_until_future_complete' in found.seen
 
 
+@pytest.mark.slow
 def test_a_remapped_server():
     run(node_class(ASKER))
     command = program(SERVER, ('rclpy.init()', 'import sys; rclpy.init(args=sys.argv)'))
@@ -365,6 +380,7 @@ def test_a_remapped_server():
         assert_well(run(node_class(ASKER)))
 
 
+@pytest.mark.slow
 def test_a_server_in_another_domain():
     claim = domain.claim()
     name = f'{NAME}_{claim.domain_id}'  # tests beside this one have servers, too

@@ -119,6 +119,7 @@ def test_an_honest_client_of_a_quick_and_of_a_slow_server(kind, work_sec):
         assert_well()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('kind', ['add_done_callback', 'await', 'call with threads'])
 def test_a_slow_server_of_another_process(kind):
     with process(program(SERVER, (WORK, 'time.sleep(2.0)'))), asker(*CLIENTS[kind]) as node:
@@ -145,11 +146,13 @@ def test_an_honest_server(kind):
     assert_well()
 
 
+@pytest.mark.slow
 def test_a_server_that_nobody_asks():
     run(node_class(SERVER))
     assert '/server serves, nobody asks' in assert_well()
 
 
+@pytest.mark.slow
 def test_nodes_without_parameters_in_another_process():
     bare = ('**kwargs)\n', 'start_parameter_services=False)\n')
     with process(program(SERVER, bare)), asker(*CLIENTS['await']) as node:
@@ -157,6 +160,7 @@ def test_nodes_without_parameters_in_another_process():
         assert_well()
 
 
+@pytest.mark.slow
 def test_a_server_that_is_asked_without_end():
     run(node_class(SERVER, (WORK, 'time.sleep(0.3)')))
     ask = 'self.timer.reset(); self.client.call_async(request)'
@@ -164,6 +168,7 @@ def test_a_server_that_is_asked_without_end():
     assert_well()
 
 
+@pytest.mark.slow
 def test_a_program_that_spins_its_node_only_when_it_asks():
     run(node_class(SERVER))
     user = Node('user')
@@ -174,6 +179,7 @@ def test_a_program_that_spins_its_node_only_when_it_asks():
     user.destroy_node()
 
 
+@pytest.mark.slow
 def test_a_request_that_was_lost_is_told_and_is_no_fault():
     user = run(Node, 'user')
     client = user.create_client(SetBool, NAME)
@@ -189,6 +195,7 @@ def test_a_request_that_was_lost_is_told_and_is_no_fault():
     assert 'no response' not in assert_well()
 
 
+@pytest.mark.slow
 def test_other_services_of_similar_names_have_their_own_clients():
     for side in 'left', 'right':
         run(node_class(SERVER, (NAME, f'/{side}{NAME}'), ("'server'", f"'{side}'")), key=side)
@@ -200,6 +207,7 @@ def test_other_services_of_similar_names_have_their_own_clients():
     assert_well()
 
 
+@pytest.mark.slow
 def test_a_topic_and_a_service_of_one_name_are_both_looked_at():
     server = run(node_class(SERVER))
     publisher = server.create_publisher(Empty, NAME, 10)

@@ -73,6 +73,7 @@ def cells_of(execution):
 GOOD = 'def double(x): return 2 * x'
 
 
+@pytest.mark.slow
 def test_each_exercise_costs_only_itself(monkeypatch):
     monkeypatch.setattr(budget, 'STUDENT_CELL_TIMEOUT_SEC', 4.0)
     answers = {

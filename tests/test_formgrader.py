@@ -105,6 +105,7 @@ def exported(capsys, course):
     return row['score'], row['comment']
 
 
+@pytest.mark.slow
 def test_points_and_a_comment_given_in_the_formgrader_stay_when_ada_is_graded_again(
     course, lab, capsys
 ):

@@ -19,6 +19,7 @@ ROOM_BYTES = (0, 4_096, 150_000, 230_000, 250_000, 270_000, 290_000, 310_000)
 """A backup takes some 200 kB, a rollback journal some 10 kB, a notebook some 5 kB."""
 
 
+@pytest.mark.slow
 @pytest.mark.isolation
 def test_a_full_disk_stops_with_a_word_and_without_half_a_file(tmp_path):
     course = released_course(tmp_path)

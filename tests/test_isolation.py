@@ -177,6 +177,7 @@ def test_trust_is_told_once_to_whoever_reads_the_grade(course, nowhere, capsys):
     assert all(NO_SANDBOX in row for row in graded)
 
 
+@pytest.mark.slow
 def test_the_demo_says_that_its_samples_had_no_sandbox(course, nowhere, capsys, tmp_path):
     samples = tmp_path / 'samples'
     samples.mkdir()

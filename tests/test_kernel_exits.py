@@ -300,6 +300,7 @@ PIECES = ROOM_MEMORY_BYTES // (64 * MEBIBYTE)
 HOG = f'hog = [bytearray(b"x" * {64 * MEBIBYTE}) for _ in range({PIECES})]'
 
 
+@pytest.mark.slow
 def test_who_uses_too_much_memory_twice_gets_a_zero_that_says_so(monkeypatch, way):
     needs_cgroups()
     monkeypatch.setattr(budget, 'STUDENT_CELL_TIMEOUT_SEC', 60.0)
@@ -308,6 +309,7 @@ def test_who_uses_too_much_memory_twice_gets_a_zero_that_says_so(monkeypatch, wa
     assert 'your code used more than 2,048 MB' in verdict.reason
 
 
+@pytest.mark.slow
 def test_so_does_who_starts_a_program_that_does(monkeypatch):
     needs_cgroups()
     monkeypatch.setattr(budget, 'STUDENT_CELL_TIMEOUT_SEC', 60.0)

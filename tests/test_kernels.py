@@ -208,6 +208,7 @@ except KeyboardInterrupt:
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(('is_busy', 'died'), [(False, True), (True, False)])
 def test_a_busy_machine_gives_an_interrupted_cell_more_time(
     monkeypatch, spare, run, is_busy, died
@@ -298,6 +299,7 @@ threading.Thread(target=flood, daemon=True).start()
 """
 
 
+@pytest.mark.slow
 def test_a_flood_for_another_cell_fills_no_memory_of_the_graders_and_counts(own, run, loop):
     assert run(own, OF_ANOTHER).ran_to_end
     before = psutil.Process().memory_info().rss
@@ -337,6 +339,7 @@ TOO_LARGE = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(('code', 'asked'), TOO_LARGE.values(), ids=TOO_LARGE)
 def test_a_message_that_is_too_large_ends_the_kernel_and_it_is_said(spare, run, code, asked):
     """Else nothing that the kernel says would be received any more, and nobody told why."""
@@ -533,6 +536,7 @@ def test_a_long_path_for_temporary_files_is_not_used_for_sockets(monkeypatch, tm
     assert not Path(kernel.folder).exists()
 
 
+@pytest.mark.slow
 @pytest.mark.timeout(60)
 def test_messages_that_are_always_there_do_not_keep_the_loop(shared, loop):
     async def get(timeout):

@@ -68,6 +68,7 @@ def errors(cells):
     }
 
 
+@pytest.mark.slow
 def test_the_students_own_node_publishes_from_the_workspace_in_a_process_of_its_own(
     tmp_path, modules
 ):

@@ -18,6 +18,7 @@ PROGRAMS = re.compile(r'^(!|%%bash)|\bPopen\(', re.MULTILINE)
 """Found in cells that start programs: they take long, and leave nothing in the kernel."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('all_cells', [False, pytest.param(True, marks=pytest.mark.slow)])
 @pytest.mark.parametrize('name', NAMES)
 def test_a_lesson_runs_again_in_the_same_kernel_whatever_was_run_between(name, all_cells):

@@ -339,6 +339,7 @@ def test_an_exception_in_a_callback_is_shown_and_the_node_goes_on(lesson):
     assert cell.panel.count('AttributeError') == 1
 
 
+@pytest.mark.slow
 def test_a_flood_is_bounded(lesson):
     lesson.run("""class Flood(Talker):
     def tick(self):
@@ -722,6 +723,7 @@ def test_unruly_nodes_do_not_abort_the_kernel_when_it_ends(unruly):
     assert 'terminate called' not in stderr
 
 
+@pytest.mark.slow
 def test_a_restarted_kernel_runs_the_lesson_again(lesson):
     lesson.run('run(Talker)')
     lesson.restart()
@@ -754,6 +756,7 @@ class Witness:
         return True
 
 
+@pytest.mark.slow
 def test_in_a_script_the_node_runs_and_nothing_is_left(tmp_path):
     script = tmp_path / 'script.py'
     script.write_text(

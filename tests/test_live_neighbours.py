@@ -29,6 +29,7 @@ def test_nodes_are_found_alive_and_dead():
     assert not made & set(nodes_here(alive=False))
 
 
+@pytest.mark.slow
 def test_a_thread_that_builds_tuples_is_not_disturbed():
     errors = []
     looked = threading.Event()

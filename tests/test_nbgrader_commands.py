@@ -77,6 +77,7 @@ def nbgrader(course: Course, *arguments: str) -> str:
     return run.stderr
 
 
+@pytest.mark.slow
 def test_both_ways_give_the_same_scores(courses):
     ours, theirs = (
         {(r.student_id, r.grade_id): r.score for r in records(course)} for course in courses
@@ -98,6 +99,7 @@ def test_both_ways_give_the_same_scores(courses):
     }
 
 
+@pytest.mark.slow
 def test_both_ways_write_the_same_pages(courses):
     ours, theirs = courses
     assert main(['feedback'], course=ours) == 0

@@ -220,6 +220,7 @@ def test_what_is_loaded_is_what_is_dumped(load):
     assert values() == {**theirs, 'start_type_description_service': True, 'use_sim_time': False}
 
 
+@pytest.mark.slow
 def test_a_wildcard_is_loaded_unless_it_is_not_wanted(load):
     refused = load(WILDCARD, '--no-use-wildcard')
     assert refused.err == 'Param file does not contain selected parameters\n'
@@ -229,6 +230,7 @@ def test_a_wildcard_is_loaded_unless_it_is_not_wanted(load):
     assert (values()['int_param'], values()['str_param']) == (12345, 'Wildcard')
 
 
+@pytest.mark.slow
 def test_what_is_for_the_node_overrides_a_wildcard(load):
     load(f'{WILDCARD}\n{OVERLAY}')
     assert (values()['int_param'], values()['str_param']) == (12345, 'Override')

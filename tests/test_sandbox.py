@@ -654,6 +654,7 @@ except OSError as error: print(error.strerror)
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.geteuid() != 0, reason='we are an ordinary user')
 def test_files_on_their_way_in_one_room_stop_none_elsewhere(tmp_path_factory):
     code = f"""

@@ -158,6 +158,7 @@ def test_a_cell_that_does_not_return_is_given_up_sooner_and_not_called_wrong(
     assert report['summary'].endswith('could not be checked.')
 
 
+@pytest.mark.slow
 def test_an_answer_that_is_slow_and_right_is_not_called_wrong(tmp_path):
     """It takes longer than Validate waits, and less than the grader does."""
     right = next(c for c in read('solutions', '02_joint_state').cells if c.id == 'to_joint_state')
@@ -167,6 +168,7 @@ def test_an_answer_that_is_slow_and_right_is_not_called_wrong(tmp_path):
     assert 'failed' not in {check['outcome'] for check in checks_of(report).values()}
 
 
+@pytest.mark.slow
 def test_a_function_that_does_not_return_is_asked_once_and_not_called_wrong(tmp_path):
     asked = tmp_path / 'asked'
     endless = f"""def to_joint_state(*args):
@@ -182,6 +184,7 @@ def test_a_function_that_does_not_return_is_asked_once_and_not_called_wrong(tmp_
         assert ' s; at grading it has 10 s: look for a loop' in check['message']
 
 
+@pytest.mark.slow
 def test_names_of_demonstrations_are_there_and_no_other_demonstration_runs(tmp_path):
     demo = next(c for c in read('notebooks', '02_joint_state').cells if 'as np' in c.source)
     assert 'demo' in demo.metadata.tags
@@ -316,6 +319,7 @@ while not os.path.exists({file!r}) or not open({file!r}).read():
 """
 
 
+@pytest.mark.slow
 def test_what_an_answer_forks_and_lets_go_ends_with_it(tmp_path):
     daemon = DAEMON.format(file=str(tmp_path / 'pid'))
     validated(answered('02_joint_state', tmp_path, to_joint_state=daemon))

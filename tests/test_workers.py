@@ -133,6 +133,7 @@ def test_a_submission_that_kills_whoever_grades_it_costs_nobody_else(course, tmp
             assert outcomes(work.result()) == ['passed', 'passed']
 
 
+@pytest.mark.slow
 def test_a_worker_that_hangs_is_replaced(course, tmp_path, monkeypatch):
     mark = tmp_path / 'stopped'
     monkeypatch.setattr(worker_process, 'BEAT_SEC', 0.1)
@@ -157,6 +158,7 @@ def test_what_a_worker_starts_inherits_no_way_to_the_run(course):
     assert told(result)[1] == '0 1 2'
 
 
+@pytest.mark.slow
 def test_a_worker_that_says_it_has_more_to_say_than_any_result_is_given_up(course):
     with Workers(1, command=COMMAND) as backend:
         with pytest.raises(TaskFailed, match='ended before it was done, 3 times'):

@@ -256,6 +256,7 @@ def main(args=None):
 """
 
 
+@pytest.mark.slow
 @pytest.mark.starts
 def test_a_new_node_and_its_line_are_found_after_the_next_build(package):
     shell(BUILD)

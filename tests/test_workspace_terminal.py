@@ -101,6 +101,7 @@ COMMANDS = (
 """What is typed, and what must be seen before the next line: in a line without it."""
 
 
+@pytest.mark.slow
 def test_the_commands_of_the_lessons_work_in_jupyterlabs_terminal(lab):
     install = r'ros ws/install/my_robot_basics/lib/my_robot_basics/kinematics_publisher'
     dialogue = [
