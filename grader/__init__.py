@@ -19,6 +19,7 @@ course keeps its files. Each package imports only from those named before it in 
 - `export`: What leaves the gradebook as files: scores, totals, sample solutions.
 - `report`: What people read: feedback for students; progress, run report and formgrader for
   teachers.
+- `passback`: Scores and feedback in the forms that course platforms import.
 - `common`: What every part uses: errors, files, text, names of students, dates, a process that
   parses.
 """
@@ -39,6 +40,7 @@ LAYERS = (
     'grade',
     'replay',
     'report',
+    'passback',
     'cli',
     '__main__',
 )

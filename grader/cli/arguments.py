@@ -6,6 +6,7 @@ from pathlib import Path
 
 from grader.cli import verbs
 from grader.cli.grade_verb import run_grade
+from grader.passback.write import TABLES
 from grader.replay import RECORDED
 from grader.storage.due_dates import local_time
 
@@ -99,11 +100,34 @@ def make_parser() -> argparse.ArgumentParser:
 
     verb = subparsers.add_parser('scores', help='write gradebook/scores.csv')
     verb.add_argument(
+        'assignment', nargs='?', default='', metavar='ASSIGNMENT', help='with --format: only this'
+    )
+    form = verb.add_mutually_exclusive_group()
+    form.add_argument(
         '--totals',
         action='store_true',
         help='write gradebook/totals.csv: a row for each student, a column for each assignment',
     )
+    form.add_argument(
+        '--format',
+        choices=sorted(TABLES),
+        help='write what this platform imports, a file for each assignment: gradebook/PLATFORM/',
+    )
+    verb.add_argument(
+        '--roster',
+        type=Path,
+        metavar='FILE',
+        help="with --format: the platform's own table, to take students and columns from",
+    )
     verb.set_defaults(run=verbs.run_scores)
+
+    verb = subparsers.add_parser('feedback', help='write a page of feedback for each submission')
+    verb.add_argument(
+        '--zip',
+        choices=['moodle'],
+        help='pack them, too, as the feedback files that this platform takes',
+    )
+    verb.set_defaults(run=verbs.run_feedback)
 
     verb = subparsers.add_parser('solutions', help='write the answers, for after the deadline')
     verb.add_argument('assignment', nargs='?', metavar='ASSIGNMENT', help='only this one')
@@ -113,7 +137,6 @@ def make_parser() -> argparse.ArgumentParser:
     verb.set_defaults(run=verbs.run_solutions)
 
     for name, run, text in (
-        ('feedback', verbs.run_feedback, 'write a page of feedback for each submission'),
         ('demo', verbs.run_demo, 'grade a sample class, to see all of it in about a minute'),
         (
             'doctor',

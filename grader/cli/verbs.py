@@ -20,6 +20,7 @@ from grader.kernels.isolation import (
     protections,
     slow,
 )
+from grader.passback.write import write_feedback_archives, write_platform_scores
 from grader.report.feedback import write_feedback
 from grader.storage.database import wait_until_free
 from grader.storage.due_dates import describe_deadlines, set_due
@@ -88,8 +89,19 @@ def run_due(course: Course, asked: argparse.Namespace) -> int:
 
 def run_scores(course: Course, asked: argparse.Namespace) -> int:
     """Write a table of scores, and say where it lies."""
+    if (asked.assignment or asked.roster) and not asked.format:
+        raise CourseError(
+            'an assignment and --roster are for what a platform imports: say which one, as in '
+            './course scores --format moodle'
+        )
     _wait_for_database(course)
-    print(write_totals(course) if asked.totals else write_scores(course))
+    if asked.format:
+        paths = write_platform_scores(
+            course, asked.format, asked.assignment, asked.roster, _say_line
+        )
+        print(*paths, sep='\n')
+    else:
+        print(write_totals(course) if asked.totals else write_scores(course))
     _say_what_comes_first(course)
     return 0
 
@@ -105,10 +117,16 @@ def run_solutions(course: Course, asked: argparse.Namespace) -> int:
 def run_feedback(course: Course, asked: argparse.Namespace) -> int:
     """Write the pages of feedback, and say where they lie."""
     _wait_for_database(course)
-    pages = write_feedback(course, say=lambda line: print(printable(line)))
+    pages = write_feedback(course, say=_say_line)
     print(f'{len(pages)} pages in {course.folder("feedback", "", "")}')
+    if asked.zip:
+        print(*write_feedback_archives(course, _say_line), sep='\n')
     _say_what_comes_first(course)
     return 0
+
+
+def _say_line(line: str) -> None:
+    print(printable(line))
 
 
 def _wait_for_database(course: Course) -> None:

@@ -26,6 +26,8 @@ _NUMBER = re.compile(r'["\s]*[-+]?\d+(\.\d+)?(e[-+]?\d+)?["\s]*([,;|)\]}]|$)')
 def spreadsheet_safe(text: object) -> str:
     """Return a CSV field that no spreadsheet takes for a formula, wherever it splits a line."""
     line = printable(text)
+    if line == '-':  # what platforms write for nothing
+        return line
 
     def quoted(found: re.Match) -> str:
         if found[1] and _NUMBER.match(line, found.end(1)):  # behind a comma, it is no formula

@@ -1,0 +1,1 @@
+"""Scores and feedback in the forms that course platforms import."""

@@ -1,0 +1,99 @@
+"""Canvas: the table that its gradebook imports.
+
+It begins with the columns that tell a student, as an export has them, the last of which is
+Section; a column for each assignment follows, headed by its title and number. An empty field
+would take back a score that Canvas has, so that a file is of one assignment and has only rows with
+a score. The row Points Possible is left out: it would change how many points an assignment gives.
+"""
+
+import re
+from collections.abc import Mapping
+from pathlib import Path
+
+from grader.collect.platform_ids import StudentNumbers
+from grader.common.errors import CourseError
+from grader.common.text import spreadsheet_table
+from grader.course import Course
+from grader.passback.final_scores import AssignmentScores
+from grader.passback.import_files import ImportFile
+from grader.passback.roster import Roster, match, read_roster
+
+STUDENT, ID, SECTION = 'Student', 'ID', 'Section'
+NEEDED = (STUDENT, ID, SECTION)
+LOGIN = 'SIS Login ID'
+POINTS = 'Points Possible'
+HOW = "Take the gradebook's own table: in Canvas, Gradebook, Export, Export Entire Gradebook"
+
+
+def make_table(
+    course: Course, scores: AssignmentScores, roster_path: Path | None = None
+) -> ImportFile:
+    """Return what to import into the gradebook; with its export, students and titles are Canvas's.
+
+    Raises CourseError where that can't be read, or gives other points.
+    """
+    if roster_path is None:
+        return _from_numbers(course, scores)
+    roster = read_roster(roster_path, NEEDED, HOW)
+    numbers = StudentNumbers(course)
+
+    def by_number(student: str, row: Mapping[str, str]) -> bool:
+        known = numbers.of(student, scores.assignment).get('canvas')
+        return known == row[ID] if known else student in (row.get(LOGIN), row[ID])
+
+    people = [row for row in roster.rows if POINTS not in row[STUDENT]]
+    column = _column_of(scores.assignment, roster)
+    _check_points(column, scores, roster)
+    found = match(
+        [each.student_id for each in scores.final],
+        Roster(roster.path, roster.headings, tuple(people)),
+        by_number=by_number,
+        name_of=lambda row: row[STUDENT],
+    )
+    about = roster.headings[: roster.headings.index(SECTION) + 1]
+    rows: list[list[object]] = [[*about, column]]
+    for each in scores.final:
+        if row := found.rows.get(each.student_id):
+            rows.append([*(row.get(heading, '') for heading in about), each.score])
+    return ImportFile(spreadsheet_table(rows), len(rows) - 1, found.unclear)
+
+
+def _from_numbers(course: Course, scores: AssignmentScores) -> ImportFile:
+    """Return a table of those students whose number came with what they handed in."""
+    numbers = StudentNumbers(course)
+    rows: list[list[object]] = [[*NEEDED, scores.assignment]]
+    unclear = []
+    for each in scores.final:
+        number = numbers.of(each.student_id, scores.assignment).get('canvas')
+        if number is None:
+            unclear.append(
+                f"{each.student_id} has no number of Canvas's, as what came from Download "
+                'submissions has: give this score by hand, or use --roster'
+            )
+        else:
+            rows.append([each.student_id, number, '', each.score])
+    return ImportFile(spreadsheet_table(rows), len(rows) - 1, tuple(unclear))
+
+
+def _column_of(assignment: str, roster: Roster) -> str:
+    """Return the heading of an assignment, '03_publisher (4711)'; its name where there is none."""
+    titled = re.compile(rf'{re.escape(assignment)}( \(\d+\))?', re.I)
+    found = [heading for heading in roster.headings if titled.fullmatch(heading)]
+    return found[0] if found else assignment
+
+
+def _check_points(column: str, scores: AssignmentScores, roster: Roster) -> None:
+    """See that points mean there what they mean here. Raises CourseError."""
+    given = [row.get(column, '') for row in roster.rows if POINTS in row[STUDENT]]
+    for text in given:
+        try:
+            most = float(text)
+        except ValueError:  # no number, as for a column that is new
+            continue
+        for each in scores.final[:1]:
+            if most != each.max_score:
+                raise CourseError(
+                    f'{roster.path}: {column} gives {most:g} points in Canvas and '
+                    f'{each.max_score:g} here: set its points to {each.max_score:g} in Canvas, '
+                    'and export the gradebook again'
+                )

@@ -1,0 +1,96 @@
+"""Moodle: the grading worksheet of an assignment, and the archive of feedback files.
+
+The worksheet is what *Download grading worksheet* writes and *Upload grading worksheet* reads. It
+names a student by the participant number that stands in each name of *Download all submissions*,
+and is read with the headings of the site's language: these are the English ones.
+"""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from grader.collect.platform_ids import StudentNumbers
+from grader.common.errors import CourseError
+from grader.common.text import spreadsheet_table
+from grader.course import Course
+from grader.passback.final_scores import AssignmentScores, FinalScore
+from grader.passback.import_files import ImportFile
+from grader.passback.roster import Roster, match, read_roster
+
+IDENTIFIER, FULL_NAME, GRADE = 'Identifier', 'Full name', 'Grade'
+MAXIMUM, MODIFIED = 'Maximum Grade', 'Last modified (grade)'
+NEEDED = (IDENTIFIER, FULL_NAME, GRADE, MODIFIED)
+PARTICIPANT = 'Participant '
+NEVER = '-'
+"""Moodle's word for a grade that nobody has given: then a later one of Moodle's stays."""
+HOW = (
+    "Take the assignment's grading worksheet: in Moodle, in English, turn on Offline grading "
+    'worksheet in its settings, and choose Download grading worksheet'
+)
+
+
+def make_worksheet(
+    course: Course, scores: AssignmentScores, roster_path: Path | None = None
+) -> ImportFile:
+    """Return what to upload as a grading worksheet; with Moodle's own, its columns stay.
+
+    Raises CourseError where that can't be read, or has another maximum.
+    """
+    if roster_path is None:
+        return _from_numbers(course, scores)
+    roster = read_roster(roster_path, NEEDED, HOW)
+    numbers = StudentNumbers(course)
+
+    def by_number(student: str, row: Mapping[str, str]) -> bool:
+        number = numbers.of(student, scores.assignment).get('moodle')
+        return number is not None and row[IDENTIFIER].removeprefix(PARTICIPANT) == number
+
+    students = [each.student_id for each in scores.final]
+    found = match(students, roster, by_number=by_number, name_of=lambda row: row[FULL_NAME])
+    rows: list[list[object]] = [list(roster.headings)]
+    for each in scores.final:
+        if row := found.rows.get(each.student_id):
+            _check_maximum(row, each, scores.assignment, roster)
+            filled = {**row, GRADE: each.score}
+            rows.append([filled.get(heading, '') for heading in roster.headings])
+    return ImportFile(spreadsheet_table(rows), len(rows) - 1, found.unclear)
+
+
+def _from_numbers(course: Course, scores: AssignmentScores) -> ImportFile:
+    """Return a worksheet for those students whose number came with what they handed in."""
+    numbers = StudentNumbers(course)
+    rows: list[list[object]] = [list(NEEDED)]
+    unclear = []
+    for each in scores.final:
+        number = numbers.of(each.student_id, scores.assignment).get('moodle')
+        if number is None:
+            unclear.append(
+                f"{each.student_id} has no number of Moodle's, as what came from Download all "
+                'submissions has: give this score by hand, or use --roster'
+            )
+        else:
+            rows.append([f'{PARTICIPANT}{number}', each.student_id, each.score, NEVER])
+    return ImportFile(spreadsheet_table(rows), len(rows) - 1, tuple(unclear))
+
+
+def _check_maximum(
+    row: Mapping[str, str], score: FinalScore, assignment: str, roster: Roster
+) -> None:
+    """See that points mean there what they mean here. Raises CourseError."""
+    try:
+        most = float(row.get(MAXIMUM, '').replace(',', '.'))
+    except ValueError:  # a worksheet without it, or a scale instead of points
+        return
+    if most != score.max_score:
+        raise CourseError(
+            f'{roster.path}: the most that this assignment gives in Moodle is {most:g}, and '
+            f'{assignment} gives {score.max_score:g}: set its maximum grade to '
+            f'{score.max_score:g} in Moodle, and download the worksheet again'
+        )
+
+
+def name_feedback_file(student_id: str, number: str, assignment: str) -> str:
+    """Return a name from which *Upload multiple feedback files in a zip* knows the student.
+
+    Moodle takes a name apart at underscores, so the student's own become spaces.
+    """
+    return f'{student_id.replace("_", " ")}_{number}_assignsubmission_file_{assignment}.html'

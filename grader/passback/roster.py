@@ -1,0 +1,87 @@
+"""A table that a course platform exported: its columns and rows, and whose each row is."""
+
+import csv
+import io
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from grader.common.errors import CourseError
+from grader.common.student_names import same_person
+
+MAX_BYTES = 20_000_000
+
+
+@dataclass(frozen=True)
+class Roster:
+    """A table with a line of headings."""
+
+    path: Path
+    headings: tuple[str, ...]
+    rows: tuple[Mapping[str, str], ...]
+
+
+def read_roster(path: Path, needed: Iterable[str], how: str) -> Roster:
+    """Read a table in CSV, of commas or semicolons.
+
+    Raises CourseError where it is none or lacks a column; `how` says where to get the right one.
+    """
+    try:
+        raw = path.read_bytes()
+    except OSError as error:
+        raise CourseError(f'{path} can not be read: {error.strerror}. {how}') from None
+    if len(raw) > MAX_BYTES:
+        raise CourseError(f'{path} has {len(raw):,} bytes: no roster is that long. {how}')
+    try:
+        text = raw.decode('utf-8-sig')
+        first = text.partition('\n')[0]
+        between = ';' if first.count(';') > first.count(',') else ','
+        lines = list(csv.reader(io.StringIO(text, newline=''), delimiter=between, strict=True))
+    except (UnicodeDecodeError, csv.Error):
+        raise CourseError(f'{path} is no table in CSV and UTF-8. {how}') from None
+    headings = tuple(heading.strip() for heading in lines[0]) if lines else ()
+    lacks = [name for name in needed if name not in headings]
+    if lacks:
+        raise CourseError(f'{path} has no column {", ".join(map(repr, lacks))}. {how}')
+    if len(set(headings)) < len(headings):
+        raise CourseError(f'{path} has two columns of one name. {how}')
+    rows = tuple(dict(zip(headings, line, strict=False)) for line in lines[1:] if any(line))
+    return Roster(path, headings, rows)
+
+
+@dataclass(frozen=True)
+class Matches:
+    """Whose rows of a roster are."""
+
+    rows: Mapping[str, Mapping[str, str]]
+    """By student."""
+    unclear: tuple[str, ...]
+    """For each student without a row, why."""
+
+
+def match(
+    students: Sequence[str],
+    roster: Roster,
+    *,
+    by_number: Callable[[str, Mapping[str, str]], bool],
+    name_of: Callable[[Mapping[str, str]], str],
+) -> Matches:
+    """Find each student's row: the one with the student's number, else the only one of that name.
+
+    A row is nobody's where two students may be meant by it.
+    """
+    candidates = {
+        student: [row for row in roster.rows if by_number(student, row)]
+        or [row for row in roster.rows if same_person(name_of(row), student)]
+        for student in students
+    }
+    taken = [id(row) for rows in candidates.values() if len(rows) == 1 for row in rows]
+    found, unclear = {}, []
+    for student, rows in candidates.items():
+        if len(rows) == 1 and taken.count(id(rows[0])) == 1:
+            found[student] = rows[0]
+        else:
+            several = 'several rows' if len(rows) > 1 else 'a row that others may be meant by, too'
+            has = several if rows else 'no row'
+            unclear.append(f'{student} has {has} in {roster.path.name}: give this score by hand')
+    return Matches(found, tuple(unclear))

@@ -1,0 +1,263 @@
+"""What goes back to a course platform is in the form that it imports, and says who is left out."""
+
+import csv
+import json
+import zipfile
+
+import pytest
+from course_maker import TOY, answered, executed, released_course, submit
+
+from grader.__main__ import main
+from grader.collect.platforms import label_in
+from grader.notebook.restore import restore
+from grader.notebook.submission import read_submission
+from grader.passback import write
+from grader.passback.final_scores import final_scores
+from grader.storage.gradebook import store
+from grader.storage.pipeline import prepare
+from grader.storage.records import CellScore
+
+
+def cell(student, score, most=3.0, *, submitted=True, name='check', assignment='03_publisher'):
+    return CellScore(student, assignment, name, score, most, submitted=submitted)
+
+
+CLASS = [
+    cell('Ada Lovelace', 2.5),
+    cell('Ada Lovelace', 2.0, 2.0, name='stamp'),
+    cell('Ada Lovelace', -1.0, 0.0, name='late_penalty'),
+    cell('Bob', 0.0),
+    cell('Bob', 1.0, 2.0, name='stamp'),
+    cell('Cleo', 3.0),
+    cell('Cleo', None, 2.0, name='stamp'),
+    cell('Dan', None, submitted=False),
+    cell('王 小明', 3.0),
+    cell('王 小明', 2.0, 2.0, name='stamp'),
+]
+NUMBERS = {
+    'Ada Lovelace': {'03_publisher': {'moodle': '8001', 'canvas': '18151'}},
+    '王 小明': {'03_publisher': {'moodle': '8003', 'canvas': '18153'}},
+}
+
+
+@pytest.fixture
+def course(tmp_path, monkeypatch):
+    course = released_course(tmp_path)
+    course.gradebook.mkdir(exist_ok=True)
+    (course.gradebook / 'numbers.json').write_text(json.dumps(NUMBERS), encoding='utf-8')
+    monkeypatch.setattr(write, 'records', lambda course: CLASS)
+    return course
+
+
+@pytest.fixture
+def roster(tmp_path):
+    def write_roster(*lines):
+        path = tmp_path / 'roster.csv'
+        path.write_text('\n'.join(lines), encoding='utf-8-sig')
+        return path
+
+    return write_roster
+
+
+def table(path):
+    return list(csv.reader(path.read_text(encoding='utf-8-sig').splitlines()))
+
+
+def moodle(course, *arguments):
+    main(['scores', '03_publisher', '--format', 'moodle', *map(str, arguments)], course=course)
+    return table(course.gradebook / 'moodle' / '03_publisher.csv')
+
+
+def canvas(course, *arguments):
+    main(['scores', '--format', 'canvas', *map(str, arguments)], course=course)
+    return table(course.gradebook / 'canvas' / '03_publisher.csv')
+
+
+def test_a_score_is_final_once_no_person_has_to_decide():
+    (scores,) = final_scores(CLASS)
+    assert [(each.student_id, each.score, each.max_score) for each in scores.final] == [
+        ('Ada Lovelace', 3.5, 5.0),
+        ('Bob', 1.0, 5.0),
+        ('王 小明', 5.0, 5.0),
+    ]
+    assert scores.waiting == ('Cleo',)
+    assert final_scores(CLASS, '04_subscriber') == []
+
+
+def test_moodles_worksheet_needs_no_roster_where_the_numbers_came_with_the_submissions(
+    course, capsys
+):
+    assert moodle(course) == [
+        ['Identifier', 'Full name', 'Grade', 'Last modified (grade)'],
+        ['Participant 8001', 'Ada Lovelace', '3.5', '-'],
+        ['Participant 8003', '王 小明', '5.0', '-'],
+    ]
+    said = capsys.readouterr().out
+    assert '03_publisher: Cleo waits for a person' in said
+    assert "03_publisher: Bob has no number of Moodle's" in said
+    assert 'Dan' not in said
+
+
+def test_moodles_own_worksheet_keeps_its_columns_and_names_who_has_no_row(course, roster, capsys):
+    head = 'Identifier,Full name,Email address,Grade,Maximum Grade,Last modified (grade)'
+    rows = moodle(
+        course,
+        '--roster',
+        roster(
+            head,
+            'Participant 8001,"Lovelace, A.",ada@x.org,,5.00,"Monday, 9:00 AM"',
+            'Participant 8002,bob,bob@x.org,4.00,5.00,-',
+            'Participant 8009,Somebody Else,e@x.org,,5.00,-',
+        ),
+    )
+    assert rows == [
+        head.split(','),
+        ['Participant 8001', 'Lovelace, A.', 'ada@x.org', '3.5', '5.00', 'Monday, 9:00 AM'],
+        ['Participant 8002', 'bob', 'bob@x.org', '1.0', '5.00', '-'],
+    ]
+    assert '王 小明 has no row in roster.csv: give this score by hand' in capsys.readouterr().out
+
+
+def test_canvas_gets_the_columns_up_to_the_section_and_one_of_scores(course, roster, capsys):
+    rows = canvas(
+        course,
+        '--roster',
+        roster(
+            'Student,ID,SIS User ID,SIS Login ID,Section,02_joint_state (70),03_publisher (71)',
+            '    Points Possible,,,,,2,5',
+            '"Lovelace, Ada",18151,s1,ada,A,1,',
+            '"Bob",18152,s2,bob,B,2,5',
+            '"小明, 王",18153,s3,wang,B,2,',
+        ),
+    )
+    assert rows == [
+        ['Student', 'ID', 'SIS User ID', 'SIS Login ID', 'Section', '03_publisher (71)'],
+        ['Lovelace, Ada', '18151', 's1', 'ada', 'A', '3.5'],
+        ['Bob', '18152', 's2', 'bob', 'B', '1.0'],
+        ['小明, 王', '18153', 's3', 'wang', 'B', '5.0'],
+    ]
+    assert 'Bob' not in capsys.readouterr().out
+
+
+def test_canvas_without_a_roster_is_told_numbers(course, capsys):
+    assert canvas(course) == [
+        ['Student', 'ID', 'Section', '03_publisher'],
+        ['Ada Lovelace', '18151', '', '3.5'],
+        ['王 小明', '18153', '', '5.0'],
+    ]
+    assert "03_publisher: Bob has no number of Canvas's" in capsys.readouterr().out
+
+
+def test_two_rows_of_one_name_or_two_students_of_one_row_are_left_to_a_person(
+    course, roster, capsys, monkeypatch
+):
+    monkeypatch.setattr(
+        write, 'records', lambda course: [cell('bob', 1.0), cell('Bob', 2.0), cell('Eve', 3.0)]
+    )
+    rows = canvas(course, '--roster', roster('Student,ID,Section', 'Bob,1,', 'Eve,2,', 'Eve,3,'))
+    assert rows == [['Student', 'ID', 'Section', '03_publisher']]
+    said = capsys.readouterr().out
+    assert 'Eve has several rows in roster.csv' in said
+    assert 'bob has a row that others may be meant by, too in roster.csv' in said
+
+
+@pytest.mark.parametrize(
+    ('platform', 'lines', 'said'),
+    [
+        ('moodle', ['ID,Vorname', '1,Ada'], "has no column 'Identifier', 'Full name'"),
+        ('moodle', [''], "has no column 'Identifier'"),
+        ('canvas', ['Student,ID,ID,Section'], 'has two columns of one name'),
+        ('canvas', ['Student,ID,Section', '"Ada,1,'], 'is no table in CSV'),
+        (
+            'moodle',
+            [
+                'Identifier,Full name,Grade,Maximum Grade,Last modified (grade)',
+                'Participant 8001,Ada,,100.00,-',
+            ],
+            'gives in Moodle is 100, and 03_publisher gives 5: set its maximum grade to 5',
+        ),
+        (
+            'canvas',
+            ['Student,ID,Section,03_publisher (7)', 'Points Possible,,,10', 'Ada,18151,,'],
+            '03_publisher (7) gives 10 points in Canvas and 5 here',
+        ),
+    ],
+)
+def test_a_roster_that_does_not_fit_is_refused_in_a_sentence(
+    platform, lines, said, course, roster, capsys
+):
+    arguments = ['scores', '03_publisher', '--format', platform, '--roster', str(roster(*lines))]
+    assert main(arguments, course=course) != 0
+    assert said in capsys.readouterr().err
+    assert not list(course.gradebook.glob(f'{platform}/*'))
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'said'),
+    [
+        (['03_publisher'], 'say which one, as in ./course scores --format moodle'),
+        (['--roster', 'x.csv'], 'say which one'),
+        (['--format', 'moodle', '--roster', 'x.csv'], 'is of one assignment'),
+        (['04_subscriber', '--format', 'canvas'], 'nothing of 04_subscriber is graded yet'),
+        (
+            ['03_publisher', '--format', 'canvas', '--roster', '/nowhere'],
+            'can not be read: No such',
+        ),
+    ],
+)
+def test_what_is_missing_is_said(arguments, said, course, capsys):
+    assert main(['scores', *arguments], course=course) != 0
+    assert said in capsys.readouterr().err
+
+
+def test_a_name_starts_no_formula_in_a_spreadsheet(course, monkeypatch):
+    numbers = {'=cmd()': {'03_publisher': {'moodle': '8001'}}}
+    (course.gradebook / 'numbers.json').write_text(json.dumps(numbers))
+    monkeypatch.setattr(write, 'records', lambda course: [cell('=cmd()', 1.0)])
+    assert moodle(course)[1] == ['Participant 8001', "'=cmd()", '1.0', '-']
+
+
+def test_feedback_goes_back_under_the_names_that_moodle_gave_out(course, capsys):
+    for student in ('Ada Lovelace', 'Bob', '王 小明'):
+        page = course.folder('feedback', student, '03_publisher') / '03_publisher.html'
+        page.parent.mkdir(parents=True)
+        page.write_text(f'<p>{student}</p>')
+    assert main(['feedback', '--zip', 'moodle'], course=course) == 0
+    said = capsys.readouterr().out
+    assert "03_publisher: Bob has no number of Moodle's" in said
+    with zipfile.ZipFile(course.gradebook / 'moodle' / '03_publisher-feedback.zip') as archive:
+        names = archive.namelist()
+        assert archive.read(names[0]).decode() == '<p>Ada Lovelace</p>'
+    labels = [label_in(name) for name in names]
+    assert [(each.who, each.number, each.rest) for each in labels] == [
+        ('Ada Lovelace', '8001', '03_publisher.html'),
+        ('王 小明', '8003', '03_publisher.html'),
+    ]
+    # as Moodle takes a name apart
+    assert names[0].split('_', 4)[1:4] == ['8001', 'assignsubmission', 'file']
+
+
+def test_an_underscore_in_a_name_does_not_shift_the_number():
+    name = write.moodle.name_feedback_file('ada_lovelace', '8001', '03_publisher')
+    assert name.split('_', 4)[1:] == ['8001', 'assignsubmission', 'file', '03_publisher.html']
+
+
+def test_what_moodle_gave_out_is_collected_graded_and_goes_back(tmp_path, capsys):
+    course = released_course(tmp_path)
+    submit(course, 'x', answered(course, 'def double(x):\n    return x + x'))
+    taken = course.folder('submitted', 'x', TOY)
+    source = tmp_path / 'download' / 'Ada Lovelace_8001_assignsubmission_file_'
+    source.mkdir(parents=True)
+    (taken / f'{TOY}.ipynb').rename(source / f'{TOY}.ipynb')
+    taken.rmdir()
+    taken.parent.rmdir()
+    assert main(['collect', str(source.parent)], course=course) == 0
+    folder = course.folder('submitted', 'Ada Lovelace', TOY)
+    submission = read_submission(folder, student_id='Ada Lovelace', assignment=TOY)
+    restored = restore(submission.notebook, course.template(TOY)).notebook
+    stored = store(course, submission, executed(prepare(course, TOY, restored), {}))
+    capsys.readouterr()
+    assert main(['scores', '--format', 'moodle'], course=course) == 0
+    path = course.gradebook / 'moodle' / f'{TOY}.csv'
+    assert str(path) in capsys.readouterr().out
+    assert table(path)[1] == ['Participant 8001', 'Ada Lovelace', str(stored.score), '-']
