@@ -6,11 +6,13 @@ import nbformat
 import pytest
 from my_robot_basics.feedback.errors import CheckFailed
 from my_robot_basics.language import speaking
+from my_robot_basics.language.lines import in_lines
 from my_robot_basics.language.sentences import MOST_CHARACTERS, Sentences
 from my_robot_basics.language.speaking import in_language, language_of
 from my_robot_basics.validate.as_text import as_text
 from my_robot_basics.validate.cell_names import in_words
 from my_robot_basics.validate.report import CheckFeedback, ExerciseFeedback, Report
+from my_robot_basics.validate.text import columns
 
 from grader.authoring.code_messages import messages_in
 from grader.course import Course
@@ -119,6 +121,64 @@ CHINESE_REASON = (
 def test_a_reason_of_the_course_is_told_in_chinese():
     assert in_language('zh_CN', REASON) == CHINESE_REASON
     assert in_language('en', REASON) == REASON
+
+
+OF_THE_DOCTOR_AND_LIVE = {
+    'All is well on /t: /a and /b publish, /c subscribes, 5 Hz (10 messages in 2.0 s).': (
+        '/t 一切正常：/a 和 /b 发布，/c 订阅，5 Hz（2.0 s 内 10 条消息）。'
+    ),
+    'Something is wrong on /t: nobody publishes, /b subscribes, no new message in 2.0 s.': (
+        '/t 有问题：没有节点发布，/b 订阅，2.0 s 内没有新消息。'
+    ),
+    'none, and /a publishes on /b (the namespace differs): in /a, a name without a leading / '
+    "begins with the node's namespace": (
+        '没有，/a 发布的是 /b（命名空间不同）：在 /a 里，不以 / 开头的名称前面会加上节点的命名空间'
+    ),
+    'the callback ask of /waver to return, so that its response is sent': (
+        '/waver 的回调 ask 返回，这样它的响应才能发出'
+    ),
+    'none; /user asks it, and these run, too: /arm': '没有；/user 在请求它，还有这些在运行：/arm',
+    'written  $ROS_WS/src/my_robot_basics/five_hz.py': (
+        '已写入   $ROS_WS/src/my_robot_basics/five_hz.py'
+    ),
+    'reset: no node is running; IKService is yours to write': (
+        '已重置：没有节点在运行；IKService 由你来写'
+    ),
+    'NotRunnable: expected a class IKService, saw nothing of that name: run the answer cell, and '
+    'if that ends in an error, fix that first': (
+        'NotRunnable：预期：有类 IKService；实际：没有这个名称。'
+        '运行答案单元格；如果它以错误告终，先改正错误'
+    ),
+}
+
+
+@pytest.mark.parametrize(('english', 'chinese'), OF_THE_DOCTOR_AND_LIVE.items())
+def test_the_doctor_and_live_speak_chinese(english, chinese):
+    assert in_language('zh_CN', english) == chinese
+
+
+def test_a_terminal_has_the_language_that_the_course_has_chosen(monkeypatch):
+    monkeypatch.delenv('JPY_SESSION_NAME', raising=False)
+    monkeypatch.setenv(speaking.OF_TERMINALS, 'zh_CN')
+    assert speaking.language_here() == 'zh_CN'
+    monkeypatch.setenv('JPY_SESSION_NAME', '03_publisher/03_publisher.ipynb')
+    assert speaking.language_here() == 'en'  # a lesson's own language counts
+    monkeypatch.delenv('JPY_SESSION_NAME')
+    for nothing in ('', 'en', 'tlh', '..'):
+        monkeypatch.setenv(speaking.OF_TERMINALS, nothing)
+        assert speaking.language_here() == 'en'
+
+
+def test_chinese_is_broken_into_lines_by_columns_and_no_line_begins_with_a_comma():
+    text = f'{CHINESE_REASON}；{CHINESE_REASON}，见 /a_long/name_that_stays_whole_in_its_line'
+    broken = in_lines(text, 40, first='- ', rest='  ')
+    assert len(broken) > 3
+    assert all(columns(line) <= 40 for line in broken[:-1])
+    assert broken[-1].endswith('/a_long/name_that_stays_whole_in_its_line')
+    assert not [line for line in broken if line.strip()[0] in '，。；：）']
+    assert not [line for line in broken if line.endswith('（')]
+    assert ''.join(broken).replace(' ', '') == f'-{text}'.replace(' ', '')
+    assert in_lines('a b ' * 30, 20) == ['a b a b a b a b a b'] * 6
 
 
 @pytest.mark.parametrize('said', [None, 'tlh', '../..', 3, ['zh_CN'], {'zh_CN': 1}])

@@ -9,9 +9,13 @@ import re
 from collections.abc import Iterator
 
 _WORDS = re.compile(
-    r"[^\W\d_]{2,}'?[,;:]?\s+[^\W\d_{]|\} [^\W\d_]{2,}|[^\W\d_]{2,}:? \{|\{\w+\}, "
+    r"[^\W\d_]{2,}'?[,;:]?\s+[^\W\d_{]|\} [^\W\d_]{2,}|[^\W\d_]{2,}:? +\{|\{\w+\}, "
+    r'|\}: [^\W\d_]{4,}'
 )
-_NOISE = re.compile(r'^\s*(import|from) |\n {4}|\\w|\(\?|^\s*[\w/.]+\s*$|%s|\{\w+!r\}')
+_NOISE = re.compile(
+    r'^\s*(import|from|cd) |^(\$ |<pre|margin:|course: |build(/| install)|spin \{)'
+    r'|\n {4}|\\w|\(\?|^\s*[\w/.]+\s*$|%s|\{\w+!r\}'
+)
 _NOT_READ = {'TypeError', 'ValueError', 'KeyError', 'AttributeError', 'RuntimeError', 'compile'}
 """What mistakes in our own code raise, and patterns."""
 

@@ -17,12 +17,25 @@ from grader.course import Course
 Texts = dict[str, list[str]]
 """Where each English text of a part stands, in the order in which they are read."""
 
+IN_WORDS: tuple[str, ...] = ('background', 'camera', 'commands', 'course_nodes')
+IN_WORDS += ('entry_points', 'exercise')
+IN_WORDS += ('node_file', 'panel', 'program', 'refusals', 'runner', 'spinning', 'unknown_robot')
+IN_WORDS += ('waiting', 'workspace')
+"""The modules of `live` that say something in sentences; the others draw."""
 MODULES = {
     'checks': [
         f'my_robot_basics/my_robot_basics/{package}/*.py'
         for package in ('checks', 'feedback', 'exchange', 'graph')
     ],
     'validate': ['my_robot_basics/my_robot_basics/validate/*.py'],
+    'live': [
+        f'my_robot_basics/my_robot_basics/{module}.py'
+        for module in ('session/*', *(f'live/{each}' for each in IN_WORDS))
+    ],
+    'doctor': [
+        f'my_robot_basics/my_robot_basics/doctor/{modules}.py'
+        for modules in ('inside', 'report', 'rules/*', 'service_rules/*')
+    ],
     'feedback': [
         'grader/notebook/*.py',
         'grader/report/page*.py',

@@ -101,7 +101,9 @@ class MoveReport:
         far_deg = [math.degrees(each) for each in self.end]
         if np.allclose(last, far_deg, atol=0.1 * max(map(abs, far_deg))):
             self._fail_position(
-                last, 'these are degrees: all positions of MoveArm are in radians', 'radians'
+                last,
+                'these are degrees: all positions of MoveArm are in radians',
+                'angles in radians',
             )
 
     def expect_line(self) -> None:

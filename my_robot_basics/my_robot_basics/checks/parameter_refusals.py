@@ -26,8 +26,8 @@ def expect_refused(
     expect(
         not result.successful,
         expected=f'{name} = {value:g} to be refused',
-        seen=f'it was taken{f", and {name} is {corrected:g}" if is_corrected else ""}',
-        hint=f'{"do not correct the value, " if is_corrected else ""}{how}',
+        seen=f'it was taken, and {name} is {corrected:g}' if is_corrected else 'it was taken',
+        hint=f'do not correct the value, {how}' if is_corrected else how,
         cause='a value outside the limits is taken',
     )
     expect(

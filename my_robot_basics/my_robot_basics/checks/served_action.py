@@ -78,7 +78,9 @@ class ServedAction(ScriptedActionServer):
             expected=f'a goal for {self.name} for the message on {self.asked_on}',
             seen=shorten(others[-1].request) if others else f'none in {REPLY_SEC:g} s',
             hint=hint(others[-1].request) if others else self._why_no_goal(),
-            cause=f'{self.name} is sent {"another goal" if others else "no goal"}',
+            cause=f'{self.name} is sent another goal'
+            if others
+            else f'{self.name} is sent no goal',
         )
 
     def say_obstacle(self, is_there: bool) -> None:
@@ -130,7 +132,7 @@ class ServedAction(ScriptedActionServer):
             expected=f"'{word}' on {topic_name}",
             seen=f"'{theirs(shorten(others[-1]))}'" if others else f'none in {REPLY_SEC:g} s',
             hint=hint(others[-1]) if others else self._why_silent(hint('')),
-            cause=f'{"another" if others else "no"} outcome is published',
+            cause='another outcome is published' if others else 'no outcome is published',
         )
 
     def forget_outcomes(self) -> None:

@@ -5,6 +5,7 @@ import os
 import sys
 
 from my_robot_basics.doctor.names import full_name
+from my_robot_basics.language.speaking import language_here
 from my_robot_basics.ros2 import completion, environment
 from my_robot_basics.ros2.errors import CommandError
 
@@ -68,7 +69,7 @@ def main(argv: list[str] | None = None) -> int:
     except CommandError as error:
         print(error, file=sys.stderr)
         return USAGE
-    print('\n\n'.join(map(tell, found)))
+    print('\n\n'.join(tell(each, language_here()) for each in found))
     return FAULT if any(each.findings for each in found) else WELL
 
 

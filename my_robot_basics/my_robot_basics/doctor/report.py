@@ -1,9 +1,14 @@
 """A diagnosis in words for a beginner."""
 
-import textwrap
+from functools import partial
+
+from wcwidth import ljust
 
 from my_robot_basics.doctor.evidence import VERBS, Diagnosis, Evidence, Finding, Kind, Seen
 from my_robot_basics.doctor.service_evidence import ServiceEvidence
+from my_robot_basics.language.catalogues import ENGLISH
+from my_robot_basics.language.lines import in_lines
+from my_robot_basics.language.speaking import in_language
 from my_robot_basics.session.errors import COLUMNS
 
 _PLURALS: dict[Kind, str] = {
@@ -12,22 +17,31 @@ _PLURALS: dict[Kind, str] = {
     'client': 'ask',
     'server': 'serve',
 }
+TO_SHOW: tuple[str, ...] = ('expected', 'saw', 'to do')
+TO_SHOW += ('publishes', 'subscribes', 'asks', 'serves')
+TO_SHOW += ('{node} publishes on {name}', '{node} subscribes on {name}')
+TO_SHOW += ('{node} asks {name}', '{node} serves {name}')
+TO_SHOW += ('nobody publishes', 'nobody subscribes', 'nobody asks', 'nobody serves')
+TO_SHOW += ('{names} publishes', '{names} subscribes', '{names} asks', '{names} serves')
+TO_SHOW += ('{names} publish', '{names} subscribe', '{names} ask', '{names} serve')
+TO_SHOW += ('publisher', 'subscription', 'client', 'server', 'a client of {name}')
+"""What sentences are made from in places where no template of them is seen."""
 INDENT = ' ' * 13
 """Below the words of a paragraph, whose labels stand before them."""
 
 
-def tell(diagnosis: Diagnosis) -> str:
+def tell(diagnosis: Diagnosis, language: str = ENGLISH) -> str:
     """The whole answer: one paragraph a fault, the likeliest first, or that all is well."""
     evidence = diagnosis.evidence
     if not diagnosis.findings:
-        return f'All is well on {evidence.name}: {summary(evidence)}.'
+        return in_language(language, f'All is well on {evidence.name}: {summary(evidence)}.')
     many = len(diagnosis.findings) > 1
-    lines = [
-        f'Something is wrong on {evidence.name}'
-        f'{", the likeliest first" if many else ""}: {summary(evidence)}.'
-    ]
-    lines += [_paragraph(i, finding) for i, finding in enumerate(diagnosis.findings, start=1)]
-    return '\n\n'.join(lines)
+    said = f'Something is wrong on {evidence.name}: {summary(evidence)}.'
+    if many:
+        said = f'Something is wrong on {evidence.name}, the likeliest first: {summary(evidence)}.'
+    findings = enumerate(diagnosis.findings, start=1)
+    paragraphs = [_paragraph(i, finding, language) for i, finding in findings]
+    return '\n\n'.join([in_language(language, said), *paragraphs])
 
 
 def summary(evidence: Seen) -> str:
@@ -50,8 +64,9 @@ def _received(evidence: Evidence) -> str:
     if number:
         return f', 1 message in {evidence.listened_sec:.1f} s'
     kept = len(evidence.received)
-    latched = f' ({kept} kept from before)' if kept else ''
-    return f', no new message in {evidence.listened_sec:.1f} s{latched}'
+    if kept:
+        return f', no new message in {evidence.listened_sec:.1f} s ({kept} kept from before)'
+    return f', no new message in {evidence.listened_sec:.1f} s'
 
 
 def _lost(evidence: ServiceEvidence) -> str:
@@ -75,19 +90,13 @@ def _names(evidence: Seen, kind: Kind) -> str:
     return f'{" and ".join(names)} {verb}'
 
 
-def _paragraph(number: int, finding: Finding) -> str:
-    fix = f'{finding.fix}{":" if finding.code else ""}'
-    fields = {'expected': finding.expected, 'saw': finding.seen, 'to do': fix}
-    lines = [f'{number}. {finding.title}']
+def _paragraph(number: int, finding: Finding, language: str) -> str:
+    say = partial(in_language, language)
+    fix = f'{say(finding.fix)}{":" if finding.code else ""}'
+    fields = {'expected': say(finding.expected), 'saw': say(finding.seen), 'to do': fix}
+    lines = [f'{number}. {say(finding.title)}']
     for label, text in fields.items():
-        lines += textwrap.wrap(
-            text,
-            COLUMNS,
-            initial_indent=f'   {label:10}',
-            subsequent_indent=INDENT,
-            break_long_words=False,
-            break_on_hyphens=False,
-        )
+        lines += in_lines(text, COLUMNS, first=f'   {ljust(say(label), 10)}', rest=INDENT)
     if finding.code:
         lines.append(f'{INDENT}{finding.code}')  # in one line, to be copied
     return '\n'.join(lines)

@@ -7,6 +7,7 @@ import numpy as np
 
 from my_robot_basics.drawing.described import described
 from my_robot_basics.feedback import hidden
+from my_robot_basics.language.speaking import in_language_here
 from my_robot_basics.session.errors import in_lines
 
 MOST_CHARACTERS = 200
@@ -17,9 +18,7 @@ class CheckFailed(AssertionError):
 
     def _render_traceback_(self) -> list[str]:
         # IPython asks for this: the sentence alone, never the source of a test.
-        from my_robot_basics.language.speaking import in_language, language_here
-
-        return in_lines(in_language(language_here(), str(self)))
+        return in_lines(in_language_here(str(self)))
 
 
 class PartlyRight(CheckFailed):

@@ -42,11 +42,11 @@ _IN_HAN = re.compile(rf'({_QUOTED.pattern})|(?<={_HAN}) (?={_HAN})')
 """A space between Chinese words, beside a place: there is none; and what is quoted."""
 _TWO_WORDS = re.compile(r'[^\W\d_]{2,} [^\W\d_]{2,}')
 _NAME = re.compile(
-    r'`[^`]*`|\'[^\']*\'|"[^"]*"|/[\w/]+|\w+\(.*?\)|\b[A-Z_]{2,}\b|\w*[\d_]\w*|\w+Error\b'
+    r'`[^`]*`|\'[^\']*\'|"[^"]*"|/[\w/]+|\w+\(.*?\)|\b[A-Z_]{2,}\b|\w*[\d_]\w*|\w+Error\b|NotRunnable'
     r'|\b(True|False|None|Hz|rad|nan|inf|JointState|Point|String|Int32)\b|\w+(/\w+)+|\b\w\b'
 )
 """What is a name in each language, or quoted."""
-_RAISED = re.compile(r'[\w.]*(Error|Exception|Interrupt|NotRunnable)(: .*)?', re.DOTALL)
+_RAISED = re.compile(r'[\w.]*(Error|Exception|Interrupt)(: .*)?', re.DOTALL)
 """What Python says of an exception: it stays in English."""
 
 

@@ -10,11 +10,13 @@ from my_robot_basics.language.sentences import Sentences
 
 LOCALE = Path(__file__).resolve().parents[3] / 'locale'
 """The catalogues beside the package, in the course and in a student's bundle of it."""
-FOR_STUDENTS = ('checks', 'validate', 'lesson_checks')
+FOR_STUDENTS = ('checks', 'validate', 'lesson_checks', 'live', 'doctor')
 """The parts of the software that students have, and of the checks that they may read."""
 PARTS = (*FOR_STUDENTS, 'hidden_checks', 'feedback')
 KEY, LANGUAGE = 'my_robot_basics', 'language'
 """Where in a notebook's metadata its language stands, if it is not English."""
+OF_TERMINALS = 'COURSE_LANGUAGE'
+"""What names the language of a terminal, in its environment: `./course` sets it."""
 
 
 def language_of(metadata: Mapping) -> str:
@@ -25,11 +27,19 @@ def language_of(metadata: Mapping) -> str:
 
 
 def language_here() -> str:
-    """Return the language of the notebook whose kernel this is: that of its edition's folder."""
+    """Return the language of the notebook whose kernel this is: that of its edition's folder.
+
+    In a terminal it is the one that `./course` has chosen.
+    """
     known = languages(LOCALE)
-    path = Path(os.environ.get('JPY_SESSION_NAME', ''))
-    named = [part for part in path.parts if part in known]
-    return next(iter(named), ENGLISH)
+    opened = os.environ.get('JPY_SESSION_NAME')
+    parts = Path(opened).parts if opened else (os.environ.get(OF_TERMINALS, ''),)
+    return next((part for part in parts if part in known), ENGLISH)
+
+
+def in_language_here(text: str) -> str:
+    """Return a sentence of the software in the language of this kernel or terminal."""
+    return in_language(language_here(), text)
 
 
 def in_language(language: str, text: str) -> str:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from my_robot_basics.ros2 import command_line
 from my_robot_basics.session import classroom
-from my_robot_basics.session.errors import NotRunnable, in_lines
+from my_robot_basics.session.errors import NotRunnable, tell
 
 STARTED_SEC = 6.0
 """How long a cell waits for the first line of its commands, or their end."""
@@ -81,9 +81,9 @@ def run_commands(*names: str, executable: str = 'kinematics_publisher') -> None:
     for name, command in zip(lines, _running, strict=True):
         command.has_spoken.wait(max(0.0, deadline - time.monotonic()))
         if command.process.poll() is None:
-            print(f'{name}: started')
+            tell(f'{name}: started')
         else:
-            print(*in_lines(f'{name}: ended by itself: {command.last_line}'), sep='\n')
+            tell(f'{name}: ended by itself: {command.last_line}', in_one=False)
 
 
 def stop_commands() -> None:

@@ -4,6 +4,7 @@ import html
 
 from my_robot_basics.doctor import diagnosing, names, picture, report
 from my_robot_basics.doctor.evidence import Diagnosis
+from my_robot_basics.language.speaking import language_here
 from my_robot_basics.live import notebook, troubles
 from my_robot_basics.session import classroom
 from my_robot_basics.session.errors import LiveError
@@ -40,7 +41,7 @@ def why(name: str, *, domains: bool = False) -> None:
 
 
 def _show(diagnosis: Diagnosis) -> None:
-    told = report.tell(diagnosis)
+    told = report.tell(diagnosis, language_here())
     if not notebook.in_kernel():
         print(told)
         return

@@ -5,7 +5,7 @@ import re
 from pathlib import Path
 
 from my_robot_basics.live import workspace
-from my_robot_basics.session.errors import LiveError, in_lines
+from my_robot_basics.session.errors import LiveError, tell
 
 _FORM = re.compile(r'(?P<command>[\w-]+) *= *(?P<package>\w+)\.(?P<module>\w+):(?P<function>\w+)')
 
@@ -24,7 +24,7 @@ def add_entry_point(entry_point: str) -> None:
     command, module, name = _parts(entry_point)
     if not module.is_file():  # not an error: *Run All* goes on
         said = f'not added: there is no {workspace.shown(module)} yet: run the cell with'
-        print(*in_lines(f'{said} %%write_node {module.name} first'), sep='\n')
+        tell(f'{said} %%write_node {module.name} first', in_one=False)
         return
     _see_that_it_has(module, name)
     setup_file = workspace.copy() / 'setup.py'
@@ -50,7 +50,12 @@ def add_entry_point(entry_point: str) -> None:
             f'setup.py has another line for {command}: {taken[0]!r}. Change it there yourself, or '
             'choose another name'
         )
-    print(f'{"kept" if taken else "added":8} {entry_point!r} in {workspace.shown(setup_file)}:')
+    listed_in = workspace.shown(setup_file)
+    tell(
+        f'kept     {entry_point!r} in {listed_in}:'
+        if taken
+        else f'added    {entry_point!r} in {listed_in}:'
+    )
     print("'console_scripts': [", *(f'    {entry!r},' for entry in entries), ']', sep='\n')
 
 

@@ -7,7 +7,7 @@ from rclpy.node import Node
 
 from my_robot_basics.live import course_nodes, runner, troubles
 from my_robot_basics.session import classroom
-from my_robot_basics.session.errors import NotRunnable
+from my_robot_basics.session.errors import NotRunnable, tell
 
 
 def reset(*names: str) -> None:
@@ -22,7 +22,7 @@ def reset(*names: str) -> None:
         course_nodes.close()
     for name in names:
         _notebook().pop(name, None)
-    print(f'reset: no node is running; {", ".join(names) or "nothing"} is yours to write')
+    tell(f'reset: no node is running; {", ".join(names) or "nothing"} is yours to write')
 
 
 def run_answer(name: str, *args: Any, **kwargs: Any) -> Node | None:

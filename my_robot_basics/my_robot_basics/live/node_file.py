@@ -3,9 +3,10 @@
 import shutil
 from pathlib import Path
 
+from my_robot_basics.language.speaking import in_language_here
 from my_robot_basics.live import program, workspace
 from my_robot_basics.session import kernel
-from my_robot_basics.session.errors import LiveError, in_lines
+from my_robot_basics.session.errors import LiveError, tell
 
 ROOM_FOR_NAMES = 34
 """Columns of the tree; the words stand behind them."""
@@ -38,12 +39,12 @@ def write_node(line: str, cell: str) -> None:
         text = program.fill_in(cell)
     except program.NotAnswered as error:  # not an error: *Run All* goes on
         stays = f' ({name} stays as it was)' if target.exists() else ''
-        print(*in_lines(f'not written: {error}{stays}'), sep='\n')
+        tell(f'not written: {error}{stays}', in_one=False)
         return
     if target.exists() and target.read_text(encoding='utf-8') != text:
-        print(f'moved    {workspace.shown(_kept(target))}: the file as it was')
+        tell(f'moved    {workspace.shown(_kept(target))}: the file as it was')
     target.write_text(text, encoding='utf-8')
-    print(f'written  {workspace.shown(target)}')
+    tell(f'written  {workspace.shown(target)}')
     if text != cell:
         print(f'\n{text}', end='')
 
@@ -70,7 +71,7 @@ def _below(root: Path, folder: Path, indent: str) -> list[str]:
         path = folder / entry
         slash = '/' if (root / path).is_dir() else ''
         name = f'{indent}{"└── " if is_last else "├── "}{entry}{slash}'
-        words = _WORDS.get(str(path), 'your own node')
+        words = in_language_here(_WORDS.get(str(path), 'your own node'))
         lines.append(f'{name:{ROOM_FOR_NAMES}}{words}')
         lines += _below(root, path, indent + ('    ' if is_last else '│   '))
     return lines
@@ -87,11 +88,12 @@ def _entries(root: Path, folder: Path) -> list[str]:
     return names
 
 
+TO_SHOW: tuple[str, ...] = ('a package',)
 _PACKAGE = Path('src', workspace.NAME)
 _MODULES = _PACKAGE / workspace.NAME
 _WORDS = {
     'src': 'sources: what you write',
-    str(_PACKAGE): 'a package',
+    str(_PACKAGE): TO_SHOW[0],
     str(_PACKAGE / 'package.xml'): 'its name, and what it needs',
     str(_PACKAGE / 'setup.py'): 'its entry points',
     str(_MODULES): 'its Python modules',

@@ -6,6 +6,7 @@ from collections import deque
 from dataclasses import dataclass
 from typing import Protocol
 
+from my_robot_basics.language.speaking import in_language_here
 from my_robot_basics.live import notebook, troubles
 from my_robot_basics.live.log_lines import LogRecord
 from my_robot_basics.live.troubles import where_and_what
@@ -13,7 +14,8 @@ from my_robot_basics.live.troubles import where_and_what
 LINES = 12
 LONGEST = 400
 """Characters of an entry that are shown."""
-STOPPED = 'stopped'
+TO_SHOW: tuple[str, ...] = ('running', 'stopped')
+STOPPED = TO_SHOW[-1]
 """The state of a node that was stopped or replaced, as every node of a lesson is in the end."""
 STYLE = 'margin:0;padding-left:8px;border-left:3px solid #0072b2;font-size:13px;word-break:normal'
 """As large as other outputs, and broken between words: JupyterLab does neither to a <pre>."""
@@ -31,7 +33,8 @@ class PanelEntry:
         """What the panel shows."""
         text = self.text if len(self.text) <= LONGEST else self.text[:LONGEST] + ' …'
         again = self.times - 1
-        return text + (f'\n  … {again} more time{"s"[: again != 1]}' if again else '')
+        more = in_language_here(f'… {again} more time{"s"[: again != 1]}')
+        return text + (f'\n  {more}' if again else '')
 
 
 class NodePanel(Protocol):
@@ -91,7 +94,8 @@ class Panel:
         """Add an exception that a callback raised; one from the same line is only counted."""
         troubles.remember(self._name, error)
         where, what = where_and_what(error)
-        text = '\n'.join(filter(None, [what, where, f'  {self._title} goes on']))
+        goes_on = in_language_here(f'{self._title} goes on')
+        text = '\n'.join(filter(None, [what, where, f'  {goes_on}']))
         self._add(PanelEntry(text, where=f'{type(error).__name__} {where}'))
         if not notebook.in_kernel():
             print(text, flush=True)
@@ -126,11 +130,11 @@ class Panel:
         with self._lock:
             lines = [str(entry) for entry in self._entries]
             if self._left_out:
-                lines.insert(0, f'… {self._left_out} earlier lines')
+                lines.insert(0, in_language_here(f'… {self._left_out} earlier lines'))
             state = self._state
         if state == STOPPED and not lines:
             return {'text/plain': '', 'text/html': ''}
-        text = '\n'.join([f'{self._title}: {state}', *lines])
+        text = '\n'.join([f'{self._title}: {in_language_here(state)}', *lines])
         return {
             'text/plain': text,
             'text/html': f'<pre style="{STYLE}">{html.escape(text)}</pre>',

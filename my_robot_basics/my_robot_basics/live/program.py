@@ -10,6 +10,7 @@ from collections.abc import Iterable
 from types import FunctionType, ModuleType
 from typing import Any
 
+from my_robot_basics.language.speaking import in_language_here
 from my_robot_basics.session.errors import LiveError, in_lines
 
 ONLY_IN_NOTEBOOKS = {'display', 'get_ipython'}
@@ -21,8 +22,9 @@ class NotAProgram(LiveError):
     """A cell cannot become a program as it is; the message may have several lines."""
 
     def _render_traceback_(self) -> list[str]:
-        text = f'{type(self).__name__}: {self}'
-        return [line for part in text.splitlines() for line in in_lines(part)]
+        first, *others = map(in_language_here, str(self).splitlines())
+        parts = [f'{type(self).__name__}: {first}', *others]
+        return [line for part in parts for line in in_lines(part)]
 
 
 class NotAnswered(NotAProgram):

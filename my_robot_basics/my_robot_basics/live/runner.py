@@ -17,7 +17,7 @@ from my_robot_basics.live.naming import announce_name
 from my_robot_basics.live.panel import STOPPED, NodePanel, Panel
 from my_robot_basics.live.refusals import is_made, no_node_yet, not_a_class
 from my_robot_basics.session import classroom
-from my_robot_basics.session.errors import NotRunnable
+from my_robot_basics.session.errors import NotRunnable, tell
 from my_robot_basics.session.neighbours import Neighbours, destroy_orphans
 
 N = TypeVar('N', bound=Node)
@@ -75,7 +75,7 @@ def launch(
         if not is_made(node):
             raise NotRunnable(no_node_yet(NodeClass))
     except _LivesElsewhere as found:
-        print(
+        tell(
             f'a node named {found} already runs outside live: no second one was started. '
             'Stop that one first, or give yours another name.'
         )
@@ -114,7 +114,7 @@ def stop(key_or_node: str | type[Node] | Node | None = None) -> None:
     ]
     if not keys:
         name = getattr(key_or_node, '__name__', repr(key_or_node))
-        print(f'nothing to stop: no node runs as {name}')
+        tell(f'nothing to stop: no node runs as {name}')
     _stop_keys(keys)
 
 
@@ -139,7 +139,7 @@ def _ensure_rclpy() -> None:
         rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
     domain_id = rclpy.get_default_context().get_domain_id()
     if domain_id != domain_of_lesson:
-        print(
+        tell(
             f'note: rclpy was initialised in ROS domain {domain_id}, and this lesson is in '
             f'{domain_of_lesson}: call rclpy.shutdown(), then run this cell again'
         )

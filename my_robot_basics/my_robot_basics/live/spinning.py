@@ -15,9 +15,10 @@ from rclpy.context import Context
 from rclpy.executors import Executor, TimeoutException, TimeoutObject
 from rclpy.node import Node
 
+from my_robot_basics.language.speaking import in_language_here
 from my_robot_basics.live.destroying import destroy
 from my_robot_basics.live.patching import patch
-from my_robot_basics.session.errors import LiveError, in_lines
+from my_robot_basics.session.errors import LiveError, in_lines, tell
 
 POLL_SEC = 0.1
 """How long a cell may take to notice that it is interrupted."""
@@ -35,7 +36,7 @@ class SpinInterrupted(KeyboardInterrupt):
     """`rclpy.spin` was interrupted; IPython shows the message alone."""
 
     def _render_traceback_(self) -> list[str]:
-        return in_lines(str(self))
+        return in_lines(in_language_here(str(self)))
 
 
 def help_in_cells() -> None:
@@ -101,10 +102,9 @@ def _explaining_spin(spin: Callable[..., None]) -> Callable[..., None]:
                 'the next cell'
             )
         try:  # an interrupt may come as soon as the line is read
-            print(
+            tell(
                 f'rclpy.spin keeps this cell busy while {name} runs, and no other cell can run: '
-                'press ■ (Interrupt the kernel) above to stop it.',
-                flush=True,
+                'press ■ (Interrupt the kernel) above to stop it.'
             )
             spin(node, executor)
         except KeyboardInterrupt:

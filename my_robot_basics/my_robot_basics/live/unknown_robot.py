@@ -8,6 +8,7 @@ from rclpy.publisher import Publisher
 from sensor_msgs.msg import JointState, Temperature
 
 from my_robot_basics.live import runner
+from my_robot_basics.session.errors import tell
 
 TOPIC = '/kinematics/joint_states'
 PERIOD_SEC = 0.1
@@ -92,9 +93,9 @@ def start_unknown_robot() -> None:
         _robot = runner.run(UnknownRobot)
     if _robot is None:
         return
-    print(f'the unknown robot runs: {_robot.size} nodes')
+    tell(f'the unknown robot runs: {_robot.size} nodes')
     if strangers := _robot.strangers():
-        print(
+        tell(
             f'note: {", ".join(strangers)} is on {TOPIC} and is not part of it: '
             'stop it (Ctrl-C in its terminal), then look again'
         )

@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable
 
+from my_robot_basics.language.speaking import in_language_here
 from my_robot_basics.live import notebook
 from my_robot_basics.session.errors import NotRunnable, WaitTimeout
 
@@ -53,7 +54,7 @@ class _Progress:
         if waited_sec < self._next_sec:
             return
         self._next_sec += SILENT_SEC
-        line = f'waiting … {waited_sec:.0f} s of at most {self._timeout_sec:g} s'
+        line = in_language_here(f'waiting … {waited_sec:.0f} s of at most {self._timeout_sec:g} s')
         if self._display is None:
             self._display = notebook.Display()
             self._display.show({})  # what compares two runs sees the first state, not the updates

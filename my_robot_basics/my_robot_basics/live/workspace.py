@@ -9,9 +9,10 @@ import shutil
 import sys
 from pathlib import Path
 
+from my_robot_basics.language.speaking import in_language_here
 from my_robot_basics.live.copies import Copied
 from my_robot_basics.session import build_tools, classroom
-from my_robot_basics.session.errors import LiveError
+from my_robot_basics.session.errors import LiveError, tell
 from my_robot_basics.session.overlays import Overlay
 
 NAME = 'my_robot_basics'
@@ -61,11 +62,13 @@ def make_workspace(*, refresh: bool | str = False, interfaces: bool = False) -> 
         source, target = PACKAGE.parent / INTERFACES, workspace / 'src' / INTERFACES
         copied = Copied(source, target, INTERFACES_CONTENTS)
         _make(copied, refresh in (True, INTERFACES))
-    print(f'written  {shown(workspace / "reference")}: files to copy from')
+    tell(f'written  {shown(workspace / "reference")}: files to copy from')
     _show_in_file_browser(workspace)
-    print(f"build it in JupyterLab's terminal or in ./course ros-shell:\n           {BUILD}")
+    tell("build it in JupyterLab's terminal or in ./course ros-shell:")
+    print(f'           {BUILD}')
     if interfaces:
-        print(_about_interfaces(workspace))
+        first, *others = _about_interfaces(workspace).split('\n')
+        print(in_language_here(first), *others, sep='\n')
 
 
 def _make(package: Copied, refresh: bool) -> None:
@@ -73,17 +76,17 @@ def _make(package: Copied, refresh: bool) -> None:
     changes = package.differences()
     name = shown(package.target)
     if refresh and changes:
-        print(f'moved    {shown(package.move_aside(make_shelf()))}: your files as they were')
+        tell(f'moved    {shown(package.move_aside(make_shelf()))}: your files as they were')
     if not package.target.exists():
         package.make()
-        print(f'made     {name}: the package, yours to edit')
+        tell(f'made     {name}: the package, yours to edit')
     elif changes:
-        print(f'kept     {name}: you have changed it:')
+        tell(f'kept     {name}: you have changed it:')
         for change in changes:
             print(f'           {change}')
-        print('           (./course workspace --refresh moves it aside and starts again)')
+        tell('           (./course workspace --refresh moves it aside and starts again)')
     else:
-        print(f'kept     {name}: the package, unchanged')
+        tell(f'kept     {name}: the package, unchanged')
 
 
 def _about_interfaces(workspace: Path) -> str:
@@ -94,9 +97,10 @@ def _about_interfaces(workspace: Path) -> str:
         return sentence
     if sentence := build_tools.why_not(INTERFACES):
         return sentence
-    words = f'{shown(built.prefix)} is built; once more' if is_built else 'the same for'
-    build = BUILD.replace(NAME, INTERFACES)
-    return f'{words} {INTERFACES} (about 15 s):\n           {build}'
+    words = f'the same for {INTERFACES} (about 15 s):'
+    if is_built:
+        words = f'{shown(built.prefix)} is built; once more {INTERFACES} (about 15 s):'
+    return f'{words}\n           {BUILD.replace(NAME, INTERFACES)}'
 
 
 def _show_in_file_browser(workspace: Path) -> None:
@@ -147,11 +151,11 @@ def main(argv: list[str] | None = None) -> str | None:
         'package alone',
     )
     args = parser.parse_args(argv)
-    print(f'ROS_WS is {classroom.workspace()}')
+    tell(f'ROS_WS is {classroom.workspace()}')
     try:
         make_workspace(refresh=args.refresh or False, interfaces=True)
     except (OSError, LiveError) as error:
-        return f'course: {error}'
+        return f'course: {in_language_here(str(error))}'
     return None
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from my_robot_basics.session import kernel, lessons
 from my_robot_basics.session.domain import Claim, claim
-from my_robot_basics.session.errors import BadDomain
+from my_robot_basics.session.errors import BadDomain, tell
 
 HIGHEST_DOMAIN = 232
 PACKAGE = Path(__file__).parents[2]
@@ -46,7 +46,7 @@ def enter() -> int:
 
 def show_domain() -> None:
     """Print the line that lets a terminal join this lesson."""
-    print(f'In a terminal, join this lesson: export ROS_DOMAIN_ID={enter()}')
+    tell(f'In a terminal, join this lesson: export ROS_DOMAIN_ID={enter()}')
 
 
 def workspace() -> Path:

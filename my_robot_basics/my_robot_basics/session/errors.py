@@ -1,6 +1,7 @@
 """What goes wrong in a lesson, in a line or two: no traceback of ours in a student's notebook."""
 
-import textwrap
+from my_robot_basics.language import lines
+from my_robot_basics.language.speaking import in_language_here
 
 COLUMNS = 90
 """What fits beside a file browser; JupyterLab breaks words, and Validate cuts long lines off."""
@@ -8,14 +9,20 @@ COLUMNS = 90
 
 def in_lines(text: str) -> list[str]:
     """`text` in lines that end between words."""
-    return textwrap.wrap(text, COLUMNS, break_long_words=False, break_on_hyphens=False)
+    return lines.in_lines(text, COLUMNS)
+
+
+def tell(text: str, *, in_one: bool = True) -> None:
+    """Print a sentence of the course's in the reader's language, in one line or several."""
+    shown = in_language_here(text)
+    print(*[shown] if in_one else in_lines(shown), sep='\n', flush=True)
 
 
 class LiveError(Exception):
     """Base of the errors of `live`; IPython shows the message alone."""
 
     def _render_traceback_(self) -> list[str]:
-        return in_lines(f'{type(self).__name__}: {self}')
+        return in_lines(f'{type(self).__name__}: {in_language_here(str(self))}')
 
 
 class NoFreeDomain(LiveError):

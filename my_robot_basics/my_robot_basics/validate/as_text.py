@@ -1,9 +1,9 @@
 """Lay a report out for a terminal."""
 
-import textwrap
 from collections.abc import Iterator
 from functools import partial
 
+from my_robot_basics.language.lines import in_lines
 from my_robot_basics.language.speaking import in_language, put
 from my_robot_basics.validate.report import MARKS, CheckFeedback, ExerciseFeedback, Report
 
@@ -48,6 +48,4 @@ def _check(check: CheckFeedback, language: str) -> Iterator[str]:
 
 
 def _indented(line: str) -> list[str]:
-    return textwrap.wrap(
-        line, COLUMNS, initial_indent=' ' * 6, subsequent_indent=' ' * 6, break_on_hyphens=False
-    )
+    return in_lines(line, COLUMNS, first=' ' * 6, rest=' ' * 6)

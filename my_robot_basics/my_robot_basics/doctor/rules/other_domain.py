@@ -17,7 +17,9 @@ def examine(evidence: Seen) -> Iterator[Finding]:
             who, where = found[0].node_name, f'ROS domain {evidence.domain_id}'
             yield Finding(
                 title='another domain ID',
-                expected=f'a {kind} {evidence.OF} {evidence.name} in {where}',
+                expected=f'a {kind} on {evidence.name} in {where}'
+                if evidence.OF == 'on'
+                else f'a {kind} of {evidence.name} in {where}',
                 seen=f'{who} {VERBS[kind]} there in domain {domain_id}: different domains'
                 ' never meet',
                 fix=f'start {who} again in a terminal in which this line was run',

@@ -21,10 +21,12 @@ def examine(evidence: Seen) -> Iterator[Finding]:
         for end in _similar(evidence, kind)[:1]:
             how = _difference(end.name, evidence.name)
             wrong, right = _wrong_end(evidence, end)
+            uses = f'{end.node_name} {verb} {end.name}'
+            why = _why(wrong, right)
             yield Finding(
                 title=f'a similar name: {how}',
                 expected=f'a {kind} {evidence.OF} {evidence.name}',
-                seen=f'none, and {end.node_name} {verb} {end.name} ({how}){_why(wrong, right)}',
+                seen=f'none, and {uses} ({how}): {why}' if why else f'none, and {uses} ({how})',
                 fix=f'if {right} is right, write it in {wrong.node_name} (or start '
                 f'that with --ros-args -r {wrong.name}:={right})',
                 code=code.create(wrong.kind, type_name=wrong.type_name, name=right),
@@ -52,7 +54,7 @@ def _is_relative(end: Endpoint, name: str) -> bool:
 def _why(end: Endpoint, name: str) -> str:
     if not _is_relative(end, name):
         return ''
-    return f": in {end.node_name}, a name without a leading / begins with the node's namespace"
+    return f"in {end.node_name}, a name without a leading / begins with the node's namespace"
 
 
 def _misspelt_question(evidence: Seen) -> Iterator[Finding]:

@@ -18,7 +18,7 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
             expected='one message type at both ends',
             seen=f'{sender} publishes {type_name}, {subscription.node_name} expects'
             f' {subscription.type_name}: no message arrives',
-            fix=f'import and use the same type in {subscription.node_name}'
+            fix=f'use the same type in {subscription.node_name}'
             f' (from {type_name.replace("/", ".").rpartition(".")[0]})',
             code=code.create('subscription', type_name=type_name, name=evidence.name),
             broken=(subscription,),

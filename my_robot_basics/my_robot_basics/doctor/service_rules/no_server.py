@@ -14,7 +14,10 @@ def examine(evidence: ServiceEvidence) -> Iterator[Finding]:
     asking = sorted({end.node_name for end in evidence.clients})
     types = [end.type_name for end in evidence.clients]
     others = ', '.join(name for name in evidence.nodes if name not in asking)
-    seen = f'none; {" and ".join(asking) or "nobody"} {"ask" if len(asking) > 1 else "asks"} it'
+    seen = 'none; nobody asks it'
+    if asking:
+        names = ' and '.join(asking)
+        seen = f'none; {names} ask it' if len(asking) > 1 else f'none; {names} asks it'
     yield Finding(
         title='no server',
         expected=f'a server of {evidence.name}',

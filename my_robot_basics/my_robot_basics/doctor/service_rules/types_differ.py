@@ -19,7 +19,7 @@ def examine(evidence: ServiceEvidence) -> Iterator[Finding]:
             expected='one service type at both ends',
             seen=f'{server} serves {type_name}, {client.node_name} asks for'
             f' {client.type_name}: no request arrives',
-            fix=f'import and use the same type in {client.node_name}'
+            fix=f'use the same type in {client.node_name}'
             f' (from {type_name.replace("/", ".").rpartition(".")[0]})',
             code=code.create('client', type_name=type_name, name=evidence.name),
             broken=(client,),
