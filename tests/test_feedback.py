@@ -214,3 +214,17 @@ def test_a_page_that_can_t_be_made_at_all_costs_no_other(course, monkeypatch):
     assert f'{TOY} of eve has no page of feedback, for it takes too much memory' in said
     assert {page.parts[-3] for page in pages} >= {'zoe'}
     assert 'eve' not in {page.parts[-3] for page in pages}
+
+
+def test_what_nbgrader_needs_to_release_a_page_lies_beside_it(course):
+    """Its `release_feedback` reads both, and stops where one is not there."""
+    graded = course.folder('autograded', 'ada', TOY)
+    feedback(course, 'ada', answered(course, RIGHT))
+    for name, text in (
+        ('timestamp.txt', '2026-01-01 10:00:00 UTC'),
+        ('submission_secret.txt', 'aa'),
+    ):
+        (graded / name).write_text(text)
+    (page,) = (each for each in write_feedback(course) if 'ada' in each.parts)
+    assert (page.parent / 'timestamp.txt').read_text() == '2026-01-01 10:00:00 UTC'
+    assert (page.parent / 'submission_secret.txt').read_text() == 'aa'

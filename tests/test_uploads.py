@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.collect import uploads
+from grader.collect import live_folders, uploads
 from grader.collect.archives import UnpackLimits
 from grader.collect.uploads import look_into
 from grader.common.errors import CourseError
@@ -40,7 +40,8 @@ def test_a_folder_is_read_as_it_lies_there(source, tmp_path):
     (source / 'ada/a.ipynb').write_text('x')
     (source / 'b.py').write_text('y')
     assert seen(source, tmp_path) == {'ada/a.ipynb': b'x', 'b.py': b'y'}
-    assert list((tmp_path / 'aside').iterdir()) == []
+    copies = [each.read_text() for each in (tmp_path / 'aside').iterdir()]
+    assert sorted(copies) == ['x', 'y']  # nobody can change what was read
 
 
 def test_one_notebook_is_a_folder_of_one(source, tmp_path):
@@ -117,7 +118,7 @@ def test_what_one_archive_used_up_is_gone_for_all(source, tmp_path, monkeypatch)
 
 
 def test_links_devices_and_what_is_too_large_are_named(source, tmp_path, monkeypatch):
-    monkeypatch.setattr(uploads, 'MAX_FILE_BYTES', 10)
+    monkeypatch.setattr(live_folders, 'MAX_FILE_BYTES', 10)
     secret = tmp_path / 'secret.ipynb'
     secret.write_text('secret')
     (source / 'link.ipynb').symlink_to(secret)

@@ -94,7 +94,7 @@ def _row(
     course: Course, each: MatchedFile, problem: str, grades: Callable[[], list[CellScore]]
 ) -> FileOutcome:
     try:
-        outcome, reason = (LEFT, problem) if problem else _take(course, each, grades)
+        outcome, reason = (LEFT, problem) if problem else take(course, each, grades)
         if not problem and each.remark:
             reason = f'{reason}; {each.remark}' if reason else each.remark
     except OSError as error:
@@ -105,7 +105,7 @@ def _row(
     return FileOutcome(each.notebook.path, outcome, reason, *whose, each.handed_in)
 
 
-def _take(
+def take(
     course: Course, each: MatchedFile, grades: Callable[[], list[CellScore]]
 ) -> tuple[str, str]:
     """Put a submission in its place; return what became of it, and why."""
@@ -114,7 +114,7 @@ def _take(
     files = dict(_files(each))
     came = digests(files)
     if not place.exists():
-        put_whole(writer(files, each.handed_in), place)
+        put_whole(writer(files, each.handed_in, each.secret), place)
         return NEW, ''
     there, when = contents(place), date_of(place / TIMESTAMP)
     if came == there:
@@ -123,11 +123,11 @@ def _take(
     if not (both and both[0] > both[1]) and came in contents_of_earlier(shelf):
         return KNOWN, 'as an earlier one, which was replaced since'
     if both and both[0] <= both[1]:
-        kept = put_numbered(within('submitted', writer(files, each.handed_in)), shelf)
+        kept = put_numbered(within('submitted', writer(files, each.handed_in, each.secret)), shelf)
         return EARLIER, f'a later one is there already; kept in {_shown(kept, course)}'
     if there not in contents_of_earlier(shelf):  # else an earlier run was ended right after that
         put_numbered(lambda folder: _copy_all(course, each, folder, grades), shelf)
-    put_whole(writer(files, each.handed_in), place)
+    put_whole(writer(files, each.handed_in, each.secret), place)
     return AGAIN, f'the one before and its grade are kept in {_shown(shelf, course)}'
 
 

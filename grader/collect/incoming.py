@@ -21,6 +21,10 @@ class Incoming:
     """Why it can't be read."""
     archive: int = 0
     """How many of its parts lead to a student's archive and name it; 0 where there is none."""
+    login: str = ''
+    """The user of this machine whose it is, where neither we nor a platform put it there."""
+    changed: datetime | None = None
+    """When Linux last saw such a user change it, or a folder of theirs around it."""
 
     @property
     def path(self) -> str:
@@ -45,6 +49,7 @@ def as_json(each: Incoming) -> dict:
     return vars(each) | {
         'file': each.file and str(each.file),
         'modified': each.modified and each.modified.isoformat(),
+        'changed': each.changed and each.changed.isoformat(),
     }
 
 
@@ -56,6 +61,8 @@ def from_json(said: dict) -> Incoming:
         modified=said['modified'] and datetime.fromisoformat(said['modified']),
         problem=said['problem'],
         archive=said['archive'],
+        login=said['login'],
+        changed=said['changed'] and datetime.fromisoformat(said['changed']),
     )
 
 

@@ -13,7 +13,7 @@ from grader.collect.platforms import PlatformLabel
 from grader.collect.uploads import wanted
 from grader.common.dates import date_of
 from grader.common.student_names import problem_of_id
-from grader.notebook.submission import TIMESTAMP
+from grader.notebook.submission import SECRET, TIMESTAMP
 
 
 @dataclass(frozen=True)
@@ -31,6 +31,8 @@ class MatchedFile:
     """What a course platform said of the student."""
     remark: str = ''
     """What a person may want to look at, although it was taken."""
+    secret: Path | None = None
+    """nbgrader's, which names the page of feedback in the exchange."""
 
 
 @dataclass(frozen=True)
@@ -68,7 +70,9 @@ def match(
     for notebook, owner in owners.items():
         files = beside[notebook.parts[:-1]] if owner.by_folder or notebook.archive else {}
         stamp = files.get(TIMESTAMP) if not (notebook.archive or owner.label) else None
+        secret = files.get(SECRET) if not (notebook.archive or owner.label) else None
         when = owner.handed_in or (date_of(stamp.readable) if stamp else None)
+        when = notebook.changed or when  # whoever wrote the folder could claim any time
         if when is None and file_times:
             when = notebook.modified
         extra = {
@@ -85,9 +89,10 @@ def match(
                 when,
                 owner.label,
                 remarks[notebook],
+                secret.readable if secret else None,
             )
         )
-        used |= {files[name] for name in extra}
+        used |= {files[name] for name in extra} | ({secret} if secret else set())
         used |= {stamp} if stamp and date_of(stamp.readable) else set()
     uploads = {notebook.parts[:-1] for notebook, owner in owners.items() if owner.label}
     for folder, files in beside.items():
@@ -98,6 +103,8 @@ def match(
 
 def _not_taken(each: Incoming, *, in_upload: bool) -> UntakenFile:
     """Say why a file that lies beside notebooks goes with none of them."""
+    if each.parts[-1] == SECRET:
+        return UntakenFile(each, 'a secret of no submission from the exchange', matters=False)
     if each.parts[-1] != TIMESTAMP:
         return UntakenFile(
             each, "it lies beside no notebook, or beside several students'", matters=False

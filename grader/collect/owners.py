@@ -18,7 +18,7 @@ def find_owners(
     naming = Naming(found, assignments, students)
     for each in filter(is_notebook, found):
         try:
-            owners[each] = naming.owner(each)
+            owners[each] = _checked(each, naming.owner(each))
         except UnclearOwner as unclear:
             problems[each] = str(unclear)
     numbers = defaultdict(set)
@@ -36,6 +36,16 @@ def find_owners(
         if problem:
             problems[each] = problem
     return {e: owner for e, owner in owners.items() if e not in problems}, remarks, problems
+
+
+def _checked(each: Incoming, owner: Owner) -> Owner:
+    """Return an owner. Raises UnclearOwner where the file is of a user of another name."""
+    if each.login in ('', owner.student_id):
+        return owner
+    raise UnclearOwner(
+        f'it is named after {owner.student_id}, and the user {each.login} put it there: ask them. '
+        'If you know better, copy it (cp -r) and collect the copy'
+    )
 
 
 def _namesakes(owner: Owner) -> tuple:

@@ -7,12 +7,13 @@ from collections.abc import Callable, Mapping
 from datetime import datetime
 from pathlib import Path
 
-from grader.notebook.submission import TIMESTAMP
+from grader.notebook.submission import SECRET, TIMESTAMP
 
 
 def contents(folder: Path) -> dict[str, bytes]:
-    """Return the digests of a submission's files, without the time."""
-    files = (path for path in folder.iterdir() if path.is_file() and path.name != TIMESTAMP)
+    """Return the digests of a submission's files, without what the exchange put beside them."""
+    ours = (TIMESTAMP, SECRET)
+    files = (path for path in folder.iterdir() if path.is_file() and path.name not in ours)
     return digests({path.name: path for path in files})
 
 
@@ -30,7 +31,9 @@ def contents_of_earlier(shelf: Path) -> list[dict[str, bytes]]:
     return [contents(folder) for folder in shelf.glob('*/submitted')]
 
 
-def writer(files: Mapping[str, Path], handed_in: datetime | None) -> Callable[[Path], None]:
+def writer(
+    files: Mapping[str, Path], handed_in: datetime | None, secret: Path | None = None
+) -> Callable[[Path], None]:
     """Return what writes a submission into an empty folder, its time as nbgrader does."""
 
     def write(folder: Path) -> None:
@@ -39,6 +42,8 @@ def writer(files: Mapping[str, Path], handed_in: datetime | None) -> Callable[[P
         if handed_in:
             time = handed_in.strftime('%Y-%m-%d %H:%M:%S.%f UTC')
             (folder / TIMESTAMP).write_text(time, encoding='ascii')
+        if secret:
+            shutil.copyfile(secret, folder / SECRET)
 
     return write
 

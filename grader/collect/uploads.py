@@ -1,27 +1,23 @@
 """What comes in: each file of a folder or an archive, and of the archives in it."""
 
-import os
 import re
 import shutil
-import stat
 import tempfile
 from collections.abc import Iterator
 from dataclasses import asdict, replace
-from datetime import UTC, datetime
 from pathlib import Path
 
-from grader.collect.archive_entries import ARCHIVE, MAX_PARTS
-from grader.collect.archives import MAX_FILE_BYTES, UnpackLimits, unpack
+from grader.collect.archive_entries import ARCHIVE
+from grader.collect.archives import UnpackLimits, unpack
 from grader.collect.incoming import Incoming, as_json, from_json
+from grader.collect.live_folders import ONE, LiveFolder
 from grader.collect.platforms import label_in
 from grader.common.errors import CourseError
 from grader.common.parsing import Limits, ParsingFailed, parse
-from grader.notebook.submission import TIMESTAMP
+from grader.notebook.submission import SECRET, TIMESTAMP
 
 ALL = {'files': 100_000, 'bytes': 8_000_000_000}
 """A class of 500 with all its lessons and pictures."""
-ONE = {'files': 5_000, 'bytes': 200_000_000}
-"""One student's archive, with all that the course's own bundle holds."""
 MAX_NESTED = 3
 """Archives within archives: a course management system's, a student's, and one more."""
 LIMITS_OF_ALL = Limits(cpu_sec=900, wall_sec=3_600)
@@ -33,7 +29,7 @@ OTHER_ARCHIVE = re.compile(r'\.(rar|7z|gz|bz2|xz|zst|lzh|cab|iso|dmg)$', re.IGNO
 
 
 def look_into(source: Path, aside: Path) -> Iterator[Incoming]:
-    """Yield all files in a folder or an archive; `aside` is an empty folder for what is unpacked.
+    """Yield all files in a folder or an archive; `aside` is an empty folder for copies of them.
 
     Links are not followed. An archive in it is taken for a student's. Raises CourseError where
     there is nothing of the kind.
@@ -42,19 +38,30 @@ def look_into(source: Path, aside: Path) -> Iterator[Incoming]:
     # the name of one student's upload says whose it is; a class's may look like one of Canvas's
     name = source.resolve().name
     upload = (name,) if (label := label_in(name)) and label.platform.is_plain else ()
+    live = LiveFolder(aside, UnpackLimits(**ALL), wanted)
     if source.is_dir():
-        found: Iterator[Incoming] = _walk(source, upload)
-    elif upload and source.is_file():
-        found = iter([_on_disk(source, upload)])
+        found = live.read(source, upload)
+    elif source.is_file() and (upload or source.suffix == '.ipynb'):
+        whoever = (source.stat().st_uid,)  # whoever collects it has named it
+        found = live.read_entry(source.resolve().parent, name, trusted=whoever)
     elif source.is_file() and ARCHIVE.search(source.name):
         found = _apart('inside', Incoming((), source), source.name, aside, left, LIMITS_OF_ALL)
-    elif source.is_file() and source.suffix == '.ipynb':
-        found = iter([_on_disk(source, (source.name,))])
     else:
         raise CourseError(
             f'{source} is {"another kind of file" if source.exists() else "not there"}: expected '
             'a folder, a notebook or an archive (.zip, .tar, .tar.gz)'
         )
+    yield from _unpacked(found, aside, left)
+
+
+def look_into_entry(folder: Path, name: str, aside: Path) -> Iterator[Incoming]:
+    """Yield all files of what lies under one name in a folder, as `look_into` does."""
+    found = LiveFolder(aside, UnpackLimits(**ONE), wanted).read_entry(folder, name)
+    yield from _unpacked(found, aside, UnpackLimits(**ONE))
+
+
+def _unpacked(found: Iterator[Incoming], aside: Path, left: UnpackLimits) -> Iterator[Incoming]:
+    """Yield files; of each archive among them, what is in it."""
     for each in found:
         if each.problem or each.litter or not ARCHIVE.search(each.parts[-1]):
             yield from _opened(each, aside, left, nested=1)
@@ -63,6 +70,7 @@ def look_into(source: Path, aside: Path) -> Iterator[Incoming]:
             before = replace(part)
             yield from _apart('opened', each, each.parts[-1], aside, part, LIMITS_OF_ONE)
             left.less(before, part)
+            each.readable.unlink()
 
 
 def read_apart(way: str, outer: dict, name: str, aside: str, left: dict) -> dict:
@@ -99,7 +107,10 @@ def _apart(
 def wanted(name: str) -> bool:
     """Whether a file of that name is read at all."""
     return (
-        name.endswith(('.ipynb', '.py')) or name == TIMESTAMP or ARCHIVE.search(name) is not None
+        name.endswith('.py')
+        or name.lower().endswith('.ipynb')
+        or name in (TIMESTAMP, SECRET)
+        or ARCHIVE.search(name) is not None
     )
 
 
@@ -130,35 +141,6 @@ def _inside(outer: Incoming, name: str, aside: Path, left: UnpackLimits) -> Iter
             modified=outer.modified if outer.parts else member.modified,
             problem=member.problem,
             archive=outer.archive or len(outer.parts),
+            login=outer.login,
+            changed=outer.changed,
         )
-
-
-def _walk(folder: Path, above: tuple[str, ...]) -> Iterator[Incoming]:
-    for path in sorted(folder.iterdir()):
-        parts = (*above, path.name)
-        try:
-            each = _on_disk(path, parts)
-            if each.problem or each.litter or not path.is_dir():
-                yield each
-            elif len(parts) > MAX_PARTS:
-                yield Incoming(parts, problem=f'it lies more than {MAX_PARTS} folders deep')
-            else:
-                yield from _walk(path, parts)
-        except OSError as error:  # it is gone meanwhile, or the disk is damaged
-            yield Incoming(parts, problem=f'it can not be read: {error.strerror}')
-
-
-def _on_disk(path: Path, parts: tuple[str, ...]) -> Incoming:
-    """Describe a file or folder as it lies there."""
-    status = path.lstat()
-    problem = ''
-    if stat.S_ISLNK(status.st_mode):
-        problem = 'a link: only files are taken'
-    elif not stat.S_ISREG(status.st_mode) and not stat.S_ISDIR(status.st_mode):
-        problem = 'a device or the like: only files are taken'
-    elif status.st_size > MAX_FILE_BYTES and path.suffix in ('.ipynb', '.py'):
-        problem = f'over {MAX_FILE_BYTES / 1e6:.0f} MB: ask for it without outputs'
-    elif not os.access(path, os.R_OK | (os.X_OK if path.is_dir() else 0)):
-        problem = 'it must not be read: see its permissions'
-    modified = datetime.fromtimestamp(status.st_mtime, UTC)
-    return Incoming(parts, None if problem else path, modified, problem)

@@ -15,6 +15,10 @@ MAX_PYTHON_FILES, MAX_PYTHON_BYTES = 50, 2_000_000
 _MOST_NOTES = 10
 TIMESTAMP = 'timestamp.txt'
 """Beside a notebook: when it was handed in, as nbgrader writes it."""
+SECRET = 'submission_secret.txt'
+"""Beside a notebook from nbgrader's exchange: what the name of its page of feedback is made of."""
+MAX_SECRET_BYTES = 1_000
+"""nbgrader's have 128 characters."""
 
 
 @dataclass(frozen=True)
@@ -85,6 +89,14 @@ def timestamps(submission: Submission) -> list[Path]:
     """Return nbgrader's timestamp.txt, if it lies beside the notebook."""
     path = submission.path.with_name(TIMESTAMP)
     return [path] if path.is_file() and not path.is_symlink() else []
+
+
+def from_exchange(submission: Submission) -> list[Path]:
+    """Return what nbgrader's exchange put beside the notebook: the time, and the secret."""
+    secret = submission.path.with_name(SECRET)
+    fits = secret.is_file() and not secret.is_symlink()
+    fits = fits and secret.stat().st_size <= MAX_SECRET_BYTES
+    return [*timestamps(submission), *([secret] if fits else [])]
 
 
 def handed_in(submission: Submission) -> tuple[datetime | None, list[str]]:

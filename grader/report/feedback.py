@@ -13,6 +13,7 @@ from grader.common.files import write_whole
 from grader.common.parsing import Limits, ParsingFailed, parse
 from grader.course import Course
 from grader.notebook.restore import KEY, grade_id
+from grader.notebook.submission import SECRET, TIMESTAMP
 from grader.storage.gradebook import recover
 from grader.storage.pipeline import resources_of
 
@@ -79,26 +80,50 @@ def write_feedback(
 
     `say` gets a line for each page that is new or says something else than before.
     """
-    exporter = FeedbackPage(config=Config({'Exporter': {'default_preprocessors': []}}))
-    for name in FEEDBACK_PASSES:
-        exporter.register_preprocessor(name)
+    exporter = page_exporter()
     recover(course)
     pages = []
     for graded in sorted(course.folder('autograded', '', '').glob('*/*/*.ipynb')):
         student, assignment = graded.parts[-3:-1]
         if graded.stem != assignment:
             continue
-        notebook = nbformat.read(graded, as_version=4)
         try:
-            at = resources_of(course, assignment, student)
-            html, _ = exporter.from_notebook_node(notebook, at)
+            place, is_new = write_page(course, student, assignment, exporter)
         except ParsingFailed as why:
             say(f'{assignment} of {student} has no page of feedback, for {why}')
             continue
-        place = course.folder('feedback', student, assignment) / f'{assignment}.html'
-        if not place.exists() or place.read_text(encoding='utf-8') != html:
-            place.parent.mkdir(parents=True, exist_ok=True)
-            write_whole(place, html)
+        if is_new:
             say(str(place))
         pages.append(place)
     return pages
+
+
+def page_exporter() -> FeedbackPage:
+    """Return what makes pages: one is enough for any number of them."""
+    exporter = FeedbackPage(config=Config({'Exporter': {'default_preprocessors': []}}))
+    for name in FEEDBACK_PASSES:
+        exporter.register_preprocessor(name)
+    return exporter
+
+
+def write_page(
+    course: Course, student: str, assignment: str, exporter: FeedbackPage
+) -> tuple[Path, bool]:
+    """Write the page of a graded submission; return its path, and whether it is a new one.
+
+    What `nbgrader release_feedback` wants to know lies beside it then. Raises ParsingFailed where
+    no page can be made.
+    """
+    graded = course.folder('autograded', student, assignment)
+    notebook = nbformat.read(graded / f'{assignment}.ipynb', as_version=4)
+    html, _ = exporter.from_notebook_node(notebook, resources_of(course, assignment, student))
+    folder = course.folder('feedback', student, assignment)
+    folder.mkdir(parents=True, exist_ok=True)
+    for name in (TIMESTAMP, SECRET):
+        if (graded / name).is_file():
+            write_whole(folder / name, (graded / name).read_bytes())
+    place = folder / f'{assignment}.html'
+    if place.exists() and place.read_text(encoding='utf-8') == html:
+        return place, False
+    write_whole(place, html)
+    return place, True

@@ -15,7 +15,7 @@ from grader.common.files import write_whole
 from grader.common.text import printable
 from grader.course import Course
 from grader.notebook.restore import KEY
-from grader.notebook.submission import Submission, extra_python_files, handed_in, timestamps
+from grader.notebook.submission import Submission, extra_python_files, from_exchange, handed_in
 from grader.storage.database import connected, in_sentences, make_database, wait_until_free
 from grader.storage.lock import gradebook_lock
 from grader.storage.pipeline import finish, first_reason, resources_of
@@ -116,7 +116,7 @@ def _finish(course: Course, submission: Submission, graded: NotebookNode) -> Not
     graded.metadata.setdefault(KEY, nbformat.from_dict({'notes': []})).notes += notes
     folder = course.folder('autograded', student, assignment)
     saved = finish(graded, at)
-    for extra in (*submission.extra_files, *timestamps(submission)):
+    for extra in (*submission.extra_files, *from_exchange(submission)):
         write_whole(folder / extra.name, extra.read_bytes())
     write_whole(folder / f'{assignment}.ipynb', nbformat.writes(saved))
     _journal(course, submission).unlink()

@@ -1,0 +1,194 @@
+"""Read a folder in which others may write meanwhile: each file is opened once, and copied.
+
+Whatever is asked of a file is asked of the one that is open: a name may lead elsewhere a moment
+later. The user whose it is, which nobody can choose, comes with it; so does the time at which
+Linux last saw it changed, which nobody can set.
+"""
+
+import errno
+import os
+import pwd
+import stat
+import tempfile
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
+from pathlib import Path
+
+from grader.collect.archive_entries import ARCHIVE, MAX_PARTS
+from grader.collect.archives import MAX_FILE_BYTES, UnpackLimits
+from grader.collect.incoming import Incoming
+
+LINK = 'a link: only files are taken'
+DEVICE = 'a device or the like: only files are taken'
+CHANGED = 'it was changed while it was read: collect again'
+MAX_ARCHIVE_BYTES = 500_000_000
+"""A whole class's has less, and lies in a folder of nobody's but the teacher's."""
+ONE = {'files': 5_000, 'bytes': 200_000_000}
+"""One student's archive or folder, with all that the course's own bundle holds."""
+_FLAGS = os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_NOCTTY | os.O_CLOEXEC
+_CHUNK = 1 << 20
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EMFILE, errno.ENFILE)
+
+
+@dataclass(frozen=True)
+class _Within:
+    """What is known of the folder in which something lies."""
+
+    descriptor: int
+    parts: tuple[str, ...]
+    trusted: frozenset[int]
+    """Users whose files are named by a person or a platform: ours, root, the outermost folder's
+    owner."""
+    is_shared: bool
+    """Whether users besides its owner may write there."""
+    uid: int | None = None
+    """Whose all of it has to be, below something of somebody else's."""
+    changed: float = 0.0
+    """When it, or a folder around it, was last changed, where somebody else owns it."""
+
+
+@dataclass(frozen=True)
+class LiveFolder:
+    """How a folder is read: where copies go, how much of it, and which files are wanted."""
+
+    aside: Path
+    left: UnpackLimits
+    wanted: Callable[[str], bool]
+
+    def read(self, folder: Path, above: tuple[str, ...]) -> Iterator[Incoming]:
+        """Yield the files of a folder, copied; nothing but `folder` itself may be a link."""
+        with _closing(os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)) as descriptor:
+            yield from self._entries(_outermost(descriptor, above))
+
+    def read_entry(
+        self, folder: Path, name: str, *, trusted: Iterable[int] = ()
+    ) -> Iterator[Incoming]:
+        """Yield what lies under one name in a folder; `trusted` users may have chosen it."""
+        with _closing(os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)) as descriptor:
+            yield from self._entry(_outermost(descriptor, (), trusted), name)
+
+    def _entries(self, within: _Within) -> Iterator[Incoming]:
+        for name in sorted(os.listdir(within.descriptor)):
+            yield from self._entry(within, name)
+
+    def _entry(self, within: _Within, name: str) -> Iterator[Incoming]:
+        parts = (*within.parts, name)
+        self.left.files -= 1
+        if self.left.files < 0:
+            if self.left.files == -1:
+                yield Incoming(parts, problem='too many files: this one and more were not read')
+            return
+        if (bare := Incoming(parts)).litter:
+            yield bare
+            return
+        try:
+            # a device does something when it is opened: look first, and look again at what is open
+            if problem := _problem_of_kind(os.lstat(name, dir_fd=within.descriptor).st_mode):
+                yield Incoming(parts, problem=problem)
+                return
+            with _closing(os.open(name, _FLAGS, dir_fd=within.descriptor)) as descriptor:
+                yield from self._opened(within, parts, descriptor)
+        except PermissionError:
+            yield Incoming(parts, problem='it must not be read: see its permissions')
+        except OSError as error:  # it is gone or a link meanwhile, or the disk is damaged
+            if error.errno in _FULL:
+                raise
+            yield Incoming(parts, problem=f'it can not be read: {error.strerror}')
+
+    def _opened(
+        self, within: _Within, parts: tuple[str, ...], descriptor: int
+    ) -> Iterator[Incoming]:
+        status = os.fstat(descriptor)
+        foreign = status.st_uid not in within.trusted
+        changed = max(within.changed, status.st_ctime) if foreign else 0.0
+        problem = _problem_of_kind(status.st_mode)
+        if within.uid not in (None, status.st_uid):
+            problem = 'it is not of the user whose folder it lies in'
+        elif foreign and not _login(status.st_uid):
+            problem = f'it is of user {status.st_uid}, who has no name on this machine'
+        elif within.is_shared and stat.S_ISREG(status.st_mode) and status.st_nlink > 1:
+            problem = LINK
+        if problem:
+            yield Incoming(parts, problem=problem)
+        elif stat.S_ISREG(status.st_mode):
+            file, problem = None, ''
+            if self.wanted(parts[-1]):
+                file, problem = self._copy(descriptor, status, bool(ARCHIVE.search(parts[-1])))
+            yield Incoming(
+                parts,
+                file,
+                datetime.fromtimestamp(status.st_mtime, UTC),
+                problem,
+                login=_login(status.st_uid) if foreign else '',
+                changed=datetime.fromtimestamp(changed, UTC) if foreign else None,
+            )
+        elif len(parts) > MAX_PARTS:
+            yield Incoming(parts, problem=f'it lies more than {MAX_PARTS} folders deep')
+        else:
+            inner = _Within(
+                descriptor,
+                parts,
+                within.trusted,
+                within.is_shared or _is_shared(status),
+                status.st_uid if foreign else None,
+                changed,
+            )
+            own = foreign and within.uid is None
+            reader = replace(self, left=UnpackLimits(**ONE)) if own else self
+            yield from reader._entries(inner)
+
+    def _copy(
+        self, descriptor: int, before: os.stat_result, is_archive: bool
+    ) -> tuple[Path | None, str]:
+        most = MAX_ARCHIVE_BYTES if is_archive else min(MAX_FILE_BYTES, self.left.bytes)
+        copied = 0
+        with tempfile.NamedTemporaryFile(dir=self.aside, delete=False) as target:
+            while copied <= most and (chunk := os.read(descriptor, _CHUNK)):
+                target.write(chunk)
+                copied += len(chunk)
+        self.left.bytes -= 0 if is_archive else copied
+        problem = ''
+        if copied > most:
+            problem = f'over {most / 1e6:.0f} MB: ask for it without outputs'
+        elif _written(os.fstat(descriptor)) != _written(before) or copied != before.st_size:
+            problem = CHANGED
+        if problem:
+            Path(target.name).unlink()
+        return (None if problem else Path(target.name)), problem
+
+
+def _outermost(descriptor: int, above: tuple[str, ...], trusted: Iterable[int] = ()) -> _Within:
+    status = os.fstat(descriptor)
+    users = frozenset({0, os.geteuid(), status.st_uid, *trusted})
+    return _Within(descriptor, above, users, _is_shared(status))
+
+
+def _is_shared(status: os.stat_result) -> bool:
+    return bool(status.st_mode & (stat.S_IWGRP | stat.S_IWOTH))
+
+
+def _written(status: os.stat_result) -> tuple[int, int, int]:
+    return status.st_size, status.st_mtime_ns, status.st_ctime_ns
+
+
+def _problem_of_kind(mode: int) -> str:
+    if stat.S_ISLNK(mode):
+        return LINK
+    return '' if stat.S_ISREG(mode) or stat.S_ISDIR(mode) else DEVICE
+
+
+def _login(uid: int) -> str:
+    try:
+        return pwd.getpwuid(uid).pw_name
+    except KeyError:
+        return ''
+
+
+@contextmanager
+def _closing(descriptor: int) -> Iterator[int]:
+    try:
+        yield descriptor
+    finally:
+        os.close(descriptor)

@@ -1,0 +1,203 @@
+"""What lies in a folder that students write into belongs to whoever Linux says, not to a name."""
+
+import os
+import threading
+from datetime import UTC, datetime
+
+import pytest
+
+from grader.collect import live_folders
+from grader.collect.matching import match
+from grader.collect.uploads import look_into, look_into_entry
+from grader.notebook.submission import TIMESTAMP
+
+ALICE, BOB = 4_001, 4_002
+STRANGER = 4_003
+LESSON = '03_publisher'
+CLAIMED = '2020-01-01 00:00:00.000000 UTC'
+LOGINS = {ALICE: 'alice', BOB: 'bob'}
+
+needs_root = pytest.mark.skipif(os.geteuid() != 0, reason='only root gives files to others')
+
+
+@pytest.fixture(autouse=True)
+def users(monkeypatch):
+    """Alice and Bob have names on this machine."""
+    monkeypatch.setattr(live_folders, '_login', lambda uid: LOGINS.get(uid, ''))
+
+
+@pytest.fixture
+def inbound(tmp_path):
+    folder = tmp_path / 'inbound'
+    folder.mkdir()
+    folder.chmod(0o733)
+    return folder
+
+
+def submit(inbound, student, uid, content='{}'):
+    """Put a submission there as `nbgrader submit` does; return its folder."""
+    folder = inbound / f'{student}+{LESSON}+{CLAIMED}+x1'
+    folder.mkdir()
+    for name, text in (
+        (f'{LESSON}.ipynb', content),
+        ('timestamp.txt', CLAIMED),
+        ('submission_secret.txt', 'aa'),
+    ):
+        (folder / name).write_text(text)
+        os.chown(folder / name, uid, uid)
+    os.chown(folder, uid, uid)
+    folder.chmod(0o777)
+    return folder
+
+
+def collected(inbound, tmp_path):
+    """Match what is there; return whose each is, by content, and the reasons of the rest."""
+    aside = tmp_path / 'aside'
+    aside.mkdir(exist_ok=True)
+    taken, left = match(list(look_into(inbound, aside)), [LESSON])
+    whose = {each.notebook.readable.read_text(): each.student_id for each in taken}
+    others = [each for each in left if each.incoming.parts[-1] != TIMESTAMP]
+    return whose, [each.reason for each in others if each.matters]
+
+
+@needs_root
+def test_a_folder_is_its_owners_whoever_it_is_named_after(inbound, tmp_path):
+    submit(inbound, 'alice', ALICE, "alice's")
+    submit(inbound, 'bob', ALICE, "alice's, as bob")
+    whose, reasons = collected(inbound, tmp_path)
+    assert whose == {"alice's": 'alice'}
+    (reason,) = reasons
+    assert reason.startswith('it is named after bob, and the user alice put it there')
+
+
+@needs_root
+def test_when_it_was_handed_in_is_when_linux_saw_it_written(inbound, tmp_path):
+    before = datetime.now(UTC).replace(microsecond=0)
+    folder = submit(inbound, 'alice', ALICE)
+    os.utime(folder / f'{LESSON}.ipynb', (0, 0))
+    os.utime(folder, (0, 0))
+    (one,), _ = match(list(look_into(inbound, tmp_path)), [LESSON])
+    assert before <= one.handed_in <= datetime.now(UTC)
+    assert one.secret.read_text() == 'aa'
+
+
+@needs_root
+@pytest.mark.parametrize('owner', [BOB, 0])
+def test_a_file_of_another_user_in_a_students_folder_is_refused(owner, inbound, tmp_path):
+    folder = submit(inbound, 'alice', ALICE)
+    os.chown(folder / f'{LESSON}.ipynb', owner, owner)
+    assert collected(inbound, tmp_path) == (
+        {},
+        ['it is not of the user whose folder it lies in'],
+    )
+
+
+@needs_root
+def test_who_has_no_name_here_hands_nothing_in(inbound, tmp_path):
+    submit(inbound, 'alice', STRANGER)
+    whose, reasons = collected(inbound, tmp_path)
+    assert whose == {}
+    assert reasons == ['it is of user 4003, who has no name on this machine']
+
+
+@needs_root
+def test_a_hard_link_to_another_files_content_is_a_link(inbound, tmp_path):
+    work = tmp_path / 'work.ipynb'
+    work.write_text('secret')
+    os.link(work, inbound / f'bob_{LESSON}.ipynb')
+    assert collected(inbound, tmp_path) == ({}, [live_folders.LINK])
+
+
+def test_what_a_platform_put_there_is_named_by_the_platform(inbound, tmp_path):
+    """All files have one owner: whoever owns the folder, or collects."""
+    submit(inbound, 'alice', os.geteuid(), "alice's")
+    submit(inbound, 'bob', os.geteuid(), "bob's")
+    whose, reasons = collected(inbound, tmp_path)
+    assert (whose, reasons) == ({"alice's": 'alice', "bob's": 'bob'}, [])
+
+
+@needs_root
+def test_the_owner_of_the_folder_may_be_a_platform_of_its_own(inbound, tmp_path):
+    os.chown(inbound, STRANGER, STRANGER)
+    submit(inbound, 'bob', STRANGER, "bob's")
+    assert collected(inbound, tmp_path) == ({"bob's": 'bob'}, [])
+
+
+def test_a_link_swapped_in_between_look_and_read_is_never_followed(inbound, tmp_path, monkeypatch):
+    folder = submit(inbound, 'alice', os.geteuid(), 'honest')
+    secret, target = tmp_path / 'secret.ipynb', folder / f'{LESSON}.ipynb'
+    secret.write_text('secret')
+    lstat, swaps = os.lstat, []
+
+    def swapped(path, **options):
+        status = lstat(path, **options)
+        if path == target.name and not swaps:
+            target.unlink()
+            target.symlink_to(secret)
+            swaps.append(path)
+        return status
+
+    monkeypatch.setattr(os, 'lstat', swapped)
+    whose, reasons = collected(inbound, tmp_path)
+    assert swaps
+    assert whose == {}
+    assert reasons == ['it can not be read: Too many levels of symbolic links']
+
+
+def test_no_swap_of_hundreds_wins(inbound, tmp_path):
+    folder = submit(inbound, 'alice', os.geteuid(), 'honest')
+    secret, target = tmp_path / 'secret.ipynb', folder / f'{LESSON}.ipynb'
+    secret.write_text('secret')
+    link, honest = folder / 'link.tmp', folder / 'honest.tmp'
+    ended = threading.Event()
+
+    def swap():
+        while not ended.is_set():
+            link.symlink_to(secret)
+            os.replace(link, target)
+            honest.write_text('honest')
+            os.replace(honest, target)
+
+    swapping = threading.Thread(target=swap)
+    swapping.start()
+    try:
+        seen = set()
+        for number in range(200):
+            aside = tmp_path / f'aside{number}'
+            aside.mkdir()
+            for each in look_into_entry(inbound, folder.name, aside):
+                if each.file and each.parts[-1] == target.name:
+                    seen.add(each.file.read_text())
+    finally:
+        ended.set()
+        swapping.join()
+    assert 'secret' not in seen
+    assert seen <= {'honest'}
+
+
+def test_a_file_that_grows_while_it_is_read_is_not_taken(inbound, tmp_path, monkeypatch):
+    target = submit(inbound, 'alice', os.geteuid(), 'half') / f'{LESSON}.ipynb'
+    read = os.read
+
+    def grown(descriptor, size):
+        chunk = read(descriptor, size)
+        if chunk == b'half':
+            with target.open('a') as file:
+                file.write(' and more')
+        return chunk
+
+    monkeypatch.setattr(os, 'read', grown)
+    assert collected(inbound, tmp_path) == ({}, [live_folders.CHANGED])
+
+
+@needs_root
+def test_a_student_with_a_million_files_costs_only_themselves(inbound, tmp_path, monkeypatch):
+    monkeypatch.setattr(live_folders, 'ONE', {'files': 10, 'bytes': 1_000})
+    folder = submit(inbound, 'alice', ALICE)
+    for number in range(20):
+        (folder / f'{number:02}.py').write_text('x')
+        os.chown(folder / f'{number:02}.py', ALICE, ALICE)
+    submit(inbound, 'bob', BOB, "bob's")
+    whose, reasons = collected(inbound, tmp_path)
+    assert whose["bob's"] == 'bob'
+    assert reasons == ['too many files: this one and more were not read']
