@@ -130,6 +130,8 @@ def pytest_configure(config: pytest.Config) -> None:
     sys.dont_write_bytecode = False  # else each xdist worker would compile every test, every time
     # once in each xdist worker, too: two workers do not discover each other's nodes
     os.environ['MY_ROBOT_BASICS_WORKSPACE'] = tempfile.mkdtemp(prefix='ros ws ')
+    # Validate writes there what has passed
+    os.environ['XDG_DATA_HOME'] = tempfile.mkdtemp(prefix='data ')
     if not hasattr(config, 'workerinput'):  # what is made once, also for xdist's workers
         os.environ['MY_ROBOT_BASICS_TESTS'] = tempfile.mkdtemp(prefix='shared-')
     classroom.enter()
@@ -137,6 +139,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 def pytest_unconfigure(config: pytest.Config) -> None:
     shutil.rmtree(os.environ['MY_ROBOT_BASICS_WORKSPACE'])
+    shutil.rmtree(os.environ['XDG_DATA_HOME'])
     if not hasattr(config, 'workerinput'):
         shutil.rmtree(os.environ['MY_ROBOT_BASICS_TESTS'])
 

@@ -15,6 +15,7 @@ from pathlib import Path
 import nbformat
 import psutil
 import pytest
+from answered import answered
 from chromium import LONG, drives_chromium, launched
 from my_robot_basics.live.workspace import make_workspace
 from playwright.sync_api import expect
@@ -236,6 +237,31 @@ def test_the_lab_opens_on_the_contents_and_shows_the_terms_to_readers(page):
     # a link would show it without our settings, too
     page.locator('.jp-DirListing-item', has_text='terms.md').dblclick()
     expect(page.locator('.jp-MarkdownViewer table').first).to_be_visible()
+
+
+def test_the_contents_show_what_has_passed_and_what_has_changed_since(lab, page):
+    name = '02_joint_state'
+    notebook = answered(name, lab.folder / name)
+    opened = f'{name}/{name}.ipynb'
+    close_all(page)
+    Lesson(page, 'index.ipynb')
+    progress = page.locator('.mrb-progress')
+    of_lesson = progress.locator('.mrb-progress-lesson', has_text='to_joint_state')
+    expect(progress).to_contain_text('Passed in Validate: 0 of ')
+    expect(of_lesson).to_contain_text('○')
+    of_lesson.get_by_role('link').click()
+    wait_until_open(page, opened)
+    assert 'All visible checks pass' in Lesson(page, opened).validate()
+    Lesson(page, 'index.ipynb')
+    expect(progress).to_contain_text('Passed in Validate: 1 of ')
+    expect(of_lesson).to_contain_text('✓')
+    Lesson(page, opened)
+    text = notebook.read_text()
+    notebook.write_text(text.replace('radians(theta1_deg)', 'theta1_deg').replace('theta', 'phi'))
+    Lesson(page, 'index.ipynb')
+    expect(of_lesson).to_contain_text('↻')
+    expect(progress).to_contain_text('changed since it passed')
+    close_all(page)
 
 
 @pytest.mark.slow  # test_workspace.py sees its link

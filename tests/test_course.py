@@ -10,7 +10,17 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-VERBS = ['lab', 'validate', 'workspace', 'ros-shell', 'test', 'release', 'bundle', 'translate']
+VERBS = [
+    'lab',
+    'validate',
+    'progress',
+    'workspace',
+    'ros-shell',
+    'test',
+    'release',
+    'bundle',
+    'translate',
+]
 VERBS += ['collect', 'due', 'grade', 'scores', 'feedback', 'solutions', 'demo', 'doctor']
 TOOLS = ['sh', 'cat', 'chmod', 'cp', 'dirname', 'env', 'mkdir', 'readlink', 'sleep', 'uname']
 IN_A_NAMESPACE = [
@@ -744,10 +754,10 @@ def test_in_a_bundle_help_lists_what_a_student_can_do(bundle):
     run = bundle.course('--help')
     assert (run.returncode, run.stderr) == (0, '')
     verbs = [line.split()[0] for line in run.stdout.splitlines() if line.startswith('  ')]
-    assert verbs == ['lab', 'validate', 'workspace', 'ros-shell']
+    assert verbs == ['lab', 'validate', 'progress', 'workspace', 'ros-shell']
 
 
-@pytest.mark.parametrize('verb', VERBS[4:])
+@pytest.mark.parametrize('verb', VERBS[5:])
 def test_in_a_bundle_an_instructors_verb_says_so_and_sets_nothing_up(bundle, verb):
     sentence = the_one_sentence(bundle.course(verb))
     assert sentence.startswith(f"'{verb}' is for instructors and needs the whole course")

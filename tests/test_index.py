@@ -6,6 +6,7 @@ import nbformat
 import pytest
 from course_maker import TOY, make_course, toy_lesson, write_source
 
+from grader.authoring.contents_rows import progress_row
 from grader.authoring.index import make_index, write_pages
 from grader.course import ROOT, Course
 
@@ -13,6 +14,9 @@ INDEX = nbformat.read(ROOT / 'notebooks' / 'index.ipynb', as_version=4)
 TEXT = '\n\n'.join(cell.source for cell in INDEX.cells)
 ROW = r'^\| \[(.+?)\]\((.+?)\) \| (.+?) \| (.+?) \| (\d+) \| (.+?) \| (\d+) \|$'
 ROWS = re.findall(ROW, TEXT, re.MULTILINE)
+QUIZ_ROWS = re.findall(
+    r'^\| \[(.+?)\]\((.+?)\) \| .+? \| .+? \| (\d+) \|  \|  \|$', TEXT, re.MULTILINE
+)
 
 
 def test_each_lesson_has_its_row_with_title_exercises_and_points():
@@ -29,7 +33,40 @@ def test_each_lesson_has_its_row_with_title_exercises_and_points():
         assert f'| {needs} | about {minutes} minutes |\n' in f'{opening}\n'
         assert int(points) == sum(int(worth) for _, worth in promised)
     assert f'| **{sum(int(row[-1]) for row in ROWS)}** |' in TEXT
-    assert f'| **{sum(int(row[-3]) for row in ROWS)}** |' in TEXT
+    minutes = [int(row[-3]) for row in ROWS] + [int(row[-1]) for row in QUIZ_ROWS]
+    assert f'| **{sum(minutes)}** |' in TEXT
+
+
+def test_each_quiz_has_its_row_behind_its_half():
+    links = [link for _, link, *_ in ROWS]
+    assert [link for _, link, *_ in QUIZ_ROWS] == ['quiz_topics.ipynb', 'quiz_services.ipynb']
+    order = re.findall(r'^\| \[.+?\]\((.+?)\)', TEXT, re.MULTILINE)
+    seven = order.index('07_common_errors/07_common_errors.ipynb')
+    assert order[seven + 1] == 'quiz_topics.ipynb'
+    assert order[-1] == 'quiz_services.ipynb'
+    assert [link for link in order if 'quiz' not in link] == links
+
+
+def test_its_metadata_says_who_checks_each_exercise():
+    contents = INDEX.metadata.my_robot_basics.contents
+    assert [each.lesson for each in contents] == Course().assignments()
+    kinds = {each.name: each.checked for lesson in contents for each in lesson.exercises}
+    assert kinds['five_hz'] == 'here'
+    assert kinds['explain_counts'] == 'by hand'
+    listed = re.findall(r'`(\w+)`', ' '.join(row[-2] for row in ROWS))
+    assert [*kinds] == listed
+
+
+def test_an_exercise_that_is_checked_only_at_grading_is_known_as_such():
+    def kinds():
+        return [each['checked'] for each in progress_row(TOY, lesson)['exercises']]
+
+    lesson = toy_lesson()
+    assert set(kinds()) == {'here', 'by hand'}
+    for cell in lesson.cells:
+        if cell.cell_type == 'code' and cell.metadata.get('nbgrader', {}).get('grade'):
+            cell.source = f'### BEGIN HIDDEN TESTS\n{cell.source}\n### END HIDDEN TESTS'
+    assert set(kinds()) == {'at grading', 'by hand'}
 
 
 @pytest.mark.parametrize('link', re.findall(r'\]\((.+?)\)', TEXT))

@@ -2,16 +2,18 @@
 
 import json
 import os
+import shutil
 import socket
 import subprocess
 import sys
 import time
 import urllib.error
+import urllib.parse
 import urllib.request
 
 import psutil
 import pytest
-from answered import answered
+from answered import ROOT, answered
 from test_validate import NOT_A_STUDENTS
 
 TOKEN = 'a-token-of-this-test'
@@ -43,6 +45,9 @@ class Server:
         headers = {'Authorization': f'token {token}', 'Content-Type': 'application/json'}
         request = urllib.request.Request(f'{self.address}/{path}', data, headers)
         return urllib.request.urlopen(request, timeout=LONG_SEC)
+
+    def progress(self, path, **options):
+        return self.ask(f'my_robot_basics/progress?path={urllib.parse.quote(path)}', **options)
 
     def validate(self, path, **options):
         return self.ask('my_robot_basics/validate', json.dumps({'path': path}).encode(), **options)
@@ -134,3 +139,41 @@ def test_where_validate_itself_fails_its_last_line_is_told(server, folder):
     with server.validate('broken.ipynb') as response:
         *_, line = map(json.loads, response)
     assert line['failed'].startswith('Validate itself failed: ValueError: could not convert')
+
+
+def test_progress_is_what_validate_has_written_down_for_this_user(server, folder):
+    shutil.copy(ROOT / 'notebooks/index.ipynb', folder)
+    answered('01_topics', folder / '01_topics')
+
+    def states():
+        with server.progress('index.ipynb') as response:
+            told = json.load(response)
+        exercises = [each for lesson in told['lessons'] for each in lesson['exercises']]
+        return told, {each['name']: each['state'] for each in exercises}
+
+    told, before = states()
+    assert before['predict_delivery'] == 'open'
+    assert told['lessons'][1]['path'] == '01_topics/01_topics.ipynb'
+    with server.validate('01_topics/01_topics.ipynb') as response:
+        *_, last = map(json.loads, response)
+    assert last['report']['notes'] == []
+    told, after = states()
+    assert after['predict_delivery'] == 'passed'
+    assert told['notes'] == []
+    kept = folder.parent / 'DATA/my_robot_basics/passed_answers.json'
+    kept.write_text('{')
+    assert 'is damaged' in states()[0]['notes'][0]
+
+
+def test_progress_of_another_notebook_is_refused_in_a_sentence(server):
+    with server.progress('02_joint_state.ipynb') as response:
+        assert 'is not the contents page' in json.load(response)['failed']
+
+
+@pytest.mark.parametrize(
+    ('path', 'token'), [('../index.ipynb', TOKEN), ('index.ipynb', 'another')]
+)
+def test_nobody_sees_progress_outside_or_without_a_token(server, path, token):
+    with pytest.raises(urllib.error.HTTPError) as refused:
+        server.progress(path, token=token)
+    assert refused.value.code == 403

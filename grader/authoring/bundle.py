@@ -13,6 +13,7 @@ from my_robot_basics.language.speaking import FOR_STUDENTS
 from grader.authoring.editions import editions
 from grader.authoring.index import INDEX, copied_pages
 from grader.authoring.leaks import files_in, leaks_beside
+from grader.authoring.quizzes import quizzes
 from grader.authoring.release import stale_or_leaking
 from grader.common.errors import CourseError
 from grader.common.files import write_whole
@@ -120,7 +121,8 @@ def _paths(course: Course, faults: list[str]) -> Iterator[str]:
     modules = [path for path in files_in(course.root / LAUNCHER) if path.suffix == '.py']
     yield from (f'{LAUNCHER}/{path}' for path in modules)
     for folder in _folders(course):
-        yield from (f'{folder}/{page}' for page in (INDEX, *copied_pages(course)))
+        pages = (INDEX, *copied_pages(course), *quizzes(course))
+        yield from (f'{folder}/{page}' for page in pages)
         for assignment in course.assignments():
             lesson = course.root / folder / assignment
             names = {f'{assignment}.ipynb', *map(str, files_in(lesson))}

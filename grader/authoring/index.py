@@ -1,15 +1,17 @@
 """The pages beside the lessons: the contents, made from them, the core terms, what comes next."""
 
-import re
-from collections.abc import Iterable
-from functools import reduce
+from functools import partial
 from pathlib import Path
 
 from babel import Locale
-from my_robot_basics.validate.cells import title_of
+from my_robot_basics.language.speaking import LANGUAGE
+from my_robot_basics.validate.cells import KEY
+from my_robot_basics.validate.progress import CONTENTS
 from nbformat import NotebookNode, from_dict, v4, write
 
+from grader.authoring.contents_rows import JOINED, minutes_of, points_of, progress_row, row
 from grader.authoring.editions import ENGLISH, Edition, editions
+from grader.authoring.quizzes import lesson_before, quizzes
 from grader.course import Course
 
 INDEX, TERMS, NEXT = 'index.ipynb', 'terms.md', 'what_next.md'
@@ -40,8 +42,6 @@ TO_THE_PAGES = {
 
 HEADER = '| lesson | you will be able to | you need | minutes | exercises | points |'
 TOTAL = 'all together'
-JOINED = '{abilities}; {ability}'
-"""How the abilities of a lesson are put one behind the other."""
 TEXTS = (WELCOME, HEADER, TOTAL, JOINED, HOW_IT_WORKS, *TO_THE_PAGES.values())
 """All that the page of contents says by itself."""
 PART = 'index'
@@ -57,8 +57,11 @@ def write_pages(
         english = (course.root / 'solutions' / page).read_text(encoding='utf-8')
         text = edition.text(Path(page).stem, english)
         (folder / page).write_text(text, encoding='utf-8')
+    for name, quiz in quizzes(course).items():
+        quiz.metadata = from_dict(metadata)
+        write(edition.notebook(Path(name).stem, quiz), folder / name)
     index = make_index(course, edition)
-    index.metadata = from_dict(metadata)
+    index.metadata |= from_dict(metadata)
     write(index, folder / INDEX)
 
 
@@ -71,21 +74,29 @@ def make_index(course: Course, edition: Edition | None = None) -> NotebookNode:
     """Return the table of contents as a notebook: each lesson, what it teaches, its points."""
     edition = edition or Edition()
     lessons = {name: edition.notebook(name, course.source(name)) for name in course.assignments()}
-    rows = [_row(name, lesson, edition) for name, lesson in lessons.items()]
-    total = sum(_points(lesson) for lesson in lessons.values())
-    minutes = sum(float(_needs(lesson.cells[0].source)[1] or 0) for lesson in lessons.values())
+    tests = {name: edition.notebook(Path(name).stem, q) for name, q in quizzes(course).items()}
+    put = partial(edition.text, PART)
+    rows = {name: [row(f'{name}/{name}.ipynb', lesson, put)] for name, lesson in lessons.items()}
+    for name, quiz in tests.items():
+        rows[lesson_before(name, [*lessons])].append(row(name, quiz, put))
+    total = sum(map(points_of, lessons.values()))
+    minutes = sum(map(minutes_of, [*lessons.values(), *tests.values()]))
     table = [
-        edition.text(PART, HEADER),
+        put(HEADER),
         '|---|---|---|---|---|---|',
-        *rows,
-        f'| **{edition.text(PART, TOTAL)}** | | | **{minutes:g}** | | **{total:g}** |',
+        *(line for lines in rows.values() for line in lines),
+        f'| **{put(TOTAL)}** | | | **{minutes:g}** | | **{total:g}** |',
     ]
     pages = ' '.join(edition.text(PART, TO_THE_PAGES[page]) for page in copied_pages(course))
     about = f'{edition.text(PART, HOW_IT_WORKS)}\n{pages}'.strip()
     welcome = [edition.text(PART, WELCOME), *_to_other_editions(course, edition)]
     texts = {'contents': '\n'.join([*welcome, *table]), 'how_it_works': about}
+    ours: dict = {CONTENTS: [progress_row(name, lesson) for name, lesson in lessons.items()]}
+    if edition.language != ENGLISH:
+        ours[LANGUAGE] = edition.language
     return v4.new_notebook(
-        cells=[v4.new_markdown_cell(text, id=id_) for id_, text in texts.items()]
+        cells=[v4.new_markdown_cell(text, id=id_) for id_, text in texts.items()],
+        metadata={KEY: ours},
     )
 
 
@@ -107,42 +118,3 @@ def _name(language: str) -> str:
 
 def _folder(edition: Edition) -> str:
     return '' if edition.language == ENGLISH else f'{edition.language}/'
-
-
-def _row(name: str, lesson: NotebookNode, edition: Edition) -> str:
-    opening = lesson.cells[0].source
-    title = title_of(lesson)
-    marks = [cell.metadata.get('nbgrader', {}) for cell in lesson.cells]
-    exercises = ', '.join(f'`{mark["grade_id"]}`' for mark in marks if mark.get('solution'))
-    link = f'[{title}]({name}/{name}.ipynb)'
-    abilities, (needs, minutes) = _joined(_abilities(opening), edition), _needs(opening)
-    points = f'{_points(lesson):g}'
-    return '| ' + ' | '.join([link, abilities, needs, minutes, exercises, points]) + ' |'
-
-
-def _joined(abilities: Iterable[str], edition: Edition) -> str:
-    pattern = edition.text(PART, JOINED)
-    return reduce(
-        lambda before, ability: pattern.format(abilities=before, ability=ability),
-        [*abilities] or [''],
-    )
-
-
-def _needs(opening: str) -> tuple[str, str]:
-    """Return what a lesson needs before it, and its minutes, as its first cell says; or blanks.
-
-    It is the row of a table that ends with a number in words, '| about 35 minutes |', in any
-    language.
-    """
-    found = re.search(r'^\| (.+) \| [^\d|\n]*(\d+)[^\d|\n]+ \|$', opening, re.M)
-    return (found[1], found[2]) if found else ('', '')
-
-
-def _points(lesson: NotebookNode) -> float:
-    return sum(cell.metadata.get('nbgrader', {}).get('points', 0) for cell in lesson.cells)
-
-
-def _abilities(opening: str) -> list[str]:
-    """Return the items of a lesson's numbered list, each in one line that fits into a table."""
-    items = re.findall(r'^\d+\. (.+(?:\n[^\d\n|].*)*)', opening, re.MULTILINE)
-    return [' '.join(item.split()).rstrip(',.;，。；').replace('|', r'\|') for item in items]

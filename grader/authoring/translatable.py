@@ -7,11 +7,13 @@ from pathlib import Path
 from my_robot_basics.feedback.hidden_source import visible
 from my_robot_basics.language.sentences import JOINED
 from my_robot_basics.validate.cells import role
+from nbformat import NotebookNode
 
 from grader.authoring import index
 from grader.authoring.blocks import translatable, translatable_html, without_mark_scheme
 from grader.authoring.code_messages import messages_in
 from grader.authoring.editions import is_translated
+from grader.authoring.quizzes import quizzes
 from grader.course import Course
 
 Texts = dict[str, list[str]]
@@ -36,6 +38,7 @@ MODULES = {
         f'my_robot_basics/my_robot_basics/doctor/{modules}.py'
         for modules in ('inside', 'report', 'rules/*', 'service_rules/*')
     ],
+    'quiz': ['my_robot_basics/my_robot_basics/quiz/*.py'],
     'feedback': [
         'grader/notebook/*.py',
         'grader/report/page*.py',
@@ -55,6 +58,7 @@ def parts_of(course: Course) -> dict[str, Texts]:
     """Return the English texts of each part: the lessons and the pages beside them."""
     parts = {name: _lesson(course, name) for name in course.assignments()}
     parts[index.PART] = {text: [index.INDEX] for text in _index(course)}
+    parts |= {Path(name).stem: _notebook(quiz) for name, quiz in quizzes(course).items()}
     for page in (*index.copied_pages(course), STUDENTS):
         path = course.root / 'solutions' / page
         if path.is_file():
@@ -93,14 +97,19 @@ def _modules(root: Path, patterns: Sequence[str]) -> Texts:
 
 
 def _lesson(course: Course, name: str) -> Texts:
-    texts: Texts = {}
-    for cell in course.source(name).cells:
-        if is_translated(cell):
-            for block in translatable(without_mark_scheme(cell.source)):
-                texts.setdefault(block, []).append(cell.id)
+    texts = _notebook(course.source(name))
     for page in sorted(course.source_path(name).parent.glob('*.html')):
         for text in translatable_html(page.read_text(encoding='utf-8')):
             texts.setdefault(text, []).append(page.name)
+    return texts
+
+
+def _notebook(notebook: NotebookNode) -> Texts:
+    texts: Texts = {}
+    for cell in notebook.cells:
+        if is_translated(cell):
+            for block in translatable(without_mark_scheme(cell.source)):
+                texts.setdefault(block, []).append(cell.id)
     return texts
 
 

@@ -4,6 +4,7 @@ The nodes of the lessons are `hello_node`, `kinematics_node`, `kinematics_publis
 `kinematics_subscriber`; `two_link_kinematics` is the arm itself. Notebooks import from `live` and
 `checks`. Each package imports only from those named before it in LAYERS:
 
+- `quiz`: Questions whose programs a notebook runs, to compare with what was guessed.
 - `live`: What a notebook calls: run and stop nodes, show the arm, the graph and QoS.
 - `checks`: What a grade cell calls: topics, logs, relays, predictions and inputs.
 - `doctor`: Why is nothing arriving? Rules over the running graph, each fault with its fix.
@@ -34,5 +35,6 @@ LAYERS = (
     'doctor',
     'checks',
     'live',
+    'quiz',
 )
 """Packages, and modules beside them, from the lowest to the highest."""

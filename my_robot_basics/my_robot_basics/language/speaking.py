@@ -10,7 +10,7 @@ from my_robot_basics.language.sentences import Sentences
 
 LOCALE = Path(__file__).resolve().parents[3] / 'locale'
 """The catalogues beside the package, in the course and in a student's bundle of it."""
-FOR_STUDENTS = ('checks', 'validate', 'lesson_checks', 'live', 'doctor')
+FOR_STUDENTS = ('checks', 'validate', 'lesson_checks', 'quiz', 'live', 'doctor')
 """The parts of the software that students have, and of the checks that they may read."""
 PARTS = (*FOR_STUDENTS, 'hidden_checks', 'feedback')
 KEY, LANGUAGE = 'my_robot_basics', 'language'

@@ -59,7 +59,7 @@ def launch(
     """Do what `run` says, with another panel; it is made once stdout is tapped."""
     __tracebackhide__ = True
     _stop_keys([key, *(k for k, background in _running.items() if not background.alive)])
-    _ensure_rclpy()
+    ensure_rclpy()
     panel = make_panel()
 
     def on_name(name: str) -> None:
@@ -128,7 +128,8 @@ def _stop_keys(keys: list[str]) -> None:
             panel.close(STOPPED)
 
 
-def _ensure_rclpy() -> None:
+def ensure_rclpy() -> None:
+    """Initialise rclpy in the lesson's domain where nobody has; print where it is in another."""
     domain_of_lesson = set_up()
     # rclpy.init() in a student's cell listens for Ctrl-C: after one, a thread of rclpy shuts down
     # every context of this process, on a busy machine only when the next node has begun

@@ -32,9 +32,11 @@ def main(arguments: list[str] | None = None) -> int:
         with ForkServer() as server:
             # imported while the server does the same
             from my_robot_basics.validate.as_text import as_text
+            from my_robot_basics.validate.remembering import remember
             from my_robot_basics.validate.run import validate
 
             report = asyncio.run(validate(options.notebook, server, say=say))
+            report = remember(report, options.notebook)
     except KeyboardInterrupt:
         return 130
     except CourseError as error:

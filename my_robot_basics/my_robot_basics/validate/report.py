@@ -49,6 +49,7 @@ class ExerciseFeedback:
     troubles: tuple[str, ...]
     """What went wrong in the student's own cells."""
     checks: tuple[CheckFeedback, ...]
+    answer: str = ''  # tells the answer that was judged from any other
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ from my_robot_basics.validate.exercises import Exercise, find_exercises
 from my_robot_basics.validate.forks import ForkServer
 from my_robot_basics.validate.judging import JudgedExercise, judge_exercise
 from my_robot_basics.validate.lesson import Lesson, read_lesson
+from my_robot_basics.validate.passed_answers import answer_of
 from my_robot_basics.validate.report import (
     CheckFeedback,
     ExerciseFeedback,
@@ -95,7 +96,8 @@ def _part(lesson: Lesson, exercise: Exercise, judged: JudgedExercise) -> Exercis
         verdict, outputs = judged.checks.get(index, (None, []))
         checks.append(make_check(lesson, lesson.notebook.cells[index], verdict, outputs))
     verdicts = [verdict for verdict, _ in judged.checks.values()]
-    return ExerciseFeedback(exercise.name, troubles_of(verdicts), tuple(checks))
+    answer = answer_of(lesson.notebook, exercise)
+    return ExerciseFeedback(exercise.name, troubles_of(verdicts), tuple(checks), answer)
 
 
 def _by_hand(lesson: Lesson) -> list[ExerciseFeedback]:

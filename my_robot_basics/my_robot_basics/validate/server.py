@@ -1,7 +1,7 @@
-"""Lets JupyterLab's button validate: a Jupyter server extension with one address.
+"""Lets JupyterLab's button validate, and the contents page show progress: a server extension.
 
-It starts `python -m my_robot_basics.validate` and passes its lines on as they come: the student's
-server goes on with everything else meanwhile.
+The button starts `python -m my_robot_basics.validate` and passes its lines on as they come: the
+student's server goes on with everything else meanwhile.
 """
 
 import asyncio
@@ -16,6 +16,9 @@ from jupyter_server.base.handlers import APIHandler
 from jupyter_server.serverapp import ServerApp
 from jupyter_server.utils import url_path_join
 from tornado import iostream, web
+
+from my_robot_basics.validate import progress_server
+from my_robot_basics.validate.served import path_below
 
 ADDRESS = 'my_robot_basics/validate'
 MAX_LINE_BYTES = 2**26
@@ -55,11 +58,7 @@ class ValidateHandler(APIHandler):
 
     def _notebook(self, body: dict) -> Path:
         assert self.serverapp is not None  # a handler has one
-        root = Path(self.serverapp.root_dir).expanduser().resolve()
-        path = (root / str(body.get('path', '')).lstrip('/')).resolve()
-        if not path.is_relative_to(root):
-            raise web.HTTPError(403, 'the notebook lies outside of the folder that is served')
-        return path
+        return path_below(self.serverapp, str(body.get('path', '')))
 
     async def _pass_on(self, process: asyncio.subprocess.Process) -> None:
         assert process.stdout is not None  # both are pipes
@@ -96,5 +95,6 @@ def _jupyter_server_extension_points() -> list[dict[str, str]]:
 
 
 def _load_jupyter_server_extension(server: ServerApp) -> None:
-    url = url_path_join(server.web_app.settings['base_url'], ADDRESS)
-    server.web_app.add_handlers('.*$', [(url, ValidateHandler)])
+    handlers = {ADDRESS: ValidateHandler, progress_server.ADDRESS: progress_server.ProgressHandler}
+    base = server.web_app.settings['base_url']
+    server.web_app.add_handlers('.*$', [(url_path_join(base, a), h) for a, h in handlers.items()])

@@ -7,6 +7,7 @@ needs no build. What it shows is text; nothing in a report is read as HTML. */
 
   const NAME = 'my_robot_basics_validate';
   const URL_PATH = 'my_robot_basics/validate';
+  const PROGRESS = new URL('progress.js', document.currentScript.src);
   let shared = {};
 
   /** Return a module of JupyterLab's own. */
@@ -166,6 +167,7 @@ needs no build. What it shows is text; nothing in a report is read as HTML. */
     const names = ['@jupyterlab/apputils', '@jupyterlab/services', '@jupyterlab/coreutils', '@lumino/widgets'];
     const [apputils, services, coreutils, widgets] = await Promise.all(names.map(lab));
     const parts = { apputils, services, coreutils, widgets };
+    const progress = await import(PROGRESS);
     const factory = {
       createNew(panel) {
         const button = new apputils.ToolbarButton({
@@ -180,11 +182,12 @@ needs no build. What it shows is text; nothing in a report is read as HTML. */
     };
     return {
       id: `${NAME}:button`,
-      description: 'Adds the Validate button to notebooks.',
+      description: 'Adds the Validate button to notebooks, and progress to the contents page.',
       autoStart: true,
       activate: app => {
         document.head.append(Object.assign(document.createElement('style'), { textContent: STYLE }));
         app.docRegistry.addWidgetExtension('Notebook', factory);
+        app.docRegistry.addWidgetExtension('Notebook', progress.makeFactory(app, parts));
       }
     };
   }

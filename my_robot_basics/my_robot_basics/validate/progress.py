@@ -1,0 +1,180 @@
+"""`./course progress`, and the list above the contents page: which exercises Validate passed."""
+
+import argparse
+import json
+import sys
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Literal
+
+from my_robot_basics.language.catalogues import ENGLISH
+from my_robot_basics.language.speaking import in_language, language_of, put
+from my_robot_basics.validate.cells import KEY
+from my_robot_basics.validate.errors import CourseError
+from my_robot_basics.validate.exercises import find_exercises
+from my_robot_basics.validate.lesson import read_lesson
+from my_robot_basics.validate.passed_answers import (
+    Pass,
+    Passes,
+    answer_of,
+    default_path,
+    read_passes,
+)
+
+State = Literal['passed', 'changed', 'open', 'by hand', 'at grading']
+MARKS: dict[State, str] = {'passed': '✓', 'changed': '↻', 'open': '○'}
+MARKS |= {'by hand': '…', 'at grading': '…'}
+CONTENTS = 'contents'
+"""Under KEY in the metadata of the contents page: its lessons, and their exercises."""
+TO_SHOW: tuple[str, ...] = ('Your progress', 'Passed in Validate: {passed} of {total} exercises.')
+TO_SHOW += ('This is kept on this computer alone. You get your points at grading.',)
+TO_SHOW += ('passed', 'changed since it passed: press Validate again', 'not passed yet')
+TO_SHOW += ('a person reads it', 'checked only at grading')
+WORDS: dict[State, str] = {
+    'passed': 'passed',
+    'changed': 'changed since it passed: press Validate again',
+    'open': 'not passed yet',
+    'by hand': 'a person reads it',
+    'at grading': 'checked only at grading',
+}
+
+
+@dataclass(frozen=True)
+class LessonProgress:
+    """The exercises of a lesson, as they are now."""
+
+    name: str
+    title: str
+    exercises: Mapping[str, State]
+
+
+@dataclass(frozen=True)
+class Progress:
+    """All lessons of a contents page."""
+
+    lessons: tuple[LessonProgress, ...]
+    notes: tuple[str, ...] = ()
+    """What could not be read."""
+    language: str = ENGLISH
+
+    @property
+    def summary(self) -> str:
+        """How many exercises passed, of those that Validate can check."""
+        states = [state for lesson in self.lessons for state in lesson.exercises.values()]
+        total = sum(state in ('passed', 'changed', 'open') for state in states)
+        text = 'Passed in Validate: {passed} of {total} exercises.'
+        return put(self.language, text, passed=states.count('passed'), total=total)
+
+    def as_data(self) -> dict:
+        """Return all of it, in its language, as what JSON can say."""
+        say = partial(put, self.language)
+        return {
+            'title': say('Your progress'),
+            'summary': self.summary,
+            'about': say('This is kept on this computer alone. You get your points at grading.'),
+            'notes': [in_language(self.language, note) for note in self.notes],
+            'lessons': [
+                {
+                    'title': lesson.title,
+                    'path': f'{lesson.name}/{lesson.name}.ipynb',
+                    'exercises': [
+                        {'name': name, 'state': state, 'mark': MARKS[state], 'words': say(word)}
+                        for name, state in lesson.exercises.items()
+                        for word in [WORDS[state]]
+                    ],
+                }
+                for lesson in self.lessons
+            ],
+        }
+
+
+def progress_on(page: Path, file: Path) -> Progress:
+    """Return what has passed of the lessons beside a contents page.
+
+    Raises CourseError where the page is none.
+    """
+    metadata = _metadata(page)
+    notes: tuple[str, ...] = ()
+    try:
+        passes = read_passes(file)
+    except CourseError as error:
+        passes, notes = {}, (str(error),)
+    lessons = tuple(_lessons(metadata, page, passes))
+    return Progress(lessons, notes, language_of(metadata))
+
+
+def _metadata(page: Path) -> Mapping:
+    wrong = f'{page} is not the contents page of the course: name its index.ipynb'
+    try:
+        metadata = json.loads(page.read_bytes())['metadata']
+        if isinstance(metadata[KEY][CONTENTS], list):
+            return metadata
+    except OSError as error:
+        raise CourseError(f'{page} cannot be read: {error.strerror}') from None
+    except (ValueError, KeyError, TypeError, RecursionError):
+        raise CourseError(wrong) from None
+    raise CourseError(wrong)
+
+
+def _lessons(metadata: Mapping, page: Path, passes: Passes) -> Iterator[LessonProgress]:
+    for row in metadata[KEY][CONTENTS]:
+        match row:
+            case {'lesson': str(name), 'title': str(title), 'exercises': list(exercises)}:
+                kinds = {each['name']: each['checked'] for each in exercises}
+                beside = page.parent / name / f'{name}.ipynb'
+                states = _states(kinds, passes.get(name, {}), beside)
+                yield LessonProgress(name, title, states)
+
+
+def _states(
+    kinds: Mapping[str, str], passes: Mapping[str, list[Pass]], beside: Path
+) -> dict[str, State]:
+    """Compare what passed with what the notebooks say now: that beside, and where it passed."""
+    places = {beside, *(Path(each.notebook) for found in passes.values() for each in found)}
+    now = [answers for place in sorted(places) if (answers := _answers(place))] if passes else []
+    states: dict[str, State] = {}
+    for name, kind in kinds.items():
+        passed = {each.answer for each in passes.get(name, ())}
+        here = {answers[name] for answers in now if name in answers}
+        if kind in ('by hand', 'at grading'):
+            states[name] = 'by hand' if kind == 'by hand' else 'at grading'
+        elif not passed:
+            states[name] = 'open'
+        else:
+            states[name] = 'changed' if here and not here & passed else 'passed'
+    return states
+
+
+def _answers(notebook: Path) -> dict[str, str]:
+    """Return the answers of a notebook by exercise; none where it can't be read any more."""
+    try:
+        cells = read_lesson(notebook).notebook
+    except CourseError:
+        return {}
+    return {each.name: answer_of(cells, each) for each in find_exercises(cells)}
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Print the progress; return 0, or 2 where there is no contents page."""
+    parser = argparse.ArgumentParser(
+        prog='./course progress', description='Show which exercises Validate has seen pass.'
+    )
+    parser.add_argument('page', type=Path, help='the contents page, index.ipynb')
+    try:
+        told = progress_on(parser.parse_args(arguments).page, default_path()).as_data()
+    except CourseError as error:
+        print(f'progress: {error}', file=sys.stderr)
+        return 2
+    print(told['summary'])
+    for lesson in told['lessons']:
+        print('', lesson['title'], sep='\n')
+        for each in lesson['exercises']:
+            print(f'  {each["mark"]} {each["name"]} ({each["words"]})')
+    print('', *told['notes'], told['about'], sep='\n')
+    return 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())

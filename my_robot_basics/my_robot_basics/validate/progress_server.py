@@ -1,0 +1,29 @@
+"""What the list above the contents page asks for: a student's progress, from their own files."""
+
+import asyncio
+
+from jupyter_server.base.handlers import APIHandler
+from tornado import web
+
+from my_robot_basics.validate.errors import CourseError
+from my_robot_basics.validate.passed_answers import default_path
+from my_robot_basics.validate.progress import progress_on
+from my_robot_basics.validate.served import path_below
+
+ADDRESS = 'my_robot_basics/progress'
+
+
+class ProgressHandler(APIHandler):
+    """Takes ?path=, the contents page below the server's root; answers with what it shows."""
+
+    @web.authenticated
+    async def get(self) -> None:
+        """Read the page, the lessons beside it and what has passed."""
+        assert self.serverapp is not None  # a handler has one
+        page = path_below(self.serverapp, self.get_query_argument('path'))
+        try:
+            told = await asyncio.to_thread(progress_on, page, default_path())
+        except CourseError as error:
+            self.finish({'failed': str(error)})
+        else:
+            self.finish(told.as_data())
