@@ -20,6 +20,7 @@ from grader.kernels.isolation import require_isolation
 from grader.report.charts import distribution, share
 from grader.report.message_groups import Reason
 from grader.report.progress_table import changes, score_of
+from grader.report.similar_answers import SimilarPair, find_similar
 from grader.report.statistics import Tally, tally
 from grader.report.templates import template
 from grader.storage.records import records
@@ -44,14 +45,25 @@ class Run:
 def write_report(course: Course, run: Run, rows: Sequence[SubmissionOutcome]) -> Path:
     """Write report.html and report.json into gradebook/runs/<time>/; return the page's path."""
     counted = tally(course, rows)
-    facts = _facts(run, rows, counted) | {'totals': _totals(add_up(records(course)))}
+    now = {row.assignment for row in rows if row.seconds is not None and row.stored}
+    similar = find_similar(course, sorted(now))
+    facts = _facts(run, rows, counted) | {
+        'totals': _totals(add_up(records(course))),
+        'similar': [_similar(pair) for pair in similar.pairs],
+        'not compared': similar.problems,
+    }
     folder = make_folder_for(run.began, course.gradebook / 'runs')
     write_whole(folder / 'report.json', json.dumps(facts, indent=2, ensure_ascii=False) + '\n')
     page = folder / 'report.html'
     write_whole(
         page,
         _template().render(
-            facts, titles=_titles(course, counted), tally=counted, most=MOST_SHOWN, hardest=HARDEST
+            facts,
+            titles=_titles(course, counted),
+            tally=counted,
+            most=MOST_SHOWN,
+            hardest=HARDEST,
+            similar_answers=similar,
         ),
     )
     return page
@@ -113,6 +125,15 @@ def _totals(totals: Totals) -> dict:
             }
             for each in totals.students
         ],
+    }
+
+
+def _similar(pair: SimilarPair) -> dict:
+    return {
+        'assignment': pair.assignment,
+        'exercise': pair.exercise,
+        'students': [printable(student) for student in pair.students],
+        'share': round(pair.share, 2),
     }
 
 
