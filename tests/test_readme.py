@@ -47,6 +47,44 @@ def test_every_nbgrader_command_exists():
     assert set(commands) - set(NbGraderApp.subcommands) == set()
 
 
+CHINESE = (ROOT / 'README.zh-CN.md').read_text(encoding='utf-8')
+
+
+def test_the_chinese_readme_leads_to_each_lesson_that_is_in_chinese():
+    row = r'^\| \[(\d\d) (.+?)\]\(notebooks/(.*?)\) \| .+? \| (\d+) \|$'
+    wanted = []
+    for number, _, path, points in re.findall(row, README, re.MULTILINE):
+        path = f'zh_CN/{path}'
+        cells = nbformat.read(ROOT / 'notebooks' / path, as_version=4).cells
+        title = cells[0].source.splitlines()[0].partition(' · ')[2].partition('：')[0]
+        if not title.isascii():
+            wanted.append((number, title, path, points))
+    assert wanted
+    assert re.findall(row, CHINESE, re.MULTILINE) == wanted
+
+
+def test_each_readme_leads_to_the_other_and_both_to_files_that_exist():
+    assert '(README.zh-CN.md)' in README.partition('## ')[0]
+    assert '(README.md)' in CHINESE.partition('## ')[0]
+    links = re.findall(r'\]\((?!https:)([^)#]+)[^)]*\)|src="([^"]+)"', CHINESE)
+    assert [
+        link for pair in links for link in filter(None, pair) if not (ROOT / link).is_file()
+    ] == []
+
+
+def test_the_chinese_readme_names_commands_that_exist_and_code_that_the_english_one_has():
+    verbs = set(re.findall(r'\./course (\w+)', README))
+    assert set(re.findall(r'\./course (\w+)', CHINESE)) - verbs == set()
+    code = [
+        [line.partition('  #')[0] for block in blocks for line in block.splitlines()]
+        for blocks in (
+            re.findall(r'^```python\n(.*?)^```', text, re.MULTILINE | re.DOTALL)[:1]
+            for text in (README, CHINESE)
+        )
+    ]
+    assert code[0] == code[1]
+
+
 def test_the_table_lists_the_lessons_that_there_are():
     rows = {}
     for path in sorted((ROOT / 'solutions').glob('*/*.ipynb')):
