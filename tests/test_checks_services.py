@@ -2,6 +2,7 @@
 
 import math
 import threading
+import time
 
 import pytest
 from my_robot_basics.checks import CheckFailed, ik, service, services
@@ -94,6 +95,36 @@ def test_who_answers_right_passes_in_whatever_way(run, node_class):
     run(node_class)
     check_answers()
     check_refusals()
+
+
+class AnswersOften(Node):
+    """The first response is right, and 30 wrong ones follow at once."""
+
+    def __init__(self):
+        super().__init__('answers_often')
+        self.server = self.create_service(Trigger, '/often', self.answer)
+        self.server.send_response = self.send
+
+    def answer(self, request, response):
+        return response
+
+    def send(self, response, header):
+        with self.server.handle:
+            for number in range(31):
+                response = Trigger.Response(success=number == 0)
+                self.server.handle.service_send_response(response, header.request_id)
+
+
+def test_the_first_response_counts_however_late_the_check_looks(run, monkeypatch):
+    wait_for_all = services.wait_for_all
+
+    def late(*arguments, **options):
+        time.sleep(1.0)  # as on a busy machine
+        return wait_for_all(*arguments, **options)
+
+    run(AnswersOften)
+    monkeypatch.setattr(services, 'wait_for_all', late)
+    assert service('/often', Trigger).call(Trigger.Request()).success
 
 
 @pytest.mark.slow

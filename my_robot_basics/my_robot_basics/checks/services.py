@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any, NoReturn
 
 from rcl_interfaces.srv import GetParameters
+from rclpy.qos import QoSProfile
 from rclpy.task import Future
 
 from my_robot_basics.checks.callbacks import CallbackErrors
@@ -22,6 +23,8 @@ LOOK_SEC = 0.5
 """How often the notebook is asked meanwhile whether a callback has raised."""
 PARAMETERS_SEC = 1.0
 """How long a node may take to tell a parameter, of time that was free: one that spins does."""
+RESPONSES = QoSProfile(depth=1000)
+"""Room for responses: the first is not lost where a server sends more and the check is late."""
 
 
 def service(name: str, type_: type) -> 'Service':
@@ -56,7 +59,7 @@ class Service:
         with Watcher() as watcher:
             server = self._meet(watcher)
             raised = CallbackErrors([server])
-            client = watcher.node.create_client(self.type, self.name)
+            client = watcher.node.create_client(self.type, self.name, qos_profile=RESPONSES)
             watcher.spin_until(client.service_is_ready, timeout_sec=SERVER_SEC)
             asked = [client.call_async(request) for request in requests]
             if not wait_for_all(watcher, asked, gives_up=lambda: bool(raised.hint())):
