@@ -22,6 +22,7 @@ ATTACKS = (
     r'|leaves_a_daemon|patches_what_checks_use|returns_a_pickle|shadows_modules'
     r'|robot_(forges_what_nodes_say|speaks_in_every_domain)'
     r'|client_(counts_ahead|publishes_both_branches)|server_sends_huge_arrays'
+    r'|arms_are_made_in_the_kernel|sender_says_every_word'
     r'|brings_(links|modules_of_ours)|edits_its_checks|skips_its_checks'
 )
 ORDINARY = {

@@ -7,6 +7,7 @@ import time
 
 import pytest
 from my_robot_basics.checks import CheckFailed, action, moves, open_action
+from my_robot_basics.checks.clock import SimulatedClock
 from nodes.running import imported, running
 from rclpy.action import ActionServer, GoalResponse
 from rclpy.callback_groups import ReentrantCallbackGroup
@@ -221,14 +222,27 @@ def test_a_program_of_its_own_passes():
         check_all()
 
 
-def test_a_robot_minute_is_driven(run):
-    """Were it not, it would last a minute, or be a short move on the wall clock."""
-    run(MoveArmServer)
+@pytest.fixture
+def ticks(monkeypatch):
+    """How far the robot's clock was moved by each step, in ns."""
+    found, tick = [], SimulatedClock.tick
+    monkeypatch.setattr(
+        SimulatedClock, 'tick', lambda clock, ns: (found.append(ns), tick(clock, ns))
+    )
+    return found
+
+
+@pytest.mark.parametrize(
+    ('node_class', 'least', 'most'), [(MoveArmServer, 200, 400), (FixedSteps, 1150, 1300)]
+)
+def test_a_robot_minute_is_driven(run, ticks, node_class, least, most):
+    """In coarse steps where the server keeps pace with them; one that adds up steps does not."""
+    run(node_class)
     move_arm = action('/move_arm', MoveArm)
-    began = time.monotonic()
     moves.expect_reaches(move_arm, (1.2, -0.6), speed=0.02)
     assert move_arm.known.follows == {'/move_arm_server': True}
-    assert time.monotonic() - began < 60.0
+    assert sum(ticks) > 60e9
+    assert least < len(ticks) < most
 
 
 # --- right ones, on the wall clock ---------------------------------------------------------------

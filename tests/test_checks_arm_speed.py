@@ -1,24 +1,50 @@
 """How exact a speed has to be, whatever the machine: 2 % of a robot minute."""
 
+import itertools
+import random
 from types import SimpleNamespace
 
 import pytest
 from my_robot_basics.checks import CheckFailed, arm_speed, moves
+from my_robot_basics.checks.arm_cancels import _went_on_without_answer
+from my_robot_basics.checks.watched_arm import WatchedArm
+from my_robot_basics.feedback.errors import Starved
+
+from arm_interfaces.action import MoveArm
 
 MINUTE = (1.2, -0.6)
 SPEED = 0.02
 
 
-def judge(seconds):
-    """What comes of a move of one robot minute that took so long, also in finer steps."""
+def judge(seconds, *, speed=SPEED, reported=(), is_driven=True, stalled_sec=0.0):
+    """What comes of a move that took so long, in finer steps, too; `reported` are (s, rad)."""
     arm = SimpleNamespace(
         start=(0.0, 0.0),
-        time=SimpleNamespace(is_driven=True),
+        time=SimpleNamespace(is_driven=is_driven, at_ns=lambda sent_ns: sent_ns),
         seconds=lambda sent: seconds,
-        doubt=lambda: CheckFailed,
+        lost_sec=0.0,
+        stalled_sec=lambda: stalled_sec,
+        doubt=lambda: Starved if stalled_sec else CheckFailed,
     )
-    sent = SimpleNamespace(goal=moves.goal(MINUTE, speed=SPEED))
+    told = [(round(at * 1e9), MoveArm.Feedback(position=[q, -q / 2])) for at, q in reported]
+    sent = SimpleNamespace(goal=moves.goal(MINUTE, speed=speed), feedback=lambda: told)
     arm_speed.expect_speed(arm, sent, MINUTE)
+
+
+def reports(speed, *, seconds, step_sec=0.05, late_sec=(0.0,)):
+    """What a server tells that computes each position from its clock, and may be late with it."""
+    late = itertools.cycle(late_sec)
+    times = [step_sec * step + next(late) for step in range(round(seconds / step_sec))]
+    return [(at, speed * at) for at in times]
+
+
+def steps(speed, *, seconds, step_sec=0.05, late_sec):
+    """What a loop tells that adds one step to the other, and sleeps longer than it is to."""
+    late, at, found = itertools.cycle(late_sec), 0.0, []
+    for step in range(round(seconds / step_sec)):
+        found.append((at, speed * step_sec * step))
+        at += step_sec + next(late)
+    return found
 
 
 @pytest.fixture(autouse=True)
@@ -47,3 +73,90 @@ def test_two_percent_are_right(seconds):
 def test_another_speed_is_named(seconds, hint):
     with pytest.raises(CheckFailed, match=hint):
         judge(seconds)
+
+
+# --- what feedback tells -------------------------------------------------------------------------
+
+BRIEF_SEC = 1.6
+BRIEF = 1.2 / BRIEF_SEC
+"""The speed of a move on the wall clock."""
+BUSY = 0.004, 0.001, 0.03, 0.002, 0.0, 0.012
+
+
+@pytest.mark.parametrize('off', [-0.018, 0.0, 0.018])
+def test_two_percent_of_a_short_move_are_right_by_its_feedback(off):
+    told = reports(0.5 * (1.0 + off), seconds=2.4)
+    judge(2.4 / (1.0 + off), speed=0.5, reported=told)
+
+
+@pytest.mark.parametrize('off', [-0.025, 0.025])
+def test_more_are_wrong_though_the_end_comes_within_a_step(off):
+    told = reports(0.5 * (1.0 + off), seconds=2.4)
+    with pytest.raises(CheckFailed, match=r'expected 2.40 s .* saw 2.[34]\d s: in each step'):
+        judge(2.4 / (1.0 + off), speed=0.5, reported=told)
+
+
+@pytest.mark.parametrize('off', [-0.04, 0.04, 0.1])
+@pytest.mark.parametrize('late_sec', [(0.0002, 0.0), BUSY])
+def test_three_percent_are_told_on_the_wall_clock(off, late_sec):
+    told = reports(BRIEF * (1.0 + off), seconds=BRIEF_SEC, late_sec=late_sec)
+    with pytest.raises(CheckFailed, match='in each step, move by speed'):
+        judge(BRIEF_SEC / (1.0 + off), speed=BRIEF, reported=told, is_driven=False)
+
+
+@pytest.mark.parametrize('make', [reports, steps])
+@pytest.mark.parametrize('late_sec', [(0.0004,), BUSY])
+def test_a_busy_machine_makes_no_right_speed_wrong(make, late_sec):
+    told = make(BRIEF, seconds=BRIEF_SEC, late_sec=late_sec)
+    took_sec = BRIEF_SEC + (sum(late_sec) / len(late_sec) / 0.05 * BRIEF_SEC)
+    judge(took_sec, speed=BRIEF, reported=told, is_driven=False, stalled_sec=1.0)
+
+
+def test_a_loop_that_sleeps_too_little_is_too_fast():
+    told = steps(BRIEF * 1.06, seconds=BRIEF_SEC, late_sec=(0.0003, 0.001))
+    with pytest.raises(CheckFailed, match='in each step, move by speed'):
+        judge(BRIEF_SEC / 1.06, speed=BRIEF, reported=told, is_driven=False)
+
+
+def test_feedback_that_is_wrong_itself_tells_nothing():
+    judge(2.4, speed=0.5, reported=reports(0.5 * 57.3, seconds=0.02, step_sec=0.001))
+    judge(2.4, speed=0.5, reported=[(0.1 * step, 1.2) for step in range(20)])
+
+
+@pytest.mark.parametrize(('times', 'failure'), [(1.05, Starved), (1.3, CheckFailed)])
+def test_a_busy_machine_is_to_blame_for_no_speed_that_is_far_off(times, failure):
+    told = reports(BRIEF / times, seconds=BRIEF_SEC * times, late_sec=BUSY)
+    with pytest.raises(CheckFailed) as raised:
+        judge(BRIEF_SEC * times, speed=BRIEF, reported=told, is_driven=False, stalled_sec=1.0)
+    assert raised.type is failure
+
+
+def test_a_busy_machine_may_have_slowed_a_loop_down():
+    told = steps(BRIEF, seconds=BRIEF_SEC, late_sec=(0.02, 0.03))
+    with pytest.raises(Starved):
+        judge(BRIEF_SEC * 1.5, speed=BRIEF, reported=told, is_driven=False, stalled_sec=0.3)
+
+
+def test_a_busy_machine_makes_no_move_faster():
+    with pytest.raises(CheckFailed) as raised:
+        judge(BRIEF_SEC / 1.5, speed=BRIEF, is_driven=False, stalled_sec=1.0)
+    assert raised.type is CheckFailed
+
+
+def test_short_moves_take_no_time_that_a_server_could_always_take():
+    arm = WatchedArm(None, None, (0.0, 0.0), 2.0)
+    positions = [MINUTE, *(moves.choose(random.Random(seed)) for seed in range(20))]
+    goals = [arm.goal(position, speed=SPEED) for position in positions]
+    seconds = sorted(abs(goal.position[0]) / goal.speed for goal in goals)
+    assert 1.3 <= seconds[0] < 1.45
+    assert 1.85 < seconds[-1] <= 2.0
+    assert len({round(each, 1) for each in seconds}) >= 6
+
+
+@pytest.mark.parametrize(('count', 'is_proof'), [(7, False), (20, True)])
+def test_feedback_that_goes_on_proves_a_request_that_waits(count, is_proof):
+    """On a machine of whatever load: what publishes it would have answered, too."""
+    asked_ns = 10**18
+    told = [(asked_ns + step * 50_000_000, None) for step in range(-9, count)]
+    sent = SimpleNamespace(feedback=lambda: told)
+    assert _went_on_without_answer(sent, asked_ns) is is_proof

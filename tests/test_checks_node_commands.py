@@ -1,10 +1,18 @@
 """Two command lines that start one program twice: each way to write them, and each mistake."""
 
+import math
+import random
 import sys
 
 import pytest
 from my_robot_basics.checks import CheckFailed, node_command
+from my_robot_basics.checks.started_node import started_node
+from my_robot_basics.graph import graphs
+from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.live import commands
+from my_robot_basics.ros2 import command_line
+from rclpy.node import Node
+from sensor_msgs.msg import JointState
 
 from my_robot_basics import live
 
@@ -111,3 +119,72 @@ def test_other_poses_than_those_of_the_seed_are_told(start):
     left = node_command('left_arm', '/left/arm')
     with pytest.raises(CheckFailed, match='expected a pose of the seed 7 on /left/joint_states'):
         left.expect_poses('/left/joint_states', seed=7)
+
+
+class Arm(Node):
+    """A node of the notebook that looks like one of a command line."""
+
+    def __init__(self, side, seed):
+        super().__init__('arm', namespace=f'/{side}')
+        self.declare_parameter('seed', seed)
+        self.random = random.Random(seed)
+        self.poses = self.create_publisher(JointState, f'/{side}/joint_states', 10)
+        self.create_timer(1.0, self.publish)
+
+    def publish(self):
+        pose_deg = self.random.uniform(-90.0, 90.0), self.random.uniform(-120.0, 120.0)
+        self.poses.publish(JointState(position=[math.radians(angle) for angle in pose_deg]))
+
+
+def test_nodes_that_the_command_lines_do_not_start_are_told(start):
+    start(left=START, right=START)
+    live.run(Arm, 'left', 1, key='left')
+    live.run(Arm, 'right', 7, key='right')
+    words = 'expected /left/arm to be the node of the command line, saw /kinematics_publisher is'
+    with pytest.raises(CheckFailed, match=words):
+        look()
+
+
+@pytest.mark.parametrize(
+    ('options', 'found'),
+    [
+        ('-r __ns:=/a -r __node:=b', ('/a/b', TOPIC, None)),
+        (f'-r __ns:=/a -r {TOPIC}:=c', ('/a/kinematics_publisher', '/a/c', None)),
+        ('-r __ns:=/a -r joint_states:=c', ('/a/kinematics_publisher', TOPIC, None)),
+        ('-r kinematics_publisher:__node:=b -p seed:=7 -p seed:=8', ('/b', TOPIC, 8)),
+        ('-p seed:=7 --params-file nowhere.yaml', ('/kinematics_publisher', TOPIC, 7)),
+    ],
+)
+def test_a_command_line_is_read_as_rcl_reads_it(options, found):
+    started = read(options)
+    assert (started.name, started.topic_name, started.parameter) == found
+    assert started.has_file == ('--params-file' in options)
+
+
+@pytest.mark.parametrize('options', ['-r __ns:=a', '-r __node:=a/b', '-r c', '-p seed:={'])
+def test_what_rcl_refuses_starts_nothing(options):
+    assert read(options) is None
+
+
+def read(options):
+    line = command_line.parse(
+        f'{START} {options}', package='my_robot_basics', executable='kinematics_publisher'
+    )
+    return started_node(
+        line, node_name='kinematics_publisher', topic_name=TOPIC, parameter_name='seed'
+    )
+
+
+def test_a_node_that_is_made_to_read_a_line_is_met_by_nobody(monkeypatch):
+    met, destroy = [], Node.destroy_node
+    with Watcher() as watcher:
+
+        def look_first(node):
+            if node.get_name() == 'b':
+                watcher.spin_for(0.5)
+                met.append(node.get_fully_qualified_name() in graphs.node_names(watcher.node))
+            destroy(node)
+
+        monkeypatch.setattr(Node, 'destroy_node', look_first)
+        assert read('-r __ns:=/a -r __node:=b').name == '/a/b'
+    assert met == [False]

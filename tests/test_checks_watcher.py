@@ -1,8 +1,10 @@
 """A check's own node among more endpoints than a lesson can have."""
 
+from types import SimpleNamespace
+
 import pytest
 from my_robot_basics.checks import CheckFailed, topic
-from my_robot_basics.graph import graphs, watcher
+from my_robot_basics.graph import cell_context, graphs, watcher
 from my_robot_basics.graph.watcher import Watcher
 from rclpy.node import Node
 from std_msgs.msg import Empty, String
@@ -62,3 +64,36 @@ def test_a_name_that_is_no_text_fails_a_check(node, monkeypatch):
     monkeypatch.setattr(Node, 'get_topic_names_and_types', look_up)
     with pytest.raises(CheckFailed, match='names and types on the graph that are text, saw bytes'):
         topic('/talk').wait_for()
+
+
+@pytest.fixture
+def end_cell(monkeypatch):
+    """In a test's room: what ends the grade cell that runs."""
+    ends = []
+    shell = SimpleNamespace(events=SimpleNamespace(register=lambda _, end: ends.append(end)))
+    monkeypatch.setattr(cell_context.kernel, 'shell', lambda: shell)
+    monkeypatch.setenv('MY_ROBOT_BASICS_ROOM', 'test')
+    yield lambda: [end() for end in ends]
+    for end in ends:
+        end()
+
+
+def test_the_watchers_of_a_grade_cell_share_a_participant_that_ends_with_it(node, end_cell):
+    with Watcher(shared=True) as first, Watcher(shared=True) as second, Watcher() as other:
+        assert first.context is second.context
+        assert other.context is not first.context
+    assert first.context.ok()
+    assert not other.context.ok()
+    with Watcher(shared=True) as third:
+        assert third.context is first.context
+        assert '/talker' in graphs.node_names(third.node)  # it was met before
+    end_cell()
+    assert not first.context.ok()
+    with Watcher(shared=True) as fourth:
+        assert fourth.context is not first.context
+
+
+def test_elsewhere_each_watcher_is_gone_with_its_check(node):
+    with Watcher(shared=True) as alone:
+        assert alone.context.ok()
+    assert not alone.context.ok()

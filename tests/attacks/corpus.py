@@ -20,11 +20,16 @@ OTHERS = {
 }
 NAMES = [*ANSWERS, *OTHERS]
 ROBOT, SERVICES = '03_publisher', '08_services'
-FULL = {TOY: 3.0, ROBOT: 5.0, SERVICES: 7.0}
+ACTIONS, PARAMETERS = '09_actions', '11_parameters'
+FULL = {TOY: 3.0, ROBOT: 5.0, SERVICES: 7.0, ACTIONS: 10.0, PARAMETERS: 5.0}
 KINDS = {
     'robot': (ROBOT, 'five_hz', 'publisher.py'),
     'server': (SERVICES, 'ik_service', 'server.py'),
     'client': (SERVICES, 'ik_client', 'client.py'),
+    'mover': (ACTIONS, 'move_arm_server', 'mover.py'),
+    'sender': (ACTIONS, 'move_arm_client', 'sender.py'),
+    'rate': (PARAMETERS, 'adjustable_rate', 'rate.py'),
+    'arms': (PARAMETERS, 'two_arms', ''),
 }
 """The lesson and its exercise that attacks are an answer to, and the honest code before them."""
 HONEST = 'def double(x):\n    return x + x'
@@ -102,5 +107,5 @@ def hand_in_honestly(course: Course, student: str, assignment: str = TOY) -> Non
 def add_robot_lessons(course: Course) -> None:
     """Let a course of the toy lesson have those with nodes, too."""
     for step in ('solutions', 'notebooks'):
-        for lesson in (ROBOT, SERVICES):
+        for lesson in (ROBOT, SERVICES, ACTIONS, PARAMETERS):
             (course.root / step / lesson).symlink_to(Path(__file__).parents[2] / step / lesson)

@@ -40,6 +40,7 @@ class SentGoal:
         self.sent_ns = time.time_ns()
         """When it was sent, on the wall clock."""
         self._ends, self._ask_for_result = ends, ask_for_result
+        self._received_before = len(ends.feedback.received)
         self._result: Future | None = None
         self.answer: Future = Future()
         """The server's answer to it; set by who sends it."""
@@ -70,36 +71,29 @@ class SentGoal:
         """Whether the result was received."""
         return self._result is not None and self._result.done()
 
+    def is_answered(self) -> bool:
+        """Whether the result was received, or whoever sent the goal is gone."""
+        return self.has_result() or self._ends.is_gone
+
     def is_over(self) -> bool:
         """Whether the server says that the goal has ended, by its status or the result."""
         return self.status in TERMINAL or self.has_result()
 
     def statuses(self) -> list[tuple[int, str]]:
         """Each other status that was published, and when: wall time in ns."""
-        found: list[tuple[int, str]] = []
-        for message, sent_ns in self._ends.statuses.received:
-            for each in message.status_list:
-                name = STATUS_NAMES.get(each.status, 'unknown')
-                is_mine = _same(each.goal_info.goal_id, self.id)
-                if is_mine and (not found or found[-1][1] != name):
-                    found.append((sent_ns, name))
-        return found
+        return self._ends.statuses_of(self.id)
 
     def feedback(self) -> list[tuple[int, Any]]:
         """The feedback so far, and when it was sent: wall time in ns."""
         return [
             (sent_ns, message.feedback)
             for message, sent_ns in self._ends.feedback.received
-            if _same(message.goal_id, self.id)
+            if bytes(message.goal_id.uuid) == bytes(self.id.uuid)
         ]
 
     def feedback_count(self) -> int:
         """How much feedback of the action has come since the goal was sent; quick to tell."""
         return len(self._ends.feedback.received) - self._received_before
-
-    def begin(self, received_before: int) -> None:
-        """Count feedback from here on."""
-        self._received_before = received_before
 
     def over_ns(self) -> int:
         """When the server said that it was over: wall time in ns; 0 where it has not."""
@@ -115,6 +109,7 @@ class ActionEnds:
 
     def __init__(self, watcher: Watcher, name: str, type_: type) -> None:
         """Nothing is sent yet; wait for `is_connected`."""
+        self.is_gone = False
         self._node = watcher.node
         impl = type_.Impl  # type: ignore[attr-defined]
         self._impl = impl
@@ -139,6 +134,19 @@ class ActionEnds:
             type_=impl.GoalStatusMessage,
             qos_profile=qos_profile_action_status_default,
         )
+        self._read = 0
+        self._statuses: dict[bytes, list[tuple[int, str]]] = {}
+
+    def statuses_of(self, goal_id: UUID) -> list[tuple[int, str]]:
+        """Each other status of a goal that was published, and when: wall time in ns."""
+        new, self._read = self.statuses.received[self._read :], len(self.statuses.received)
+        for message, sent_ns in new:
+            for each in message.status_list:
+                name = STATUS_NAMES.get(each.status, 'unknown')
+                found = self._statuses.setdefault(bytes(each.goal_info.goal_id.uuid), [])
+                if not found or found[-1][1] != name:
+                    found.append((sent_ns, name))
+        return self._statuses.get(bytes(goal_id.uuid), [])
 
     def is_connected(self) -> bool:
         """Whether all five ends have met a server."""
@@ -149,7 +157,6 @@ class ActionEnds:
         """Send a goal; it does not wait for the answer."""
         goal_id = UUID(uuid=list(uuid.uuid4().bytes))
         sent = SentGoal(goal, goal_id, self, lambda: self._ask_for_result(goal_id))
-        sent.begin(len(self.feedback.received))
         request = self._impl.SendGoalService.Request(goal_id=goal_id, goal=goal)
         sent.answer = self._clients['send_goal'].call_async(request)
         return sent
@@ -171,6 +178,7 @@ class ActionEnds:
 
     def leave(self) -> None:
         """Be gone, as a client that has crashed."""
+        self.is_gone = True
         for client in self._clients.values():
             self._node.destroy_client(client)
         self.feedback.close()
@@ -187,8 +195,5 @@ class ActionEnds:
 
 def cancels(response: Any, sent: SentGoal) -> bool:
     """Whether the answer to `cancel` says that this goal is being cancelled."""
-    return any(_same(info.goal_id, sent.id) for info in response.goals_canceling)
-
-
-def _same(one: UUID, other: UUID) -> bool:
-    return bytes(one.uuid) == bytes(other.uuid)
+    ids = [bytes(info.goal_id.uuid) for info in response.goals_canceling]
+    return bytes(sent.id.uuid) in ids

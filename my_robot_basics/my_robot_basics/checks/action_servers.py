@@ -29,7 +29,7 @@ def action_server(
             goal.finish('succeeded')
             server.expect_outcome('succeeded')
     """
-    with Watcher() as watcher:
+    with Watcher(shared=True) as watcher:
         outcomes = Topic(to).listen(watcher)
         others = actions.take(watcher.node).servers.get(name, {})
         expect(

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from my_robot_basics.checks.open_action import OpenAction
+from my_robot_basics.feedback.errors import CheckFailed
 from my_robot_basics.graph.watcher import Watcher
 
 RESULT_SEC = 10.0
@@ -75,7 +76,12 @@ class Action:
     @contextmanager
     def opened(self) -> Iterator[OpenAction]:
         """Meet the server, and see that no goal of earlier is left. Raises CheckFailed."""
-        with Watcher() as watcher:
+        with Watcher(shared=True) as watcher:
             server = OpenAction(watcher, self.name, self.type)
             server.meet()
-            yield server
+            try:
+                yield server
+            except CheckFailed:
+                server.expect_alone()  # of two, nobody knows which one fails
+                raise
+            server.expect_alone()

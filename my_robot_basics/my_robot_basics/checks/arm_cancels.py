@@ -1,5 +1,6 @@
 """Whether a cancelled goal stops the arm behind `/move_arm`, and leaves it ready for the next."""
 
+import time
 from typing import Any
 
 from my_robot_basics.checks.action_ends import SentGoal, cancels
@@ -8,7 +9,7 @@ from my_robot_basics.checks.arm_looks import look
 from my_robot_basics.checks.arm_moves import expect_result
 from my_robot_basics.checks.arm_stops import expect_begins_at, expect_canceled, expect_on_the_way
 from my_robot_basics.checks.watched_arm import Pose, WatchedArm, accepted, far_rad, goal
-from my_robot_basics.feedback.errors import expect, fail
+from my_robot_basics.feedback.errors import CheckFailed, expect, fail
 
 STOP_SEC = 0.2
 SLACK_SEC, WALL_SLACK_SEC = 0.06, 0.15
@@ -19,6 +20,8 @@ EARLY_PART = 0.6
 MOST_TIMES, MORE_SEC = 3.0, 1.0
 ANSWER_SEC = 5.0
 """How long the answer may take of a server that gives it at the end of the move alone."""
+TENTHS, TENTH_NS = 8, 100_000_000
+"""A node that has published feedback in so many tenths of a second had turns to answer, too."""
 BLOCKED = (
     "the execute callback keeps the node's only thread: wait with `await sleep(self, …)` in place "
     'of time.sleep(…), or use a MultiThreadedExecutor'
@@ -92,12 +95,13 @@ def expect_late_cancel(action: Action, position: Pose, *, start: Pose = (0.0, 0.
 def _cancel(arm: WatchedArm, sent: SentGoal, *, wanted_sec: float) -> None:
     """Ask to cancel: it is accepted, and the goal is over in time. Raises CheckFailed."""
     began_ns = arm.time.now_ns()
-    asked = arm.server.ends.cancel(sent)
+    asked_ns, asked = time.time_ns(), arm.server.ends.cancel(sent)
     arm.server.watcher.spin_until_free(asked.done, free_sec=ANSWER_SEC)
     was_over = sent.is_over()
     response = arm.server.answer_to(asked, what='the request to cancel')
     if not cancels(response, sent):
-        _fail_refused(arm, response, was_over=was_over)
+        went_on = _went_on_without_answer(sent, asked_ns)
+        _fail_refused(arm, response, was_over=was_over, went_on=went_on)
     slack_sec = SLACK_SEC if arm.time.is_driven else WALL_SLACK_SEC
     if arm.time.wait(sent.is_over, seconds=STOP_SEC + slack_sec):
         return
@@ -119,14 +123,23 @@ def _cancel(arm: WatchedArm, sent: SentGoal, *, wanted_sec: float) -> None:
     )
 
 
-def _fail_refused(arm: WatchedArm, response: Any, *, was_over: bool) -> None:
+def _went_on_without_answer(sent: SentGoal, asked_ns: int) -> bool:
+    """Whether feedback on the goal came for long after a request, which waited for its end.
+
+    Then the node had turns enough, however busy the machine was.
+    """
+    since = [sent_ns - asked_ns for sent_ns, _ in sent.feedback()]
+    return len({each // TENTH_NS for each in since if each > 0}) >= TENTHS
+
+
+def _fail_refused(arm: WatchedArm, response: Any, *, was_over: bool, went_on: bool) -> None:
     if was_over or response.return_code == response.ERROR_GOAL_TERMINATED:
         fail(
             expected='an answer to the request to cancel while the arm moves',
             seen='it at the end of the move',
             hint=BLOCKED,
             cause='a request to cancel is answered too late',
-            doubt=arm.doubt(),
+            doubt=CheckFailed if went_on else arm.doubt(),
         )
     fail(
         expected='the request to cancel to be accepted',

@@ -30,6 +30,10 @@ BUSY_SEC = 6.0
 """How long a move takes at most on the robot's clock where the machine is too busy for more; …"""
 WALL_SEC = 2.0
 """… And on the wall clock."""
+HOLD_SEC = 0.4
+"""How long the clock stands still before a server that ignores it is known."""
+_following: set[tuple[tuple[int, ...], ...]] = set()
+"""The servers that were seen to follow a driven clock: the next grade cell asks the same one."""
 
 
 def look(action: Action, body: Callable[[WatchedArm], T], *, start: Pose) -> T:
@@ -73,14 +77,21 @@ def _driven(
 
 
 def _follows(action: Action, arm: WatchedArm) -> bool:
-    """Whether the node follows a clock that is driven; told once for each server."""
-    node_name = arm.server.node_name
-    if node_name not in action.known.follows:
-        is_free = _answers_while_it_moves(arm)
-        arm.settle()
-        action.known.follows[node_name] = is_free and _waits_for_the_clock(arm)
-        arm.move(arm.start)
-    return action.known.follows[node_name]
+    """Whether the node follows a clock that is driven; found out once for each server."""
+    server, name, follows = arm.server.identity(), arm.server.node_name, action.known.follows
+    if name not in follows:
+        follows[name] = server in _following or _is_seen_to_follow(arm)
+    if follows[name]:
+        _following.add(server)
+    return follows[name]
+
+
+def _is_seen_to_follow(arm: WatchedArm) -> bool:
+    is_free = _answers_while_it_moves(arm)
+    arm.settle()
+    follows = is_free and _waits_for_the_clock(arm)
+    arm.move(arm.start)
+    return follows
 
 
 def _probe(arm: WatchedArm) -> MoveArm.Goal:
@@ -114,7 +125,7 @@ def _waits_for_the_clock(arm: WatchedArm) -> bool:
     def waits(driven: WatchedArm) -> bool:
         assert isinstance(driven.time, DrivenTime)
         sent = driven.send(_probe(driven))
-        driven.time.hold(PROBE_SEC)
+        driven.time.hold(HOLD_SEC)
         if sent.is_over() or sent.feedback_count() > 1:
             return False
         return driven.time.wait(sent.is_over, seconds=PROBE_MOST_SEC)

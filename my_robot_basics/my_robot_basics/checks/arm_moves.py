@@ -7,6 +7,7 @@ from my_robot_basics.checks import joints
 from my_robot_basics.checks.action_ends import ActionEnds, SentGoal
 from my_robot_basics.checks.actions import Action
 from my_robot_basics.checks.arm_looks import look
+from my_robot_basics.checks.arm_pace import wait_for_end
 from my_robot_basics.checks.arm_speed import expect_speed
 from my_robot_basics.checks.watched_arm import Pose, WatchedArm, far_rad
 from my_robot_basics.feedback.errors import expect, fail, shorten
@@ -18,9 +19,7 @@ MOST_TIMES = 3.0
 MORE_SEC = 1.0
 """… And so much longer."""
 MEET_SEC = 2.0
-"""How long a second client may take to meet the server, …"""
-SEEN_SEC = 0.3
-"""… And a status to come."""
+"""How long a second client may take to meet the server."""
 LEAVES_SPEED = 0.5
 """Of a move whose client leaves, in rad/s."""
 
@@ -51,11 +50,9 @@ def expect_serves_on(action: Action, position: Pose, *, start: Pose = (0.0, 0.0)
         arm.server.watcher.spin_until(vanishes.is_connected, timeout_sec=MEET_SEC)
         sent = arm.server.send(arm.goal(position, speed=LEAVES_SPEED), ends=vanishes)
         vanishes.leave()
-        ends = arm.server.ends
-        arm.server.watcher.spin_until(ends.has_active, timeout_sec=SEEN_SEC)
         wanted_sec = far_rad(arm.start, position) / sent.goal.speed
         if not arm.time.wait(
-            lambda: not ends.has_active(), seconds=MOST_TIMES * wanted_sec + MORE_SEC
+            lambda: not arm.server.has_active(), seconds=MOST_TIMES * wanted_sec + MORE_SEC
         ):
             arm.server.fail_without_end(sent, 'after its client has left')
         back = arm.start
@@ -70,7 +67,7 @@ def _arrive(arm: WatchedArm, position: Pose, *, speed: float) -> SentGoal:
     sent = arm.send(arm.goal(position, speed=speed))
     wanted_sec = far_rad(arm.start, position) / sent.goal.speed
     most_sec = MOST_TIMES * wanted_sec + MORE_SEC
-    if not arm.time.wait(sent.is_over, seconds=most_sec):
+    if not wait_for_end(arm, sent, position, seconds=most_sec):
         arm.server.fail_without_end(sent, f'in {most_sec:.0f} s of a move that takes a third')
     _expect_succeeded(arm, sent)
     _expect_arrived(sent, position, start=arm.start)

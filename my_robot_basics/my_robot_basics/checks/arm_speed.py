@@ -4,21 +4,26 @@ import math
 from typing import NoReturn
 
 from my_robot_basics.checks.action_ends import SentGoal
+from my_robot_basics.checks.reported_speed import ReportedSpeed, reported_speed
 from my_robot_basics.checks.robot_time import DrivenTime
 from my_robot_basics.checks.watched_arm import Pose, WatchedArm, far_rad
-from my_robot_basics.feedback.errors import fail
+from my_robot_basics.feedback.errors import CheckFailed, fail
 
 TOLERANCE, WALL_TOLERANCE = 0.02, 0.05
 SLACK_SEC = 0.12
 """So much more or less is one step of the server's, and one of the clock."""
+TOLD_WALL_TOLERANCE, STEP_LATE_SEC = 0.03, 0.0015
+"""What feedback tells on the wall clock; each step of a loop that adds them up is so late."""
+FAR_PART = 0.12
+"""A busy machine makes feedback tell no speed that is so far off."""
+PLAUSIBLE = 0.8, 1.25
+"""Feedback that tells another speed is itself wrong: the time alone counts then."""
 FINEST = 0.0005, 0.45
 """A step of the clock, and for how long the arm moves, in seconds: a server whose sleeps are no
 multiple of the clock's steps sleeps longer than it means to, and less so with finer ones. …"""
 FINER = 0.002, 4.0
 """… Where no feedback tells the speed, the move has to be longer."""
 MOST_TIMES = 3.0
-FEWEST = 4
-"""So much feedback tells a speed."""
 JUMP_SEC = 0.3
 """Who needs no longer does not move at a speed."""
 ALIKE = 0.03
@@ -26,21 +31,55 @@ ALIKE = 0.03
 
 
 def expect_speed(arm: WatchedArm, sent: SentGoal, position: Pose) -> None:
-    """A goal that was reached has taken as long as its speed asks for. Raises CheckFailed."""
+    """A goal that was reached has taken as long as its speed asks for. Raises CheckFailed.
+
+    The feedback on it, where it can be right, tells the speed better than one step of the server.
+    """
     wanted_sec = far_rad(arm.start, position) / sent.goal.speed
-    seconds = arm.seconds(sent)
+    seconds = arm.seconds(sent) - arm.lost_sec
+    told = reported_speed(arm, sent, position)
+    least, most = PLAUSIBLE
+    tells = least <= told.rad_per_sec / sent.goal.speed <= most
+    is_told_right = tells and _is_right(arm, told, sent.goal.speed)
     tolerance = TOLERANCE if arm.time.is_driven else WALL_TOLERANCE
-    if abs(seconds - wanted_sec) <= tolerance * wanted_sec + SLACK_SEC:
+    off_sec, slack_sec = seconds - wanted_sec, tolerance * wanted_sec + SLACK_SEC
+    late_sec = arm.stalled_sec() if is_told_right else 0.0
+    is_in_time = -slack_sec <= off_sec <= slack_sec + late_sec
+    if is_in_time and (is_told_right or not tells):
         return
+    is_proven = off_sec < -slack_sec or _is_proven(told, sent, wanted_sec, seconds)
+    doubt = CheckFailed if is_proven else arm.doubt()
+    if is_in_time:
+        seconds = wanted_sec * sent.goal.speed / told.rad_per_sec
     is_slow = wanted_sec < seconds
     if is_slow and arm.time.is_driven and _is_right_in_finer_steps(arm, sent, position):
         return
-    _fail_speed(arm, sent, position, seconds=seconds, wanted_sec=wanted_sec)
+    _fail_speed(arm, sent, position, seconds=seconds, wanted_sec=wanted_sec, doubt=doubt)
+
+
+def _is_proven(told: ReportedSpeed, sent: SentGoal, wanted_sec: float, seconds: float) -> bool:
+    """Whether feedback and end agree on another speed, so that no busy machine has made it.
+
+    It slows a loop down that adds up steps, and makes no move faster.
+    """
+    if not told.rad_per_sec or told.step_sec:
+        return False
+    told_sec = wanted_sec * sent.goal.speed / told.rad_per_sec
+    is_far = abs(told_sec - wanted_sec) > FAR_PART * wanted_sec
+    return is_far and abs(told_sec - seconds) <= FAR_PART * seconds
+
+
+def _is_right(arm: WatchedArm, told: ReportedSpeed, speed: float) -> bool:
+    """Whether the speed is right by what the feedback tells."""
+    times = told.rad_per_sec / speed
+    tolerance = TOLERANCE if arm.time.is_driven else TOLD_WALL_TOLERANCE
+    late = STEP_LATE_SEC / told.step_sec if told.step_sec else 0.0
+    return 1.0 / (1.0 + tolerance + late) <= times <= 1.0 + tolerance
 
 
 def _is_right_in_finer_steps(arm: WatchedArm, sent: SentGoal, position: Pose) -> bool:
     assert isinstance(arm.time, DrivenTime)
-    step_sec, seconds = FINEST if _speed_seen(arm, sent, position) else FINER
+    step_sec, seconds = FINEST if reported_speed(arm, sent, position).rad_per_sec else FINER
     arm.move(arm.start)
     former_ns, arm.time.step_ns = arm.time.step_ns, round(step_sec * 1e9)
     try:
@@ -54,40 +93,30 @@ def _slowness(arm: WatchedArm, position: Pose, *, seconds: float) -> float:
     sent = arm.send(arm.goal(position, speed=far_rad(arm.start, position) / seconds))
     if not arm.time.wait(sent.is_over, seconds=MOST_TIMES * seconds):
         return MOST_TIMES
-    seen = _speed_seen(arm, sent, position)
-    if seen:
-        return sent.goal.speed / seen
+    told = reported_speed(arm, sent, position)
+    if told.rad_per_sec:
+        return sent.goal.speed / told.rad_per_sec
     off_sec = arm.seconds(sent) - seconds
     return 1.0 + math.copysign(max(0.0, abs(off_sec) - SLACK_SEC), off_sec) / seconds
 
 
-def _speed_seen(arm: WatchedArm, sent: SentGoal, position: Pose) -> float:
-    """The speed of the faster joint, in rad/s, as feedback tells it; 0 where it does not."""
-    ways = [b - a for a, b in zip(arm.start, position, strict=True)]
-    joint = max(range(len(ways)), key=lambda number: abs(ways[number]))
-    on_the_way = []
-    for sent_ns, message in sent.feedback():
-        if len(message.position) == len(ways):
-            part = (message.position[joint] - arm.start[joint]) / ways[joint]
-            if 0.0 < part < 1.0:
-                on_the_way.append((arm.time.at_ns(sent_ns) / 1e9, part * abs(ways[joint])))
-    if len(on_the_way) < FEWEST:
-        return 0.0
-    (first_sec, first_rad), (last_sec, last_rad) = on_the_way[0], on_the_way[-1]
-    passed_sec = last_sec - first_sec
-    return (last_rad - first_rad) / passed_sec if passed_sec > 0.0 else 0.0
-
-
 def _fail_speed(
-    arm: WatchedArm, sent: SentGoal, position: Pose, *, seconds: float, wanted_sec: float
+    arm: WatchedArm,
+    sent: SentGoal,
+    position: Pose,
+    *,
+    seconds: float,
+    wanted_sec: float,
+    doubt: type[CheckFailed],
 ) -> NoReturn:
     far = far_rad(arm.start, position)
+    digits = 1 if abs(seconds - wanted_sec) >= 0.1 else 2
     fail(
-        expected=f'{wanted_sec:.1f} s for {far:.2f} rad at {sent.goal.speed:.3g} rad/s',
-        seen=f'{seconds:.1f} s',
+        expected=f'{wanted_sec:.{digits}f} s for {far:.2f} rad at {sent.goal.speed:.3g} rad/s',
+        seen=f'{seconds:.{digits}f} s',
         hint=_why_speed(arm, position, seconds * sent.goal.speed, seconds=seconds),
         cause='the arm is too slow' if wanted_sec < seconds else 'the arm is too fast',
-        doubt=arm.doubt(),
+        doubt=doubt,
     )
 
 
@@ -102,7 +131,8 @@ def _why_speed(arm: WatchedArm, position: Pose, product: float, *, seconds: floa
         min(ways): 'the speed is that of the joint that has farther to go',
         max(map(abs, position)): 'start from where the arm is, at each goal',
     }
-    found = [why for rad, why in causes.items() if abs(product - rad) <= ALIKE * rad]
+    wrong = {rad: why for rad, why in causes.items() if abs(rad - max(ways)) > ALIKE * rad}
+    found = [why for rad, why in wrong.items() if abs(product - rad) <= ALIKE * rad]
     if found:
         return found[0]
     if seconds <= JUMP_SEC:

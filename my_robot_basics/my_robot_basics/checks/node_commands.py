@@ -7,6 +7,7 @@ from typing import Any
 
 from my_robot_basics.checks import remap_hints
 from my_robot_basics.checks.parameters import NodeParameters
+from my_robot_basics.checks.started_node import StartedNode, started_node
 from my_robot_basics.checks.topics import topic
 from my_robot_basics.exchange import student
 from my_robot_basics.feedback.errors import expect, fail, shorten
@@ -57,7 +58,7 @@ class NodeCommand:
         `instead_of` is the topic that the program has without a rule. Raises CheckFailed.
         """
         self._expect_node()
-        with Watcher() as watcher:
+        with Watcher(shared=True) as watcher:
             graphs.wait_for_publisher(watcher, topic_name, timeout_sec=1.0)
             snapshot = graphs.take(watcher)
         publishers = snapshot.publishers(topic_name)
@@ -79,9 +80,39 @@ class NodeCommand:
             hint='give each node a topic of its own',
             cause=f'several nodes publish on {topic_name}',
         )
+        self._expect_of_the_command(topic_name, instead_of=instead_of)
+
+    def _expect_of_the_command(self, topic_name: str, *, instead_of: str) -> None:
+        """The command line brings that node and that topic: no other node will do for it."""
+        started = self._started(topic_name=instead_of)
+        expect(
+            started is not None and started.name == self.node_name,
+            expected=f'{self.node_name} to be the node of the command line',
+            seen=f'{theirs(started.name)} is' if started else 'rcl refuses a rule',
+            hint=remap_hints.for_a_name(self.line, self.node_name),
+            cause=f'the command line does not start {self.node_name}',
+        )
+        seen = started.topic_name if started else ''
+        expect(
+            seen == topic_name,
+            expected=f'the command line to make {topic_name} of {instead_of}',
+            seen=theirs(seen),
+            hint=remap_hints.for_a_topic(self.line, self.node_name, instead_of),
+            cause='the command line brings another topic',
+        )
+
+    def _started(
+        self, *, topic_name: str = '', parameter_name: str = 'seed'
+    ) -> StartedNode | None:
+        return started_node(
+            self.line,
+            node_name=_EXECUTABLE,
+            topic_name=topic_name,
+            parameter_name=parameter_name,
+        )
 
     def _expect_node(self) -> None:
-        with Watcher() as watcher:
+        with Watcher(shared=True) as watcher:
             watcher.spin_until_free(
                 lambda: self.node_name in graphs.node_names(watcher.node), free_sec=NODE_SEC
             )
@@ -109,8 +140,16 @@ class NodeCommand:
             seen == value,
             expected=f'{name} = {value} of {self.node_name}',
             seen=theirs(shorten(repr(seen))),
-            hint=f'give it with -p {name}:={value} after --ros-args, or in a YAML file',
+            hint=_in_the_line(name, value),
             cause=f'{name} has another value',
+        )
+        started = self._started(parameter_name=name)
+        expect(
+            started is not None and (started.has_file or started.parameter == value),
+            expected=f'{name} = {value} in the command line of {self.node_name}',
+            seen=theirs(shorten(repr(started.parameter))) if started else 'rcl refuses a rule',
+            hint=_in_the_line(name, value),
+            cause=f'the command line gives {name} another value',
         )
 
     def expect_poses(self, topic_name: str, *, seed: int) -> None:
@@ -127,3 +166,7 @@ class NodeCommand:
             seen=lambda message: f'the pose {[round(angle, 3) for angle in message.position]}',
             hint='the node takes its seed when it starts: give it in the command line',
         )
+
+
+def _in_the_line(name: str, value: Any) -> str:
+    return f'give it with -p {name}:={value} after --ros-args, or in a YAML file'

@@ -15,6 +15,12 @@ from my_robot_basics.graph.watcher import Watcher
 
 REST_SEC = 2.5
 """How long to wait for the end of goals of earlier, and once more when they are cancelled."""
+SERVED_SEC, NEW_SEC = 2.0, 0.1
+"""How long the status of earlier goals may take to come, and where nobody knows of any."""
+RETURN_SEC = 0.2
+"""How long an execute callback may take to return when it has told how the goal ends."""
+_served: set[tuple[tuple[int, ...], ...]] = set()
+"""The servers that have accepted a goal of a check's, in this grade cell or an earlier one."""
 
 
 class OpenAction:
@@ -26,8 +32,8 @@ class OpenAction:
         self.ends = ActionEnds(watcher, name, type_)
         self.node_name = ''
         """The full name of the server's node."""
-        self.accepted: SentGoal | None = None
-        """The goal that it has accepted last."""
+        self.accepted: list[SentGoal] = []
+        """The goals that it has accepted, the last one last."""
 
     def meet(self) -> None:
         """Wait for the one server, and for the end of goals of earlier. Raises CheckFailed."""
@@ -35,12 +41,47 @@ class OpenAction:
         self.raised = CallbackErrors([self.node_name])
         self.log = ServerLog(self.watcher, self.node_name)
         self.watcher.spin_until(self.ends.is_connected, timeout_sec=SERVER_SEC)
-        self.watcher.spin_until(lambda: bool(self.ends.statuses.received), timeout_sec=0.1)
-        if self.ends.has_active():
+        is_known = self.identity() in _served
+        self.watcher.spin_until_free(
+            lambda: bool(self.ends.statuses.received),
+            free_sec=SERVED_SEC if is_known else NEW_SEC,
+        )
+        if self.has_active():
             self._wait_for_rest()
-        if self.ends.has_active():
+        if self.has_active():
             self.ends.cancel_all()
             self._wait_for_rest()
+
+    def has_active(self) -> bool:
+        """Whether a goal is not over that was accepted here, or one of anybody's, as it says."""
+        return self.ends.has_active() or not all(map(self._is_over, self.accepted))
+
+    def wait_for_returns(self) -> None:
+        """Wait for the results of goals that are over: a server is free when it has sent them."""
+        self.watcher.spin_until_free(
+            lambda: all(sent.is_answered() for sent in self.accepted), free_sec=RETURN_SEC
+        )
+
+    def _is_over(self, sent: SentGoal) -> bool:
+        # its own client may have left
+        return sent.is_over() or any(s in TERMINAL for _, s in self.ends.statuses_of(sent.id))
+
+    def expect_alone(self) -> None:
+        """No other server of the action is there by now. Raises CheckFailed."""
+        count = self.watcher.node.count_services(f'{self.name}/_action/send_goal')
+        names = ', '.join(sorted(actions.take(self.watcher.node).servers.get(self.name, {})))
+        expect(
+            count <= 1,  # two nodes may have one name
+            expected=f'one server of the action {self.name}',
+            seen=f'{count} ({theirs(names)})',
+            hint='stop the other node: nobody knows which one moves the arm',
+            cause=f'{self.name} has more than one server',
+        )
+
+    def identity(self) -> tuple[tuple[int, ...], ...]:
+        """What no other server has, whatever its name."""
+        infos = self.watcher.node.get_publishers_info_by_topic(f'{self.name}/_action/feedback')
+        return tuple(sorted(tuple(info.endpoint_gid) for info in infos))
 
     def send(self, goal: Any, *, ends: ActionEnds | None = None) -> SentGoal:
         """Send a goal and wait for the answer, and ask for the result where it is accepted.
@@ -51,7 +92,8 @@ class OpenAction:
         self.answer_to(sent.answer, what='the goal')
         if sent.is_accepted:
             sent.ask_for_result()
-            self.accepted = sent
+            self.accepted.append(sent)
+            _served.add(self.identity())
         return sent
 
     def answer_to(self, asked: Future, *, what: str) -> Any:
@@ -88,7 +130,7 @@ class OpenAction:
         return 'end the loop of the execute callback when the arm is there'
 
     def _wait_for_rest(self) -> None:
-        self.watcher.spin_until_free(lambda: not self.ends.has_active(), free_sec=REST_SEC)
+        self.watcher.spin_until_free(lambda: not self.has_active(), free_sec=REST_SEC)
 
     def _find(self) -> str:
         found: dict[str, tuple[str, ...]] = {}
@@ -115,16 +157,7 @@ class OpenAction:
             hint='compare the type in ActionServer(…)',
             cause=f'{self.name} has another type',
         )
-        # two nodes may have one name
-        self.watcher.spin_for(graphs.NEWCOMER_SEC)
-        count = self.watcher.node.count_services(f'{self.name}/_action/send_goal')
-        expect(
-            count == 1,
-            expected=f'one server of the action {self.name}',
-            seen=f'{count} ({theirs(", ".join(sorted(found)))})',
-            hint='stop the other node: nobody knows which one moves the arm',
-            cause=f'{self.name} has more than one server',
-        )
+        self.expect_alone()
         return next(iter(found))
 
     def _why_unanswered(self) -> str:

@@ -11,7 +11,7 @@ from rclpy.parameter import Parameter, parameter_value_to_python
 
 from my_robot_basics.checks.callbacks import CallbackErrors
 from my_robot_basics.checks.services import wait_for_all
-from my_robot_basics.feedback.errors import fail, shorten
+from my_robot_basics.feedback.errors import expect, fail, shorten
 from my_robot_basics.feedback.hidden import theirs
 from my_robot_basics.graph import graphs
 from my_robot_basics.graph.watcher import Watcher
@@ -30,7 +30,7 @@ def node_parameters(node_name: str) -> 'NodeParameters':
 
     Raises CheckFailed where there is no such node.
     """
-    with Watcher() as watcher:
+    with Watcher(shared=True) as watcher:
         timeout_sec = graphs.SETTLED_SEC if graphs.is_settled(watcher, node_name) else NODE_SEC
         if not watcher.spin_until(
             lambda: node_name in graphs.node_names(watcher.node), timeout_sec=timeout_sec
@@ -60,6 +60,18 @@ class NodeParameters:
             self._fail_undeclared(name)
         return parameter_value_to_python(values[0])
 
+    def get_number(self, name: str) -> float:
+        """The value of a parameter that is to be a number. Raises CheckFailed for any other."""
+        value = self.get(name)
+        expect(
+            isinstance(value, int | float) and not isinstance(value, bool),
+            expected=f'{name} to be a number',
+            seen=theirs(shorten(repr(value))),
+            hint='declare it with a number as its default, and change its type nowhere',
+            cause=f'{name} is no number',
+        )
+        return float(value)
+
     def set(self, name: str, *values: Any) -> Sequence[SetParametersResult]:
         """Set a parameter to each of these values, one after the other; what the node says."""
         parameters = [Parameter(name, value=value).to_parameter_msg() for value in values]
@@ -79,7 +91,7 @@ class NodeParameters:
 
     def _call(self, service_name: str, type_: type, request: Any) -> Any:
         """What the node answers. Raises CheckFailed where it does not, with the reason."""
-        with Watcher() as watcher:
+        with Watcher(shared=True) as watcher:
             client = watcher.node.create_client(type_, f'{self.node_name}/{service_name}')
             if not watcher.spin_until_free(client.service_is_ready, free_sec=SERVICES_SEC):
                 fail(

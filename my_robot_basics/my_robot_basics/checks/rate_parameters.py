@@ -11,6 +11,8 @@ from my_robot_basics.feedback.errors import CheckFailed, Starved, expect, fail, 
 from my_robot_basics.feedback.hidden import theirs
 
 RECORD_SEC = 4.0
+HOLD_PERIODS, HOLD_SEC = 3.0, 1.0
+"""The clock stands still for so many periods of the rate that is asked for, so long at most."""
 NEAR_PART = 0.1
 """So near to each other are two rates that are the same one, for who asks which one it is …"""
 UNCHANGED_PART = 0.25
@@ -51,7 +53,7 @@ class RateParameter:
             [result] = self.parameters.set(self.name, rate_hz)
             if not result.successful:
                 refusals.fail_refused(self.name, rate_hz, result)
-        self._record().assert_rate(rate_hz)
+        self._record(rate_hz).assert_rate(rate_hz)
 
     def expect_takes(self, *rates_hz: float) -> None:
         """Each of these rates can be set; the last one is the value of the parameter then."""
@@ -72,27 +74,27 @@ class RateParameter:
         """The node publishes so often once the parameter is set, to one after the other."""
         self._expect_leaves_others_alone()
         for rate_hz in rates_hz:
-            before_hz = self.parameters.get(self.name)
+            before_hz = self.parameters.get_number(self.name)
             self.expect_takes(rate_hz)
-            recording = self._record()
+            recording = self._record(rate_hz)
             try:
                 recording.assert_rate(rate_hz)
             except CheckFailed as failed:
-                self._explain(failed, recording, float(before_hz), rate_hz)
+                self._explain(failed, recording, before_hz, rate_hz)
 
     def expect_refuses(self, *rates_hz: float) -> None:
         """Each of these is refused, with a reason, and value and rate stay what they were."""
         self._expect_leaves_others_alone()
-        kept_hz = self.parameters.get(self.name)
+        kept_hz = self.parameters.get_number(self.name)
         self._expect_refused(kept_hz, rates_hz)
-        seen_hz, _ = self._measure()
+        seen_hz, _ = self._measure(kept_hz)
         if _are_near(seen_hz, kept_hz, part=UNCHANGED_PART):
             return
         # it may have had another rate before: does a value that is refused make a difference?
         self.parameters.set(self.name, kept_hz)
-        before_hz, _ = self._measure()
+        before_hz, _ = self._measure(kept_hz)
         self._expect_refused(kept_hz, rates_hz)
-        after_hz, doubt = self._measure()
+        after_hz, doubt = self._measure(kept_hz)
         expect(
             any(_are_near(after_hz, hz, part=UNCHANGED_PART) for hz in (before_hz, kept_hz)),
             expected=f'the same rate as before a value is refused ({before_hz:.3g} Hz)',
@@ -170,7 +172,7 @@ class RateParameter:
         others = [rate_hz for rate_hz in ANOTHER_HZ if not _are_near(rate_hz, before_hz)]
         another_hz = next(rate_hz for rate_hz in others if not _are_near(rate_hz, now_hz))
         self.expect_takes(another_hz)
-        seen_hz, _ = self._measure()
+        seen_hz, _ = self._measure(now_hz)
         return _are_near(seen_hz, now_hz)
 
     def _in_its_type(self, rates_hz: tuple[float, ...]) -> list[float]:
@@ -179,13 +181,15 @@ class RateParameter:
             return [int(rate_hz) for rate_hz in rates_hz]
         return [*rates_hz]
 
-    def _record(self) -> Recording:
-        return topic(self.topic_name).record(seconds=RECORD_SEC)
+    def _record(self, rate_hz: float) -> Recording:
+        """A recording of messages that are to come so often."""
+        hold_sec = min(HOLD_PERIODS / max(1.0, rate_hz), HOLD_SEC)
+        return topic(self.topic_name).record(seconds=RECORD_SEC, hold_sec=hold_sec)
 
-    def _measure(self) -> tuple[float, type[CheckFailed]]:
+    def _measure(self, rate_hz: float) -> tuple[float, type[CheckFailed]]:
         """How often messages come now, in Hz, 0 where none does; and what to raise of that."""
         try:
-            recording = self._record()
+            recording = self._record(rate_hz)
         except CheckFailed:
             return 0.0, CheckFailed
         return recording.rate_hz, CheckFailed if recording.clock == 'simulated' else Starved

@@ -35,12 +35,20 @@ class NoMessage(Inconclusive):
 
 
 def simulated(
-    watcher: Watcher, recorder: Recorder, *, seconds: float, step_sec: float
+    watcher: Watcher,
+    recorder: Recorder,
+    *,
+    seconds: float,
+    step_sec: float,
+    hold_sec: float = HOLD_SEC,
 ) -> Recording | str:
-    """A recording on the robot's clock, or a clause that says why there is none."""
+    """A recording on the robot's clock, or a clause that says why there is none.
+
+    `hold_sec`: how long the clock stands still before.
+    """
     try:
         with SimulatedClock(watcher, needed=set(recorder.publishers())) as clock:
-            _hold(watcher, recorder, clock)
+            _hold(recorder, clock, hold_sec)
             for part in CLOSER:
                 recording = _drive(
                     recorder,
@@ -63,10 +71,10 @@ def simulated(
     return COUNTS
 
 
-def _hold(watcher: Watcher, recorder: Recorder, clock: SimulatedClock) -> None:
+def _hold(recorder: Recorder, clock: SimulatedClock, seconds: float) -> None:
     """The clock stands still: a node that keeps publishing does not follow it."""
     since_ns = time.time_ns()
-    end = time.monotonic() + HOLD_SEC
+    end = time.monotonic() + seconds
     while time.monotonic() < end:
         clock.hold(0.05)
         if recorder.count_since(since_ns) >= 2:

@@ -18,12 +18,10 @@ from my_robot_basics.graph.watcher import Watcher
 
 REPLY_SEC = 4.0
 """How long to wait for a goal, a request to cancel or an outcome, of time that was free."""
-QUIET_SEC = 0.5
-"""How long to listen for what must not come."""
-AGAIN_SEC = 1.0
-"""Who has only just met the server may lose a goal: until one has arrived, the message that leads
-to it is published again so often."""
-MEET_SEC = 2.0
+QUIET_SEC, MORE_SEC = 0.5, 0.1
+"""How long to listen for what must not come, and for more of a callback that has published."""
+AGAIN_SEC, MEET_SEC = 1.0, 2.0
+"""A client that has just met the server may lose a goal: its message is published again then."""
 
 
 class ServedAction(ScriptedActionServer):
@@ -115,7 +113,7 @@ class ServedAction(ScriptedActionServer):
         )
 
     def expect_outcome(self, word: str, *, hint: Callable[[str], str]) -> None:
-        """That word comes on the topic of the outcomes. `hint(seen)` tells of another one.
+        """That word comes on the topic of the outcomes, and no other. `hint(seen)` is for that.
 
         Raises CheckFailed where it does not in REPLY_SEC of time that was free.
         """
@@ -123,11 +121,19 @@ class ServedAction(ScriptedActionServer):
         def new() -> list[str]:
             return [message.data for message in self._outcomes.messages()[self._before :]]
 
+        topic_name = self._outcomes.topic_name
         if self._watcher.spin_until_free(lambda: word in new(), free_sec=REPLY_SEC):
             self._raised.expect_none()
+            self._watcher.spin_for(MORE_SEC)
+            expect(
+                {*new()} == {word},
+                expected=f"one outcome of a goal, '{word}', on {topic_name}",
+                seen=theirs(shorten(new())),
+                hint='publish one word for each goal: that for the status of its result',
+                cause='several outcomes of one goal are published',
+            )
             return
         others = new()
-        topic_name = self._outcomes.topic_name
         fail(
             expected=f"'{word}' on {topic_name}",
             seen=f"'{theirs(shorten(others[-1]))}'" if others else f'none in {REPLY_SEC:g} s',

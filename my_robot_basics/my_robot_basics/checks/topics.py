@@ -44,20 +44,25 @@ def topic(name: str) -> 'Topic':
 class Topic(TopicEndpoints):
     """What a check may do with one topic; each call is a ROS node of its own while it lasts."""
 
-    def record(self, seconds: float = 10.0, step_sec: float = 0.1) -> Recording:
+    def record(
+        self, seconds: float = 10.0, step_sec: float = 0.1, hold_sec: float = sampling.HOLD_SEC
+    ) -> Recording:
         """Record `seconds` of the robot's time, beginning at a message (which does not count).
 
         The robot's clock is driven by the check in steps of `step_sec`, or in finer ones where
-        messages come faster than every second step. Where that proves nothing (the node does
-        not follow the clock, answers too slowly, …) 4 s of wall time are recorded instead; up to
+        messages come faster than every second step. Before, it stands still for `hold_sec` of wall
+        time: a node that ignores it publishes then. Where that proves nothing (the node does not
+        follow the clock, answers too slowly, …) 4 s of wall time are recorded instead; up to
         7 s where no second message comes sooner.
         Raises CheckFailed when there is no publisher or no message.
         """
         start = time.monotonic()
-        with Watcher() as watcher:
+        with Watcher(shared=True) as watcher:
             recorder = self.listen(watcher)
             sent = watcher.spin_until_free(lambda: bool(recorder.received), free_sec=BEFORE_SEC)
-            found = sampling.simulated(watcher, recorder, seconds=seconds, step_sec=step_sec)
+            found = sampling.simulated(
+                watcher, recorder, seconds=seconds, step_sec=step_sec, hold_sec=hold_sec
+            )
             if isinstance(found, str):
                 why, recording = found, wall_recording.wall(watcher, recorder, why=found)
             else:
@@ -150,7 +155,7 @@ class Topic(TopicEndpoints):
             if left_sec < 2.0 * seconds:
                 raise CheckFailed('there is no time for another look')
             start = time.monotonic()
-            with Watcher() as watcher:
+            with Watcher(shared=True) as watcher:
                 recorder = self.listen(watcher)
                 again = wall_recording.wall(
                     watcher, recorder, why=why, seconds=seconds, timeout_sec=seconds

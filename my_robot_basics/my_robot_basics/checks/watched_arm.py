@@ -21,6 +21,8 @@ RESULT_SEC = 1.0
 """How long a result may come behind the status, of time that was free."""
 SETTLE_SEC = 3.0
 """How long goals may take to end when nobody looks any more, of time that was free."""
+SHORTER_PART, TURN = 0.35, 7.7
+"""Short moves are shorter than the longest by up to that part: which, comes of the position."""
 STALLED_PART = 0.05
 """So much of a look in which processes had to wait for a processor makes it a doubtful one."""
 
@@ -44,11 +46,17 @@ class WatchedArm:
     start: tuple[float, ...]
     """Where the arm is, in rad, if the server does what it was asked to."""
     longest_sec: float = math.inf
-    """No move takes longer."""
+    """No move takes longer, and each another part of it."""
+    lost_sec: float = 0.0
+    """So much longer the last move took because of a step of the clock that was too coarse."""
 
     def goal(self, position: Pose, *, speed: float) -> MoveArm.Goal:
-        """A goal with that speed, or with a higher one where the move has to be short."""
-        return goal(position, speed=max(speed, far_rad(self.start, position) / self.longest_sec))
+        """A goal with that speed, or with a higher one where the move has to be short.
+
+        Short moves differ in their time: a server that takes the same for each is not right.
+        """
+        longest_sec = self.longest_sec * (1.0 - SHORTER_PART * (TURN * sum(position) % 1.0))
+        return goal(position, speed=max(speed, far_rad(self.start, position) / longest_sec))
 
     def send(self, wanted: MoveArm.Goal) -> SentGoal:
         """Send a goal that has to be accepted. Raises CheckFailed."""
@@ -72,33 +80,41 @@ class WatchedArm:
         """Whether the result comes, now that the goal is over."""
         return self.server.watcher.spin_until_free(sent.has_result, free_sec=RESULT_SEC)
 
+    def stalled_sec(self) -> float:
+        """For how long the machine was too busy during this look; 0 on the robot's clock."""
+        return self.time.stalled_sec() if isinstance(self.time, WallTime) else 0.0
+
     def doubt(self) -> type[CheckFailed]:
         """What to raise for what a machine that is too busy may have done."""
         if isinstance(self.time, WallTime):
-            stalled_sec, wall_sec = self.time.stalled_sec(), self.time.wall_sec()
-            return Starved if stalled_sec > STALLED_PART * wall_sec else CheckFailed
+            is_doubtful = self.time.stalled_sec() > STALLED_PART * self.time.wall_sec()
+            return Starved if is_doubtful else CheckFailed
         return CheckFailed
 
     def settle(self) -> None:
-        """Bring each goal to its end that has none yet."""
-        ends, watcher = self.server.ends, self.server.watcher
-        watcher.spin_until(lambda: not ends.has_active(), timeout_sec=0.05)
-        if not ends.has_active():
+        """Bring each goal to its end that has none yet, and let the server return."""
+        self._end_goals()
+        self.server.wait_for_returns()
+
+    def _end_goals(self) -> None:
+        server, watcher = self.server, self.server.watcher
+        watcher.spin_until(lambda: not server.has_active(), timeout_sec=0.05)
+        if not server.has_active():
             return
         for cancel_first in False, True:
             if cancel_first:  # last: it may leave a wrong server with a wish to stop
-                ends.cancel_all()
+                server.ends.cancel_all()
             if isinstance(self.time, DrivenTime):
-                self.time.push(lambda: not ends.has_active(), free_sec=SETTLE_SEC)
+                self.time.push(lambda: not server.has_active(), free_sec=SETTLE_SEC)
             else:
-                watcher.spin_until_free(lambda: not ends.has_active(), free_sec=SETTLE_SEC)
-            if not ends.has_active():
+                watcher.spin_until_free(lambda: not server.has_active(), free_sec=SETTLE_SEC)
+            if not server.has_active():
                 return
 
 
 def accepted(server: OpenAction, wanted: MoveArm.Goal) -> SentGoal:
     """Send a goal that has to be accepted. Raises CheckFailed with the reason."""
-    former = server.accepted
+    former = server.accepted[-1] if server.accepted else None
     sent = server.send(wanted)
     if not sent.is_accepted:
         shown = [round(each, 3) for each in wanted.position]

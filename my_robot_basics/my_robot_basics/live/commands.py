@@ -1,4 +1,4 @@
-"""Command lines of a notebook as processes: `ros2 run`, with no shell between."""
+"""Command lines of a notebook as processes, as `ros2 run` starts them; no shell is between."""
 
 import contextlib
 import os
@@ -9,7 +9,7 @@ import threading
 import time
 from pathlib import Path
 
-from my_robot_basics.ros2 import command_line
+from my_robot_basics.ros2 import command_line, packages
 from my_robot_basics.session import classroom
 from my_robot_basics.session.errors import NotRunnable, tell
 
@@ -17,6 +17,8 @@ STARTED_SEC = 6.0
 """How long a cell waits for the first line of its commands, or their end."""
 END_SEC = 5.0
 _PACKAGE = 'my_robot_basics'
+_OWN_WORDS = 4
+"""ros2 run PACKAGE EXECUTABLE: the words before those of the program."""
 _DIES_WITH_US = (  # a kernel that is killed leaves no node behind
     'import ctypes, os, sys; ctypes.CDLL(None).prctl(1, 15); os.execv(sys.argv[1], sys.argv[1:])'
 )
@@ -27,10 +29,9 @@ _running: list['_Command'] = []
 class _Command:
     """One process, and the last line that it has printed."""
 
-    def __init__(self, words: tuple[str, ...]) -> None:
-        ros2 = str(Path(sys.executable).with_name('ros2'))
+    def __init__(self, executable: Path, words: tuple[str, ...]) -> None:
         self.process = subprocess.Popen(
-            [sys.executable, '-c', _DIES_WITH_US, ros2, *words[1:]],
+            [sys.executable, '-IS', '-c', _DIES_WITH_US, str(executable), *words],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
@@ -46,7 +47,7 @@ class _Command:
 
     def _read(self) -> None:
         for line in self.process.stdout or ():
-            if line.strip() and not line.startswith('[ros2run]'):
+            if line.strip():
                 self.last_line = line.strip()
                 if line.startswith('[INFO]'):  # the log of a node that is up
                     self.has_spoken.set()
@@ -75,8 +76,9 @@ def run_commands(*names: str, executable: str = 'kinematics_publisher') -> None:
     stop_commands()
     classroom.enter()
     lines = {name: _read(name, executable) for name in names}
+    path = _executable(executable)
     for line in lines.values():
-        _running.append(_Command(line.words))
+        _running.append(_Command(path, line.words[_OWN_WORDS:]))
     deadline = time.monotonic() + STARTED_SEC
     for name, command in zip(lines, _running, strict=True):
         command.has_spoken.wait(max(0.0, deadline - time.monotonic()))
@@ -90,6 +92,11 @@ def stop_commands() -> None:
     """End all that `run_commands` has started."""
     while _running:
         _running.pop().stop()
+
+
+def _executable(name: str) -> Path:
+    """What `ros2 run` starts: to start that as well takes as long as the node itself."""
+    return next(path for path in packages.executables(_PACKAGE) if path.name == name)
 
 
 def _read(name: str, executable: str) -> command_line.CommandLine:

@@ -5,6 +5,8 @@ import shlex
 from dataclasses import dataclass
 
 OPTIONS_OF_RULES = '-r', '--remap'
+OPTIONS_OF_PARAMETERS = '-p', '--param'
+OPTIONS_OF_FILES = ('--params-file',)
 _OF_A_SHELL = set('();<>|&')
 """What stands between commands; `shlex` makes words of their own of them."""
 _EXPANDED = '$`'
@@ -29,9 +31,12 @@ class CommandLine:
 
     def rules(self) -> list[tuple[str, str]]:
         """Both sides of each remap rule, in their order: ('__ns', '/left')."""
-        pairs = itertools.pairwise(self.words)
-        rules = [rule for option, rule in pairs if option in OPTIONS_OF_RULES]
+        rules = [rule for _, rule in self.options(*OPTIONS_OF_RULES)]
         return [(left, right) for left, _, right in (rule.partition(':=') for rule in rules)]
+
+    def options(self, *names: str) -> list[tuple[str, str]]:
+        """Each of these options with the word behind it, in their order."""
+        return [pair for pair in itertools.pairwise(self.words) if pair[0] in names]
 
 
 def parse(text: str, *, package: str, executable: str) -> CommandLine:

@@ -1,0 +1,73 @@
+"""Drive a long move in coarse steps of the clock, where its server keeps pace with them.
+
+A server that computes the position from its clock does; one that adds up steps falls behind.
+"""
+
+from my_robot_basics.checks.action_ends import SentGoal
+from my_robot_basics.checks.robot_time import DrivenTime
+from my_robot_basics.checks.watched_arm import Pose, WatchedArm, far_rad
+
+COARSE_NS = 250_000_000
+LONG_SEC = 8.0
+"""Only longer moves are worth it."""
+BEGIN_SEC, END_SEC, END_PART = 1.0, 1.0, 0.03
+"""The begin is driven in fine steps, and so much before the end, or that part of the move."""
+BEHIND_SEC = 0.1
+"""A server that falls behind by more in one coarse step gets fine ones."""
+REPORT_SEC = 0.2
+"""The next feedback has come by then."""
+
+
+def wait_for_end(arm: WatchedArm, sent: SentGoal, position: Pose, *, seconds: float) -> bool:
+    """Wait so many seconds of the arm's time for the end of a goal; whether it has come.
+
+    `arm.lost_sec` says then how far the server fell behind because of a step that was too coarse.
+    """
+    arm.lost_sec = 0.0
+    wanted_sec = far_rad(arm.start, position) / sent.goal.speed
+    if not isinstance(arm.time, DrivenTime) or not LONG_SEC < wanted_sec <= seconds:
+        return arm.time.wait(sent.is_over, seconds=seconds)
+    time, began_ns, fine_ns = arm.time, arm.time.now_ns(), arm.time.step_ns
+    try:
+        if time.wait(sent.is_over, seconds=BEGIN_SEC):
+            return True
+        if _keeps_pace(arm, time, sent, position):
+            last_sec = max(END_SEC, END_PART * wanted_sec)
+            left_sec = wanted_sec - last_sec - (time.now_ns() - began_ns) / 1e9
+            time.step_ns = COARSE_NS
+            time.wait(sent.is_over, seconds=left_sec)
+    finally:
+        time.step_ns = fine_ns
+    left_sec = seconds - (time.now_ns() - began_ns) / 1e9
+    return time.wait(sent.is_over, seconds=left_sec)
+
+
+def _keeps_pace(arm: WatchedArm, time: DrivenTime, sent: SentGoal, position: Pose) -> bool:
+    """Whether the feedback behind one coarse step is as far on as the clock."""
+    before = _last_report(arm, sent, position)
+    if before is None:
+        return False
+    fine_ns, time.step_ns = time.step_ns, COARSE_NS
+    time.wait(sent.is_over, seconds=COARSE_NS / 1e9)
+    time.step_ns, count = fine_ns, sent.feedback_count()
+    time.wait(lambda: sent.is_over() or sent.feedback_count() > count, seconds=REPORT_SEC)
+    after = _last_report(arm, sent, position)
+    if after is None:
+        return False
+    passed_sec, gone_rad = after[0] - before[0], after[1] - before[1]
+    behind_sec = passed_sec - gone_rad / sent.goal.speed
+    if behind_sec > BEHIND_SEC:
+        arm.lost_sec = min(behind_sec, COARSE_NS / 1e9)
+    return abs(behind_sec) <= BEHIND_SEC
+
+
+def _last_report(arm: WatchedArm, sent: SentGoal, position: Pose) -> tuple[float, float] | None:
+    """When the last feedback came, in s, and how far the faster joint had gone then, in rad."""
+    found = sent.feedback()
+    if not found or len(found[-1][1].position) != len(position):
+        return None
+    ways = [b - a for a, b in zip(arm.start, position, strict=True)]
+    joint = max(range(len(ways)), key=lambda number: abs(ways[number]))
+    sent_ns, message = found[-1]
+    gone = (message.position[joint] - arm.start[joint]) / ways[joint] * abs(ways[joint])
+    return arm.time.at_ns(sent_ns) / 1e9, gone

@@ -1,0 +1,91 @@
+"""What a command line makes of a node, as rcl itself reads it: nothing is started."""
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+import rclpy
+from rcl_interfaces.msg import ParameterDescriptor
+from rclpy.context import Context
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.signals import SignalHandlerOptions
+
+from my_robot_basics.ros2.command_line import (
+    OPTIONS_OF_FILES,
+    OPTIONS_OF_PARAMETERS,
+    OPTIONS_OF_RULES,
+    CommandLine,
+)
+from my_robot_basics.session import classroom
+
+_RANGE = 'ROS_AUTOMATIC_DISCOVERY_RANGE'
+
+
+@dataclass(frozen=True)
+class StartedNode:
+    """A node that was made as the command line says, and is gone."""
+
+    name: str
+    """Full: '/left/arm'."""
+    topic_name: str
+    """Full: what became of the program's topic."""
+    parameter: Any
+    """The value of the parameter; None where no option gives one."""
+    has_file: bool
+    """Whether parameters may come from a file, too, which is not read here."""
+
+
+def started_node(
+    line: CommandLine, *, node_name: str, topic_name: str, parameter_name: str
+) -> StartedNode | None:
+    """What a program gets whose node and topic have these names; None where rcl refuses it."""
+    options = line.options(*OPTIONS_OF_RULES, *OPTIONS_OF_PARAMETERS)
+    arguments = ['--ros-args', *(word for pair in options for word in pair)]
+    domain_id, context = classroom.enter(), Context()
+    try:
+        with _met_by_nobody():
+            rclpy.init(
+                args=arguments,
+                context=context,
+                domain_id=domain_id,
+                signal_handler_options=SignalHandlerOptions.NO,
+            )
+            node = Node(
+                node_name,
+                context=context,
+                enable_rosout=False,
+                start_parameter_services=False,
+                parameter_overrides=[Parameter('start_type_description_service', value=False)],
+            )
+    except (RuntimeError, ValueError):  # what rclpy raises for names and rules that are none
+        context.try_shutdown()
+        return None
+    try:
+        any_type = ParameterDescriptor(dynamic_typing=True)
+        parameter = node.declare_parameter(parameter_name, None, any_type).value
+        return StartedNode(
+            node.get_fully_qualified_name(),
+            node.resolve_topic_name(topic_name) if topic_name else '',
+            parameter,
+            has_file=bool(line.options(*OPTIONS_OF_FILES)),
+        )
+    finally:
+        node.destroy_node()
+        context.shutdown()
+
+
+@contextmanager
+def _met_by_nobody() -> Iterator[None]:
+    """Participants that are made meanwhile neither find others, nor are found."""
+    former = os.environ.get(_RANGE)
+    os.environ[_RANGE] = 'OFF'
+    try:
+        yield
+    finally:
+        if former is None:
+            del os.environ[_RANGE]
+        else:
+            os.environ[_RANGE] = former

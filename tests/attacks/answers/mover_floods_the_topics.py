@@ -1,0 +1,8 @@
+# earns 6
+"""Moves as it should, and says each thing a hundred times."""
+
+
+class MoveArmServer(MoveArmServer):
+    def tell(self, handle, left):
+        for _ in range(100):
+            super().tell(handle, left)
