@@ -1,14 +1,13 @@
 """`colcon build` of the interfaces: for real, and in a sentence where there is no compiler."""
 
 import json
-import os
 import shutil
-import subprocess
 import sys
 import sysconfig
 from pathlib import Path
 
 import pytest
+from colcon_terminal import bash
 from fresh_machine import programs_without_compilers
 from my_robot_basics.live import workspace
 from my_robot_basics.session import build_tools
@@ -18,10 +17,8 @@ ROOT = Path(__file__).parents[1]
 NAME = workspace.INTERFACES
 COMPILED = ('srv/SolveIK', 'action/MoveArm')
 BUILD = f'colcon build --packages-select {NAME}'
-BIN = Path(sys.prefix, 'bin')
 PYTHON_DEV = 'python{}.{}-dev'.format(*sys.version_info)
 INSTEAD = f'; until then, the {NAME} that the course has installed goes on working'
-PATIENCE_SEC = 300
 
 
 @pytest.fixture
@@ -30,24 +27,6 @@ def folder(tmp_path, monkeypatch):
     monkeypatch.setenv('MY_ROBOT_BASICS_WORKSPACE', str(tmp_path / 'ros ws'))
     assert workspace.main([]) is None
     return tmp_path / 'ros ws'
-
-
-def bash(folder, script, **environment):
-    """Run a script in the workspace, in a terminal of the course."""
-    own = {name: os.environ[name] for name in os.environ if not name.startswith('_ROS_')}
-    own['PATH'] = f'{BIN}:{own["PATH"]}'
-    own.pop('LD_LIBRARY_PATH', None)
-    if ' ' in sys.executable:
-        own['COLCON_PYTHON_EXECUTABLE'] = str(Path(sys.executable).resolve())
-    return subprocess.run(
-        ['/bin/bash', '-c', script],
-        cwd=folder,
-        env=own | {'ROS_WS': str(folder), 'AMENT_PREFIX_PATH': sys.prefix} | environment,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        encoding='utf-8',
-        timeout=PATIENCE_SEC,
-    )
 
 
 # --- without a compiler --------------------------------------------------------------------------

@@ -72,6 +72,9 @@ CONTRACT = {
             {'move_arm_client_outcomes': 2, 'move_arm_client_cancels': 2},
         ),
     },
+    '10_interfaces': {
+        'count_turns': ('turns_msg', {'count_turns_fields': 3}),
+    },
     '11_parameters': {
         'adjustable_rate': (
             'AdjustablePublisher',

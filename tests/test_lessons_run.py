@@ -61,7 +61,7 @@ def test_an_unanswered_lesson_fails_in_its_checks_alone_and_says_what_is_missing
 @contextmanager
 def kernel_for(lesson):
     """Yield a function that runs one cell of the lesson in a fresh kernel."""
-    client = NotebookClient(lesson, timeout=60, allow_errors=True, kernel_name='python3')
+    client = NotebookClient(lesson, timeout=180, allow_errors=True, kernel_name='python3')
     with client.setup_kernel():
         yield lambda cell: client.execute_cell(cell, lesson.cells.index(cell))
 

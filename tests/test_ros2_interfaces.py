@@ -71,3 +71,61 @@ def test_an_unknown_interface_is_named(name, complaint):
     result = ros2('interface', 'show', name)
     assert result.err.startswith(complaint)
     assert result.status == 1
+
+
+# --- by package ----------------------------------------------------------------------------------
+
+
+def test_packages_are_listed_as_ros2cli_lists_them():
+    everything = ros2('interface', 'packages').out.splitlines()
+    assert everything == sorted(everything)
+    assert {'arm_interfaces', 'sensor_msgs', 'std_srvs'} <= set(everything)
+    assert ros2('interface', 'packages', '-a').out == 'arm_interfaces\n'
+    services = ros2('interface', 'packages', '--only-srvs').out.splitlines()
+    assert 'std_srvs' in services
+    assert 'geometry_msgs' not in services
+    # of several options, ros2cli takes the first one
+    both = ros2('interface', 'packages', '-a', '-m').out
+    assert both == ros2('interface', 'packages', '-m').out != 'arm_interfaces\n'
+
+
+def test_a_package_shows_its_types_as_ros2cli_does():
+    both = 'action/MoveArm', 'srv/SolveIK'
+    lines = [f'arm_interfaces/{name}\n' for name in both]
+    assert ros2('interface', 'package', 'arm_interfaces').out == ''.join(lines)
+    assert ros2('interface', 'package', 'arm_interfaces', '-s').out == lines[1]
+    # with options, by kind
+    assert ros2('interface', 'package', '-a', '-s', 'arm_interfaces').out == ''.join(lines[::-1])
+    assert ros2('interface', 'package', '-m', 'arm_interfaces').out == ''
+    assert ros2('interface', 'package', 'rclpy').out == ''
+
+
+@pytest.mark.parametrize('name', ['no_msgs', '../std_msgs', 'std_msgs/msg'])
+def test_an_unknown_package_is_named(name):
+    result = ros2('interface', 'package', name)
+    assert (result.out, result.err) == ('', f"Unknown package '{name}'\n")
+    assert result.status == 1
+
+
+# --- prototypes ----------------------------------------------------------------------------------
+
+PROTOTYPES = {
+    'std_msgs/msg/String': "data: ''\n",
+    'std_srvs/srv/SetBool': 'data: false\n',
+    'arm_interfaces/action/MoveArm': 'position: []\nspeed: 0.0\n',
+    'geometry_msgs/msg/Quaternion': 'x: 0.0\ny: 0.0\nz: 0.0\nw: 1.0\n',
+}
+
+
+@pytest.mark.parametrize('name', PROTOTYPES)
+def test_a_prototype_is_what_a_client_sends(name):
+    assert ros2('interface', 'proto', name, '--no-quotes').out == f'{PROTOTYPES[name]}\n'
+    assert ros2('interface', 'proto', name).out == f'"{PROTOTYPES[name]}"\n'
+
+
+@pytest.mark.parametrize('name', ['std_msgs', 'std_msgs/msg/Strin', 'os/srv/path', 'a/action/B'])
+def test_what_has_no_prototype_is_refused(name):
+    result = ros2('interface', 'proto', name)
+    assert result.out == ''
+    assert result.err.startswith('The passed ')
+    assert result.status == 1

@@ -28,7 +28,8 @@ MODULES = {
     'checks': [
         f'my_robot_basics/my_robot_basics/{package}/*.py'
         for package in ('checks', 'feedback', 'exchange', 'graph')
-    ],
+    ]
+    + ['my_robot_basics/my_robot_basics/ros2/definition*.py'],
     'validate': ['my_robot_basics/my_robot_basics/validate/*.py'],
     'live': [
         f'my_robot_basics/my_robot_basics/{module}.py'

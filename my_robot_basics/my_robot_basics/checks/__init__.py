@@ -17,6 +17,7 @@ without an error has passed.
 - a node's log: `rosout(node_name)`
 - nodes, publishers and subscriptions: `graph()`
 - predictions: `Predictions`
+- texts of .msg, .srv and .action files: `Definitions`
 - anything else: `expect(condition, ...)` and `fail(...)`
 - inputs that no student can guess: `inputs(label)`
 """
@@ -39,6 +40,7 @@ _HOMES = {
     'expect': 'feedback.errors',
     'fail': 'feedback.errors',
     'Predictions': 'checks.predictions',
+    'Definitions': 'checks.definitions',
     'CheckFailed': 'feedback.errors',
     # what these return, or are given
     'Topic': 'checks.topics',

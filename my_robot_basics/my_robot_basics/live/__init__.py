@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from my_robot_basics.live.branches import show_branches
     from my_robot_basics.live.camera import send_pictures
     from my_robot_basics.live.commands import run_commands
+    from my_robot_basics.live.definition_view import show_definition
     from my_robot_basics.live.doctor import why
     from my_robot_basics.live.entry_points import add_entry_point
     from my_robot_basics.live.exercise import reset, run_answer
@@ -52,6 +53,7 @@ __all__ = [
     'show_arm',
     'show_arrivals',
     'show_branches',
+    'show_definition',
     'show_deliveries',
     'show_domain',
     'show_graph',
@@ -93,6 +95,7 @@ _MODULES = {
     'make_workspace': 'workspace',
     'add_entry_point': 'entry_points',
     'show_workspace': 'node_file',
+    'show_definition': 'definition_view',
 }
 
 

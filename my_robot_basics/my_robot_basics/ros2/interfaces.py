@@ -24,6 +24,11 @@ def names(kind: str) -> list[str]:
     return sorted(found)
 
 
+def packages(*kinds: str) -> list[str]:
+    """Sorted names of the packages that have types of these kinds, or of any."""
+    return sorted({name.partition('/')[0] for kind in kinds or KINDS for name in names(kind)})
+
+
 def path(name: str) -> Path:
     """The file that defines an interface such as `sensor_msgs/msg/JointState`.
 
@@ -85,6 +90,17 @@ def action_class_for(name: str) -> Any:
     if hasattr(found, 'Goal') and hasattr(found, 'Result') and hasattr(found, 'Feedback'):
         return found
     raise CommandError(f'The passed action type is invalid{_did_you_mean(name, "action")}')
+
+
+def sendable_class_for(name: str) -> Any:
+    """What a user sends to an interface of that name: a message, a request or a goal.
+
+    Raises CommandError.
+    """
+    kind = name.split('/')[1] if name.count('/') == 2 else 'msg'
+    if kind == 'srv':
+        return service_class_for(name).Request
+    return action_class_for(name).Goal if kind == 'action' else message_class_for(name)
 
 
 def _class(name: str, kind: str) -> Any:

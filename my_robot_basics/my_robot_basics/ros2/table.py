@@ -22,8 +22,7 @@ COMMANDS = {
     ),
     'interface': Command(
         'Show information about ROS interfaces',
-        verbs=('list', 'show'),
-        elsewhere=('package', 'packages', 'proto'),
+        verbs=('list', 'package', 'packages', 'proto', 'show'),
     ),
     'node': Command('Various node related sub-commands', verbs=('info', 'list')),
     'param': Command(

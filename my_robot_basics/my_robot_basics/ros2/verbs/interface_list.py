@@ -9,6 +9,11 @@ TITLES = {'msg': 'Messages', 'srv': 'Services', 'action': 'Actions'}
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
+    add_kinds(parser)
+
+
+def add_kinds(parser: argparse.ArgumentParser) -> None:
+    """Add the options that choose kinds of types; `args.kinds` is a list, or None for all."""
     texts = {'msg': 'message', 'srv': 'service', 'action': 'action'}
     for kind, text in texts.items():
         parser.add_argument(

@@ -1,0 +1,118 @@
+"""Interface definitions that a notebook holds as texts, held against what they are to define."""
+
+from collections.abc import Mapping
+from pathlib import PurePosixPath
+
+from my_robot_basics.checks.definition_differences import differences, wrong_names
+from my_robot_basics.exchange import student
+from my_robot_basics.feedback.errors import CheckFailed, fail, shorten
+from my_robot_basics.feedback.hidden import is_quiet, said_in_full, tell_failed_already
+from my_robot_basics.ros2.definitions import Definition, read_definition
+
+MOST_FAULTS = 3
+"""Of a text that are told at once: more than that nobody fixes in one go."""
+
+
+class Definitions:
+    """Texts of a notebook, by name, that are files of one package.
+
+    ```python
+    texts = Definitions('motor_interfaces', motor_msg='msg/Motor.msg')
+    texts.expect_names(motor_msg='speed temperature')
+    texts.expect_definitions(motor_msg=MOTOR)  # MOTOR is the text of the right file
+    texts.conclude({'motor_msg': 2.0})
+    ```
+
+    All is collected, and told at the end. Each text counts for itself, so that a fault in one
+    costs nothing of the others.
+    """
+
+    def __init__(self, package: str, **files: str) -> None:
+        """Ask for the texts; each is to be the file of its name in that package."""
+        self._package = package
+        self._files = {name: PurePosixPath(file) for name, file in files.items()}
+        self._own_types = frozenset(
+            path.stem for path in self._files.values() if path.suffix == '.msg'
+        )
+        self._faults: dict[str, list[str]] = {name: [] for name in files}
+        self._missing: list[CheckFailed] = []
+        self._failed_already = False
+        self._compared: set[str] = set()
+        self._texts = {name: self._read(name) for name in files}
+
+    def expect_names(self, **names: str) -> None:
+        """Each text has these fields and constants, and no others; with --- between its parts.
+
+        What rosidl refuses in a text is told first.
+        """
+        for text, wanted in names.items():
+            found = self._texts[text]
+            parts = [part.split() for part in wanted.split('---')]
+            if found and not self._faults[text]:
+                self._add(text, found.faults or wrong_names(found, parts, self._kind(text)))
+
+    def expect_definitions(self, **definitions: str) -> None:
+        """Each text defines the same as that one, in any order within a part.
+
+        Types, arrays, constants and default values are compared; comments are not.
+        """
+        for text, definition in definitions.items():
+            found, wanted = self._texts[text], self._parsed(text, definition)
+            if wanted.faults:
+                raise ValueError(f'the definition for {text} is none: {wanted.faults}')
+            self._compared.add(text)
+            if found and not self._faults[text]:
+                self._add(text, found.faults or differences(found, wanted, self._kind(text)))
+
+    def conclude(self, points: Mapping[str, float]) -> None:
+        """Tell what is wrong in each text. Raises CheckFailed where anything is.
+
+        `points` says what each text is worth that has been compared, once all have been.
+        """
+        wrong = [name for name, faults in self._faults.items() if faults]
+        if not wrong:
+            return
+        if self._failed_already:
+            tell_failed_already()
+        has_all = self._compared == set(self._files)
+        right = [name for name in self._files if name not in wrong]
+        earned = sum(points[name] for name in right) if has_all else 0.0
+        if len(self._missing) == len(self._files):
+            raise self._missing[0]
+        leaves = f', which leaves {earned:g} of {sum(points.values()):g} points' if earned else ''
+        shown = ' and '.join(f'`{name}`' for name in wrong)
+        # it tells the table of the task, and the student's own text: there is no other input
+        with said_in_full():
+            fail(
+                expected='each text to define what its table says',
+                seen=f'something else in {shown}{leaves}',
+                hint='; '.join(self._told(name) for name in wrong),
+                earned=earned,
+            )
+
+    def _read(self, name: str) -> Definition | None:
+        try:
+            text = student.value(name, type=str)
+        except CheckFailed as failure:
+            self._missing.append(failure)
+            self._add(name, [shorten(failure)])
+            return None
+        return self._parsed(name, text)
+
+    def _parsed(self, name: str, text: str) -> Definition:
+        return read_definition(
+            text, package=self._package, kind=self._kind(name), own_types=self._own_types
+        )
+
+    def _kind(self, name: str) -> str:
+        return self._files[name].suffix.removeprefix('.')
+
+    def _add(self, name: str, faults: list[str]) -> None:
+        self._faults[name] += faults
+        self._failed_already |= bool(faults) and not is_quiet()
+
+    def _told(self, name: str) -> str:
+        faults = self._faults[name]
+        rest = len(faults) - MOST_FAULTS
+        more = [f'and {rest} more'] if rest > 0 else []
+        return f'in `{name}`, ' + '; '.join([*faults[:MOST_FAULTS], *more])

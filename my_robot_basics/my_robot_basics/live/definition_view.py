@@ -1,0 +1,42 @@
+"""What rosidl reads in the text of a .msg, .srv or .action file, line by line."""
+
+from collections.abc import Collection
+
+from my_robot_basics.feedback.errors import shorten
+from my_robot_basics.ros2.definitions import DefinedMember, meanings
+
+PACKAGE = 'turn_interfaces'
+"""The package of lesson 10's exercise."""
+_WIDTH = 40
+
+
+def show_definition(text: str, *, own_types: Collection[str] = (), package: str = PACKAGE) -> None:
+    """Print what each line of a definition means to rosidl, or why it is refused.
+
+    `package` is that of the file, and `own_types` names the messages that this package has.
+    """
+    lines = [
+        (shorten(line), _told(meaning) if isinstance(meaning, DefinedMember) else meaning)
+        for line, meaning in meanings(text, package=package, own_types=own_types)
+    ]
+    width = min(_WIDTH, max((len(line) for line, _ in lines), default=0))
+    for line, words in lines:
+        print(f'{line:<{width}}  {words}'.rstrip())
+
+
+def _told(member: DefinedMember) -> str:
+    if member.is_constant:
+        return f'constant {member.name}, {member.type}, always {member.value!r}'
+    default = '' if member.value is None else f', {member.value!r} if nobody sets it'
+    return f'field {member.name}, {_told_type(member.type)}{default}'
+
+
+def _told_type(type_: object) -> str:
+    """A type in words: 'exactly 2 float64'."""
+    name, brackets, size = str(type_).partition('[')
+    size = size.removesuffix(']')
+    if not brackets:
+        return name
+    if not size:
+        return f'any number of {name}'
+    return f'at most {size[2:]} {name}' if size.startswith('<=') else f'exactly {size} {name}'

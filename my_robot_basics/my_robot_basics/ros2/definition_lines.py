@@ -1,0 +1,165 @@
+"""One line of a .msg file: rosidl's parser judges it, and where it refuses, the cause is told."""
+
+import contextlib
+import io
+import keyword
+import re
+from typing import Any
+
+from my_robot_basics.feedback.errors import shorten
+
+MOST_CHARACTERS = 300
+"""Of a line, without its comment."""
+
+_OTHER_NAMES = {
+    'int': 'int32 or another int with its number of bits',
+    **dict.fromkeys(('integer', 'long', 'short', 'unsigned'), 'int32, or uint8 for a small one'),
+    'uint': 'uint8 or another uint with its number of bits',
+    **dict.fromkeys(('float', 'double', 'real'), 'float64, or float32 for half the digits'),
+    **dict.fromkeys(('str', 'String', 'text', 'char*'), 'string'),
+    **dict.fromkeys(('boolean', 'Bool', 'Boolean'), 'bool'),
+}
+"""Types of other languages, and what ROS has instead."""
+_FORMER = {'time': 'Time', 'duration': 'Duration'}
+"""Types of ROS 1 that the parser still reads, and that nothing can be built of."""
+_CONSTANT_NAME = re.compile('[A-Z](?:_?[A-Z0-9])*')
+"""What rosidl takes; its own pattern needs hours for some long names that do not fit."""
+_FIELD_NAME = re.compile('[a-z](?:_?[a-z0-9])*')
+
+
+class BadLine(ValueError):
+    """A line that is none of a definition; the text is the cause, in a clause."""
+
+
+def parse_line(package: str, line: str) -> Any:
+    """What rosidl makes of a line without its comment: its Field or Constant.
+
+    `package` is that of the file. Raises BadLine.
+    """
+    line = line.replace('\t', ' ')
+    if len(line) > MOST_CHARACTERS:
+        raise BadLine(f'it has {len(line)} characters, and may have {MOST_CHARACTERS}')
+    type_name, _, rest = line.partition(' ')
+    rest = rest.strip()
+    name, equals, _ = (part.strip() for part in rest.partition('='))
+    if line[:1] == ' ':
+        raise BadLine('rosidl takes no space before the type')
+    if equals and not _CONSTANT_NAME.fullmatch(name):
+        raise BadLine(_about_constant(type_name, name))
+    try:
+        return _parsed(package, line)
+    except Exception as error:
+        # rosidl raises whatever its conversions raise: TypeError, NameError, IndexError, …
+        raise BadLine(_why(type_name, rest, error)) from None
+
+
+def parse_whole(package: str, name: str, text: str, *, kind: str) -> None:
+    """Let rosidl read the text of a file, `kind` 'msg', 'srv' or 'action'. Raises BadLine."""
+    from rosidl_adapter import parser
+
+    read = {
+        'msg': parser.parse_message_string,
+        'srv': parser.parse_service_string,
+        'action': parser.parse_action_string,
+    }
+    try:
+        with contextlib.redirect_stderr(io.StringIO()):
+            read[kind](package, name, text)
+    except Exception as error:
+        # see above
+        raise BadLine(shorten(error)) from None
+
+
+def _parsed(package: str, line: str) -> Any:
+    from rosidl_adapter import parser
+
+    with contextlib.redirect_stderr(io.StringIO()):  # a check prints nothing there
+        definition: Any = parser.parse_message_string(package, 'Line', line)
+    if not definition.fields:
+        return definition.constants[0]
+    member = definition.fields[0]
+    if member.type.pkg_name == package and (fault := _about_type(member.type.type)):
+        raise BadLine(fault)  # String, say, could be a message
+    if keyword.iskeyword(member.name):
+        raise BadLine(f'{member.name} is a word of Python, so that no Python node can use it')
+    if member.type.is_primitive_type() and member.type.type in _FORMER:
+        standard = f'builtin_interfaces/{_FORMER[member.type.type]}'
+        raise BadLine(f'{member.type.type} is a type of ROS 1: write {standard}')
+    return member
+
+
+def _about_constant(type_name: str, name: str) -> str:
+    if _CONSTANT_NAME.fullmatch(name.upper()):
+        return (
+            f'= makes a constant, whose name is in capital letters ({name.upper()}); the default '
+            'value of a field is written without ='
+        )
+    return f'{shorten(name, 40)!r} is no name of a constant: use A to Z, digits and single _'
+
+
+def _why(type_name: str, rest: str, error: Exception) -> str:
+    """The cause, in a clause."""
+    if isinstance(error, BadLine):
+        return str(error)
+    name, _, default = rest.partition(' ')
+    about_name = '' if '=' in rest else _about_name(name)
+    if cause := _about_form(type_name, rest) or _about_type(type_name) or about_name:
+        return cause
+    said = shorten(error, 120)
+    if default and 'array ' in said:
+        return 'the default value of an array is a list of as many values, like [1, 2]'
+    return f'rosidl says: {said}'
+
+
+def _about_form(type_name: str, rest: str) -> str:
+    if not rest:
+        return 'a line has a type and a name, like: float64 speed'
+    if type_name.endswith(':') or rest.startswith(':'):
+        return 'the type comes first, then the name, without a colon: float64 speed'
+    if type_name.endswith(';') or rest.endswith(';'):
+        return 'no line ends with a semicolon'
+    if rest.startswith('['):
+        return 'no space between a type and its brackets: float64[2] name'
+    if '[' in rest.partition(' ')[0]:
+        return 'brackets belong to the type: float64[2] name'
+    return ''
+
+
+def _about_type(type_name: str) -> str:
+    plain, _, brackets = type_name.partition('[')
+    if brackets and not re.fullmatch(r'(<=)?\d*\]', brackets):
+        return 'an array is written [], exactly two values [2], at most two [<=2]'
+    if plain.startswith(('string<', 'wstring<')):
+        return 'a text of at most ten characters is written string<=10'
+    if plain in _OTHER_NAMES:
+        return f'there is no type {plain}: write {_OTHER_NAMES[plain]}'
+    if plain in _primitives():
+        return ''
+    if plain.lower() in _primitives() and plain.lower() not in _FORMER:
+        return f'types are written in lower case: {plain.lower()}'
+    parts = [part for part in re.split(r'::|[./]', plain) if part]
+    if len(parts) == 3 and parts[1] == 'msg':
+        return f'in a definition, a type has no msg in its name: {parts[0]}/{parts[2]}'
+    if len(parts) == 2 and '/' not in plain:
+        return f'a package and its type are written with a slash: {parts[0]}/{parts[1]}'
+    if len(parts) == 1 and not re.fullmatch('[A-Z][A-Za-z0-9]*', plain):
+        return f'there is no type {shorten(plain, 40)}'
+    return ''
+
+
+def _about_name(name: str) -> str:
+    if _FIELD_NAME.fullmatch(name):
+        return ''
+    if _CONSTANT_NAME.fullmatch(name) and len(name) > 1:
+        return 'a field has a name in lower case; a constant has = and a value behind its name'
+    words = re.sub('(?<=[a-z0-9])(?=[A-Z])', '_', name).replace('-', '_').lower()
+    proper = re.sub('_+', '_', words).strip('_')
+    if _FIELD_NAME.fullmatch(proper):
+        return f'the name of a field is in lower case, with single _: {proper}'
+    return f'{shorten(name, 40)!r} is no name of a field: use a to z, digits and single _'
+
+
+def _primitives() -> list[str]:
+    from rosidl_adapter.parser import PRIMITIVE_TYPES
+
+    return PRIMITIVE_TYPES

@@ -1,0 +1,30 @@
+"""Output a list of available interface types within one package."""
+
+import argparse
+
+from my_robot_basics.ros2 import completion, interfaces, packages
+from my_robot_basics.ros2.verbs.interface_list import add_kinds
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    add_kinds(parser)
+    completion.offer(
+        parser.add_argument(
+            'package_name', help="Name of the ROS package (e.g. 'example_interfaces')"
+        ),
+        completion.interface_packages,
+    )
+
+
+def main(args: argparse.Namespace) -> str | None:
+    """Run the verb."""
+    if packages.prefix(args.package_name) is None:
+        return f"Unknown package '{args.package_name}'"
+    # without options ros2cli sorts the names; with some, it goes by kind
+    chosen = [kind for kind in interfaces.KINDS if kind in (args.kinds or ())]
+    for kind in chosen or sorted(interfaces.KINDS):
+        for name in interfaces.names(kind):
+            if name.startswith(f'{args.package_name}/'):
+                print(name)
+    return None

@@ -1,0 +1,24 @@
+"""Output an interface prototype."""
+
+import argparse
+
+from my_robot_basics.ros2 import completion, interfaces
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    completion.offer(
+        parser.add_argument(
+            'type', help="Show an interface definition (e.g. 'example_interfaces/msg/String')"
+        ),
+        completion.interface_types,
+    )
+    parser.add_argument(
+        '--no-quotes', action='store_true', help='if true output has no outer quotes.'
+    )
+
+
+def main(args: argparse.Namespace) -> None:
+    """Run the verb."""
+    prototype = completion.as_prototype(interfaces.sendable_class_for(args.type)())
+    print(prototype if args.no_quotes else f'"{prototype}"')

@@ -1,0 +1,302 @@
+"""Texts of interface definitions: right in any form, and each mistake named with its cause."""
+
+import sys
+
+import pytest
+from my_robot_basics.checks import CheckFailed, Definitions
+from my_robot_basics.feedback import hidden
+from my_robot_basics.live import show_definition
+from my_robot_basics.ros2.definitions import MOST_CHARACTERS, read_definition
+
+PACKAGE = 'turn_interfaces'
+TURNS = """
+uint8 MOTOR1=0
+uint8 MOTOR2=1
+std_msgs/Header header
+int32[2] turns
+float64[2] gear_ratios [100.0, 50.0]
+"""
+COUNT_TURNS = """
+uint8 motor
+builtin_interfaces/Duration duration
+---
+bool success
+string message
+int32[<=60] each_second
+Turns total
+"""
+NAMES = {
+    'turns_msg': 'header turns gear_ratios MOTOR1 MOTOR2',
+    'count_turns_srv': 'motor duration --- success message each_second total',
+}
+POINTS = {'turns_msg': 1.0, 'count_turns_srv': 2.0}
+
+
+@pytest.fixture
+def check(monkeypatch):
+    """Judge two texts as the lesson's grade cell does; what is right is left out."""
+
+    def run(turns_msg=TURNS, count_turns_srv=COUNT_TURNS):
+        notebook = {'turns_msg': turns_msg, 'count_turns_srv': count_turns_srv}
+        for name, text in notebook.items():
+            monkeypatch.setattr(sys.modules['__main__'], name, text, raising=False)
+            if text is None:
+                monkeypatch.delattr(sys.modules['__main__'], name)
+        texts = Definitions(
+            PACKAGE, turns_msg='msg/Turns.msg', count_turns_srv='srv/CountTurns.srv'
+        )
+        texts.expect_names(**NAMES)
+        texts.expect_definitions(turns_msg=TURNS, count_turns_srv=COUNT_TURNS)
+        texts.conclude(POINTS)
+
+    return run
+
+
+def turns(old, new):
+    assert old in TURNS
+    return {'turns_msg': TURNS.replace(old, new)}
+
+
+def count(old, new):
+    assert old in COUNT_TURNS
+    return {'count_turns_srv': COUNT_TURNS.replace(old, new)}
+
+
+# --- right ---------------------------------------------------------------------------------------
+
+RIGHT = {
+    'as asked': {},
+    'in another order': {
+        'turns_msg': '\n'.join(reversed(TURNS.splitlines())),
+        'count_turns_srv': 'builtin_interfaces/Duration duration\nuint8 motor\n---\nTurns total\n'
+        'int32[<=60] each_second\nstring message\nbool success',
+    },
+    'with comments': turns('int32[2] turns', '# of both\nint32[2] turns # = no [constant]\n\n#'),
+    'with spaces and tabs': turns('int32[2] turns', 'int32[2]  \t turns   '),
+    'spaces around =': turns('MOTOR2=1', 'MOTOR2 = 1'),
+    'indented as a whole': {'turns_msg': TURNS.replace('\n', '\n    ')},
+    'windows line ends': {'count_turns_srv': COUNT_TURNS.replace('\n', '\r\n')},
+    'with its package': count('Turns total', f'{PACKAGE}/Turns total'),
+    'whole numbers as defaults': turns('[100.0, 50.0]', '[100,50]'),
+    'an octal constant': turns('MOTOR2=1', 'MOTOR2=0x01'),
+    'char, which is uint8': count('uint8 motor', 'char motor'),
+    'the default value that rosidl writes anyway': count('bool success', 'bool success false'),
+}
+
+
+@pytest.mark.parametrize('texts', RIGHT.values(), ids=RIGHT)
+def test_what_is_right_passes_in_any_form(check, texts, capfd):
+    check(**texts)
+    assert capfd.readouterr() == ('', '')
+
+
+# --- wrong ---------------------------------------------------------------------------------------
+
+WRONG = {
+    'int': (turns('int32[2] turns', 'int turns'), 'there is no type int: write int32'),
+    'float': (turns('float64[2]', 'float[2]'), 'there is no type float: write float64'),
+    'String': (count('string message', 'String message'), 'write string'),
+    'capital type': (count('bool success', 'BOOL success'), 'in lower case: bool'),
+    'camelCase': (turns('gear_ratios', 'gearRatios'), 'lower case, with single _: gear_ratios'),
+    'hyphen': (turns('gear_ratios', 'gear-ratios'), 'lower case, with single _: gear_ratios'),
+    'capital field': (turns('int32[2] turns', 'int32[2] Turns'), 'with single _: turns'),
+    'constant in lower case': (turns('MOTOR1=0', 'motor1=0'), 'in capital letters (MOTOR1)'),
+    'constant without =': (turns('MOTOR1=0', 'MOTOR1 0'), 'a constant has = and a value'),
+    'default with =': (turns('gear_ratios [', 'gear_ratios = ['), 'is written without ='),
+    'no separator': (count('---\n', ''), 'one line --- between the request and the response, and'),
+    'two separators': (count('---\n', '---\n---\n'), 'and there are 2'),
+    'space behind ---': (count('---', '--- '), 'not even a space'),
+    'comment behind ---': (count('---', '--- # response'), 'not even a space'),
+    'four dashes': (count('---', '----'), 'separated by three dashes'),
+    'Header alone': (turns('std_msgs/Header', 'Header'), 'before it, std_msgs/Header'),
+    'Duration alone': (
+        count('builtin_interfaces/Duration', 'Duration'),
+        'before it, builtin_interfaces/Duration',
+    ),
+    'with msg': (
+        turns('std_msgs/Header', 'std_msgs/msg/Header'),
+        'no msg in its name: std_msgs/H',
+    ),
+    'with colons': (turns('std_msgs/Header', 'std_msgs::Header'), 'with a slash: std_msgs/Header'),
+    'with a dot': (turns('std_msgs/Header', 'std_msgs.msg.Header'), 'no msg in its name'),
+    'another package': (
+        turns('std_msgs/Header', 'sensor_msgs/Header'),
+        'there is no message type',
+    ),
+    'ROS 1': (count('builtin_interfaces/Duration', 'duration'), 'is a type of ROS 1'),
+    'one default for two': (turns('[100.0, 50.0]', '100.0'), 'a list of as many values'),
+    'three defaults for two': (turns('50.0]', '50.0, 1.0]'), 'a list of as many values'),
+    'braces': (turns('[100.0, 50.0]', '{100.0, 50.0}'), 'a list of as many values'),
+    'as in C': (turns('int32[2] turns', 'int32 turns[2]'), 'brackets belong to the type'),
+    'space in the type': (turns('int32[2]', 'int32 [2]'), 'no space between a type and its'),
+    'bound with <': (count('[<=60]', '[<60]'), 'at most two [<=2]'),
+    'bound the wrong way': (count('[<=60]', '[60<=]'), 'at most two [<=2]'),
+    'Python': (count('bool success', 'success: bool'), 'the type comes first'),
+    'semicolon': (count('bool success', 'bool success;'), 'no line ends with a semicolon'),
+    'no name': (count('bool success', 'bool'), 'a line has a type and a name'),
+    'indented line': (count('string message', '  string message'), 'no space before the type'),
+    'keyword': (count('bool success', 'bool success\nstring from'), 'from is a word of Python'),
+    'twice': (count('bool success', 'bool success\nbool success'), 'two of the name success'),
+    'too large a value': (turns('MOTOR2=1', 'MOTOR2=256'), "rosidl says: value '256' can not be"),
+    'float32': (turns('float64[2]', 'float32[2]'), 'another number of bits'),
+    'unsigned': (turns('int32[2]', 'uint32[2]'), 'whole numbers that may be negative'),
+    'signed constant': (turns('uint8 MOTOR1', 'int8 MOTOR1'), 'that are never negative'),
+    'whole for float': (
+        turns('float64[2] gear_ratios [100.0, 50.0]', 'int64[2] gear_ratios [100, 50]'),
+        'asks for floating-point numbers',
+    ),
+    'a number for a message': (
+        count('builtin_interfaces/Duration', 'float64'),
+        'see in the table whether it is a number',
+    ),
+    'Time': (count('/Duration', '/Time'), 'see in the table what it is'),
+    'unbounded': (count('[<=60]', '[]'), 'takes any number of values'),
+    'fixed for bounded': (count('[<=60]', '[60]'), 'takes exactly so many values'),
+    'bounded for fixed': (turns('int32[2]', 'int32[<=2]'), 'takes at most so many'),
+    'one value': (turns('int32[2]', 'int32'), 'takes one value'),
+    'another length': (turns('int32[2]', 'int32[3]'), 'another number of values'),
+    'bounded text': (count('string m', 'string<=9 m'), 'a text of another length'),
+    'no default': (turns(' [100.0, 50.0]', ''), 'gear_ratios has no default value'),
+    'another default': (turns('50.0]', '51.0]'), 'another default value'),
+    'a default that nobody wants': (
+        count('success', 'success true'),
+        'nobody has asked for a def',
+    ),
+    'another constant': (turns('MOTOR2=1', 'MOTOR2=2'), 'the constant MOTOR2 has another value'),
+    'missing': (count('Turns total\n', ''), 'the response has no total'),
+    'misspelt': (count('each_second', 'every_second'), 'is it called every_second?'),
+    'too much': (
+        count('bool success', 'bool success\nint32 more'),
+        'more, which nobody has asked',
+    ),
+    'in the other part': (
+        {'count_turns_srv': COUNT_TURNS.replace('uint8 motor\n', '') + 'uint8 motor\n'},
+        'motor is in the response, and belongs to the request',
+    ),
+    'in both parts': (count('bool success', 'bool success\nuint8 motor'), 'motor is in the respo'),
+    'empty': ({'turns_msg': '# YOUR CODE HERE'}, 'in `turns_msg`, there is no field yet'),
+    'no such name': ({'turns_msg': None}, 'in `turns_msg`, expected a value `turns_msg`, saw no'),
+    'no text': ({'count_turns_srv': ['uint8 motor']}, 'expected `count_turns_srv` to be'),
+}
+
+
+@pytest.mark.parametrize(('texts', 'words'), WRONG.values(), ids=WRONG)
+def test_each_mistake_costs_its_own_text_alone_and_is_named(check, texts, words, capfd):
+    [name] = texts
+    with pytest.raises(CheckFailed) as failure:
+        check(**texts)
+    said = str(failure.value)
+    assert said.startswith('expected each text to define what its table says, saw something else ')
+    assert words in said
+    left = 3.0 - POINTS[name]
+    assert f'in `{name}`, which leaves {left:g} of 3 points: in `{name}`, ' in said
+    assert capfd.readouterr().err == ''  # rosidl prints there
+
+
+def test_what_is_wrong_in_both_is_told_of_both_and_leaves_nothing(check):
+    with pytest.raises(CheckFailed) as failure:
+        check(**turns('int32', 'int'), **count('[<=60]', '[]'))
+    said = str(failure.value)
+    assert 'leaves' not in said
+    assert 'in `turns_msg`, ' in said
+    assert '; in `count_turns_srv`, ' in said
+
+
+def test_of_many_mistakes_three_are_told(check):
+    with pytest.raises(CheckFailed, match=r'; and 2 more$'):
+        check('int a\nint b\nint c\nint d\nint e')
+
+
+def test_where_nothing_is_written_that_is_all(check):
+    with pytest.raises(CheckFailed, match=r'^expected a value `turns_msg`, saw no such name: '):
+        check(None, None)
+
+
+def test_the_visible_part_alone_leaves_no_points(monkeypatch):
+    monkeypatch.setattr(sys.modules['__main__'], 'turns_msg', 'int turns', raising=False)
+    monkeypatch.setattr(sys.modules['__main__'], 'count_turns_srv', COUNT_TURNS, raising=False)
+    texts = Definitions(PACKAGE, turns_msg='msg/Turns.msg', count_turns_srv='srv/CountTurns.srv')
+    texts.expect_names(**NAMES)
+    with pytest.raises(CheckFailed) as failure:
+        texts.conclude(POINTS)
+    assert 'leaves' not in str(failure.value)
+
+
+def test_from_the_hidden_part_the_same_is_told(check, monkeypatch):
+    monkeypatch.setattr(hidden, '_quiet', True)
+    with pytest.raises(CheckFailed, match=r'int64.*: the table asks for another number of bits'):
+        check(**turns('int32[2]', 'int64[2]'))
+
+
+# --- hostile -------------------------------------------------------------------------------------
+
+HOSTILE = {
+    'a name that rosidl reads for hours': 'uint8 ' + 'A' * 60 + 'a=1',
+    'the same without an end': 'uint8 ' + 'A_' * 90 + '=1',
+    'fields without end': '\n'.join(f'int32 field{n}' for n in range(100_000)),
+    'one long line': 'int32 ' + 'a' * 60_000,
+    'a number without end': f'float64[{"9" * 250}] turns',
+    'many unknown types': '\n'.join(f'a{n}/B turns{n}' for n in range(199)),
+    'brackets': '[' * 9_000,
+    'spaces in a comment': '# ' + ' ' * 9_000 + '[',
+    'a path': '../../etc/passwd turns\n../etc/Turns turns',
+    'a path for a package': 'std_msgs/../Header header',
+    'escapes': '\x1b[31mint32\x07 turns\x00\u202e\u2066 turns\u2069',
+    'other line ends': 'int32 a\x0bint32 b\x85int32 c\u2028int32 d',
+    'quotes': 'string name "' + '\\"' * 140,
+    'a list of quotes': 'string[] name [' + "'," * 130 + ']',
+    'a format': 'int32 {turns!r} %s %d',
+    'surrogates': 'int32 \ud800',
+}
+
+
+@pytest.mark.parametrize('text', HOSTILE.values(), ids=HOSTILE)
+def test_no_text_takes_long_or_brings_anything_else_than_a_sentence(check, text, capfd):
+    with pytest.raises(CheckFailed) as failure:
+        check(turns_msg=text)
+    said = str(failure.value)
+    assert len(said) < 1_500
+    assert said.isprintable()
+    assert 'leaves 2 of 3 points' in said
+    assert capfd.readouterr().err == ''
+
+
+def test_a_text_at_the_limit_is_read():
+    text = TURNS + '#' * (MOST_CHARACTERS - len(TURNS))
+    read = read_definition(text, package=PACKAGE, kind='msg', own_types=())
+    assert read.faults == []
+    assert read_definition(f'{text}#', package=PACKAGE, kind='msg', own_types=()).faults != []
+
+
+def test_an_action_has_three_parts():
+    text = 'int32 a\n---\nint32 b\n---\nint32 c'
+    read = read_definition(text, package=PACKAGE, kind='action', own_types=())
+    assert [list(section) for section in read.sections] == [['a'], ['b'], ['c']]
+    assert read.faults == []
+    short = read_definition('int32 a\n---\nint32 b', package=PACKAGE, kind='action', own_types=())
+    assert short.faults == [
+        'there is to be two lines --- between the goal, the result and the feedback, '
+        'and there are 1'
+    ]
+
+
+def test_a_wrong_definition_in_a_check_is_the_authors_mistake(check, monkeypatch):
+    monkeypatch.setattr(sys.modules['__main__'], 'motor_msg', 'int32 a', raising=False)
+    texts = Definitions(PACKAGE, motor_msg='msg/Motor.msg')
+    with pytest.raises(ValueError, match='the definition for motor_msg is none'):
+        texts.expect_definitions(motor_msg='int a')
+
+
+# --- in a notebook -------------------------------------------------------------------------------
+
+
+def test_a_notebook_is_shown_what_each_line_means(capsys):
+    show_definition('uint8 OPEN=1\nfloat64[2] force [1, 2]  # N\n---\nstring[] names\nint n')
+    assert capsys.readouterr().out == (
+        'uint8 OPEN=1             constant OPEN, uint8, always 1\n'
+        'float64[2] force [1, 2]  field force, exactly 2 float64, [1.0, 2.0] if nobody sets it\n'
+        '---\n'
+        'string[] names           field names, any number of string\n'
+        'int n                    refused: there is no type int: write int32 or another int '
+        'with its number of bits\n'
+    )
