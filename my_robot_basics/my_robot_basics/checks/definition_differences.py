@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from my_robot_basics.feedback.errors import shorten
-from my_robot_basics.ros2.definitions import SECTIONS, Definition, DefinedMember
+from my_robot_basics.ros2.definitions import SECTIONS, DefinedMember, Definition
 
 _SAME = {'char': 'uint8'}
 """Names of one and the same type, since ROS 2."""
