@@ -67,6 +67,14 @@ UNREADABLE = {
 }  # fmt: skip
 
 
+@pytest.mark.parametrize('said', ['zh_CN', 3, ['zh_CN'], {'a': 1}, '', 'x' * 30, '../..', 'zh CN'])
+def test_of_the_metadata_only_the_name_of_a_language_is_kept(read, said):
+    ours = {'language': said, 'notes': ['forged'], 'title': 'forged'}
+    kept = {'my_robot_basics': {'language': said}} if said == 'zh_CN' else {}
+    text = notebook_text(CODE, metadata={'my_robot_basics': ours, 'more': 1})
+    assert read(text).metadata == kept
+
+
 @pytest.mark.parametrize(('content', 'reason'), UNREADABLE.values(), ids=UNREADABLE)
 def test_the_unreadable_is_refused_in_one_line_with_a_reason(read, content, reason):
     with pytest.raises(UnreadableSubmission) as refused:

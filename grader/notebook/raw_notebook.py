@@ -8,12 +8,15 @@ import re
 import secrets
 from pathlib import Path
 
+from my_robot_basics.language.speaking import KEY, LANGUAGE
 from my_robot_basics.validate.pictures import KINDS, why_not_shown
 
 from grader.common.errors import UnreadableSubmission
 
 MAX_NOTEBOOK_BYTES = 20_000_000
 """More than any lesson with all its pictures; a larger file is refused, not read."""
+LANGUAGES = '[A-Za-z_]{2,20}'
+"""What names of languages are made of: zh_CN."""
 MAX_CELLS = 2_000
 MAX_CHARACTERS = 500_000
 """Of all cells together, pictures apart: twenty times what a lesson has."""
@@ -22,15 +25,24 @@ MAX_PICTURES, MAX_PICTURE_NAME_CHARACTERS = 200, 255
 
 
 def read(path: str) -> dict:
-    """Read a notebook; return its cells, or what is wrong with it, as JSON."""
+    """Read a notebook; return its cells and language, or what is wrong with it, as JSON."""
     try:
-        return {'cells': _cells(Path(path))}
+        raw = _read_json(Path(path))
+        return {'cells': _cells(Path(path), raw)} | _language(raw)
     except UnreadableSubmission as error:
         return {'problem': str(error)}
 
 
-def _cells(path: Path) -> list[dict]:
-    raw = _read_json(path)
+def _language(raw: object) -> dict[str, str]:
+    """Return what the notebook says that its language is, in which its feedback is written."""
+    said = raw
+    for name in ('metadata', KEY, LANGUAGE):
+        said = said.get(name) if isinstance(said, dict) else None
+    is_one = isinstance(said, str) and re.fullmatch(LANGUAGES, said)
+    return {LANGUAGE: said} if isinstance(said, str) and is_one else {}
+
+
+def _cells(path: Path, raw: object) -> list[dict]:
     if not isinstance(raw, dict) or not isinstance(raw.get('nbformat'), int):
         raise UnreadableSubmission(
             f'{path.name} is JSON but not a notebook: save the lesson in JupyterLab and submit '

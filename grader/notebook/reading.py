@@ -4,13 +4,14 @@ from pathlib import Path
 
 import jsonschema
 import nbformat
+from my_robot_basics.language.speaking import KEY, LANGUAGE
 from my_robot_basics.validate.pictures import KINDS
 from nbformat import NotebookNode
 
 from grader.common.errors import CourseError, UnreadableSubmission
 from grader.common.parsing import ParsingFailed, parse
 from grader.notebook import raw_notebook
-from grader.notebook.raw_notebook import MAX_CELLS, MAX_CHARACTERS, MAX_PICTURES
+from grader.notebook.raw_notebook import LANGUAGES, MAX_CELLS, MAX_CHARACTERS, MAX_PICTURES
 
 _EMPTY = {'nbformat': 4, 'nbformat_minor': 5, 'metadata': {}, 'cells': []}
 """A notebook; nbformat's own functions check it, cell by cell, against all of their schema."""
@@ -53,9 +54,10 @@ _READ = jsonschema.Draft202012Validator(
         'properties': {
             'cells': {'type': 'array', 'minItems': 1, 'maxItems': MAX_CELLS, 'items': _CELL},
             'problem': {'type': 'string', 'minLength': 1, 'maxLength': 2_000},
+            LANGUAGE: {'type': 'string', 'pattern': f'^{LANGUAGES}\\Z'},
         },
-        'minProperties': 1,
-        'maxProperties': 1,
+        'oneOf': [{'required': ['cells']}, {'required': ['problem']}],
+        'dependentRequired': {LANGUAGE: ['cells']},
         'additionalProperties': False,
     }
 )
@@ -79,4 +81,5 @@ def read_notebook(path: Path) -> NotebookNode:
         raise CourseError(f'what read {path.name} came to no notebook: {error.json_path}')
     if problem := said.get('problem'):
         raise UnreadableSubmission(problem)
-    return nbformat.from_dict(_EMPTY | {'cells': said['cells']})
+    metadata = {KEY: {LANGUAGE: said[LANGUAGE]}} if LANGUAGE in said else {}
+    return nbformat.from_dict(_EMPTY | {'cells': said['cells'], 'metadata': metadata})

@@ -30,7 +30,7 @@ class Submission:
     path: Path
     """Where the notebook is, or was expected."""
     notebook: NotebookNode | None
-    """Cell types, sources and grade ids only; None when it could not be read."""
+    """Cell types, sources, grade ids and its language only; None when it could not be read."""
     extra_files: tuple[Path, ...] = ()
     """The student's own Python files beside the notebook."""
     problem: str | None = None
