@@ -1,12 +1,14 @@
 """What a rule says of evidence, without a graph; and the QoS rule against what really arrives."""
 
 import dataclasses
+import html
+import re
 import time
 
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from my_robot_basics.doctor import picture, remaps, report, rules, service_rules
+from my_robot_basics.doctor import as_html, picture, remaps, report, rules, service_rules
 from my_robot_basics.doctor.callback import Callback
 from my_robot_basics.doctor.evidence import Endpoint, Evidence, NodeState, ReceivedMessage
 from my_robot_basics.doctor.remaps import of_command
@@ -394,6 +396,11 @@ UNANSWERED = (Unanswered(node_name=WAVER, seconds=1.2),)
         ),
         (healthy_service(callbacks=(WAITING,)), []),  # it has come just now
         (
+            healthy_service(endpoints=(SERVES, service_end('server', '/second'), ASKS)),
+            ['several servers'],
+        ),
+        (healthy_service(endpoints=(SERVES, SERVES, ASKS)), ['several servers']),  # two programs
+        (
             healthy_service(
                 endpoints=(service_end('server', GRIPPER, name='/close_griper'), ASKS)
             ),
@@ -509,3 +516,24 @@ def test_the_picture_of_a_service_says_in_words_what_it_shows(evidence, text):
     diagnosis = service_rules.judge(evidence)
     assert text in picture.describe(diagnosis)
     assert picture.draw(diagnosis).startswith(b'\x89PNG')
+
+
+def test_several_servers_are_named_with_what_comes_of_it():
+    evidence = healthy_service(endpoints=(SERVES, service_end('server', '/second'), ASKS))
+    (finding,) = service_rules.judge(evidence).findings
+    assert finding.seen.startswith('2 servers, of /gripper and /second: each of them works on')
+
+
+def test_a_web_page_says_the_same_and_leaves_lines_to_the_window():
+    evidence = healthy_service(endpoints=(service_end('client', '/<waver>'),))
+    diagnosis = service_rules.judge(evidence)
+    page, text = as_html.tell_as_html(diagnosis), report.tell(diagnosis)
+    assert page.count('<li>') == len(diagnosis.findings) == 1
+    assert '<waver>' not in page
+    shown = html.unescape(re.sub(r'<[^>]+>', ' ', page))
+    assert set(shown.split()) == set(text.split()) - {'1.'}
+    code = re.search('<pre [^>]+>(.+)</pre>', page)[1]
+    assert html.unescape(code) == diagnosis.findings[0].code
+    well = as_html.tell_as_html(service_rules.judge(healthy_service()))
+    assert '<ol>' not in well
+    assert 'All is well on /close_gripper' in well

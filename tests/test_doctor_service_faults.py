@@ -381,6 +381,18 @@ def test_a_remapped_server():
 
 
 @pytest.mark.slow
+def test_two_servers_of_one_name_both_work_and_one_is_listened_to():
+    run(node_class(SERVER))
+    second = run(Node, 'second')
+    worked = []
+    second.create_service(SetBool, NAME, lambda request, response: worked.append(1) or response)
+    asker = run(node_class(ASKER))
+    assert wait_for(lambda: asker.answered and worked)
+    finding = first_finding()
+    assert finding.title == 'several servers'
+    assert '/second' in finding.seen
+
+
 def test_a_server_in_another_domain():
     claim = domain.claim()
     name = f'{NAME}_{claim.domain_id}'  # tests beside this one have servers, too

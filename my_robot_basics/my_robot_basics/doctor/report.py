@@ -32,6 +32,13 @@ INDENT = ' ' * 13
 
 def tell(diagnosis: Diagnosis, language: str = ENGLISH) -> str:
     """The whole answer: one paragraph a fault, the likeliest first, or that all is well."""
+    findings = enumerate(diagnosis.findings, start=1)
+    paragraphs = [_paragraph(i, finding, language) for i, finding in findings]
+    return '\n\n'.join([opening(diagnosis, language), *paragraphs])
+
+
+def opening(diagnosis: Diagnosis, language: str) -> str:
+    """Whether something is wrong, and what was seen: the first sentence."""
     evidence = diagnosis.evidence
     if not diagnosis.findings:
         return in_language(language, f'All is well on {evidence.name}: {summary(evidence)}.')
@@ -39,9 +46,7 @@ def tell(diagnosis: Diagnosis, language: str = ENGLISH) -> str:
     said = f'Something is wrong on {evidence.name}: {summary(evidence)}.'
     if many:
         said = f'Something is wrong on {evidence.name}, the likeliest first: {summary(evidence)}.'
-    findings = enumerate(diagnosis.findings, start=1)
-    paragraphs = [_paragraph(i, finding, language) for i, finding in findings]
-    return '\n\n'.join([in_language(language, said), *paragraphs])
+    return in_language(language, said)
 
 
 def summary(evidence: Seen) -> str:
@@ -91,12 +96,20 @@ def _names(evidence: Seen, kind: Kind) -> str:
 
 
 def _paragraph(number: int, finding: Finding, language: str) -> str:
-    say = partial(in_language, language)
-    fix = f'{say(finding.fix)}{":" if finding.code else ""}'
-    fields = {'expected': say(finding.expected), 'saw': say(finding.seen), 'to do': fix}
-    lines = [f'{number}. {say(finding.title)}']
-    for label, text in fields.items():
-        lines += in_lines(text, COLUMNS, first=f'   {ljust(say(label), 10)}', rest=INDENT)
+    lines = [f'{number}. {in_language(language, finding.title)}']
+    for label, text in fields(finding, language).items():
+        lines += in_lines(text, COLUMNS, first=f'   {ljust(label, 10)}', rest=INDENT)
     if finding.code:
         lines.append(f'{INDENT}{finding.code}')  # in one line, to be copied
     return '\n'.join(lines)
+
+
+def fields(finding: Finding, language: str) -> dict[str, str]:
+    """What is said of a fault, by its label, in a language."""
+    say = partial(in_language, language)
+    fix = f'{say(finding.fix)}{":" if finding.code else ""}'
+    return {
+        say('expected'): say(finding.expected),
+        say('saw'): say(finding.seen),
+        say('to do'): fix,
+    }

@@ -1,16 +1,11 @@
 """Why nothing arrives on a topic, or a service does not answer, said and drawn in the notebook."""
 
-import html
-
-from my_robot_basics.doctor import diagnosing, names, picture, report
+from my_robot_basics.doctor import as_html, diagnosing, names, picture, report
 from my_robot_basics.doctor.evidence import Diagnosis
 from my_robot_basics.language.speaking import language_here
 from my_robot_basics.live import notebook, troubles
 from my_robot_basics.session import classroom
 from my_robot_basics.session.errors import LiveError
-
-STYLE = 'margin:0;font-size:13px;word-break:normal'
-"""As large as other outputs, and broken between words: a line of code may be a long one."""
 
 
 class NoSuchName(LiveError):
@@ -45,7 +40,7 @@ def _show(diagnosis: Diagnosis) -> None:
     if not notebook.in_kernel():
         print(told)
         return
-    as_html = f'<pre style="{STYLE}">{html.escape(told)}</pre>'
-    notebook.Display().show({'text/plain': told, 'text/html': as_html})
+    page = as_html.tell_as_html(diagnosis, language_here())
+    notebook.Display().show({'text/plain': told, 'text/html': page})
     drawn, words = picture.draw(diagnosis), picture.describe(diagnosis)
     notebook.Display().show({'image/png': drawn, 'text/plain': words})

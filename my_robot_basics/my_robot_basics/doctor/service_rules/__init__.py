@@ -19,6 +19,7 @@ from my_robot_basics.doctor.service_rules import (
     no_server,
     not_spinning,
     raised,
+    several_servers,
     types_differ,
     waits_for_server,
 )
@@ -31,6 +32,7 @@ RULES: tuple[Callable[[ServiceEvidence], Iterable[Finding]], ...] = (
     no_server.examine,
     waits_for_server.examine,
     types_differ.examine,
+    several_servers.examine,
     blocks_itself.examine,
     raised.examine,
     not_spinning.examine,

@@ -1,0 +1,29 @@
+"""A diagnosis as a part of a web page, whose lines are as long as there is room."""
+
+import html
+
+from my_robot_basics.doctor.evidence import Diagnosis, Finding
+from my_robot_basics.doctor.report import fields, opening
+from my_robot_basics.language.catalogues import ENGLISH
+from my_robot_basics.language.speaking import in_language
+
+STYLE = 'font-size:13px;line-height:1.4;overflow-wrap:anywhere'
+"""As large as other outputs, however narrow the window is."""
+CODE_STYLE = 'margin:2px 0;white-space:pre-wrap;overflow-wrap:anywhere'
+
+
+def tell_as_html(diagnosis: Diagnosis, language: str = ENGLISH) -> str:
+    """The whole answer, as `report.tell` gives it, in HTML."""
+    items = ''.join(_item(finding, language) for finding in diagnosis.findings)
+    first = f'<p>{html.escape(opening(diagnosis, language))}</p>'
+    shown = f'{first}\n<ol>\n{items}</ol>' if items else first
+    return f'<div style="{STYLE}">{shown}</div>'
+
+
+def _item(finding: Finding, language: str) -> str:
+    lines = [f'<b>{html.escape(in_language(language, finding.title))}</b>']
+    for label, text in fields(finding, language).items():
+        lines.append(f'<br>\n<i>{html.escape(label)}</i> {html.escape(text)}')
+    if finding.code:
+        lines.append(f'\n<pre style="{CODE_STYLE}">{html.escape(finding.code)}</pre>')
+    return f'<li>{"".join(lines)}</li>\n'
