@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import nbformat
+from my_robot_basics.validate.packages import BUILD, packages_of
 from nbformat import NotebookNode
 
 from grader.common.errors import CourseError
@@ -85,6 +86,22 @@ class Course:
     def template(self, assignment: str) -> AssignmentTemplate:
         """Return what submissions of an assignment are restored from."""
         return make_template(self.source(assignment), self.release(assignment))
+
+    def packages(self, assignment: str) -> tuple[str, ...]:
+        """Return the ROS packages that are handed in with an assignment: its locked cells say.
+
+        Raises CourseError when there is no such assignment.
+        """
+        with contextlib.suppress(OSError, UnicodeDecodeError):
+            if BUILD not in self.source_path(assignment).read_text(encoding='utf-8'):
+                return ()  # most lessons ask for none, and need not be parsed
+        return packages_of(self.source(assignment))
+
+    def is_in_package(self, path: Path) -> bool:
+        """Whether a path in solutions/ or notebooks/ leads into a package beside a lesson."""
+        known = self.assignments()
+        above = zip(path.parts, path.parts[1:-1], strict=False)
+        return any(lesson in known and name in self.packages(lesson) for lesson, name in above)
 
     def seed(self, assignment: str, student_id: str) -> str:
         """Return the hexadecimal seed of the inputs that an assignment's hidden tests choose.

@@ -69,6 +69,8 @@ class _PreparedAssignment:
     template: AssignmentTemplate
     seed_of: Callable[[str], str]
     """Gives each student's seed."""
+    packages: tuple[str, ...]
+    """ROS packages that are handed in with the notebook."""
     conditions: str
     """What else a result depends on, as a hash."""
 
@@ -97,10 +99,13 @@ def grade_all(
         def start(found: SubmissionFolder) -> 'Future[GradedSubmission]':
             if found.problem:
                 raise CourseError(found.problem)
-            submission = read_submission(
-                found.folder, student_id=found.student_id, assignment=found.assignment
-            )
             assignment = assignments[found.assignment]
+            submission = read_submission(
+                found.folder,
+                student_id=found.student_id,
+                assignment=found.assignment,
+                packages=assignment.packages,
+            )
             its_seed = assignment.seed_of(submission.student_id)
             key = key_of(submission, assignment.conditions, seed=its_seed)
             if not force and (earlier := find_earlier_result(course, submission, key)):
@@ -132,6 +137,7 @@ def _prepare(
             prepared[name] = _PreparedAssignment(
                 template=prepared_template(course, name),
                 seed_of=(lambda _: seed) if seed else course.seeds(name),
+                packages=course.packages(name),
                 conditions=conditions(course, name, isolated=isolated),
             )
     return prepared

@@ -34,12 +34,16 @@ def replay(
     templates = {
         name: prepared_template(course, name) for name in {each.assignment for each in found}
     }
+    packages = {name: course.packages(name) for name in templates}
     with backend or Workers() as backend:
         backend.require_isolation(trust_students=trust_students)
         work = [
             submit_for_grading(
                 read_submission(
-                    each.folder, student_id=each.student_id, assignment=each.assignment
+                    each.folder,
+                    student_id=each.student_id,
+                    assignment=each.assignment,
+                    packages=packages[each.assignment],
                 ),
                 templates[each.assignment],
                 backend=backend,

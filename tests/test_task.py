@@ -72,11 +72,13 @@ def test_doing_it_does_not_change_it(work, looked):
     assert pack(work) == text
 
 
-def test_no_file_leaves_its_folder(work, looked):
+@pytest.mark.parametrize('path', ['../../up.py', '/up.py', 'a/../../up.py'])
+def test_no_file_leaves_its_folder(work, looked, path):
     sent = json.loads(pack(work))
-    sent['files'] = {'../../up.py': ''}
-    unpack(do(json.dumps(sent)), work)
-    assert looked['files'] == {'up.py': b''}
+    sent['files'] = {path: ''}
+    with pytest.raises(TaskFailed, match='is no path of a file in a submission'):
+        unpack(do(json.dumps(sent)), work)
+    assert looked == {}
 
 
 def test_what_takes_too_long_is_given_up(work, monkeypatch):

@@ -126,7 +126,8 @@ def _paths(course: Course, faults: list[str]) -> Iterator[str]:
         for assignment in course.assignments():
             lesson = course.root / folder / assignment
             names = {f'{assignment}.ipynb', *map(str, files_in(lesson))}
-            yield from (f'{folder}/{assignment}/{name}' for name in sorted(names))
+            paths = (Path(assignment, name) for name in sorted(names))
+            yield from (f'{folder}/{path}' for path in paths if not course.is_in_package(path))
     for edition in editions(course):
         for part in FOR_STUDENTS:
             catalogue = catalogue_path(Path('locale'), edition.language, part)

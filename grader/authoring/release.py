@@ -3,6 +3,7 @@
 The pictures move: solutions/ is left with what nbval compares (see demo_outputs).
 """
 
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -87,7 +88,7 @@ def stale_or_leaking(course: Course) -> list[str]:
     strange = [
         f'notebooks/{path} comes from no assignment: remove it'
         for path in files_in(released)
-        if path not in expected and len(path.parts) > 1
+        if path not in expected and len(path.parts) > 1 and not course.is_in_package(path)
     ]
     return stale + strange + _leaks(course, released)
 
@@ -112,6 +113,9 @@ def _build(course: Course, assignment: str, folder: Path) -> Path:
         raise CourseError(
             'nbgrader could not release ' + assignment + ': ' + ' '.join(said or [run.stderr])
         )
+    for name in names:  # our own packages lie beside the source, and are the answer
+        for package in course.packages(name):
+            shutil.rmtree(folder / name / package, ignore_errors=True)
     write_pages(course, folder, metadata=METADATA)
     return folder
 

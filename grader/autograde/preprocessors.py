@@ -13,8 +13,19 @@ from grader.course import Course
 from grader.judging.task import GradingTask
 from grader.kernels.isolation import require_isolation
 from grader.notebook.restore import KEY, restore
-from grader.notebook.submission import extra_python_files, read_submission
+from grader.notebook.submission import Submission, read_submission
 from grader.workers.workers import Workers
+
+
+def submission_of(resources: dict) -> Submission:
+    """Return what nbgrader is about to grade, read anew from the folder that it names."""
+    at = resources['nbgrader']
+    return read_submission(
+        Path(resources['metadata']['path']),
+        student_id=at['student'],
+        assignment=at['assignment'],
+        packages=Course.of_nbgrader(resources).packages(at['assignment']),
+    )
 
 
 class RestoreSubmission(Preprocessor):
@@ -28,11 +39,7 @@ class RestoreSubmission(Preprocessor):
         It is read anew, as strangers' files are: what nbgrader has read may hold anything.
         """
         at = resources['nbgrader']
-        submission = read_submission(
-            Path(resources['metadata']['path']),
-            student_id=at['student'],
-            assignment=at['assignment'],
-        )
+        submission = submission_of(resources)
         restored = restore(
             submission.notebook or nbformat.v4.new_notebook(),
             Course.of_nbgrader(resources).template(at['assignment']),
@@ -60,11 +67,11 @@ class ExecuteRooms(Preprocessor):
 
         Raises CourseError where there is no sandbox, and TaskFailed where there is no verdict.
         """
-        at, folder = resources['nbgrader'], Path(resources['metadata']['path'])
+        at = resources['nbgrader']
         require_isolation(trust_students=self.trust_students)
         task = GradingTask(
             notebook=nb,
-            files={path.name: path.read_bytes() for path in extra_python_files(folder)},
+            files={n: f.read_bytes() for n, f in submission_of(resources).files.items()},
             seed=Course.of_nbgrader(resources).seed(at['assignment'], at['student']),
             trust_students=self.trust_students,
         )

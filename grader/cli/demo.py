@@ -42,6 +42,8 @@ def demo(samples: Path = SAMPLES, *, root: Path = ROOT) -> bool:
         folder = course.folder('submitted', sample.stem, assignment)
         folder.mkdir(parents=True)
         shutil.copyfile(sample, folder / f'{assignment}.ipynb')
+        if sample.with_suffix('').is_dir():  # what is handed in beside it: packages
+            shutil.copytree(sample.with_suffix(''), folder, dirs_exist_ok=True)
     submissions = find_submissions(course)
     if not require_isolation(trust_students=True):
         print(f'The samples are {NO_SANDBOX}. They are part of the course, and do no harm.')

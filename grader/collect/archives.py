@@ -65,9 +65,14 @@ class Member:
 
 
 def unpack(
-    archive: Path, *, name: str, aside: Path, left: UnpackLimits, wanted: Callable[[str], bool]
+    archive: Path,
+    *,
+    name: str,
+    aside: Path,
+    left: UnpackLimits,
+    wanted: Callable[[tuple[str, ...]], bool],
 ) -> Iterator[Member]:
-    """Yield what an archive holds; copies of wanted files, told by their names, lie in `aside`.
+    """Yield what an archive holds; copies of wanted files, told by their paths, lie in `aside`.
 
     `name` tells the kind of archive. Raises OSError where the disk is full, and nothing else:
     whatever is wrong with the archive is the problem of a member.
@@ -78,7 +83,7 @@ def unpack(
             if left.files < 0:
                 raise Refused('more files in it than are unpacked')
             file, problem = None, entry.problem
-            if not problem and wanted(entry.parts[-1]):
+            if not problem and wanted(entry.parts):
                 file, problem = _copied(entry, aside, left)
             yield Member(entry.parts, entry.modified, file, problem)
     except Refused as refusal:

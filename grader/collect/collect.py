@@ -65,11 +65,14 @@ def collect(course: Course, source: Path, *, file_times: bool = False) -> Iterat
     grades = cache(lambda: records(course))
     with gradebook_lock(course.gradebook), tempfile.TemporaryDirectory(prefix='collect-') as aside:
         try:
-            found = list(look_into(source, Path(aside)))
+            packages = {name: course.packages(name) for name in course.assignments()}
+            asked_for = {each for several in packages.values() for each in several}
+            found = list(look_into(source, Path(aside), asked_for))
             visible = [each for each in found if not each.litter]
             hand_ins, rest = match(
                 visible,
-                course.assignments(),
+                packages,
+                packages=packages,
                 students=known_students(course),
                 file_times=file_times,
             )
@@ -114,7 +117,7 @@ def take(
     files = dict(_files(each))
     came = digests(files)
     if not place.exists():
-        put_whole(writer(files, each.handed_in, each.secret), place)
+        put_whole(writer(files, each.handed_in, secret=each.secret, left_out=each.left_out), place)
         return NEW, ''
     there, when = contents(place), date_of(place / TIMESTAMP)
     if came == there:
@@ -123,11 +126,17 @@ def take(
     if not (both and both[0] > both[1]) and came in contents_of_earlier(shelf):
         return KNOWN, 'as an earlier one, which was replaced since'
     if both and both[0] <= both[1]:
-        kept = put_numbered(within('submitted', writer(files, each.handed_in, each.secret)), shelf)
+        kept = put_numbered(
+            within(
+                'submitted',
+                writer(files, each.handed_in, secret=each.secret, left_out=each.left_out),
+            ),
+            shelf,
+        )
         return EARLIER, f'a later one is there already; kept in {_shown(kept, course)}'
     if there not in contents_of_earlier(shelf):  # else an earlier run was ended right after that
         put_numbered(lambda folder: _copy_all(course, each, folder, grades), shelf)
-    put_whole(writer(files, each.handed_in, each.secret), place)
+    put_whole(writer(files, each.handed_in, secret=each.secret, left_out=each.left_out), place)
     return AGAIN, f'the one before and its grade are kept in {_shown(shelf, course)}'
 
 

@@ -55,7 +55,7 @@ class LiveFolder:
 
     aside: Path
     left: UnpackLimits
-    wanted: Callable[[str], bool]
+    wanted: Callable[[tuple[str, ...]], bool]
 
     def read(self, folder: Path, above: tuple[str, ...]) -> Iterator[Incoming]:
         """Yield the files of a folder, copied; nothing but `folder` itself may be a link."""
@@ -114,7 +114,7 @@ class LiveFolder:
             yield Incoming(parts, problem=problem)
         elif stat.S_ISREG(status.st_mode):
             file, problem = None, ''
-            if self.wanted(parts[-1]):
+            if self.wanted(parts):
                 file, problem = self._copy(descriptor, status, bool(ARCHIVE.search(parts[-1])))
             yield Incoming(
                 parts,

@@ -1,7 +1,7 @@
 """Whose file it is: student, assignment and time, read off where it lay and how it is named."""
 
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
 from hashlib import sha256
@@ -9,6 +9,7 @@ from pathlib import Path
 
 from grader.collect.incoming import Incoming, is_notebook
 from grader.collect.owners import find_owners
+from grader.collect.package_folders import NO_NOTEBOOK, choose, grouped, matters, number_of, split
 from grader.collect.platforms import PlatformLabel
 from grader.collect.uploads import wanted
 from grader.common.dates import date_of
@@ -24,7 +25,7 @@ class MatchedFile:
     assignment: str
     notebook: Incoming
     extra: dict[str, Path] = field(default_factory=dict)
-    """The student's Python files beside it, by name."""
+    """The student's Python files beside it, by name, and those of packages, by path."""
     handed_in: datetime | None = None
     """In UTC; None where nothing tells."""
     label: PlatformLabel | None = None
@@ -33,6 +34,8 @@ class MatchedFile:
     """What a person may want to look at, although it was taken."""
     secret: Path | None = None
     """nbgrader's, which names the page of feedback in the exchange."""
+    left_out: tuple[str, ...] = ()
+    """What its student is told of files that were not taken."""
 
 
 @dataclass(frozen=True)
@@ -49,18 +52,23 @@ def match(
     found: Sequence[Incoming],
     assignments: Iterable[str],
     *,
+    packages: Mapping[str, Iterable[str]] | None = None,
     students: Iterable[str] = (),
     file_times: bool = False,
 ) -> tuple[list[MatchedFile], list[UntakenFile]]:
     """Sort what came in: submissions, each student's in their order, and the rest with reasons.
 
-    `students` are those who are known from before. `file_times` takes the time of a file for the
+    `packages` are the ROS packages that are handed in with each assignment. `students` are those
+    who are known from before. `file_times` takes the time of a file for the
     time it was handed in, where nothing else tells.
     """
+    asked_for = {name: tuple(several) for name, several in (packages or {}).items()}
+    found, folders = split(found, {each for several in asked_for.values() for each in several})
+    beside_notebooks = grouped(folders)
     rest = [UntakenFile(each, each.problem) for each in found if each.problem]
     beside: dict[tuple[str, ...], dict[str, Incoming]] = defaultdict(dict)
     for each in (each for each in found if not each.problem and not is_notebook(each)):
-        if wanted(each.parts[-1]):
+        if wanted(each.parts[-1:]):
             beside[each.parts[:-1]][each.parts[-1]] = each
         else:
             rest.append(UntakenFile(each, 'neither a notebook nor Python', matters=False))
@@ -80,6 +88,20 @@ def match(
             for name, each in files.items()
             if name.endswith('.py') and not problem_of_id(name)
         }
+        used |= {files[name] for name in extra}
+        used |= {files[name] for name in extra}
+        left_out: list[str] = []
+        for package in asked_for.get(owner.assignment, ()):
+            number = '' if owner.by_folder or notebook.archive else number_of(notebook)
+            if not (number or owner.by_folder or notebook.archive):
+                continue
+            key = (package, notebook.parts[:-1], number)
+            if there := beside_notebooks.get(key):
+                chosen = choose(there)
+                extra |= chosen.taken
+                left_out += chosen.clauses(package)
+                rest += [UntakenFile(e, why, matters=matters(why)) for e, why in chosen.left]
+                folders = [each for each in folders if each is not there]
         hand_ins.append(
             MatchedFile(
                 owner.student_id,
@@ -90,10 +112,12 @@ def match(
                 owner.label,
                 remarks[notebook],
                 secret.readable if secret else None,
+                tuple(left_out),
             )
         )
-        used |= {files[name] for name in extra} | ({secret} if secret else set())
+        used |= {secret} if secret else set()
         used |= {stamp} if stamp and date_of(stamp.readable) else set()
+    rest += [UntakenFile(each, NO_NOTEBOOK) for folder in folders for each in folder.members]
     uploads = {notebook.parts[:-1] for notebook, owner in owners.items() if owner.label}
     for folder, files in beside.items():
         left = (each for each in files.values() if each not in used)

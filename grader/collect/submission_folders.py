@@ -3,18 +3,20 @@
 import hashlib
 import shutil
 import tempfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from datetime import datetime
 from pathlib import Path
 
-from grader.notebook.submission import SECRET, TIMESTAMP
+from my_robot_basics.session import package_files
+
+from grader.notebook.submission import LEFT_OUT, SECRET, TIMESTAMP
 
 
 def contents(folder: Path) -> dict[str, bytes]:
     """Return the digests of a submission's files, without what the exchange put beside them."""
-    ours = (TIMESTAMP, SECRET)
-    files = (path for path in folder.iterdir() if path.is_file() and path.name not in ours)
-    return digests({path.name: path for path in files})
+    ours = {folder / name for name in (TIMESTAMP, SECRET, LEFT_OUT)}
+    files = (path for path in folder.rglob('*') if path.is_file() and path not in ours)
+    return digests({path.relative_to(folder).as_posix(): path for path in files})
 
 
 def digests(files: Mapping[str, Path]) -> dict[str, bytes]:
@@ -32,13 +34,25 @@ def contents_of_earlier(shelf: Path) -> list[dict[str, bytes]]:
 
 
 def writer(
-    files: Mapping[str, Path], handed_in: datetime | None, secret: Path | None = None
+    files: Mapping[str, Path],
+    handed_in: datetime | None,
+    *,
+    secret: Path | None = None,
+    left_out: Sequence[str] = (),
 ) -> Callable[[Path], None]:
-    """Return what writes a submission into an empty folder, its time as nbgrader does."""
+    """Return what writes a submission into an empty folder, its time as nbgrader does.
+
+    `files` have their paths there; `left_out` says what was handed in, too, and is not taken.
+    """
 
     def write(folder: Path) -> None:
         for name, path in files.items():
-            shutil.copyfile(path, folder / name)
+            if '/' in name:
+                package_files.write({name: path}, folder)
+            else:
+                shutil.copyfile(path, folder / name)
+        if left_out:
+            (folder / LEFT_OUT).write_text('\n'.join(left_out) + '\n', encoding='utf-8')
         if handed_in:
             time = handed_in.strftime('%Y-%m-%d %H:%M:%S.%f UTC')
             (folder / TIMESTAMP).write_text(time, encoding='ascii')

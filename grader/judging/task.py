@@ -29,7 +29,7 @@ class GradingTask:
     seed: str
     """Decides the inputs that hidden tests choose."""
     files: Mapping[str, bytes] = field(default_factory=dict)
-    """The student's own Python files, by name."""
+    """The student's own Python files, by name, and those of packages, by path."""
     trust_students: bool = False
 
 
@@ -74,13 +74,21 @@ def unpack(text: str, task: GradingTask) -> Result:
     return Result(*read_result(text, task.notebook, seed=task.seed))
 
 
+def _inside(name: str) -> str:
+    """Return a path that leads nowhere else. Raises ValueError for another."""
+    if Path(name).is_absolute() or not {*Path(name).parts}.isdisjoint({'..', '.'}):
+        raise ValueError(f'{name!r} is no path of a file in a submission')
+    return name
+
+
 async def _graded(task: dict) -> dict:
     start = time.monotonic()
     with tempfile.TemporaryDirectory(prefix='files-', dir=own_folder()) as folder:
-        paths = []
         for name, text in task['files'].items():
-            paths.append(Path(folder, Path(name).name))
-            paths[-1].write_bytes(base64.b64decode(text))
+            path = Path(folder, _inside(name))
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(base64.b64decode(text))
+        paths = sorted(Path(folder).iterdir())
         try:
             async with asyncio.timeout(SUBMISSION_TIMEOUT_SEC):
                 execution = await execute_exercises(

@@ -40,6 +40,8 @@ class GradingRooms:
     ) -> None:
         """Prepare two rooms; the student's gets a copy of the submission's own modules.
 
+        A folder among them is a ROS package.
+
         Unless `isolated`, what runs in them has the grading user's rights. `doubts` is shared
         by all rooms of an exercise: what its code seems to have done. The first time counts as
         a failure of the room, the second one as its own.
@@ -165,7 +167,10 @@ class GradingRooms:
     async def _prepare_student(self) -> None:
         paths = self._student.paths
         for file in self._extra_files:
-            shutil.copyfile(file, paths.files / file.name)
+            if file.is_dir():
+                shutil.copytree(file, paths.packages / file.name)
+            else:
+                shutil.copyfile(file, paths.files / file.name)
         await self._student.start()
         await self._prepare(self._student, STUDENT_COMES)
 

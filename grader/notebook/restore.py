@@ -69,7 +69,7 @@ def restore(submitted: NotebookNode, template: AssignmentTemplate) -> RestoredNo
         cells.extend(_from_student(own) for own in found[index].after)
     _give_unique_ids(cells)
     answers = [i for i, cell in enumerate(template.notebook.cells) if role(cell) == 'answer']
-    if not any(found[i].parts for i in answers):
+    if answers and not any(found[i].parts for i in answers):
         notes = [NO_ANSWERS, *notes]
     restored = nbformat.v4.new_notebook(cells=cells)
     restored.metadata = nbformat.from_dict(template.notebook.metadata)

@@ -1,9 +1,12 @@
 """Read what a student handed in; refuse what cannot be read, by name and reason."""
 
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from datetime import datetime
 from pathlib import Path
 
+from my_robot_basics.session import package_files
+from my_robot_basics.validate.text import printable
 from nbformat import NotebookNode
 
 from grader.common.dates import date_of
@@ -19,6 +22,9 @@ SECRET = 'submission_secret.txt'
 """Beside a notebook from nbgrader's exchange: what the name of its page of feedback is made of."""
 MAX_SECRET_BYTES = 1_000
 """nbgrader's have 128 characters."""
+LEFT_OUT = 'left_out.txt'
+"""Beside a notebook: what was handed in with it and not collected, each in a line with why."""
+_MOST_LEFT_OUT_BYTES = 10_000
 
 
 @dataclass(frozen=True)
@@ -33,16 +39,35 @@ class Submission:
     """Cell types, sources, grade ids and its language only; None when it could not be read."""
     extra_files: tuple[Path, ...] = ()
     """The student's own Python files beside the notebook."""
+    package_files: Mapping[str, Path] = field(default_factory=dict)
+    """Files of ROS packages beside it, by their path: 'arm_player/setup.py'."""
     problem: str | None = None
     """Why the notebook could not be read."""
     notes: tuple[str, ...] = ()
     """What of it is not taken, and why."""
 
+    @property
+    def files(self) -> dict[str, Path]:
+        """All of it but the notebook and its time, by path."""
+        return {path.name: path for path in self.extra_files} | dict(self.package_files)
 
-def read_submission(folder: Path, *, student_id: str, assignment: str) -> Submission:
-    """Read `folder`/`assignment`.ipynb; what is wrong with it ends up in `problem`."""
+
+def read_submission(
+    folder: Path, *, student_id: str, assignment: str, packages: Sequence[str] = ()
+) -> Submission:
+    """Read `folder`/`assignment`.ipynb; what is wrong with it ends up in `problem`.
+
+    `packages` are the ROS packages that the lesson asks for, folders beside the notebook.
+    """
     path = folder / f'{assignment}.ipynb'
     taken, notes = _python_files(folder)
+    of_packages: dict[str, Path] = {}
+    for name in packages:
+        files, more = _package_in(folder, name)
+        of_packages |= files
+        notes += more
+    if packages:
+        notes += _left_out_before(folder)
     try:
         notebook, problem = read_notebook(path), None
     except UnreadableSubmission as error:
@@ -53,9 +78,37 @@ def read_submission(folder: Path, *, student_id: str, assignment: str) -> Submis
         path=path,
         notebook=notebook,
         extra_files=tuple(taken),
+        package_files=of_packages,
         problem=problem,
         notes=tuple(notes),
     )
+
+
+def _package_in(folder: Path, name: str) -> tuple[dict[str, Path], list[str]]:
+    """Return the files of a package, by path, and a note for each one that is not taken."""
+    place = folder / name
+    if place.is_symlink() or not place.is_dir():
+        return {}, []
+    try:
+        found = package_files.read(place)
+    except OSError as error:
+        return {}, [f'the package `{name}` cannot be read: {error.strerror}']
+    files = {f'{name}/{path}': file for path, file in found.taken.items()}
+    notes = [f'of the package `{name}` was left out: {clause}' for clause in found.left_out]
+    if found.problem:
+        notes.insert(0, f'the package `{name}` was left out: {found.problem}')
+    return files, notes
+
+
+def _left_out_before(folder: Path) -> Iterator[str]:
+    """Yield what `./course collect` did not take."""
+    path = folder / LEFT_OUT
+    if path.is_symlink() or not path.is_file():
+        return
+    with path.open('rb') as file:
+        said = file.read(_MOST_LEFT_OUT_BYTES).decode(errors='replace')
+    for line in said.splitlines()[: package_files.MOST_REASONS + 2]:
+        yield printable(line)[:300]
 
 
 def extra_python_files(folder: Path) -> list[Path]:

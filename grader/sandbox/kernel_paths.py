@@ -77,6 +77,11 @@ class KernelPaths:
         """The folder of modules that are given to it."""
         return self.folder / 'given' / 'files'
 
+    @property
+    def packages(self) -> Path:
+        """The folder of ROS packages that are given to it."""
+        return self.folder / 'given' / 'packages'
+
     def kernel_command(self) -> list[str]:
         """Return the command of a kernel, as its process knows it."""
         launcher = [sys.executable, '-c', _LAUNCHER, '-f']
@@ -104,6 +109,7 @@ def make_folder(name: str) -> Path:
     """Make a temporary folder that nobody else can enter, with an empty `given` in it."""
     folder = Path(tempfile.mkdtemp(prefix=f'{name}-', dir=own_folder()))
     (folder / 'given' / 'files').mkdir(parents=True)
+    (folder / 'given' / 'packages').mkdir()
     return folder
 
 
@@ -141,4 +147,7 @@ def environment_of(
     }
     if room == 'test':
         environment['MY_ROBOT_BASICS_SEED'] = seed
+    else:
+        environment['MY_ROBOT_BASICS_PACKAGES'] = str(paths.inside / 'given' / 'packages')
+        environment['MY_ROBOT_BASICS_WORKSPACE'] = str(home / 'ros_ws')
     return environment

@@ -1,12 +1,14 @@
 """The only writer of nbgrader's database: lessons, scores, executed notebooks."""
 
 import logging
+import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 import nbformat
+from my_robot_basics.session import package_files
 from nbformat import NotebookNode
 from nbgrader.api import Grade, Gradebook, MissingEntry, SubmittedNotebook
 
@@ -15,7 +17,7 @@ from grader.common.files import write_whole
 from grader.common.text import printable
 from grader.course import Course
 from grader.notebook.restore import KEY
-from grader.notebook.submission import Submission, extra_python_files, from_exchange, handed_in
+from grader.notebook.submission import Submission, from_exchange, handed_in, read_submission
 from grader.storage.database import connected, in_sentences, make_database, wait_until_free
 from grader.storage.lock import gradebook_lock
 from grader.storage.pipeline import finish, first_reason, resources_of
@@ -92,11 +94,13 @@ def recover(course: Course) -> None:
         for journal in filter(Path.exists, found):
             student, assignment = journal.parts[-3:-1]
             folder = course.folder('submitted', student, assignment)
-            extra = tuple(extra_python_files(folder))
-            submission = Submission(
-                student, assignment, folder / f'{assignment}.ipynb', None, extra
-            )
             try:
+                submission = read_submission(
+                    folder,
+                    student_id=student,
+                    assignment=assignment,
+                    packages=course.packages(assignment),
+                )
                 with in_sentences(course):
                     wait_until_free(course)
                     _finish(course, submission, nbformat.read(journal, as_version=4))
@@ -118,6 +122,11 @@ def _finish(course: Course, submission: Submission, graded: NotebookNode) -> Not
     saved = finish(graded, at)
     for extra in (*submission.extra_files, *from_exchange(submission)):
         write_whole(folder / extra.name, extra.read_bytes())
+    for name in course.packages(assignment):
+        shutil.rmtree(folder / name, ignore_errors=True)  # files of an earlier hand-in
+    for name, file in submission.package_files.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        write_whole(folder / name, package_files.content(file))
     write_whole(folder / f'{assignment}.ipynb', nbformat.writes(saved))
     _journal(course, submission).unlink()
     return saved

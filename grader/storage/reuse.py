@@ -30,11 +30,11 @@ def conditions(course: Course, assignment: str, *, isolated: bool) -> str:
 
 def key_of(submission: Submission, given: str, *, seed: str) -> str:
     """Return a hash of a submission's files, its seed, and the conditions of its assignment."""
-    files = [submission.path.with_name(TIMESTAMP), *submission.extra_files]
+    files = {TIMESTAMP: submission.path.with_name(TIMESTAMP)} | submission.files
     if submission.problem is None:
-        files.append(submission.path)
-    parts = [given, seed, submission.assignment, submission.problem or '']
-    parts += [f'{path.name} {_digest(_content(path))}' for path in files]
+        files[submission.path.name] = submission.path
+    parts = [given, seed, submission.assignment, submission.problem or '', *submission.notes]
+    parts += [f'{name} {_digest(_content(path))}' for name, path in files.items()]
     return _digest(json.dumps(parts).encode())
 
 

@@ -50,7 +50,7 @@ def submit_for_grading(
     return backend.submit(
         GradingTask(
             notebook=_restored(submission, template),
-            files={path.name: path.read_bytes() for path in submission.extra_files},
+            files={name: path.read_bytes() for name, path in submission.files.items()},
             seed=seed,
             trust_students=trust_students,
         )

@@ -14,6 +14,7 @@ without an error has passed.
 - an action client of the student's: `action_server(name, type, ...)`, the check's own server
 - a node's parameters: `node_parameters(node_name)`, `rate_parameter(...)`
 - a node that a command line starts: `node_command(name, node_name)`
+- a package of the student's, built and run: `package(name)`
 - a node's log: `rosout(node_name)`
 - nodes, publishers and subscriptions: `graph()`
 - predictions: `Predictions`
@@ -32,6 +33,7 @@ _HOMES = {
     'action_server': 'checks.action_servers',
     'serve': 'checks.servers',
     'node_command': 'checks.node_commands',
+    'package': 'checks.packages',
     'rosout': 'checks.logs',
     'node_parameters': 'checks.parameters',
     'rate_parameter': 'checks.rate_parameters',
@@ -55,6 +57,8 @@ _HOMES = {
     'Log': 'checks.logs',
     'NodeCommand': 'checks.node_commands',
     'NodeParameters': 'checks.parameters',
+    'Package': 'checks.packages',
+    'RunningExecutable': 'checks.package_processes',
     'RateParameter': 'checks.rate_parameters',
     'Record': 'checks.node_log',
     'GraphSnapshot': 'graph.snapshot',

@@ -10,7 +10,7 @@ from typing import Any
 
 from my_robot_basics.exchange import settled, values, wire
 
-_PROTOCOL = ('call', 'value', 'endpoint', 'settled', 'trouble', 'raised', 'clock')
+_PROTOCOL = ('call', 'value', 'endpoint', 'settled', 'trouble', 'raised', 'clock', 'package')
 
 
 def answer(request_text: str) -> str:
@@ -33,6 +33,8 @@ def answer(request_text: str) -> str:
         return _reply(_times_raised(name))
     if op == 'clock':
         return _reply(_set_use_sim_time(name, *args))
+    if op == 'package':
+        return _reply(_ask_package(name, *args))
     namespace = vars(sys.modules['__main__'])
     if name not in namespace:
         return wire.dumps({'missing': name})
@@ -96,6 +98,12 @@ def _set_use_sim_time(node_name: str, value: bool) -> bool | None:
             node.set_parameters([Parameter('use_sim_time', value=bool(value))])
             return former
     return None
+
+
+def _ask_package(package: str, verb: str, *args: Any) -> dict[str, Any] | None:
+    """What `live` knows of a package that it has built, or does with it; None where it has not."""
+    packages = sys.modules.get('my_robot_basics.live.packages')
+    return packages.answer_check(package, verb, *args) if packages else None
 
 
 def _reply(value: object) -> str:

@@ -127,6 +127,17 @@ def set_use_sim_time(node_name: str, value: bool) -> bool | None:
     return body if isinstance(body, bool) else None
 
 
+def ask_package(package: str, verb: str, *args: object) -> dict[str, Any]:
+    """What the notebook says of a package that it has built; {} where it does not say.
+
+    It is a claim: of what the student's room has started, and with which exit code it ended. What
+    a package does is seen over DDS.
+    """
+    body = _told(wire.request(op='package', name=package, args=(verb, *args)))
+    is_told = isinstance(body, dict) and all(isinstance(key, str) for key in body)
+    return body if is_told else {}
+
+
 def _told(question: str) -> Any:
     """What the notebook's process answers, or None."""
     try:

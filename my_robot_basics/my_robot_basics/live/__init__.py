@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from my_robot_basics.live.goal_view import follow_goal
     from my_robot_basics.live.graph_picture import show_graph
     from my_robot_basics.live.node_file import show_workspace
+    from my_robot_basics.live.packages import build_package, make_package, run_executable
     from my_robot_basics.live.qos_offers import show_offers
     from my_robot_basics.live.qos_pairs import measure_pairs
     from my_robot_basics.live.qos_pictures import show_lost_messages, show_qos_matrix
@@ -37,11 +38,13 @@ if TYPE_CHECKING:
 
 __all__ = [
     'add_entry_point',
+    'build_package',
     'classroom',
     'domain',
     'drag_target',
     'follow_arm',
     'follow_goal',
+    'make_package',
     'make_workspace',
     'measure_pairs',
     'move_arm',
@@ -49,6 +52,7 @@ __all__ = [
     'run',
     'run_answer',
     'run_commands',
+    'run_executable',
     'send_pictures',
     'show_arm',
     'show_arrivals',
@@ -74,6 +78,9 @@ _MODULES = {
     'reset': 'exercise',
     'run_answer': 'exercise',
     'run_commands': 'commands',
+    'build_package': 'packages',
+    'run_executable': 'packages',
+    'make_package': 'packages',
     'show_arm': 'arm',
     'show_branches': 'branches',
     'show_arrivals': 'timeline',

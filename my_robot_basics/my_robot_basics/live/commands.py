@@ -1,68 +1,39 @@
 """Command lines of a notebook as processes, as `ros2 run` starts them; no shell is between."""
 
-import contextlib
-import os
-import signal
-import subprocess
 import sys
 import threading
 import time
 from pathlib import Path
 
+from my_robot_basics.live.processes import Process
 from my_robot_basics.ros2 import command_line, packages
 from my_robot_basics.session import classroom
 from my_robot_basics.session.errors import NotRunnable, tell
 
 STARTED_SEC = 6.0
 """How long a cell waits for the first line of its commands, or their end."""
-END_SEC = 5.0
 _PACKAGE = 'my_robot_basics'
 _OWN_WORDS = 4
 """ros2 run PACKAGE EXECUTABLE: the words before those of the program."""
-_DIES_WITH_US = (  # a kernel that is killed leaves no node behind
-    'import ctypes, os, sys; ctypes.CDLL(None).prctl(1, 15); os.execv(sys.argv[1], sys.argv[1:])'
-)
-
 _running: list['_Command'] = []
 
 
-class _Command:
+class _Command(Process):
     """One process, and the last line that it has printed."""
 
     def __init__(self, executable: Path, words: tuple[str, ...]) -> None:
-        self.process = subprocess.Popen(
-            [sys.executable, '-IS', '-c', _DIES_WITH_US, str(executable), *words],
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            errors='replace',
-            process_group=0,  # an interrupt of the cell is not theirs
-            env={**os.environ, 'PYTHONUNBUFFERED': '1'},
-        )
         self.last_line = ''
         self.has_spoken = threading.Event()
-        self._reader = threading.Thread(target=self._read, daemon=True)
-        self._reader.start()
+        super().__init__(
+            [str(executable), *words],
+            on_line=self._receive,
+            on_end=lambda code: self.has_spoken.set(),
+        )
 
-    def _read(self) -> None:
-        for line in self.process.stdout or ():
-            if line.strip():
-                self.last_line = line.strip()
-                if line.startswith('[INFO]'):  # the log of a node that is up
-                    self.has_spoken.set()
-        self.process.wait()
-        self.has_spoken.set()
-
-    def stop(self) -> None:
-        """End it as Ctrl-C does, and wait for that."""
-        with contextlib.suppress(ProcessLookupError):
-            os.killpg(self.process.pid, signal.SIGINT)
-        try:
-            self.process.wait(END_SEC)
-        except subprocess.TimeoutExpired:
-            self.process.kill()
-        self._reader.join(END_SEC)
+    def _receive(self, line: str) -> None:
+        self.last_line = line.strip()
+        if line.startswith('[INFO]'):  # the log of a node that is up
+            self.has_spoken.set()
 
 
 def run_commands(*names: str, executable: str = 'kinematics_publisher') -> None:

@@ -22,7 +22,10 @@ def reset(*names: str) -> None:
         course_nodes.close()
     for name in names:
         _notebook().pop(name, None)
-    tell(f'reset: no node is running; {", ".join(names) or "nothing"} is yours to write')
+    if names:
+        tell(f'reset: no node is running; {", ".join(names)} is yours to write')
+    else:
+        tell('reset: no node is running')
 
 
 def run_answer(name: str, *args: Any, **kwargs: Any) -> Node | None:

@@ -10,7 +10,14 @@ import rclpy
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions, uninstall_signal_handlers
 
-from my_robot_basics.live import commands, harmless_errors, node_file, notebook, spinning
+from my_robot_basics.live import (
+    commands,
+    executables,
+    harmless_errors,
+    node_file,
+    notebook,
+    spinning,
+)
 from my_robot_basics.live.background import Background
 from my_robot_basics.live.destroying import destroy
 from my_robot_basics.live.naming import announce_name
@@ -101,11 +108,13 @@ def launch(
 def stop(key_or_node: str | type[Node] | Node | None = None) -> None:
     """Stop the node that runs under a key, that node, the node of that class; or all of them.
 
-    All of them are also those that `run_commands` has started.
+    All of them are also those that `run_commands` and `run_executable` have started; how each of
+    the latter has ended is printed.
     """
     if key_or_node is None:
         _stop_keys(list(_running))
         commands.stop_commands()
+        executables.stop_started()
         return
     keys = [
         key

@@ -31,8 +31,8 @@ COMMANDS = {
     ),
     'pkg': Command(
         'Various package related sub-commands',
-        verbs=('executables', 'list', 'prefix'),
-        elsewhere=('create', 'xml'),
+        verbs=('create', 'executables', 'list', 'prefix'),
+        elsewhere=('xml',),
     ),
     'run': Command('Run a package specific executable'),
     'service': Command(

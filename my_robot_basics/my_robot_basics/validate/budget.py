@@ -6,8 +6,14 @@ from typing import Any, Generic
 
 from nbformat import NotebookNode
 
-from my_robot_basics.validate.limits import STUDENT_CELL_TIMEOUT_SEC, STUDENT_CELLS_BUDGET_SEC
+from my_robot_basics.validate.errors import RoomFailure
+from my_robot_basics.validate.limits import (
+    BUILD_TIMEOUT_SEC,
+    STUDENT_CELL_TIMEOUT_SEC,
+    STUDENT_CELLS_BUDGET_SEC,
+)
 from my_robot_basics.validate.outputs import CellRun
+from my_robot_basics.validate.packages import packages_built_by
 from my_robot_basics.validate.rooms_interface import R
 
 
@@ -19,7 +25,16 @@ class Budget(Generic[R]):
     loop_time: Any = field(default_factory=lambda: asyncio.get_running_loop().time)
 
     async def run(self, rooms: R, cell: NotebookNode) -> CellRun:
-        """Run one of the student's cells within its limit, and within what is left."""
+        """Run one of the student's cells within its limit, and within what is left.
+
+        Raises RoomFailure where a package was not built in time: a slow machine is no verdict.
+        """
+        if packages := packages_built_by(cell):
+            run = await self.run_within(BUILD_TIMEOUT_SEC, rooms, cell)
+            if run.timed_out and not run.flooded:
+                names, most = ', '.join(packages), f'{BUILD_TIMEOUT_SEC:g} s'
+                raise RoomFailure(f'{names} was not built within {most}')
+            return run
         start = self.loop_time()
         timeout_sec = max(0.1, min(STUDENT_CELL_TIMEOUT_SEC, self.remaining_sec))
         run = await self.run_within(timeout_sec, rooms, cell)

@@ -8,6 +8,7 @@ from nbformat import NotebookNode
 
 from my_robot_basics.validate.cells import grade_id, graded_id, is_reset, role
 from my_robot_basics.validate.names import names_of, string_arguments
+from my_robot_basics.validate.packages import packages_built_by
 
 
 @dataclass(frozen=True)
@@ -23,6 +24,8 @@ class Exercise:
     run: tuple[int, ...]
     """Locked cells that start what was answered."""
     grades: tuple[int, ...]
+    packages: tuple[str, ...] = ()
+    """ROS packages that its locked cells build: their folders are the answer."""
 
 
 @dataclass(frozen=True)
@@ -53,10 +56,16 @@ def plans(notebook: NotebookNode, exercise: Exercise) -> Iterator[Plan]:
     The first plan is left out where the text shows already that the answer needs a name that
     only another of the student's cells binds. Demonstrations come with the names that they bind:
     a function asks for a name only when it is called, and then it is too late to run more.
+    Where a package is the answer, there is one plan, which has no cell of the student's: what runs
+    of theirs is what is started of the package.
     """
     cells = notebook.cells
     own = (exercise.reset, exercise.answer, *exercise.run)
     setup = [i for i, cell in enumerate(cells) if role(cell) == 'setup' and i < exercise.reset]
+    if exercise.packages:
+        ours = (i for i in own if role(cells[i]) == 'locked')
+        yield Plan(tuple(sorted({*setup, *ours})), why='the package alone')
+        return
     missing = _missing(cells, exercise, setup)
     others = [
         i
@@ -125,6 +134,7 @@ def _exercise(notebook: NotebookNode, span: range, answer: int) -> Exercise:
         answer=answer,
         run=tuple(i for i in span[1:] if role(cells[i]) == 'locked'),
         grades=tuple(i for i in span if role(cells[i]) == 'grade' and _is_code(cells[i])),
+        packages=tuple(name for i in span for name in packages_built_by(cells[i])),
     )
 
 

@@ -67,7 +67,8 @@ async def _try_plans(
         judged = await _try_plan(notebook, exercise, plan, looks, budget, is_last=is_last)
         if judged is None:
             continue
-        if more := plan_for_names(notebook, exercise, plan, _missing_names(judged)):
+        missing = set() if exercise.packages else _missing_names(judged)
+        if more := plan_for_names(notebook, exercise, plan, missing):
             again = await _try_plan(notebook, exercise, more, looks, budget, is_last=True)
             assert again is not None  # it was the last plan
             return max(judged, again, key=_points)
@@ -128,7 +129,7 @@ async def _judge_cells(
     them: that one's reason is explained by its cause alone, too.
     """
     cells = notebook.cells
-    own = [(graded_id(cells[i]), runs[i]) for i in (exercise.answer, *exercise.run)]
+    own = [(graded_id(cells[i]), runs[i]) for i in (exercise.answer, *exercise.run) if i in runs]
     given_up = [(_name(cells, i), run) for i, run in runs.items() if run.cut_after_sec]
     checks, cut, quiet = {}, [], False
     for index in exercise.grades:

@@ -8,6 +8,9 @@ what takes more is not checked, and never called wrong. Time in which processes 
 processor does not count, unless the code itself had one, up to the grader's own limit, …"""
 VALIDATE_NEXT_TIMEOUT_SEC = 1.0
 """… and so long where something has not returned already."""
+BUILD_TIMEOUT_SEC = 90.0
+"""A locked cell that builds a package has so long: 2 to 4 s of an idle machine. What takes longer
+is built once more in fresh rooms, and then left to a person."""
 STUDENT_CELLS_BUDGET_SEC = 120.0
 """The most that all student cells of a notebook may take together: a class has to end."""
 REPLY_TIMEOUT_SEC = 10.0

@@ -9,6 +9,7 @@ from my_robot_basics.validate.budget import Budget
 from my_robot_basics.validate.cells import KEY, role
 from my_robot_basics.validate.limits import VALIDATE_NEXT_TIMEOUT_SEC, VALIDATE_TIMEOUT_SEC
 from my_robot_basics.validate.outputs import CellRun
+from my_robot_basics.validate.packages import packages_built_by
 from my_robot_basics.validate.rooms import LocalRooms
 
 _STUDENTS = ('answer', 'free', 'locked')
@@ -25,7 +26,8 @@ class ShortBudget(Budget[LocalRooms]):
         self, timeout_sec: float, rooms: LocalRooms, cell: NotebookNode
     ) -> CellRun:
         """Run one of the student's cells for so long at most."""
-        free_sec = self.free_sec if role(cell) in _STUDENTS else math.inf
+        is_theirs = role(cell) in _STUDENTS and not packages_built_by(cell)
+        free_sec = self.free_sec if is_theirs else math.inf
         run = await rooms.run_student_cell(
             cell.source,
             timeout_sec=timeout_sec,

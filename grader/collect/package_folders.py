@@ -1,0 +1,148 @@
+"""ROS packages among what came in: folders or archives beside the notebook that asks for them."""
+
+from collections import defaultdict
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path, PurePosixPath
+
+from my_robot_basics.session import package_files
+
+from grader.collect.archive_entries import ARCHIVE
+from grader.collect.incoming import Incoming, is_notebook
+from grader.collect.platforms import label_in
+from grader.collect.uploads import package_in
+
+NO_NOTEBOOK = (
+    'it is part of a package that lies beside no notebook of one student that asks for it'
+)
+
+
+@dataclass(frozen=True)
+class IncomingPackage:
+    """A folder that may be a package, or an archive of one."""
+
+    name: str
+    at: tuple[str, ...]
+    """Where it lies."""
+    number: str
+    """The number that a course platform gave its student, where it is an upload of its own."""
+    members: list[Incoming]
+    root: tuple[str, ...]
+    """The path of its folder."""
+
+    @property
+    def key(self) -> tuple:
+        """Return what a notebook has in common with it."""
+        return (self.name, self.at, self.number)
+
+
+@dataclass
+class ChosenFiles:
+    """What is taken of a package, and what is not."""
+
+    taken: dict[str, Path] = field(default_factory=dict)
+    """By path: 'arm_player/setup.py'."""
+    left: list[tuple[Incoming, str]] = field(default_factory=list)
+    problem: str = ''
+    """Why none of it is taken."""
+
+    def clauses(self, package: str) -> list[str]:
+        """Return what its student is told."""
+        if self.problem:
+            return [f'the package `{package}` was not collected: {self.problem}']
+        told = [package_files.told(each.path, reason) for each, reason in self.left]
+        start = f'of the package `{package}` was not collected: '
+        return [start + clause for clause in package_files.few(told)]
+
+
+def split(
+    found: Sequence[Incoming], packages: Collection[str]
+) -> tuple[list[Incoming], list[IncomingPackage]]:
+    """Tell what lies in packages from the rest: a folder of such a name beside a notebook.
+
+    No notebook in it is one that is handed in.
+    """
+    notebooks = [each for each in found if is_notebook(each)]
+    folders = {each.parts[:-1] for each in notebooks}
+    rest, inside = [], defaultdict(list)
+    for each in found:
+        at = _root_of(each, packages, folders)
+        if at is None:
+            rest.append(each)
+        else:
+            inside[each.parts[: at + 1]].append(each)
+    return rest, [_package(path, members) for path, members in inside.items()]
+
+
+def number_of(notebook: Incoming) -> str:
+    """Return the number of the upload that a notebook is by itself; '' where it is none."""
+    label = label_in(notebook.parts[-1])
+    return label.number if label else ''
+
+
+def choose(package: IncomingPackage) -> ChosenFiles:
+    """Choose what is taken of a package: the same as its student's own notebook builds."""
+    chosen = ChosenFiles()
+    files: dict[str, Incoming] = {}
+    for each in package.members:
+        parts = each.parts[len(package.root) :]
+        if reason := _why_not(each, parts, package.root):
+            chosen.left.append((each, reason))
+            continue
+        if former := files.get('/'.join(parts)):
+            chosen.left.append((former, 'it is there twice: the last one counts'))
+        files['/'.join(parts)] = each
+    folders = {str(above) for name in files for above in PurePosixPath(name).parents}
+    for name in folders & {*files}:
+        chosen.left.append((files.pop(name), 'a folder has the same name'))
+    sizes = {name: each.readable.stat().st_size for name, each in files.items()}
+    chosen.problem = package_files.too_much(sizes)
+    if chosen.problem:
+        chosen.left += [(each, chosen.problem) for each in files.values()]
+    else:
+        chosen.taken = {f'{package.name}/{n}': each.readable for n, each in files.items()}
+    return chosen
+
+
+def matters(reason: str) -> bool:
+    """Whether a person should look at what was left out: not where a program made it."""
+    return not reason.startswith(('hidden', 'left behind', 'made by'))
+
+
+def _root_of(
+    each: Incoming, packages: Collection[str], folders: Collection[tuple[str, ...]]
+) -> int | None:
+    for at, part in enumerate(each.parts[:-1]):
+        if package_in(part) in packages and each.parts[:at] in folders:
+            return at
+    return None
+
+
+def _package(path: tuple[str, ...], members: list[Incoming]) -> IncomingPackage:
+    *at, top = path
+    name, label = package_in(top), label_in(top)
+    manifests = {each.parts for each in members}
+    root: tuple[str, ...] = path
+    if ARCHIVE.search(top) and (*path, 'package.xml') not in manifests:
+        root = (*path, name)  # the archive holds the folder, as most programs make it
+    return IncomingPackage(name, tuple(at), label.number if label else '', members, root)
+
+
+def _why_not(each: Incoming, parts: tuple[str, ...], root: tuple[str, ...]) -> str:
+    if each.problem:
+        return each.problem
+    if not parts or each.parts[: len(root)] != root:
+        return 'it lies beside the package in its archive'
+    if any(ARCHIVE.search(part) for part in parts[:-1]):
+        return 'it lies in an archive: unpack that in the folder of the package'
+    if each.file is None:
+        return 'it could not be read'
+    return package_files.why_not(parts)
+
+
+def grouped(found: Sequence[IncomingPackage]) -> Mapping[tuple, IncomingPackage]:
+    """Return packages by what a notebook has in common with them; of several, the first."""
+    by_key: dict[tuple, IncomingPackage] = {}
+    for each in found:
+        by_key.setdefault(each.key, each)
+    return by_key

@@ -1,0 +1,185 @@
+"""An executable that a check has started in the student's room: a process, and a node over DDS.
+
+That room says whether the process runs and how it ended: a claim. The node is seen over DDS.
+"""
+
+import time
+from collections.abc import Mapping
+from functools import partial
+from typing import Any, NoReturn, Self
+
+from my_robot_basics.checks.package_words import how, last_words, text_in
+from my_robot_basics.exchange import student
+from my_robot_basics.exchange.endings import is_clean
+from my_robot_basics.feedback.errors import CheckFailed, Starved, expect, fail, shorten
+from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.graph import graphs
+from my_robot_basics.graph.watcher import Watcher
+from my_robot_basics.session.pressure import Stopwatch
+
+NODE_SEC = 10.0
+"""How long an executable may take until its node is there, of time that was free."""
+END_SEC = 5.0
+"""How long it may take to end after SIGINT, of time that was free: ros2 launch waits as long."""
+GONE_SEC = 8.0
+"""How long its node may be on the graph afterwards: a lease of 5 s, and more."""
+ASK_EVERY_SEC = 0.3
+CLEANLY = (
+    'in main, catch KeyboardInterrupt and ExternalShutdownException around rclpy.spin, and call '
+    'rclpy.try_shutdown() at the end'
+)
+
+
+class RunningExecutable:
+    """One process of the student's package, inside a `with`."""
+
+    def __init__(self, package: str, executable: str, arguments: tuple[str, ...]) -> None:
+        """Prepare what is started when the `with` begins."""
+        self.package, self.executable, self.arguments = package, executable, arguments
+        self._number: int | None = None
+        self._nodes: list[str] = []
+        self._next_question = 0.0
+
+    def __enter__(self) -> Self:
+        """Start it. Raises CheckFailed where it can't be."""
+        told = self._ask('start', self.executable, list(self.arguments))
+        number = told.get('number')
+        if type(number) is not int:
+            problem = text_in(told, 'problem')
+            fail(
+                expected=f'{self.executable} of {self.package} to start',
+                seen='no process',
+                hint=theirs(shorten(problem, 400)) or f"run build_package('{self.package}')",
+                cause=f'{self.executable} could not be started',
+            )
+        self._number = number
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """End it, if it still runs; that is no verdict."""
+        self._ask('signal', self._number, 'SIGKILL')
+
+    def expect_node(self, node_name: str) -> None:
+        """A node of that full name, '/arm_driver', comes up. Raises CheckFailed."""
+        with Watcher() as watcher:
+            watch = Stopwatch()
+            is_there = watcher.spin_until_free(
+                lambda: node_name in graphs.node_names(watcher.node) or self._has_ended(),
+                free_sec=NODE_SEC,
+            )
+            names = graphs.take(watcher).nodes()
+        if is_there and node_name not in names:
+            self._fail_ended(f'the node {node_name} of {self.executable}')
+        expect(
+            node_name in names,
+            expected=f'the node {node_name} of {self.executable}',
+            seen=theirs(shorten(', '.join(names))) or 'no node',
+            hint="look at super().__init__('…') of its class, and at what main does before",
+            cause=f'there is no node {node_name}',
+            doubt=_doubt(watch, NODE_SEC),
+        )
+        self._nodes.append(node_name)
+
+    def expect_running(self) -> None:
+        """It has not ended. Raises CheckFailed, with what it printed last."""
+        if self._state()[0] is not None:
+            self._fail_ended(f'{self.executable} to go on running')
+
+    def expect_end(self, *, code: int = 0, within_sec: float = 10.0) -> None:
+        """It ends by itself with that exit code, in so much time that was free."""
+        self._wait_for_end('to end by itself', within_sec, hint='let main return when it is done')
+        self._expect_code(code, hint='let main return without an exception when it is done')
+
+    def expect_clean_end(self) -> None:
+        """It ends after SIGINT, as after Ctrl-C: with exit code 0, and its nodes are gone.
+
+        Raises CheckFailed: what it printed last, or that it goes on.
+        """
+        self.expect_running()
+        self._ask('signal', self._number, 'SIGINT')
+        hint = (
+            'let no callback and no loop go on for long, and do not catch KeyboardInterrupt there'
+        )
+        self._wait_for_end('to end after SIGINT', END_SEC, hint=hint)
+        code, said = self._state()
+        if not is_clean(code, said.splitlines()):
+            self._expect_code(0, hint=CLEANLY)
+        self._expect_gone()
+
+    def _wait_for_end(self, what: str, free_sec: float, *, hint: str) -> None:
+        with Watcher() as watcher:
+            watch = Stopwatch()
+            has_ended = watcher.spin_until_free(self._has_ended, free_sec=free_sec)
+        expect(
+            has_ended,
+            expected=f'{self.executable} {what}',
+            seen=f'it still runs after {free_sec:g} s',
+            hint=hint,
+            cause=f'{self.executable} does not end',
+            doubt=_doubt(watch, free_sec),
+        )
+
+    def _expect_code(self, wanted: int, *, hint: str) -> None:
+        code, said = self._state()
+        expect(
+            code == wanted,
+            expected=f'{self.executable} to end with exit code {wanted}',
+            seen=f'{how(code)}{last_words(said)}',
+            hint=hint,
+            cause=f'{self.executable} does not end cleanly',
+        )
+
+    def _expect_gone(self) -> None:
+        with Watcher() as watcher:
+            watch = Stopwatch()
+            for name in self._nodes:
+                is_gone = partial(_is_gone, watcher, name)
+                expect(
+                    watcher.spin_until_free(is_gone, free_sec=GONE_SEC),
+                    expected=f'{name} to be gone from the graph',
+                    seen='it is still there',
+                    hint='let main end all that it has started',
+                    cause=f'{name} lives on',
+                    doubt=_doubt(watch, GONE_SEC),
+                )
+
+    def _fail_ended(self, expected: str) -> NoReturn:
+        code, said = self._state()
+        fail(
+            expected=expected,
+            seen=f'it has ended: {how(code)}{last_words(said)}',
+            hint=f"run it with run_executable('{self.package}', '{self.executable}') and read why",
+            cause=f'{self.executable} ends by itself',
+        )
+
+    def _has_ended(self) -> bool:
+        """Whether it has; asked now and then."""
+        if time.monotonic() < self._next_question:
+            return False
+        self._next_question = time.monotonic() + ASK_EVERY_SEC
+        return self._state()[0] is not None
+
+    def _state(self) -> tuple[int | None, str]:
+        """Its exit code, None while it runs, and the last lines that it has printed."""
+        told = self._ask('state', self._number)
+        code = told.get('code')
+        if type(code) is not int and 'code' not in told:
+            fail(
+                expected=f'{self.executable} to run in the notebook',
+                seen='no answer of the notebook about it',
+                hint='look for a kernel that has died, or that is kept busy',
+                cause=f'nothing is known of {self.executable}',
+            )
+        return code if type(code) is int else None, text_in(told, 'said')
+
+    def _ask(self, verb: str, *args: object) -> Mapping[str, Any]:
+        return student.ask_package(self.package, verb, *args)
+
+
+def _is_gone(watcher: Watcher, node_name: str) -> bool:
+    return node_name not in graphs.node_names(watcher.node)
+
+
+def _doubt(watch: Stopwatch, free_sec: float) -> type[CheckFailed]:
+    """Whether the machine may be to blame: it gave less time than was to be waited."""
+    return CheckFailed if watch.free_sec() >= free_sec else Starved

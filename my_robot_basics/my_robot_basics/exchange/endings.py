@@ -1,0 +1,21 @@
+"""How a program has ended: its exit code, and the error in what it printed."""
+
+from collections.abc import Sequence
+
+RACE = 'rcl_shutdown already called'
+"""Of rclpy, not of a student: its own handler of SIGINT shuts the context down in a thread, and
+`try_shutdown` in main may come between. Seen in 1 of 4 ends of a plain node."""
+
+
+def is_clean(code: int | None, lines: Sequence[str]) -> bool:
+    """Whether a program that was told to end did so as it should: with exit code 0."""
+    return code == 0 or (code == 1 and RACE in error_in(lines))
+
+
+def error_in(lines: Sequence[str]) -> str:
+    """The last line of a traceback among the lines that a program has printed; '' without one."""
+    starts = [i for i, line in enumerate(lines) if line.startswith('Traceback (most recent call')]
+    if not starts:
+        return ''
+    errors = (line for line in lines[starts[-1] + 1 :] if line[:1].isalpha())
+    return next(errors, 'a traceback')

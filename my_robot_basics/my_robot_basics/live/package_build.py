@@ -1,0 +1,125 @@
+"""Build one package by colcon, from a copy: nothing is written into the student's folder."""
+
+import contextlib
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from my_robot_basics.live.install_faults import fault_in_install
+from my_robot_basics.live.package_faults import fault_in_sources, fault_in_words
+from my_robot_basics.session import classroom, package_files
+
+MOST_WORDS = 20_000
+"""Characters of what colcon prints that are kept, the last ones."""
+_STAGED = '.packages'
+"""Where in the workspace the copy is; colcon passes over folders that begin with a dot."""
+_ESCAPES = re.compile(r'\x1b\[[0-9;?]*[A-Za-z]')
+
+
+@dataclass(frozen=True)
+class Build:
+    """What came of a build."""
+
+    package: str
+    status: int | None
+    """colcon's exit code, negative for a signal; None where it was not run."""
+    problem: str
+    """What is wrong, and what to do, in a sentence; '' for a package that can be run."""
+    words: str = ''
+    """What colcon has printed, the end of it."""
+    executables: tuple[str, ...] = ()
+    """What `ros2 run` finds in it."""
+    left_out: tuple[str, ...] = ()
+    """Files in its folder that are no part of it, each with its reason."""
+
+
+def prefix_of(package: str) -> Path:
+    """Where a package is installed in the workspace."""
+    return classroom.workspace() / 'install' / package
+
+
+def executables_of(package: str) -> tuple[str, ...]:
+    """The names that `ros2 run` finds of a package that was built."""
+    folder = prefix_of(package) / 'lib' / package
+    if not folder.is_dir():
+        return ()
+    return tuple(sorted(p.name for p in folder.iterdir() if os.access(p, os.X_OK)))
+
+
+def build(package: str, folder: Path) -> Build:
+    """Build the package in a folder in the workspace, which keeps build/, install/ and log/.
+
+    What is taken is what the grader takes, too. Nothing is raised for what is wrong with it.
+    """
+    try:
+        files = package_files.read(folder)
+    except OSError as error:
+        return Build(package, None, f'{package}/ cannot be read: {error.strerror}')
+    if files.problem:
+        problem = f'{package}/ is not taken: {files.problem}'
+        return Build(package, None, problem, left_out=files.left_out)
+    problem = fault_in_sources(package, files)
+    if problem:
+        return Build(package, None, problem, left_out=files.left_out)
+    try:
+        status, words = _run_colcon(package, files.taken)
+    except OSError as error:
+        problem = f'{package} could not be built: {error.strerror or error}'
+        return Build(package, None, problem, left_out=files.left_out)
+    problem = fault_in_words(package, status, words) if status else ''
+    problem = problem or fault_in_install(package, prefix_of(package), files)
+    return Build(package, status, problem, words, executables_of(package), files.left_out)
+
+
+def _run_colcon(package: str, files: Mapping[str, Path]) -> tuple[int, str]:
+    """Build from a fresh copy; return colcon's exit code, and the end of what it has printed."""
+    workspace = classroom.workspace()
+    staged = workspace / _STAGED / package
+    for former in (staged, workspace / 'build' / package, workspace / 'install' / package):
+        _remove(former)
+    package_files.write(files, staged)
+    command = [
+        *(str(Path(sys.prefix, 'bin', 'colcon')), '--log-base', str(workspace / 'log')),
+        *('build', '--base-paths', str(staged), '--packages-select', package),
+        *('--build-base', str(workspace / 'build'), '--install-base', str(workspace / 'install')),
+        *('--executor', 'sequential', '--event-handlers', 'console_cohesion-', 'console_stderr+'),
+    ]
+    colcon = subprocess.Popen(
+        command,
+        cwd=workspace,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        process_group=0,
+    )
+    try:
+        words = _end_of(colcon)
+        return colcon.wait(), words
+    finally:
+        # an interrupt of the cell, or what the package's setup.py has left running
+        with contextlib.suppress(ProcessLookupError, PermissionError):
+            os.killpg(colcon.pid, signal.SIGKILL)
+        colcon.wait()
+
+
+def _end_of(colcon: subprocess.Popen) -> str:
+    """Read all that it prints; return the end of it as text."""
+    assert colcon.stdout is not None  # it is a pipe
+    kept = b''
+    with colcon.stdout as pipe:
+        while chunk := os.read(pipe.fileno(), 65_536):
+            kept = (kept + chunk)[-MOST_WORDS:]
+    return _ESCAPES.sub('', kept.decode(errors='replace'))
+
+
+def _remove(folder: Path) -> None:
+    if folder.is_symlink() or folder.is_file():
+        folder.unlink()
+    elif folder.exists():
+        shutil.rmtree(folder)

@@ -1,0 +1,122 @@
+"""What is wrong with a package, or with its build, in a sentence that says what to do."""
+
+import ast
+import re
+import signal
+from pathlib import Path
+
+from my_robot_basics.session.package_files import PackageFiles
+
+BUILD_TYPE = 'ament_python'
+_LAST_LINE = re.compile(r'^(?:\w+\.)*(\w*(?:Error|Exception|Interrupt|Exit|Warning))(?:: (.*))?$')
+_IN_FILE = re.compile(r'^\s*File "(?P<file>[^"]+)", line (?P<line>\d+)')
+_CANNOT_COPY = re.compile(r"error: can't copy '([^']+)'")
+_SETUP_ERROR = re.compile(r'^error: (.+)$')
+_MOST = 300
+NO_PYTHON = (ValueError, RecursionError, MemoryError)
+"""What Python's own reader raises beside SyntaxError: zeros, and what is nested too deeply."""
+
+
+def fault_in_sources(package: str, files: PackageFiles) -> str:
+    """What is wrong before anything is built; '' where nothing is seen."""
+    if 'package.xml' not in files.taken:
+        return (
+            f'{package}/ has no package.xml, so it is no ROS package yet: write one, or begin '
+            f'with `ros2 pkg create --build-type {BUILD_TYPE} {package}` in an empty folder'
+        )
+    if problem := _fault_in_manifest(package, files.taken['package.xml']):
+        return problem
+    if 'setup.py' not in files.taken:
+        return (
+            f'{package}/ has no setup.py, which tells colcon what to install: write one that '
+            'calls setup() of setuptools'
+        )
+    try:
+        ast.parse(files.taken['setup.py'].read_bytes())
+    except SyntaxError as error:
+        where = f'line {error.lineno} of {package}/setup.py'
+        return f'{where} is not valid Python ({error.msg}): fix that line, and build again'
+    except NO_PYTHON as error:
+        return f'{package}/setup.py is not valid Python ({error}): write it anew as text'
+    return ''
+
+
+def _fault_in_manifest(package: str, file: Path) -> str:
+    from catkin_pkg.package import InvalidPackage, parse_package_string
+
+    try:
+        manifest = parse_package_string(file.read_text(encoding='utf-8'), filename='package.xml')
+    except (InvalidPackage, UnicodeDecodeError, AssertionError) as error:
+        said = ' '.join(str(error).split())
+        return (
+            f'{package}/package.xml is not valid ({short(said)}): fix that, and build again; '
+            'colcon would pass over it'
+        )
+    if manifest.name != package:
+        return (
+            f'package.xml names the package {short(manifest.name)!r}, and its folder is '
+            f'{package}/: write <name>{package}</name>'
+        )
+    build_type = manifest.get_build_type()
+    if build_type != BUILD_TYPE:
+        return (
+            f'package.xml has the build type {short(build_type)}, expected {BUILD_TYPE}: write '
+            f'<export><build_type>{BUILD_TYPE}</build_type></export>'
+        )
+    return ''
+
+
+def fault_in_words(package: str, status: int, words: str) -> str:
+    """What matters of colcon's words when it has failed, and what to do."""
+    if status < 0:
+        return (
+            f'colcon was ended by {_signal(-status)} while it built {package}: look for what '
+            'setup.py starts or uses up'
+        )
+    lines = words.splitlines()
+    if found := next((m for line in lines if (m := _CANNOT_COPY.search(line))), None):
+        path = found[1]
+        if path == f'resource/{package}':
+            return (
+                f'setup.py installs {path}, and there is no such file: make the folder resource/ '
+                f'in {package}/, and an empty file {package} in it'
+            )
+        return f'setup.py installs {short(path)}, and there is no such file: correct data_files'
+    return f'colcon does not build {package}: {_last_error(lines)}: fix that, and build again'
+
+
+def _last_error(lines: list[str]) -> str:
+    """The last error among lines, with the line of the package's own file that it came from."""
+    where = ''
+    found = ''
+    for line in lines:
+        if (at := _IN_FILE.match(line)) and '/.packages/' in at['file']:
+            where = f'{at["file"].split("/.packages/")[1]}, line {at["line"]}: '
+        elif at and not at['file'].startswith(('/', '<')):
+            where = f'{at["file"]}, line {at["line"]}: '
+        elif (error := _LAST_LINE.match(line.strip())) and error[1] != 'DeprecationWarning':
+            found = line.strip()
+        elif error := _SETUP_ERROR.match(line.strip()):
+            found = error[1]
+    if not found:
+        said = [line.strip() for line in lines if line.strip() and not _is_colcons(line)]
+        found = said[-1] if said else 'it says nothing of why'
+    return where + short(found)
+
+
+def _is_colcons(line: str) -> bool:
+    return line.startswith(('Starting >>>', 'Finished <<<', 'Failed   <<<', 'Summary:', '---'))
+
+
+def _signal(number: int) -> str:
+    try:
+        return signal.Signals(number).name
+    except ValueError:
+        return f'signal {number}'
+
+
+def short(text: str) -> str:
+    """One printable line of a text that somebody wrote, cut where it is long."""
+    line = ' '.join(text.split())
+    line = ''.join(character if character.isprintable() else '?' for character in line)
+    return line if len(line) <= _MOST else line[: _MOST - 1] + '…'

@@ -1,0 +1,139 @@
+"""A ROS package beside the notebook: make one, build it, run what is in it."""
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from my_robot_basics.live import executables, package_build
+from my_robot_basics.live.package_build import Build
+from my_robot_basics.live.workspace import shown
+from my_robot_basics.ros2 import skeleton
+from my_robot_basics.session import classroom
+from my_robot_basics.session.errors import NotRunnable, tell
+
+FOLDER = 'MY_ROBOT_BASICS_PACKAGES'
+"""Names, where a notebook is graded, the folder in which the packages that were handed in lie."""
+MOST_SAID = 2_000
+"""Characters of a program's words that a check is told."""
+
+_builds: dict[str, Build] = {}
+
+
+def build_package(name: str) -> None:
+    """Build the package whose folder lies beside the notebook, as `colcon build` does; say how.
+
+    What colcon makes is in the workspace, and nothing in the folder changes. What runs of the
+    package is stopped first. What is wrong with it is printed with what to do: nothing is raised.
+    """
+    __tracebackhide__ = True
+    _expect_name(name)
+    classroom.enter()
+    executables.stop_started(package=name)
+    _builds.pop(name, None)
+    folder = beside() / name
+    if folder.is_dir() and not folder.is_symlink():
+        built = package_build.build(name, folder)
+    else:
+        built = Build(name, None, _no_folder(name))
+    _builds[name] = built
+    tell(_said_of(built), in_one=False)
+    for clause in built.left_out:
+        tell(f'not handed in, and not built: {clause}', in_one=False)
+
+
+def run_executable(package: str, executable: str, *arguments: str) -> None:
+    """Start an executable of a package that was built, as `ros2 run` does, in the background.
+
+    `run_executable('arm_player', 'arm_driver', '--ros-args', '-p', 'speed:=0.5')`: a process of
+    its own, whose lines show with the cell. One that runs already is replaced. Raises NotRunnable
+    where there is no such executable.
+    """
+    __tracebackhide__ = True
+    executables.stop_started(package=package, name=executable)
+    executables.start(package, executable, arguments)
+
+
+def make_package(name: str, *, node_name: str = '', dependencies: Sequence[str] = ()) -> None:
+    """Make a new package beside the notebook, as `ros2 pkg create` does for ament_python.
+
+    `node_name` is an executable to begin with. Raises NotRunnable where the folder is there.
+    """
+    __tracebackhide__ = True
+    _expect_name(name)
+    try:
+        made = skeleton.make(beside(), name, node_name=node_name, dependencies=tuple(dependencies))
+    except FileExistsError:
+        raise NotRunnable(
+            f'expected no folder {name}/ beside the notebook, saw one: go on with that, or rename '
+            'it and run this cell again'
+        ) from None
+    tell(f'made {name}/ beside the notebook:')
+    print(*(f'  {path}' for path in made), sep='\n')
+
+
+def beside() -> Path:
+    """The folder in which a notebook's packages lie: its own; another where it is graded."""
+    return Path(os.environ.get(FOLDER) or Path.cwd())
+
+
+def answer_check(package: str, verb: str, *args: Any) -> dict[str, Any]:
+    """Answer a check that asks about a package: bounded text, numbers and no more.
+
+    'built': what came of the build. 'start', name, arguments: start an executable. 'state',
+    number: whether it runs, its exit code and last words. 'signal', number, name: send it one.
+    """
+    if verb == 'built':
+        return _told_of(_builds.get(package))
+    if verb == 'start':
+        name, arguments = args
+        executables.stop_started(package=package, by_notebook_alone=True)
+        try:
+            number, _ = executables.start(package, name, list(arguments), by_check=True)
+        except (NotRunnable, OSError) as error:
+            return {'problem': str(error)[:MOST_SAID]}
+        return {'number': number}
+    number, *rest = args
+    if (found := executables.find(number)) is None:
+        return {'problem': 'nothing was started under that number'}
+    if verb == 'signal':
+        found.process.send(executables.signal.Signals[rest[0]])
+    elif found.process.code is not None:
+        found.process.wait_for_lines()
+    code = found.process.code
+    return {'code': code, 'said': '\n'.join(found.process.lines)[-MOST_SAID:]}
+
+
+def _told_of(built: Build | None) -> dict[str, Any]:
+    if built is None:
+        return {'status': None, 'problem': '', 'words': '', 'executables': [], 'found': False}
+    return {
+        'found': True,
+        'status': built.status,
+        'problem': built.problem[:MOST_SAID],
+        'words': built.words[-MOST_SAID:],
+        'executables': [name[:100] for name in built.executables[:50]],
+    }
+
+
+def _said_of(built: Build) -> str:
+    if built.problem:
+        return built.problem
+    where = shown(package_build.prefix_of(built.package))
+    known = ', '.join(built.executables)
+    return f'built {built.package} in {where}: `ros2 run {built.package}` finds {known}'
+
+
+def _no_folder(name: str) -> str:
+    return (
+        f'there is no folder {name}/ beside this notebook: make it there, with the file browser '
+        f'or in a terminal, or begin with make_package({name!r})'
+    )
+
+
+def _expect_name(name: str) -> None:
+    if not skeleton.NAME.fullmatch(name):
+        raise NotRunnable(
+            f'expected the name of a package, saw {name!r}: use small letters, digits and _, and '
+            'begin with a letter'
+        )

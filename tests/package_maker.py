@@ -1,0 +1,98 @@
+"""A lesson whose answer is a ROS package, and packages for it, right and wrong."""
+
+from pathlib import Path
+
+import nbformat
+from my_robot_basics.ros2 import skeleton
+from nbformat import NotebookNode
+from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
+
+LESSON, PACKAGE = '00_greeter', 'greeter'
+NODE = """
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from std_msgs.msg import String
+
+
+class Greeter(Node):
+    def __init__(self):
+        super().__init__('greeter')
+        self.declare_parameter('words', 'hello')
+        self.publisher = self.create_publisher(String, '/greeting', 10)
+        self.create_timer(0.1, self.greet)
+        self.get_logger().info('greeting')
+
+    def greet(self):
+        self.publisher.publish(String(data=self.get_parameter('words').value))
+
+
+def main(args=None):
+    try:
+        rclpy.init(args=args)
+        rclpy.spin(Greeter())
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        rclpy.try_shutdown()
+"""
+BUILDS = (
+    'from my_robot_basics.checks import package\n'
+    f"package('{PACKAGE}').expect_built(executables=('greet',))"
+)
+RUNS = f"""
+from my_robot_basics.checks import package, topic
+
+with package('{PACKAGE}').run('greet', parameters={{'words': 'good "day"'}}) as greeter:
+    greeter.expect_node('/greeter')
+    topic('/greeting').wait_for(
+        lambda message: message.data == 'good "day"',
+        expected='the words of the parameter', seen=lambda message: message.data, hint='use it',
+    )
+    greeter.expect_clean_end()
+"""
+
+
+def cell(grade_id: str, source: str, **marks: object) -> NotebookNode:
+    given = {'grade': False, 'solution': False, 'locked': True, 'task': False}
+    about = given | {'grade_id': grade_id, 'schema_version': 3} | marks
+    return new_code_cell(source, id=grade_id, metadata={'nbgrader': about})
+
+
+def package_lesson(*, builds: str = BUILDS, runs: str = RUNS) -> NotebookNode:
+    """The source of the lesson: its title, and an exercise without a cell of the student's."""
+    return new_notebook(
+        cells=[
+            new_markdown_cell('# A package', id='title'),
+            cell('greeter-reset', 'from my_robot_basics.live import reset\nreset()'),
+            cell(
+                'greeter',
+                f"from my_robot_basics.live import build_package\nbuild_package('{PACKAGE}')",
+            ),
+            new_code_cell('print("theirs")', id='try-it'),
+            cell('builds', builds, grade=True, points=1.0),
+            cell('runs', runs, grade=True, points=2.0),
+        ],
+        metadata={'kernelspec': {'name': 'python3', 'display_name': 'Python 3'}},
+    )
+
+
+def write_lesson(root: Path) -> Path:
+    """Write the lesson as a source of a course; return its path."""
+    path = root / 'solutions' / LESSON / f'{LESSON}.ipynb'
+    path.parent.mkdir(parents=True)
+    nbformat.write(package_lesson(), path)
+    return path
+
+
+def make_package(above: Path, *, node: str = NODE, **files: str | None) -> Path:
+    """Make a right package in a folder, but for files by path, with __ for /; None removes one."""
+    above.mkdir(parents=True, exist_ok=True)
+    skeleton.make(above, PACKAGE, node_name='greet', dependencies=('rclpy', 'std_msgs'))
+    folder = above / PACKAGE
+    (folder / PACKAGE / 'greet.py').write_text(node)
+    for name, text in files.items():
+        path = folder / name.replace('__', '/')
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text) if text is not None else path.unlink()
+    return folder

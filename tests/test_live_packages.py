@@ -1,0 +1,297 @@
+"""A package beside the notebook: built by colcon, run as processes, and told what is wrong."""
+
+import time
+from pathlib import Path
+
+import pytest
+from my_robot_basics.checks import CheckFailed
+from my_robot_basics.checks import package as package_of
+from my_robot_basics.live import executables, package_build, packages
+from my_robot_basics.live.install_faults import fault_in_install
+from my_robot_basics.live.package_faults import fault_in_words
+from my_robot_basics.session import package_files
+from my_robot_basics.session.errors import NotRunnable
+from package_maker import NODE, PACKAGE, make_package
+
+from my_robot_basics import live
+
+PATIENCE_SEC = 60.0
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    """The notebook's folder, with a workspace of its own; nothing is left running."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / 'ros_ws').mkdir()
+    monkeypatch.setenv('MY_ROBOT_BASICS_WORKSPACE', str(tmp_path / 'ros_ws'))
+    monkeypatch.setattr(packages, '_builds', {})
+    yield tmp_path
+    live.stop()
+
+
+def printed(capsys):
+    return ' '.join(capsys.readouterr().out.split())
+
+
+def until(done):
+    deadline = time.monotonic() + PATIENCE_SEC
+    while not done() and time.monotonic() < deadline:
+        time.sleep(0.02)
+    assert done()
+
+
+def tree(folder):
+    return {path.relative_to(folder).as_posix() for path in folder.rglob('*')}
+
+
+# --- made ----------------------------------------------------------------------------------------
+
+
+def test_a_skeleton_is_made_once(folder, capsys):
+    live.make_package(PACKAGE, node_name='greet', dependencies=['rclpy'])
+    assert printed(capsys).startswith('made greeter/ beside the notebook: package.xml setup.py')
+    assert '<depend>rclpy</depend>' in (folder / PACKAGE / 'package.xml').read_text()
+    (folder / PACKAGE / 'setup.py').write_text('mine')
+    with pytest.raises(NotRunnable, match=r'expected no folder greeter/ beside the notebook'):
+        live.make_package(PACKAGE)
+    assert (folder / PACKAGE / 'setup.py').read_text() == 'mine'
+
+
+@pytest.mark.parametrize('name', ['../x', 'Greeter', '9', 'a-b', ''])
+def test_a_name_that_is_none_is_refused(name):
+    for do in live.make_package, live.build_package:
+        with pytest.raises(NotRunnable, match='expected the name of a package'):
+            do(name)
+
+
+# --- built ---------------------------------------------------------------------------------------
+
+WRONG = {
+    'no manifest': ({'package.xml': None}, 'has no package.xml, so it is no ROS package yet'),
+    'a broken manifest': ({'package.xml': '<package'}, 'greeter/package.xml is not valid'),
+    'another name': (
+        {'package.xml': lambda text: text.replace('<name>greeter', '<name>greeting')},
+        "package.xml names the package 'greeting', and its folder is greeter/",
+    ),
+    'another build type': (
+        {'package.xml': lambda text: text.replace('ament_python', 'ament_cmake')},
+        'has the build type ament_cmake, expected ament_python',
+    ),
+    'no setup.py': ({'setup.py': None}, 'has no setup.py, which tells colcon'),
+    'a slip in setup.py': ({'setup.py': 'setup(\n  x\n'}, 'line 1 of greeter/setup.py is not'),
+}
+
+
+def changed(folder, changes):
+    for name, change in changes.items():
+        path = folder / name
+        if change is None:
+            path.unlink()
+        else:
+            path.write_text(change if isinstance(change, str) else change(path.read_text()))
+
+
+@pytest.mark.parametrize(('changes', 'words'), WRONG.values(), ids=list(WRONG))
+def test_what_is_wrong_is_seen_before_anything_is_built(folder, capsys, changes, words):
+    changed(make_package(folder), changes)
+    live.build_package(PACKAGE)
+    assert words in printed(capsys)
+    assert not (folder / 'ros_ws' / 'install').exists()
+
+
+def test_a_folder_that_is_not_there_is_asked_for(capsys):
+    live.build_package(PACKAGE)
+    assert printed(capsys).startswith('there is no folder greeter/ beside this notebook: make it')
+
+
+@pytest.mark.starts
+def test_a_package_is_built_run_and_ended(folder, capsys):
+    """One build, and all that comes of a right package."""
+    make_package(folder, build__x='not mine')
+    before = tree(folder / PACKAGE)
+    live.build_package(PACKAGE)
+    assert printed(capsys) == (
+        'built greeter in $ROS_WS/install/greeter: `ros2 run greeter` finds greet not handed in, '
+        'and not built: build (made by a build, which is done again at grading)'
+    )
+    assert tree(folder / PACKAGE) == before
+
+    package = package_of(PACKAGE)
+    package.expect_built(executables=('greet',))
+    with pytest.raises(CheckFailed, match='expected the executables greet, other in greeter, saw'):
+        package.expect_built(executables=('greet', 'other'))
+
+    live.run_executable(PACKAGE, 'greet')
+    [by_notebook] = executables._started.values()
+    until(lambda: by_notebook.process.lines)
+    with package.run('greet', parameters={'words': 'ho'}, rules={'__ns': '/x'}) as greeter:
+        assert by_notebook.process.code is not None
+        greeter.expect_node('/x/greeter')
+        greeter.expect_running()
+        with pytest.raises(CheckFailed, match='expected greet to end by itself, saw it still'):
+            greeter.expect_end(within_sec=0.1)
+        greeter.expect_clean_end()
+        with pytest.raises(CheckFailed, match='expected greet to go on running, saw it has ended'):
+            greeter.expect_running()
+    capsys.readouterr()
+    with pytest.raises(NotRunnable, match='expected an executable other in greeter, saw greet'):
+        live.run_executable(PACKAGE, 'other')
+    with (
+        pytest.raises(CheckFailed, match='expected other of greeter to start, saw no process'),
+        package.run('other'),
+    ):
+        pass
+    live.run_executable(PACKAGE, 'greet')
+    until(lambda: executables._started and [*executables._started.values()][-1].process.lines)
+    live.stop()
+    assert 'greet: ended cleanly after SIGINT (exit code' in printed(capsys)
+
+
+UNCLEAN = """
+import signal, sys, time
+def main():
+    signal.signal(signal.SIGINT, {handler})
+    print('up', flush=True)
+    time.sleep(600)
+"""
+
+
+@pytest.mark.starts
+@pytest.mark.parametrize(
+    ('handler', 'words', 'check'),
+    [
+        ('signal.SIG_IGN', 'did not end after SIGINT: it took SIGTERM', 'it still runs after'),
+        ('lambda *_: sys.exit(3)', 'not cleanly (exit code 3)', 'exit code 3, up'),
+        ('lambda *_: 1 / 0', 'with ZeroDivisionError', 'exit code 1, ZeroDivisionError: div'),
+    ],
+)
+def test_an_end_that_is_not_clean_is_told(folder, capsys, monkeypatch, handler, words, check):
+    monkeypatch.setattr('my_robot_basics.live.processes.END_SEC', 1.0)
+    monkeypatch.setattr('my_robot_basics.checks.package_processes.END_SEC', 1.0)
+    script = folder / 'ros_ws/install/greeter/lib/greeter/greet'
+    script.parent.mkdir(parents=True)
+    script.write_text(f'#!/usr/bin/env python3\n{UNCLEAN.format(handler=handler)}\nmain()\n')
+    script.chmod(0o755)
+    live.run_executable(PACKAGE, 'greet')
+    [one] = executables._started.values()
+    until(lambda: 'up' in one.process.lines)
+    live.stop()
+    assert words in printed(capsys)
+    with package_of(PACKAGE).run('greet') as greeter:
+        [one] = executables._started.values()
+        until(lambda: 'up' in one.process.lines)
+        with pytest.raises(CheckFailed, match=check):
+            greeter.expect_clean_end()
+
+
+@pytest.mark.starts
+def test_an_executable_that_ends_at_once_says_why(folder, capsys):
+    make_package(folder, node='def main():\n    import no_such_module\n')
+    live.build_package(PACKAGE)
+    live.run_executable(PACKAGE, 'greet')
+    until(lambda: next(iter(executables._started.values())).process.code is not None)
+    live.stop()
+    words = "No module named 'no_such_module'"
+    assert words in printed(capsys)
+    with (
+        pytest.raises(CheckFailed, match=f'it has ended: exit code 1, ModuleNotFound.*{words}'),
+        package_of(PACKAGE).run('greet') as greeter,
+    ):
+        greeter.expect_node('/greeter')
+
+
+@pytest.mark.starts
+@pytest.mark.parametrize(
+    ('changes', 'words'),
+    [
+        ({'resource/greeter': None}, 'setup.py installs resource/greeter, and there is no such'),
+        ({'setup.cfg': None}, 'lie in bin/, where `ros2 run` does not look: write a setup.cfg'),
+        (
+            {'setup.py': lambda text: text.replace('greeter.greet:', 'greeter.grete:')},
+            'and there is no greeter/grete.py: write that module, or correct the name',
+        ),
+    ],
+)
+def test_what_colcon_and_the_result_say_is_told_with_what_to_do(folder, capsys, changes, words):
+    changed(make_package(folder), changes)
+    live.build_package(PACKAGE)
+    assert words in printed(capsys)
+    with pytest.raises(CheckFailed, match='expected greeter to be built'):
+        package_of(PACKAGE).expect_built()
+
+
+def test_of_many_lines_the_error_is_told():
+    words = (
+        'Starting >>> greeter\n--- stderr: greeter\nTraceback (most recent call last):\n'
+        '  File "<string>", line 1, in <module>\n'
+        '  File "/x/ros_ws/.packages/greeter/setup.py", line 7, in <module>\n'
+        "NameError: name 'nmae' is not defined\n---\nFailed   <<< greeter [0.5s, exited with 1]\n"
+    )
+    assert fault_in_words(PACKAGE, 1, words) == (
+        "colcon does not build greeter: greeter/setup.py, line 7: NameError: name 'nmae' is not "
+        'defined: fix that, and build again'
+    )
+    assert 'ended by SIGKILL' in fault_in_words(PACKAGE, -9, '')
+
+
+def installed(folder, entry):
+    """An installed package with one entry point, as setuptools writes it."""
+    prefix = folder / 'prefix'
+    site = next((prefix / 'lib').glob('python*/site-packages'), None)
+    if site is None:
+        import sys
+
+        site = prefix / 'lib/python{}.{}/site-packages'.format(*sys.version_info)
+        marker = prefix / 'share/ament_index/resource_index/packages/greeter'
+        for path in (site / 'greeter.egg-info/x', site / 'greeter/x', marker):
+            path.parent.mkdir(parents=True, exist_ok=True)
+        marker.touch()
+        (prefix / 'lib/greeter').mkdir()
+    (site / 'greeter.egg-info/entry_points.txt').write_text(f'[console_scripts]\n{entry}\n')
+    return prefix, site
+
+
+@pytest.mark.parametrize(
+    ('entry', 'module', 'words'),
+    [
+        ('greet = greeter.greet:main', NODE, ''),
+        ('greet = greeter.greet:mian', NODE, 'greeter/greet.py has no function mian'),
+        ('greet = greeter.greet:main', 'def main(:', 'greeter/greet.py is not valid Python (line'),
+        ('greet = greeter.greet:main', None, 'greeter/greet.py was not installed, and greet'),
+        ('greet = grete.greet:main', NODE, 'and there is no package grete: correct it'),
+        ('greet = a b c', NODE, 'has no executable: name one in entry_points'),
+    ],
+)
+def test_an_entry_point_that_leads_nowhere_is_named(folder, entry, module, words):
+    files = package_files.read(make_package(folder))
+    prefix, site = installed(folder, entry)
+    if module is not None:
+        (site / 'greeter/greet.py').write_text(module)
+    said = fault_in_install(PACKAGE, prefix, files)
+    assert (words in said) if words else (said == '')
+
+
+@pytest.mark.starts
+def test_an_interrupt_ends_the_build_with_all_that_it_started(folder, monkeypatch):
+    sleeper = 'import os, time\nopen("{}", "w").write(str(os.getpid()))\ntime.sleep(600)\n'
+    pid = folder / 'pid'
+    make_package(folder, **{'setup.py': sleeper.format(pid)})
+    wait = package_build._end_of
+
+    def interrupted(colcon):
+        until(lambda: pid.exists() and pid.read_text())
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(package_build, '_end_of', interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        live.build_package(PACKAGE)
+    until(lambda: not Path('/proc', pid.read_text()).exists())
+    assert wait is not interrupted
+
+
+@pytest.mark.starts
+def test_what_a_check_asks_of_nothing_is_answered(folder):
+    with pytest.raises(CheckFailed, match='expected greeter to be built, saw no build: run the'):
+        package_of(PACKAGE).expect_built()
+    told = packages.answer_check(PACKAGE, 'state', 99)
+    assert told == {'problem': 'nothing was started under that number'}
