@@ -1,11 +1,14 @@
 """A lesson whose answer is a ROS package, and packages for it, right and wrong."""
 
+import re
 from pathlib import Path
 
 import nbformat
 from my_robot_basics.ros2 import skeleton
 from nbformat import NotebookNode
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
+
+from grader.course import ROOT
 
 LESSON, PACKAGE = '00_greeter', 'greeter'
 NODE = """
@@ -36,21 +39,9 @@ def main(args=None):
     finally:
         rclpy.try_shutdown()
 """
-BUILDS = (
-    'from my_robot_basics.checks import package\n'
-    f"package('{PACKAGE}').expect_built(executables=('greet',))"
-)
-RUNS = f"""
-from my_robot_basics.checks import package, topic
-
-with package('{PACKAGE}').run('greet', parameters={{'words': 'good "day"'}}) as greeter:
-    greeter.expect_node('/greeter')
-    topic('/greeting').wait_for(
-        lambda message: message.data == 'good "day"',
-        expected='the words of the parameter', seen=lambda message: message.data, hint='use it',
-    )
-    greeter.expect_clean_end()
-"""
+_BLOCK = re.compile(r'\*\*`(\w+)`\*\*[^\n]*\n\n```python\n(.*?)```', re.DOTALL)
+CELLS = dict(_BLOCK.findall((ROOT / 'docs/grading-a-package.md').read_text(encoding='utf-8')))
+"""The cells of the page for instructors, by their ids."""
 
 
 def cell(grade_id: str, source: str, **marks: object) -> NotebookNode:
@@ -59,16 +50,13 @@ def cell(grade_id: str, source: str, **marks: object) -> NotebookNode:
     return new_code_cell(source, id=grade_id, metadata={'nbgrader': about})
 
 
-def package_lesson(*, builds: str = BUILDS, runs: str = RUNS) -> NotebookNode:
+def package_lesson(*, builds: str = CELLS['builds'], runs: str = CELLS['runs']) -> NotebookNode:
     """The source of the lesson: its title, and an exercise without a cell of the student's."""
     return new_notebook(
         cells=[
             new_markdown_cell('# A package', id='title'),
             cell('greeter-reset', 'from my_robot_basics.live import reset\nreset()'),
-            cell(
-                'greeter',
-                f"from my_robot_basics.live import build_package\nbuild_package('{PACKAGE}')",
-            ),
+            cell('greeter', CELLS['greeter']),
             new_code_cell('print("theirs")', id='try-it'),
             cell('builds', builds, grade=True, points=1.0),
             cell('runs', runs, grade=True, points=2.0),

@@ -87,7 +87,9 @@ def read_submission(
 def _package_in(folder: Path, name: str) -> tuple[dict[str, Path], list[str]]:
     """Return the files of a package, by path, and a note for each one that is not taken."""
     place = folder / name
-    if place.is_symlink() or not place.is_dir():
+    if place.is_symlink():
+        return {}, [f'the package `{name}` was left out: it is a link']
+    if not place.is_dir():
         return {}, []
     try:
         found = package_files.read(place)

@@ -8,6 +8,8 @@ from collections.abc import Mapping
 from functools import partial
 from typing import Any, NoReturn, Self
 
+from rcl_interfaces.srv import GetParameters
+
 from my_robot_basics.checks.package_words import how, last_words, text_in
 from my_robot_basics.exchange import student
 from my_robot_basics.exchange.endings import is_clean
@@ -23,6 +25,8 @@ END_SEC = 5.0
 """How long it may take to end after SIGINT, of time that was free: ros2 launch waits as long."""
 GONE_SEC = 8.0
 """How long its node may be on the graph afterwards: a lease of 5 s, and more."""
+SPIN_SEC = 2.0
+"""How long a node may take to answer for its parameters before it is told to end."""
 ASK_EVERY_SEC = 0.3
 CLEANLY = (
     'in main, catch KeyboardInterrupt and ExternalShutdownException around rclpy.spin, and call '
@@ -96,6 +100,7 @@ class RunningExecutable:
         Raises CheckFailed: what it printed last, or that it goes on.
         """
         self.expect_running()
+        self._wait_until_it_spins()
         self._ask('signal', self._number, 'SIGINT')
         hint = (
             'let no callback and no loop go on for long, and do not catch KeyboardInterrupt there'
@@ -105,6 +110,19 @@ class RunningExecutable:
         if not is_clean(code, said.splitlines()):
             self._expect_code(0, hint=CLEANLY)
         self._expect_gone()
+
+    def _wait_until_it_spins(self) -> None:
+        """Wait until its nodes answer for their parameters: before that, main is not in spin yet.
+
+        SIGINT between would meet rclpy half set up, which is no mistake of the student's. A node
+        without these services, or one that is busy, is not waited for long.
+        """
+        with Watcher() as watcher:
+            for name in self._nodes:
+                client = watcher.node.create_client(GetParameters, f'{name}/get_parameters')
+                if watcher.spin_until_free(client.service_is_ready, free_sec=SPIN_SEC):
+                    answer = client.call_async(GetParameters.Request())
+                    watcher.spin_until_free(answer.done, free_sec=SPIN_SEC)
 
     def _wait_for_end(self, what: str, free_sec: float, *, hint: str) -> None:
         with Watcher() as watcher:
@@ -133,7 +151,7 @@ class RunningExecutable:
         with Watcher() as watcher:
             watch = Stopwatch()
             for name in self._nodes:
-                is_gone = partial(_is_gone, watcher, name)
+                is_gone = partial(graphs.is_gone, watcher, name)
                 expect(
                     watcher.spin_until_free(is_gone, free_sec=GONE_SEC),
                     expected=f'{name} to be gone from the graph',
@@ -174,10 +192,6 @@ class RunningExecutable:
 
     def _ask(self, verb: str, *args: object) -> Mapping[str, Any]:
         return student.ask_package(self.package, verb, *args)
-
-
-def _is_gone(watcher: Watcher, node_name: str) -> bool:
-    return node_name not in graphs.node_names(watcher.node)
 
 
 def _doubt(watch: Stopwatch, free_sec: float) -> type[CheckFailed]:

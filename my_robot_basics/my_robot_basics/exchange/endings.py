@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 RACE = 'rcl_shutdown already called'
 """Of rclpy, not of a student: its own handler of SIGINT shuts the context down in a thread, and
-`try_shutdown` in main may come between. Seen in 1 of 4 ends of a plain node."""
+`try_shutdown` in main may come between. Seen in 1 of 44 ends of a plain node."""
 
 
 def is_clean(code: int | None, lines: Sequence[str]) -> bool:

@@ -108,6 +108,11 @@ def none_in(seconds: float) -> str:
     return 'none' if seconds <= SETTLED_SEC else f'none in {seconds:g} s'
 
 
+def is_gone(watcher: Watcher, node_name: str) -> bool:
+    """Whether no node of that full name is on the graph."""
+    return node_name not in node_names(watcher.node)
+
+
 def _look(node: Node) -> GraphSnapshot:
     names = set(node_names(node))
     topic_names = [name for name, _ in node.get_topic_names_and_types()]

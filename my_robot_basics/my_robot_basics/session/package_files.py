@@ -9,6 +9,7 @@ import stat
 import unicodedata
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 
 MAX_FILES, MAX_BYTES = 200, 2_000_000
@@ -121,7 +122,7 @@ def content(file: Path) -> bytes:
 
 def _walk(folder: Path, above: tuple[str, ...]) -> Iterator[tuple[Path, tuple[str, ...], str]]:
     """Yield each file, its path and why it is left out; of a folder that is, only itself."""
-    for path in sorted(folder.iterdir()):
+    for path in sorted(islice(folder.iterdir(), MOST_SEEN + 1)):
         parts = (*above, path.name)
         mode = path.lstat().st_mode
         is_folder = stat.S_ISDIR(mode)

@@ -7,7 +7,6 @@ import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from my_robot_basics.session import package_files
 from my_robot_basics.session.domain import Claim, claim
 from my_robot_basics.session.errors import LiveError
 from my_robot_basics.validate.errors import RoomFailure
@@ -45,12 +44,14 @@ class LocalRooms:
     say: Say = staticmethod(lambda line: None)
     """Is told what begins."""
 
-    def __init__(self, *, files: Sequence[Path], server: ForkServer) -> None:
+    def __init__(
+        self, *, files: Sequence[Path], server: ForkServer, beside: Path = Path()
+    ) -> None:
         """Prepare two kernels of a server; the student's finds copies of `files`.
 
-        A folder among them is a ROS package.
+        ROS packages are looked for in the folder `beside`, the notebook's own.
         """
-        self._files, self._server = files, server
+        self._files, self._server, self._beside = files, server, beside
         self._claim: Claim | None = None
         self._folder: Path | None = None
         self._kernels: list[LocalKernel] = []
@@ -139,14 +140,8 @@ class LocalRooms:
         short = None if len(tempfile.gettempdir()) < MOST_PATH else '/tmp'
         self._folder = folder = Path(tempfile.mkdtemp(prefix='validate-', dir=short))
         (folder / 'files').mkdir()
-        (folder / 'packages').mkdir()
         for file in self._files:
-            if file.is_dir():
-                package_files.write(
-                    package_files.read(file).taken, folder / 'packages' / file.name
-                )
-            else:
-                shutil.copyfile(file, folder / 'files' / file.name)
+            shutil.copyfile(file, folder / 'files' / file.name)
         self._student = self._kernel(folder / 'student', owned.domain_id)
         self._test = self._kernel(folder / 'test', owned.domain_id)
         return folder
@@ -160,7 +155,8 @@ class LocalRooms:
             'RCUTILS_LOGGING_USE_STDOUT': '1',
             # the student's own stays as it is, whichever cells are run
             'MY_ROBOT_BASICS_WORKSPACE': str(folder / 'ros_ws'),
-            'MY_ROBOT_BASICS_PACKAGES': str(folder.parent / 'packages'),
+            # read there as they are, and copied by the build
+            'MY_ROBOT_BASICS_PACKAGES': str(self._beside.resolve()),
             'ROS_LOG_DIR': str(folder / 'ros_log'),
             'MPLBACKEND': 'module://matplotlib_inline.backend_inline',
             'PYTHONSAFEPATH': '1',

@@ -15,7 +15,6 @@ from my_robot_basics.validate.exercises import Exercise, find_exercises
 from my_robot_basics.validate.forks import ForkServer
 from my_robot_basics.validate.judging import JudgedExercise, judge_exercise
 from my_robot_basics.validate.lesson import Lesson, read_lesson
-from my_robot_basics.validate.packages import packages_of
 from my_robot_basics.validate.passed_answers import answer_of
 from my_robot_basics.validate.report import (
     CheckFeedback,
@@ -40,8 +39,7 @@ async def validate(path: Path, server: ForkServer, *, say: Say = lambda line: No
     """
     lesson = read_lesson(path)
     files = [p for p in sorted(path.parent.glob('*.py')) if p.is_file()]
-    files += [p for n in packages_of(lesson.notebook) if (p := path.parent / n).is_dir()]
-    run = _Run(lesson, partial(LocalRooms, files=files, server=server), say)
+    run = _Run(lesson, partial(LocalRooms, files=files, server=server, beside=path.parent), say)
     parts = await together(*map(run.part, find_exercises(lesson.notebook)))
     named = {check.name for part in parts for check in part.checks}
     parts += [*_by_hand(lesson), *_without_exercise(lesson, named), *_missing(lesson)]
