@@ -45,6 +45,7 @@ STARTING_FILES = frozenset(
     validate validate_forks validate_server workers workspace_terminal
     checks_action_servers checks_actions checks_actions_wrong live_destroying ros2_param
     live_packages package_grading
+    checks_player
     """.split()  # noqa: SIM905
 )
 """Files, test_NAME.py, of which all tests, or nearly all, start something: if not a kernel, then

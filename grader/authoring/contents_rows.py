@@ -36,7 +36,8 @@ def points_of(lesson: NotebookNode) -> float:
 
 def exercises_of(lesson: NotebookNode) -> list[str]:
     """Return the names of a lesson's exercises, in order."""
-    return [graded_id(cell) for cell in lesson.cells if role(cell) == 'answer']
+    checked = {exercise.name for exercise in find_exercises(lesson)}
+    return [c_id for c in lesson.cells if (c_id := graded_id(c)) in checked or role(c) == 'answer']
 
 
 def progress_row(name: str, lesson: NotebookNode) -> dict:

@@ -70,6 +70,7 @@ _MODULES = {
     'ik': 'checks.ik',
     'joints': 'checks.joints',
     'moves': 'checks.moves',
+    'player': 'checks.player',
     'replies': 'checks.replies',
     'student': 'exchange.student',
 }

@@ -10,6 +10,7 @@ from typing import Any, NoReturn, Self
 
 from rcl_interfaces.srv import GetParameters
 
+from my_robot_basics.checks import polite_end
 from my_robot_basics.checks.package_words import how, last_words, text_in
 from my_robot_basics.exchange import student
 from my_robot_basics.exchange.endings import is_clean
@@ -61,7 +62,8 @@ class RunningExecutable:
 
     def __exit__(self, *_: object) -> None:
         """End it, if it still runs; that is no verdict."""
-        self._ask('signal', self._number, 'SIGKILL')
+        send = partial(self._ask, 'signal', self._number)
+        polite_end.end(send, lambda: self._ask('state', self._number).get('code') is not None)
 
     def expect_node(self, node_name: str) -> None:
         """A node of that full name, '/arm_driver', comes up. Raises CheckFailed."""
@@ -139,13 +141,9 @@ class RunningExecutable:
 
     def _expect_code(self, wanted: int, *, hint: str) -> None:
         code, said = self._state()
-        expect(
-            code == wanted,
-            expected=f'{self.executable} to end with exit code {wanted}',
-            seen=f'{how(code)}{last_words(said)}',
-            hint=hint,
-            cause=f'{self.executable} does not end cleanly',
-        )
+        wanted_end = f'{self.executable} to end with exit code {wanted}'
+        seen, cause = f'{how(code)}{last_words(said)}', f'{self.executable} does not end cleanly'
+        expect(code == wanted, expected=wanted_end, seen=seen, hint=hint, cause=cause)
 
     def _expect_gone(self) -> None:
         with Watcher() as watcher:

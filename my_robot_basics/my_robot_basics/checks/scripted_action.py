@@ -73,7 +73,7 @@ class ScriptedActionServer:
 
     def _judge(self, request: Any) -> GoalResponse:
         is_expected = self.is_expected(request)
-        accepts = self.accepts or not is_expected
+        accepts = self._accepts(request)
         received = ReceivedGoal(request, accepts)
         self.goals.append(received)
         if not is_expected:
@@ -81,6 +81,9 @@ class ScriptedActionServer:
         if accepts:
             self._executed.append(received)
         return GoalResponse.ACCEPT if accepts else GoalResponse.REJECT
+
+    def _accepts(self, request: Any) -> bool:
+        return self.accepts or not self.is_expected(request)
 
     def _take(self, handle: ServerGoalHandle) -> None:
         self._handles[bytes(handle.goal_id.uuid)] = self._executed.pop(0)

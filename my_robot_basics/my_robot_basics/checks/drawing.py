@@ -1,0 +1,199 @@
+"""A run of `arm_player` beside the check's own servers, looked at target by target."""
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import NoReturn, Self
+
+from my_robot_basics.checks import drawing_hints
+from my_robot_basics.checks.packages import RunningExecutable, package
+from my_robot_basics.checks.player_report import PlayerReport
+from my_robot_basics.checks.player_servers import (
+    MOVE_ARM,
+    SOLVE_IK,
+    PlayerServers,
+    Target,
+    is_near,
+)
+from my_robot_basics.checks.scripted_action import ReceivedGoal
+from my_robot_basics.checks.sole_server import expect_no_other
+from my_robot_basics.feedback.errors import expect, fail, shorten
+from my_robot_basics.graph.watcher import Watcher
+
+NAME = 'arm_player'  # of the package, of the executable and of the node
+SPEED = 0.5
+"""What each goal is to ask for, in rad/s."""
+SPEED_NEAR = 1e-6
+MEET_SEC = 8.0
+"""How long the clients of a program that was just started may take, of time that was free. …"""
+SECOND_SEC = 1.0
+"""… A client that is made only when it is needed is not waited for longer."""
+REPLY_SEC = 4.0
+"""How long to wait for a request or a goal, of time that was free."""
+QUIET_SEC = 0.2
+"""How long to listen for what must not come while a goal has not ended."""
+
+
+class Drawing:
+    """The player, started with these targets, the servers, and its report."""
+
+    def __init__(
+        self, watcher: Watcher, process: RunningExecutable, targets: Sequence[Target]
+    ) -> None:
+        self._watcher, self._process, self._targets = watcher, process, targets
+        self._servers = PlayerServers(watcher, targets)
+        self._report = PlayerReport(watcher)
+        self._comes = watcher.spin_until_free
+        self._goals = 0
+        """How many goals there are to be so far."""
+
+    @classmethod
+    @contextmanager
+    def opened(cls, watcher: Watcher, targets: Sequence[Target]) -> Iterator[Self]:
+        """Start the player; there is no server yet. Raises CheckFailed where it does not start."""
+        numbers = [number for _, x, y in targets for number in (x, y)]
+        with package(NAME).run(NAME, parameters={'targets': numbers}) as process:
+            drawing = cls(watcher, process, targets)
+            try:
+                yield drawing
+            finally:
+                drawing._servers.stop()
+
+    def meet(self) -> None:
+        """Wait for its clients, then serve: so none of them asks before both have met.
+
+        Raises CheckFailed where none comes, or somebody else serves.
+        """
+        count = self._watcher.node.count_clients
+        self._expect_alone(own=0)
+        if not self._comes(lambda: count(SOLVE_IK) > 0, free_sec=MEET_SEC):
+            self._fail_silent(
+                expected=f'a client of {SOLVE_IK}',
+                hint=drawing_hints.why_no_client(self._watcher),
+                cause=f'{NAME} has no client of {SOLVE_IK}',
+            )
+        self._comes(lambda: count(f'{MOVE_ARM}/_action/send_goal') > 0, free_sec=SECOND_SEC)
+        self._servers.start()
+
+    def expect_visit(self, number: int) -> None:
+        """The player asks for a target, and sends its goal; that ends as its word says.
+
+        Raises CheckFailed.
+        """
+        word = self._targets[number][0]
+        self._expect_asked(number)
+        if word == 'unreachable':
+            return
+        goal = self._expect_goal(number)
+        if word == 'rejected':
+            return
+        self._watcher.spin_for(QUIET_SEC)
+        self._expect_one_at_a_time()
+        self._report.expect_none_yet()
+        if word == 'canceled':
+            self._servers.cancel(goal)
+        else:
+            goal.finish('succeeded' if word == 'succeeded' else 'aborted')
+
+    def expect_end(self) -> None:
+        """The report comes, with a word for each target, and is kept; no goal was too many.
+
+        Raises CheckFailed.
+        """
+        words = [word for word, _, _ in self._targets]
+        if not self._comes(self._report.is_there, free_sec=REPLY_SEC):
+            self._fail_silent(
+                expected=f'the report on {self._report.topic_name}',
+                hint=self._report.why_none() or drawing_hints.why_no_report(self._watcher),
+                cause='there is no report',
+            )
+        self._report.expect_words(words)
+        self._expect_one_at_a_time()
+        self._report.expect_kept(self._process)
+        self._expect_alone(own=1)
+
+    def expect_clean_end(self) -> None:
+        """It asks for its first target, gets no answer yet, and ends cleanly on SIGINT.
+
+        Raises CheckFailed. Earlier, while it makes its node, rclpy itself prints a traceback.
+        """
+        self._process.expect_node(f'/{NAME}')
+        self._servers.solver.hold()
+        self.meet()
+        self._expect_asked(0)
+        self._process.expect_clean_end()
+
+    def _expect_asked(self, number: int) -> None:
+        servers = self._servers
+        self._comes(
+            lambda: servers.was_asked(number) or bool(servers.strays()), free_sec=REPLY_SEC
+        )
+        _, x, y = self._targets[number]
+        wanted = f'a request to {SOLVE_IK} for ({x:g}, {y:g})'
+        if strays := servers.strays():
+            fail(
+                expected=wanted,
+                seen=f'one for ({strays[0].target.x:g}, {strays[0].target.y:g})',
+                hint='targets are x1, y1, x2, y2, … in metres: put x and y into request.target',
+                cause=f'{SOLVE_IK} is asked for something else',
+            )
+        if not servers.was_asked(number):
+            self._fail_silent(
+                expected=wanted,
+                hint=drawing_hints.why_not_asked(self._watcher, self._before(number)),
+                cause=drawing_hints.stops(self._before(number)),
+            )
+
+    def _expect_goal(self, number: int) -> ReceivedGoal:
+        goals, place = self._servers.goals, self._goals
+        _, x, y = self._targets[number]
+        if not self._comes(lambda: len(goals) > place, free_sec=REPLY_SEC):
+            self._fail_silent(
+                expected=f'a goal for {MOVE_ARM} for ({x:g}, {y:g})',
+                hint=drawing_hints.why_no_goal(self._watcher),
+                cause=f'{MOVE_ARM} is sent no goal',
+            )
+        goal = goals[place]
+        if not is_near(goal.request.position, self._servers.pose(number)):
+            self._fail_other_goal(number, goal)
+        expect(
+            abs(goal.request.speed - SPEED) < SPEED_NEAR,
+            expected=f'a goal with the speed {SPEED:g} rad/s',
+            seen=f'{goal.request.speed:g}',
+            hint='give each goal the speed that the task names',
+            cause='a goal has another speed',
+        )
+        self._goals += 1
+        return goal
+
+    def _expect_one_at_a_time(self) -> None:
+        expect(
+            len(self._servers.goals) == self._goals,
+            expected=f'one goal for {MOVE_ARM} at a time, and one for each target',
+            seen=f'{len(self._servers.goals)} goals for {self._goals}',
+            hint='send the next goal when the result of the one before is there',
+            cause='goals are sent at once, or too many of them',
+        )
+
+    def _fail_other_goal(self, number: int, goal: ReceivedGoal) -> NoReturn:
+        seen = goal.request.position[:4]
+        fail(
+            expected=f'a goal for target {number + 1}, {_rounded(self._servers.pose(number))} rad',
+            seen=shorten(_rounded(seen)),
+            hint=drawing_hints.why_other_goal(self._servers, number, seen),
+            cause='a goal has another position, or another place in the order',
+        )
+
+    def _before(self, number: int) -> str:
+        return self._targets[number - 1][0] if number else ''
+
+    def _fail_silent(self, *, expected: str, hint: str, cause: str) -> NoReturn:
+        self._process.expect_running()  # whoever has ended says why
+        fail(expected=expected, seen='none', hint=hint, cause=cause)
+
+    def _expect_alone(self, *, own: int) -> None:
+        expect_no_other(self._watcher, SOLVE_IK, own=own)
+        expect_no_other(self._watcher, f'{MOVE_ARM}/_action/send_goal', own=own)
+
+
+def _rounded(position: Sequence[float]) -> list[float]:
+    return [round(angle, 3) for angle in position]

@@ -1,0 +1,61 @@
+"""What the executable `arm_player` is to do with its targets; in metres, in `base_link`.
+
+The check serves `/solve_ik` and `/move_arm` itself, and says how each target ends. Its arm has
+other links than the course's: where a target leads, only who asks can know.
+"""
+
+import math
+import random
+
+from my_robot_basics.checks.drawing import Drawing
+from my_robot_basics.checks.player_servers import WORDS, Target
+from my_robot_basics.graph.watcher import Watcher
+
+NEAREST_M, FARTHEST_M = 0.6, 1.7
+"""Targets that are reached are within this ring, as `choose` chooses them."""
+APART_M = 0.1
+
+
+def expect_plays(*targets: Target) -> None:
+    """`arm_player` visits the targets in order, one at a time, and reports how each one ended.
+
+    A target is a word and a point, `('succeeded', 1.2, 0.8)`. The word is 'succeeded', 'canceled'
+    or 'aborted', which is how its goal ends; 'rejected', which its goal is; or 'unreachable',
+    which `/solve_ik` answers. Raises CheckFailed.
+    """
+    for word, _, _ in targets:
+        if word not in WORDS:
+            raise ValueError(f'a target ends as one of {", ".join(WORDS)}, not {word}')
+    with Watcher() as watcher, Drawing.opened(watcher, targets) as drawing:
+        drawing.meet()
+        for number in range(len(targets)):
+            drawing.expect_visit(number)
+        drawing.expect_end()
+
+
+def expect_asks_and_ends(x: float, y: float) -> None:
+    """`arm_player` asks `/solve_ik` for its first target, and ends cleanly while it waits.
+
+    Raises CheckFailed.
+    """
+    with Watcher() as watcher, Drawing.opened(watcher, [('succeeded', x, y)]) as drawing:
+        drawing.expect_clean_end()
+
+
+def choose(numbers: random.Random) -> list[Target]:
+    """A target for each word, and one that succeeds after them, in some order."""
+    words = [*WORDS]
+    numbers.shuffle(words)
+    targets: list[Target] = []
+    for word in (*words, 'succeeded'):
+        point = _point(numbers)
+        while any(math.dist(point, other[1:]) < APART_M for other in targets):
+            point = _point(numbers)
+        targets.append((word, *point))
+    return targets
+
+
+def _point(numbers: random.Random) -> tuple[float, float]:
+    distance = numbers.uniform(NEAREST_M, FARTHEST_M)
+    angle = numbers.uniform(-math.pi, math.pi)
+    return round(distance * math.cos(angle), 3), round(distance * math.sin(angle), 3)

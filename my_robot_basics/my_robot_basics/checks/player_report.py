@@ -1,0 +1,121 @@
+"""What `arm_player` reports on `/arm_player/done`: one word for each target, kept."""
+
+import re
+from collections.abc import Sequence
+
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from std_msgs.msg import String
+
+from my_robot_basics.checks.packages import RunningExecutable
+from my_robot_basics.checks.player_servers import WORDS
+from my_robot_basics.checks.recorder import Recorder
+from my_robot_basics.feedback.errors import expect, fail, shorten
+from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.graph import graphs
+from my_robot_basics.graph.watcher import Watcher
+
+TOPIC = '/arm_player/done'
+TYPE = 'std_msgs/msg/String'
+LATE_SEC = 4.0
+"""How long a report may take to reach who joins late, of time that was free."""
+DEPTH = 100
+ANY = QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT)
+LATCHED = QoSProfile(depth=DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+_SPELT = {'cancelled': 'canceled', 'cancel': 'canceled', 'succeed': 'succeeded'}
+
+
+class PlayerReport:
+    """The report: asked for with the least QoS, and for kept ones where somebody keeps them.
+
+    A publisher that is made only for the report may send before it has met anybody.
+    """
+
+    topic_name = TOPIC
+
+    def __init__(self, watcher: Watcher) -> None:
+        """Listen from now on."""
+        self._watcher = watcher
+        self._any = _recorder(watcher, ANY)
+        self._kept: Recorder | None = None
+
+    def is_there(self) -> bool:
+        """Whether a message has come, in either way."""
+        if self._kept is None and self._is_published() and not self.why_none():
+            self._kept = _recorder(self._watcher, LATCHED)
+        return bool(self._messages())
+
+    def expect_none_yet(self) -> None:
+        """No report has come while a goal has not ended. Raises CheckFailed."""
+        said = self._messages()[-1:]
+        expect(
+            not said,
+            expected=f'no message on {TOPIC} before the last target is done',
+            seen=f"'{theirs(shorten(said[0]))}'" if said else '',
+            hint='publish one report, when the result of the last goal is there',
+            cause='the report comes too soon',
+        )
+
+    def expect_words(self, words: Sequence[str]) -> None:
+        """It has these words, one for each target. Raises CheckFailed."""
+        said = self._messages()[-1]
+        seen = re.findall(r'\w+', said)
+        if seen != [*words]:
+            fail(
+                expected=f"'{' '.join(words)}' on {TOPIC}",
+                seen=f"'{theirs(shorten(said))}'",
+                hint=_why_wrong(seen, words),
+                cause='the report says something else',
+            )
+
+    def expect_kept(self, process: RunningExecutable) -> None:
+        """Who joins now receives it, too. Raises CheckFailed."""
+        process.expect_running()
+        why = self.why_none()
+        expect(
+            not why and self._is_sent_again(),
+            expected=f'the report on {TOPIC} for a subscription that joins after it',
+            seen='none',
+            hint=why or 'let the node and its publisher exist until Ctrl-C: rclpy.spin',
+            cause='the report is not kept',
+        )
+
+    def why_none(self) -> str:
+        """Why no report comes though somebody publishes, or ''."""
+        infos = graphs.publisher_infos(self._watcher.node, TOPIC)
+        types = sorted({info.topic_type for info in infos})
+        if types and types != [TYPE]:
+            return f'use {TYPE} there, and not {theirs(" and ".join(types))}'
+        if any(i.qos_profile.durability != DurabilityPolicy.TRANSIENT_LOCAL for i in infos):
+            return 'give the publisher the durability TRANSIENT_LOCAL, as in lesson 6'
+        if any(i.qos_profile.reliability != ReliabilityPolicy.RELIABLE for i in infos):
+            return 'give the publisher the reliability RELIABLE: a lost report is not sent again'
+        return ''
+
+    def _is_published(self) -> bool:
+        return bool(graphs.publisher_infos(self._watcher.node, TOPIC))
+
+    def _is_sent_again(self) -> bool:
+        with Watcher() as late:
+            recorder = _recorder(late, LATCHED)
+            return late.spin_until_free(lambda: bool(recorder.received), free_sec=LATE_SEC)
+
+    def _messages(self) -> list[str]:
+        recorders = filter(None, (self._kept, self._any))
+        return next(([m.data for m in each.messages()] for each in recorders if each.received), [])
+
+
+def _recorder(watcher: Watcher, qos_profile: QoSProfile) -> Recorder:
+    return Recorder(watcher, topic_name=TOPIC, type_=String, qos_profile=qos_profile)
+
+
+def _why_wrong(seen: Sequence[str], words: Sequence[str]) -> str:
+    lower = [_SPELT.get(word.lower(), word.lower()) for word in seen]
+    if lower == [*words]:
+        return f'write the words as the task does: {", ".join(WORDS)}'
+    if any(word.isdigit() for word in seen):
+        return 'write the word for each status, and not its number'
+    if len(seen) < len(words):
+        return 'report on every target, in one message: unreachable and rejected ones, too'
+    if not {*lower} <= {*WORDS}:
+        return f'use these words alone: {", ".join(WORDS)}'
+    return 'one word for each target, in their order: the status of the result tells how it ended'

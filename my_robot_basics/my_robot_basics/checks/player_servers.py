@@ -1,0 +1,116 @@
+"""The check's own `/solve_ik` and `/move_arm`, for a node that visits targets: by a script."""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from action_msgs.srv import CancelGoal
+from rclpy.client import Client
+
+from arm_interfaces.action import MoveArm
+from arm_interfaces.srv import SolveIK
+from my_robot_basics.checks.holding_server import HoldingServer
+from my_robot_basics.checks.scripted_action import ReceivedGoal, ScriptedActionServer
+from my_robot_basics.checks.solutions import request, solve
+from my_robot_basics.feedback.errors import expect
+from my_robot_basics.graph.watcher import Watcher
+
+SOLVE_IK, MOVE_ARM = '/solve_ik', '/move_arm'
+Target = tuple[str, float, float]
+"""How it ends, x and y in metres."""
+WORDS = 'succeeded', 'canceled', 'aborted', 'rejected', 'unreachable'
+L1_M = 1.3
+"""The first link of the check's arm: its angles are known only to who asks."""
+NEAR_M = NEAR_RAD = 1e-6
+MOST_GOALS = 500
+CANCEL_SEC = 4.0
+"""How long a request to cancel may take, of time that was free."""
+
+
+class PlayerServers(ScriptedActionServer):
+    """Both servers; absent until `start`."""
+
+    def __init__(self, watcher: Watcher, targets: Sequence[Target]) -> None:
+        super().__init__(watcher.node, name=MOVE_ARM, type_=MoveArm)
+        self.targets = targets
+        self.is_expected = lambda _: True
+        self.solver = HoldingServer(
+            watcher.node, name=SOLVE_IK, type_=SolveIK, answer=self._answer
+        )
+        self._watcher = watcher
+        self._canceller: Client | None = None
+
+    def start(self) -> None:
+        """Serve both."""
+        self.solver.start()
+        super().start()
+
+    def stop(self) -> None:
+        """Let goals end that have not, and be absent."""
+        for goal in self.goals:
+            if not goal.end.done():
+                goal.finish('aborted')
+        self._watcher.spin_for(0.1)
+        self.solver.stop()
+        super().stop()
+
+    def pose(self, number: int) -> list[float]:
+        """The position that the goal for a target has to have, in radians."""
+        _, x, y = self.targets[number]
+        return list(solve(request(x, y), l1=L1_M).elbow_up)
+
+    def was_asked(self, number: int) -> bool:
+        """Whether a request came for a target."""
+        _, x, y = self.targets[number]
+        return any(_is_at(asked, x, y) for asked in self.solver.requests)
+
+    def strays(self) -> list[Any]:
+        """The requests for a point that is no target."""
+        points = [(x, y) for _, x, y in self.targets]
+        return [r for r in self.solver.requests if not any(_is_at(r, *each) for each in points)]
+
+    def number_of(self, goal: Any) -> int | None:
+        """Which target a goal is for, or None."""
+        numbers = (n for n in range(len(self.targets)) if is_near(goal.position, self.pose(n)))
+        return next(numbers, None)
+
+    def cancel(self, goal: ReceivedGoal) -> None:
+        """Ask to cancel a goal that moves, as anybody may, and let it be canceled."""
+        if self._canceller is None:
+            name = f'{MOVE_ARM}/_action/cancel_goal'
+            self._canceller = self._watcher.node.create_client(CancelGoal, name)
+            self._watcher.spin_until(self._canceller.service_is_ready, timeout_sec=CANCEL_SEC)
+        self._canceller.call_async(CancelGoal.Request())  # without an id: every goal
+        self._watcher.spin_until_free(lambda: goal.cancels > 0, free_sec=CANCEL_SEC)
+        goal.finish('canceled')
+
+    def _accepts(self, request: Any) -> bool:
+        number = self.number_of(request)
+        return number is None or self.targets[number][0] != 'rejected'
+
+    def _answer(self, asked: Any) -> Any:
+        for word, x, y in self.targets:
+            if _is_at(asked, x, y) and word == 'unreachable':
+                return SolveIK.Response(message='this arm does not get there')
+        return solve(asked, l1=L1_M)
+
+    def _judge(self, request: Any) -> Any:
+        expect(
+            len(self.goals) < MOST_GOALS,
+            expected=f'a goal for {MOVE_ARM} for each target',
+            seen=f'{MOST_GOALS} of them',
+            hint='send one goal for each target, in no endless loop',
+            cause=f'{MOVE_ARM} is sent goals again and again',
+        )
+        return super()._judge(request)
+
+
+def is_near(seen: Sequence[float], wanted: Sequence[float]) -> bool:
+    """Whether both are the same position in radians."""
+    return len(seen) == len(wanted) and all(
+        abs(a - b) < NEAR_RAD for a, b in zip(seen, wanted, strict=True)
+    )
+
+
+def _is_at(asked: Any, x: float, y: float) -> bool:
+    return math.hypot(asked.target.x - x, asked.target.y - y) < NEAR_M

@@ -1,0 +1,129 @@
+"""A program that visits targets: right in whatever way, and told the cause where it is not."""
+
+import contextlib
+import random
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from my_robot_basics.checks import CheckFailed, drawing, player, player_report
+from my_robot_basics.feedback.errors import fail
+
+PLAYERS = Path(__file__).parent / 'nodes/players.py'
+VISIBLE = (
+    ('succeeded', 1.2, 0.8),
+    ('unreachable', 3.0, 1.0),
+    ('canceled', 0.5, -1.1),
+    ('succeeded', -0.6, 0.9),
+)
+"""What the grade cell `arm_player_plays` shows."""
+
+
+class StandIn:
+    """The program, in place of the executable of a package that would have to be built."""
+
+    def __init__(self, variant, parameters):
+        targets = ', '.join(map(repr, parameters['targets']))
+        command = [sys.executable, PLAYERS, variant, '--ros-args', '-p', f'targets:=[{targets}]']
+        self.process = subprocess.Popen(
+            command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, encoding='utf-8'
+        )
+
+    def expect_running(self):
+        if self.process.poll() is not None:
+            said = self.process.stderr.read().strip().splitlines()
+            fail(expected='it to run', seen=f'it ended: {said[-1:]}', hint='fix that first')
+
+    def end(self):
+        self.process.send_signal(signal.SIGINT)
+        try:
+            self.process.wait(5.0)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+        self.process.stderr.close()
+
+
+@pytest.fixture
+def play(monkeypatch):
+    """Let one of the programs be `arm_player`, and check it."""
+    monkeypatch.setattr(drawing, 'REPLY_SEC', 1.5)
+    monkeypatch.setattr(player_report, 'LATE_SEC', 1.5)
+
+    def play(variant, targets):
+        @contextlib.contextmanager
+        def run(name, *, parameters):
+            assert name == 'arm_player'
+            process = StandIn(variant, parameters)
+            try:
+                yield process
+            finally:
+                process.end()
+
+        package = type('Package', (), {'run': staticmethod(run)})
+        monkeypatch.setattr(drawing, 'package', lambda _: package)
+        player.expect_plays(*targets)
+
+    return play
+
+
+RIGHT = (
+    *('Usual', 'Callbacks', 'Awaits', 'Threads', 'BlocksInAGroup', 'AsksAhead'),
+    'MakesThemLate',
+)
+
+
+@pytest.mark.parametrize('variant', RIGHT)
+def test_who_plays_right_passes_in_whatever_way(play, variant):
+    play(variant, VISIBLE)
+    play(variant, player.choose(random.Random(5)))
+
+
+WRONG = {
+    'StopsAtTheFirstUnreachable': 'reachable is False, note it and go on',
+    'RaisesAtAnUnreachable': 'it ended: .*ValueError',
+    'GivesUpWhenCanceled': 'goal that was canceled has a result',
+    'SendsAllGoalsAtOnce': 'send the next goal when the result of the one before is there',
+    'ReportsBeforeTheEnd': 'publish one report, when the result of the last goal is there',
+    'ReportsEachTarget': 'publish one report, when the result of the last goal is there',
+    'CallsInACallback': 'inside a callback and waited there',
+    'NeverWaitsForTheServer': 'wait until there is a server',
+    'ElbowDown': 'this is elbow_down',
+    'SolvesItself': 'not a solution of your own',
+    'OtherSpeed': 'the speed that the task names',
+    'SwapsXAndY': 'put x and y into request.target',
+    'FixedTargets': 'targets are x1, y1, x2, y2',
+    'AlwaysSucceeded': 'the status of the result tells',
+    'SaysCancelled': 'write the words as the task does',
+    'Volatile': 'durability TRANSIENT_LOCAL',
+    'EndsAfterTheReport': 'it ended|until Ctrl-C',
+    'AnotherTopic': 'publish it when the last target is done',
+}
+
+
+@pytest.mark.parametrize('variant', WRONG)
+def test_what_is_wrong_is_named(play, variant):
+    targets = [('succeeded', 0.9, -0.7), *VISIBLE[1:]] if variant == 'FixedTargets' else VISIBLE
+    with pytest.raises(CheckFailed, match=WRONG[variant]):
+        play(variant, targets)
+
+
+def test_who_waits_for_the_result_of_a_rejected_goal_is_told(play):
+    targets = [('succeeded', 1.2, 0.8), ('rejected', 0.9, -0.9), ('succeeded', -0.6, 0.9)]
+    with pytest.raises(CheckFailed, match=r'is not accepted has no result|it ended'):
+        play('WaitsForARejectedGoal', targets)
+
+
+def test_targets_are_chosen_apart_with_each_word():
+    targets = player.choose(random.Random(1))
+    assert {word for word, _, _ in targets} == set(
+        drawing.PlayerServers.__init__.__globals__['WORDS']
+    )
+    assert len({(x, y) for _, x, y in targets}) == len(targets)
+
+
+def test_an_unknown_word_is_refused():
+    with pytest.raises(ValueError, match='not late'):
+        player.expect_plays(('late', 1.0, 1.0))
