@@ -132,6 +132,31 @@ def test_it_says_that_a_goal_cannot_be_cancelled():
     assert process.returncode == 1
 
 
+def test_a_server_that_does_not_come_is_waited_for_as_long_as_was_said():
+    result = ros2('action', 'send_goal', '/nothing', KIND, '--timeout', '1')
+    assert result.out == WAITING
+    assert result.err == 'Action server is not available after waiting 1 seconds.\n'
+    assert result.status == 1
+
+
+def test_a_goal_that_ends_in_time_ends_as_ever():
+    result = ros2('action', 'send_goal', ACTION, KIND, goal(0.5), '--timeout', '600')
+    assert without_id(result.out) == sent(0.5) + ACCEPTED + ended('SUCCEEDED')
+
+
+@pytest.mark.slow  # it waits for 15 s, within which a slow machine accepts a goal
+def test_a_goal_that_takes_longer_is_cancelled_and_that_is_said():
+    result = ros2('action', 'send_goal', ACTION, KIND, goal(1.0), '--timeout', '15')
+    assert without_id(result.out) == f'{sent(1.0)}{ACCEPTED}Canceling goal...\nGoal canceled.\n'
+    assert result.err == 'The goal has not ended after waiting 15 seconds.\n'
+    assert result.status == 1
+
+
+def test_a_time_below_zero_is_refused():
+    result = ros2('action', 'send_goal', ACTION, KIND, '--timeout', '-1')
+    assert result.status == 2
+
+
 def test_sigterm_ends_it_at_once():
     with accepted_goal(2.0) as process:
         process.send_signal(signal.SIGTERM)

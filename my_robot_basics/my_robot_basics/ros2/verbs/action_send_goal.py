@@ -1,10 +1,11 @@
 """Send an action goal."""
 
 import argparse
+import math
 import sys
 from typing import Any
 
-from my_robot_basics.ros2 import completion, lookup, stopping, typed_values
+from my_robot_basics.ros2 import arguments, completion, lookup, stopping, typed_values
 from my_robot_basics.ros2.errors import CommandError, Stopped
 from my_robot_basics.ros2.graph import Graph
 
@@ -36,6 +37,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '-f', '--feedback', action='store_true', help='Echo feedback messages for the goal'
     )
+    parser.add_argument(
+        '--timeout',
+        metavar='N',
+        type=arguments.unsigned_int,
+        help='Wait for N seconds at most for the action server, for its answer to the goal, and '
+        'for the result each',
+    )
 
 
 def main(args: argparse.Namespace) -> None:
@@ -54,9 +62,13 @@ def main(args: argparse.Namespace) -> None:
         client = ActionClient(graph.node, action_class, action_name)
         try:
             print('Waiting for an action server to become available...')
-            graph.wait_until(client.server_is_ready)
+            limit_sec = math.inf if args.timeout is None else args.timeout
+            if not graph.wait_until(client.server_is_ready, timeout_sec=limit_sec):
+                raise CommandError(
+                    f'Action server is not available after waiting {limit_sec} seconds.'
+                )
             print(f'Sending goal:\n     {_as_yaml(goal)}')
-            _send(graph, client, goal, show_feedback=args.feedback)
+            _send(graph, client, goal, show_feedback=args.feedback, limit_sec=limit_sec)
         finally:
             client.destroy()
 
@@ -73,16 +85,22 @@ def _fill(goal: Any, values: Any) -> None:
         raise CommandError(f'Failed to populate message fields: {error}') from None
 
 
-def _send(graph: Graph, client: Any, goal: Any, *, show_feedback: bool) -> None:
-    """Send a goal, and follow it to its end; a signal cancels it, a second one ends the wait."""
+def _send(graph: Graph, client: Any, goal: Any, *, show_feedback: bool, limit_sec: float) -> None:
+    """Send a goal, and follow it to its end; a signal cancels it, a second one ends the wait.
+
+    What takes longer than `limit_sec` is given up, and the goal is cancelled.
+    """
     accepting = client.send_goal_async(goal, _show_feedback if show_feedback else None)
-    handle = _answer(graph, accepting, 'sending goal')
+    handle = _answer(graph, accepting, 'sending goal', limit_sec=limit_sec)
     if not handle.accepted:
         print('Goal was rejected.')
         return
     print(f'Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n')
     ending = handle.get_result_async()
     try:
+        if not graph.spin_until(ending.done, timeout_sec=limit_sec):
+            _cancel(graph, handle)
+            raise CommandError(f'The goal has not ended after waiting {limit_sec} seconds.')
         result = _answer(graph, ending, 'getting result')
     except Stopped as stopped:
         if not stopping.may_go_on(stopped) or _has_ended(handle):
@@ -97,8 +115,9 @@ def _show_feedback(message: Any) -> None:
     print(f'Feedback:\n    {_as_yaml(message.feedback)}')
 
 
-def _answer(graph: Graph, future: Any, doing: str) -> Any:
-    graph.spin_until(future.done)
+def _answer(graph: Graph, future: Any, doing: str, *, limit_sec: float = math.inf) -> Any:
+    if not graph.spin_until(future.done, timeout_sec=limit_sec):
+        raise CommandError(f'No answer while {doing} after waiting {limit_sec} seconds.')
     if (answer := future.result()) is None:
         raise CommandError(f'Exception while {doing}: {future.exception()!r}')
     return answer
