@@ -49,7 +49,7 @@ def notebook_of(page, lesson=LESSON):
 def answer_in(notebook, name=NAME):
     cells = read_lesson(notebook).notebook
     (exercise,) = [each for each in find_exercises(cells) if each.name == name]
-    return answer_of(cells, exercise)
+    return answer_of(cells, exercise, notebook.parent)
 
 
 def passes_in(file, notebook):
@@ -136,6 +136,26 @@ def test_what_is_no_contents_page_is_refused_in_a_sentence(tmp_path, file, conte
     other.write_bytes(content)
     with pytest.raises(CourseError, match='is not the contents page'):
         progress_on(other, file)
+
+
+def test_a_package_that_is_the_answer_counts_with_all_its_files(page, file):
+    lesson = '12_package'
+    shutil.copytree(ROOT / 'notebooks' / lesson, page.parent / lesson)
+    notebook = notebook_of(page, lesson)
+    package = notebook.parent / 'arm_player'
+    (package / 'arm_player').mkdir(parents=True)
+    (package / 'setup.py').write_text('...')
+    record(file, lesson, {'arm_player': (answer_in(notebook, 'arm_player'), True)}, notebook)
+    (package / '__pycache__').mkdir()
+    (package / '__pycache__/setup.pyc').write_text('what Python leaves')
+    assert state(page, file, 'arm_player') == 'passed'
+    node = package / 'arm_player/player.py'
+    node.write_text('# new')
+    assert state(page, file, 'arm_player') == 'changed'
+    node.unlink()
+    assert state(page, file, 'arm_player') == 'passed'
+    (package / 'setup.py').write_text('other')
+    assert state(page, file, 'arm_player') == 'changed'
 
 
 # --- the file ------------------------------------------------------------------------------------

@@ -7,6 +7,7 @@ no submission has it, and the grader does not know of it.
 """
 
 import fcntl
+import hashlib
 import json
 import os
 from collections.abc import Iterator, Mapping
@@ -56,10 +57,26 @@ def default_path() -> Path:
     return Path(jupyter_data_dir()) / 'my_robot_basics' / 'passed_answers.json'
 
 
-def answer_of(notebook: NotebookNode, exercise: Exercise) -> str:
-    """Return what tells an answer, together with the checks that it passes, from any other."""
+def answer_of(notebook: NotebookNode, exercise: Exercise, folder: Path) -> str:
+    """Return what tells an answer, together with the checks that it passes, from any other.
+
+    `folder` is the notebook's: packages in it belong to the answer, without what builds leave.
+    """
     cells = [notebook.cells[i] for i in (exercise.answer, *exercise.grades)]
-    return fingerprint('\0'.join(cell.source.strip() for cell in cells))
+    said = [cell.source.strip() for cell in cells]
+    for name in exercise.packages:
+        for path in sorted((folder / name).rglob('*')):
+            parts = path.relative_to(folder).parts
+            if path.is_file() and not any(p.startswith(('.', '__pycache__')) for p in parts):
+                said += ['/'.join(parts), _hash_of(path)]
+    return fingerprint('\0'.join(said))
+
+
+def _hash_of(path: Path) -> str:
+    try:
+        return hashlib.sha256(path.read_bytes()).hexdigest()
+    except OSError as error:
+        return f'not read: {error.strerror}'  # the build says so, too
 
 
 def read_passes(path: Path) -> Passes:

@@ -151,9 +151,10 @@ def _answers(notebook: Path) -> dict[str, str]:
     """Return the answers of a notebook by exercise; none where it can't be read any more."""
     try:
         cells = read_lesson(notebook).notebook
-    except CourseError:
+        exercises = find_exercises(cells)
+        return {each.name: answer_of(cells, each, notebook.parent) for each in exercises}
+    except (CourseError, OSError):
         return {}
-    return {each.name: answer_of(cells, each) for each in find_exercises(cells)}
 
 
 def main(arguments: list[str] | None = None) -> int:

@@ -39,7 +39,8 @@ async def validate(path: Path, server: ForkServer, *, say: Say = lambda line: No
     """
     lesson = read_lesson(path)
     files = [p for p in sorted(path.parent.glob('*.py')) if p.is_file()]
-    run = _Run(lesson, partial(LocalRooms, files=files, server=server, beside=path.parent), say)
+    make_rooms = partial(LocalRooms, files=files, server=server, beside=path.parent)
+    run = _Run(lesson, path.parent, make_rooms, say)
     parts = await together(*map(run.part, find_exercises(lesson.notebook)))
     named = {check.name for part in parts for check in part.checks}
     parts += [*_by_hand(lesson), *_without_exercise(lesson, named), *_missing(lesson)]
@@ -56,6 +57,7 @@ class _Run:
     """What the exercises of a lesson have in common."""
 
     lesson: Lesson
+    folder: Path
     make_rooms: Callable[[], LocalRooms]
     say: Say
     places: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(SIDE_BY_SIDE))
@@ -65,15 +67,18 @@ class _Run:
         """Judge an exercise by the checks that can be run, when its turn comes."""
         judged = JudgedExercise({}, {})
         runnable = tuple(i for i in exercise.grades if _can_run(self.lesson, i))
+        answer = ''
         async with self.places:
             if runnable:
+                # a package may be edited while its checks run
+                answer = answer_of(self.lesson.notebook, exercise, self.folder)
                 judged = await judge_exercise(
                     self.lesson.notebook,
                     replace(exercise, grades=runnable),
                     partial(self._rooms, exercise),
                     self.budget,
                 )
-        return _part(self.lesson, exercise, judged)
+        return replace(_part(self.lesson, exercise, judged), answer=answer)
 
     def _rooms(self, exercise: Exercise) -> LocalRooms:
         rooms = self.make_rooms()
@@ -96,8 +101,7 @@ def _part(lesson: Lesson, exercise: Exercise, judged: JudgedExercise) -> Exercis
         verdict, outputs = judged.checks.get(index, (None, []))
         checks.append(make_check(lesson, lesson.notebook.cells[index], verdict, outputs))
     verdicts = [verdict for verdict, _ in judged.checks.values()]
-    answer = answer_of(lesson.notebook, exercise)
-    return ExerciseFeedback(exercise.name, troubles_of(verdicts), tuple(checks), answer)
+    return ExerciseFeedback(exercise.name, troubles_of(verdicts), tuple(checks))
 
 
 def _by_hand(lesson: Lesson) -> list[ExerciseFeedback]:
