@@ -13,7 +13,7 @@ WORDS = {4: 'succeeded', 5: 'canceled', 6: 'aborted'}
 class MoveArmClient(Node):
     def __init__(self):
         super().__init__('move_arm_client')
-        self.handle = None
+        self.goal_handle = None
         self.client = ActionClient(self, MoveArm, '/move_arm')
         self.outcomes = self.create_publisher(String, '/move_arm_client/outcome', 10)
         self.create_subscription(JointState, '/goal_pose', self.send, 10)
@@ -27,15 +27,15 @@ class MoveArmClient(Node):
         if not future.result().accepted:
             self.say('rejected')
             return
-        self.handle = future.result()
-        self.handle.get_result_async().add_done_callback(self.end)
+        self.goal_handle = future.result()
+        self.goal_handle.get_result_async().add_done_callback(self.end)
 
     def end(self, future):
         self.say(WORDS[future.result().status])
 
     def obstacle(self, message):
-        if message.data and self.handle is not None:
-            self.handle.cancel_goal_async()
+        if message.data and self.goal_handle is not None:
+            self.goal_handle.cancel_goal_async()
 
     def say(self, word):
         self.outcomes.publish(String(data=word))

@@ -8,6 +8,10 @@ _BEGINNINGS = {
     'client': 'self.client = self.create_client',
     'server': 'self.service = self.create_service',
 }
+_ACTIONS = {
+    'client': "self.client = ActionClient(self, {}, '{}')",
+    'server': "self.server = ActionServer(self, {}, '{}', self.execute)",
+}
 _REST = {
     'publisher': ', {}',
     'subscription': ', self.receive, {}',
@@ -18,9 +22,11 @@ _TYPES = {'publisher': 'JointState', 'subscription': 'JointState'}
 
 
 def create(kind: Kind, *, type_name: str, name: str, qos_profile: str = '10') -> str:
-    """The call that makes an endpoint of a topic or a service of that name.
+    """The call that makes an endpoint of a topic, a service or an action of that name.
 
     A topic's QoS profile is given as Python or as a queue's depth.
     """
+    if '/action/' in type_name:
+        return _ACTIONS[kind].format(type_name.rpartition('/')[2] or 'MoveArm', name)
     type_ = type_name.rpartition('/')[2] or _TYPES.get(kind, 'SetBool')
     return f"{_BEGINNINGS[kind]}({type_}, '{name}'{_REST[kind].format(qos_profile)})"

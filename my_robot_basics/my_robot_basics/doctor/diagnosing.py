@@ -1,4 +1,4 @@
-"""Looks at a name, whether it is a topic's or a service's, and judges what is seen."""
+"""Looks at a name, a topic's, a service's or an action's, and judges what is seen."""
 
 import dataclasses
 from collections.abc import Callable, Iterable
@@ -6,7 +6,14 @@ from typing import NamedTuple
 
 from rclpy.node import Node
 
-from my_robot_basics.doctor import looking, rules, service_looking, service_rules
+from my_robot_basics.doctor import (
+    action_looking,
+    action_rules,
+    looking,
+    rules,
+    service_looking,
+    service_rules,
+)
 from my_robot_basics.doctor.evidence import Diagnosis, Endpoint
 from my_robot_basics.doctor.rules.similar_name import are_similar
 from my_robot_basics.graph import graphs
@@ -19,6 +26,14 @@ class _Graph(NamedTuple):
     snapshot: GraphSnapshot
     topic_ends: tuple[Endpoint, ...]
     service_ends: tuple[Endpoint, ...]
+    action_ends: tuple[Endpoint, ...]
+
+    def has(self, ends: tuple[Endpoint, ...], name: str) -> bool:
+        """Whether these are ends of that name, or it is near to one of them and to no other's."""
+        every = self.topic_ends, self.service_ends, self.action_ends
+        if any(end.name == name for found in every for end in found):
+            return any(end.name == name for end in ends)
+        return _is_near(name, ends) and not any(_is_near(name, o) for o in every if o is not ends)
 
 
 def diagnose(
@@ -29,21 +44,26 @@ def diagnose(
     seconds: float = looking.LISTEN_SEC,
     raised: service_looking.Raised = lambda _: {},
 ) -> tuple[Diagnosis, ...]:
-    """Look at what has this full name in a ROS domain: a topic, a service, or one of each.
+    """Look at what has this full name in a ROS domain: a topic, a service, an action, or several.
 
     Listens to a topic until enough has arrived, and watches a service until all is clear, each
     for `seconds` at most. With `other_domains` the other domains in use on this machine are looked
     at too, where an end is missing. `raised` tells, by their nodes, what the callbacks of a
     service have raised.
     """
-    topic = service = None
+    topic = service = action = None
     with Watcher(domain_id=domain_id) as watcher:
-        graph, is_topic, is_service = _find(watcher, name, domain_id)
+        graph = _find(watcher, name, domain_id)
+        is_service, is_action = (
+            graph.has(ends, name) for ends in (graph.service_ends, graph.action_ends)
+        )
+        if is_action:
+            action = action_looking.look(watcher, name, domain_id=domain_id, look_sec=seconds)
         if is_service:
             service = service_looking.look(
                 watcher, name, domain_id=domain_id, raised=raised, look_sec=seconds
             )
-        if is_topic or not is_service:
+        if not (is_service or is_action) or any(e.name == name for e in graph.topic_ends):
             topic = looking.look(
                 watcher, graph.snapshot, name, domain_id=domain_id, listen_sec=seconds
             )
@@ -58,21 +78,22 @@ def diagnose(
             ends = _elsewhere(name, domain_id, service_looking.endpoints_of)
             service = dataclasses.replace(service, elsewhere=ends)
         found.append(service_rules.judge(service))
+    if action is not None:
+        if other_domains and not action.servers:
+            ends = _elsewhere(name, domain_id, action_looking.endpoints_of)
+            action = dataclasses.replace(action, elsewhere=ends)
+        found.append(action_rules.judge(action))
     return tuple(found)
 
 
-def _find(watcher: Watcher, name: str, domain_id: int) -> tuple[_Graph, bool, bool]:
-    """The graph, and whether it has a topic, and a service, of that name."""
+def _find(watcher: Watcher, name: str, domain_id: int) -> _Graph:
+    """The graph, complete where nobody is there who serves or uses that name."""
     graph = _take(watcher)
     if not any(end.name == name and end.kind != 'client' for end in sum(graph[1:], ())):
         # before anybody is called missing
         discovery.settle(watcher.node, watcher.spin_for, domain_id=domain_id)
         graph = _take(watcher)
-    is_topic = any(end.name == name for end in graph.topic_ends)
-    is_service = any(end.name == name for end in graph.service_ends)
-    if not (is_topic or is_service):
-        is_service = _is_near(name, graph.service_ends) and not _is_near(name, graph.topic_ends)
-    return graph, is_topic, is_service
+    return graph
 
 
 def _take(watcher: Watcher) -> _Graph:
@@ -81,6 +102,7 @@ def _take(watcher: Watcher) -> _Graph:
         snapshot,
         tuple(looking.endpoints_of(watcher.node)),
         service_looking.endpoints_of(watcher.node),
+        action_looking.endpoints_of(watcher.node),
     )
 
 

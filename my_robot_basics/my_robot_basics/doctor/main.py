@@ -13,19 +13,19 @@ WELL, FAULT, USAGE, INTERRUPTED = 0, 1, 2, 130
 
 
 def main(argv: list[str] | None = None) -> int:
-    """Say why nothing arrives on a topic, or why a service does not answer.
+    """Say why nothing arrives on a topic, or why a service or an action does not answer.
 
     0: all is well, 1: a fault was named, 2: wrong usage.
     """
     parser = argparse.ArgumentParser(
         'topic_doctor',
-        description='Find out why no messages arrive on a topic, or why a service does not answer,'
-        ' and how to fix it. A service is never called.',
+        description='Find out why no messages arrive on a topic, or why a service or an action'
+        ' does not answer, and how to fix it. No service is ever called, and no goal sent.',
         epilog='Exit status: 0 when all is well, 1 when a fault was found, 2 on wrong usage.',
     )
     completion.offer(
         parser.add_argument(
-            'name', help='of the topic or the service, for example /kinematics/joint_states'
+            'name', help='of the topic, service or action, for example /kinematics/joint_states'
         ),
         completion.topic_and_service_names,
     )

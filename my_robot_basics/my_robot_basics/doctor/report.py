@@ -4,6 +4,7 @@ from functools import partial
 
 from wcwidth import ljust
 
+from my_robot_basics.doctor.action_evidence import ActionEvidence
 from my_robot_basics.doctor.evidence import VERBS, Diagnosis, Evidence, Finding, Kind, Seen
 from my_robot_basics.doctor.service_evidence import ServiceEvidence
 from my_robot_basics.language.catalogues import ENGLISH
@@ -57,6 +58,12 @@ def summary(evidence: Seen) -> str:
         told += _received(evidence)
     if isinstance(evidence, ServiceEvidence) and evidence.servers:
         told += _lost(evidence)
+    if isinstance(evidence, ActionEvidence) and evidence.proceeding:
+        told += (
+            f'; {evidence.proceeding} goals go on'
+            if evidence.proceeding > 1
+            else '; 1 goal goes on'
+        )
     return told
 
 

@@ -8,7 +8,7 @@ class MoveArmClient(MoveArmClient):
         if not future.result().accepted:
             self.say('rejected')
             return
-        self.handle = future.result()
+        self.goal_handle = future.result()
         threading.Thread(target=self.guess, daemon=True).start()
 
     def guess(self):

@@ -1,0 +1,146 @@
+"""Gathers the evidence on an action: the graph, and what its server tells of its goals.
+
+It is sent no goal, and no request to cancel one.
+"""
+
+import contextlib
+from collections.abc import Iterable
+from typing import Any
+
+from action_msgs.msg import GoalStatus, GoalStatusArray
+from rcl_interfaces.msg import Log
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_action_status_default
+
+from my_robot_basics.doctor import remaps
+from my_robot_basics.doctor.action_evidence import ActionEvidence, StandingGoal
+from my_robot_basics.doctor.evidence import Endpoint, Kind, NodeState
+from my_robot_basics.doctor.inside import Inside
+from my_robot_basics.doctor.looking import missing_participants
+from my_robot_basics.graph import actions
+from my_robot_basics.graph.watcher import Watcher
+from my_robot_basics.ros2 import interfaces
+from my_robot_basics.ros2.errors import CommandError
+from my_robot_basics.session.pressure import Stopwatch
+
+STATUS_SEC = 0.5
+"""How long the states of goals may take to come, which are kept for whoever subscribes later."""
+STANDS_SEC = 3.0
+"""So long a goal has to stand still before that is worth telling, of time that was free."""
+EVERY_SEC = 0.05
+BUSY_TIMES = 2.5
+"""How many times as long it may all take where processes have to wait for a processor."""
+LOG_DEPTH = 1_000
+MOST_CHARACTERS = 100
+_ACTIVE = {
+    GoalStatus.STATUS_ACCEPTED: 'accepted',
+    GoalStatus.STATUS_EXECUTING: 'executing',
+    GoalStatus.STATUS_CANCELING: 'canceling',
+}
+_NOT_SET = 'Goal state not set'
+_RAISED = 'Error raised in execute callback: '
+
+
+def endpoints_of(node: Node) -> tuple[Endpoint, ...]:
+    """All ends of actions that are not those of hidden nodes."""
+    ends = actions.take(node)
+    kinds: dict[Kind, dict] = {'client': ends.clients, 'server': ends.servers}
+    return tuple(
+        Endpoint(kind=kind, node_name=node_name, name=name, type_name=type_name)
+        for kind, found in kinds.items()
+        for name, nodes in sorted(found.items())
+        for node_name, types in sorted(nodes.items())
+        for type_name in types
+    )
+
+
+class _Told:
+    """What the server of an action publishes of its goals, and what nodes log."""
+
+    def __init__(self, node: Node, name: str, type_name: str) -> None:
+        self.states: dict[bytes, str] = {}
+        """Of the goals that are not over."""
+        self.moving: set[bytes] = set()
+        """Goals that have changed their state, or had feedback, since they were first seen."""
+        self.lines: list[tuple[str, str]] = []
+        """The names of loggers, with what each has logged."""
+        topics, status_qos = f'{name}/_action', qos_profile_action_status_default
+        node.create_subscription(GoalStatusArray, f'{topics}/status', self._states, status_qos)
+        latched = QoSProfile(depth=LOG_DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        node.create_subscription(Log, '/rosout', self._line, latched)
+        with contextlib.suppress(CommandError):  # a type that this machine has not got
+            feedback = interfaces.action_class_for(type_name).Impl.FeedbackMessage
+            node.create_subscription(feedback, f'{topics}/feedback', self._feedback, 10)
+
+    def _states(self, message: GoalStatusArray) -> None:
+        now = {
+            bytes(each.goal_info.goal_id.uuid): _ACTIVE[each.status]
+            for each in message.status_list
+            if each.status in _ACTIVE
+        }
+        known = self.states
+        self.moving |= {goal for goal in now if goal in known and now[goal] != known[goal]}
+        self.states = now
+
+    def _feedback(self, message: Any) -> None:
+        self.moving.add(bytes(message.goal_id.uuid))
+
+    def _line(self, message: Log) -> None:
+        self.lines.append((message.name, message.msg))
+
+    def logged_by(self, node_names: Iterable[str]) -> list[tuple[str, str]]:
+        """The full names of these nodes, with what each has logged."""
+        loggers = {name: name.strip('/').replace('/', '.') for name in node_names}
+        return [
+            (name, line)
+            for logger, line in self.lines
+            for name, own in loggers.items()
+            if f'{logger}.'.startswith(f'{own}.')
+        ]
+
+
+def look(watcher: Watcher, name: str, *, domain_id: int, look_sec: float) -> ActionEvidence:
+    """What can be seen of an action, from a watcher that knows the graph.
+
+    It ends as soon as every goal is seen to go on, and with none, at most after `look_sec`.
+    """
+    endpoints = endpoints_of(watcher.node)
+    servers = [end for end in endpoints if (end.kind, end.name) == ('server', name)]
+    told = _Told(watcher.node, name, servers[0].type_name if servers else '')
+    watch, view = Stopwatch(), Inside()
+    while watch.free_sec() < STATUS_SEC or (
+        told.states.keys() - told.moving and not _is_long(watch, look_sec)
+    ):
+        view.look()
+        watcher.spin_for(EVERY_SEC)
+        if watch.wall_sec() >= BUSY_TIMES * look_sec:
+            break
+    lines = told.logged_by({end.node_name for end in servers})
+    standing = told.states.keys() - told.moving
+    return ActionEvidence(
+        name=name,
+        endpoints=endpoints,
+        nodes=dict.fromkeys(actions.take(watcher.node).node_names, NodeState(answers=None)),
+        remaps=remaps.of_domain(domain_id),
+        domain_id=domain_id,
+        missing_participants=missing_participants(watcher.node, domain_id),
+        callbacks=view.lasting(),
+        goals=tuple(
+            StandingGoal(state=told.states[goal], seconds=watch.wall_sec())
+            for goal in sorted(standing)
+            if _is_long(watch, look_sec)
+        ),
+        proceeding=len(told.states.keys() & told.moving),
+        unset=frozenset(node_name for node_name, line in lines if _NOT_SET in line),
+        raised=tuple(
+            (node_name, ' '.join(line.removeprefix(_RAISED).split())[:MOST_CHARACTERS])
+            for node_name, line in lines
+            if line.startswith(_RAISED)
+        )[-1:],
+    )
+
+
+def _is_long(watch: Stopwatch, look_sec: float) -> bool:
+    """Whether a goal that goes on would have shown it."""
+    long_sec = min(STANDS_SEC, look_sec)
+    return watch.free_sec() >= long_sec or watch.wall_sec() >= BUSY_TIMES * long_sec

@@ -1,0 +1,44 @@
+"""What may be wrong with an action, one rule a file, beside some of those of `doctor.rules`.
+
+`RULES` is the order of likelihood: a cause stands before the consequence that it explains.
+"""
+
+from collections.abc import Callable, Iterable
+
+from my_robot_basics.doctor.action_evidence import ActionEvidence
+from my_robot_basics.doctor.action_rules import (
+    no_server,
+    raised,
+    stands_still,
+    types_differ,
+    unset_status,
+)
+from my_robot_basics.doctor.evidence import Diagnosis, Finding
+from my_robot_basics.doctor.rules import (
+    blocks_itself,
+    discovery_range,
+    not_returning,
+    other_domain,
+    remapped,
+    similar_name,
+)
+
+RULES: tuple[Callable[[ActionEvidence], Iterable[Finding]], ...] = (
+    remapped.examine,
+    similar_name.examine,
+    discovery_range.examine,
+    other_domain.examine,
+    no_server.examine,
+    types_differ.examine,
+    blocks_itself.examine,
+    raised.examine,
+    unset_status.examine,
+    not_returning.examine,
+    stands_still.examine,
+)
+
+
+def judge(evidence: ActionEvidence) -> Diagnosis:
+    """All that the rules find, the likeliest first."""
+    findings = tuple(finding for examine in RULES for finding in examine(evidence))
+    return Diagnosis(evidence, findings)

@@ -1,0 +1,20 @@
+"""Nobody has set how a goal ended, so that rclpy took it for aborted."""
+
+from collections.abc import Iterator
+
+from my_robot_basics.doctor.action_evidence import ActionEvidence
+from my_robot_basics.doctor.evidence import Finding
+
+
+def examine(evidence: ActionEvidence) -> Iterator[Finding]:
+    """Show the line that is missing; a callback that raised could not come to it."""
+    for node_name in sorted(evidence.unset - {name for name, _ in evidence.raised}):
+        yield Finding(
+            title='nobody has set how the goal ended',
+            expected=f'the execute callback of {node_name} to call succeed(), canceled() or'
+            ' abort() before it returns',
+            seen='it returned without, a moment ago: rclpy takes such a goal for aborted',
+            fix='call it when the goal is reached, before the callback returns',
+            code='goal_handle.succeed()',
+            broken=tuple(end for end in evidence.servers if end.node_name == node_name),
+        )
