@@ -231,6 +231,18 @@ def test_of_many_lines_the_error_is_told():
         "colcon does not build greeter: greeter/setup.py, line 7: NameError: name 'nmae' is not "
         'defined: fix that, and build again'
     )
+    words = (
+        'Traceback (most recent call last):\n  File "<string>", line 1, in <module>\n'
+        '  File "/x/setuptools/_distutils/core.py", line 268, in run_setup\n    exec(code, g)\n'
+        '  File "<string>", line 3, in <module>\n'
+        "ModuleNotFoundError: No module named 'setuptool'\n"
+        '--- stderr: greeter\nTraceback (most recent call last):\n'
+        '  File "/x/colcon_core/executor/__init__.py", line 91, in __call__\n'
+        "subprocess.CalledProcessError: Command '['python', '-c', 'import sys; …\n"
+    )
+    assert 'greeter: setup.py, line 3: ModuleNotFoundError: No' in fault_in_words(
+        'greeter', 1, words
+    )
     assert 'ended by SIGKILL' in fault_in_words(PACKAGE, -9, '')
 
 

@@ -30,11 +30,24 @@ def test_no_package_and_a_wrong_one_are_told(tmp_path):
     verdicts = graded(None)
     assert {outcome for outcome, _ in verdicts.values()} == {'failed'}
     assert 'there is no folder greeter/ beside this notebook' in verdicts['builds'][1]
-    folder = make_package(tmp_path, node="def main():\n    raise NameError(\"name 'x' is not")
+    folder = make_package(tmp_path)
     (folder / 'resource' / PACKAGE).unlink()
-    verdicts = graded(folder, theirs='x = 1')
+    verdicts = graded(folder)
     assert 'setup.py installs resource/greeter, and there is no such file' in verdicts['builds'][1]
     assert verdicts['runs'][0] == 'failed'
+
+
+def test_no_cell_of_the_students_comes_in_for_a_name_that_is_missing(tmp_path):
+    """One that would answer for the build, and binds what colcon says is not defined."""
+    forger = (
+        'x = 1\n'
+        'from my_robot_basics.live import packages\n'
+        "told = {'found': True, 'status': 0, 'problem': '', 'executables': ['greet']}\n"
+        'packages.answer_check = lambda *asked: told\n'
+    )
+    verdicts = graded(make_package(tmp_path, **{'setup.py': 'x\n'}), theirs=forger)
+    assert {outcome for outcome, _ in verdicts.values()} == {'failed'}
+    assert "setup.py, line 1: NameError: name 'x' is not defined" in verdicts['builds'][1]
 
 
 HOSTILE = {

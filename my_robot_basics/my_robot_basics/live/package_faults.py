@@ -12,6 +12,8 @@ _LAST_LINE = re.compile(r'^(?:\w+\.)*(\w*(?:Error|Exception|Interrupt|Exit|Warni
 _IN_FILE = re.compile(r'^\s*File "(?P<file>[^"]+)", line (?P<line>\d+)')
 _CANNOT_COPY = re.compile(r"error: can't copy '([^']+)'")
 _SETUP_ERROR = re.compile(r'^error: (.+)$')
+_COLCONS = ('CalledProcessError', 'DeprecationWarning', 'SetuptoolsDeprecationWarning')
+"""What colcon and setuptools raise or say beside the package's own error."""
 _MOST = 300
 NO_PYTHON = (ValueError, RecursionError, MemoryError)
 """What Python's own reader raises beside SyntaxError: zeros, and what is nested too deeply."""
@@ -87,17 +89,21 @@ def fault_in_words(package: str, status: int, words: str) -> str:
 
 def _last_error(lines: list[str]) -> str:
     """The last error among lines, with the line of the package's own file that it came from."""
-    where = ''
-    found = ''
+    where = found = at_error = ''
+    is_run = False
     for line in lines:
-        if (at := _IN_FILE.match(line)) and '/.packages/' in at['file']:
-            where = f'{at["file"].split("/.packages/")[1]}, line {at["line"]}: '
-        elif at and not at['file'].startswith(('/', '<')):
-            where = f'{at["file"]}, line {at["line"]}: '
-        elif (error := _LAST_LINE.match(line.strip())) and error[1] != 'DeprecationWarning':
-            found = line.strip()
+        if at := _IN_FILE.match(line):
+            file, number = at['file'], at['line']
+            if '/.packages/' in file:
+                where = f'{file.split("/.packages/")[1]}, line {number}: '
+            elif file == '<string>' and is_run:
+                where = f'setup.py, line {number}: '
+            is_run = is_run or line.endswith('in run_setup')  # setuptools reads setup.py there
+        elif (error := _LAST_LINE.match(line.strip())) and error[1] not in _COLCONS:
+            found, at_error = line.strip(), where
         elif error := _SETUP_ERROR.match(line.strip()):
-            found = error[1]
+            found, at_error = error[1], ''
+    where = at_error
     if not found:
         said = [line.strip() for line in lines if line.strip() and not _is_colcons(line)]
         found = said[-1] if said else 'it says nothing of why'

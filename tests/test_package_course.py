@@ -1,0 +1,118 @@
+"""A lesson that asks for a package, from its source to the feedback: one course for all of it."""
+
+import os
+import shutil
+import subprocess
+import sys
+
+import pytest
+from given_verdicts import executed
+from package_maker import LESSON, PACKAGE, make_package, write_lesson
+from stand_in import stand_in
+
+from grader.authoring import bundle as bundling
+from grader.authoring.release import release, stale_or_leaking
+from grader.course import ROOT, Course
+from grader.grade import grade_all
+from grader.judging.execute import Execution
+from grader.report.feedback import write_feedback
+from grader.storage.submitted import find_submissions
+
+pytestmark = pytest.mark.starts
+
+
+@pytest.fixture(scope='module')
+def released(tmp_path_factory):
+    """A course of that one lesson, with the instructor's own package beside its source."""
+    root = tmp_path_factory.mktemp('course')
+    shutil.copy(ROOT / 'nbgrader_config.py', root)
+    make_package(write_lesson(root).parent)
+    course = Course.at(root)
+    release(course)
+    return course
+
+
+@pytest.fixture
+def course(released, tmp_path):
+    """The course, with a gradebook of its own."""
+    return Course(root=released.root, gradebook=tmp_path / 'gradebook')
+
+
+@pytest.fixture
+def worked_in(released):
+    """Somebody has written a package where students do."""
+    folder = make_package(released.root / 'notebooks' / LESSON)
+    yield released
+    shutil.rmtree(folder)
+
+
+def test_nothing_of_a_package_is_given_out(worked_in):
+    assert (worked_in.root / 'solutions' / LESSON / PACKAGE / 'setup.py').is_file()
+    assert release(worked_in) == []
+    assert stale_or_leaking(worked_in) == []
+    listed = {*bundling._paths(worked_in, [])}
+    assert f'notebooks/{LESSON}/{LESSON}.ipynb' in listed
+    assert [path for path in listed if f'/{PACKAGE}/' in path] == []
+
+
+def test_validate_builds_what_lies_beside_the_notebook(worked_in):
+    notebook = worked_in.release_path(LESSON)
+    command = [sys.executable, '-P', '-m', 'my_robot_basics.validate', str(notebook)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    (notebook.parent / PACKAGE / 'resource' / PACKAGE).unlink()
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode != 0
+    assert 'setup.py installs resource/greeter, and there is no such' in ' '.join(
+        done.stdout.split()
+    )
+    assert not {'build', 'install', 'log'} & {*os.listdir(notebook.parent / PACKAGE)}
+
+
+@pytest.fixture
+def seen(monkeypatch):
+    """What the worker was given of each submission, by path."""
+    seen = []
+
+    async def look(notebook, *, extra_files=(), seed='', trust_students=False):
+        [folder] = extra_files
+        paths = (path for path in folder.rglob('*') if path.is_file())
+        seen.append({path.relative_to(folder).as_posix(): path.read_bytes() for path in paths})
+        graded = executed(notebook, {'builds': '', 'runs': 'not yet'})
+        return Execution(notebook=graded, verdicts=(), notes=())
+
+    stand_in(look, monkeypatch)
+    return seen
+
+
+def test_its_files_reach_the_worker_and_a_change_is_noticed(course, seen):
+    place = course.folder('submitted', 'ada', LESSON)
+    place.mkdir(parents=True)
+    shutil.copy(course.release_path(LESSON), place)
+    folder = make_package(place)
+    (folder / 'log').mkdir()
+    (folder / 'log' / 'x.log').touch()
+    (folder / 'shadow').symlink_to('/etc/shadow')
+
+    def graded():
+        [row] = grade_all(course, find_submissions(course))
+        return row.reused
+
+    assert not graded()
+    assert {*seen[0]} == {
+        *('package.xml', 'setup.py', 'setup.cfg', 'resource/greeter'),
+        *('greeter/__init__.py', 'greeter/greet.py'),
+    }
+    kept = course.folder('autograded', 'ada', LESSON)
+    assert (kept / PACKAGE / 'setup.py').is_file()
+    assert not (kept / PACKAGE / 'shadow').exists()
+    assert graded()
+    (folder / 'setup.cfg').write_text('# mine')
+    (folder / 'greeter' / 'greet.py').unlink()
+    assert not graded()
+    assert seen[1]['setup.cfg'] == b'# mine'
+    assert not (kept / PACKAGE / 'greeter' / 'greet.py').exists()
+    [page] = write_feedback(course)
+    text = page.read_text(encoding='utf-8')
+    assert 'shadow (a link: only files are taken)' in text
+    assert 'log (made by a build, which is done again at grading)' in text
