@@ -1,7 +1,8 @@
 """Grades the course: a submission is collected, restored, run in a sandbox, judged and stored.
 
-`grade` is the whole flow, `replay` grades once more and stores nothing, and `course` says where a
-course keeps its files. Each package imports only from those named before it in LAYERS:
+`grade` is the whole flow, `grading` that of one submission, `replay` grades once more and stores
+nothing, and `course` says where a course keeps its files. Each package imports only from those
+named before it in LAYERS:
 
 - `cli`: The command line: `./course VERB`, its arguments and what each verb does.
 - `authoring`: From the instructors' source to what students get: release, contents page, bundle.
@@ -20,6 +21,7 @@ course keeps its files. Each package imports only from those named before it in 
 - `report`: What people read: feedback for students; progress, run report and formgrader for
   teachers.
 - `passback`: Scores and feedback in the forms that course platforms import.
+- `serving`: The resident process: what is handed in is graded, and its feedback released, at once.
 - `common`: What every part uses: errors, files, text, names of students, dates, a process that
   parses.
 """
@@ -37,10 +39,12 @@ LAYERS = (
     'workers',
     'autograde',
     'collect',
+    'grading',
     'grade',
     'replay',
     'report',
     'passback',
+    'serving',
     'cli',
     '__main__',
 )

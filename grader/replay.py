@@ -9,6 +9,7 @@ from grader.notebook.restore import KEY, grade_id, role
 from grader.notebook.submission import read_submission
 from grader.storage.pipeline import prepared_template
 from grader.storage.records import graded_notebook, verdicts
+from grader.storage.seeds import seeds
 from grader.storage.submitted import SubmissionFolder
 from grader.workers.backend import Backend, submit_for_grading
 from grader.workers.workers import Workers
@@ -54,7 +55,7 @@ def replay(
         ]
         for each, its, result in zip(found, seeds, work, strict=True):
             yield f'{printable(each.student_id)}  {each.assignment}  seed {its}', True
-            if its != course.seed(each.assignment, each.student_id):
+            if its != _own_seed(course, each):
                 yield '  (grading now uses another seed: the lesson was changed since)', True
             stored = verdicts(course, each.student_id, each.assignment)
             for cell in result.result().notebook.cells:
@@ -66,7 +67,7 @@ def recorded_seed(course: Course, found: SubmissionFolder) -> str:
     """Return the seed of a submission's stored result. Raises CourseError where there is none."""
     graded = graded_notebook(course, found.student_id, found.assignment)
     about = graded.metadata.get(KEY, {})
-    its_own = course.seed(found.assignment, found.student_id)
+    its_own = _own_seed(course, found)
     seed = its_own if 'problem' in about else about.get('seed')
     if not seed:
         raise CourseError(
@@ -74,6 +75,17 @@ def recorded_seed(course: Course, found: SubmissionFolder) -> str:
             'graded yet. Give a seed: --seed HEX'
         )
     return seed
+
+
+def _own_seed(course: Course, found: SubmissionFolder) -> str:
+    """Return the seed with which a submission is graded now."""
+    submission = read_submission(
+        found.folder,
+        student_id=found.student_id,
+        assignment=found.assignment,
+        packages=course.packages(found.assignment),
+    )
+    return seeds(course, found.assignment)(submission)
 
 
 def _compared(name: str, now: Mapping, stored: Mapping[str, Mapping]) -> tuple[str, bool]:

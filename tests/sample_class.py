@@ -7,7 +7,8 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from grader.course import Course
-from grader.grade import SubmissionOutcome, grade_all
+from grader.grade import grade_all
+from grader.grading import SubmissionOutcome
 from grader.storage.submitted import find_submissions
 from grader.workers.backend import Backend
 

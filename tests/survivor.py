@@ -10,7 +10,7 @@ import pytest
 from course_maker import executed
 from stand_in import stand_in as stand_in_for_rooms
 
-from grader import grade
+from grader import grading
 from grader.__main__ import main
 from grader.course import Course
 from grader.judging.execute import Execution
@@ -48,7 +48,7 @@ def run(root: str, gradebook_at: str, log: str, kill_at: int = 0, part: str = 'a
         return wrapper
 
     stand_in(Path(log))
-    grade.store = counted('storing', grade.store)
+    grading.store = counted('storing', grading.store)
     gradebook._finish = counted('storing', gradebook._finish)
     SaveGrades.preprocess = counted('scores', SaveGrades.preprocess)
     sys.stdout = sys.stderr = open(os.devnull, 'w')  # noqa: SIM115 - open to the end

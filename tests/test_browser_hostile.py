@@ -18,7 +18,7 @@ from nbformat.v4 import new_output
 from nbgrader.api import Gradebook
 
 from grader.authoring.release import release
-from grader.grade import SubmissionOutcome
+from grader.grading import SubmissionOutcome
 from grader.notebook.restore import restore
 from grader.notebook.submission import read_submission
 from grader.report.feedback import write_feedback

@@ -15,7 +15,7 @@ import pytest
 from course_maker import TOY, answered, executed, released_course, submit
 
 from grader.export.scores import write_scores
-from grader.grade import SubmissionOutcome
+from grader.grading import SubmissionOutcome
 from grader.notebook.restore import restore
 from grader.notebook.submission import read_submission
 from grader.report.feedback import write_feedback

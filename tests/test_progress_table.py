@@ -4,7 +4,7 @@ import threading
 import time
 from dataclasses import replace
 
-from grader.grade import SubmissionOutcome
+from grader.grading import SubmissionOutcome
 from grader.report import progress_table
 from grader.report.progress_table import print_rows, why
 from grader.storage.gradebook import StoredResult

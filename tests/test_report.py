@@ -8,7 +8,7 @@ from nbgrader.api import Gradebook
 
 from grader.cli.demo import demo
 from grader.course import Course
-from grader.grade import SubmissionOutcome
+from grader.grading import SubmissionOutcome
 from grader.notebook.restore import restore
 from grader.notebook.submission import read_submission
 from grader.report.report import Run, write_report

@@ -43,6 +43,7 @@ STARTING_FILES = frozenset(
     ros2_discovery ros2_graph ros2_interfaces ros2_main ros2_notebook ros2_real ros2_run
     ros2_service ros2_shell ros2_streams same_scores survival synthetic_class temporary_folders
     validate validate_forks validate_server workers workspace_terminal
+    serving
     checks_action_servers checks_actions checks_actions_wrong live_destroying ros2_param
     live_packages package_grading
     checks_player

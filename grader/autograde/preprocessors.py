@@ -14,6 +14,7 @@ from grader.judging.task import GradingTask
 from grader.kernels.isolation import require_isolation
 from grader.notebook.restore import KEY, restore
 from grader.notebook.submission import Submission, read_submission
+from grader.storage.seeds import seeds
 from grader.workers.workers import Workers
 
 
@@ -69,10 +70,11 @@ class ExecuteRooms(Preprocessor):
         """
         at = resources['nbgrader']
         require_isolation(trust_students=self.trust_students)
+        submission = submission_of(resources)
         task = GradingTask(
             notebook=nb,
-            files={n: f.read_bytes() for n, f in submission_of(resources).files.items()},
-            seed=Course.of_nbgrader(resources).seed(at['assignment'], at['student']),
+            files={name: path.read_bytes() for name, path in submission.files.items()},
+            seed=seeds(Course.of_nbgrader(resources), at['assignment'])(submission),
             trust_students=self.trust_students,
         )
         return _workers().submit(task).result().notebook, resources

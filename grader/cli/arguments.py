@@ -6,6 +6,7 @@ from pathlib import Path
 
 from grader.cli import verbs
 from grader.cli.grade_verb import run_grade
+from grader.cli.serve_verb import run_serve
 from grader.passback.write import TABLES
 from grader.replay import RECORDED
 from grader.storage.due_dates import local_time
@@ -97,6 +98,22 @@ def make_parser() -> argparse.ArgumentParser:
         '--force', action='store_true', help='grade again what has not changed since, too'
     )
     verb.set_defaults(run=run_grade)
+
+    verb = subparsers.add_parser('serve', help='grade what is handed in, as soon as it is')
+    verb.add_argument(
+        'folder',
+        nargs='?',
+        type=Path,
+        metavar='FOLDER',
+        help="where submissions are put: the inbound folder of nbgrader's exchange, or another",
+    )
+    verb.add_argument(
+        '--status', action='store_true', help='say what is waiting, and what is done'
+    )
+    verb.add_argument('--once', action='store_true', help='end when nothing is left to grade')
+    verb.add_argument('--workers', type=at_least_one, metavar='N', help='as for grade')
+    verb.add_argument('--trust-students', action='store_true', help='as for grade')
+    verb.set_defaults(run=run_serve)
 
     verb = subparsers.add_parser('scores', help='write gradebook/scores.csv')
     verb.add_argument(

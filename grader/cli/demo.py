@@ -8,7 +8,8 @@ from pathlib import Path
 
 from grader.common.errors import CourseError
 from grader.course import ROOT, Course
-from grader.grade import SubmissionOutcome, grade_all
+from grader.grade import grade_all
+from grader.grading import SubmissionOutcome
 from grader.kernels.isolation import NO_SANDBOX, require_isolation
 from grader.report.feedback import write_feedback
 from grader.report.progress_table import print_rows

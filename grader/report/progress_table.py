@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from tqdm import tqdm
 
 from grader.common.text import columns, pad, printable, shorten
-from grader.grade import SubmissionOutcome
+from grader.grading import SubmissionOutcome
 from grader.storage.submitted import SubmissionFolder
 
 MAX_NAME_COLUMNS = 40

@@ -15,7 +15,7 @@ from grader.common.text import printable
 from grader.common.versions import versions
 from grader.course import Course
 from grader.export.totals import Totals, add_up
-from grader.grade import SubmissionOutcome
+from grader.grading import SubmissionOutcome
 from grader.kernels.isolation import require_isolation
 from grader.report.charts import distribution, share
 from grader.report.message_groups import Reason

@@ -9,7 +9,7 @@ from my_robot_basics.validate.titles import title_of_check
 from nbformat import NotebookNode
 
 from grader.course import Course
-from grader.grade import SubmissionOutcome
+from grader.grading import SubmissionOutcome
 from grader.notebook.restore import KEY, grade_id
 from grader.report.message_groups import CellMessage, Reason, grouped
 from grader.storage.records import CellScore, graded_notebook, records, verdicts_in

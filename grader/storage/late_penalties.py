@@ -14,6 +14,8 @@ two, or an editor does:
     at_most = 0.5
     grace_minutes = 15
 
+`grader/storage/resubmissions.py` says what [resubmissions] may hold.
+
 A submission was handed in when its timestamp.txt says; without one it was in time.
 """
 
@@ -33,9 +35,11 @@ from grader.common.errors import CourseError
 from grader.common.text import printable
 from grader.course import Course
 from grader.storage.database import connected
+from grader.storage.resubmissions import ResubmissionRules, read_rules
 
 FILE = 'deadlines.toml'
 DAY_SEC = 86_400
+_TABLES = {'due', 'extended', 'late', 'resubmissions'}
 _POLICY = {'per_day': 1.0, 'at_most': 1.0, 'grace_minutes': math.inf}
 """The keys of [late], and the most that each may be."""
 
@@ -50,6 +54,7 @@ class Deadlines:
     per_day: float = 0.0
     at_most: float = 1.0
     grace_minutes: float = 0.0
+    resubmissions: ResubmissionRules = field(default_factory=ResubmissionRules)
 
     def penalty(self, score: float, seconds_late: float) -> float | None:
         """Return what lateness takes from a score; None where it takes nothing."""
@@ -78,7 +83,7 @@ def read_deadlines(
     """
     try:
         return _understood(tomllib.loads(content.decode()), assignments)
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, _Wrong) as error:
+    except (ValueError, _Wrong) as error:
         raise CourseError(
             f'{path}: {error}: see the example in grader/storage/late_penalties.py'
         ) from None
@@ -104,7 +109,7 @@ class _Wrong(Exception):
 
 def _understood(said: dict, assignments: Collection[str] | None) -> Deadlines:
     due, extended, late = (_table(said, name) for name in ('due', 'extended', 'late'))
-    if strange := [*(said.keys() - {'due', 'extended', 'late'}), *(late.keys() - _POLICY.keys())]:
+    if strange := [*(said.keys() - _TABLES), *(late.keys() - _POLICY.keys())]:
         raise _Wrong(f'{strange[0]!r} is not known')
     for assignment in (*due, *extended):
         if assignments is not None and assignment not in assignments:
@@ -125,6 +130,7 @@ def _understood(said: dict, assignments: Collection[str] | None) -> Deadlines:
             for student, value in _table(extended, assignment).items()
         },
         **late,
+        resubmissions=read_rules(_table(said, 'resubmissions')),
     )
 
 

@@ -25,7 +25,7 @@ sys.path[:0] = [str(ROOT), str(ROOT / 'tests'), str(ROOT / 'tests/benchmarks')]
 
 from memory import peak_of
 
-from grader import grade
+from grader import grading
 from grader.__main__ import main
 from grader.course import Course
 
@@ -175,7 +175,7 @@ def _timed(work: Callable, spent: list[float]) -> Callable:
 
 if __name__ == '__main__':
     in_database: list[float] = []
-    grade.store = _timed(grade.store, in_database)
+    grading.store = _timed(grading.store, in_database)
     status = main(sys.argv[2:], course=Course(gradebook=Path(sys.argv[1])))
     print(f'seconds in the database: {sum(in_database):.3f}', file=sys.stderr)
     sys.exit(status)

@@ -1,0 +1,46 @@
+"""What `./course serve` does and prints: it grades what is handed in until it is ended."""
+
+import argparse
+from datetime import datetime
+
+from grader.common.errors import CourseError
+from grader.course import Course
+from grader.serving.exchange import feedback_folder
+from grader.serving.queue import queue_to_read
+from grader.serving.serve import serve
+from grader.serving.status import status_lines, write_status_page
+from grader.workers.workers import Workers
+
+
+def run_serve(course: Course, asked: argparse.Namespace) -> int:
+    """Serve a folder until SIGINT or SIGTERM, or say what the process that does it is at."""
+    if asked.status:
+        with queue_to_read(course.gradebook) as queue:
+            for line in status_lines(course, queue):
+                print(line)
+        return 0
+    if asked.folder is None or not asked.folder.is_dir():
+        raise CourseError(
+            f'{asked.folder or "nothing"} is no folder: expected the one into which submissions '
+            "are put, nbgrader's /srv/nbgrader/exchange/COURSE/inbound for instance"
+        )
+    feedback = feedback_folder(asked.folder)
+    _say(f'serving {asked.folder}' + (f', feedback goes to {feedback}' if feedback else ''))
+    try:
+        serve(
+            course,
+            asked.folder,
+            backend=Workers(asked.workers) if asked.workers else Workers(),
+            feedback=feedback,
+            trust_students=asked.trust_students,
+            once=asked.once,
+            say=_say,
+            changed=lambda queue: write_status_page(course, queue),
+        )
+    except KeyboardInterrupt:
+        _say('stopped: what was not done is done by the next ./course serve')
+    return 0
+
+
+def _say(line: str) -> None:
+    print(f'{datetime.now():%Y-%m-%d %H:%M:%S} {line}', flush=True)

@@ -1,0 +1,160 @@
+"""One submission: read, restored, run and judged by a backend, and stored."""
+
+import logging
+from collections.abc import Callable, Mapping
+from concurrent.futures import Future
+from dataclasses import dataclass
+
+from nbformat import NotebookNode
+
+from grader.collect.submission_folders import contents
+from grader.common.errors import ClusterError, GradebookError, TaskFailed
+from grader.common.futures import completed, then
+from grader.common.text import printable
+from grader.course import Course
+from grader.judging.task import Result
+from grader.notebook.restore import AssignmentTemplate
+from grader.notebook.submission import Submission, read_submission
+from grader.storage.database import in_sentences
+from grader.storage.gradebook import StoredResult, store
+from grader.storage.lock import gradebook_lock
+from grader.storage.pipeline import prepared_template
+from grader.storage.registering import register
+from grader.storage.reuse import (
+    conditions,
+    find_earlier_result,
+    key_of,
+    refresh_late_penalty,
+    remember,
+)
+from grader.storage.seeds import seeds
+from grader.storage.submitted import SubmissionFolder
+from grader.workers.backend import Backend, submit_for_grading
+
+REPLACED = 'it was handed in again meanwhile: run ./course grade again'
+
+
+@dataclass(frozen=True)
+class GradedSubmission:
+    """A submission that was judged, and is not stored yet."""
+
+    submission: Submission
+    notebook: NotebookNode
+    """With a verdict in each grade cell."""
+    files: Mapping[str, bytes]
+    """Digests of the files that were judged, by name."""
+    seconds: float | None = None
+    """How long that took where it ran; None for an earlier result that still holds."""
+
+
+@dataclass(frozen=True)
+class SubmissionOutcome:
+    """What the run says of one submission."""
+
+    student_id: str
+    assignment: str
+    stored: StoredResult | None
+    """What the gradebook holds now; None where nothing could be stored."""
+    reason: str
+    seconds: float | None = None
+    """How long it was graded; None where nothing was run."""
+    reused: bool = False
+    """Whether nothing has changed since, so that the stored result holds."""
+
+
+@dataclass(frozen=True)
+class PreparedAssignment:
+    """What the submissions of one assignment have in common."""
+
+    template: AssignmentTemplate
+    seed_of: Callable[[Submission], str]
+    """Gives the seed of a submission."""
+    packages: tuple[str, ...]
+    """ROS packages that are handed in with the notebook."""
+    conditions: str
+    """What else a result depends on, as a hash."""
+
+
+@dataclass(frozen=True)
+class Grading:
+    """Grades submissions of prepared assignments, one by one, with a backend that is at work."""
+
+    course: Course
+    backend: Backend
+    isolated: bool
+    seed: str = ''
+    """Replays inputs that hidden tests choose; by default they are each student's own."""
+    trust_students: bool = False
+    force: bool = False
+
+    def prepare(self, assignment: str) -> PreparedAssignment:
+        """Register an assignment, and return what its submissions are graded by."""
+        with in_sentences(self.course), gradebook_lock(self.course.gradebook):
+            register(self.course, assignment)
+            return PreparedAssignment(
+                template=prepared_template(self.course, assignment),
+                seed_of=(lambda _: self.seed) if self.seed else seeds(self.course, assignment),
+                packages=self.course.packages(assignment),
+                conditions=conditions(self.course, assignment, isolated=self.isolated),
+            )
+
+    def start(
+        self, found: SubmissionFolder, prepared: PreparedAssignment
+    ) -> 'Future[GradedSubmission]':
+        """Read and restore a submission; have it run and judged, unless a result still holds."""
+        files = contents(found.folder)
+        submission = read_submission(
+            found.folder,
+            student_id=found.student_id,
+            assignment=found.assignment,
+            packages=prepared.packages,
+        )
+        its_seed = prepared.seed_of(submission)
+        key = key_of(submission, prepared.conditions, seed=its_seed)
+        if not self.force and (earlier := find_earlier_result(self.course, submission, key)):
+            return completed(GradedSubmission(submission, earlier, files))
+        judged = submit_for_grading(  # restores it here; runs and judges it in a worker
+            submission,
+            prepared.template,
+            backend=self.backend,
+            seed=its_seed,
+            trust_students=self.trust_students,
+        )
+        return then(judged, lambda result: _graded(submission, files, result, key))
+
+    def store(
+        self, found: SubmissionFolder, work: 'Future[GradedSubmission]'
+    ) -> 'SubmissionOutcome':
+        """Wait until a submission is judged, and store it; say why where that can't be done."""
+        stored, reason, seconds, reused = None, found.problem, None, False
+        which = printable(f'{found.assignment} of {found.student_id}')
+        try:
+            graded = work.result()
+            seconds = graded.seconds
+            with in_sentences(self.course), gradebook_lock(self.course.gradebook):
+                if graded.files != contents(found.folder):
+                    raise TaskFailed(REPLACED)
+                if seconds is None:
+                    stored = refresh_late_penalty(self.course, graded.submission, graded.notebook)
+                    reused = stored is not None
+                stored = stored or store(self.course, graded.submission, graded.notebook)
+            reason = stored.reason
+        except (GradebookError, ClusterError):
+            raise  # nothing comes of the next one either
+        except TaskFailed as error:
+            logging.error('%s: %s\n%s', which, error, error.trace)
+            reason = f'not graded, the grader failed: {error}'
+        except Exception as error:  # the next submission can do nothing for it
+            if not found.problem:
+                logging.exception('%s', which)
+                reason = f'not graded, the grader failed: {type(error).__name__}: {error}'
+        return SubmissionOutcome(
+            found.student_id, found.assignment, stored, reason, seconds, reused
+        )
+
+
+def _graded(
+    submission: Submission, files: Mapping[str, bytes], result: Result, key: str
+) -> GradedSubmission:
+    remember(result.notebook, key)
+    return GradedSubmission(submission, result.notebook, files, seconds=result.seconds)

@@ -1,0 +1,146 @@
+"""Take an entry of the inbound folder in: copies of its files, and a row for each submission."""
+
+import os
+import shutil
+import tempfile
+from collections import Counter
+from collections.abc import Iterable
+from datetime import UTC, datetime
+from pathlib import Path
+
+from grader.collect.collect import take
+from grader.collect.incoming import Incoming
+from grader.collect.matching import MatchedFile, match
+from grader.collect.platform_ids import StudentNumbers
+from grader.collect.submission_folders import writer
+from grader.collect.uploads import look_into_entry
+from grader.common.text import shorten
+from grader.course import Course
+from grader.notebook.submission import LEFT_OUT, SECRET
+from grader.serving.inbound import Entry
+from grader.serving.queue import REFUSED, WAITING, Arrival, Queue
+from grader.storage.lock import gradebook_lock
+from grader.storage.records import records
+from grader.storage.submitted import known_students
+
+FOLDER = 'arrived'
+MOST_WAITING = 50
+"""Of one student: each takes room on the disk, and only the newest of a lesson is graded."""
+MAX_REASON = 300
+
+
+def take_in(course: Course, queue: Queue, inbound: Path, entry: Entry) -> list[Arrival]:
+    """Copy what an entry holds into gradebook/arrived/, and note it; return the new arrivals."""
+    shelf = course.gradebook / FOLDER
+    shelf.mkdir(parents=True, exist_ok=True)
+    waiting = Counter(each.student_id for each in queue.find(WAITING))
+    with tempfile.TemporaryDirectory(prefix='.new-', dir=shelf) as aside:
+        packages = {name: course.packages(name) for name in course.assignments()}
+        asked_for = {each for several in packages.values() for each in several}
+        found = list(look_into_entry(inbound, entry.name, Path(aside), asked_for))
+        hand_ins, rest = match(
+            [each for each in found if not each.litter],
+            packages,
+            packages=packages,
+            students={*known_students(course), *waiting},
+        )
+        with gradebook_lock(course.gradebook):
+            problems = StudentNumbers(course).take(hand_ins)
+        reasons = [each.reason for each in rest if each.matters and _is_work(each.incoming)]
+        rows = []
+        for each, problem in zip(hand_ins, problems, strict=True):
+            waiting[each.student_id] += 1
+            if waiting[each.student_id] > MOST_WAITING:
+                problem = problem or f'{MOST_WAITING} submissions of {each.student_id} wait'
+            if problem:
+                reasons.append(problem)
+            else:
+                folder = _keep(each, shelf)
+                whose = (each.student_id, each.assignment)
+                rows.append(_arrival(entry, WAITING, *whose, folder=folder))
+        if reasons:
+            more = f' (and {len(reasons) - 1} more)' if len(reasons) > 1 else ''
+            reason = shorten(reasons[0], MAX_REASON) + more
+            rows.append(_arrival(entry, REFUSED, reason=reason))
+        return queue.add(entry.name, entry.fingerprint, rows)
+
+
+def put_in_place(course: Course, arrival: Arrival) -> tuple[str, str]:
+    """Put an arrival where it is graded, as collect does; return what it was, and why."""
+    folder = course.gradebook / FOLDER / arrival.folder
+    hand_in = _hand_in(folder, arrival)
+    with gradebook_lock(course.gradebook):
+        return take(course, hand_in, lambda: records(course, only={arrival.whose}))
+
+
+def secret_of(course: Course, arrival: Arrival) -> str:
+    """Return nbgrader's secret of a submission; '' where it came without one."""
+    path = course.gradebook / FOLDER / arrival.folder / SECRET
+    return path.read_bytes().decode(errors='replace') if path.is_file() else ''
+
+
+def discard(course: Course, arrivals: Iterable[Arrival]) -> None:
+    """Remove the copies of arrivals that lie in gradebook/submitted/ or beside it by now."""
+    for each in arrivals:
+        if each.folder:
+            shutil.rmtree(course.gradebook / FOLDER / each.folder, ignore_errors=True)
+
+
+def tidy(course: Course, queue: Queue) -> None:
+    """Remove copies of which nothing is noted: the process ended before that, and begins anew."""
+    known = {each.folder for each in queue.find(WAITING)}
+    for left in (course.gradebook / FOLDER).glob('*'):
+        if left.name not in known:
+            shutil.rmtree(left)
+
+
+def _hand_in(folder: Path, arrival: Arrival) -> MatchedFile:
+    name = f'{arrival.assignment}.ipynb'
+    secret, left_out = folder / SECRET, folder / LEFT_OUT
+    ours = {folder / name, secret, left_out}
+    files = sorted(path for path in folder.rglob('*') if path.is_file() and path not in ours)
+    return MatchedFile(
+        arrival.student_id,
+        arrival.assignment,
+        Incoming((arrival.entry, name), folder / name),
+        {path.relative_to(folder).as_posix(): path for path in files},
+        datetime.fromtimestamp(arrival.arrived, UTC),
+        secret=secret if secret.is_file() else None,
+        left_out=tuple(left_out.read_text('utf-8').splitlines()) if left_out.is_file() else (),
+    )
+
+
+def _keep(each: MatchedFile, shelf: Path) -> str:
+    """Copy a submission to a folder of its own, onto the disk itself; return its name."""
+    folder = Path(tempfile.mkdtemp(prefix='', dir=shelf))
+    files = {f'{each.assignment}.ipynb': each.notebook.readable, **each.extra}
+    writer(files, None, secret=each.secret, left_out=each.left_out)(folder)
+    for path in (*folder.rglob('*'), folder, shelf):
+        _sync(path)
+    return folder.name
+
+
+def _sync(path: Path) -> None:
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
+
+
+def _arrival(
+    entry: Entry,
+    state: str,
+    student_id: str = '',
+    assignment: str = '',
+    *,
+    folder: str = '',
+    reason: str = '',
+) -> Arrival:
+    at = entry.changed.timestamp()
+    return Arrival(0, entry.name, at, state, student_id, assignment, folder, reason)
+
+
+def _is_work(incoming: Incoming) -> bool:
+    """Whether a person should look at a file: a time of nbgrader's is not believed anyway."""
+    return not incoming.parts[-1].endswith('.txt')

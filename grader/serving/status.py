@@ -1,0 +1,108 @@
+"""What the resident process is at: lines for a terminal, and a page that needs nothing else."""
+
+import time
+from collections.abc import Iterator
+from datetime import datetime
+from html import escape
+from pathlib import Path
+
+from filelock import FileLock, Timeout
+
+from grader.common.files import write_whole
+from grader.common.text import printable, visible
+from grader.course import Course
+from grader.serving.queue import FAILED, GRADED, GRADING, REFUSED, WAITING, Arrival, Queue
+from grader.serving.serve import LOCK
+from grader.serving.turns import why_it_waits
+from grader.storage.late_penalties import Deadlines, deadlines
+
+PAGE = 'serve_status.html'
+SHOWN = 20
+"""Rows of one kind; the rest is counted."""
+LAST = 200
+"""So many of the last gradings tell how long one takes."""
+_PAGE = """<!doctype html>
+<html lang="en"><head><meta charset="utf-8"><title>./course serve</title>
+<meta http-equiv="refresh" content="5"><meta name="color-scheme" content="light dark">
+<meta name="viewport" content="width=device-width">
+<style>body {{ font: 1rem/1.5 system-ui, sans-serif; margin: 2rem; max-width: 60rem }}
+li {{ overflow-wrap: anywhere }}</style></head>
+<body><h1>./course serve</h1>{body}</body></html>
+"""
+
+
+def sections(course: Course, queue: Queue, now: float) -> Iterator[tuple[str, list[str]]]:
+    """Yield what there is to tell: a heading, and a line for each submission below it."""
+    rules = (deadlines(course.gradebook) or Deadlines()).resubmissions
+    starts = queue.starts()
+    done = queue.find(GRADED, last=LAST)
+    yield _summary(done, queue.counts()), []
+    for state, heading in (
+        (GRADING, 'Being graded'),
+        (WAITING, 'Waiting'),
+        (REFUSED, 'Not taken: a person should look'),
+        (FAILED, 'Not graded: ./course grade tries again'),
+        (GRADED, 'Graded last'),
+    ):
+        found = queue.find(state, last=SHOWN)
+        lines = []
+        for each in found:
+            waits = why_it_waits(starts.get(each.whose, ()), rules, now) * (state == WAITING)
+            lines.append(_line(each, waits))
+        if found:
+            yield heading, lines
+
+
+def status_lines(course: Course, queue: Queue | None) -> Iterator[str]:
+    """Yield the lines of `./course serve --status`."""
+    yield f'./course serve {"runs" if _is_served(course) else "does not run"}.'
+    for heading, lines in sections(course, queue, time.time()) if queue else ():
+        yield heading
+        yield from (f'  {printable(line)}' for line in lines)
+
+
+def write_status_page(course: Course, queue: Queue) -> Path:
+    """Write the page into the gradebook; return its path."""
+    parts = [f'<p>As of {_clock(time.time())}</p>']
+    for heading, lines in sections(course, queue, time.time()):
+        items = ''.join(f'<li>{escape(visible(line))}</li>' for line in lines)
+        parts.append(f'<h2>{escape(heading)}</h2><ul>{items}</ul>' if lines else f'<p>{heading}')
+    path = course.gradebook / PAGE
+    write_whole(path, _PAGE.format(body=''.join(parts)))
+    return path
+
+
+def _summary(done: list[Arrival], counts: object) -> str:
+    assert isinstance(counts, dict)
+    said = ', '.join(f'{number} {state}' for state, number in sorted(counts.items()))
+    if not done:
+        return f'{said or "Nothing has come in"}.'
+    seconds = sorted(each.ended - each.arrived for each in done)
+    half, most = (seconds[min(len(seconds) - 1, int(p * len(seconds)))] for p in (0.5, 0.95))
+    return (
+        f'{said}. From a file in its place to its feedback, the last {len(done)}: '
+        f'half within {half:.1f} s, 95 % within {most:.1f} s.'
+    )
+
+
+def _line(each: Arrival, waits: str) -> str:
+    what = f'{each.assignment} of {each.student_id}' if each.student_id else each.entry
+    score = f', {each.score:g} of {each.max_score:g}' if each.score is not None else ''
+    why = waits or each.reason
+    return f'{_clock(each.arrived)}  {what}{score}' + (f': {why}' if why else '')
+
+
+def _clock(at: float) -> str:
+    return f'{datetime.fromtimestamp(at).astimezone():%Y-%m-%d %H:%M:%S}'
+
+
+def _is_served(course: Course) -> bool:
+    if not (course.gradebook / LOCK).exists():
+        return False
+    lock = FileLock(course.gradebook / LOCK, fallback_to_soft=False)
+    try:
+        lock.acquire(timeout=0)
+    except Timeout:
+        return True
+    lock.release()
+    return False

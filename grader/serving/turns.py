@@ -1,0 +1,66 @@
+"""Whose turn it is: fair between students, the newest of each first, one of theirs at a time."""
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+
+from grader.serving.queue import Arrival
+from grader.storage.resubmissions import ResubmissionRules
+
+HOUR_SEC = 3_600.0
+Starts = Mapping[tuple[str, str], Sequence[float]]
+"""When submissions of each student and assignment were graded."""
+
+
+def next_turn(
+    waiting: Sequence[Arrival],
+    busy: Collection[str],
+    starts: Starts,
+    rules: ResubmissionRules,
+    now: float,
+) -> Arrival | None:
+    """Return what is graded next; None where nothing is to be.
+
+    First come students whose last turn is longest ago; nobody `busy`, of whom one is graded now.
+    """
+    turns = []
+    for student, theirs in _by_student(waiting):
+        allowed = [
+            each for each in theirs if not why_it_waits(starts.get(each.whose, ()), rules, now)
+        ]
+        if allowed and student not in busy:
+            newest = max(allowed, key=lambda each: (each.arrived, each.number))
+            last = max((max(at) for whose, at in starts.items() if whose[0] == student), default=0)
+            turns.append((last, newest.arrived, newest.number, newest))
+    return min(turns)[-1] if turns else None
+
+
+def replaced_by(chosen: Arrival, waiting: Sequence[Arrival]) -> list[Arrival]:
+    """Return what needs not be graded any more, for a later one of the same lesson is."""
+    return [
+        each
+        for each in waiting
+        if each.whose == chosen.whose
+        and (each.arrived, each.number) < (chosen.arrived, chosen.number)
+    ]
+
+
+def why_it_waits(starts: Sequence[float], rules: ResubmissionRules, now: float) -> str:
+    """Say why one more submission is not graded now, if the rules forbid it."""
+    if rules.in_total is not None and len(starts) >= rules.in_total:
+        return f'{len(starts)} were graded, and the course grades {rules.in_total}: it is kept'
+    recent = [at for at in starts if at > now - HOUR_SEC]
+    if rules.per_hour is not None and len(recent) >= rules.per_hour:
+        minutes = (recent[-rules.per_hour] + HOUR_SEC - now) / 60
+        return (
+            f'{len(recent)} were graded in the last hour, and the course grades '
+            f'{rules.per_hour}: it goes on in {max(1, round(minutes))} min'
+        )
+    return ''
+
+
+def _by_student(waiting: Sequence[Arrival]) -> Iterator[tuple[str, list[Arrival]]]:
+    """Yield each student with the newest of theirs for each assignment."""
+    newest: dict[tuple[str, str], Arrival] = {}
+    for each in sorted(waiting, key=lambda each: (each.arrived, each.number)):
+        newest[each.whose] = each
+    for student in sorted({whose[0] for whose in newest}):
+        yield student, [each for whose, each in newest.items() if whose[0] == student]

@@ -1,0 +1,39 @@
+"""Which inputs hidden tests choose: by the student, and perhaps by what was handed in."""
+
+import hashlib
+import hmac
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from grader.course import Course
+from grader.notebook.submission import Submission
+from grader.storage.late_penalties import Deadlines, deadlines
+from grader.storage.resubmissions import ANEW
+
+
+def seeds(course: Course, assignment: str) -> Callable[[Submission], str]:
+    """Return what gives the seed of each submission: the lesson is read only once.
+
+    Where the course wants inputs anew for each attempt, another content has another seed, and the
+    same content the same one whenever it is graded.
+    """
+    of_student = course.seeds(assignment)
+    anew = (deadlines(course.gradebook) or Deadlines()).resubmissions.hidden_inputs == ANEW
+
+    def seed(submission: Submission) -> str:
+        its_own = of_student(submission.student_id)
+        if not anew:
+            return its_own
+        digest = content_digest({submission.path.name: submission.path} | submission.files)
+        return hmac.new(bytes.fromhex(its_own), digest, hashlib.sha256).hexdigest()
+
+    return seed
+
+
+def content_digest(files: Mapping[str, Path]) -> bytes:
+    """Return a digest of files, by name; one that is not there, or a link, is empty."""
+    whole = hashlib.sha256()
+    for name, path in sorted(files.items()):
+        content = path.read_bytes() if path.is_file() and not path.is_symlink() else b''
+        whole.update(name.encode() + b'\0' + hashlib.sha256(content).digest())
+    return whole.digest()

@@ -1,0 +1,336 @@
+"""What is handed in is graded and its feedback released, one process for all."""
+
+import os
+import random
+import signal
+import sqlite3
+import subprocess
+import time
+from contextlib import closing
+from pathlib import Path
+
+import nbformat
+import pytest
+import serving_desk
+from course_maker import TOY, answered, released_course
+from nbgrader.auth import Authenticator
+from nbgrader.coursedir import CourseDirectory
+from nbgrader.exchange.default import ExchangeFetchFeedback, ExchangeSubmit
+from nbgrader.utils import notebook_hash
+from serving_desk import grade_here, serve_here
+from traitlets.config import Config
+
+from grader.__main__ import main
+from grader.common.errors import CourseError
+from grader.course import Course
+from grader.notebook.restore import KEY
+from grader.serving import intake
+from grader.serving.inbound import new_entries
+from grader.serving.queue import (
+    FAILED,
+    GRADED,
+    REFUSED,
+    REPLACED,
+    WAITING,
+    queue_to_read,
+)
+from grader.serving.serve import only_one
+from grader.storage.records import graded_notebook, records
+
+RIGHT = 'def double(x):\n    return 2 * x'
+WRONG = 'def double(x):\n    return x + 1'
+
+
+@pytest.fixture(scope='module')
+def released(tmp_path_factory):
+    return released_course(tmp_path_factory.mktemp('serving'))
+
+
+@pytest.fixture
+def course(released, tmp_path):
+    gradebook = tmp_path / 'gradebook'
+    gradebook.mkdir()
+    (gradebook / 'gradebook.db').write_bytes((released.gradebook / 'gradebook.db').read_bytes())
+    return Course(root=released.root, gradebook=gradebook)
+
+
+@pytest.fixture
+def inbound(tmp_path):
+    """The exchange of a course."""
+    for name in ('inbound', 'outbound', 'feedback'):
+        (tmp_path / 'exchange' / name).mkdir(parents=True)
+    return tmp_path / 'exchange' / 'inbound'
+
+
+def hand_in(course, inbound, student, answer, *, number=1, secret='aa'):
+    """Put a submission there as `nbgrader submit` does; return its folder."""
+    folder = inbound / f'{student}+{TOY}+2026-01-01 10:00:0{number}.000000 UTC+x{number}'
+    folder.mkdir()
+    (folder / f'{TOY}.ipynb').write_text(nbformat.writes(answered(course, answer)))
+    (folder / 'timestamp.txt').write_text('2000-01-01 10:00:00.000000 UTC')
+    (folder / 'submission_secret.txt').write_text(secret)
+    folder.chmod(0o777)
+    return folder
+
+
+def page_of(inbound, secret):
+    return inbound.parent / 'feedback' / f'{notebook_hash(secret=secret, notebook_id=TOY)}.html'
+
+
+def states(course):
+    with queue_to_read(course.gradebook) as queue:
+        every = queue.find(WAITING, GRADED, REPLACED, REFUSED, FAILED)
+    return [(each.student_id, each.state) for each in every]
+
+
+def test_what_is_handed_in_is_graded_and_its_page_is_where_nbgrader_looks(course, inbound):
+    hand_in(course, inbound, 'ada', RIGHT, secret='aa')
+    hand_in(course, inbound, 'bob', WRONG, secret='bb')
+    said = serve_here(course, inbound)
+    scores = {each.student_id: each.score for each in records(course) if 'check' in each.grade_id}
+    assert scores == {'ada': 1.0, 'bob': 0.0}
+    page = page_of(inbound, 'bb')
+    assert 'expected 2' in page.read_text() or 'add it to itself' in page.read_text()
+    assert (
+        page.read_bytes() == (course.folder('feedback', 'bob', TOY) / f'{TOY}.html').read_bytes()
+    )
+    assert page.stat().st_mode & 0o777 == 0o644
+    assert page_of(inbound, 'aa').exists()
+    assert [line.partition(':')[0] for line in said] == ['taken in'] * 2 + ['graded'] * 2
+    assert not list((course.gradebook / intake.FOLDER).iterdir())
+
+
+def test_the_score_is_that_of_grade(course, inbound):
+    hand_in(course, inbound, 'ada', RIGHT)
+    serve_here(course, inbound)
+    (row,) = grade_here(course)
+    assert row.reused
+
+
+def test_what_was_graded_is_not_graded_again_and_the_later_one_counts(course, inbound):
+    hand_in(course, inbound, 'ada', WRONG, secret='aa')
+    serve_here(course, inbound)
+    assert serve_here(course, inbound) == []
+    hand_in(course, inbound, 'ada', RIGHT, number=2, secret='bb')
+    serve_here(course, inbound)
+    assert states(course) == [('ada', GRADED)] * 2
+    assert 'submitted_before' in str(next(course.gradebook.glob('submitted_before/ada/*/1')))
+    assert page_of(inbound, 'aa').read_text() != page_of(inbound, 'bb').read_text()
+
+
+def test_the_same_once_more_has_its_page_under_its_own_secret(course, inbound):
+    hand_in(course, inbound, 'ada', RIGHT, secret='aa')
+    serve_here(course, inbound)
+    hand_in(course, inbound, 'ada', RIGHT, number=2, secret='bb')
+    serve_here(course, inbound)
+    assert page_of(inbound, 'bb').read_bytes() == page_of(inbound, 'aa').read_bytes()
+
+
+def test_the_newest_is_graded_and_those_before_it_are_kept(course, inbound):
+    for number, answer in enumerate((WRONG, '# 2', RIGHT), start=1):
+        folder = hand_in(course, inbound, 'ada', answer, number=number)
+        time.sleep(0.02)  # Linux's clock tells them apart
+        assert folder.exists()
+    serve_here(course, inbound)
+    assert sorted(states(course)) == [('ada', GRADED), ('ada', REPLACED), ('ada', REPLACED)]
+    kept = sorted(course.gradebook.glob(f'submitted_before/ada/{TOY}/*/submitted/{TOY}.ipynb'))
+    assert len(kept) == 2
+    there = (course.folder('submitted', 'ada', TOY) / f'{TOY}.ipynb').read_text()
+    assert 'return 2 * x' in there
+
+
+def test_a_claimed_time_is_not_believed(course, inbound):
+    hand_in(course, inbound, 'ada', RIGHT)
+    serve_here(course, inbound)
+    stamp = (course.folder('submitted', 'ada', TOY) / 'timestamp.txt').read_text()
+    assert stamp[:4] >= '2026'
+    assert '10:00:0' not in stamp or time.gmtime().tm_hour == 10
+
+
+def test_what_is_over_the_limit_is_kept_and_says_so(course, inbound, capsys):
+    (course.gradebook / 'deadlines.toml').write_text('[resubmissions]\nin_total = 1\n')
+    hand_in(course, inbound, 'ada', WRONG)
+    serve_here(course, inbound)
+    hand_in(course, inbound, 'ada', RIGHT, number=2, secret='bb')
+    serve_here(course, inbound)
+    assert states(course) == [('ada', GRADED), ('ada', WAITING)]
+    assert not page_of(inbound, 'bb').exists()
+    assert 'x + 1' in (course.folder('submitted', 'ada', TOY) / f'{TOY}.ipynb').read_text()
+    assert main(['serve', '--status'], course=course) == 0
+    assert '1 were graded, and the course grades 1: it is kept' in capsys.readouterr().out
+    (course.gradebook / 'deadlines.toml').write_text('[resubmissions]\nin_total = 2\n')
+    serve_here(course, inbound)
+    assert states(course) == [('ada', GRADED), ('ada', GRADED)]
+
+
+def test_what_is_nobodys_is_listed_for_a_person(course, inbound, capsys):
+    hand_in(course, inbound, 'ada', RIGHT)
+    (inbound / 'whose.ipynb').write_text('{}')
+    os.utime(inbound / 'whose.ipynb')
+    time.sleep(1.1)  # nothing but time says that it is whole
+    said = serve_here(course, inbound)
+    assert any(line.startswith('not taken, look at it: whose.ipynb: ') for line in said)
+    assert sorted(state for _, state in states(course)) == [GRADED, REFUSED]
+    main(['serve', '--status'], course=course)
+    out = capsys.readouterr().out
+    assert 'does not run' in out
+    assert 'a person should look' in out
+    page = (course.gradebook / 'serve_status.html').read_text()
+    assert 'whose.ipynb' in page
+    assert '<script' not in page
+
+
+def test_a_platforms_folder_is_served_as_it_is_collected(course, tmp_path):
+    folder = tmp_path / 'uploads'
+    (folder / 'bob' / TOY).mkdir(parents=True)
+    (folder / 'bob' / TOY / f'{TOY}.ipynb').write_text(nbformat.writes(answered(course, RIGHT)))
+    (folder / f'ada_{TOY}.ipynb').write_text(nbformat.writes(answered(course, WRONG)))
+    time.sleep(1.1)
+    serve_here(course, folder)
+    assert sorted(states(course)) == [('ada', GRADED), ('bob', GRADED)]
+    (folder / f'ada_{TOY}.ipynb').write_text(nbformat.writes(answered(course, RIGHT)))
+    time.sleep(1.1)
+    serve_here(course, folder)
+    assert [state for _, state in states(course)] == [GRADED] * 3
+
+
+def test_half_a_submission_waits_for_the_rest(course, inbound):
+    folder = hand_in(course, inbound, 'ada', RIGHT)
+    folder.chmod(0o755)  # as it is before nbgrader's last step
+    assert list(new_entries(inbound, {})) == []
+    folder.chmod(0o777)
+    assert [each.name for each in new_entries(inbound, {})] == [folder.name]
+
+
+def test_one_process_serves_a_gradebook(course, inbound):
+    with only_one(course), pytest.raises(CourseError, match='another process serves'):
+        serve_here(course, inbound)
+
+
+def test_inputs_are_chosen_anew_for_another_answer_and_kept_for_the_same(course, inbound):
+    """The final grade replays: the seed follows from what was handed in."""
+
+    def seed():
+        return graded_notebook(course, 'ada', TOY).metadata[KEY].seed
+
+    seeds = {}
+    for policy in ('kept', 'anew'):
+        text = f'[resubmissions]\nhidden_inputs = "{policy}"\n'
+        (course.gradebook / 'deadlines.toml').write_text(text)
+        for number, answer in enumerate((WRONG, RIGHT, WRONG), start=1):
+            hand_in(course, inbound, 'ada', answer, number=number + 3 * (policy == 'anew'))
+            serve_here(course, inbound)
+            seeds[policy, number] = seed()
+    assert seeds['kept', 1] == seeds['kept', 2] == course.seed(TOY, 'ada')
+    assert seeds['anew', 1] == seeds['anew', 3] != seeds['anew', 2]
+    assert course.seed(TOY, 'ada') not in (seeds['anew', 1], seeds['anew', 2])
+    (row,) = grade_here(course)
+    assert row.reused
+
+
+def killed_rounds(course, inbound, rounds, chance):
+    """Serve under load, and SIGKILL it at random moments; then serve to the end."""
+    command = serving_desk.command(course, inbound)
+    students, number = ['ada', 'bob', 'zoe'], 0
+    latest = {}
+    for _ in range(rounds):
+        for student in students:
+            number += 1
+            secret = f'{number:04}'
+            answer = f'# {chance.uniform(0, 0.3):.2f} s\n' + chance.choice([RIGHT, WRONG])
+            latest[student] = (answer, secret)
+            folder = inbound / f'{student}+{TOY}+2026-01-01 10:00:00.0 UTC+x{number}'
+            folder.mkdir()
+            (folder / f'{TOY}.ipynb').write_text(nbformat.writes(answered(course, answer)))
+            (folder / 'timestamp.txt').write_text('2026-01-01 10:00:00.0 UTC')
+            (folder / 'submission_secret.txt').write_text(secret)
+            folder.chmod(0o777)
+        process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+        for line in process.stdout:  # killed once it is at work: not by the time it has started
+            if 'taken in' in line:
+                break
+        time.sleep(chance.uniform(0, 1.5))
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+        process.stdout.close()
+        for page in (inbound.parent / 'feedback').glob('*.html'):
+            assert page.read_text().rstrip().endswith('</html>'), 'half a page'
+    end = subprocess.run([*command, '--once'], capture_output=True, text=True, timeout=300)
+    assert end.returncode == 0, end.stderr
+    return number, latest
+
+
+def same_as_undisturbed(course, inbound, handed_in, latest):
+    """Nothing is lost, nothing is graded otherwise than an undisturbed run does it."""
+    with queue_to_read(course.gradebook) as queue:
+        arrivals = queue.find(GRADED, REPLACED, WAITING, REFUSED, FAILED, 'grading')
+    assert len(arrivals) == len({each.entry for each in arrivals}) == handed_in
+    assert {each.state for each in arrivals} <= {GRADED, REPLACED}
+    with closing(sqlite3.connect(course.database)) as database:
+        assert database.execute('PRAGMA integrity_check').fetchone() == ('ok',)
+    kept = {
+        path.read_bytes()
+        for pattern in ('submitted/*/*/*.ipynb', 'submitted_before/*/*/*/submitted/*.ipynb')
+        for path in course.gradebook.glob(pattern)
+    }
+    for path in inbound.glob('*/*.ipynb'):
+        assert path.read_bytes() in kept, f'{path} is lost'
+    scores = {r.student_id: r.score for r in records(course) if r.grade_id == 'double-check'}
+    for student, (answer, secret) in latest.items():
+        assert scores[student] == float('2 * x' in answer)
+        assert page_of(inbound, secret).exists()
+    for each in arrivals:
+        secret = (inbound / each.entry / 'submission_secret.txt').read_text()
+        answer = (inbound / each.entry / f'{TOY}.ipynb').read_text()
+        if each.state == GRADED:
+            assert each.score == 3.0 * ('2 * x' in answer)
+            assert page_of(inbound, secret).read_text().rstrip().endswith('</html>')
+
+
+@pytest.mark.parametrize('rounds', [2, pytest.param(20, marks=pytest.mark.slow)])
+def test_killed_at_random_moments_it_loses_nothing(rounds, tmp_path, inbound):
+    course = released_course(tmp_path / 'course')
+    handed_in, latest = killed_rounds(course, inbound, rounds, random.Random(rounds))
+    same_as_undisturbed(course, inbound, handed_in, latest)
+
+
+def test_sigterm_ends_it_and_the_next_one_goes_on(tmp_path, inbound):
+    course = released_course(tmp_path / 'course')
+    hand_in(course, inbound, 'ada', f'# 600 s\n{RIGHT}')
+    command = serving_desk.command(course, inbound)
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+    assert 'taken in' in process.stdout.readline()
+    process.terminate()
+    assert process.wait(timeout=60) == 128 + signal.SIGTERM
+    process.stdout.close()
+    with queue_to_read(course.gradebook) as queue:
+        assert len(queue.find(WAITING, 'grading')) == 1
+    assert Path(course.gradebook / 'arrived').is_dir()
+
+
+def test_a_student_submits_and_fetches_feedback_with_nbgrader_itself(course, tmp_path):
+    """Its own code puts the folder there, and finds the page, which is ours."""
+    exchange, student = tmp_path / 'exchange', tmp_path / 'student'
+    for folder in ('inbound', 'outbound', 'feedback'):
+        (exchange / 'robots' / folder).mkdir(parents=True)
+    for folder in (exchange / 'robots' / 'outbound' / TOY, student / TOY):
+        folder.mkdir(parents=True)
+        (folder / f'{TOY}.ipynb').write_text(nbformat.writes(answered(course, WRONG)))
+    config = Config()
+    config.Exchange.root = str(exchange)
+    config.Exchange.cache = str(tmp_path / 'cache')
+    config.Exchange.assignment_dir = str(student)
+    config.CourseDirectory.course_id = 'robots'
+    config.CourseDirectory.assignment_id = TOY
+
+    def nbgrader(action):
+        options = {'coursedir': CourseDirectory(config=config)}
+        action(config=config, authenticator=Authenticator(config=config), **options).start()
+
+    exchange.chmod(0o777)
+    nbgrader(ExchangeSubmit)
+    assert len(list(new_entries(exchange / 'robots' / 'inbound', {}))) == 1  # whole at once
+    serve_here(course, exchange / 'robots' / 'inbound')
+    nbgrader(ExchangeFetchFeedback)
+    (fetched,) = student.glob(f'{TOY}/feedback/*/{TOY}.html')
+    assert 'add it to itself' in fetched.read_text().lower()
