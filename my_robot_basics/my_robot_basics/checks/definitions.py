@@ -9,6 +9,8 @@ from my_robot_basics.feedback.errors import CheckFailed, fail, shorten
 from my_robot_basics.feedback.hidden import is_quiet, said_in_full, tell_failed_already
 from my_robot_basics.ros2.definitions import Definition, read_definition
 
+TO_SHOW: tuple[str, ...] = ('in `{name}`, {faults}',)
+"""How the faults of a text are told."""
 MOST_FAULTS = 3
 """Of a text that are told at once: more than that nobody fixes in one go."""
 
@@ -79,13 +81,15 @@ class Definitions:
         earned = sum(points[name] for name in right) if has_all else 0.0
         if len(self._missing) == len(self._files):
             raise self._missing[0]
-        leaves = f', which leaves {earned:g} of {sum(points.values()):g} points' if earned else ''
-        shown = ' and '.join(f'`{name}`' for name in wrong)
+        shown, most = ' and '.join(f'`{name}`' for name in wrong), sum(points.values())
+        seen = f'something else in {shown}'
+        if earned:
+            seen = f'something else in {shown}, which leaves {earned:g} of {most:g} points'
         # it tells the table of the task, and the student's own text: there is no other input
         with said_in_full():
             fail(
                 expected='each text to define what its table says',
-                seen=f'something else in {shown}{leaves}',
+                seen=seen,
                 hint='; '.join(self._told(name) for name in wrong),
                 earned=earned,
             )

@@ -24,8 +24,9 @@ MOST_CHARACTERS = 2_000
 PHRASE = 10_000
 """What counts for several words in English, one behind the other, over that for their letters."""
 FEW_LETTERS = 4
-"""Templates with fewer, such as '{name} is {value}', fit anything: none is part of a phrase."""
-MOST_TRIES = 2_000
+"""Templates with fewer, such as '{name} is {value}', fit anything: none is part of a phrase,
+unless there are quotes in it."""
+MOST_TRIES = 8_000
 """How many places are tried for one sentence."""
 MOST_DEEP = 12
 """How many templates may stand one in the other."""
@@ -57,8 +58,8 @@ class Sentences:
     translations: Mapping[str, str]
     """Of each English template, as in the catalogues."""
     _templates: list[Template] = field(default_factory=list)
-    _found: dict[str, tuple[int, str]] = field(default_factory=dict)
-    """The best of each text so far, for one sentence."""
+    _found: dict[str, tuple[int, tuple[int, str]]] = field(default_factory=dict)
+    """The best of each text so far, for one sentence, and how deep it was looked for."""
     _starts: tuple[str, ...] = ()
     _tries: int = 0
 
@@ -89,13 +90,14 @@ class Sentences:
         """Return how many letters stay English, and the text with the fewest of them."""
         if (exact := self.translations.get(text)) is not None:
             return 0, exact
-        if text not in self._found:
+        known = self._found.get(text)
+        if known is None or (known[0] > deep and known[1][0] > 0):
             best = 0 if _RAISED.fullmatch(text) else _left(text), text
             if best[0] and deep < MOST_DEEP:
                 for fitted in self._fitted(text, deep + 1):
                     best = min(best, fitted, key=lambda each: each[0])
-            self._found[text] = best
-        return self._found[text]
+            self._found[text] = known = deep, best
+        return known[1]
 
     def _fitted(self, text: str, deep: int) -> Iterator[tuple[int, str]]:
         for template in self._templates:
@@ -107,7 +109,7 @@ class Sentences:
                     return
                 if text not in found.values() and not _cuts(template, found):
                     left, shown = self._put(template, found, deep)
-                    if left < PHRASE or template.letters >= FEW_LETTERS:
+                    if left < PHRASE or template.letters >= FEW_LETTERS or template.quoted:
                         yield left, shown
         yield from self._at_spaces(text, deep)
 
@@ -139,6 +141,8 @@ def _cuts(template: Template, found: Mapping[str, str]) -> bool:
     said = {place: _QUOTED.sub('', text) for place, text in found.items()}
     ended = any('. ' in said[place] for place in template.places[:-1]) and template.letters > 0
     named = {place for place in template.used if not place.startswith('value')}
+    if any('`' in found[place] for place in template.quoted):
+        return True
     if '' not in template.literals[1:-1] and any(not found[place] for place in named):
         return True
     if any(

@@ -3,6 +3,7 @@
 from collections.abc import Collection
 
 from my_robot_basics.feedback.errors import shorten
+from my_robot_basics.language.speaking import in_language_here
 from my_robot_basics.ros2.definitions import DefinedMember, meanings
 
 PACKAGE = 'turn_interfaces'
@@ -21,14 +22,16 @@ def show_definition(text: str, *, own_types: Collection[str] = (), package: str 
     ]
     width = min(_WIDTH, max((len(line) for line, _ in lines), default=0))
     for line, words in lines:
-        print(f'{line:<{width}}  {words}'.rstrip())
+        print(f'{line:<{width}}  {in_language_here(words)}'.rstrip())
 
 
 def _told(member: DefinedMember) -> str:
     if member.is_constant:
         return f'constant {member.name}, {member.type}, always {member.value!r}'
-    default = '' if member.value is None else f', {member.value!r} if nobody sets it'
-    return f'field {member.name}, {_told_type(member.type)}{default}'
+    type_ = _told_type(member.type)
+    if member.value is None:
+        return f'field {member.name}, {type_}'
+    return f'field {member.name}, {type_}, {member.value!r} if nobody sets it'
 
 
 def _told_type(type_: object) -> str:
