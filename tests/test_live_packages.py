@@ -185,6 +185,21 @@ def test_an_end_that_is_not_clean_is_told(folder, capsys, monkeypatch, handler, 
 
 
 @pytest.mark.starts
+def test_one_that_leaves_its_process_group_is_ended_too(folder, monkeypatch):
+    monkeypatch.setattr('my_robot_basics.live.processes.END_SEC', 1.0)
+    script = folder / 'ros_ws/install/greeter/lib/greeter/greet'
+    script.parent.mkdir(parents=True)
+    leave = "import os, time\nos.setpgid(0, os.getpgid(os.getppid()))\nprint('up', flush=True)\n"
+    script.write_text(f'#!/usr/bin/env python3\n{leave}time.sleep(600)\n')
+    script.chmod(0o755)
+    live.run_executable(PACKAGE, 'greet')
+    [one] = executables._started.values()
+    until(lambda: 'up' in one.process.lines)
+    live.stop()
+    assert one.process.code is not None
+
+
+@pytest.mark.starts
 def test_an_executable_that_ends_at_once_says_why(folder, capsys):
     make_package(folder, node='def main():\n    import no_such_module\n')
     live.build_package(PACKAGE)

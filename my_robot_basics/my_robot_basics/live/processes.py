@@ -59,8 +59,10 @@ class Process:
     def send(self, number: signal.Signals) -> None:
         """Send a signal to it and what it has started, as Ctrl-C does."""
         if self.process.poll() is None:
-            with contextlib.suppress(ProcessLookupError):
+            try:
                 os.killpg(self.process.pid, number)
+            except ProcessLookupError:  # it has joined another group
+                self.process.send_signal(number)
 
     def stop(self) -> signal.Signals | None:
         """End it by SIGINT, else SIGTERM, else SIGKILL; return which one it took.
