@@ -119,6 +119,10 @@ WRONG = {
     ),
     'with colons': (turns('std_msgs/Header', 'std_msgs::Header'), 'with a slash: std_msgs/Header'),
     'with a dot': (turns('std_msgs/Header', 'std_msgs.msg.Header'), 'no msg in its name'),
+    'a message in lower case': (
+        turns('std_msgs/Header', 'std_msgs/header'),
+        'a message of another package is written like std_msgs/Header',
+    ),
     'another package': (
         turns('std_msgs/Header', 'sensor_msgs/Header'),
         'there is no message type',

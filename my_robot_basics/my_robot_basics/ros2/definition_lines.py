@@ -142,6 +142,8 @@ def _about_type(type_name: str) -> str:
         return f'in a definition, a type has no msg in its name: {parts[0]}/{parts[2]}'
     if len(parts) == 2 and '/' not in plain:
         return f'a package and its type are written with a slash: {parts[0]}/{parts[1]}'
+    if '/' in plain and not re.fullmatch('[a-z][a-z0-9_]*/[A-Z][A-Za-z0-9]*', plain):
+        return 'a message of another package is written like std_msgs/Header'
     if len(parts) == 1 and not re.fullmatch('[A-Z][A-Za-z0-9]*', plain):
         return f'there is no type {shorten(plain, 40)}'
     return ''
