@@ -3,6 +3,7 @@
 import ast
 import dis
 import re
+import shutil
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -21,7 +22,9 @@ PROGRAMS = re.compile(r'^(!|%%bash)|\bPopen\(', re.MULTILINE)
 @pytest.mark.slow
 @pytest.mark.parametrize('all_cells', [False, pytest.param(True, marks=pytest.mark.slow)])
 @pytest.mark.parametrize('name', NAMES)
-def test_a_lesson_runs_again_in_the_same_kernel_whatever_was_run_between(name, all_cells):
+def test_a_lesson_runs_again_in_the_same_kernel_whatever_was_run_between(
+    name, all_cells, tmp_path
+):
     lesson = read('solutions', name)
     everything = code_cells(lesson)
     within = [cell for cell in everything if not is_left_out(cell)]
@@ -33,7 +36,8 @@ def test_a_lesson_runs_again_in_the_same_kernel_whatever_was_run_between(name, a
     if not all_cells:
         first = [*needed(unchecked), *reversed(unchecked)]
         last = within
-    with kernel_for(lesson) as run:
+    files = shutil.copytree(ROOT / 'solutions' / name, tmp_path / name)  # a package, say
+    with kernel_for(lesson, files) as run:
         for cell in first:
             run(cell)
         for cell in last:
@@ -59,9 +63,12 @@ def test_an_unanswered_lesson_fails_in_its_checks_alone_and_says_what_is_missing
 
 
 @contextmanager
-def kernel_for(lesson):
-    """Yield a function that runs one cell of the lesson in a fresh kernel."""
-    client = NotebookClient(lesson, timeout=180, allow_errors=True, kernel_name='python3')
+def kernel_for(lesson, folder=None):
+    """Yield a function that runs one cell of the lesson in a fresh kernel, in that folder."""
+    resources = {'metadata': {'path': str(folder)}} if folder else {}
+    client = NotebookClient(
+        lesson, resources=resources, timeout=180, allow_errors=True, kernel_name='python3'
+    )
     with client.setup_kernel():
         yield lambda cell: client.execute_cell(cell, lesson.cells.index(cell))
 

@@ -42,16 +42,21 @@ def build_package(name: str) -> None:
         tell(f'not handed in, and not built: {clause}', in_one=False)
 
 
-def run_executable(package: str, executable: str, *arguments: str) -> None:
+def run_executable(package: str, executable: str, *arguments: str) -> bool:
     """Start an executable of a package that was built, as `ros2 run` does, in the background.
 
     `run_executable('arm_player', 'arm_driver', '--ros-args', '-p', 'speed:=0.5')`: a process of
-    its own, whose lines show with the cell. One that runs already is replaced. Raises NotRunnable
-    where there is no such executable.
+    its own, whose lines show with the cell. One that runs already is replaced. Where there is no
+    such executable, that is printed with what to do, and nothing is raised: *Run All* goes on.
+    Returns whether it was started.
     """
-    __tracebackhide__ = True
     executables.stop_started(package=package, name=executable)
-    executables.start(package, executable, arguments)
+    try:
+        executables.start(package, executable, arguments)
+    except NotRunnable as error:
+        tell(f'not started: {error}', in_one=False)
+        return False
+    return True
 
 
 def make_package(name: str, *, node_name: str = '', dependencies: Sequence[str] = ()) -> None:
