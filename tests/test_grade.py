@@ -9,6 +9,7 @@ from grader.cli.demo import demo
 from grader.common.errors import CourseError
 from grader.course import Course
 from grader.grade import grade_all
+from grader.judging import task
 from grader.judging.execute import Execution
 from grader.notebook.restore import KEY
 from grader.report.progress_table import print_rows
@@ -200,3 +201,21 @@ def test_a_demo_compares_what_came_with_what_the_names_say(course, tmp_path, cap
     (samples / f'{TOY}-perhaps-wrong.ipynb').write_text('')
     with pytest.raises(CourseError, match='is not named'):
         demo(samples, root=course.root)
+
+
+def test_a_result_is_not_stored_for_files_that_came_meanwhile(course, monkeypatch):
+    """It would be the score of what is not there any more."""
+    path = submit(course, 'ada', answered(course, RIGHT))
+    looked = task.execute_exercises
+
+    async def replaced(notebook, **options):
+        submit(course, 'ada', answered(course, WRONG))
+        return await looked(notebook, **options)
+
+    monkeypatch.setattr(task, 'execute_exercises', replaced)
+    row = rows_of(course)['ada']
+    assert 'x + 1' in path.read_text()
+    assert row.stored is None
+    assert 'handed in again meanwhile' in row.reason
+    monkeypatch.setattr(task, 'execute_exercises', looked)
+    assert rows_of(course)['ada'].stored.score == 0.0

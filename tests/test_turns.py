@@ -1,0 +1,82 @@
+"""Whose submission is graded next."""
+
+import pytest
+
+from grader.common.errors import CourseError
+from grader.serving.queue import WAITING, Arrival
+from grader.serving.turns import next_turn, replaced_by, why_it_waits
+from grader.storage.late_penalties import read_deadlines
+from grader.storage.resubmissions import ResubmissionRules
+
+NO_RULES = ResubmissionRules()
+NOW = 10_000.0
+
+
+def arrival(number, student, assignment='a', arrived=None):
+    return Arrival(number, f'{number}', arrived or float(number), WAITING, student, assignment)
+
+
+def turn(waiting, *, busy=(), starts=None, rules=NO_RULES):
+    found = next_turn(waiting, busy, starts or {}, rules, NOW)
+    return found and found.number
+
+
+def test_the_newest_of_a_student_comes_first_and_replaces_those_before_it():
+    waiting = [arrival(1, 'ada'), arrival(2, 'ada', 'b'), arrival(3, 'ada')]
+    assert turn(waiting) == 3
+    assert [each.number for each in replaced_by(waiting[2], waiting)] == [1]
+
+
+def test_one_of_a_student_s_is_graded_at_a_time():
+    waiting = [arrival(1, 'ada'), arrival(2, 'bob')]
+    assert turn(waiting, busy={'ada'}) == 2
+    assert turn(waiting, busy={'ada', 'bob'}) is None
+
+
+def test_who_hands_in_twenty_lessons_waits_for_who_hands_in_one():
+    waiting = [
+        *(arrival(number, 'ada', f'{number}') for number in range(1, 21)),
+        arrival(30, 'bob'),
+    ]
+    starts, served = {}, []
+    for at in range(3):
+        number = turn(waiting, starts=starts)
+        chosen = next(each for each in waiting if each.number == number)
+        served.append(chosen.student_id)
+        starts.setdefault(chosen.whose, []).append(float(at + 1))
+        waiting.remove(chosen)
+    assert served == ['ada', 'bob', 'ada']
+
+
+def test_what_is_over_a_limit_waits_and_another_lesson_does_not():
+    rules = ResubmissionRules(per_hour=2)
+    waiting = [arrival(1, 'ada', 'b'), arrival(2, 'ada', 'a')]
+    starts = {('ada', 'a'): [NOW - 100, NOW - 50]}
+    assert turn(waiting, starts=starts, rules=rules) == 1
+    assert 'it goes on in 58 min' in why_it_waits(starts['ada', 'a'], rules, NOW)
+    assert why_it_waits([NOW - 3_700, NOW - 50], rules, NOW) == ''
+
+
+def test_what_is_over_the_total_is_kept():
+    rules = ResubmissionRules(in_total=2)
+    assert why_it_waits([1.0], rules, NOW) == ''
+    assert why_it_waits([1.0, 2.0], rules, NOW).endswith('it is kept')
+
+
+def read(text):
+    return read_deadlines(f'[resubmissions]\n{text}'.encode(), 'deadlines.toml').resubmissions
+
+
+def test_the_rules_are_read():
+    assert read('per_hour = 6\nin_total = 30\nhidden_inputs = "anew"') == ResubmissionRules(
+        6, 30, 'anew'
+    )
+    assert read('') == NO_RULES
+
+
+@pytest.mark.parametrize(
+    'text', ['per_hour = 0', 'in_total = true', 'in_total = 1.5', 'hidden_inputs = "new"', 'x = 1']
+)
+def test_rules_that_say_something_else_are_refused(text):
+    with pytest.raises(CourseError, match=text.split()[0]):
+        read(text)
