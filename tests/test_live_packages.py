@@ -221,10 +221,15 @@ def test_an_executable_that_ends_at_once_says_why(folder, capsys):
     ('changes', 'words'),
     [
         ({'resource/greeter': None}, 'setup.py installs resource/greeter, and there is no such'),
-        ({'setup.cfg': None}, 'lie in bin/, where `ros2 run` does not look: write a setup.cfg'),
-        (
+        pytest.param(
+            {'setup.cfg': None},
+            'lie in bin/, where `ros2 run` does not look: write a setup.cfg',
+            marks=pytest.mark.slow,
+        ),
+        pytest.param(
             {'setup.py': lambda text: text.replace('greeter.greet:', 'greeter.grete:')},
             'and there is no greeter/grete.py: write that module, or correct the name',
+            marks=pytest.mark.slow,
         ),
     ],
 )

@@ -70,7 +70,7 @@ HOSTILE = {
         "os.makedirs('../../install/my_robot_basics/lib/my_robot_basics')\n1 / 0"
     ),
 }
-ORDINARY = ('kills colcon', 'forks without end')
+ORDINARY = ('kills colcon',)
 """The others are run by `./course test --slow`."""
 
 
