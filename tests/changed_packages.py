@@ -157,19 +157,6 @@ WRONG = (
         {'package_runs': 'catch KeyboardInterrupt'},
     ),
     Change(
-        'never_ends',
-        swap(
-            PLAYER,
-            ('import rclpy\n', 'import signal\n\nimport rclpy\n'),
-            (
-                'player = ArmPlayer()\n',
-                ('player = ArmPlayer()\n        signal.signal(signal.SIGINT, signal.SIG_IGN)\n'),
-            ),
-        ),
-        (1, 0, 4),
-        {'package_runs': 'still runs'},
-    ),
-    Change(
         'stops_at_the_first_unreachable',
         swap(
             PLAYER,
@@ -244,35 +231,5 @@ def _shell_script(files: Files) -> None:
     )(files)
 
 
-def _setup_starts_a_node(files: Files) -> None:
-    """While it is built, it starts a program that serves /solve_ik for ever."""
-    files[SETUP] = (
-        'import subprocess, sys\n'
-        'node = (\n'
-        '    "import rclpy; from rclpy.node import Node; from arm_interfaces.srv import SolveIK; '
-        "rclpy.init(); n = Node('quiet'); "
-        "n.create_service(SolveIK, '/solve_ik', lambda q, r: r); rclpy.spin(n)\"\n"
-        ')\n'
-        'subprocess.Popen([sys.executable, "-c", node], start_new_session=True)\n'
-    ) + files[SETUP]
-
-
-HOSTILE = (
-    Change('shell_script', _shell_script, (0, 0, 4)),
-    Change('setup_starts_a_node', _setup_starts_a_node, (1, 0, 0)),
-    Change(
-        'talks_to_the_checks_nodes',
-        swap(
-            PLAYER,
-            (
-                'words = [self.visit(x, y) for x, y in targets]',
-                "words = ['succeeded' for _ in targets]\n"
-                '        for name, space in self.get_node_names_and_namespaces():\n'
-                "            self.create_client(SolveIK, f'{space}{name}/set_parameters')",
-            ),
-        ),
-        (1, 2, 0),
-        {'arm_player_plays': 'is asked|call_async'},
-    ),
-)
+HOSTILE = (Change('shell_script', _shell_script, (0, 0, 4)),)
 ALL = (*RIGHT, *WRONG, *HOSTILE)
