@@ -392,6 +392,26 @@ def test_a_mistake_fails_its_check_alone_with_the_cause(run, node_class, checks,
         raise AssertionError(next(iter(found.values())))
 
 
+class TakesTheWallClocksTime(MoveArmServer):
+    """Waits on its own clock, and computes where the arm is from another one."""
+
+    def begin(self, handle):
+        super().begin(handle)
+        self.began = time.monotonic()
+
+    def step(self, handle):
+        passed_sec = time.monotonic() - self.began
+        self.part = min(1.0, passed_sec / self.seconds) if self.seconds else 1.0
+        self.position = self.on_the_way()
+        self.report(handle)
+
+
+def test_the_time_of_another_clock_is_named(run):
+    run(TakesTheWallClocksTime)
+    with pytest.raises(CheckFailed, match=r'take the time that has passed from self.get_clock\('):
+        moves.expect_reaches(action('/move_arm', MoveArm), (1.2, -0.6), speed=0.02)
+
+
 # --- who gets nowhere ----------------------------------------------------------------------------
 
 

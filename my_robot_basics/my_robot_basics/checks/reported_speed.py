@@ -12,6 +12,8 @@ FEWEST = 4
 MOST = 150
 ALIKE = 1e-4
 """So much of a step may two steps differ that were added, and not computed from a clock."""
+WALL_PART = 0.25
+"""So near to the speed on the wall clock is none that a driven clock makes by chance."""
 OFTEN = 0.1
 """So many of a loop's gaps are hardly longer than it was to sleep, on a busy machine, too."""
 
@@ -50,7 +52,23 @@ def reported_speed(arm: WatchedArm, sent: SentGoal, position: Pose) -> ReportedS
     return ReportedSpeed(float(np.median(gone[is_later] / passed_sec[is_later])))
 
 
-def _on_the_way(arm: WatchedArm, sent: SentGoal, position: Pose) -> tuple[np.ndarray, np.ndarray]:
+def is_of_wall_time(arm: WatchedArm, sent: SentGoal, position: Pose) -> bool:
+    """Whether the feedback has the speed that was asked for on the wall clock, and not on its own.
+
+    So it is where the time that has passed is that of another clock than the node's.
+    """
+    if not arm.time.is_driven:
+        return False
+    times, ways = _on_the_way(arm, sent, position, is_wall=True)
+    if len(times) < FEWEST or times[-1] <= times[0]:
+        return False
+    speed = (ways[-1] - ways[0]) / (times[-1] - times[0])
+    return bool(abs(speed / sent.goal.speed - 1.0) <= WALL_PART)
+
+
+def _on_the_way(
+    arm: WatchedArm, sent: SentGoal, position: Pose, *, is_wall: bool = False
+) -> tuple[np.ndarray, np.ndarray]:
     """When the feedback came, in s, and how far the faster joint had gone then, in rad."""
     ways = [b - a for a, b in zip(arm.start, position, strict=True)]
     joint = max(range(len(ways)), key=lambda number: abs(ways[number]))
@@ -59,6 +77,7 @@ def _on_the_way(arm: WatchedArm, sent: SentGoal, position: Pose) -> tuple[np.nda
         if len(message.position) == len(ways):
             part = (message.position[joint] - arm.start[joint]) / ways[joint]
             if 0.0 < part < 1.0:
-                found.append((arm.time.at_ns(sent_ns) / 1e9, part * abs(ways[joint])))
+                at_ns = sent_ns if is_wall else arm.time.at_ns(sent_ns)
+                found.append((at_ns / 1e9, part * abs(ways[joint])))
     times, gone = np.array(found).reshape(-1, 2).T
     return times, gone
