@@ -2,20 +2,21 @@
 
 import os
 import sys
-from collections.abc import Mapping
-from pathlib import Path
 
 from launcher.environment import Environment
+from launcher.languages import (
+    ENGLISH,
+    INDEX,
+    VARIABLE,
+    choose_language,
+    jupyterlab_settings,
+    languages,
+)
 from launcher.messages import LauncherError
 
-SETTINGS = '.jupyterlab'
-"""They leave out the instructors' panels."""
 TERMINAL = 'my_robot_basics/my_robot_basics/ros2/terminal.bash'
 """What a terminal in JupyterLab begins with."""
 SHELL = """{'shell_command': ['bash', '-c', 'exec bash --rcfile "$COURSE_TERMINAL" -i']}"""
-INDEX = 'index.ipynb'
-ENGLISH = 'en'
-OPTION = '--language'
 
 
 def run(environment: Environment, variables: dict[str, str], arguments: list[str]) -> int:
@@ -39,7 +40,7 @@ def run(environment: Environment, variables: dict[str, str], arguments: list[str
     command += [
         f'--ServerApp.root_dir={lessons}',
         f'--LabApp.default_url=/lab/tree/{"" if language == ENGLISH else f"{language}/"}{INDEX}',
-        f'--LabApp.app_settings_dir={root / SETTINGS}',
+        f'--LabApp.app_settings_dir={jupyterlab_settings(environment, language)}',
         f'--ServerApp.terminado_settings={SHELL}',
         # it would warn that its configuration is missing
         "--ServerApp.jpserver_extensions={'nbgrader.server_extensions.formgrader': False}",
@@ -48,46 +49,10 @@ def run(environment: Environment, variables: dict[str, str], arguments: list[str
     ]
     variables |= {
         'PWD': str(lessons),
+        VARIABLE: language,
         # what a terminal starts is on this machine alone, as the notebooks' nodes are
         'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST',
         'COURSE_TERMINAL': str(root / TERMINAL),
     }
     sys.stdout.flush()
     os.execve(command[0], command, variables)
-
-
-def choose_language(
-    lessons: Path, variables: Mapping[str, str], arguments: list[str]
-) -> tuple[str, list[str]]:
-    """Return the language of the lessons to open, and the arguments without the one that names it.
-
-    `--language zh_CN` chooses, or else the user's locale does where there is such an edition.
-    Raises LauncherError where there is none of that name.
-    """
-    known = [ENGLISH, *languages(lessons)]
-    kept, asked = [], ''
-    rest = iter(arguments)
-    for argument in rest:
-        name, found, value = argument.partition('=')
-        if name != OPTION:
-            kept.append(argument)
-        else:
-            asked = value if found else next(rest, '')
-            if asked not in known:
-                raise LauncherError(
-                    f'there are no lessons in {asked!r}: {OPTION} takes {" or ".join(known)}.'
-                )
-    return asked or _of_the_locale(known, variables), kept
-
-
-def languages(lessons: Path) -> list[str]:
-    """Return the languages, other than English, in which there are lessons."""
-    return sorted(page.parent.name for page in lessons.glob(f'*/{INDEX}'))
-
-
-def _of_the_locale(known: list[str], variables: Mapping[str, str]) -> str:
-    """Return the edition that fits the user's locale best: zh_CN, or another Chinese one."""
-    said = (variables.get(name) for name in ('LC_ALL', 'LC_MESSAGES', 'LANG'))
-    locale = next(filter(None, said), '').partition('.')[0].partition('@')[0]
-    alike = [each for each in known if each.split('_')[0] == locale.split('_')[0]]
-    return locale if locale in known else next(iter(alike), ENGLISH)

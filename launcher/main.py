@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 from launcher.environment import Environment
+from launcher.languages import VARIABLE, of_the_locale
 from launcher.messages import LauncherError, say
 from launcher.set_up import is_set_up, set_up
 from launcher.verbs import Verb, read_verbs
@@ -35,6 +36,9 @@ def main(arguments: list[str]) -> int:
 def run_verb(environment: Environment, verb: Verb, arguments: list[str]) -> int:
     """Run a verb in its folder; return the exit status, if this process does not become it."""
     variables = environment.variables(os.environ)
+    if verb.owner == 'everyone':
+        lessons = environment.root / 'notebooks'
+        variables.setdefault(VARIABLE, of_the_locale(lessons, variables))
     if verb.folder == 'root':
         os.chdir(environment.root)
         variables['PWD'] = str(environment.root)

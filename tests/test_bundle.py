@@ -17,7 +17,7 @@ from grader.authoring.bundle import FOLDER, bundle
 from grader.authoring.release import release
 from grader.common.errors import CourseError
 from grader.course import ROOT, Course
-from launcher import lab
+from launcher import lab, languages
 
 TOP = ['.jupyterlab', 'LICENSE', 'README.md', 'course', 'environment.txt', 'launcher']
 TOP = sorted([*TOP, 'arm_interfaces', 'my_robot_basics', 'notebooks'])
@@ -342,7 +342,7 @@ def test_its_readme_says_what_is_so(students):
 
 def test_what_lab_is_given_is_there(students):
     assert (students / 'notebooks/index.ipynb').is_file()
-    assert (students / lab.SETTINGS).is_dir()
+    assert (students / languages.SETTINGS).is_dir()
     assert (students / lab.TERMINAL).is_file()
 
 

@@ -630,6 +630,7 @@ def test_lab_opens_the_lessons_in_the_language_of_its_user(machine, asked, local
     assert machine.course('lab', *asked, **locale).returncode == 0
     (command,) = (call for call in machine.calls() if '-m jupyterlab' in call)
     assert f'--LabApp.default_url=/lab/tree/{page} ' in command
+    assert f'--LabApp.app_settings_dir={machine.root}/.jupyterlab ' in command  # no language pack
     assert '--language' not in command
 
 

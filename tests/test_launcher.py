@@ -1,3 +1,4 @@
+import json
 import re
 import shutil
 import subprocess
@@ -10,6 +11,7 @@ from grader.cli.arguments import make_parser
 from grader.course import ROOT
 from launcher.environment import Environment, without_foreign
 from launcher.installer import DISK_IS_FULL, FAILED, NETWORK_IS_AWAY, progress, reason_of
+from launcher.languages import TRANSLATION, jupyterlab_settings
 from launcher.set_up import BUILD_TOOLS, build_tools
 from launcher.shares import executables_of
 from launcher.testing import Checks
@@ -216,3 +218,31 @@ def test_every_package_without_a_wheel_is_built_with_tools_that_are_pinned():
     pins = build_tools(ROOT / 'environment.txt')
     assert [line.split('==')[0] for line in pins.splitlines()[::2]] == list(BUILD_TOOLS)
     assert pins.count('--hash=sha256:') >= len(BUILD_TOOLS)
+
+
+# --- languages -----------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def with_pack(tmp_path):
+    """A course whose .venv has JupyterLab's language pack for zh_CN."""
+    shutil.copytree(ROOT / '.jupyterlab', tmp_path / '.jupyterlab')
+    (tmp_path / '.venv/lib/python3.12/site-packages/jupyterlab_language_pack_zh_CN').mkdir(
+        parents=True
+    )
+    return Environment(tmp_path)
+
+
+def test_jupyterlab_has_menus_in_the_language_of_the_lessons(with_pack):
+    for _ in range(2):  # made anew, as after an update of the course
+        folder = jupyterlab_settings(with_pack, 'zh_CN')
+    settings = json.loads((folder / 'overrides.json').read_text())
+    ours = json.loads((ROOT / '.jupyterlab/overrides.json').read_text())
+    assert settings == ours | {TRANSLATION: {'locale': 'zh_CN'}}
+    pages = [each / 'page_config.json' for each in (folder, ROOT / '.jupyterlab')]
+    assert pages[0].read_bytes() == pages[1].read_bytes()
+
+
+@pytest.mark.parametrize('language', ['en', 'de'])
+def test_without_a_language_pack_menus_are_english(with_pack, language):
+    assert jupyterlab_settings(with_pack, language) == with_pack.root / '.jupyterlab'

@@ -1,0 +1,73 @@
+"""The language of the lessons that a user gets, of JupyterLab around them and of its terminals."""
+
+import json
+import shutil
+from collections.abc import Mapping
+from pathlib import Path
+
+from launcher.environment import Environment
+from launcher.messages import LauncherError
+
+ENGLISH = 'en'
+OPTION, VARIABLE = '--language', 'COURSE_LANGUAGE'
+"""What chooses a language, and what tells it to all that is started."""
+INDEX = 'index.ipynb'
+SETTINGS, OVERRIDES = '.jupyterlab', 'overrides.json'
+"""JupyterLab's settings for lessons: they leave out the instructors' panels."""
+TRANSLATION = '@jupyterlab/translation-extension:plugin'
+
+
+def choose_language(
+    lessons: Path, variables: Mapping[str, str], arguments: list[str]
+) -> tuple[str, list[str]]:
+    """Return the language of the lessons to open, and the arguments without the one that names it.
+
+    `--language zh_CN` chooses, or else the user's locale does where there is such an edition.
+    Raises LauncherError where there is none of that name.
+    """
+    known = [ENGLISH, *languages(lessons)]
+    kept, asked = [], ''
+    rest = iter(arguments)
+    for argument in rest:
+        name, found, value = argument.partition('=')
+        if name != OPTION:
+            kept.append(argument)
+        else:
+            asked = value if found else next(rest, '')
+            if asked not in known:
+                raise LauncherError(
+                    f'there are no lessons in {asked!r}: {OPTION} takes {" or ".join(known)}.'
+                )
+    return asked or of_the_locale(lessons, variables), kept
+
+
+def languages(lessons: Path) -> list[str]:
+    """Return the languages, other than English, in which there are lessons."""
+    return sorted(page.parent.name for page in lessons.glob(f'*/{INDEX}'))
+
+
+def of_the_locale(lessons: Path, variables: Mapping[str, str]) -> str:
+    """Return the edition that fits the user's locale best: zh_CN, or another Chinese one."""
+    known = [ENGLISH, *languages(lessons)]
+    said = (variables.get(name) for name in ('LC_ALL', 'LC_MESSAGES', 'LANG'))
+    locale = next(filter(None, said), '').partition('.')[0].partition('@')[0]
+    alike = [each for each in known if each.split('_')[0] == locale.split('_')[0]]
+    return locale if locale in known else next(iter(alike), ENGLISH)
+
+
+def jupyterlab_settings(environment: Environment, language: str) -> Path:
+    """Return the folder of JupyterLab's settings, made in .venv where its menus are translated.
+
+    A language whose pack is not installed has English menus. What a user chooses in JupyterLab
+    counts more than these.
+    """
+    ours = environment.root / SETTINGS
+    packs = f'lib/python*/site-packages/jupyterlab_language_pack_{language}'
+    if language == ENGLISH or not any(environment.venv.glob(packs)):
+        return ours
+    made = environment.venv / 'share/course' / f'jupyterlab-{language}'
+    shutil.copytree(ours, made, dirs_exist_ok=True)
+    settings = json.loads((ours / OVERRIDES).read_text(encoding='utf-8'))
+    settings[TRANSLATION] = {'locale': language}
+    (made / OVERRIDES).write_text(json.dumps(settings, indent=2), encoding='utf-8')
+    return made
