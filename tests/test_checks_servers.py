@@ -8,7 +8,7 @@ from functools import partial
 import pytest
 import rclpy
 from geometry_msgs.msg import Point
-from my_robot_basics.checks import CheckFailed, holding_server, ik, serve, servers
+from my_robot_basics.checks import CheckFailed, holding_server, ik, responses, serve, servers
 from nodes.running import imported, running
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import MultiThreadedExecutor
@@ -151,6 +151,27 @@ RIGHT = [IKClient, Awaits, Blocks, OwnThread, WorksOff]
 def test_who_asks_right_passes_in_whatever_way(run, node_class):
     run(node_class)
     check_asks()
+    check_never_blocks()
+
+
+class WorksOffSlowly(WorksOff):
+    """Meets the server late, as on a busy machine: messages have been repeated by then."""
+
+    def __init__(self):
+        super().__init__()
+        self.asked = 0
+
+    def look(self):
+        self.asked += 1
+        if self.asked % 6 == 0:
+            super().look()
+
+
+def test_no_request_for_a_repeated_message_is_lost_when_the_server_leaves(run, monkeypatch):
+    monkeypatch.setattr(servers, 'AGAIN_SEC', 0.05)
+    monkeypatch.setattr(responses, 'OWED_SEC', 1.0)
+    run(WorksOffSlowly)
+    check_never_blocks()
     check_never_blocks()
 
 

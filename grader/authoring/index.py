@@ -19,7 +19,7 @@ COPIED = (TERMS, NEXT)
 """Pages that lie in solutions/ as students get them."""
 
 WELCOME = """\
-# Topics in ROS 2
+# ROS 2 on a two-link arm
 
 A course in notebooks: real ROS 2 nodes run in them and move an arm with two links. Open the first
 lesson; each lesson ends with a link to the next one.

@@ -101,14 +101,20 @@ def expect_never_blocks(server: Server, *targets: tuple[float, float]) -> None:
     expect_no_others(server)
     server.release()
     expect_elbow_up(server, *first)
+    _let_all_be_answered(server)
     server.stop()
     server.publish(Point(x=second[0], y=second[1]))
     server.expect_alive('there is no server')
     server.start()
     expect_answer(server, *third)
-    # the second one, too, where it was kept
-    server.made.wait_for_rest(is_elbow_up, leads=lambda response: response.reachable)
+    _let_all_be_answered(server)  # the second one, too, where it was kept
     expect_no_others(server)
+
+
+def _let_all_be_answered(server: Server) -> None:
+    """Wait until the client has what it asked for: what was lost is waited for without end."""
+    server.wait_for_repeated()
+    server.made.wait_for_rest(is_elbow_up, leads=lambda response: response.reachable)
 
 
 def ask(server: Server, x: float, y: float) -> None:

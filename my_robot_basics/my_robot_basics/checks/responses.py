@@ -11,12 +11,23 @@ from my_robot_basics.graph.watcher import Watcher
 MadeOf = Callable[[Any, Any], bool]
 """Whether a message is made of a response."""
 OWED_SEC = 0.5
-"""How long a node may take to publish what it owes, of time that was free."""
+"""How long a node may take to ask or to publish what it owes, of time that was free."""
 
 
 def of_none(_message: Any, _response: Any) -> bool:
     """No message is made of any response."""
     return False
+
+
+def wait_for_owed(watcher: Watcher, requests: Sequence[Any], most: int) -> None:
+    """Wait for so many requests, each OWED_SEC at most: one for each message that was published.
+
+    A client may keep a message that came twice, and ask for it when the first one is answered.
+    """
+    before = -1
+    while before < len(requests) < most:
+        before = len(requests)
+        watcher.spin_until_free(lambda: len(requests) > before, free_sec=OWED_SEC)  # noqa: B023
 
 
 class Made:

@@ -10,8 +10,8 @@ from my_robot_basics.checks.callbacks import CallbackErrors
 from my_robot_basics.checks.heartbeat import Heartbeat
 from my_robot_basics.checks.holding_server import HoldingServer
 from my_robot_basics.checks.recorder import Recorder
-from my_robot_basics.checks.responses import Made, MadeOf, of_none
-from my_robot_basics.checks.sole_server import expect_no_other
+from my_robot_basics.checks.responses import Made, MadeOf, of_none, wait_for_owed
+from my_robot_basics.checks.sole_server import expect_no_other, wait_until_known
 from my_robot_basics.checks.topics import Topic
 from my_robot_basics.checks.waiting_clients import (
     waits_for_answer,
@@ -50,13 +50,14 @@ def serve(
             server.release()
             server.expect(is_right, expected='…', hint=lambda message: '…')
     """
+    served = {'name': name, 'type_': type_, 'answer': answer}
     with Watcher() as watcher:
         answers, beats = (Topic(topic_name).listen(watcher) for topic_name in (to, alive))
-        served = {'name': name, 'type_': type_, 'answer': answer}
         server = Server(watcher, asked_on=asked_on, answers=answers, beats=beats, **served)
         server.expect_alone()
         server.start()
         yield server
+        server.wait_for_repeated()
         server.expect_alone()
 
 
@@ -74,7 +75,7 @@ class Server(HoldingServer):
         self.made = Made(watcher, answers, self.sent)
         """The messages on `to`, beside the responses."""
         self._publisher: Publisher | None = None
-        self._seen = self._known_starts = 0
+        self._seen = self._known_starts = self._published = 0
 
     def publish(self, message: Any) -> None:
         """Publish a message that is to lead to a request, without waiting for one."""
@@ -82,7 +83,17 @@ class Server(HoldingServer):
             self._publisher = Topic(self.asked_on).meet(self._watcher, type(message))
         self._seen = len(self._answers.received)
         self.made.begin()
+        self._published += 1
         self._publisher.publish(message)
+
+    def wait_for_repeated(self) -> None:
+        """Wait for requests that are owed: a server that leaves would take the answer with it."""
+        wait_for_owed(self._watcher, self.requests, self._published)
+
+    def stop(self) -> None:
+        """Be absent: return when the student's node has had the time to know it."""
+        super().stop()
+        wait_until_known(self._watcher)
 
     def ask(
         self, message: Any, *, is_it: Callable[[Any], bool], hint: str = 'ask for what arrived'

@@ -1,5 +1,6 @@
-"""That nobody but the check serves a service, whatever the other server's node is called."""
+"""Whether somebody serves: that nobody but the check does, and that the check no longer does."""
 
+from my_robot_basics.exchange import student
 from my_robot_basics.feedback.errors import expect
 from my_robot_basics.feedback.hidden import theirs
 from my_robot_basics.graph import services
@@ -7,6 +8,9 @@ from my_robot_basics.graph.watcher import Watcher
 
 GONE_SEC = 1.0
 """How long a server that was just stopped may still be on the graph."""
+TURNS, TURN_SEC = 4, 0.1
+"""So often, each time after so long, of time that was free, does the notebook's process get a turn
+until it knows that a server has gone."""
 
 
 def expect_no_other(watcher: Watcher, name: str, *, own: int) -> None:
@@ -22,3 +26,10 @@ def expect_no_other(watcher: Watcher, name: str, *, own: int) -> None:
         hint='stop that node: here, the check itself answers',
         cause=f'another node serves {name}',
     )
+
+
+def wait_until_known(watcher: Watcher) -> None:
+    """Wait until the student's node has had the time to know that the check's server has gone."""
+    for _ in range(TURNS):
+        watcher.spin_until_free(lambda: False, free_sec=TURN_SEC)
+        student.times_raised('')
