@@ -55,11 +55,10 @@ def in_edition(language, submitted, assignment):
     return other
 
 
-@pytest.mark.parametrize('assignment', Course().assignments())
+@pytest.mark.parametrize('assignment', sorted({*map(assignment_of, PATHS.values())}))
 @pytest.mark.parametrize('language', EDITIONS)
 def test_of_each_sample_the_same_is_graded_whichever_edition_it_is_of(language, assignment):
     names = [name for name, path in PATHS.items() if assignment_of(path) == assignment]
-    assert names
     differ = 0
     for name in (each for each in names if '-zero-' not in each):  # of no lesson, or of another
         english = read_notebook(PATHS[name])
