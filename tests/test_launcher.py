@@ -246,3 +246,12 @@ def test_jupyterlab_has_menus_in_the_language_of_the_lessons(with_pack):
 @pytest.mark.parametrize('language', ['en', 'de'])
 def test_without_a_language_pack_menus_are_english(with_pack, language):
     assert jupyterlab_settings(with_pack, language) == with_pack.root / '.jupyterlab'
+
+
+def test_each_language_of_the_course_has_a_language_pack():
+    for folder in (ROOT / 'notebooks').glob('*/index.ipynb'):
+        language = folder.parent.name
+        assert jupyterlab_settings(Environment(ROOT), language) != ROOT / '.jupyterlab'
+        from jupyterlab_server.translation_utils import get_language_packs
+
+        assert language in get_language_packs()[0]
