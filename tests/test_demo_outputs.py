@@ -146,7 +146,7 @@ def test_each_picture_is_in_the_repository_once(name):
     data = [each.data for each in outputs if 'data' in each]
     assert not [each for each in data if 'image/png' in each]  # HTML has words for it, too
     pictures = [page for each in data if 'data:image' in (page := each.get('text/html', ''))]
-    assert pictures
+    assert pictures or name == '12_package'  # it shows files and commands
     assert all(
         re.match(r'<img alt="[^"]+" src="data:image/png;base64,', each) for each in pictures
     )

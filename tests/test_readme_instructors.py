@@ -41,7 +41,8 @@ class Walk:
         """Do what a cell of the page says, with what one has; return what it prints."""
         _, verb, *arguments = re.sub(r' \[.*?\]', '', command).split()
         arguments = [str(self.archive) if a == 'FOLDER' else a for a in arguments]
-        return self.run('./course', verb, *arguments), verb
+        step = '_'.join([verb, *(a.strip('-') for a in arguments if a.startswith('--'))])
+        return self.run('./course', verb, *arguments), step
 
     def run(self, *command):
         run = subprocess.run(
@@ -103,12 +104,31 @@ class Walk:
             for student, paper in self.papers.items()
         }
 
+    def after_scores_format(self, out):
+        """What the system takes back has the numbers that it gave."""
+        found = {}
+        for path in map(Path, out.split('\n')[:-1]):
+            with path.open(encoding='utf-8-sig', newline='') as file:
+                found |= {row['Identifier']: float(row['Grade']) for row in csv.DictReader(file)}
+        assert found == {
+            f'Participant {number}': sum(paper.expected.values())
+            for number, paper in enumerate(self.papers.values(), start=8001)
+        }
+
+    def after_feedback_zip(self, out):
+        names = []
+        for path in self.clone.glob('gradebook/moodle/*-feedback.zip'):
+            with zipfile.ZipFile(path) as archive:
+                names += archive.namelist()
+        assert len(names) == len(STUDENTS)
+
 
 def test_the_walk_knows_each_step_of_the_page():
     _, _, *rows = TABLE.splitlines()
     assert len(STEPS) == len(rows)
-    verbs = [command.split()[1] for command in COMMANDS]
-    assert [name.removeprefix('after_') for name in vars(Walk) if 'after_' in name] == verbs
+    steps = [re.sub(r' \[.*?\]', '', command).split()[1:] for command in COMMANDS]
+    names = ['_'.join([s[0], *(a.strip('-') for a in s if a.startswith('--'))]) for s in steps]
+    assert [name.removeprefix('after_') for name in vars(Walk) if 'after_' in name] == names
 
 
 @pytest.mark.slow

@@ -50,7 +50,9 @@ def test_each_lesson_has_a_solution_that_runs_as_python(tmp_path):
         assert not [mark for mark in MARKS if mark in text]
         notebook = nbformat.read(path, as_version=4)
         answers = [c for c in notebook.cells if c.metadata.get('nbgrader', {}).get('solution')]
-        assert answers
+        packages = Course().packages(path.stem)
+        assert answers or packages
+        assert all((path.parent / package / 'package.xml').is_file() for package in packages)
         for cell in answers:
             if cell.cell_type == 'code':
                 compile(cell.source, path.name, 'exec')

@@ -6,6 +6,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 import nbformat
+from my_robot_basics.session import package_files
 from nbconvert.preprocessors import Preprocessor
 from nbformat import NotebookNode
 
@@ -48,6 +49,8 @@ def write_solutions(
 ) -> list[Path]:
     """Write gradebook/solutions/<assignment>.ipynb, for all of them by default; return the paths.
 
+    A ROS package that is an answer lies beside its notebook.
+
     Raises CourseError, and writes nothing, where somebody may still hand in, unless `early`.
     """
     wanted = assignments or course.assignments()
@@ -62,6 +65,9 @@ def write_solutions(
         keep_outputs(solved, last_release(course, assignment), sanitizer_of(course))
         paths.append(folder / f'{assignment}.ipynb')
         write_whole(paths[-1], nbformat.writes(solved) + '\n')
+        for package in course.packages(assignment):  # beside the notebook, where it is looked for
+            place = course.source_path(assignment).parent / package
+            package_files.write(package_files.read(place).taken, folder / package)
     return paths
 
 
