@@ -21,7 +21,7 @@ VERBS = [
     'bundle',
     'translate',
 ]
-VERBS += ['collect', 'due', 'grade', 'scores', 'feedback', 'solutions', 'demo', 'doctor']
+VERBS += ['collect', 'due', 'grade', 'serve', 'scores', 'feedback', 'solutions', 'demo', 'doctor']
 TOOLS = ['sh', 'cat', 'chmod', 'cp', 'dirname', 'env', 'mkdir', 'readlink', 'sleep', 'uname']
 IN_A_NAMESPACE = [
     shutil.which('unshare'),
