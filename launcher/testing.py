@@ -23,7 +23,7 @@ SHARD = '--shard='
 ALL_THE_SAME = (*TIERS, '--no-isolation', SHARD)
 """How the options begin that leave it a check of everything."""
 LESSONS = 'solutions/*/*.ipynb'
-WORKERS = 4
+WORKERS = 6
 """How many processes run tests at a time."""
 RECORD = 'unstable_tests.txt'
 """In the course's root; one line for each test that failed beside others and passed alone."""

@@ -3,7 +3,7 @@
 import time
 
 import pytest
-from my_robot_basics.checks import CheckFailed, action, moves
+from my_robot_basics.checks import CheckFailed, action, arm_looks, moves
 from nodes.running import imported
 from rclpy.action import ActionServer, GoalResponse
 from rclpy.duration import Duration
@@ -406,7 +406,9 @@ class TakesTheWallClocksTime(MoveArmServer):
         self.report(handle)
 
 
-def test_the_time_of_another_clock_is_named(run):
+def test_the_time_of_another_clock_is_named(run, monkeypatch):
+    # on the wall clock, its moves would be right
+    monkeypatch.setattr(arm_looks, '_is_seen_to_follow', lambda arm: True)
     run(TakesTheWallClocksTime)
     with pytest.raises(CheckFailed, match=r'take the time that has passed from self.get_clock\('):
         moves.expect_reaches(action('/move_arm', MoveArm), (1.2, -0.6), speed=0.02)

@@ -86,7 +86,7 @@ def test_the_watchers_of_a_grade_cell_share_a_participant_that_ends_with_it(node
     assert not other.context.ok()
     with Watcher(shared=True) as third:
         assert third.context is first.context
-        assert '/talker' in graphs.node_names(third.node)  # it was met before
+        assert third.spin_until(lambda: '/talker' in graphs.node_names(third.node), timeout_sec=10)
     end_cell()
     assert not first.context.ok()
     with Watcher(shared=True) as fourth:

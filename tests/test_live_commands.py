@@ -15,7 +15,6 @@ from my_robot_basics import live
 
 pytestmark = pytest.mark.starts
 START = 'ros2 run my_robot_basics kinematics_publisher --ros-args'
-MAIN = sys.modules['__main__']
 
 
 @pytest.fixture(autouse=True)
@@ -27,7 +26,8 @@ def end():
 @pytest.fixture
 def notebook(monkeypatch):
     return lambda **names: [
-        monkeypatch.setattr(MAIN, name, value, raising=False) for name, value in names.items()
+        monkeypatch.setattr(sys.modules['__main__'], name, value, raising=False)
+        for name, value in names.items()
     ]
 
 

@@ -28,7 +28,7 @@ def test_a_new_package_is_taken_as_it_is(folder):
         ('build/x.py', 'made by a build'),
         ('install/greeter/setup.bash', 'made by a build'),
         ('log/latest.log', 'made by a build'),
-        ('greeter/__pycache__/a.pyc', 'left behind'),
+        ('greeter/venv/a.py', 'left behind'),
         ('greeter.egg-info/PKG-INFO', 'left behind'),
         ('.git/config', 'hidden'),
         ('greeter/.env', 'hidden'),
@@ -100,3 +100,11 @@ def test_what_became_a_link_meanwhile_is_not_read(folder):
     (folder / 'setup.py').symlink_to('/etc/passwd')
     with pytest.raises(OSError, match=r'setup\.py'):
         package_files.write(found.taken, folder.parent / 'copy')
+
+
+def test_what_imports_leave_is_left_out_without_a_word(tmp_path):
+    for name in ('greeter/a.py', 'greeter/__pycache__/a.cpython-311.pyc'):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text('')
+    found = read(tmp_path)
+    assert (list(found.taken), found.left_out) == (['greeter/a.py'], ())

@@ -1,6 +1,7 @@
 """The temporary folders of graders: gone with their process, or with the next one's start."""
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -72,9 +73,8 @@ def test_a_process_has_one_folder_that_nobody_else_enters():
     assert own_folder() not in sweep(own_folder().parent)
     assert len(str(folder / 'kernel' / 'zmq-1')) < 107
     for each in (folder, other):
-        (each / 'given' / 'files').rmdir()
-        (each / 'given').rmdir()
-        each.rmdir()
+        assert not [path for path in each.rglob('*') if not path.is_dir()]
+        shutil.rmtree(each)
 
 
 def test_a_long_path_is_left_for_a_short_one(monkeypatch):

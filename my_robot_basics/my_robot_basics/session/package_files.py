@@ -123,6 +123,8 @@ def content(file: Path) -> bytes:
 def _walk(folder: Path, above: tuple[str, ...]) -> Iterator[tuple[Path, tuple[str, ...], str]]:
     """Yield each file, its path and why it is left out; of a folder that is, only itself."""
     for path in sorted(islice(folder.iterdir(), MOST_SEEN + 1)):
+        if path.name == '__pycache__':  # nobody wrote it: each import makes one
+            continue
         parts = (*above, path.name)
         mode = path.lstat().st_mode
         is_folder = stat.S_ISDIR(mode)
