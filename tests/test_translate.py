@@ -235,6 +235,7 @@ FAULTS = {
     'a tag': ('a <i>topic</i>', '话题', 'a tag'),
     'bold type': ('a **node** and', '节点和', 'bold type'),
     'bold type that shows': ('**Predict:** when?', '**预测：**何时？', 'not shown in bold'),
+    'italic type that shows': ('*No error.* Try', '*没有错误。*试试', 'not shown in italic'),
     'a bold link': ('a **[node](t.md)** is', '**[节点](t.md)**是', 'not shown in bold'),
     'spaces': ('the node `a` is', '节点`a`是', 'no space between'),
     'marks': ('A node, a topic', '节点, 话题', 'a Latin mark'),

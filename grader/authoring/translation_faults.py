@@ -67,20 +67,21 @@ def _typography(text: str) -> Iterator[str]:
     ):
         for found in pattern.finditer(shown):
             yield f'{what}: {_around(shown, found.start())}'
-    yield from _not_bold(_CODE.sub(lambda code: '`' * len(code[0]), text))
+    yield from _not_emphasised(_CODE.sub(lambda code: '`' * len(code[0]), text))
 
 
-def _not_bold(text: str) -> Iterator[str]:
-    """Yield the ** that no reader of markdown takes as bold type.
+def _not_emphasised(text: str) -> Iterator[str]:
+    """Yield the * and ** that no reader of markdown takes as emphasis.
 
     Beside a mark, as in `**节点：**是`, they count only with a space or a mark on the other side;
     there is no space between Chinese words.
     """
-    for number, found in enumerate(re.finditer(r'\*\*', text)):
-        before, after = text[: found.start()][-1:], text[found.end() :][:1]
-        inner, outer = (after, before) if number % 2 == 0 else (before, after)
-        if _is_mark(inner) and outer.strip() and not _is_mark(outer):
-            yield f'not shown in bold type: {_around(text, found.start())}'
+    for stars, kind in ((r'\*\*', 'bold'), (r'(?<!\*)\*(?!\*)', 'italic')):
+        for number, found in enumerate(re.finditer(stars, text)):
+            before, after = text[: found.start()][-1:], text[found.end() :][:1]
+            inner, outer = (after, before) if number % 2 == 0 else (before, after)
+            if _is_mark(inner) and outer.strip() and not _is_mark(outer):
+                yield f'not shown in {kind} type: {_around(text, found.start())}'
 
 
 def _is_mark(character: str) -> bool:
