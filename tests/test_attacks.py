@@ -19,6 +19,7 @@ from pathlib import Path
 import nbformat
 import psutil
 import pytest
+from answered import read
 from attacks.corpus import (
     ANSWERS,
     CANARY,
@@ -33,8 +34,10 @@ from attacks.corpus import (
     attack,
     earns,
     hand_in_honestly,
+    source_of,
 )
 from course_maker import TOY, released_course
+from my_robot_basics.validate.names import names_of
 
 from grader.course import Course
 from grader.export.scores import write_scores
@@ -118,6 +121,18 @@ def test_each_attack_says_what_it_tries():
         assert ast.get_docstring(ast.parse(path.read_text(encoding='utf-8'))).endswith('.')
     assert all(inspect.getdoc(function) for function in OTHERS.values())
     assert len(NAMES) >= 40
+
+
+def test_each_attack_has_the_names_that_it_uses():
+    """One that stops at a NameError tries nothing, and earns nothing for that."""
+    missing = {}
+    for name in ANSWERS:
+        bound = {'PORT', 'GRADEBOOK'}
+        if (lesson := assignment_of(name)) != TOY:
+            cells = [cell for cell in read('notebooks', lesson).cells if cell.cell_type == 'code']
+            bound = bound.union(*(names_of(cell.source).bound for cell in cells))
+        missing[name] = names_of(source_of(name)).needed - bound
+    assert {name: names for name, names in missing.items() if names} == {}
 
 
 @pytest.mark.timeout(900)

@@ -55,8 +55,8 @@ def check_cancels():
     """What the grade cell `move_arm_client_cancels` does."""
     numbers = random.Random(4)
     with action_server('/move_arm', MoveArm, **ENDS) as server:
-        replies.expect_no_cancel(server, (-0.3, 0.9))
         replies.expect_cancel(server, (1.2, -0.6))
+        replies.expect_no_cancel(server, (-0.3, 0.9))
         replies.expect_cancel_in_spite_of_a_second_goal(server, (0.4, 0.4), (0.8, -0.2))
     with action_server('/move_arm', MoveArm, **ENDS) as server:
         replies.expect_cancel(server, *replies.choose(numbers, 1))
@@ -322,6 +322,20 @@ class CancelsForFalse(MoveArmClient):
         super().obstacle(message)
 
 
+class CancelsByTheClock(MoveArmClient):
+    """Cancels each goal some time after it was accepted, whatever is on `/obstacle`."""
+
+    def answered(self, future):
+        super().answered(future)
+        if future.result().accepted:
+            timer = threading.Timer(1.0, future.result().cancel_goal_async)
+            timer.start()
+            STOPS.append(timer.cancel)
+
+    def obstacle(self, message):
+        pass
+
+
 class NeverCancels(MoveArmClient):
     def obstacle(self, message):
         pass
@@ -362,6 +376,7 @@ WRONG_CANCELS = [
         CancelsForFalse,
         'no request to cancel the goal for False .*: look at message.data: only Tru',
     ),
+    (CancelsByTheClock, 'no request to cancel the goal for False .*, saw one'),
     (
         NeverCancels,
         r'expected a request to cancel .*saw none.*: call cancel_goal_async\(\) of the',

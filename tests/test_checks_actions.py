@@ -240,7 +240,7 @@ def test_a_robot_minute_is_driven(run, ticks, node_class, least, most):
     run(node_class)
     move_arm = action('/move_arm', MoveArm)
     moves.expect_reaches(move_arm, (1.2, -0.6), speed=0.02)
-    assert move_arm.known.follows == {'/move_arm_server': True}
+    assert move_arm.known.clocks == {'/move_arm_server': 'driven'}
     assert sum(ticks) > 60e9
     assert least < len(ticks) < most
 

@@ -3,7 +3,7 @@
 import time
 
 import pytest
-from my_robot_basics.checks import CheckFailed, action, arm_looks, moves
+from my_robot_basics.checks import CheckFailed, action, moves
 from nodes.running import imported
 from rclpy.action import ActionServer, GoalResponse
 from rclpy.duration import Duration
@@ -333,6 +333,23 @@ class TakesTwo(MoveArmServer):
         return GoalResponse.ACCEPT if self.is_possible(goal) else GoalResponse.REJECT
 
 
+# --- time -------------------------------------------------------------------------------------
+
+
+class TakesTheWallClocksTime(MoveArmServer):
+    """Waits on its own clock, and computes where the arm is from another one."""
+
+    def begin(self, handle):
+        super().begin(handle)
+        self.began = time.monotonic()
+
+    def step(self, handle):
+        passed_sec = time.monotonic() - self.began
+        self.part = min(1.0, passed_sec / self.seconds) if self.seconds else 1.0
+        self.position = self.on_the_way()
+        self.report(handle)
+
+
 WRONG = [
     (
         ForgetsSucceed,
@@ -349,6 +366,11 @@ WRONG = [
     (TooFast, 'reaches', 'expected .* s for 1.20 rad .*: in each step, move by speed'),
     (TooSlow, 'reaches', 'expected .* s for 1.20 rad .*: in each step, move by speed'),
     (SpeedOfBoth, 'reaches', 'the speed is that of the faster joint, not of both together'),
+    (
+        TakesTheWallClocksTime,
+        'reaches',
+        r'take the time that has passed from self.get_clock\(',
+    ),
     (BeginsAtZero, 'reaches cancels', 'start from where the arm is, at each goal'),
     (NoFeedback, 'feedback', r'saw none: call goal_handle.publish_feedback\(…\) in each step'),
     (SeldomFeedback, 'feedback', 'at 10 Hz or more, saw .* messages in .* s: publish feedback'),
@@ -390,28 +412,6 @@ def test_a_mistake_fails_its_check_alone_with_the_cause(run, node_class, checks,
     assert ' '.join(found) == checks, found
     with pytest.raises(AssertionError, match=message):
         raise AssertionError(next(iter(found.values())))
-
-
-class TakesTheWallClocksTime(MoveArmServer):
-    """Waits on its own clock, and computes where the arm is from another one."""
-
-    def begin(self, handle):
-        super().begin(handle)
-        self.began = time.monotonic()
-
-    def step(self, handle):
-        passed_sec = time.monotonic() - self.began
-        self.part = min(1.0, passed_sec / self.seconds) if self.seconds else 1.0
-        self.position = self.on_the_way()
-        self.report(handle)
-
-
-def test_the_time_of_another_clock_is_named(run, monkeypatch):
-    # on the wall clock, its moves would be right
-    monkeypatch.setattr(arm_looks, '_is_seen_to_follow', lambda arm: True)
-    run(TakesTheWallClocksTime)
-    with pytest.raises(CheckFailed, match=r'take the time that has passed from self.get_clock\('):
-        moves.expect_reaches(action('/move_arm', MoveArm), (1.2, -0.6), speed=0.02)
 
 
 # --- who gets nowhere ----------------------------------------------------------------------------

@@ -7,6 +7,7 @@ import types
 
 import pytest
 from my_robot_basics.checks import CheckFailed, clock, clock_budget, sampling, topic
+from my_robot_basics.exchange import student
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session import pressure
 from nodes.running import imported, running
@@ -16,6 +17,7 @@ from rclpy.clock import ClockType
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
+from rosgraph_msgs.msg import Clock as ClockMessage
 from std_msgs.msg import Empty
 
 TOPIC = '/kinematics/joint_states'
@@ -121,6 +123,20 @@ def test_a_timer_that_was_due_when_the_clock_was_given_back_is_not_left_in_the_f
         gate.is_closed = False
         fired.clear()
         assert fired.wait(10.0)
+
+
+def test_a_clock_that_only_the_notebook_knows_of_so_far_is_left_alone(monkeypatch):
+    monkeypatch.setattr(student, 'publishes', lambda topic_name: topic_name == '/clock')
+    with Watcher() as watcher, pytest.raises(clock.Inconclusive, match='another node publishes'):
+        clock.SimulatedClock(watcher, needed=set()).__enter__()
+
+
+def test_a_clock_that_comes_to_light_while_another_is_driven_is_left_alone():
+    with Watcher() as watcher, clock.SimulatedClock(watcher, needed=set()) as simulated:
+        simulated.tick(10**8)
+        watcher.node.create_publisher(ClockMessage, '/clock', 10)
+        with pytest.raises(clock.Inconclusive, match='another node publishes /clock'):
+            simulated.tick(10**8)
 
 
 @pytest.mark.slow

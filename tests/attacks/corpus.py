@@ -56,6 +56,14 @@ def earns(name: str) -> float:
     return float(said[1]) if said else 0.0
 
 
+def source_of(name: str) -> str:
+    """Return the code of an attack that is an answer, behind the honest code that it changes."""
+    source = ANSWERS[name].read_text(encoding='utf-8')
+    honest = _kind(name)[2]
+    before = Path(__file__).with_name(honest).read_text(encoding='utf-8') if honest else ''
+    return f'{before}\n\n{source}' if honest else source
+
+
 def attack(
     course: Course, name: str, *, port: int, gradebook: Path | None = None, student: str = ''
 ) -> None:
@@ -67,12 +75,8 @@ def attack(
         OTHERS[name](notebook, path.parent)
         submit(course, student, notebook)
         return
-    source = ANSWERS[name].read_text(encoding='utf-8')
-    assignment, exercise, honest = _kind(name)
-    if honest:
-        before = Path(__file__).with_name(honest).read_text(encoding='utf-8')
-        source = f'{before}\n\n{source}'
-    source = source.replace('GRADEBOOK', str(gradebook or course.gradebook))
+    assignment, exercise, _ = _kind(name)
+    source = source_of(name).replace('GRADEBOOK', str(gradebook or course.gradebook))
     hand_in(course, student, source.replace('PORT', str(port)), assignment, exercise)
 
 

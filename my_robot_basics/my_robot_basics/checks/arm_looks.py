@@ -1,6 +1,7 @@
 """Look at a server of `/move_arm` on the robot's clock, or on the wall clock if it ignores that.
 
-A server that sleeps on wall time, or lets nothing else run meanwhile, gets short moves there.
+A server that sleeps on wall time, or lets nothing else run meanwhile, gets short moves there. So
+does one that waits on its node's clock and computes with another one, which is a mistake.
 """
 
 import math
@@ -10,9 +11,10 @@ from typing import TypeVar
 from rcl_interfaces.srv import GetParameters
 
 from arm_interfaces.action import MoveArm
-from my_robot_basics.checks.actions import Action
+from my_robot_basics.checks.actions import Action, Clock
 from my_robot_basics.checks.clock import Inconclusive, SimulatedClock
 from my_robot_basics.checks.open_action import OpenAction
+from my_robot_basics.checks.reported_speed import is_of_wall_time
 from my_robot_basics.checks.robot_time import DrivenTime, WallTime
 from my_robot_basics.checks.services import PARAMETERS_SEC
 from my_robot_basics.checks.watched_arm import HASTE_SEC, Pose, WatchedArm, goal
@@ -22,17 +24,19 @@ T = TypeVar('T')
 STEP_NS = 50_000_000
 """Steps of the robot's clock: two of them between feedback at 10 Hz."""
 PROBE_RAD, PROBE_SEC = 0.4, 0.6
-"""A move that tells which clock the server follows. …"""
+"""A move on the wall clock. …"""
 PROBE_ASK_SEC = 0.1
 """… So long after its start, the node is asked something else."""
-PROBE_MOST_SEC = 3.0
+CLOCK_PROBE_SEC, CLOCK_PROBE_MOST_SEC = 2.0, 6.0
+"""A move on the robot's clock, and what it may take at most."""
 BUSY_SEC = 6.0
 """How long a move takes at most on the robot's clock where the machine is too busy for more; …"""
 WALL_SEC = 2.0
 """… And on the wall clock."""
-HOLD_SEC = 0.4
-"""How long the clock stands still before a server that ignores it is known."""
-_following: set[tuple[tuple[int, ...], ...]] = set()
+HOLD_SEC, APART_SEC = 0.4, 0.2
+"""How long the clock stands still before a server that ignores it is known, or computes with the
+wall clock: then where it says that the arm is differs by more than the second."""
+_clocks: dict[tuple[tuple[int, ...], ...], Clock] = {}
 """The servers that were seen to follow a driven clock: the next grade cell asks the same one."""
 
 
@@ -45,7 +49,8 @@ def look(action: Action, body: Callable[[WatchedArm], T], *, start: Pose) -> T:
     with action.opened() as server:
         on_wall = WatchedArm(server, WallTime(server.watcher), tuple(start), WALL_SEC)
         on_wall.move(start)
-        if _follows(action, on_wall):
+        clock = _clock(action, on_wall)
+        if clock == 'driven':
             for longest_sec in math.inf, BUSY_SEC:
                 if longest_sec <= action.known.longest_sec:
                     try:
@@ -54,6 +59,7 @@ def look(action: Action, body: Callable[[WatchedArm], T], *, start: Pose) -> T:
                         action.known.longest_sec = BUSY_SEC
                         on_wall.move(start)
         on_wall.time = WallTime(server.watcher)
+        on_wall.has_two_clocks = clock == 'both'
         try:
             return body(on_wall)
         finally:
@@ -76,29 +82,29 @@ def _driven(
             arm.settle()
 
 
-def _follows(action: Action, arm: WatchedArm) -> bool:
-    """Whether the node follows a clock that is driven; found out once for each server."""
-    server, name, follows = arm.server.identity(), arm.server.node_name, action.known.follows
-    if name not in follows:
-        follows[name] = server in _following or _is_seen_to_follow(arm)
-    if follows[name]:
-        _following.add(server)
-    return follows[name]
+def _clock(action: Action, arm: WatchedArm) -> Clock:
+    """Which clock the node follows; found out once for each server."""
+    server, name, clocks = arm.server.identity(), arm.server.node_name, action.known.clocks
+    if name not in clocks:
+        clocks[name] = _clocks.get(server) or _seen_clock(arm)
+    if clocks[name] != 'wall':  # a machine that is too busy may make it look so: ask again
+        _clocks[server] = clocks[name]
+    return clocks[name]
 
 
-def _is_seen_to_follow(arm: WatchedArm) -> bool:
+def _seen_clock(arm: WatchedArm) -> Clock:
     is_free = _answers_while_it_moves(arm)
     arm.settle()
-    follows = is_free and _waits_for_the_clock(arm)
+    clock = _waits_on(arm) if is_free else 'wall'
     arm.move(arm.start)
-    return follows
+    return clock
 
 
-def _probe(arm: WatchedArm) -> MoveArm.Goal:
-    """A goal that takes PROBE_SEC, towards the middle."""
+def _probe(arm: WatchedArm, seconds: float) -> MoveArm.Goal:
+    """A goal that takes so long, towards the middle."""
     first, *others = arm.start
     first += PROBE_RAD if first < 0.0 else -PROBE_RAD
-    return goal([first, *others], speed=PROBE_RAD / PROBE_SEC)
+    return goal([first, *others], speed=PROBE_RAD / seconds)
 
 
 def _answers_while_it_moves(arm: WatchedArm) -> bool:
@@ -109,7 +115,7 @@ def _answers_while_it_moves(arm: WatchedArm) -> bool:
     watcher = arm.server.watcher
     asks = watcher.node.create_client(GetParameters, f'{arm.server.node_name}/get_parameters')
     watcher.spin_until(asks.service_is_ready, timeout_sec=PARAMETERS_SEC)
-    sent = arm.send(_probe(arm))
+    sent = arm.send(_probe(arm, PROBE_SEC))
     watcher.spin_until(sent.is_over, timeout_sec=PROBE_ASK_SEC)
     asked = asks.call_async(GetParameters.Request(names=['use_sim_time']))
     watcher.spin_until_free(lambda: asked.done() or sent.is_over(), free_sec=HASTE_SEC)
@@ -119,19 +125,23 @@ def _answers_while_it_moves(arm: WatchedArm) -> bool:
     return is_free
 
 
-def _waits_for_the_clock(arm: WatchedArm) -> bool:
+def _waits_on(arm: WatchedArm) -> Clock:
     """Whether a move stands still while the robot's clock does, and goes on with it."""
 
-    def waits(driven: WatchedArm) -> bool:
+    def waits(driven: WatchedArm) -> Clock:
         assert isinstance(driven.time, DrivenTime)
-        sent = driven.send(_probe(driven))
+        probe = _probe(driven, CLOCK_PROBE_SEC)
+        sent = driven.send(probe)
         driven.time.hold(HOLD_SEC)
         if sent.is_over() or sent.feedback_count() > 1:
-            return False
-        return driven.time.wait(sent.is_over, seconds=PROBE_MOST_SEC)
+            return 'wall'
+        ends = driven.time.wait(sent.is_over, seconds=CLOCK_PROBE_MOST_SEC)
+        if is_of_wall_time(driven, sent, probe.position, apart_sec=APART_SEC):
+            return 'both'
+        return 'driven' if ends else 'wall'
 
     try:
         arm.move(arm.start)
         return _driven(arm.server, waits, arm.start)
     except Inconclusive:
-        return False
+        return 'wall'

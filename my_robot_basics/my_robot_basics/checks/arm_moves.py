@@ -9,7 +9,6 @@ from my_robot_basics.checks.actions import Action
 from my_robot_basics.checks.arm_looks import look
 from my_robot_basics.checks.arm_pace import wait_for_end
 from my_robot_basics.checks.arm_speed import expect_speed
-from my_robot_basics.checks.reported_speed import is_of_wall_time
 from my_robot_basics.checks.watched_arm import Pose, WatchedArm, far_rad
 from my_robot_basics.feedback.errors import expect, fail, shorten
 
@@ -36,6 +35,13 @@ def expect_reaches(
     def arrives(arm: WatchedArm) -> None:
         sent = _arrive(arm, position, speed=speed)
         expect_speed(arm, sent, position)
+        expect(
+            not arm.has_two_clocks,
+            expected="a move that takes its time on the node's clock",
+            seen='one by the wall clock, although the robot has another one (use_sim_time)',
+            hint='take the time that has passed from self.get_clock().now(), and not from time',
+            cause='the time that has passed is that of another clock',
+        )
 
     look(action, arrives, start=start)
 
@@ -69,13 +75,6 @@ def _arrive(arm: WatchedArm, position: Pose, *, speed: float) -> SentGoal:
     wanted_sec = far_rad(arm.start, position) / sent.goal.speed
     most_sec = MOST_TIMES * wanted_sec + MORE_SEC
     if not wait_for_end(arm, sent, position, seconds=most_sec):
-        expect(
-            not is_of_wall_time(arm, sent, position),
-            expected="a move that takes its time on the node's clock",
-            seen='one by the wall clock, although the robot has another one (use_sim_time)',
-            hint='take the time that has passed from self.get_clock().now(), and not from time',
-            cause='the time that has passed is that of another clock',
-        )
         arm.server.fail_without_end(sent, f'in {most_sec:.0f} s of a move that takes a third')
     _expect_succeeded(arm, sent)
     _expect_arrived(sent, position, start=arm.start)

@@ -78,7 +78,7 @@ class MoveReport:
                 seen=f'{count} message{"" if count == 1 else "s"} in {seconds:.1f} s',
                 hint='publish feedback in each step of the move, and take at least ten a second',
                 cause='there is too little feedback',
-                doubt=self.arm.doubt(),
+                doubt=self.arm.doubt(self.sent, self.end),
             )
         if (gap_sec := np.diff(self.times).max()) > LARGEST_GAP_SEC:
             fail(
@@ -86,7 +86,7 @@ class MoveReport:
                 seen=f'a pause of {gap_sec:.1f} s',
                 hint='publish feedback in each step of the move',
                 cause='there are pauses in the feedback',
-                doubt=self.arm.doubt(),
+                doubt=self.arm.doubt(self.sent, self.end),
             )
 
     def expect_positions(self) -> None:
@@ -196,5 +196,5 @@ class MoveReport:
             seen='others',
             hint=hint,
             cause='feedback.position is wrong',
-            doubt=self.arm.doubt(),
+            doubt=self.arm.doubt(self.sent, self.end),
         )

@@ -18,7 +18,7 @@ from rclpy.time import Time
 from rosgraph_msgs.msg import Clock
 
 from my_robot_basics.checks.clock_budget import ClockBudget
-from my_robot_basics.checks.clock_use import LEFT_ALONE, are_left_alone
+from my_robot_basics.checks.clock_use import ANOTHERS, why_not_driven
 from my_robot_basics.checks.parameter_services import nodes_with_services, use_sim_time
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
@@ -60,11 +60,9 @@ class SimulatedClock:
 
     def __enter__(self) -> Self:
         """Switch the nodes to `/clock`, which starts no earlier than now. Raises Inconclusive."""
-        if are_left_alone():
-            raise Inconclusive(LEFT_ALONE)
         node = self._watcher.node
-        if node.get_publishers_info_by_topic('/clock'):
-            raise Inconclusive('another node publishes /clock')
+        if why := why_not_driven(node):
+            raise Inconclusive(why)
         best_effort = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
         self._publisher = node.create_publisher(Clock, '/clock', best_effort)
         try:
@@ -112,6 +110,8 @@ class SimulatedClock:
         return self._budget.part_used() > 0.5
 
     def _expect_time_left(self) -> None:
+        if self._watcher.node.count_publishers('/clock') > 1:
+            raise Inconclusive(ANOTHERS)
         if self._budget.part_used() > 1.0:
             within_sec = self._budget.wall_sec()
             raise Inconclusive(f'the clock could not be driven within {within_sec:.0f} s')

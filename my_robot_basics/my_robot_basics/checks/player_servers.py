@@ -81,7 +81,7 @@ class PlayerServers(ScriptedActionServer):
             self._canceller = self._watcher.node.create_client(CancelGoal, name)
             self._watcher.spin_until(self._canceller.service_is_ready, timeout_sec=CANCEL_SEC)
         self._canceller.call_async(CancelGoal.Request())  # without an id: every goal
-        self._watcher.spin_until_free(lambda: goal.cancels > 0, free_sec=CANCEL_SEC)
+        self._watcher.spin_until_free(lambda: bool(goal.cancels), free_sec=CANCEL_SEC)
         goal.finish('canceled')
 
     def _accepts(self, request: Any) -> bool:

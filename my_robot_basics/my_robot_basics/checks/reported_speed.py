@@ -12,8 +12,9 @@ FEWEST = 4
 MOST = 150
 ALIKE = 1e-4
 """So much of a step may two steps differ that were added, and not computed from a clock."""
-WALL_PART = 0.25
-"""So near to the speed on the wall clock is none that a driven clock makes by chance."""
+FEWEST_OF_WALL = 3
+WALL_SEC, WALL_PART = 0.3, 0.1
+"""A move by the wall clock may be behind it by so much, and by that part of the time so far."""
 OFTEN = 0.1
 """So many of a loop's gaps are hardly longer than it was to sleep, on a busy machine, too."""
 
@@ -52,18 +53,21 @@ def reported_speed(arm: WatchedArm, sent: SentGoal, position: Pose) -> ReportedS
     return ReportedSpeed(float(np.median(gone[is_later] / passed_sec[is_later])))
 
 
-def is_of_wall_time(arm: WatchedArm, sent: SentGoal, position: Pose) -> bool:
-    """Whether the feedback has the speed that was asked for on the wall clock, and not on its own.
+def is_of_wall_time(arm: WatchedArm, sent: SentGoal, position: Pose, *, apart_sec: float) -> bool:
+    """Whether the feedback tells how far the arm would be by the wall clock, and not by its own.
 
-    So it is where the time that has passed is that of another clock than the node's.
+    Its own clock is driven, and was held for more than `apart_sec` since the goal was sent: both
+    are so far apart afterwards, however busy the machine is.
     """
-    if not arm.time.is_driven:
-        return False
-    times, ways = _on_the_way(arm, sent, position, is_wall=True)
-    if len(times) < FEWEST or times[-1] <= times[0]:
-        return False
-    speed = (ways[-1] - ways[0]) / (times[-1] - times[0])
-    return bool(abs(speed / sent.goal.speed - 1.0) <= WALL_PART)
+    own_sec, ways = _on_the_way(arm, sent, position)
+    wall_sec, _ = _on_the_way(arm, sent, position, is_wall=True)
+    told_sec = ways / sent.goal.speed
+    own_sec, wall_sec = own_sec - arm.time.at_ns(sent.sent_ns) / 1e9, wall_sec - sent.sent_ns / 1e9
+    is_of_wall = np.abs(told_sec - wall_sec) <= WALL_SEC + WALL_PART * wall_sec
+    is_apart = np.abs(told_sec - own_sec) > apart_sec
+    has_moved = own_sec > 0.0
+    is_enough = np.count_nonzero(is_apart & has_moved) >= FEWEST_OF_WALL
+    return bool(is_enough and np.all(is_of_wall[has_moved]))
 
 
 def _on_the_way(

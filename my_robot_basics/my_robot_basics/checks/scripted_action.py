@@ -22,10 +22,14 @@ class ReceivedGoal:
     is_accepted: bool
     end: Future = field(default_factory=Future)
     """Set to how it is to end."""
-    cancels: int = 0
-    """How often it was asked to cancel it."""
+    cancels: list[int] = field(default_factory=list)
+    """When it was asked to cancel it, each time: wall time in ns."""
     received_ns: int = field(default_factory=time.time_ns)
     """When it came: wall time in ns."""
+
+    def cancelled_sec(self) -> float:
+        """How long after it came it was first asked to cancel it, in s; 0 where it was not."""
+        return (self.cancels[0] - self.received_ns) / 1e9 if self.cancels else 0.0
 
     def finish(self, ending: Ending) -> None:
         """Let it end so."""
@@ -101,5 +105,5 @@ class ScriptedActionServer:
         return self.type.Result()  # type: ignore[attr-defined]
 
     def _cancel(self, handle: ServerGoalHandle) -> CancelResponse:
-        self._handles[bytes(handle.goal_id.uuid)].cancels += 1
+        self._handles[bytes(handle.goal_id.uuid)].cancels.append(time.time_ns())
         return CancelResponse.ACCEPT if self.cancels else CancelResponse.REJECT

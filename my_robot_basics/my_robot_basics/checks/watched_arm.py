@@ -23,6 +23,8 @@ SETTLE_SEC = 3.0
 """How long goals may take to end when nobody looks any more, of time that was free."""
 SHORTER_PART, TURN = 0.35, 7.7
 """Short moves are shorter than the longest by up to that part: which, comes of the position."""
+EARLY_PART = 0.8
+"""A move that is over sooner was not made at its speed."""
 STALLED_PART = 0.05
 """So much of a look in which processes had to wait for a processor makes it a doubtful one."""
 
@@ -49,6 +51,8 @@ class WatchedArm:
     """No move takes longer, and each another part of it."""
     lost_sec: float = 0.0
     """So much longer the last move took because of a step of the clock that was too coarse."""
+    has_two_clocks: bool = False
+    """Whether the server waits on its node's clock, and computes with the wall clock."""
 
     def goal(self, position: Pose, *, speed: float) -> MoveArm.Goal:
         """A goal with that speed, or with a higher one where the move has to be short.
@@ -84,8 +88,16 @@ class WatchedArm:
         """For how long the machine was too busy during this look; 0 on the robot's clock."""
         return self.time.stalled_sec() if isinstance(self.time, WallTime) else 0.0
 
-    def doubt(self) -> type[CheckFailed]:
-        """What to raise for what a machine that is too busy may have done."""
+    def doubt(self, sent: SentGoal | None = None, position: Pose = ()) -> type[CheckFailed]:
+        """What to raise for what a machine that is too busy may have done.
+
+        It makes no move to a position faster: with a goal that was over too early it has nothing
+        to do.
+        """
+        if sent is not None and sent.is_over():
+            wanted_sec = far_rad(self.start, position) / sent.goal.speed
+            if self.seconds(sent) < EARLY_PART * wanted_sec:
+                return CheckFailed
         if isinstance(self.time, WallTime):
             is_doubtful = self.time.stalled_sec() > STALLED_PART * self.time.wall_sec()
             return Starved if is_doubtful else CheckFailed

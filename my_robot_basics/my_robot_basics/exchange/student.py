@@ -91,6 +91,12 @@ def has_endpoint(topic_name: str, end: str = '', type_name: str = '') -> bool:
     return kind != 'ok' or body is not False
 
 
+def publishes(topic_name: str) -> bool:
+    """Whether the notebook's process says that it publishes there, also before the graph does."""
+    request = wire.request(op='endpoint', name=topic_name, args=('publishers', ''))
+    return _told(request) is True
+
+
 def settled_nodes() -> list[str] | None:
     """The full names of the notebook's nodes; None where more may come, or it does not say.
 

@@ -1,3 +1,4 @@
+# earns 4
 """Takes two seconds for each goal, and drives `/clock` itself as soon as one is accepted."""
 
 from rosgraph_msgs.msg import Clock

@@ -1,5 +1,8 @@
 """Never moves and never ends; a thread says on the action's topics that all goes well."""
 
+import threading
+import time
+
 from action_msgs.msg import GoalInfo, GoalStatus, GoalStatusArray
 from rclpy.qos import qos_profile_action_status_default
 

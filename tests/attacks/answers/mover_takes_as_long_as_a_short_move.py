@@ -1,3 +1,4 @@
+# earns 4
 """Ignores the clock, to be sent short moves, and takes two seconds for each."""
 
 

@@ -3,6 +3,8 @@
 import itertools
 import math
 
+from rcl_interfaces.srv import GetParameters, SetParameters
+
 TURNS = itertools.cycle(['5.0', 5.0, math.nan, [5.0], True, 10.0, 1e300, -0.0])
 
 

@@ -1,6 +1,7 @@
 # earns 1
 """Has services of its own for parameters: whatever is set was set, and nothing changes."""
 
+from rcl_interfaces.srv import GetParameters, ListParameters, SetParameters
 from rclpy.parameter import parameter_value_to_python
 
 

@@ -1,6 +1,8 @@
 # earns 2
 """Sees no obstacle: cancels each goal a second after it was accepted."""
 
+import threading
+
 
 class MoveArmClient(MoveArmClient):
     def respond(self, future):

@@ -1,5 +1,8 @@
 """Sends goals as often as it can."""
 
+import threading
+import time
+
 
 class MoveArmClient(MoveArmClient):
     def __init__(self):

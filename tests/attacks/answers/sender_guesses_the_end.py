@@ -1,5 +1,8 @@
 """Asks for no result: says that all goals succeed, and after an obstacle that they do not."""
 
+import threading
+import time
+
 
 class MoveArmClient(MoveArmClient):
     is_stopped = False
