@@ -311,7 +311,7 @@ def test_an_interrupt_ends_the_build_with_all_that_it_started(folder, monkeypatc
     make_package(folder, **{'setup.py': sleeper.format(pid)})
     wait = package_build._end_of
 
-    def interrupted(colcon):
+    def interrupted(colcon, mark):
         until(lambda: pid.exists() and pid.read_text())
         raise KeyboardInterrupt
 
@@ -320,6 +320,26 @@ def test_an_interrupt_ends_the_build_with_all_that_it_started(folder, monkeypatc
         live.build_package(PACKAGE)
     until(lambda: not Path('/proc', pid.read_text()).exists())
     assert wait is not interrupted
+
+
+@pytest.mark.starts
+def test_what_setup_py_leaves_running_holds_no_build_up(folder):
+    """A child in a session of its own, with colcon's pipe."""
+    leaves = (
+        'import os, time\n'
+        'if not os.path.exists("{0}") and os.fork() == 0:\n'
+        '    os.setsid()\n'
+        '    open("{0}", "w").write(str(os.getpid()))\n'
+        '    time.sleep(600)\n'
+        'from setuptools import setup\n'
+        'setup(name="greeter", version="0.1.0", packages=["greeter"])\n'
+    )
+    pid = folder / 'pid'
+    make_package(folder, **{'setup.py': leaves.format(pid)})
+    began = time.monotonic()
+    live.build_package(PACKAGE)
+    assert time.monotonic() - began < PATIENCE_SEC
+    until(lambda: not Path('/proc', pid.read_text()).exists())
 
 
 @pytest.mark.starts

@@ -3,20 +3,26 @@
 import contextlib
 import os
 import re
+import select
 import shutil
 import signal
 import subprocess
 import sys
+import uuid
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from my_robot_basics.live.install_faults import fault_in_install
 from my_robot_basics.live.package_faults import fault_in_sources, fault_in_words
-from my_robot_basics.session import classroom, package_files
+from my_robot_basics.session import classroom, marked_processes, package_files
 
 MOST_WORDS = 20_000
 """Characters of what colcon prints that are kept, the last ones."""
+_LOOK_EVERY_SEC, _IN_A_PIPE = 0.5, 65_536
+"""How often to look whether colcon has ended, and the bytes that may wait in its pipe then."""
+_MARK = 'MY_ROBOT_BASICS_BUILD'
+"""Names, in the environment of all that a build has started, which one that was."""
 _STAGED = '.packages'
 """Where in the workspace the copy is; colcon passes over folders that begin with a dot."""
 _ESCAPES = re.compile(r'\x1b\[[0-9;?]*[A-Za-z]')
@@ -90,31 +96,45 @@ def _run_colcon(package: str, files: Mapping[str, Path]) -> tuple[int, str]:
         *('--build-base', str(workspace / 'build'), '--install-base', str(workspace / 'install')),
         *('--executor', 'sequential', '--event-handlers', 'console_cohesion-', 'console_stderr+'),
     ]
+    mark = uuid.uuid4().hex
     colcon = subprocess.Popen(
         command,
         cwd=workspace,
+        env=os.environ | {_MARK: mark},
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         process_group=0,
     )
     try:
-        words = _end_of(colcon)
+        words = _end_of(colcon, mark)
         return colcon.wait(), words
     finally:
         # an interrupt of the cell, or what the package's setup.py has left running
         with contextlib.suppress(ProcessLookupError, PermissionError):
             os.killpg(colcon.pid, signal.SIGKILL)
+        marked_processes.end(_MARK, mark)
         colcon.wait()
 
 
-def _end_of(colcon: subprocess.Popen) -> str:
-    """Read all that it prints; return the end of it as text."""
+def _end_of(colcon: subprocess.Popen, mark: str) -> str:
+    """Read all that it prints until it ends; return the end of it as text.
+
+    What setup.py has left running is ended at once: it may hold the pipe that colcon reads.
+    """
     assert colcon.stdout is not None  # it is a pipe
     kept = b''
     with colcon.stdout as pipe:
-        while chunk := os.read(pipe.fileno(), 65_536):
+        while True:
+            has_ended = colcon.poll() is not None
+            waits_sec = 0.0 if has_ended else _LOOK_EVERY_SEC
+            is_ready = bool(select.select([pipe], [], [], waits_sec)[0])
+            chunk = os.read(pipe.fileno(), _IN_A_PIPE) if is_ready else b''
             kept = (kept + chunk)[-MOST_WORDS:]
+            if not chunk:
+                marked_processes.end(_MARK, mark, but_below=colcon.pid)
+            if has_ended or (is_ready and not chunk):
+                break
     return _ESCAPES.sub('', kept.decode(errors='replace'))
 
 

@@ -15,6 +15,7 @@ from typing import Self
 
 import psutil
 
+from my_robot_basics.session import marked_processes
 from my_robot_basics.validate.errors import RoomFailure
 
 _MARK = 'MY_ROBOT_BASICS_VALIDATE'
@@ -50,10 +51,7 @@ class ForkServer:
             self._process.communicate(timeout=_END_SEC)
         self._process.kill()
         self._process.wait()
-        for process in psutil.process_iter():
-            with contextlib.suppress(psutil.Error):
-                if process.environ().get(_MARK) == self._mark:
-                    process.kill()
+        marked_processes.end(_MARK, self._mark)
 
     async def fork(
         self, folder: Path, environment: dict[str, str], arguments: list[str]
