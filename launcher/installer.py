@@ -45,6 +45,8 @@ class Installer:
     variables: dict[str, str]
     lock: int
     """Held by what is started, too: should this process end first, nobody else may write."""
+    wheels: Path | None = None
+    """The folder that everything is taken from, without any network."""
     uses_uv: bool = field(init=False)
 
     def __post_init__(self) -> None:
@@ -76,7 +78,9 @@ class Installer:
             if venv.is_dir():
                 shutil.rmtree(venv)
         if self.uses_uv:
-            self.run('uv', 'venv', '--python', python, venv)
+            self.run(
+                'uv', 'venv', *(['--offline'] if self.wheels else []), '--python', python, venv
+            )
         else:
             # in two steps: venv would keep the reason to itself, should there be no room for pip
             self.run(python, '-m', 'venv', '--without-pip', venv)
@@ -85,13 +89,17 @@ class Installer:
     def install(self, *arguments: str | Path) -> None:
         """Install what the arguments name."""
         python = self.environment.python
+        here: list[str | Path] = []
+        if self.wheels:  # a user's own settings may name further places
+            here += ['--offline', '--no-config'] if self.uses_uv else ['--isolated']
+            here += ['--no-index', '--find-links', self.wheels]
         if self.uses_uv:
-            self.run(
-                *('uv', 'pip', 'install', '--compile-bytecode', '--python', python), *arguments
-            )
+            command = ('uv', 'pip', 'install', '--compile-bytecode', '--python', python)
+            self.run(*command, *here, *arguments)
         else:
-            command = (python, '-m', 'pip', 'install', '--disable-pip-version-check')
-            self.run(*command, '--no-input', '--progress-bar', 'off', *arguments, PIP_USER='0')
+            pip = (python, '-m', 'pip', 'install', '--disable-pip-version-check')
+            options = ('--no-input', '--progress-bar', 'off')
+            self.run(*pip, *options, *here, *arguments, PIP_USER='0')
 
     def run(self, *command: str | Path, **variables: str) -> None:
         """Run a command and show its progress. Raises LauncherError with why it failed."""

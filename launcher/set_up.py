@@ -17,6 +17,7 @@ from launcher.environment import Environment
 from launcher.installer import Installer, version_of, writing
 from launcher.interfaces import FOREIGN_HEADERS, LINE, fix_exports, tell_python
 from launcher.messages import LauncherError, say
+from launcher.offline import asked_for, check_wheels
 from launcher.shares import KERNELS, TOOLS, UNDERLAY, make_tools, tell_ament, tell_jupyter
 
 PINS = 'environment.txt'
@@ -100,7 +101,8 @@ def set_up(environment: Environment, python: Path) -> None:
             'own and start it there.'
         )
     with locked(environment.root) as lock:
-        installer = Installer(environment, environment.outside(os.environ), lock)
+        wheels = asked_for(os.environ)
+        installer = Installer(environment, environment.outside(os.environ), lock, wheels)
         if not has_environment(environment, asked):
             make_environment(installer, python)
         if not is_current(environment, made_packages):
@@ -113,6 +115,8 @@ def make_environment(installer: Installer, python: Path) -> None:
     environment = installer.environment
     if python.parent == environment.python.parent:  # .venv was activated in the caller's shell
         python = Path(sys._base_executable)  # type: ignore[attr-defined]  # not in typeshed's sys
+    if installer.wheels:
+        check_wheels(installer.wheels, version_of(python), environment.root / PINS)
     installer.make_venv(python)
     # pip's own environments for builds know of no hashes, so that the tools must be here before
     pins = environment.venv / 'build_tools.txt'

@@ -331,7 +331,7 @@ def test_its_readme_says_what_is_so(students):
     assert (
         verbs
         == set(re.findall(r'\./course ([\w-]+)', readme))
-        == {'lab', 'validate', 'progress', 'workspace', 'ros-shell'}
+        == {'lab', 'validate', 'progress', 'workspace', 'ros-shell', 'wheels'}
     )
     rows = readme.partition('## What is where')[2]
     named = re.findall(r'`([^`]+)`', ' '.join(re.findall(r'^\| (`.+?) \|', rows, re.MULTILINE)))

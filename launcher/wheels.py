@@ -1,0 +1,128 @@
+"""`./course wheels [--python 3.11,3.12,3.13] FOLDER`: all that a machine without network needs.
+
+pip takes the very files that environment.txt pins; `./course --offline FOLDER` installs from them.
+"""
+
+import argparse
+import os
+import tempfile
+from pathlib import Path
+
+from launcher.environment import Environment
+from launcher.installer import Installer, writing
+from launcher.messages import LauncherError, say
+from launcher.offline import (
+    CONTENTS,
+    PYTHONS,
+    VARIABLE,
+    Wheels,
+    in_words,
+    read_pins,
+    read_wheels,
+    sha256_of,
+    write_wheels,
+)
+from launcher.set_up import PINS, locked
+
+PLATFORMS: tuple[str, ...] = ('manylinux1_x86_64', 'manylinux2010_x86_64', 'manylinux2014_x86_64')
+PLATFORMS += tuple(f'manylinux_2_{minor}_x86_64' for minor in range(5, 29))
+"""What runs on glibc 2.28, which ROS's packages need: pip takes each name by itself."""
+
+
+def run(environment: Environment, variables: dict[str, str], arguments: list[str]) -> int:
+    """Fill the folder; return the exit status."""
+    parser = argparse.ArgumentParser(
+        prog='./course wheels',
+        description='Make a folder from which ./course --offline FOLDER installs.',
+    )
+    parser.add_argument('folder', type=Path, metavar='FOLDER', help='a new or an empty folder')
+    parser.add_argument(
+        '--python',
+        type=pythons,
+        default=list(PYTHONS),
+        metavar='VERSIONS',
+        help=f'for which Pythons, {",".join(PYTHONS)} unless you say it',
+    )
+    asked = parser.parse_args(arguments)
+    if variables.get(VARIABLE):
+        raise LauncherError('./course wheels downloads packages: start it without --offline.')
+    with writing(), locked(environment.root) as lock:
+        wheels = fill(environment, lock, asked.folder.absolute(), asked.python)
+    size = sum((wheels.folder / name).stat().st_size for name in names_in(wheels))
+    say(
+        f'{wheels.folder} has {len(names_in(wheels))} files, {size / 1e6:.0f} MB, for Python '
+        f'{", ".join(wheels.files)}: copy it to the other machine with the course, and start '
+        './course --offline FOLDER lab there'
+    )
+    return 0
+
+
+def fill(environment: Environment, lock: int, folder: Path, versions: list[str]) -> Wheels:
+    """Download the files for each Python; return what the folder has then.
+
+    Raises LauncherError where the folder holds something else, or a file cannot be had.
+    """
+    before = what_is_there(folder)
+    installer = Installer(environment, environment.outside(os.environ), lock)
+    files: dict[str, dict[str, str]] = {}
+    for version in versions:
+        say(f'downloading the packages for Python {version} (some minutes the first time)')
+        files[version] = download(installer, folder, version)
+    wheels = Wheels(folder, files)
+    for old in names_in(before) - names_in(wheels):
+        (folder / old).unlink(missing_ok=True)
+    write_wheels(wheels)
+    return wheels
+
+
+def what_is_there(folder: Path) -> Wheels:
+    """Return what an earlier call put there; make the folder where there is none."""
+    folder.mkdir(parents=True, exist_ok=True)
+    if (folder / CONTENTS).exists():
+        return read_wheels(folder)
+    if any(
+        each for each in folder.iterdir() if not each.name.endswith(('.whl', '.tar.gz', '.part'))
+    ):
+        raise LauncherError(
+            f'{folder} is not empty and was not made by ./course wheels: name a new folder.'
+        )
+    return Wheels(folder, {})
+
+
+def download(installer: Installer, folder: Path, version: str) -> dict[str, str]:
+    """Put each pinned file for a Python into the folder; return their SHA-256 by name."""
+    root = installer.environment.root
+    platforms = [option for name in PLATFORMS for option in ('--platform', name)]
+    with tempfile.TemporaryDirectory(dir=folder, suffix='.part') as part:
+        installer.run(
+            *(installer.environment.python, '-m', 'pip', 'download', '--no-input'),
+            *('--disable-pip-version-check', '--progress-bar', 'off', '--no-deps'),
+            *('--no-build-isolation', '--python-version', version, *platforms),
+            *('--require-hashes', '-r', PINS, '-d', part),
+        )
+        found = {file.name: sha256_of(file) for file in sorted(Path(part).iterdir())}
+        pins = read_pins(root / PINS)
+        lacks = [pin for pin, digests in pins.items() if not digests & {*found.values()}]
+        if lacks:
+            raise LauncherError(
+                f'pip brought no file of {in_words(lacks)} for Python {version}: start again, '
+                'and report it if that does not help.'
+            )
+        for name in found:
+            os.replace(Path(part) / name, folder / name)
+    return found
+
+
+def names_in(wheels: Wheels) -> set[str]:
+    """Return the names of all its files."""
+    return {name for files in wheels.files.values() for name in files}
+
+
+def pythons(text: str) -> list[str]:
+    """Read the versions of an argument; argparse shows what this raises."""
+    versions = list(dict.fromkeys(text.split(',')))
+    if unknown := [version for version in versions if version not in PYTHONS]:
+        raise argparse.ArgumentTypeError(
+            f'{unknown[0]!r} is not among {", ".join(PYTHONS)}, for which the packages exist'
+        )
+    return versions
