@@ -330,7 +330,7 @@ def test_its_readme_says_what_is_so(students):
     verbs = set(re.findall(r'^  ([\w-]+)', usage.stdout, re.MULTILINE))
     assert (
         verbs
-        == set(re.findall(r'\./course ([\w-]+)', readme))
+        == set(re.findall(r'\./course (\w[\w-]*)', readme))
         == {'lab', 'validate', 'progress', 'workspace', 'ros-shell', 'wheels'}
     )
     rows = readme.partition('## What is where')[2]
