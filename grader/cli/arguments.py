@@ -117,7 +117,11 @@ def make_parser() -> argparse.ArgumentParser:
 
     verb = subparsers.add_parser('scores', help='write gradebook/scores.csv')
     verb.add_argument(
-        'assignment', nargs='?', default='', metavar='ASSIGNMENT', help='with --format: only this'
+        'assignment',
+        nargs='?',
+        default='',
+        metavar='ASSIGNMENT',
+        help='with --format or --send: only this',
     )
     form = verb.add_mutually_exclusive_group()
     form.add_argument(
@@ -129,6 +133,11 @@ def make_parser() -> argparse.ArgumentParser:
         '--format',
         choices=sorted(TABLES),
         help='write what this platform imports, a file for each assignment: gradebook/PLATFORM/',
+    )
+    form.add_argument(
+        '--send',
+        choices=['lti'],
+        help='give the platform of gradebook/lti.toml the scores that have changed (docs/lti.md)',
     )
     verb.add_argument(
         '--roster',

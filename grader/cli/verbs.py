@@ -89,12 +89,15 @@ def run_due(course: Course, asked: argparse.Namespace) -> int:
 
 def run_scores(course: Course, asked: argparse.Namespace) -> int:
     """Write a table of scores, and say where it lies."""
-    if (asked.assignment or asked.roster) and not asked.format:
+    to_platform = asked.format or (asked.send and not asked.roster)
+    if (asked.assignment or asked.roster) and not to_platform:
         raise CourseError(
             'an assignment and --roster are for what a platform imports: say which one, as in '
             './course scores --format moodle'
         )
     _wait_for_database(course)
+    if asked.send:
+        return _send_scores(course, asked.assignment)
     if asked.format:
         paths = write_platform_scores(
             course, asked.format, asked.assignment, asked.roster, _say_line
@@ -104,6 +107,17 @@ def run_scores(course: Course, asked: argparse.Namespace) -> int:
         print(write_totals(course) if asked.totals else write_scores(course))
     _say_what_comes_first(course)
     return 0
+
+
+def _send_scores(course: Course, assignment: str) -> int:
+    """Send what has changed. 1 where the platform has not taken all of it."""
+    from grader.passback.lti import send_scores  # an extra, and half a second to import
+
+    done = send_scores(course, assignment, _say_line)
+    print(f'{done.sent} scores sent, {done.waiting} waiting')
+    if done.waiting:
+        print('Nothing is lost. To send them: ./course scores --send lti')
+    return 1 if done.waiting else 0
 
 
 def run_solutions(course: Course, asked: argparse.Namespace) -> int:

@@ -1,0 +1,147 @@
+"""A learning platform's Assignment and Grade Services, by pylti1p3."""
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from typing import Any
+
+import requests
+from cryptography.hazmat.primitives import serialization
+from pylti1p3.assignments_grades import AssignmentsGradesService
+from pylti1p3.exception import LtiException, LtiServiceException
+from pylti1p3.grade import Grade
+from pylti1p3.lineitem import LineItem
+from pylti1p3.registration import Registration
+from pylti1p3.service_connector import ServiceConnector
+
+from grader.common.errors import CourseError
+from grader.passback.lti_queue import Score
+from grader.passback.lti_settings import LtiSettings
+
+AGS = 'https://purl.imsglobal.org/spec/lti-ags/scope'
+SCOPES = [f'{AGS}/lineitem', f'{AGS}/score']
+TIMEOUT = (10.0, 30.0)
+"""For a connection, and between two bytes of an answer, in seconds."""
+EARLY = 30.0
+"""How long before its end a token is used no more, in seconds."""
+CONFLICT = 409
+UNAUTHORISED = (401, 403)
+LATER = (408, 425, 429)
+"""What a platform answers that wants to be asked again, as with any status from 500 on."""
+
+
+class PlatformIsAway(Exception):
+    """Nobody answers, or the answer is no answer: nothing can be sent for now."""
+
+
+class ScoreRefused(Exception):
+    """The platform answers, and does not take this score."""
+
+    def __init__(self, why: str, status: int) -> None:
+        super().__init__(why)
+        self.status = status
+
+
+@dataclass
+class _Connector(ServiceConnector):
+    """Keeps a token as long as it is valid, and waits for no answer without end."""
+
+    registration: Registration
+    tokens: dict[str, tuple[str, float]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        session = _Session()
+        super().__init__(self.registration, session)
+
+    def _get_cached_access_token(self, scope_key: str) -> str | None:
+        token, until = self.tokens.get(scope_key, ('', 0.0))
+        return token if time.monotonic() < until else None
+
+    def _cache_access_token(self, scope_key: str, access_token: str, expires_in: float) -> None:
+        self.tokens[scope_key] = access_token, time.monotonic() + float(expires_in) - EARLY
+
+
+class _Session(requests.Session):
+    """Asks with a time limit, and follows to no other address."""
+
+    def request(self, *arguments: Any, **options: Any) -> requests.Response:
+        return super().request(
+            *arguments, **{'timeout': TIMEOUT, **options, 'allow_redirects': False}
+        )
+
+
+class LtiService:
+    """What takes scores. Each call may raise PlatformIsAway or ScoreRefused."""
+
+    def __init__(self, settings: LtiSettings) -> None:
+        """Prepare to ask; nothing is sent yet. Raises CourseError where the key is damaged."""
+        registration = Registration()
+        registration.set_issuer(settings.issuer).set_client_id(settings.client_id)
+        registration.set_auth_token_url(settings.token_url)
+        registration.set_tool_private_key(settings.key)
+        registration.set_tool_public_key(public_key(settings.key))
+        if settings.audience:
+            registration.set_auth_audience(settings.audience)
+        data = {'scope': SCOPES, 'lineitems': settings.lineitems}
+        self._connector = _Connector(registration)
+        self._service = AssignmentsGradesService(self._connector, data)  # type: ignore[arg-type]
+        self._columns: dict[str, LineItem] = {}
+
+    def send(self, score: Score) -> None:
+        """Give the platform a score; make the assignment's column where there is none."""
+        changed = datetime.fromtimestamp(score.changed, UTC).isoformat(timespec='milliseconds')
+        grade = Grade().set_user_id(score.user_id).set_timestamp(changed)
+        grade.set_score_given(max(score.score, 0.0)).set_score_maximum(score.max_score)
+        grade.set_activity_progress('Completed').set_grading_progress('FullyGraded')
+        try:
+            self._service.put_grade(grade, self._column_of(score))
+        except LtiServiceException as error:
+            raise self._problem(error) from None
+        except (requests.RequestException, LtiException) as error:
+            raise PlatformIsAway(_in_a_line(error)) from None
+        except (ValueError, TypeError, LookupError, AttributeError) as error:
+            # the library trusts the form of what comes
+            raise PlatformIsAway(
+                f'an answer of another form than LTI has ({_in_a_line(error)})'
+            ) from None
+
+    def _column_of(self, score: Score) -> LineItem:
+        name = score.assignment
+        if name not in self._columns:
+            wanted = LineItem().set_tag(name).set_label(name)
+            wanted.set_score_maximum(score.max_score).set_resource_id(name)
+            self._columns[name] = self._service.find_or_create_lineitem(wanted)
+        return self._columns[name]
+
+    def _problem(self, error: LtiServiceException) -> Exception:
+        status = error.response.status_code
+        said = ' '.join(error.response.text.split())[:200]
+        what = f'it answered {status}' + (f': {said}' if said else '')
+        if status in UNAUTHORISED:
+            self._connector.tokens.clear()
+            return PlatformIsAway(
+                f'{what} (see client_id and key_file, and in the platform who may give scores)'
+            )
+        if status >= 500 or status in LATER or 300 <= status < 400:
+            return PlatformIsAway(what)
+        return ScoreRefused(what, status)
+
+
+def public_key(private_key: str) -> str:
+    """Return the public part of a key, in PEM. Raises CourseError where it is damaged."""
+    try:
+        key = serialization.load_pem_private_key(private_key.encode(), password=None)
+    except (ValueError, TypeError) as error:  # TypeError where it has a password
+        raise CourseError(f'the key of lti.toml is damaged: {_in_a_line(error)}') from None
+    form = serialization.PublicFormat.SubjectPublicKeyInfo
+    return key.public_key().public_bytes(serialization.Encoding.PEM, form).decode()
+
+
+def public_jwk(private_key: str) -> Mapping[str, Any]:
+    """Return the public part of a key as platforms take it that want a JWK."""
+    return Registration.get_jwk(public_key(private_key))
+
+
+def _in_a_line(error: Exception) -> str:
+    return ' '.join(f'{type(error).__name__}: {error}'.split())[:300]
