@@ -2,6 +2,7 @@
 
 import os
 import sys
+from pathlib import Path
 
 from launcher.environment import Environment
 from launcher.languages import (
@@ -37,22 +38,37 @@ def run(environment: Environment, variables: dict[str, str], arguments: list[str
                 (folder / 'ros_ws').symlink_to(os.path.relpath(workspace, folder))
     os.chdir(lessons)
     command = [str(environment.python), '-P', '-m', 'jupyterlab']
-    command += [
+    command += options(lessons, language, jupyterlab_settings(environment, language))
+    if os.getuid() == 0:
+        command.append('--allow-root')
+    sys.stdout.flush()
+    variables |= server_variables(root, lessons, language)
+    os.execve(command[0], [*command, *arguments], variables)
+
+
+def options(lessons: Path, language: str, settings: Path) -> list[str]:
+    """Return what a server is told that shows the lessons; `settings` is JupyterLab's folder."""
+    return [
         f'--ServerApp.root_dir={lessons}',
-        f'--LabApp.default_url=/lab/tree/{"" if language == ENGLISH else f"{language}/"}{INDEX}',
-        f'--LabApp.app_settings_dir={jupyterlab_settings(environment, language)}',
+        f'--LabApp.default_url={first_page(language)}',
+        f'--LabApp.app_settings_dir={settings}',
         f'--ServerApp.terminado_settings={SHELL}',
         # it would warn that its configuration is missing
         "--ServerApp.jpserver_extensions={'nbgrader.server_extensions.formgrader': False}",
-        *(['--allow-root'] if os.getuid() == 0 else []),
-        *arguments,
     ]
-    variables |= {
+
+
+def first_page(language: str) -> str:
+    """Return the address of the contents page."""
+    return f'/lab/tree/{"" if language == ENGLISH else f"{language}/"}{INDEX}'
+
+
+def server_variables(root: Path, lessons: Path, language: str) -> dict[str, str]:
+    """Return the variables that a server adds for its kernels and terminals."""
+    return {
         'PWD': str(lessons),
         VARIABLE: language,
         # what a terminal starts is on this machine alone, as the notebooks' nodes are
         'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST',
         'COURSE_TERMINAL': str(root / TERMINAL),
     }
-    sys.stdout.flush()
-    os.execve(command[0], command, variables)

@@ -62,12 +62,23 @@ def jupyterlab_settings(environment: Environment, language: str) -> Path:
     counts more than these.
     """
     ours = environment.root / SETTINGS
-    packs = f'lib/python*/site-packages/jupyterlab_language_pack_{language}'
-    if language == ENGLISH or not any(environment.venv.glob(packs)):
+    if not has_menus(environment, language):
         return ours
     made = environment.venv / 'share/course' / f'jupyterlab-{language}'
-    shutil.copytree(ours, made, dirs_exist_ok=True)
-    settings = json.loads((ours / OVERRIDES).read_text(encoding='utf-8'))
-    settings[TRANSLATION] = {'locale': language}
-    (made / OVERRIDES).write_text(json.dumps(settings, indent=2), encoding='utf-8')
+    write_settings(environment, language, made)
     return made
+
+
+def has_menus(environment: Environment, language: str) -> bool:
+    """Whether JupyterLab's menus are translated into a language."""
+    packs = f'lib/python*/site-packages/jupyterlab_language_pack_{language}'
+    return language != ENGLISH and any(environment.venv.glob(packs))
+
+
+def write_settings(environment: Environment, language: str, folder: Path) -> None:
+    """Write JupyterLab's settings for lessons into a folder, with the menus of a language."""
+    shutil.copytree(environment.root / SETTINGS, folder, dirs_exist_ok=True)
+    if has_menus(environment, language):
+        settings = json.loads((folder / OVERRIDES).read_text(encoding='utf-8'))
+        settings[TRANSLATION] = {'locale': language}
+        (folder / OVERRIDES).write_text(json.dumps(settings, indent=2), encoding='utf-8')

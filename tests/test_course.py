@@ -16,6 +16,7 @@ VERBS = [
     'progress',
     'workspace',
     'ros-shell',
+    'hub',
     'test',
     'release',
     'bundle',
@@ -755,7 +756,7 @@ def test_in_a_bundle_help_lists_what_a_student_can_do(bundle):
     run = bundle.course('--help')
     assert (run.returncode, run.stderr) == (0, '')
     verbs = [line.split()[0] for line in run.stdout.splitlines() if line.startswith('  ')]
-    assert verbs == ['lab', 'validate', 'progress', 'workspace', 'ros-shell']
+    assert verbs == ['lab', 'validate', 'progress', 'workspace', 'ros-shell', 'hub']
 
 
 @pytest.mark.parametrize('verb', VERBS[5:])

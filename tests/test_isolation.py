@@ -11,12 +11,20 @@ from course_maker import TOY, answered, released_course, submit
 
 from grader.__main__ import main
 from grader.autograde.preprocessors import ExecuteRooms
+from grader.cli.audiences import describe_audiences
 from grader.cli.demo import demo
 from grader.common.errors import CourseError
 from grader.export.scores import write_scores
 from grader.kernels import fork_servers
 from grader.kernels import isolation as module
-from grader.kernels.isolation import NO_SANDBOX, TRUST, missing, protections, require_isolation
+from grader.kernels.isolation import (
+    NO_SANDBOX,
+    TRUST,
+    Protection,
+    missing,
+    protections,
+    require_isolation,
+)
 from grader.report.feedback import write_feedback
 from grader.sandbox import remedies
 
@@ -216,3 +224,14 @@ def test_it_can_be_asked_inside_a_running_event_loop():
 
     assert asyncio.run(formgrader())
     assert subprocess.run is BWRAP
+
+
+@pytest.mark.parametrize('lacking', ['', 'a network of its own (network namespace)'])
+def test_the_doctor_says_whose_nodes_meet_whose_and_where_no_hub_can_be(lacking):
+    machine = [
+        Protection(name='files', problem='it is broken'),
+        Protection(name=lacking or 'x', problem='no' if lacking else ''),
+    ]
+    said = list(describe_audiences(machine))
+    assert any('any user of the machine who sets the same ROS domain' in line for line in said)
+    assert any('without a network of its own' in line for line in said) is bool(lacking)

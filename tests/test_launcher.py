@@ -27,7 +27,7 @@ def test_a_row_is_what_help_and_dispatch_are_made_from():
     assert (grade.owner, grade.runs, grade.folder) == ('course', 'grader grade', 'root')
     assert grade.help.startswith('grade what is new in gradebook/submitted/')
     assert [verb.name for verb in verbs.values() if verb.owner == 'everyone'] == [
-        *('lab', 'validate', 'progress', 'workspace', 'ros-shell', 'wheels')
+        *('lab', 'validate', 'progress', 'workspace', 'ros-shell', 'wheels', 'hub')
     ]
 
 

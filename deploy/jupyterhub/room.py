@@ -1,0 +1,90 @@
+"""Process 1 of a student's room: starts their server, and passes connections of the hub to it.
+
+`python room.py DESCRIPTOR PORT COMMAND...`. The descriptor is a listening socket that the spawner
+opened outside: what connects there reaches 127.0.0.1:PORT in here, where the server listens.
+"""
+
+import asyncio
+import os
+import signal
+import socket
+import subprocess
+import sys
+
+CHUNK_BYTES = 65_536
+PATIENCE_SEC = 10.0
+"""A server that was told to end has so long for its kernels."""
+
+
+async def pass_on(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+    """Write what is read, until one of the two sides is gone."""
+    try:
+        while chunk := await reader.read(CHUNK_BYTES):
+            writer.write(chunk)
+            await writer.drain()
+        writer.write_eof()
+    except OSError:
+        writer.close()
+
+
+async def relay(listening: socket.socket, port: int) -> asyncio.Server:
+    """Begin to pass each connection on to 127.0.0.1:port, both ways; return what does it."""
+
+    async def join(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        try:
+            inside = await asyncio.open_connection('127.0.0.1', port)
+        except OSError:  # not up yet, or gone: the hub asks again
+            writer.close()
+            return
+        await asyncio.gather(pass_on(reader, inside[1]), pass_on(inside[0], writer))
+        inside[1].close()
+        writer.close()
+
+    return await asyncio.start_server(join, sock=listening)
+
+
+def bury(server: subprocess.Popen[bytes]) -> int | None:
+    """Reap what has ended, orphans too; return the exit code of the server once it has one."""
+    while True:
+        try:
+            pid, status = os.waitpid(-1, os.WNOHANG)
+        except ChildProcessError:
+            return server.returncode
+        if pid == 0:
+            return server.returncode
+        if pid == server.pid:
+            server.returncode = os.waitstatus_to_exitcode(status)
+
+
+async def run(descriptor: int, port: int, command: list[str]) -> int:
+    """Run the server until it ends, or is told to; return its exit code."""
+    loop = asyncio.get_running_loop()
+    ended: asyncio.Future[int] = loop.create_future()
+    told = asyncio.Event()
+    # before the server is started: from then on somebody may tell this process to end
+    for number in (signal.SIGINT, signal.SIGTERM):
+        loop.add_signal_handler(number, told.set)
+    # the listening socket stays with process 1: student code has no use for it
+    os.set_inheritable(descriptor, False)
+    server = subprocess.Popen(command, start_new_session=True)
+
+    def look() -> None:
+        code = bury(server)
+        if code is not None and not ended.done():
+            ended.set_result(code)
+
+    loop.add_signal_handler(signal.SIGCHLD, look)
+    look()
+    relaying = await relay(socket.socket(fileno=descriptor), port)
+    await asyncio.wait(
+        [ended, asyncio.ensure_future(told.wait())], return_when=asyncio.FIRST_COMPLETED
+    )
+    if not ended.done():
+        server.terminate()
+        await asyncio.wait([ended], timeout=PATIENCE_SEC)
+    relaying.close()  # browsers stay connected until they are cut off: nobody waits for them
+    return ended.result() if ended.done() else 1
+
+
+if __name__ == '__main__':
+    sys.exit(asyncio.run(run(int(sys.argv[1]), int(sys.argv[2]), sys.argv[3:])))

@@ -1,0 +1,187 @@
+"""The pure parts of deploy/jupyterhub/: what a room is made of, its process 1, how many fit."""
+
+import asyncio
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import tomllib
+import zlib
+from pathlib import Path
+
+import pytest
+
+from launcher.environment import Environment
+from launcher.hub import copy_pages, hub_settings
+from launcher.hub import run as run_server
+from launcher.messages import LauncherError
+
+ROOT = Path(__file__).parents[1]
+DEPLOY = ROOT / 'deploy/jupyterhub'
+sys.path.append(str(DEPLOY))
+
+from capacity import memory_mb, servers_that_fit  # noqa: E402
+from pin import name_of, pins_in  # noqa: E402
+from room import relay  # noqa: E402
+from walls import HIDDEN, Room, bubblewrap  # noqa: E402
+
+
+@pytest.fixture
+def words():
+    room = Room(Path('/home/ada'), Path('/srv/exchange'), (Path('/srv/course'),))
+    return bubblewrap(room, tell=7)
+
+
+def after(words, option):
+    """The arguments of each place at which an option stands."""
+    size = 1 if option == '--tmpfs' else 2
+    return [words[at + 1 : at + 1 + size] for at, word in enumerate(words) if word == option]
+
+
+def test_a_room_has_its_own_network_processes_and_shared_memory(words):
+    assert {'--unshare-net', '--unshare-pid', '--unshare-ipc', '--as-pid-1'} <= set(words)
+    assert '--share-net' not in words
+    assert after(words, '--dev') == [['/dev', '--proc']]  # with its own /dev/shm
+
+
+def test_a_student_writes_into_their_home_and_the_exchange_alone(words):
+    assert after(words, '--bind') == [['/home/ada'] * 2, ['/srv/exchange'] * 2]
+    assert after(words, '--ro-bind') == [['/', '/'], ['/srv/course'] * 2]
+
+
+def test_other_homes_and_what_others_leave_behind_is_hidden_before_ones_own_is_shown(words):
+    assert after(words, '--tmpfs') == [[folder] for folder in (*HIDDEN, '/home')]
+    last = max(at for at, word in enumerate(words) if word == '--tmpfs')
+    assert last < words.index('--bind')
+
+
+@pytest.mark.parametrize('home', ['/', '/root', '/home/../ada'])
+def test_a_home_that_lies_beside_no_others_is_refused(home):
+    with pytest.raises(ValueError, match='useradd --create-home'):
+        bubblewrap(Room(Path(home), Path('/e'), ()), tell=7)
+
+
+def test_what_connects_outside_reaches_the_server_inside_both_ways():
+    async def walk():
+        async def answer(reader, writer):
+            writer.write((await reader.read()).upper())
+            writer.close()
+
+        listening = socket.create_server(('127.0.0.1', 0))
+        async with await asyncio.start_server(answer, '127.0.0.1', 0) as server:
+            port = server.sockets[0].getsockname()[1]
+            async with await relay(listening, port):
+                reader, writer = await asyncio.open_connection(*listening.getsockname())
+                writer.write(b'hello' * 100_000)
+                writer.write_eof()
+                return await reader.read()
+
+    assert zlib.crc32(asyncio.run(walk())) == zlib.crc32(b'HELLO' * 100_000)
+
+
+def test_a_connection_before_the_server_is_up_is_closed_and_the_next_one_is_not():
+    async def walk():
+        listening = socket.create_server(('127.0.0.1', 0))
+        with socket.create_server(('127.0.0.1', 0)) as taken:
+            port = taken.getsockname()[1]
+        async with await relay(listening, port):
+            reader, _ = await asyncio.open_connection(*listening.getsockname())
+            assert await reader.read() == b''
+            async with await asyncio.start_server(
+                lambda reader, writer: writer.write(b'up') or writer.close(), '127.0.0.1', port
+            ):
+                reader, _ = await asyncio.open_connection(*listening.getsockname())
+                return await reader.read()
+
+    assert asyncio.run(walk()) == b'up'
+
+
+def process_1(*command):
+    """Start what is process 1 of a room, here without walls, and give it a socket."""
+    listening = socket.create_server(('127.0.0.1', 0))
+    with listening:
+        words = [sys._base_executable, '-IS', DEPLOY / 'room.py', str(listening.fileno()), '1']
+        return subprocess.Popen(
+            [*words, 'sh', '-c', *command], pass_fds=[listening.fileno()], stdout=subprocess.PIPE
+        )
+
+
+@pytest.mark.starts
+def test_a_room_ends_as_its_server_does():
+    assert process_1('exit 3').wait(30) == 3
+
+
+@pytest.mark.starts
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+def test_a_room_that_is_told_to_end_lets_its_server_end_itself(number):
+    process = process_1('trap "echo saved; exit 0" TERM; echo up; while :; do sleep 0.05; done')
+    assert process.stdout.readline() == b'up\n'
+    process.send_signal(number)
+    assert process.stdout.readline() == b'saved\n'
+    assert process.wait(30) == 0
+
+
+@pytest.mark.starts
+def test_the_server_of_a_room_has_no_descriptor_of_the_relay():
+    process = process_1('ls -l /proc/self/fd | grep -c socket:')
+    assert process.stdout.readline() == b'0\n'
+    process.wait(30)
+
+
+def test_memory_bounds_the_servers_and_too_little_says_what_is_needed(tmp_path):
+    meminfo = tmp_path / 'meminfo'
+    meminfo.write_text('MemTotal:       16384000 kB\nMemFree:        1 kB\n')
+    assert memory_mb(meminfo) == 16_000
+    assert servers_that_fit(16_000, 400) == 36
+    with pytest.raises(ValueError, match='400 MB for each student'):
+        servers_that_fit(1_800, 400)
+
+
+def test_servers_have_what_the_hub_has_and_no_version_of_the_courses_is_pinned_twice():
+    hub, server, course = (
+        {name_of(pin): pin for pin in pins_in(file.read_text())}
+        for file in (DEPLOY / 'hub.txt', DEPLOY / 'server.txt', ROOT / 'environment.txt')
+    )
+    assert hub['jupyterhub'] == server['jupyterhub']
+    assert not server.keys() & course.keys()
+    assert all('--hash=sha256:' in pin for pin in (*hub.values(), *server.values()))
+    locked = json.loads((DEPLOY / 'package-lock.json').read_text())['packages']
+    assert all('integrity' in each for name, each in locked.items() if name)
+    assert not any('resolved' in each for each in locked.values())
+
+
+def test_install_copies_each_file_that_the_configuration_needs():
+    script = (DEPLOY / 'install').read_text()
+    needed = {path.name for path in DEPLOY.iterdir() if path.suffix in {'.py', '.txt', '.json'}}
+    missing = {name for name in needed - {'pin.py'} if f' {name}' not in script}
+    assert not missing
+    assert tomllib.loads((DEPLOY / 'class.toml').read_text())['course']
+
+
+# --- ./course hub --------------------------------------------------------------------------------
+
+
+def test_a_student_has_assignment_list_and_no_panel_of_the_instructors(tmp_path):
+    hub_settings(Environment(ROOT), 'zh_CN', tmp_path)
+    disabled = json.loads((tmp_path / 'page_config.json').read_text())['disabledExtensions']
+    assert '@jupyter/nbgrader:formgrader' in disabled
+    assert '@jupyter/nbgrader:create-assignment' in disabled
+    assert not {'@jupyter/nbgrader:assignment-list', '@jupyter/nbgrader:menu'} & {*disabled}
+    assert 'zh_CN' in (tmp_path / 'overrides.json').read_text()
+
+
+def test_pages_are_copied_once_and_lessons_not_at_all(tmp_path):
+    lessons = copy_pages(ROOT / 'notebooks', tmp_path / 'lessons')
+    assert (lessons / 'index.ipynb').is_file()
+    assert (lessons / 'zh_CN/index.ipynb').is_file()
+    assert not (lessons / '03_publisher').exists()
+    (lessons / 'quiz_topics.ipynb').write_text('mine')
+    copy_pages(ROOT / 'notebooks', lessons)
+    assert (lessons / 'quiz_topics.ipynb').read_text() == 'mine'
+
+
+def test_without_a_hub_the_verb_says_what_to_do_instead():
+    with pytest.raises(LauncherError, match=r'\./course lab opens the lessons'):
+        run_server(Environment(ROOT), {'HOME': os.environ['HOME']}, [])
