@@ -87,7 +87,7 @@ class Hub:
             *('-f', self.hub / 'jupyterhub_config.py'),
             f'--ConfigurableHTTPProxy.api_url=http://127.0.0.1:{free_port()}',
             # tests ask JupyterLab itself what is open
-            "--RoomSpawner.args=['--LabApp.expose_app_in_browser=True']",
+            '--RoomSpawner.args=--LabApp.expose_app_in_browser=True',
             folder=self.hub / 'state',
         )
         deadline = time.monotonic() + PATIENCE_SEC

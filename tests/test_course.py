@@ -16,6 +16,7 @@ VERBS = [
     'progress',
     'workspace',
     'ros-shell',
+    'wheels',
     'hub',
     'test',
     'release',
@@ -756,10 +757,10 @@ def test_in_a_bundle_help_lists_what_a_student_can_do(bundle):
     run = bundle.course('--help')
     assert (run.returncode, run.stderr) == (0, '')
     verbs = [line.split()[0] for line in run.stdout.splitlines() if line.startswith('  ')]
-    assert verbs == ['lab', 'validate', 'progress', 'workspace', 'ros-shell', 'hub']
+    assert verbs == ['lab', 'validate', 'progress', 'workspace', 'ros-shell', 'wheels', 'hub']
 
 
-@pytest.mark.parametrize('verb', VERBS[5:])
+@pytest.mark.parametrize('verb', VERBS[7:])
 def test_in_a_bundle_an_instructors_verb_says_so_and_sets_nothing_up(bundle, verb):
     sentence = the_one_sentence(bundle.course(verb))
     assert sentence.startswith(f"'{verb}' is for instructors and needs the whole course")
