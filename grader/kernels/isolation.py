@@ -142,8 +142,10 @@ def _try_all() -> Iterator[Protection]:
     )
     for name, command in _TRIED.items():
         tried = subprocess.run(command, capture_output=True, text=True)
-        yield Protection(name, tried.stderr.strip() if tried.returncode else '', remedy())
-    yield Protection(_WHOLE, _try_the_whole(), remedy())
+        problem = tried.stderr.strip() or 'it failed' if tried.returncode else ''
+        yield Protection(name, problem, remedy() if problem else '')
+    problem = _try_the_whole()
+    yield Protection(_WHOLE, problem, remedy() if problem else '')
 
 
 def _try_the_whole() -> str:
