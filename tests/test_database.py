@@ -121,7 +121,7 @@ def test_a_database_is_there_whole_or_not_at_all(tmp_path, monkeypatch):
         raise Killed
 
     with monkeypatch.context() as patch:
-        patch.setattr('nbgrader.api.get_alembic_version', killed)  # tables are made by then
+        patch.setattr('alembic.script.ScriptDirectory', killed)  # tables are made by then
         with pytest.raises(Killed):
             make_database(course)
     assert not course.database.exists()
@@ -185,3 +185,26 @@ def test_a_transaction_with_one_engine_is_all_or_nothing_and_leaves_no_trace(emp
             book.update_or_create_student('bob')  # nbgrader commits
         with connected(empty.db_url) as book:
             assert [student.id for student in book.students] == ['bob']
+
+
+def test_its_tables_are_those_that_nbgrader_makes(tmp_path):
+    course = Course.at(tmp_path)
+    make_database(course)
+    Gradebook(f'sqlite:///{tmp_path / "theirs.db"}').close()
+
+    def dumped(path):
+        with closing(sqlite3.connect(path)) as database:
+            tables = "SELECT name FROM sqlite_master WHERE type = 'table' ORDER BY name"
+            names = [name for (name,) in database.execute(tables)]
+            columns = {n: database.execute(f'PRAGMA table_info({n})').fetchall() for n in names}
+            version = database.execute('SELECT version_num FROM alembic_version').fetchall()
+            return columns, version, database.execute('SELECT id FROM course').fetchall()
+
+    columns, version, courses = dumped(course.database)
+    theirs, their_version, their_courses = dumped(tmp_path / 'theirs.db')
+    assert (version, courses) == (their_version, their_courses)
+    assert set(columns) == set(theirs)
+    for name, each in columns.items():
+        assert [column[1] for column in each] == [column[1] for column in theirs[name]]
+    assert 'grade' in columns
+    assert version[0][0]

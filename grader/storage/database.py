@@ -4,13 +4,13 @@ import errno
 import logging
 import os
 import sqlite3
-import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
-from pathlib import Path
 
-from nbgrader.api import Gradebook
+from nbgrader.api import Base, Gradebook
+from nbgrader.dbutil import ALEMBIC_DIR
+from sqlalchemy import create_engine
 
 from grader.common.errors import CourseError, GradebookError
 from grader.course import Course
@@ -28,25 +28,32 @@ _BUSY = {sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED}
 _DAMAGED = {sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB}
 
 
-def make_ready(course: Course) -> None:
-    """Make the gradebook's folder, and let nbgrader find the command that makes its database."""
-    course.gradebook.mkdir(parents=True, exist_ok=True)
-    programs = os.environ.get('PATH', os.defpath).split(os.pathsep)
-    ours = str(Path(sys.executable).parent)  # where `alembic` is
-    if ours not in programs:
-        os.environ['PATH'] = os.pathsep.join([ours, *programs])
-
-
 def make_database(course: Course) -> None:
     """Make the database where there is none: aside, for nbgrader would not repair half of one."""
-    make_ready(course)
+    course.gradebook.mkdir(parents=True, exist_ok=True)
     if course.database.exists() and course.database.stat().st_size:
         return
     aside = course.database.with_name('.gradebook.db.new')
     for left in course.gradebook.glob(f'{aside.name}*'):  # of a run that was ended meanwhile
         left.unlink()
-    Gradebook(f'sqlite:///{aside}').close()
+    _make_tables(f'sqlite:///{aside}')
     os.replace(aside, course.database)
+
+
+def _make_tables(db_url: str) -> None:
+    """Make nbgrader's tables, with the version of its schema.
+
+    nbgrader would start `alembic`, which takes a second, to learn that version.
+    """
+    from alembic.runtime.migration import MigrationContext
+    from alembic.script import ScriptDirectory
+
+    engine = create_engine(db_url)
+    Base.metadata.create_all(engine)
+    with engine.begin() as connection:
+        MigrationContext.configure(connection).stamp(ScriptDirectory(ALEMBIC_DIR), 'heads')
+    engine.dispose()
+    Gradebook(db_url).close()  # adds its course
 
 
 def wait_until_free(course: Course, say: Callable[[str], None] = print) -> None:
