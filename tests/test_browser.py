@@ -232,6 +232,7 @@ def opened(lab, page):
     close_all(page)
 
 
+@pytest.mark.slow
 def test_the_lab_opens_on_the_contents_and_shows_the_terms_to_readers(page):
     expect(page.get_by_role('link', name='core terms')).to_be_visible()
     # a link would show it without our settings, too
@@ -239,6 +240,7 @@ def test_the_lab_opens_on_the_contents_and_shows_the_terms_to_readers(page):
     expect(page.locator('.jp-MarkdownViewer table').first).to_be_visible()
 
 
+@pytest.mark.slow
 def test_the_contents_show_what_has_passed_and_what_has_changed_since(lab, page):
     name = '02_joint_state'
     notebook = answered(name, lab.folder / name)
@@ -304,6 +306,7 @@ def test_run_all_goes_through_an_unanswered_lesson_and_stops_at_no_check(opened,
                 assert image.evaluate(WIDTH) > 200
 
 
+@pytest.mark.slow
 def test_the_live_arm_moves(opened):
     lesson = opened('03_publisher')
     lesson.command('notebook:run-cell', lesson.index('imports'))
@@ -315,6 +318,7 @@ def test_the_live_arm_moves(opened):
         expect(image).not_to_have_attribute('src', before)
 
 
+@pytest.mark.slow
 def test_a_dragged_slider_moves_the_arm(opened):
     lesson = opened('00_two_link_arm')
     lesson.command('notebook:run-cell', lesson.index('imports'))
@@ -366,6 +370,7 @@ def test_validate_says_what_is_wrong_and_then_that_all_is_right(opened):
     assert 'Success' not in said
 
 
+@pytest.mark.slow
 def test_validate_speaks_the_language_of_the_lesson(opened):
     lesson = opened('02_joint_state', 'zh_CN')
     lesson.type('to_joint_state', WRONG)
@@ -417,6 +422,7 @@ def test_the_doctor_draws_where_a_service_is_broken(opened):
     assert image.evaluate(WIDTH) > 200
 
 
+@pytest.mark.slow
 def test_validate_shows_what_it_does_and_ends_with_its_dialog(lab, opened):
     lesson = opened('03_publisher')
     endless = 'class KinematicsPublisher(Node):\n    def __init__(self):\n        while True: pass'
@@ -453,6 +459,7 @@ def test_an_answer_passes_where_it_is_written(opened):
     assert all(cell.execution_count for cell in graded)
 
 
+@pytest.mark.slow
 def test_students_see_the_lessons_and_no_panel_of_instructors(opened):
     page = opened('02_joint_state').page
     assert page.get_by_role('button', name='Validate').is_visible()

@@ -45,6 +45,7 @@ def test_a_timer_is_judged_exactly_on_the_robots_clock(capfd, node, seconds, hz,
     assert capfd.readouterr() == ('', '')
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('node', ['five_hz', 'one_hz'])
 def test_a_node_is_alive_on_wall_time_after_a_check(node):
     with running(node):
@@ -55,6 +56,7 @@ def test_a_node_is_alive_on_wall_time_after_a_check(node):
     assert abs(stamp - time.time()) < 5.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('error', [KeyboardInterrupt, CheckFailed])
 def test_a_node_is_alive_after_a_check_that_was_cut_short(monkeypatch, error):
     def interrupt(*args, **kwargs):

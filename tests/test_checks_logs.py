@@ -54,6 +54,7 @@ def test_a_callback_that_warns_and_raises_does_not_go_on():
         live.stop()
 
 
+@pytest.mark.slow
 def test_another_level_is_named_as_such():
     with running('ik_solver'), rosout('ik_solver_node') as log:
         ask(log, TARGET)
@@ -78,6 +79,7 @@ def test_a_near_miss_is_told_what_is_missing(node, reason):
             log.expect_angles(ANGLES, timeout_sec=1.0)
 
 
+@pytest.mark.slow
 def test_what_was_logged_at_another_level_is_shown():
     with running('ik_solver'), rosout('ik_solver_node') as log:
         ask(log, TOO_FAR)
@@ -103,6 +105,7 @@ def test_an_answer_to_an_older_question_does_not_count():
             assert later._received
 
 
+@pytest.mark.slow
 def test_the_target_is_named():
     with running('ik_one_branch'), rosout('ik_solver_node') as log:
         ask(log, TARGET)
@@ -110,6 +113,7 @@ def test_the_target_is_named():
             log.expect_angles(ANGLES, target=(1.2, 0.8), timeout_sec=1.0)
 
 
+@pytest.mark.slow
 def test_no_warning_is_a_failure():
     with running('ik_solver'), rosout('ik_solver_node') as log:
         ask(log, TARGET)
@@ -206,6 +210,7 @@ def test_who_logs_where_each_target_is_gives_no_angles(run):
             log.expect_warning(no_angles=[bearing_deg, bearing_deg + 180.0])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('angles_deg', [(12.34, 56.78), (0.0, 0.0)])
 def test_other_angles_in_the_form_of_an_answer_are_angles_too(run, angles_deg):
     class Invents(IKSolver):

@@ -125,6 +125,7 @@ class DropsVelocity(Changes):
         return message
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ('node_class', 'field'),
     [(Stamps, 'header'), (DropsHeader, 'header'), (DropsVelocity, 'velocity')],
@@ -158,6 +159,7 @@ def test_fields_that_a_task_does_not_name_may_be_others(run, impatient):
         kept.assert_carries(pose, qos_profile=qos_profile_sensor_data)
 
 
+@pytest.mark.slow
 def test_messages_that_nobody_sent_are_told(run):
     class Invents(monitor.JointStateMonitor):
         def __init__(self):
@@ -173,6 +175,7 @@ def test_messages_that_nobody_sent_are_told(run):
         check_delivery()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ('asked', 'reason'),
     [
@@ -447,6 +450,7 @@ def test_where_no_time_is_left_a_few_messages_tell(run, monkeypatch, node_class)
         check_delivery()
 
 
+@pytest.mark.slow
 def test_without_time_a_right_node_passes(run, monkeypatch):
     monkeypatch.setattr(passage, 'SOME_SEC', 0.0)
     monkeypatch.setattr(passage, 'LONG_SEC', 0.0)

@@ -36,6 +36,7 @@ def test_a_wrong_rate_fails(node, seen):
             recording.assert_rate(hz=5.0)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures('patient')
 def test_a_timer_that_leaves_every_twentieth_out_fails_without_another_look(monkeypatch):
     monkeypatch.setattr(
@@ -45,6 +46,7 @@ def test_a_timer_that_leaves_every_twentieth_out_fails_without_another_look(monk
         topic(TOPIC).record(seconds=60.0).assert_rate(hz=5.0)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures('patient')
 def test_on_a_busy_machine_the_clock_is_driven_for_a_shorter_time(monkeypatch):
     monkeypatch.setattr(SimulatedClock, 'is_half_over', lambda clock: True)

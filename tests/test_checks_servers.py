@@ -167,6 +167,7 @@ class WorksOffSlowly(WorksOff):
             super().look()
 
 
+@pytest.mark.slow
 def test_no_request_for_a_repeated_message_is_lost_when_the_server_leaves(run, monkeypatch):
     monkeypatch.setattr(servers, 'AGAIN_SEC', 0.05)
     monkeypatch.setattr(responses, 'OWED_SEC', 1.0)
@@ -270,6 +271,7 @@ class WaitsForTheServer(IKClient):
         super().ask(target)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures('impatient')
 def test_who_waits_for_a_server_that_is_not_there_is_told(run):
     run(WaitsForTheServer)
@@ -362,6 +364,7 @@ class AnswersAnything(IKClient):
         self.send(response.elbow_up)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures('impatient')
 def test_who_publishes_no_angles_is_told(run):
     run(AnswersAnything)

@@ -60,6 +60,7 @@ def test_a_node_of_the_same_kernel_is_judged_exactly(run, capfd, node_class):
     topic(TOPIC).wait_for(timeout_sec=5.0)
 
 
+@pytest.mark.slow
 def test_a_node_with_its_own_thread_and_context_is_judged_exactly():
     _, executor, thread = imported('own_thread').start()
     try:
@@ -162,6 +163,7 @@ def test_no_node_at_all_is_said(monkeypatch):
         topic(TOPIC).record()
 
 
+@pytest.mark.slow
 def test_two_publishers_are_named(run):
     run(imported('five_hz').FiveHz)
     run(imported('five_hz').FiveHz, 'other', key='other')
@@ -169,6 +171,7 @@ def test_two_publishers_are_named(run):
         topic(TOPIC).record(seconds=1.0).assert_rate(hz=10.0)
 
 
+@pytest.mark.slow
 def test_two_types_on_a_topic_are_named(run):
     # within one participant Fast DDS itself refuses
     run(Node, 'other').create_publisher(Point, TOPIC, 10)
@@ -209,6 +212,7 @@ def test_a_question_gets_its_answer(run, reliability, durability):
     assert message.header.stamp != Time()
 
 
+@pytest.mark.slow
 def test_a_question_that_nobody_hears_fails(run):
     run(Echo, 10)
     with pytest.raises(CheckFailed, match='/echo uses /question, so compare the spelling'):
@@ -226,6 +230,7 @@ def test_the_wrong_answer_is_no_answer(run):
         )
 
 
+@pytest.mark.slow
 def test_a_question_to_a_subscription_for_another_type_says_so(run):
     run(Echo, 10)
     with pytest.raises(CheckFailed) as failed:
@@ -296,6 +301,7 @@ class Repeats(Echo):
         self.create_timer(0.1, lambda: super(Repeats, self).answer(question))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('questions', [1, 2])
 def test_an_answer_that_is_wanted_once_comes_once(run, questions):
     run(Echo, 10)
@@ -335,6 +341,7 @@ def test_the_watcher_can_not_be_reached(run):
     assert os.environ['ROS_DOMAIN_ID'] == str(live.classroom.enter())
 
 
+@pytest.mark.slow
 def test_nobody_waits_long_for_what_the_notebook_says_it_has_not_got(run, monkeypatch):
     monkeypatch.setattr(topic_endpoints, 'ABSENT_SEC', 0.6)
     run(Node, 'idle').create_publisher(JointState, '/elsewhere', 10)

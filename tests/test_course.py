@@ -498,6 +498,7 @@ def test_a_read_only_folder_says_so(machine):
 # --- what it starts ------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('installer', ['uv', 'pip'])
 def test_really_sets_up(real, installer, tmp_path):
     if installer == 'pip':

@@ -77,6 +77,7 @@ def grades(worker):
         return any('toy_' in str(p.cmdline()) for p in psutil.Process(worker.pid).children())
 
 
+@pytest.mark.slow
 def test_a_cluster_grades_as_this_machine_does_and_a_lost_worker_changes_nothing(
     course, scheduler, start, tmp_path
 ):

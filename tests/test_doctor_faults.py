@@ -144,6 +144,7 @@ def test_a_clock_that_nobody_drives_is_named_and_given_back():
     assert_well(listener)
 
 
+@pytest.mark.slow
 def test_a_publisher_that_nobody_spins():
     listener = run(node_class(LISTENER))
     with process(program(TALKER, (SPIN, DEAD))):
@@ -256,6 +257,7 @@ def test_a_remapped_publisher():
         assert wait_for(lambda: listener.heard)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ('environment', 'title'),
     [

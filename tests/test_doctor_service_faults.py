@@ -393,6 +393,7 @@ def test_two_servers_of_one_name_both_work_and_one_is_listened_to():
     assert '/second' in finding.seen
 
 
+@pytest.mark.slow
 def test_a_server_in_another_domain():
     claim = domain.claim()
     name = f'{NAME}_{claim.domain_id}'  # tests beside this one have servers, too

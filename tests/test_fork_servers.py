@@ -73,6 +73,7 @@ def test_a_server_holds_nothing_of_the_grader(forked):
     assert [line for line in shared if '/dev/shm' in line or 'w' in line.split()[1]] == []
 
 
+@pytest.mark.slow
 def test_students_and_tests_kernels_lie_differently_in_memory(loop, forked):
     sandbox, test = loop.run(opened(room='test'))
     try:
@@ -95,6 +96,7 @@ def test_a_server_that_has_died_is_replaced(loop, forked):
         loop.run(closed(sandbox, kernel))
 
 
+@pytest.mark.slow
 def test_many_are_forked_at_a_time_and_by_several_threads():
     kernels = []
 
@@ -178,6 +180,7 @@ def test_what_can_not_be_forked_is_started_and_says_why(
         loop.run(closed(sandbox, kernel))
 
 
+@pytest.mark.slow
 def test_a_python_of_ones_own_is_copied_first(loop, monkeypatch, no_servers):
     """Its file could be changed through /proc/self/exe: the room's user would be its owner."""
     python = Path('/proc/self/exe')

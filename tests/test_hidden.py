@@ -68,6 +68,7 @@ def found_in(text):
     return [canary for canary in CANARIES if canary in text]
 
 
+@pytest.mark.slow
 def test_no_log_and_no_line_on_the_terminal_holds_any(left):
     _, said = left
     assert 'wrong' in said

@@ -110,6 +110,7 @@ def handed_in(course, backend, way, *, table, later):
     return row, page.read_text(encoding='utf-8') + scores.read_text(encoding='utf-8')
 
 
+@pytest.mark.slow
 @pytest.mark.isolation
 def test_a_table_of_all_that_ten_pages_tell_earns_nothing(course, backend):
     numbers = random.Random(f'{course.seed(TOY, "eve")}:double')

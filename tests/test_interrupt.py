@@ -119,6 +119,7 @@ def test_a_run_that_is_stopped_leaves_nothing_running_and_says_how_to_go_on(cour
     assert {r.student_id for r in records(course)} == {'ada'}
 
 
+@pytest.mark.slow
 def test_a_run_that_is_killed_takes_its_kernels_with_it_and_is_done_again(course, run):
     below = kernels_of(run)
     run.kill()

@@ -196,6 +196,7 @@ def test_the_demo_says_that_its_samples_had_no_sandbox(course, nowhere, capsys, 
     assert not any(NO_SANDBOX in line for line in others)
 
 
+@pytest.mark.slow
 @pytest.mark.isolation
 def test_trust_changes_nothing_where_there_is_a_sandbox(course):
     assert require_isolation(trust_students=True)

@@ -142,6 +142,7 @@ def test_a_kernel_that_is_ended_from_outside_is_no_zero(
     assert 'a person has to look at it' in verdict.reason
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(('when', 'check', 'answer', 'delay_sec'), MOMENTS.values(), ids=MOMENTS)
 def test_ended_once_it_is_graded_in_fresh_rooms(monkeypatch, when, check, answer, delay_sec):
     struck = strike(monkeypatch, kill, when=when, delay_sec=delay_sec, times=1)
@@ -222,6 +223,7 @@ def test_who_ends_their_own_kernel_gets_a_zero_that_says_so(way, answer, why):
     assert f'your cell `a` ended the kernel{": " + why if why else ""}' in verdict.reason
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('number', [9, 15])
 def test_who_ends_it_while_a_check_asks_gets_a_zero_too(way, number):
     later = f'import os, threading; threading.Timer(1.0, os.kill, (os.getpid(), {number})).start()'
@@ -237,6 +239,7 @@ def kill_a_child(process):
     child.kill()
 
 
+@pytest.mark.slow
 def test_a_node_that_is_ended_from_outside_is_no_zero(monkeypatch, way):
     struck = strike(monkeypatch, kill_a_child, when='check', delay_sec=0.3)
     verdict = graded(NEEDS_NODE, answer_with_node())
@@ -244,6 +247,7 @@ def test_a_node_that_is_ended_from_outside_is_no_zero(monkeypatch, way):
     assert 'SIGKILL ended a process' in verdict.reason
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(('times', 'outcome'), [(1, 'passed'), (0, 'passed')])
 def test_a_node_that_lives_the_second_time_passes(monkeypatch, times, outcome):
     strike(monkeypatch, kill_a_child, when='check', delay_sec=0.3, times=times)
@@ -320,6 +324,7 @@ def test_so_does_who_starts_a_program_that_does(monkeypatch):
     assert verdict.notes == ('what you started has ended: your code used more than 2,048 MB',)
 
 
+@pytest.mark.slow
 def test_memory_that_runs_out_elsewhere_is_no_zero(monkeypatch):
     """A real OOM: a neighbour eats what both may have, and Linux ends the student's kernel."""
     where = needs_cgroups()

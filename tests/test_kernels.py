@@ -278,6 +278,7 @@ def test_an_endless_flood_does_not_keep_the_time_limit_waiting(spare, run, code)
     assert size_of(result) < 1.1 * MAX_OUTPUT_CHARACTERS
 
 
+@pytest.mark.slow
 def test_an_endless_flood_ends_long_before_the_time_limit(spare, run):
     code = "from IPython.display import HTML\nwhile True: display(HTML('<b>' * 10_000))"
     result = run(spare, code, timeout_sec=60.0)

@@ -629,6 +629,7 @@ class Answer(Node):
     assert lesson.value('answer.point[0] > 1.7') == 'True'
 
 
+@pytest.mark.slow
 def test_the_arm_follows_the_joint_states(lesson):
     lesson.run("""from sensor_msgs.msg import JointState
 class Mover(Talker):
@@ -664,6 +665,7 @@ def test_a_picture_comes_with_its_words_where_a_plain_png_would_lose_them(lesson
     assert shown['data']['text/html'] == f'<img alt="{text}" src="data:image/png;base64,{png}">'
 
 
+@pytest.mark.slow
 def test_two_kernels_have_two_domains_and_give_them_back(lesson):
     mine = int(lesson.value('classroom.enter()'))
     other = Lesson(TALKER)
@@ -705,6 +707,7 @@ def test_a_killed_kernel_gives_its_domain_back_though_its_child_lives():
         lesson.manager.shutdown_kernel(now=True)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     'unruly',
     [

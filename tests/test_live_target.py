@@ -98,6 +98,7 @@ def test_the_arm_follows_whoever_publishes(monkeypatch):
         rclpy.try_shutdown()
 
 
+@pytest.mark.slow
 def test_a_kernel_that_ends_with_it_leaves_nothing_on_stderr(tmp_path):
     log = tmp_path / 'stderr'
     with log.open('w') as stderr:

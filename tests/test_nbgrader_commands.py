@@ -119,6 +119,7 @@ def test_nbgrader_exports_what_we_stored(courses):
     assert total == {'hostile': 3.0, 'right': 3.0, 'small': 1.0, 'silent': 0.0}
 
 
+@pytest.mark.slow
 def test_the_formgrader_grades_alike_inside_its_event_loop(courses):
     _, theirs = courses
     before = [r for r in records(theirs) if r.student_id == 'small']

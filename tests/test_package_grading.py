@@ -37,6 +37,7 @@ def test_no_package_and_a_wrong_one_are_told(tmp_path):
     assert verdicts['runs'][0] == 'failed'
 
 
+@pytest.mark.slow
 def test_no_cell_of_the_students_comes_in_for_a_name_that_is_missing(tmp_path):
     """One that would answer for the build, and binds what colcon says is not defined."""
     forger = (
@@ -91,6 +92,7 @@ def test_a_hostile_setup_earns_nothing_and_harms_nobody(tmp_path, monkeypatch, c
     }
 
 
+@pytest.mark.slow
 def test_a_build_that_takes_too_long_is_left_to_a_person(tmp_path, monkeypatch):
     monkeypatch.setattr(budget, 'BUILD_TIMEOUT_SEC', 1.0)
     folder = make_package(tmp_path, **{'setup.py': 'import time\ntime.sleep(600)\n'})
@@ -99,6 +101,7 @@ def test_a_build_that_takes_too_long_is_left_to_a_person(tmp_path, monkeypatch):
     assert 'greeter was not built within 1 s' in verdicts['builds'][1]
 
 
+@pytest.mark.slow
 def test_colcons_claim_earns_no_point_for_what_must_be_seen(tmp_path):
     """A build that claims all, with an executable that does nothing."""
     verdicts = graded(make_package(tmp_path, node='def main():\n    input()\n'))

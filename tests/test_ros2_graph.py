@@ -238,6 +238,7 @@ def test_refuses_as_ros2cli_does(words, complaint, status):
     assert (result.err, result.status) == (complaint, status)
 
 
+@pytest.mark.slow
 def test_a_parameter_of_another_type_is_refused_by_the_node():
     result = ros2('param', 'set', '/arm/everything', 'an_integer', 'text')
     assert result.err.startswith('Setting parameter failed: ')

@@ -111,6 +111,7 @@ def test_what_cannot_be_done_is_said_in_a_sentence(words, out, err):
     assert 'Traceback' not in result.err
 
 
+@pytest.mark.slow
 def test_echo_hears_reliable_and_best_effort_publishers_at_once():
     with on_the_graph('best_effort', topics=()):
         said = ''
@@ -149,6 +150,7 @@ def test_bw_prints_the_bandwidth():
     assert re.fullmatch(BANDWIDTH.replace('95', r'\d+'), text), text
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('verb', ['hz', 'bw'])
 def test_hz_and_bw_wait_for_a_publisher(verb):
     warning = 'WARNING: topic [/later] does not appear to be published yet\n'
@@ -244,6 +246,7 @@ def bystander():
     context.try_shutdown()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_at_any_moment_leaves_no_ghost(number, bystander):
     for moment_sec in (0.0, 0.1, 0.2, 0.3, 0.4, 0.6, 0.8):
@@ -278,6 +281,7 @@ def test_head_gets_its_lines():
     assert done.stderr == ''
 
 
+@pytest.mark.slow
 def test_a_reader_that_stalls_does_not_hold_up_a_signal():
     more_than_a_pipe_holds = f'data: {"x" * 100_000}'
     pub = 'topic', 'pub', '/x', 'std_msgs/msg/String', more_than_a_pipe_holds

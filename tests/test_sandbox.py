@@ -626,6 +626,7 @@ def as_ordinary_user(home, code):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.geteuid() != 0, reason='we are an ordinary user')
 def test_an_ordinary_user_has_the_same_sandbox(tmp_path_factory):
     code = """

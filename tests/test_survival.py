@@ -125,6 +125,7 @@ def grade_with_kills(handed_in, uninterrupted, start, folder, *, kills):
     assert stored(course) == whole
 
 
+@pytest.mark.slow
 def test_a_run_killed_at_any_moment_goes_on_and_ends_as_if_nothing_had_been(
     handed_in, uninterrupted, start, tmp_path
 ):

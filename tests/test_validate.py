@@ -97,6 +97,7 @@ def test_a_text_is_left_to_a_person(tmp_path):
     assert report['summary'].endswith('A person gives 2 points for what you have written.')
 
 
+@pytest.mark.slow
 def test_what_is_all_hidden_is_not_called_passed(tmp_path):
     report, _ = validated(answered('00_two_link_arm', tmp_path))
     assert checks_of(report)['reach-hidden']['outcome'] == 'at grading'
@@ -142,6 +143,7 @@ GIVEN_UP = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(('lesson', 'answers', 'said'), GIVEN_UP.values(), ids=GIVEN_UP)
 def test_a_cell_that_does_not_return_is_given_up_sooner_and_not_called_wrong(
     tmp_path, lesson, answers, said
@@ -202,6 +204,7 @@ def test_names_of_demonstrations_are_there_and_no_other_demonstration_runs(tmp_p
     assert not (tmp_path / 'ran').exists()
 
 
+@pytest.mark.slow
 def test_a_students_workspace_is_left_alone_whatever_runs(tmp_path):
     right = next(c for c in read('solutions', '03_publisher').cells if c.id == 'five_hz')
     make = f'make_workspace()\nopen({str(tmp_path / "ran")!r}, "w").close()\n'
@@ -217,6 +220,7 @@ def test_a_students_workspace_is_left_alone_whatever_runs(tmp_path):
     assert not (tmp_path / 'ros_ws').exists()
 
 
+@pytest.mark.slow
 def test_a_module_beside_the_notebook_is_found_and_cells_of_ones_own_are_lent(tmp_path):
     (tmp_path / 'helper.py').write_text('from math import radians as to_rad\n')
     right = next(c for c in read('solutions', '02_joint_state').cells if c.id == 'to_joint_state')
@@ -274,6 +278,7 @@ DAMAGE = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ('damage', 'said'), DAMAGE.items(), ids=lambda each: getattr(each, '__name__', '')
 )
@@ -288,6 +293,7 @@ def test_a_notebook_that_was_damaged_is_validated_as_far_as_it_can_be(tmp_path, 
         assert checks_of(report)['joint_names']['outcome'] == 'not checked'
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM], ids=str)
 def test_who_stops_it_ends_all_that_it_began(tmp_path, number):
     path = answered('02_joint_state', tmp_path, to_joint_state='import time; time.sleep(600)')

@@ -83,6 +83,7 @@ def test_as_many_processes_grade_as_asked_for_and_end_with_the_run(course, tmp_p
     assert not any(process.is_running() for process in processes)
 
 
+@pytest.mark.slow
 def test_one_process_grades_as_many_as_it_takes_at_a_time_before_another_is_begun(
     course, tmp_path
 ):
@@ -108,6 +109,7 @@ def test_a_failure_comes_back_with_its_trace(course):
         assert "raise OSError('no room')" in failed.value.trace
 
 
+@pytest.mark.slow
 def test_a_worker_that_is_killed_is_replaced_and_its_submissions_are_graded_elsewhere(
     course, tmp_path
 ):
@@ -204,6 +206,7 @@ def test_memory_bounds_how_many_are_in_flight(monkeypatch):
     ]
 
 
+@pytest.mark.slow
 def test_killed_workers_change_no_grade(course, tmp_path):
     graded = []
     for name in ('whole', 'killed'):

@@ -210,6 +210,7 @@ def built(first_build, monkeypatch):
     return folder / 'src/my_robot_basics'
 
 
+@pytest.mark.slow
 @pytest.mark.starts
 def test_the_build_says_what_it_says_on_a_robot(first_build):
     _, said = first_build
@@ -270,6 +271,7 @@ def test_a_new_node_and_its_line_are_found_after_the_next_build(package):
     assert '[my_node]: I am new' in shell(BUILD + run)
 
 
+@pytest.mark.slow
 @pytest.mark.starts
 def test_the_tools_are_never_those_of_the_copy(package):
     for name in ('__init__', 'two_link_kinematics'):
@@ -300,6 +302,7 @@ def test_a_terminal_that_sources_it_needs_nothing_else(built):
     assert (done.stdout, done.stderr) == (f'{install}\n{sys.prefix}\n', '')
 
 
+@pytest.mark.slow
 @pytest.mark.starts
 def test_in_a_cell_all_of_it_works_and_the_kernel_keeps_to_the_installed_package(folder):
     cells = [

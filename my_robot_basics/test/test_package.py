@@ -122,6 +122,7 @@ def test_a_students_own_node_is_found_after_the_next_build(workspace):
     assert '[five_hz]: mine' in workspace.first_line('five_hz')
 
 
+@pytest.mark.slow
 def test_a_build_carries_the_files_that_are_not_python(workspace):
     workspace.build()
     (installed,) = workspace.folder.glob('install/my_robot_basics/lib/python*/site-packages')
