@@ -149,6 +149,7 @@ def test_a_worker_that_comes_later_is_looked_at_too(course, scheduler, start):
             work.result()
 
 
+@pytest.mark.slow
 def test_leaving_calls_off_what_is_under_way_and_what_waits(course, scheduler, start, tmp_path):
     start_worker(start, scheduler.address)
     task = GradingTask(notebook=answered(course, f'# wait {tmp_path / "go"}\n{RIGHT}'), seed='abc')

@@ -55,6 +55,7 @@ def test_a_server_that_is_right_is_left_alone():
     assert told() == ('All is well on /move_arm: /move_arm_server serves, /sender asks.', [])
 
 
+@pytest.mark.slow
 def test_a_goal_that_goes_on_is_no_fault():
     run(MoveArmServer)
     run(Sender, goal=MoveArm.Goal(position=[1.5, 0.0], speed=0.01)).send()

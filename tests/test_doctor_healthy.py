@@ -120,6 +120,7 @@ def assert_well(seed):
     assert diagnosis.evidence.rate_hz > 0.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('seed', range(6))
 def test_half_a_dozen_healthy_systems(seed):
     assert_well(seed)

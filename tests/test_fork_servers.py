@@ -128,6 +128,7 @@ asyncio.run(main())
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('then', ['time.sleep(1000)', 'return'], ids=['killed', 'ended'])
 def test_no_server_outlives_its_grader(then):
     code = GRADER.format(root=str(ROOT), then=then)

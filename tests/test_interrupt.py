@@ -97,14 +97,8 @@ def alive(processes):
     return [process for process in left if process.status() != psutil.STATUS_ZOMBIE]
 
 
-@pytest.mark.parametrize(
-    'number',
-    [
-        signal.SIGINT,
-        pytest.param(signal.SIGTERM, marks=pytest.mark.slow),
-        pytest.param(signal.SIGHUP, marks=pytest.mark.slow),
-    ],
-)
+@pytest.mark.slow
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_run_that_is_stopped_leaves_nothing_running_and_says_how_to_go_on(course, run, number):
     assert any(line.startswith('ada') for line in iter(run.stdout.readline, ''))
     below = kernels_of(run)

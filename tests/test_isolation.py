@@ -167,6 +167,7 @@ def test_nothing_runs_where_there_is_no_sandbox(course, nowhere, capsys):
         require_isolation()
 
 
+@pytest.mark.slow
 def test_trust_is_told_once_to_whoever_reads_the_grade(course, nowhere, capsys):
     submit(course, 'ada', answered(course, 'def double(x):\n    return 2 * x + x // 7'))
     assert main(['grade', '--trust-students', '--student', 'ada'], course=course) == 0
