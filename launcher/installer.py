@@ -11,6 +11,7 @@ from pathlib import Path
 
 from launcher.environment import Environment
 from launcher.messages import LauncherError, clear_progress, say, show_progress
+from launcher.words import marked, put
 
 STEPS = ('Resolved ', 'Collecting ', 'Downloading ', 'Prepared ', 'Installed ')
 """How the lines of an installer begin that tell how far it is."""
@@ -24,15 +25,15 @@ NO_NETWORK: tuple[str, ...] = (
 NO_NETWORK += ('Failed to establish a new connection', 'Temporary failure in name resolution')
 NO_NETWORK += ('Network is unreachable', 'Max retries exceeded', 'ConnectTimeout', 'ReadTimeout')
 NO_NETWORK += ('Read timed out', 'ProxyError')
-DISK_IS_FULL = (
+DISK_IS_FULL = marked(
     'the disk is full: free some space (.venv takes 0.9 GB and the downloads as much again), '
     'then start again.'
 )
-NETWORK_IS_AWAY = (
+NETWORK_IS_AWAY = marked(
     'the package registry cannot be reached: check the network and its proxy settings, then '
     'start again.'
 )
-FAILED = 'setting up failed for the reason above: fix it, then start again.'
+FAILED = marked('setting up failed for the reason above: fix it, then start again.')
 SHOWN_LINES = 20
 """How much of an installer's last words is shown where nobody knows what they mean."""
 
@@ -66,13 +67,17 @@ class Installer:
         ):
             version = version_of(python)
             raise LauncherError(
-                f'Python {version} ({python}) has no venv module: install it (on Debian and '
-                f'Ubuntu: sudo apt install python{version.rpartition(".")[0]}-venv), then start '
-                'again.'
+                'Python {version} ({python}) has no venv module: install it (on Debian and '
+                'Ubuntu: sudo apt install python{minor}-venv), then start again.',
+                version=version,
+                python=python,
+                minor=version.rpartition('.')[0],
             )
         say(
-            f'setting up .venv with Python {version_of(python)} and {self.name} '
-            '(about 0.9 GB; some minutes the first time)'
+            'setting up .venv with Python {version} and {installer} '
+            '(about 0.9 GB; some minutes the first time)',
+            version=version_of(python),
+            installer=self.name,
         )
         with writing():
             if venv.is_dir():
@@ -139,7 +144,7 @@ def reason_of(lines: Iterable[str]) -> str:
     for causes, sentence in ((NO_DISK, DISK_IS_FULL), (NO_NETWORK, NETWORK_IS_AWAY)):
         if any(cause in line for line in lines for cause in causes):
             return sentence
-    return '\n'.join([*lines[-SHOWN_LINES:], FAILED])
+    return '\n'.join([*lines[-SHOWN_LINES:], put(FAILED)])
 
 
 @contextmanager
@@ -149,7 +154,7 @@ def writing() -> Iterator[None]:
         yield
     except OSError as error:
         full = error.errno in (errno.ENOSPC, errno.EDQUOT)
-        raise LauncherError(DISK_IS_FULL if full else f'{error}\n{FAILED}') from error
+        raise LauncherError(DISK_IS_FULL if full else f'{error}\n{put(FAILED)}') from error
 
 
 def version_of(python: Path) -> str:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from launcher.environment import Environment
 from launcher.messages import LauncherError
+from launcher.words import put
 
 ENGLISH = 'en'
 OPTION, VARIABLE = '--language', 'COURSE_LANGUAGE'
@@ -22,7 +23,8 @@ def choose_language(
 ) -> tuple[str, list[str]]:
     """Return the language of the lessons to open, and the arguments without the one that names it.
 
-    `--language zh_CN` chooses, or else the user's locale does where there is such an edition.
+    `--language zh_CN` chooses, or else the lab in whose terminal this is, or else the user's
+    locale where there is such an edition.
     Raises LauncherError where there is none of that name.
     """
     known = [ENGLISH, *languages(lessons)]
@@ -36,9 +38,12 @@ def choose_language(
             asked = value if found else next(rest, '')
             if asked not in known:
                 raise LauncherError(
-                    f'there are no lessons in {asked!r}: {OPTION} takes {" or ".join(known)}.'
+                    "there are no lessons in '{asked}': --language takes {known}.",
+                    asked=asked,
+                    known=put(' or ').join(known),
                 )
-    return asked or of_the_locale(lessons, variables), kept
+    chosen = variables.get(VARIABLE, '')
+    return asked or (chosen if chosen in known else of_the_locale(lessons, variables)), kept
 
 
 def languages(lessons: Path) -> list[str]:

@@ -39,6 +39,8 @@ def run_verb(environment: Environment, verb: Verb, arguments: list[str]) -> int:
     if verb.owner == 'everyone':
         lessons = environment.root / 'notebooks'
         variables.setdefault(VARIABLE, of_the_locale(lessons, variables))
+    else:
+        variables.pop(VARIABLE, None)  # a terminal's: what grades speaks English
     if verb.folder == 'root':
         os.chdir(environment.root)
         variables['PWD'] = str(environment.root)

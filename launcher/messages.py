@@ -2,14 +2,20 @@
 
 import sys
 
+from launcher.words import put
+
 
 class LauncherError(Exception):
     """The reason why nothing can be done, and what to do: one sentence, the last of its lines."""
 
+    def __init__(self, template: str, **values: object) -> None:
+        """Put it in the user's language."""
+        super().__init__(put(template, **values))
 
-def say(sentence: str) -> None:
-    """Print a sentence; lines before it are somebody else's words."""
-    *shown, last = sentence.split('\n')
+
+def say(template: str, **values: object) -> None:
+    """Print a sentence in the user's language; lines before it are somebody else's words."""
+    *shown, last = put(template, **values).split('\n')
     print(*shown, f'course: {last}', sep='\n', file=sys.stderr, flush=True)
 
 

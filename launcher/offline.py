@@ -49,9 +49,11 @@ def read_wheels(folder: Path) -> Wheels:
         files = json.loads((folder / CONTENTS).read_text(encoding='utf-8'))
     except (OSError, ValueError):
         raise LauncherError(
-            f'{folder} has no {CONTENTS} that can be read, which ./course wheels writes last: '
+            '{folder} has no {contents} that can be read, which ./course wheels writes last: '
             'make the folder with ./course wheels FOLDER on a machine with a network, and copy '
-            'all of it.'
+            'all of it.',
+            folder=folder,
+            contents=CONTENTS,
         ) from None
     return Wheels(folder, files)
 
@@ -78,15 +80,22 @@ def check_wheels(folder: Path, version: str, pins: Path) -> None:
     wheels, python = read_wheels(folder), version.rpartition('.')[0]
     if python not in wheels.files:
         raise LauncherError(
-            f'{folder} is for Python {" and ".join(sorted(wheels.files))}, and this one is '
-            f'{version}: name another Python (PYTHON=/path/to/python3 ./course …), or make the '
-            f'folder with ./course wheels --python {python} FOLDER.'
+            '{folder} is for Python {pythons}, and this one is {version}: name another Python '
+            '(PYTHON=/path/to/python3 ./course …), or make the folder with ./course wheels '
+            '--python {python} FOLDER.',
+            folder=folder,
+            pythons=', '.join(sorted(wheels.files)),
+            version=version,
+            python=python,
         )
     if lacks := wheels.lacking(python, read_pins(pins)):
         raise LauncherError(
-            f'{folder} lacks {in_words(lacks)} for Python {python}: it was made for another '
-            'version of the course, or not all of it was copied. Make it again with ./course '
-            'wheels FOLDER, from the same version of the course.'
+            '{folder} lacks {packages} for Python {python}: it was made for another version of '
+            'the course, or not all of it was copied. Make it again with ./course wheels FOLDER, '
+            'from the same version of the course.',
+            folder=folder,
+            packages=in_words(lacks),
+            python=python,
         )
 
 

@@ -56,8 +56,10 @@ def interfaces_wheel(root: Path) -> str:
     found = sorted((root / INTERFACES).glob('*.whl'))
     if len(found) != 1:
         raise LauncherError(
-            f'{INTERFACES}/ has {len(found)} wheels (*.whl), expected one: get the files of the '
-            'course again.'
+            '{folder}/ has {found} wheels (*.whl), expected one: get the files of the course '
+            'again.',
+            folder=INTERFACES,
+            found=len(found),
         )
     return f'./{found[0].relative_to(root)}'
 
@@ -97,8 +99,9 @@ def set_up(environment: Environment, python: Path) -> None:
         return
     if not os.access(environment.root, os.W_OK):
         raise LauncherError(
-            f'the folder {environment.root} is read-only: copy the course into a folder of your '
-            'own and start it there.'
+            'the folder {root} is read-only: copy the course into a folder of your own and start '
+            'it there.',
+            root=environment.root,
         )
     with locked(environment.root) as lock:
         wheels = asked_for(os.environ)

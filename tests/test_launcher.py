@@ -1,4 +1,5 @@
 import json
+import os
 import re
 import shutil
 import subprocess
@@ -6,17 +7,21 @@ import sys
 from pathlib import Path
 
 import pytest
+from my_robot_basics.language.catalogues import read_translations
 
 from grader.cli.arguments import make_parser
 from grader.course import ROOT
 from launcher.environment import Environment, without_foreign
 from launcher.installer import DISK_IS_FULL, FAILED, NETWORK_IS_AWAY, progress, reason_of
 from launcher.languages import TRANSLATION, jupyterlab_settings
+from launcher.main import run_verb
+from launcher.messages import LauncherError
 from launcher.set_up import BUILD_TOOLS, build_tools
 from launcher.shares import executables_of
 from launcher.testing import Checks
 from launcher.unstable import add_unstable, read_failures, read_passes, unstable
 from launcher.verbs import read_verbs
+from launcher.words import put
 
 # --- the table of the verbs ----------------------------------------------------------------------
 
@@ -67,6 +72,97 @@ def test_it_needs_nothing_that_is_installed():
     command = ['sh', '-c', 'exec "$@"', 'sh', sys._base_executable, '-ISc', code]
     run = subprocess.run(command, capture_output=True, text=True)
     assert (run.stdout, run.stderr) == ('[]\n', '')
+
+
+# --- the user's language -------------------------------------------------------------------------
+
+CATALOGUE = ROOT / 'locale/zh_CN/LC_MESSAGES/launcher.po'
+NO_LOCALE = {'LC_ALL': '', 'LC_MESSAGES': '', 'LANG': '', 'COURSE_LANGUAGE': ''}
+CHINESE_WORDS = {
+    'of the locale': ([], {'LANG': 'zh_CN.UTF-8'}),
+    'of another locale of the language': ([], {'LC_MESSAGES': 'zh_TW', 'LANG': 'de_DE'}),
+    "of a lesson's terminal": ([], {'COURSE_LANGUAGE': 'zh_CN', 'LANG': 'en_GB'}),
+    'asked for': (['--language', 'zh_CN'], {'LANG': 'en_GB'}),
+    'of the locale, beside a language that there is not': (['--language=tlh'], {'LANG': 'zh_CN'}),
+}
+ENGLISH_WORDS = {
+    'of another locale': ([], {'LANG': 'de_DE.UTF-8'}),
+    'of no locale': ([], {'LANG': 'C.UTF-8'}),
+    'of the stronger variable': ([], {'LC_ALL': 'C', 'LANG': 'zh_CN'}),
+    'asked for': (['--language=en'], {'LANG': 'zh_CN'}),
+    "of an English lesson's terminal": ([], {'COURSE_LANGUAGE': 'en', 'LANG': 'zh_CN'}),
+    'where a path is the name': (['--language', '../zh_CN'], {}),
+}
+
+
+def said_by_course(*arguments, **variables):
+    environment = os.environ | NO_LOCALE | variables
+    command = [ROOT / 'course', *arguments]
+    return subprocess.run(command, env=environment, capture_output=True, text=True)
+
+
+@pytest.mark.parametrize(('asked', 'locale'), CHINESE_WORDS.values(), ids=CHINESE_WORDS)
+def test_course_speaks_the_language(asked, locale):
+    run = said_by_course('tidy', *asked, **locale)
+    assert run.stderr == 'course: 没有“tidy”这个命令：./course --help 会列出所有命令。\n'
+
+
+@pytest.mark.parametrize(('asked', 'locale'), ENGLISH_WORDS.values(), ids=ENGLISH_WORDS)
+def test_course_speaks_english(asked, locale):
+    run = said_by_course('tidy', *asked, **locale)
+    assert run.stderr == "course: there is no verb 'tidy': ./course --help lists them.\n"
+
+
+def test_the_help_is_the_same_table_in_each_language():
+    english = said_by_course('--help').stdout.splitlines()
+    chinese = said_by_course('--help', '--language', 'zh_CN').stdout.splitlines()
+    assert english[0] == 'usage: ./course VERB [ARGUMENT...]'
+    assert chinese[0] == '用法：./course VERB [ARGUMENT...]'
+    assert len(chinese) == len(english)
+    for ours, theirs in zip(english[1:], chinese[1:], strict=True):
+        usage = re.match(r' *(.*?)  +', ours)
+        at = usage.end() if usage else 0
+        assert theirs[:at] == ours[:at]
+        assert re.search('[\u3400-\u9fff]', theirs) or not ours
+
+
+def test_the_launcher_reads_catalogues_as_others_do(monkeypatch):
+    monkeypatch.setenv('COURSE_WORDS', str(CATALOGUE))
+    known = read_translations(ROOT / 'locale', 'zh_CN', 'launcher')
+    assert len(known) > 40
+    assert {english: put(english) for english in known} == known
+    failed = LauncherError(
+        'the folder {root} is read-only: copy the course into a folder of your '
+        'own and start it there.',
+        root='/a {b}',
+    )
+    assert str(failed).startswith('文件夹 /a {b} 是只读的：')
+    assert reason_of(['No space left on device']) == DISK_IS_FULL
+    assert str(LauncherError(DISK_IS_FULL)).startswith('磁盘已满：')
+
+
+def test_what_somebody_has_to_look_at_stays_english(tmp_path, monkeypatch):
+    catalogue = tmp_path / 'launcher.po'
+    entries = [
+        '#, fuzzy\nmsgid "a \\"b\\""\nmsgstr "甲"\n',
+        'msgid ""\n"one "\n"two"\nmsgstr "乙"\n',
+    ]
+    catalogue.write_text('\n'.join(entries), encoding='utf-8')
+    monkeypatch.setenv('COURSE_WORDS', str(catalogue))
+    assert [put('a "b"'), put('one two'), put('else')] == ['a "b"', '乙', 'else']
+    monkeypatch.setenv('COURSE_WORDS', str(tmp_path / 'none.po'))
+    assert put('one two') == 'one two'
+
+
+@pytest.mark.parametrize(('verb', 'language'), [('workspace', 'zh_CN'), ('grade', None)])
+def test_what_grades_does_not_speak_the_language_of_the_terminal(verb, language, monkeypatch):
+    monkeypatch.setenv('COURSE_LANGUAGE', 'zh_CN')
+    monkeypatch.chdir(ROOT)
+    started = []
+    monkeypatch.setattr(os, 'execve', lambda *command: started.append(command))
+    run_verb(Environment(ROOT), read_verbs()[verb], [])
+    ((_, _, variables),) = started
+    assert variables.get('COURSE_LANGUAGE') == language
 
 
 # --- variables -----------------------------------------------------------------------------------

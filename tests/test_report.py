@@ -78,6 +78,38 @@ def test_students_with_the_same_reason_are_counted_once_and_the_most_common_come
     assert reasons.index('2 students') < reasons.index('1 student')
 
 
+def words_of(html):
+    """What a page shows and says, without styles and code."""
+    html = re.sub('<style>.*?</style>|<code>.*?</code>', '', html, flags=re.DOTALL)
+    labels = re.findall('aria-label="(.*?)"', html)
+    return ' '.join([*labels, re.sub('<[^>]*>', ' ', html)])
+
+
+def test_the_page_speaks_another_language_where_it_is_asked_to(course):
+    rows = [
+        graded(course, 'ada', {}),
+        graded(course, '小明', {'double-hidden': 'expected 2, saw 17: x'}, explained=''),
+        graded(course, 'eve', notebook=b'no notebook'),
+    ]
+    facts, english = reported(course, rows)
+    later = Run(RUN.began.replace(minute=31))
+    page = write_report(course, later, rows, language='zh_CN')
+    chinese = page.read_text(encoding='utf-8')
+    assert '<html lang="en">' in english
+    assert '<html lang="zh-CN">' in chinese
+    assert 'Results of this class' in english
+    assert '这个班级的结果' in chinese
+    assert 'expected 2, saw 17: x' in words_of(english)
+    assert '预期：2；实际：17' in words_of(chinese)
+    assert '由人' in words_of(chinese)
+    left = re.findall(r'(?:\b[a-z]{2,} ){3,}', words_of(chinese))
+    assert {words for words in left if 'numbers are doubled' not in words} == set()  # the toy's
+    theirs = json.loads(page.with_suffix('.json').read_text(encoding='utf-8'))
+    for volatile in ('began', 'seconds', 'per_minute'):
+        facts.pop(volatile), theirs.pop(volatile)
+    assert theirs == facts  # for programs
+
+
 def test_each_check_has_its_share_of_those_who_have_a_score(course):
     rows = [
         graded(course, 'ada', {}),

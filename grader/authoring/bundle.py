@@ -129,7 +129,7 @@ def _paths(course: Course, faults: list[str]) -> Iterator[str]:
             paths = (Path(assignment, name) for name in sorted(names))
             yield from (f'{folder}/{path}' for path in paths if not course.is_in_package(path))
     for edition in editions(course):
-        for part in FOR_STUDENTS:
+        for part in (*FOR_STUDENTS, LAUNCHER):
             catalogue = catalogue_path(Path('locale'), edition.language, part)
             if (course.root / catalogue).is_file():
                 yield str(catalogue)

@@ -6,7 +6,7 @@ place, when the code chooses between two words, is found by itself.
 
 import ast
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
 _WORDS = re.compile(
     r"[^\W\d_]{2,}'?[,;:]?\s+[^\W\d_{]|\} [^\W\d_]{2,}|[^\W\d_]{2,}:? +\{|\{\w+\}, "
@@ -40,6 +40,13 @@ def messages_in(source: str, *, title: bool = False) -> list[str]:
             found.append(docstring.partition('\n')[0])
     words = (word for node in ast.walk(tree) for word in _told(node))
     return list(dict.fromkeys([*found, *words]))
+
+
+def marked_in(source: str, callers: Collection[str]) -> list[str]:
+    """Return the texts that a module gives to a function of one of these names, in order."""
+    calls = (node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Call))
+    first = [call.args[0] for call in calls if call.args and _called(call) in callers]
+    return [str(text.value) for text in first if isinstance(text, ast.Constant)]
 
 
 def _without_note(text: str) -> str:

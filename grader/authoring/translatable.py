@@ -11,7 +11,7 @@ from nbformat import NotebookNode
 
 from grader.authoring import index
 from grader.authoring.blocks import translatable, translatable_html, without_mark_scheme
-from grader.authoring.code_messages import messages_in
+from grader.authoring.code_messages import marked_in, messages_in
 from grader.authoring.editions import is_translated
 from grader.authoring.quizzes import quizzes
 from grader.course import Course
@@ -34,7 +34,7 @@ MODULES = {
     'validate': ['my_robot_basics/my_robot_basics/validate/*.py'],
     'live': [
         f'my_robot_basics/my_robot_basics/{module}.py'
-        for module in ('session/*', *(f'live/{each}' for each in IN_WORDS))
+        for module in ('session/*', 'ros2/shell', *(f'live/{each}' for each in IN_WORDS))
     ],
     'doctor': [
         f'my_robot_basics/my_robot_basics/doctor/{modules}.py'
@@ -44,13 +44,22 @@ MODULES = {
     'feedback': [
         'grader/notebook/*.py',
         'grader/report/page*.py',
+        'grader/report/statistics.py',
+        'grader/report/similar_answers.py',
         'grader/storage/save_grades.py',
     ],
 }
 """The modules that say something to students, for each part of the software."""
-PAGE = 'grader/report/page.html.j2'
+CHARTS = 'grader/report/charts.py'
+PAGES = {'feedback': 'grader/report/page.html.j2', 'report': 'grader/report/report.html.j2'}
+"""The templates of pages; what is told there of others' work is translated by its own part."""
 _MARKED = re.compile(r"\b_\('((?:[^'\\]|\\.)*)'")
 """What a template marks as a text to translate."""
+LAUNCHER = 'launcher'
+_SAY = {'put', 'say', 'marked', 'LauncherError'}
+"""What the launcher's modules give a text to that is to be translated."""
+_PUT = re.compile(r'(?:\bput|fault =) "((?:[^"\\$]|\\.)+)"', re.DOTALL)
+"""The same in `course`, where a backslash ends a line that goes on."""
 WHEREVER = ['wherever sentences are put together']
 STUDENTS = 'students.md'
 """In solutions/: the README of what students get."""
@@ -75,9 +84,16 @@ def _software(course: Course) -> dict[str, Texts]:
     parts = {part: _modules(course.root, patterns) for part, patterns in MODULES.items()}
     if parts['checks']:
         parts['checks'] |= dict.fromkeys(JOINED, WHEREVER)
-    for template in sorted(course.root.glob(PAGE)):
-        for text in _MARKED.findall(template.read_text(encoding='utf-8')):
-            parts['feedback'].setdefault(text, []).append(template.name)
+    parts['report'] = {}
+    for path in sorted(course.root.glob(CHARTS)):
+        for text in marked_in(path.read_text(encoding='utf-8'), _SAY):
+            parts['report'].setdefault(text, []).append(path.name)
+    for part, page in PAGES.items():
+        for template in sorted(course.root.glob(page)):
+            for text in _MARKED.findall(template.read_text(encoding='utf-8')):
+                places = parts[part].setdefault(text.replace("\\'", "'"), [])
+                places.append(template.name)
+    parts[LAUNCHER] = _launcher(course.root)
     for part in ('lesson_checks', 'hidden_checks'):
         parts[part] = {}
     for name in course.assignments():
@@ -88,6 +104,22 @@ def _software(course: Course) -> dict[str, Texts]:
                     texts = parts['lesson_checks' if text in shown else 'hidden_checks']
                     texts.setdefault(text, []).append(f'{name}: {cell.id}')
     return parts
+
+
+def _launcher(root: Path) -> Texts:
+    """Return what `./course` itself says: a shell script, the table of its verbs, and modules."""
+    texts: Texts = {}
+    for path in root.glob('course'):
+        for text in _PUT.findall(path.read_text(encoding='utf-8')):
+            texts.setdefault(text.replace('\\\n', ''), []).append(path.name)
+    for path in root.glob('launcher/verbs.txt'):
+        for row in path.read_text(encoding='utf-8').splitlines():
+            if not row.startswith('#'):
+                texts.setdefault(re.split(r'  +', row.rstrip())[-1], []).append(path.name)
+    for path in sorted(root.glob('launcher/*.py')):
+        for text in marked_in(path.read_text(encoding='utf-8'), _SAY):
+            texts.setdefault(text, []).append(str(path.relative_to(root)))
+    return texts
 
 
 def _modules(root: Path, patterns: Sequence[str]) -> Texts:

@@ -4,6 +4,9 @@ import argparse
 from datetime import datetime
 from pathlib import Path
 
+from my_robot_basics.language.catalogues import ENGLISH, languages
+from my_robot_basics.language.speaking import LOCALE
+
 from grader.cli import verbs
 from grader.cli.grade_verb import run_grade
 from grader.cli.serve_verb import run_serve
@@ -96,6 +99,12 @@ def make_parser() -> argparse.ArgumentParser:
         verb.add_argument(option, metavar='FILE', help='for --dask tls://…, as dask takes it')
     verb.add_argument(
         '--force', action='store_true', help='grade again what has not changed since, too'
+    )
+    verb.add_argument(
+        '--language',
+        choices=[ENGLISH, *languages(LOCALE)],
+        default=ENGLISH,
+        help='of the page that reports the run; English, unless you name another',
     )
     verb.set_defaults(run=run_grade)
 

@@ -48,7 +48,7 @@ def run_grade(course: Course, asked: argparse.Namespace) -> int:
         graded.close()  # ends all that runs, before anybody reads that
         summary = f'{len(rows)} of {len(submissions)} submissions are graded and stored'
         raise KeyboardInterrupt(summary) from None
-    report = write_report(course, run, rows)
+    report = write_report(course, run, rows, language=asked.language)
     if changed := changes(rows):
         print(f'{len(changed)} score{"s" * (len(changed) > 1)} changed:')
         print(*(f'  {line}' for line in changed), sep='\n')

@@ -1,7 +1,7 @@
 """Charts as plain SVG: they need nothing else, run nothing, and say in words what they show."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from markupsafe import Markup
 
@@ -10,15 +10,18 @@ _BAR, _HEIGHT, _TOP, _BOTTOM = 56, 120, 22, 40
 """Pixels: a bar's width, the tallest one's height, and the room above and below for text."""
 
 
-def distribution(scores: Sequence[float], max_score: float, *, title: str) -> Markup:
-    """Return a histogram of scores, from 0 to `max_score` points."""
+def distribution(
+    scores: Sequence[float], max_score: float, *, title: str, put: Callable[..., str] = str.format
+) -> Markup:
+    """Return a histogram of scores, from 0 to `max_score` points; `put` fills in a template."""
     bars = histogram(scores, max_score)
     tallest = max(count for _, count in bars) or 1
     width, height = _BAR * len(bars), _TOP + _HEIGHT + _BOTTOM
-    words = '; '.join(f'{label} points: {count}' for label, count in bars)
+    told = [put('{label} points: {count}', label=label, count=count) for label, count in bars]
+    alt = put('{title}. Students by score: {bars}', title=title, bars=put('; ').join(told))
     svg = Markup(
         '<svg role="img" viewBox="0 0 {w} {h}" width="{w}" height="{h}" aria-label="{alt}">'
-    ).format(w=width, h=height, alt=f'{title}. Students by score: {words}')
+    ).format(w=width, h=height, alt=alt)
     for place, (label, count) in enumerate(bars):
         tall = round(_HEIGHT * count / tallest)
         left, middle = place * _BAR, place * _BAR + _BAR // 2
@@ -41,8 +44,8 @@ def distribution(scores: Sequence[float], max_score: float, *, title: str) -> Ma
     svg += Markup(
         '<line x1="0" x2="{w}" y1="{y}" y2="{y}"/>'
         '<text x="{middle}" y="{below}" text-anchor="middle" font-size="13">'
-        'points</text></svg>'
-    ).format(w=width, y=_TOP + _HEIGHT, middle=width // 2, below=height - 6)
+        '{points}</text></svg>'
+    ).format(points=put('points'), w=width, y=_TOP + _HEIGHT, middle=width // 2, below=height - 6)
     return svg
 
 

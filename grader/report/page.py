@@ -19,7 +19,7 @@ from grader.common.text import visible
 from grader.kernels.isolation import NO_SANDBOX
 from grader.notebook.restore import KEY
 from grader.report.page_parts import find_sections
-from grader.report.templates import template
+from grader.report.templates import put_markup, template
 
 _TAGS = {'p', 'em', 'strong', 'code', 'pre', 'ul', 'ol', 'li', 'blockquote', 'h4', 'br', 'table'}
 _TAGS |= {'thead', 'tbody', 'tr', 'th', 'td'}
@@ -98,14 +98,9 @@ def _title(english: str, about: dict, language: str) -> str:
     return translations.get(f'# {english}', f'# {english}').removeprefix('# ')
 
 
-def _put(language: str, english: str, **values: object) -> Markup:
-    """Return a text of the page's own in a language, with values in its places."""
-    known = {} if language == ENGLISH else sentences(language).translations
-    return Markup(escape(known.get(english, english))).format(**values)
-
-
 @cache
 def _template(language: str, *, is_plain: bool) -> Template:
+    known = {} if language == ENGLISH else sentences(language).translations
     return template(
         'page.html.j2',
         filters={
@@ -117,7 +112,7 @@ def _template(language: str, *, is_plain: bool) -> Template:
             'said': partial(in_language, language),
         },
         values={
-            '_': partial(_put, language),
+            '_': partial(put_markup, known),
             'language_code': language.replace('_', '-'),
             'code_style': Markup(_CODE.get_style_defs('pre')),
             'dark_code_style': Markup(_CODE_IN_THE_DARK.get_style_defs('pre')),

@@ -4,10 +4,12 @@ import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from datetime import datetime
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
 from jinja2 import Template
+from my_robot_basics.language.catalogues import ENGLISH, read_translations
+from my_robot_basics.language.speaking import LOCALE, in_language
 from my_robot_basics.validate.cells import title_of
 
 from grader.common.files import make_folder_for, write_whole
@@ -22,9 +24,11 @@ from grader.report.message_groups import Reason
 from grader.report.progress_table import changes, score_of
 from grader.report.similar_answers import SimilarPair, find_similar
 from grader.report.statistics import Tally, tally
-from grader.report.templates import template
+from grader.report.templates import put_markup, template
 from grader.storage.records import records
 
+PART = 'report'
+"""The catalogue of the page's words."""
 SLOWEST = 10
 MOST_SHOWN = 20
 """Reasons on the page; the JSON has all."""
@@ -42,8 +46,13 @@ class Run:
     """The seed that was replayed; '' for each student's own."""
 
 
-def write_report(course: Course, run: Run, rows: Sequence[SubmissionOutcome]) -> Path:
-    """Write report.html and report.json into gradebook/runs/<time>/; return the page's path."""
+def write_report(
+    course: Course, run: Run, rows: Sequence[SubmissionOutcome], *, language: str = ENGLISH
+) -> Path:
+    """Write report.html and report.json into gradebook/runs/<time>/; return the page's path.
+
+    The page is in a language; report.json, which programs read, is in English.
+    """
     counted = tally(course, rows)
     now = {row.assignment for row in rows if row.seconds is not None and row.stored}
     similar = find_similar(course, sorted(now))
@@ -57,9 +66,9 @@ def write_report(course: Course, run: Run, rows: Sequence[SubmissionOutcome]) ->
     page = folder / 'report.html'
     write_whole(
         page,
-        _template().render(
+        _template(language).render(
             facts,
-            titles=_titles(course, counted),
+            titles=_titles(course, counted, language),
             tally=counted,
             most=MOST_SHOWN,
             hardest=HARDEST,
@@ -108,8 +117,13 @@ def _facts(run: Run, rows: Sequence[SubmissionOutcome], counted: Tally) -> dict:
     }
 
 
-def _titles(course: Course, counted: Tally) -> dict[str, str]:
-    return {each.name: title_of(course.source(each.name)) for each in counted.assignments}
+def _titles(course: Course, counted: Tally, language: str) -> dict[str, str]:
+    """Return the titles of lessons as their edition has them."""
+    titles = {each.name: f'# {title_of(course.source(each.name))}' for each in counted.assignments}
+    for name, title in titles.items():
+        known = read_translations(LOCALE, language, name)
+        titles[name] = known.get(title, title).removeprefix('# ')
+    return titles
 
 
 def _totals(totals: Totals) -> dict:
@@ -156,5 +170,15 @@ def _submission(row: SubmissionOutcome) -> dict:
 
 
 @cache
-def _template() -> Template:
-    return template('report.html.j2', values={'distribution': distribution, 'share': share})
+def _template(language: str) -> Template:
+    put = partial(put_markup, read_translations(LOCALE, language, PART))
+    return template(
+        'report.html.j2',
+        filters={'said': partial(in_language, language)},
+        values={
+            '_': put,
+            'language_code': language.replace('_', '-'),
+            'distribution': partial(distribution, put=put),
+            'share': share,
+        },
+    )

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader, Template
-from markupsafe import Markup
+from markupsafe import Markup, escape
 from my_robot_basics.validate.text import visible
 
 
@@ -25,6 +25,12 @@ def template(
     environment.filters |= filters or {}
     environment.globals |= values or {}
     return environment.get_template(name)
+
+
+def put_markup(translations: Mapping[str, str], english: str, **values: object) -> Markup:
+    """Return a text of a page's own as it is translated, with values in its places."""
+    text = escape(translations.get(english, english))
+    return Markup(text.format(**values)) if values else text
 
 
 def _visible(value: object) -> object:

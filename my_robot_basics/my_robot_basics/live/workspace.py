@@ -147,8 +147,10 @@ def main(argv: list[str] | None = None) -> str | None:
         const=True,
         choices=[NAME, INTERFACES],
         metavar='PACKAGE',
-        help='move your files aside, and start again with those of the course; PACKAGE: of that '
-        'package alone',
+        help=in_language_here(
+            'move your files aside, and start again with those of the course; PACKAGE: of that '
+            'package alone'
+        ),
     )
     args = parser.parse_args(argv)
     tell(f'ROS_WS is {classroom.workspace()}')

@@ -6,6 +6,7 @@ import sys
 import time
 from pathlib import Path
 
+from my_robot_basics.language.speaking import in_language_here
 from my_robot_basics.ros2 import environment
 from my_robot_basics.ros2.errors import CommandError
 from my_robot_basics.session import classroom, lessons
@@ -25,7 +26,7 @@ def main(argv: list[str] | None = None) -> int:
     try:
         domain_id = _choose(running, args.lesson)
     except CommandError as error:
-        print(f'course: {error}', file=sys.stderr)
+        print(f'course: {in_language_here(str(error))}', file=sys.stderr)
         return USAGE
     os.environ['ROS_DOMAIN_ID'] = str(domain_id)
     os.environ['ROS_WS'] = str(classroom.workspace())
@@ -39,23 +40,28 @@ def main(argv: list[str] | None = None) -> int:
     try:
         os.execvp(command[0], command)
     except OSError as error:
-        print(f'course: {command[0]} does not start: {error.strerror}', file=sys.stderr)
+        said = in_language_here(f'{command[0]} does not start: {error.strerror}')
+        print(f'course: {said}', file=sys.stderr)
         return 127 if isinstance(error, FileNotFoundError) else 126
 
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         './course ros-shell',
-        description='Open a shell in which ROS is set up, and say what was set.',
+        description=in_language_here('Open a shell in which ROS is set up, and say what was set.'),
         usage='%(prog)s [--lesson LESSON] [-c SCRIPT | -- COMMAND ...]',
     )
     parser.add_argument(
         '--lesson',
-        help='the lesson to join, by its name (or how that begins) or its ROS domain ID; '
-        'else the one that started last',
+        help=in_language_here(
+            'the lesson to join, by its name (or how that begins) or its ROS domain ID; else the '
+            'one that started last'
+        ),
     )
-    parser.add_argument('-c', dest='script', help='run this in bash, instead of an open shell')
-    parser.add_argument('command', nargs='*', help='run this command, instead of a shell')
+    about = in_language_here('run this in bash, instead of an open shell')
+    parser.add_argument('-c', dest='script', help=about)
+    about = in_language_here('run this command, instead of a shell')
+    parser.add_argument('command', nargs='*', help=about)
     return parser
 
 
@@ -81,15 +87,17 @@ def _report(running: list[lessons.RunningLesson], domain_id: int) -> str:
     for lesson in running:
         started = time.strftime('%H:%M:%S', time.localtime(lesson.started_nsec / 1e9))
         joined = '  <- joined' if lesson.domain_id == domain_id else ''
-        lines.append(f'  {lesson.name:20} in ROS domain {lesson.domain_id}, {started}{joined}')
+        where = in_language_here(f'in ROS domain {lesson.domain_id}, {started}')
+        lines.append(f'  {lesson.name:20} {where}{joined}')
     if lines:
-        lines.insert(0, 'lessons that are running:')
+        lines.insert(0, in_language_here('lessons that are running:'))
     else:
-        lines = ['no lesson is running']
+        lines = [in_language_here('no lesson is running')]
     lines += [f'{name}={os.environ[name]}' for name in SHOWN]
-    lines.append(f'PATH begins with {os.environ["PATH"].partition(os.pathsep)[0]}')
+    folder = os.environ['PATH'].partition(os.pathsep)[0]
+    lines.append(in_language_here(f'PATH begins with {folder}'))
     if not classroom.workspace().is_dir():
-        lines.append('there is no workspace yet: ./course workspace makes it')
+        lines.append(in_language_here('there is no workspace yet: ./course workspace makes it'))
     return '\n'.join(lines)
 
 

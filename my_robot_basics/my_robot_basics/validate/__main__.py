@@ -10,6 +10,7 @@ import signal
 import sys
 from pathlib import Path
 
+from my_robot_basics.language.speaking import in_language_here
 from my_robot_basics.validate.errors import CourseError
 from my_robot_basics.validate.forks import ForkServer
 
@@ -18,13 +19,15 @@ def main(arguments: list[str] | None = None) -> int:
     """Validate the notebook that the command line names; return the exit code."""
     parser = argparse.ArgumentParser(
         prog='./course validate',
-        description='Run the visible checks of a lesson. Exit code: 0 if all of them pass, 1 if'
-        ' not, 2 if nothing could be checked.',
+        description=in_language_here(
+            'Run the visible checks of a lesson. Exit code: 0 if all of them pass, 1 if not, 2 if '
+            'nothing could be checked.'
+        ),
     )
-    parser.add_argument('notebook', type=Path, help='a saved notebook of the course')
-    parser.add_argument(
-        '--json', action='store_true', help='write a line of JSON for each step and the report'
-    )
+    about = in_language_here('a saved notebook of the course')
+    parser.add_argument('notebook', type=Path, help=about)
+    about = in_language_here('write a line of JSON for each step and the report')
+    parser.add_argument('--json', action='store_true', help=about)
     options = parser.parse_args(arguments)
     say = _say_json if options.json else _say
     signal.signal(signal.SIGTERM, signal.default_int_handler)  # ends its kernels then, too
@@ -43,7 +46,7 @@ def main(arguments: list[str] | None = None) -> int:
         if options.json:
             _write({'failed': str(error)})
         else:
-            print(f'validate: {error}', file=sys.stderr)
+            print(f'validate: {in_language_here(str(error))}', file=sys.stderr)
         return 2
     if options.json:
         _write({'report': report.as_data()})

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Literal
 
 from my_robot_basics.language.catalogues import ENGLISH
-from my_robot_basics.language.speaking import in_language, language_of, put
+from my_robot_basics.language.speaking import in_language, in_language_here, language_of, put
 from my_robot_basics.validate.cells import KEY
 from my_robot_basics.validate.errors import CourseError
 from my_robot_basics.validate.exercises import find_exercises
@@ -160,19 +160,23 @@ def _answers(notebook: Path) -> dict[str, str]:
 def main(arguments: list[str] | None = None) -> int:
     """Print the progress; return 0, or 2 where there is no contents page."""
     parser = argparse.ArgumentParser(
-        prog='./course progress', description='Show which exercises Validate has seen pass.'
+        prog='./course progress',
+        description=in_language_here('Show which exercises Validate has seen pass.'),
     )
-    parser.add_argument('page', type=Path, help='the contents page, index.ipynb')
+    about = in_language_here('the contents page, index.ipynb')
+    parser.add_argument('page', type=Path, help=about)
     try:
-        told = progress_on(parser.parse_args(arguments).page, default_path()).as_data()
+        progress = progress_on(parser.parse_args(arguments).page, default_path())
     except CourseError as error:
-        print(f'progress: {error}', file=sys.stderr)
+        print(f'progress: {in_language_here(str(error))}', file=sys.stderr)
         return 2
+    told, say = progress.as_data(), partial(put, progress.language)
     print(told['summary'])
     for lesson in told['lessons']:
         print('', lesson['title'], sep='\n')
         for each in lesson['exercises']:
-            print(f'  {each["mark"]} {each["name"]} ({each["words"]})')
+            line = say('{one} ({other})', one=each['name'], other=each['words'])
+            print(f'  {each["mark"]} {line}')
     print('', *told['notes'], told['about'], sep='\n')
     return 0
 
