@@ -100,12 +100,8 @@ def make_parser() -> argparse.ArgumentParser:
     verb.add_argument(
         '--force', action='store_true', help='grade again what has not changed since, too'
     )
-    verb.add_argument(
-        '--language',
-        choices=[ENGLISH, *languages(LOCALE)],
-        default=ENGLISH,
-        help='of the page that reports the run; English, unless you name another',
-    )
+    text, known = 'of the page that reports the run', [ENGLISH, *languages(LOCALE)]
+    verb.add_argument('--language', choices=known, default=ENGLISH, help=text)
     verb.set_defaults(run=run_grade)
 
     verb = subparsers.add_parser('serve', help='grade what is handed in, as soon as it is')
