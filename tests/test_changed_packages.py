@@ -13,7 +13,7 @@ from grader.storage.records import records, verdicts
 from grader.storage.submitted import find_submissions
 
 LESSON = '12_package'
-ORDINARY = {'coroutine', 'stops_at_the_first_unreachable'}
+ORDINARY = {'stops_at_the_first_unreachable'}
 """Those that an ordinary run grades; `./course test --slow` takes all."""
 
 

@@ -88,6 +88,7 @@ def test_a_mistake_with_refusals_fails_that_check_alone(run, NodeClass, words):
         look_at_refusals()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(('NodeClass', 'words'), OF_BOTH)
 def test_what_keeps_all_from_working_fails_both(run, NodeClass, words):
     run(NodeClass)

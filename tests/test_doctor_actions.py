@@ -47,6 +47,7 @@ def told(name='/move_arm'):
     return ' '.join(tell(diagnosis).split()), [each.title for each in diagnosis.findings]
 
 
+@pytest.mark.slow
 def test_a_server_that_is_right_is_left_alone():
     run(MoveArmServer)
     sender = run(Sender)

@@ -113,6 +113,7 @@ def cell():
 WANTED = ('stream', 'display_data', 'error')
 
 
+@pytest.mark.slow
 @pytest.mark.starts
 def test_a_notebook_shows_the_answer_and_a_picture_as_often_as_it_is_asked(cell):
     ask = f"from my_robot_basics import live\nlive.why('{TOPIC}')"

@@ -127,6 +127,7 @@ def test_a_relative_name_is_named_where_it_is_written(asked):
     assert_well(asker)
 
 
+@pytest.mark.slow
 def test_a_client_without_a_server():
     run(node_class(ASKER))
     found = first_finding()

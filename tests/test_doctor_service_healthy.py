@@ -108,6 +108,7 @@ def assert_well():
     return report.tell(diagnosis)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('work_sec', [0.0, 2.0])
 @pytest.mark.parametrize('kind', CLIENTS)
 def test_an_honest_client_of_a_quick_and_of_a_slow_server(kind, work_sec):

@@ -55,6 +55,7 @@ def test_nothing_of_a_package_is_given_out(worked_in):
     assert [path for path in listed if f'/{PACKAGE}/' in path] == []
 
 
+@pytest.mark.slow
 def test_validate_builds_what_lies_beside_the_notebook(worked_in):
     notebook = worked_in.release_path(LESSON)
     command = [sys.executable, '-P', '-m', 'my_robot_basics.validate', str(notebook)]

@@ -296,6 +296,7 @@ def test_the_hidden_test_is_nowhere_in_the_students_process(shared, student, che
     assert text_of(student(shared, planted)) == "['files', 'frames', 'memory', 'objects']\n"
 
 
+@pytest.mark.slow
 def test_a_function_that_never_returns_fails_its_check_soon(rooms, student, check, monkeypatch):
     monkeypatch.setattr(module, 'REPLY_TIMEOUT_SEC', 1.0)
     student(rooms, 'def f():\n  while True: pass\nx = 5')
