@@ -7,6 +7,7 @@ import time
 
 import pytest
 from my_robot_basics.checks import CheckFailed, action, moves, open_action
+from my_robot_basics.checks.actions import FollowedClock
 from my_robot_basics.checks.clock import SimulatedClock
 from nodes.running import imported, running
 from rclpy.action import ActionServer, GoalResponse
@@ -240,7 +241,7 @@ def test_a_robot_minute_is_driven(run, ticks, node_class, least, most):
     run(node_class)
     move_arm = action('/move_arm', MoveArm)
     moves.expect_reaches(move_arm, (1.2, -0.6), speed=0.02)
-    assert move_arm.known.clocks == {'/move_arm_server': 'driven'}
+    assert move_arm.known.clocks == {'/move_arm_server': FollowedClock.DRIVEN}
     assert sum(ticks) > 60e9
     assert least < len(ticks) < most
 

@@ -7,6 +7,7 @@ from answered import answered
 from my_robot_basics.validate import run
 from my_robot_basics.validate.as_text import as_text
 from my_robot_basics.validate.errors import RoomFailure
+from my_robot_basics.validate.outputs import CellRun
 from my_robot_basics.validate.report import CheckFeedback, ExerciseFeedback, Report
 
 
@@ -102,3 +103,38 @@ def test_what_validate_fails_in_itself_is_no_fault_of_an_answer(monkeypatch, tmp
         'Validate itself failed here, and your answer was not checked: all ROS domains are taken'
     )
     assert not told.passed
+
+
+def test_the_report_comes_before_the_kernels_have_ended(monkeypatch, tmp_path):
+    happened = []
+
+    class Rooms:
+        student_alive = True
+        end_later = None
+
+        def __init__(self, **options):
+            pass
+
+        async def __aenter__(self):
+            return self
+
+        async def __aexit__(self, failed, *_):
+            assert failed is None
+            self.end_later(self.end())
+
+        async def end(self):
+            await asyncio.sleep(0.1)
+            happened.append('ended')
+
+        async def run_student_cell(self, source, **options):
+            return CellRun(status='ok')
+
+        run_check = run_student_cell
+
+        def student_cpu_sec(self):
+            return None
+
+    monkeypatch.setattr(run, 'LocalRooms', Rooms)
+    path = answered('02_joint_state', tmp_path)
+    asyncio.run(run.validate(path, None, tell=lambda told: happened.append('told')))
+    assert happened == ['told', 'ended']

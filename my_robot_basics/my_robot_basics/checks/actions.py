@@ -4,14 +4,13 @@ import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from enum import Enum, auto
+from typing import Any
 
 from my_robot_basics.checks.open_action import OpenAction
 from my_robot_basics.feedback.errors import CheckFailed
 from my_robot_basics.graph.watcher import Watcher
 
-Clock = Literal['driven', 'wall', 'both']
-"""Which clock a server follows; `both`: it waits on the one, and computes with the other."""
 RESULT_SEC = 10.0
 """How long `send_goal` waits for the end of a goal, of time that was free."""
 
@@ -36,11 +35,21 @@ class Outcome:
     """The feedback's messages."""
 
 
+class FollowedClock(Enum):
+    """Which clock a server follows."""
+
+    DRIVEN = auto()
+    """That of its node, which a check drives."""
+    WALL = auto()
+    BOTH = auto()
+    """It waits on its node's clock, and computes with the wall clock."""
+
+
 @dataclass
 class Known:
     """What need not be found out once more."""
 
-    clocks: dict[str, Clock] = field(default_factory=dict)
+    clocks: dict[str, FollowedClock] = field(default_factory=dict)
     """Of each node that served the action, which clock it follows."""
     longest_sec: float = math.inf
     """For how long of the robot's time the machine can drive that clock."""

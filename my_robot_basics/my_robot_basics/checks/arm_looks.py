@@ -11,7 +11,7 @@ from typing import TypeVar
 from rcl_interfaces.srv import GetParameters
 
 from arm_interfaces.action import MoveArm
-from my_robot_basics.checks.actions import Action, Clock
+from my_robot_basics.checks.actions import Action, FollowedClock
 from my_robot_basics.checks.clock import Inconclusive, SimulatedClock
 from my_robot_basics.checks.open_action import OpenAction
 from my_robot_basics.checks.reported_speed import is_of_wall_time
@@ -36,7 +36,7 @@ WALL_SEC = 2.0
 HOLD_SEC, APART_SEC = 0.4, 0.2
 """How long the clock stands still before a server that ignores it is known, or computes with the
 wall clock: then where it says that the arm is differs by more than the second."""
-_clocks: dict[tuple[tuple[int, ...], ...], Clock] = {}
+_clocks: dict[tuple[tuple[int, ...], ...], FollowedClock] = {}
 """The servers that were seen to follow a driven clock: the next grade cell asks the same one."""
 
 
@@ -50,7 +50,7 @@ def look(action: Action, body: Callable[[WatchedArm], T], *, start: Pose) -> T:
         on_wall = WatchedArm(server, WallTime(server.watcher), tuple(start), WALL_SEC)
         on_wall.move(start)
         clock = _clock(action, on_wall)
-        if clock == 'driven':
+        if clock == FollowedClock.DRIVEN:
             for longest_sec in math.inf, BUSY_SEC:
                 if longest_sec <= action.known.longest_sec:
                     try:
@@ -59,7 +59,7 @@ def look(action: Action, body: Callable[[WatchedArm], T], *, start: Pose) -> T:
                         action.known.longest_sec = BUSY_SEC
                         on_wall.move(start)
         on_wall.time = WallTime(server.watcher)
-        on_wall.has_two_clocks = clock == 'both'
+        on_wall.has_two_clocks = clock == FollowedClock.BOTH
         try:
             return body(on_wall)
         finally:
@@ -82,20 +82,20 @@ def _driven(
             arm.settle()
 
 
-def _clock(action: Action, arm: WatchedArm) -> Clock:
+def _clock(action: Action, arm: WatchedArm) -> FollowedClock:
     """Which clock the node follows; found out once for each server."""
     server, name, clocks = arm.server.identity(), arm.server.node_name, action.known.clocks
     if name not in clocks:
         clocks[name] = _clocks.get(server) or _seen_clock(arm)
-    if clocks[name] != 'wall':  # a machine that is too busy may make it look so: ask again
+    if clocks[name] != FollowedClock.WALL:  # it looks so on a busy machine, too: ask again
         _clocks[server] = clocks[name]
     return clocks[name]
 
 
-def _seen_clock(arm: WatchedArm) -> Clock:
+def _seen_clock(arm: WatchedArm) -> FollowedClock:
     is_free = _answers_while_it_moves(arm)
     arm.settle()
-    clock = _waits_on(arm) if is_free else 'wall'
+    clock = _waits_on(arm) if is_free else FollowedClock.WALL
     arm.move(arm.start)
     return clock
 
@@ -125,23 +125,23 @@ def _answers_while_it_moves(arm: WatchedArm) -> bool:
     return is_free
 
 
-def _waits_on(arm: WatchedArm) -> Clock:
+def _waits_on(arm: WatchedArm) -> FollowedClock:
     """Whether a move stands still while the robot's clock does, and goes on with it."""
 
-    def waits(driven: WatchedArm) -> Clock:
+    def waits(driven: WatchedArm) -> FollowedClock:
         assert isinstance(driven.time, DrivenTime)
         probe = _probe(driven, CLOCK_PROBE_SEC)
         sent = driven.send(probe)
         driven.time.hold(HOLD_SEC)
         if sent.is_over() or sent.feedback_count() > 1:
-            return 'wall'
+            return FollowedClock.WALL
         ends = driven.time.wait(sent.is_over, seconds=CLOCK_PROBE_MOST_SEC)
         if is_of_wall_time(driven, sent, probe.position, apart_sec=APART_SEC):
-            return 'both'
-        return 'driven' if ends else 'wall'
+            return FollowedClock.BOTH
+        return FollowedClock.DRIVEN if ends else FollowedClock.WALL
 
     try:
         arm.move(arm.start)
         return _driven(arm.server, waits, arm.start)
     except Inconclusive:
-        return 'wall'
+        return FollowedClock.WALL

@@ -9,10 +9,14 @@ import json
 import signal
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from my_robot_basics.language.speaking import in_language_here
 from my_robot_basics.validate.errors import CourseError
 from my_robot_basics.validate.forks import ForkServer
+
+if TYPE_CHECKING:
+    from my_robot_basics.validate.report import Report
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -30,6 +34,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument('--json', action='store_true', help=about)
     options = parser.parse_args(arguments)
     say = _say_json if options.json else _say
+    told: list[Report] = []
     signal.signal(signal.SIGTERM, signal.default_int_handler)  # ends its kernels then, too
     try:
         with ForkServer() as server:
@@ -38,8 +43,15 @@ def main(arguments: list[str] | None = None) -> int:
             from my_robot_basics.validate.remembering import remember
             from my_robot_basics.validate.run import validate
 
-            report = asyncio.run(validate(options.notebook, server, say=say))
-            report = remember(report, options.notebook)
+            def tell(report: 'Report') -> None:
+                told.append(remember(report, options.notebook))
+                if options.json:
+                    _write({'report': told[0].as_data()})
+                else:
+                    _clear()
+                    print(as_text(told[0]), flush=True)
+
+            asyncio.run(validate(options.notebook, server, say=say, tell=tell))
     except KeyboardInterrupt:
         return 130
     except CourseError as error:
@@ -48,12 +60,7 @@ def main(arguments: list[str] | None = None) -> int:
         else:
             print(f'validate: {in_language_here(str(error))}', file=sys.stderr)
         return 2
-    if options.json:
-        _write({'report': report.as_data()})
-    else:
-        _clear()
-        print(as_text(report))
-    return 0 if report.passed else 1
+    return 0 if told[0].passed else 1
 
 
 def _say(line: str) -> None:

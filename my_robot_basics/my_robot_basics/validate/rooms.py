@@ -4,7 +4,7 @@ import asyncio
 import math
 import shutil
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Coroutine, Sequence
 from pathlib import Path
 
 from my_robot_basics.session.domain import Claim, claim
@@ -43,6 +43,8 @@ class LocalRooms:
 
     say: Say = staticmethod(lambda line: None)
     """Is told what begins."""
+    end_later: Callable[[Coroutine], object] | None = None
+    """Takes over how the kernels end, unless something has failed: nobody waits for that."""
 
     def __init__(
         self, *, files: Sequence[Path], server: ForkServer, beside: Path = Path()
@@ -75,8 +77,14 @@ class LocalRooms:
             raise
         return self
 
-    async def __aexit__(self, *_: object) -> None:
+    async def __aexit__(self, failed: object = True, *_: object) -> None:
         """End both kernels, whatever state they are in, and leave nothing behind."""
+        if failed is None and self.end_later is not None:
+            self.end_later(self._end())
+        else:
+            await self._end()
+
+    async def _end(self) -> None:
         try:
             # a check has closed its nodes itself; the student's may hold shared memory
             stops = [k.stop(politely=k is self._kernels[0]) for k in self._kernels]
@@ -93,15 +101,23 @@ class LocalRooms:
         return self._student.alive
 
     async def run_student_cell(
-        self, source: str, *, timeout_sec: float, free_sec: float = math.inf, number: int = 0
+        self,
+        source: str,
+        *,
+        timeout_sec: float,
+        free_sec: float = math.inf,
+        number: int = 0,
+        builds: str = '',
     ) -> CellRun:
         """Run one of the student's cells; give it up after `free_sec` with a free processor.
 
-        `number` is which cell of the notebook it is.
+        `number` is which cell of the notebook it is, and `builds` the package that it builds.
         """
-        self.say(f'running your cells ({number})')
+        what = f'building {builds} with colcon, which takes a few seconds'
+        self.say(what if builds else f'running your cells ({number})')
         waits = f'waiting for cell {number}, which has not returned yet'
-        later = asyncio.get_running_loop().call_later(SLOW_SEC, self.say, waits)
+        slow_sec = math.inf if builds else SLOW_SEC
+        later = asyncio.get_running_loop().call_later(slow_sec, self.say, waits)
         try:
             return await self._student.run(source, timeout_sec=timeout_sec, free_sec=free_sec)
         finally:

@@ -31,11 +31,17 @@ SIDE_BY_SIDE = 2
 """Exercises at a time: they wait more than they work, and loops without an end do not."""
 
 
-async def validate(path: Path, server: ForkServer, *, say: Say = lambda line: None) -> Report:
+async def validate(
+    path: Path,
+    server: ForkServer,
+    *,
+    say: Say = lambda line: None,
+    tell: Callable[[Report], None] = lambda report: None,
+) -> Report:
     """Run the visible checks of a notebook, each exercise in fresh kernels of a server.
 
-    `say` gets a line whenever something else begins. Raises CourseError where the file is no
-    notebook of the course.
+    `say` gets a line whenever something else begins, and `tell` the report, while the kernels
+    still end. Raises CourseError where the file is no notebook of the course.
     """
     lesson = read_lesson(path)
     files = [p for p in sorted(path.parent.glob('*.py')) if p.is_file()]
@@ -46,10 +52,13 @@ async def validate(path: Path, server: ForkServer, *, say: Say = lambda line: No
     parts += [*_by_hand(lesson), *_without_exercise(lesson, named), *_missing(lesson)]
     language = language_of(lesson.notebook.metadata)
     report = Report(path.name, tuple(parts), lesson.notes, language)
-    return report.with_words(
+    report = report.with_words(
         lambda text: in_words(text, lesson.notebook, language),
         title=partial(in_language, language),
     )
+    tell(report)
+    await asyncio.gather(*run.ends)
+    return report
 
 
 @dataclass(frozen=True)
@@ -62,6 +71,8 @@ class _Run:
     say: Say
     places: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(SIDE_BY_SIDE))
     budget: ShortBudget = field(default_factory=ShortBudget)
+    ends: list[asyncio.Task] = field(default_factory=list)
+    """Kernels that are not needed any more end there."""
 
     async def part(self, exercise: Exercise) -> ExerciseFeedback:
         """Judge an exercise by the checks that can be run, when its turn comes."""
@@ -83,6 +94,7 @@ class _Run:
     def _rooms(self, exercise: Exercise) -> LocalRooms:
         rooms = self.make_rooms()
         rooms.say = partial(_say_of, exercise.name, self.say)
+        rooms.end_later = lambda end: self.ends.append(asyncio.create_task(end))
         return rooms
 
 

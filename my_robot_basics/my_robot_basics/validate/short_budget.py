@@ -26,13 +26,15 @@ class ShortBudget(Budget[LocalRooms]):
         self, timeout_sec: float, rooms: LocalRooms, cell: NotebookNode
     ) -> CellRun:
         """Run one of the student's cells for so long at most."""
-        is_theirs = role(cell) in _STUDENTS and not packages_built_by(cell)
+        builds = packages_built_by(cell)
+        is_theirs = role(cell) in _STUDENTS and not builds
         free_sec = self.free_sec if is_theirs else math.inf
         run = await rooms.run_student_cell(
             cell.source,
             timeout_sec=timeout_sec,
             free_sec=free_sec,
             number=cell.metadata[KEY].number,
+            builds=', '.join(builds),
         )
         if run.cut_after_sec:
             self.free_sec = VALIDATE_NEXT_TIMEOUT_SEC
