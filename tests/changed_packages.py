@@ -126,6 +126,85 @@ RIGHT = (
     ),
 )
 
+
+def _in_turn(files: Files) -> None:
+    """Each target is visited from the callback of the one before: nothing ever waits."""
+    head, rest = files[PLAYER].split('    def play(self):')
+    files[PLAYER] = f'{head}{_CHAIN}\n\ndef main():{rest.split("def main():")[1]}'
+
+
+_CHAIN = """    def play(self):
+        numbers = self.get_parameter('targets').value
+        self.left = [*zip(numbers[::2], numbers[1::2], strict=True)]
+        self.words = []
+        self.looks = self.create_timer(0.1, self.begin)
+
+    def begin(self):
+        if self.solver.service_is_ready() and self.arm.server_is_ready():
+            self.looks.cancel()
+            self.visit_next()
+
+    def visit_next(self):
+        if not self.left:
+            self.done.publish(String(data=' '.join(self.words)))
+            return
+        x, y = self.left.pop(0)
+        asked = self.solver.call_async(SolveIK.Request(target=Point(x=x, y=y)))
+        asked.add_done_callback(self.solved)
+
+    def note(self, word):
+        self.words.append(word)
+        self.visit_next()
+
+    def solved(self, future):
+        if not future.result().reachable:
+            return self.note('unreachable')
+        goal = MoveArm.Goal(position=future.result().elbow_up, speed=0.5)
+        self.arm.send_goal_async(goal).add_done_callback(self.answered)
+
+    def answered(self, future):
+        if not future.result().accepted:
+            return self.note('rejected')
+        result = future.result().get_result_async()
+        result.add_done_callback(lambda end: self.note(ENDS[end.result().status]))
+"""
+
+_THREAD = (
+    ('import rclpy\n', 'import threading\nimport time\n\nimport rclpy\n'),
+    (
+        '        player.play()\n',
+        '        threading.Thread(target=player.play, daemon=True).start()\n',
+    ),
+    (
+        '        rclpy.spin_until_future_complete(self, future)\n'
+        '        if not future.done():\n            raise ExternalShutdownException\n',
+        '        while not future.done():\n            time.sleep(0.01)\n',
+    ),
+)
+
+RIGHT += (
+    Change('in_turn', _in_turn),
+    Change('plays_in_a_thread', swap(PLAYER, *_THREAD)),
+    Change(
+        'declares_no_default',
+        swap(
+            PLAYER,
+            ("'targets', [1.2, 0.8, 0.9, -0.9]", "'targets', rclpy.Parameter.Type.DOUBLE_ARRAY"),
+        ),
+    ),
+    Change(
+        'shuts_down_as_the_tutorials_do',
+        swap(
+            DRIVER,
+            ('    try:\n        rclpy.init()\n', '    rclpy.init()\n    try:\n'),
+            (
+                '    finally:\n        rclpy.try_shutdown()',
+                '    finally:\n        if rclpy.ok():\n            rclpy.shutdown()',
+            ),
+        ),
+    ),
+)
+
 # --- wrong ---------------------------------------------------------------------------------------
 
 NOTHING = 0, 0, 0
@@ -216,6 +295,113 @@ WRONG = (
         (1, 0, 4),
         {'package_runs': 'radians'},
     ),
+    Change(
+        'elbow_down',
+        swap(PLAYER, ('position=answer.elbow_up', 'position=answer.elbow_down')),
+        (1, 2, 0),
+        {'arm_player_plays': 'this is elbow_down: send response.elbow_up'},
+    ),
+    Change(
+        'other_speed',
+        swap(PLAYER, ('speed=0.5', 'speed=1.0')),
+        (1, 2, 0),
+        {'arm_player_plays': 'the speed that the task names'},
+    ),
+    Change(
+        'swaps_x_and_y',
+        swap(PLAYER, ('Point(x=x, y=y)', 'Point(x=y, y=x)')),
+        (1, 0, 0),
+        {'package_runs': 'put x and y into', 'arm_player_plays': 'put x and y into'},
+    ),
+    Change(
+        'other_parameter',
+        swap(
+            PLAYER,
+            ("declare_parameter('targets'", "declare_parameter('points'"),
+            ("get_parameter('targets')", "get_parameter('points')"),
+        ),
+        (1, 2, 0),
+        {'arm_player_plays': 'targets'},
+    ),
+    Change(
+        'last_one_first',
+        swap(PLAYER, ('for x, y in targets]', 'for x, y in [*targets][::-1]]')),
+        (1, 2, 0),
+        {'arm_player_plays': 'target'},
+    ),
+    Change(
+        'takes_rejected_ones_for_accepted',
+        swap(
+            PLAYER,
+            ("        if not goal_handle.accepted:\n            return 'rejected'\n", ''),
+        ),
+        (1, 2, 0),
+        {'arm_player_plays': 'KeyError|not accepted'},
+    ),
+    Change(
+        'numbers_for_words',
+        swap(
+            PLAYER,
+            (
+                'return ENDS[self.wait_for(goal_handle.get_result_async()).status]',
+                'return str(self.wait_for(goal_handle.get_result_async()).status)',
+            ),
+        ),
+        (1, 2, 0),
+        {'arm_player_plays': 'write the word for each status, and not its number'},
+    ),
+    Change(
+        'two_ls',
+        swap(PLAYER, ("STATUS_CANCELED: 'canceled'", "STATUS_CANCELED: 'cancelled'")),
+        (1, 2, 0),
+        {'arm_player_plays': 'write the words as the task does'},
+    ),
+    Change(
+        'other_topic',
+        swap(PLAYER, ("'/arm_player/done'", "'/arm_player/finished'")),
+        (1, 2, 0),
+        {'arm_player_plays': 'the report'},
+    ),
+    Change(
+        'asks_nobody',
+        swap(
+            PLAYER,
+            ('self.solver = self.create_client(SolveIK, ', 'self.solver = str('),
+            ('        self.solver.wait_for_service()\n', ''),
+            (
+                'self.wait_for(self.solver.call_async(SolveIK.Request(target=Point(x=x, y=y))))',
+                'SolveIK.Response(reachable=True, elbow_up=[x, y])',
+            ),
+        ),
+        (1, 0, 0),
+        {'package_runs': '/solve_ik', 'arm_player_plays': '/solve_ik'},
+    ),
+    Change(
+        'other_node_name',
+        swap(DRIVER, ("super().__init__('arm_driver')", "super().__init__('driver')")),
+        (1, 0, 4),
+        {'package_runs': r'look at super\(\).__init__'},
+    ),
+    Change(
+        'goes_on_after_ctrl_c',
+        swap(
+            DRIVER,
+            ('        rclpy.init()\n', '        rclpy.init(signal_handler_options=NO)\n'),
+            (
+                '        rclpy.spin(ArmDriver())\n',
+                '        driver = ArmDriver()\n        while True:\n            try:\n'
+                '                rclpy.spin(driver)\n            except KeyboardInterrupt:\n'
+                "                print('not now')\n",
+            ),
+            (
+                'from rclpy.node import Node\n',
+                'from rclpy.node import Node\nfrom rclpy.signals import SignalHandlerOptions\n',
+            ),
+            ('class ArmDriver', 'NO = SignalHandlerOptions.NO\n\n\nclass ArmDriver'),
+        ),
+        (1, 0, 4),
+        {'package_runs': 'it still runs after'},
+    ),
 )
 
 # --- hostile -------------------------------------------------------------------------------------
@@ -231,5 +417,53 @@ def _shell_script(files: Files) -> None:
     )(files)
 
 
-HOSTILE = (Change('shell_script', _shell_script, (0, 0, 4)),)
+_STARTS_IT = """import os, sys
+if os.fork() == 0:
+    os.setsid()
+    sys.path.insert(0, os.getcwd())
+    from arm_player.arm_node import main
+    main()
+    os._exit(0)
+"""
+
+
+def _setup_starts_a_node(files: Files) -> None:
+    """The driver runs from the build on, and holds colcon's pipe; the executable only waits."""
+    files['arm_player/arm_node.py'] = files[DRIVER]
+    files[DRIVER] = 'import time\n\n\ndef main():\n    time.sleep(600)\n'
+    files[SETUP] = f'{_STARTS_IT}{files[SETUP]}'
+
+
+_ITS_OWN_SERVERS = """
+        from arm_player.arm_driver import ArmDriver
+        import threading
+        driver = ArmDriver()
+        threading.Thread(target=rclpy.spin, args=(driver,), daemon=True).start()
+        player.play()
+"""
+
+HOSTILE = (
+    Change('shell_script', _shell_script, (0, 0, 4)),
+    Change(
+        'setup_starts_a_node', _setup_starts_a_node, (1, 0, 4), {'package_runs': '/arm_driver'}
+    ),
+    Change(
+        'player_serves_itself',
+        swap(PLAYER, ('        player.play()\n', _ITS_OWN_SERVERS.removeprefix('\n'))),
+        (1, 0, 0),
+        {'package_runs': '/solve_ik', 'arm_player_plays': '/solve_ik'},
+    ),
+    Change(
+        'player_reports_what_it_was_not_told',
+        swap(
+            PLAYER,
+            (
+                "        self.done.publish(String(data=' '.join(words)))",
+                "        self.done.publish(String(data='succeeded ' * len(words)))",
+            ),
+        ),
+        (1, 2, 0),
+        {'arm_player_plays': 'the status of the result tells how it ended'},
+    ),
+)
 ALL = (*RIGHT, *WRONG, *HOSTILE)

@@ -137,11 +137,10 @@ class Drawing:
                 cause=f'{SOLVE_IK} is asked for something else',
             )
         if not servers.was_asked(number):
-            self._fail_silent(
-                expected=wanted,
-                hint=drawing_hints.why_not_asked(self._watcher, self._before(number)),
-                cause=drawing_hints.stops(self._before(number)),
-            )
+            before, skipped = self._before(number), servers.was_skipped(number)
+            hint = drawing_hints.why_not_asked(self._watcher, before, was_skipped=skipped)
+            cause = 'a target is skipped' if skipped else drawing_hints.stops(before)
+            self._fail_silent(expected=wanted, hint=hint, cause=cause)
 
     def _expect_goal(self, number: int) -> ReceivedGoal:
         goals, place = self._servers.goals, self._goals

@@ -26,8 +26,13 @@ def why_no_client(watcher: Watcher) -> str:
     return services.take(watcher.node).why_none(SOLVE_IK, maker='create_client')
 
 
-def why_not_asked(watcher: Watcher, word_before: str) -> str:
-    """Why no request comes for a target; that before it ended so ('' for the first)."""
+def why_not_asked(watcher: Watcher, word_before: str, *, was_skipped: bool) -> str:
+    """Why no request comes for a target; that before it ended so ('' for the first).
+
+    It was skipped where one came for a later target.
+    """
+    if was_skipped:
+        return 'visit those of the parameter targets, in their order, and leave none out'
     if not answers_parameters(watcher, NODE):
         return waits_for_answer(SOLVE_IK) if word_before else _NO_SPIN
     if word_before in _AFTER:

@@ -32,6 +32,8 @@ class OpenAction:
         self.ends = ActionEnds(watcher, name, type_)
         self.node_name = ''
         """The full name of the server's node."""
+        self.has_served = False
+        """Whether it has accepted a goal of an earlier check's."""
         self.accepted: list[SentGoal] = []
         """The goals that it has accepted, the last one last."""
 
@@ -41,10 +43,10 @@ class OpenAction:
         self.raised = CallbackErrors([self.node_name])
         self.log = ServerLog(self.watcher, self.node_name)
         self.watcher.spin_until(self.ends.is_connected, timeout_sec=SERVER_SEC)
-        is_known = self.identity() in _served
+        self.has_served = self.identity() in _served
         self.watcher.spin_until_free(
             lambda: bool(self.ends.statuses.received),
-            free_sec=SERVED_SEC if is_known else NEW_SEC,
+            free_sec=SERVED_SEC if self.has_served else NEW_SEC,
         )
         if self.has_active():
             self._wait_for_rest()

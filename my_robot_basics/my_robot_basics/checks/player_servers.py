@@ -64,6 +64,11 @@ class PlayerServers(ScriptedActionServer):
         _, x, y = self.targets[number]
         return any(_is_at(asked, x, y) for asked in self.solver.requests)
 
+    def was_skipped(self, number: int) -> bool:
+        """Whether a request came for a later target, and none for this one."""
+        later = range(number + 1, len(self.targets))
+        return not self.was_asked(number) and any(map(self.was_asked, later))
+
     def strays(self) -> list[Any]:
         """The requests for a point that is no target."""
         points = [(x, y) for _, x, y in self.targets]

@@ -1,16 +1,21 @@
 """One ROS participant for all watchers of a grade cell: to meet the nodes takes each one 0.3 s.
 
-It is there in the test's room alone, where nobody else runs a cell, and ends with the cell.
+It is there in the test's room alone, where nobody else runs a cell, and ends with the cell. A node
+that does nothing keeps it: rmw ends a participant with the last node of its context.
 """
 
 import rclpy
 from rclpy.context import Context
+from rclpy.node import Node
+from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
 
 from my_robot_basics.feedback.hidden import is_in_test_room
 from my_robot_basics.session import kernel
 
-_contexts: dict[int, Context] = {}
+KEEPER = '_keeper'
+_keepers: dict[int, Node] = {}
+"""A node in the context of each ROS domain."""
 _watched: list[object] = []
 
 
@@ -34,11 +39,24 @@ def context_of_cell(domain_id: int) -> Context | None:
     if shell not in _watched:
         shell.events.register('post_execute', _end)
         _watched.append(shell)
-    if domain_id not in _contexts:
-        _contexts[domain_id] = new_context(domain_id)
-    return _contexts[domain_id]
+    if domain_id not in _keepers:
+        _keepers[domain_id] = _keeper(new_context(domain_id))
+    return _keepers[domain_id].context
+
+
+def _keeper(context: Context) -> Node:
+    return Node(
+        KEEPER,
+        context=context,
+        use_global_arguments=False,
+        enable_rosout=False,
+        start_parameter_services=False,
+        parameter_overrides=[Parameter('start_type_description_service', value=False)],
+    )
 
 
 def _end() -> None:
-    while _contexts:
-        _contexts.popitem()[1].try_shutdown()
+    while _keepers:
+        keeper = _keepers.popitem()[1]
+        keeper.destroy_node()
+        keeper.context.try_shutdown()
