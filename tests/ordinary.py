@@ -94,7 +94,9 @@ ORDINARY = {
     'test_checks_services::test_a_missing_server_is_looked_for': r'arguments0-.*',
     'test_package::test_colcon_builds_what_the_ament_index_finds': r'options0',
     'test_sandbox::test_only_a_small_disk_can_be_written_to': r'forked',
-    'test_quiz::test_what_is_guessed_right_is_right_and_what_is_not_is_told': r'quiz_services\.ipynb',
+    'test_quiz::test_what_is_guessed_right_is_right_and_what_is_not_is_told': (
+        r'quiz_services\.ipynb'
+    ),
     # the same commands with other options
     'test_ros2_action::test_prints_what_ros2cli_prints': r'[a-z]+( [^-\s]\S*)*',
     'test_ros2_action::test_refuses_as_ros2cli_does': r'(type|info) .*|.*(path|\[1\])',
