@@ -16,6 +16,7 @@ from grader.common.text import spreadsheet_table
 from grader.course import Course
 from grader.passback.final_scores import AssignmentScores
 from grader.passback.import_files import ImportFile
+from grader.passback.numbered import table_by_number
 from grader.passback.roster import Roster, match, read_roster
 
 STUDENT, ID, SECTION = 'Student', 'ID', 'Section'
@@ -33,7 +34,14 @@ def make_table(
     Raises CourseError where that can't be read, or gives other points.
     """
     if roster_path is None:
-        return _from_numbers(course, scores)
+        return table_by_number(
+            course,
+            scores,
+            'Canvas',
+            download='Download submissions',
+            headings=[*NEEDED, scores.assignment],
+            row_of=lambda each, number: [each.student_id, number, '', each.score],
+        )
     roster = read_roster(roster_path, NEEDED, HOW)
     numbers = StudentNumbers(course)
 
@@ -56,23 +64,6 @@ def make_table(
         if row := found.rows.get(each.student_id):
             rows.append([*(row.get(heading, '') for heading in about), each.score])
     return ImportFile(spreadsheet_table(rows), len(rows) - 1, found.unclear)
-
-
-def _from_numbers(course: Course, scores: AssignmentScores) -> ImportFile:
-    """Return a table of those students whose number came with what they handed in."""
-    numbers = StudentNumbers(course)
-    rows: list[list[object]] = [[*NEEDED, scores.assignment]]
-    unclear = []
-    for each in scores.final:
-        number = numbers.of(each.student_id, scores.assignment).get('canvas')
-        if number is None:
-            unclear.append(
-                f"{each.student_id} has no number of Canvas's, as what came from Download "
-                'submissions has: give this score by hand, or use --roster'
-            )
-        else:
-            rows.append([each.student_id, number, '', each.score])
-    return ImportFile(spreadsheet_table(rows), len(rows) - 1, tuple(unclear))
 
 
 def _column_of(assignment: str, roster: Roster) -> str:

@@ -14,6 +14,7 @@ from grader.common.text import spreadsheet_table
 from grader.course import Course
 from grader.passback.final_scores import AssignmentScores, FinalScore
 from grader.passback.import_files import ImportFile
+from grader.passback.numbered import table_by_number
 from grader.passback.roster import Roster, match, read_roster
 
 IDENTIFIER, FULL_NAME, GRADE = 'Identifier', 'Full name', 'Grade'
@@ -36,7 +37,19 @@ def make_worksheet(
     Raises CourseError where that can't be read, or has another maximum.
     """
     if roster_path is None:
-        return _from_numbers(course, scores)
+        return table_by_number(
+            course,
+            scores,
+            'Moodle',
+            download='Download all submissions',
+            headings=NEEDED,
+            row_of=lambda each, number: [
+                f'{PARTICIPANT}{number}',
+                each.student_id,
+                each.score,
+                NEVER,
+            ],
+        )
     roster = read_roster(roster_path, NEEDED, HOW)
     numbers = StudentNumbers(course)
 
@@ -53,23 +66,6 @@ def make_worksheet(
             filled = {**row, GRADE: each.score}
             rows.append([filled.get(heading, '') for heading in roster.headings])
     return ImportFile(spreadsheet_table(rows), len(rows) - 1, found.unclear)
-
-
-def _from_numbers(course: Course, scores: AssignmentScores) -> ImportFile:
-    """Return a worksheet for those students whose number came with what they handed in."""
-    numbers = StudentNumbers(course)
-    rows: list[list[object]] = [list(NEEDED)]
-    unclear = []
-    for each in scores.final:
-        number = numbers.of(each.student_id, scores.assignment).get('moodle')
-        if number is None:
-            unclear.append(
-                f"{each.student_id} has no number of Moodle's, as what came from Download all "
-                'submissions has: give this score by hand, or use --roster'
-            )
-        else:
-            rows.append([f'{PARTICIPANT}{number}', each.student_id, each.score, NEVER])
-    return ImportFile(spreadsheet_table(rows), len(rows) - 1, tuple(unclear))
 
 
 def _check_maximum(

@@ -2,25 +2,19 @@
 
 from collections.abc import Iterator
 
-from my_robot_basics.doctor import code
+from my_robot_basics.doctor.client_types import clients_of_another_type, types_differ
 from my_robot_basics.doctor.evidence import Finding
 from my_robot_basics.doctor.service_evidence import ServiceEvidence
 
 
 def examine(evidence: ServiceEvidence) -> Iterator[Finding]:
     """Name both types; the server's counts as right."""
-    types = {server.type_name: server.node_name for server in evidence.servers}
-    for client in evidence.clients:
-        if not types or client.type_name in types:
-            continue
-        type_name, server = next(iter(types.items()))
-        yield Finding(
-            title='types differ',
+    for client, server, type_name in clients_of_another_type(evidence.servers, evidence.clients):
+        yield types_differ(
+            client,
+            type_name,
+            evidence.name,
             expected='one service type at both ends',
             seen=f'{server} serves {type_name}, {client.node_name} asks for'
             f' {client.type_name}: no request arrives',
-            fix=f'use the same type in {client.node_name}'
-            f' (from {type_name.replace("/", ".").rpartition(".")[0]})',
-            code=code.create('client', type_name=type_name, name=evidence.name),
-            broken=(client,),
         )

@@ -1,0 +1,38 @@
+"""A table for a platform without a roster: the numbers that came with work say whose a row is."""
+
+from collections.abc import Callable, Sequence
+
+from grader.collect.platform_ids import StudentNumbers
+from grader.common.text import spreadsheet_table
+from grader.course import Course
+from grader.passback.final_scores import AssignmentScores, FinalScore
+from grader.passback.import_files import ImportFile
+
+
+def table_by_number(
+    course: Course,
+    scores: AssignmentScores,
+    platform: str,
+    *,
+    download: str,
+    headings: Sequence[str],
+    row_of: Callable[[FinalScore, str], list[object]],
+) -> ImportFile:
+    """Return a table of those students whose number on a platform, 'Moodle' say, is known.
+
+    `download` is what the platform calls the archive that has the numbers in its names; `row_of`
+    makes the row of a student from the score and the number.
+    """
+    numbers = StudentNumbers(course)
+    rows: list[list[object]] = [list(headings)]
+    unclear = []
+    for each in scores.final:
+        number = numbers.of(each.student_id, scores.assignment).get(platform.lower())
+        if number is None:
+            unclear.append(
+                f"{each.student_id} has no number of {platform}'s, as what came from {download} "
+                'has: give this score by hand, or use --roster'
+            )
+        else:
+            rows.append(row_of(each, number))
+    return ImportFile(spreadsheet_table(rows), len(rows) - 1, tuple(unclear))
