@@ -4,9 +4,11 @@ import errno
 import logging
 import os
 import sqlite3
+import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
+from pathlib import Path
 
 from nbgrader.api import Base, Gradebook
 from nbgrader.dbutil import ALEMBIC_DIR
@@ -26,6 +28,18 @@ logging.getLogger('tornado.application').addFilter(
 _FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 _BUSY = {sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED}
 _DAMAGED = {sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB}
+
+
+def make_ready(course: Course) -> None:
+    """Make the gradebook's folder, and let nbgrader find the command that makes its database.
+
+    nbgrader's own commands start it: nbgrader_config.py calls this first.
+    """
+    course.gradebook.mkdir(parents=True, exist_ok=True)
+    programs = os.environ.get('PATH', os.defpath).split(os.pathsep)
+    ours = str(Path(sys.executable).parent)  # where `alembic` is
+    if ours not in programs:
+        os.environ['PATH'] = os.pathsep.join([ours, *programs])
 
 
 def make_database(course: Course) -> None:
