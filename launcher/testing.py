@@ -3,7 +3,8 @@
 import os
 import subprocess
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -42,6 +43,24 @@ class Checks:
         """Run a command in the course's folder; return its exit status."""
         root = self.environment.root
         return subprocess.call(command, cwd=root, env=self.variables)
+
+    @contextmanager
+    def beside(self, command: str) -> Iterator[subprocess.Popen]:
+        """Run a command beside what else is done; at the end print what it said."""
+        said = self.reports / f'{Path(command).name}.txt'
+        with said.open('wb') as written:
+            running = subprocess.Popen(
+                [command],
+                cwd=self.environment.root,
+                env=self.variables,
+                stdout=written,
+                stderr=subprocess.STDOUT,
+            )
+        try:
+            yield running
+        finally:
+            running.wait()
+            print(said.read_text(encoding='utf-8', errors='replace'), end='', flush=True)
 
     def pytest(self, report: str, *arguments: str) -> int:
         """Run pytest; `report` is the name of what it writes."""
@@ -124,8 +143,9 @@ def run(environment: Environment, variables: dict[str, str], arguments: list[str
         checks = Checks(environment, variables, Path(reports))
         ruff = str(environment.venv / 'bin/ruff')
         statuses = [checks.call(ruff, 'check', '.'), checks.call(ruff, 'format', '--check', '.')]
-        statuses.append(checks.call(str(environment.venv / 'bin/mypy')))
-        statuses.append(checks.tests([*options, *named]))
+        with checks.beside(str(environment.venv / 'bin/mypy')) as types:
+            statuses.append(checks.tests([*options, *named]))
+        statuses.append(types.returncode)
         # unless single tests were asked for, or what starts no kernel
         if not named and '--quick' not in options and any(environment.root.glob(LESSONS)):
             statuses.append(checks.lessons(shard))

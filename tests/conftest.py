@@ -45,6 +45,9 @@ LONG = (
 keep processors busy stand beside those that wait: all at once, each would take longer."""
 
 
+LONG_LESSONS = ('12_package', '09_actions', '11_parameters', '07_common_errors', '08_services')
+
+
 GUARD = pytest.StashKey[tiers.Guard]()
 
 
@@ -70,6 +73,7 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
 @pytest.hookimpl(tryfirst=True)  # pytest chooses by the marks afterwards
 def pytest_collection_modifyitems(config: pytest.Config, items: list) -> None:
     order = {f'test_{name}': place for place, name in enumerate(LONG)}
+    order |= {name: place for place, name in enumerate(LONG_LESSONS)}
     items.sort(key=lambda item: order.get(item.path.stem, len(LONG)))
     tiers.mark(items)
     ordinary.mark_slow(items)

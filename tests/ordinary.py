@@ -14,12 +14,10 @@ import pytest
 
 ATTACKS = (
     # what the sandbox forbids, bounds or hides
-    r'fork_bomb|makes_rare_system_calls|memory_bomb|network_out|output_bomb|picture_bomb'
-    r'|reads_the_seed|writes_into_the_gradebook'
+    r'fork_bomb|makes_rare_system_calls|memory_bomb|network_out|reads_the_seed'
     # what the grader believes
-    r'|exits|forges_a_verdict|kills_everything|patches_what_checks_use|shadows_modules'
-    r'|robot_forges_what_nodes_say|client_counts_ahead|sender_says_every_word'
-    r'|brings_links|edits_its_checks'
+    r'|forges_a_verdict|html_and_escapes|patches_what_checks_use|client_counts_ahead'
+    r'|edits_its_checks'
 )
 ALL = r'.*'
 FEW = 2
@@ -58,7 +56,7 @@ ORDINARY = {
     # one right and one wrong node for each check of an action, a service, a parameter
     'test_checks_actions::test_who_serves_right_passes_in_whatever_way': r'MoveArmServer',
     'test_checks_actions_wrong::test_a_mistake_fails_its_check_alone_with_the_cause': (
-        r'(ForgetsSucceed|NoFeedback)-.*'
+        r'NoFeedback-.*'
     ),
     'test_checks_action_servers::test_who_sends_right_passes_in_whatever_way': r'MoveArmClient',
     'test_checks_action_servers::test_a_wrong_outcome_is_named': r'AlwaysSucceeded-.*',
@@ -79,35 +77,26 @@ ORDINARY = {
     'test_doctor_service_healthy::test_an_honest_client_of_a_quick_and_of_a_slow_server': (
         r'add_done_callback-2\.0'
     ),
-    'test_checks_latched::test_nobody_gets_what_was_said_before_without_asking_for_it': r'here-5',
     'test_checks_topics::test_a_node_of_the_same_kernel_is_judged_exactly': r'FiveHz',
-    'test_checks_servers::test_a_client_of_something_else_is_found': r'AsksElsewhere-.*',
-    'test_checks_servers::test_a_server_that_comes_later_is_found': r'check_asks',
     'test_checks_servers::test_who_publishes_more_than_the_response_is_told': r'BothBranches-.*',
     'test_checks_servers::test_who_never_gets_an_answer_is_told_why': r'Calls',
-    'test_doctor_actions::test_what_becomes_of_a_goal_is_told': r'(Forgets|NeverEnds)-.*',
+    'test_doctor_actions::test_what_becomes_of_a_goal_is_told': r'Forgets-.*',
     'test_doctor_actions::test_each_state_in_which_a_goal_stands_still_has_its_line': (
         r'executing-.*'
     ),
-    'test_checks_actions::test_a_robot_minute_is_driven': r'MoveArmServer-.*',
     'test_checks_actions::test_a_missing_server_is_looked_for': r'arguments0-.*',
     'test_checks_services::test_a_missing_server_is_looked_for': r'arguments0-.*',
     'test_package::test_colcon_builds_what_the_ament_index_finds': r'options0',
     'test_sandbox::test_only_a_small_disk_can_be_written_to': r'forked',
-    'test_quiz::test_what_is_guessed_right_is_right_and_what_is_not_is_told': (
-        r'quiz_services\.ipynb'
-    ),
     # the same commands with other options
     'test_ros2_action::test_prints_what_ros2cli_prints': r'[a-z]+( [^-\s]\S*)*',
     'test_ros2_action::test_refuses_as_ros2cli_does': r'(type|info) .*|.*(path|\[1\])',
-    'test_ros2_graph::test_prints_what_ros2cli_prints': (
-        r'[a-z]+ (list|info|type|find)( [^-\s]\S*)?'
-    ),
+    'test_ros2_graph::test_prints_what_ros2cli_prints': r'[a-z]+ (list|info)( [^-\s]\S*)?',
     'test_ros2_graph::test_refuses_as_ros2cli_does': r'(topic info|node info|param list) .*',
-    'test_ros2_param::test_prints_what_ros2cli_prints': r'[a-z]+( [^-\s]\S*)*',
-    'test_ros2_param::test_refuses_as_ros2cli_does': r'.*(test_node|nothing|_path|tangled)',
-    'test_ros2_param::test_what_the_node_refuses_is_told_with_its_reason': r'.*(even|robot)( .*)?',
-    'test_ros2_service::test_prints_what_ros2cli_prints': r'[a-z]+( [^-\s]\S*)*',
+    'test_ros2_param::test_prints_what_ros2cli_prints': r'(list|get|dump) [^-\s]\S*( [^-\s]\S*)?',
+    'test_ros2_param::test_refuses_as_ros2cli_does': r'(get|load) .*',
+    'test_ros2_param::test_what_the_node_refuses_is_told_with_its_reason': r'set .*',
+    'test_ros2_service::test_prints_what_ros2cli_prints': r'(list|info)( [^-\s]\S*)?',
     'test_ros2_service::test_refuses_as_ros2cli_does': r'(info|call //x) .*|.*(path|\[1\])',
     'test_ros2_streams::test_it_ends_when_nobody_reads_any_more': r'echo|hz|pub',
     'test_ros2_streams::test_a_signal_ends_it_quietly_with_the_status_of_ros2cli': r'echo|hz|pub',
@@ -115,9 +104,6 @@ ORDINARY = {
         r'/kinematics/joint_states( --(csv|field position|include-message-info))?'
     ),
     'test_ros2_streams::test_what_cannot_be_done_is_said_in_a_sentence': r'(echo|hz|bw) .*',
-    'test_isolation_everywhere::test_nothing_runs_unasked': (
-        r'.*(course grade|nbgrader autograde)'
-    ),
     # one lesson, one page
     'test_accessibility::test_a_released_lesson': r'03_publisher/.*|index\.ipynb',
     # the same fault, or the same end, of another kind
@@ -141,7 +127,6 @@ ORDINARY = {
     'test_live_kernel::test_a_cell_that_spins_for_ever_can_be_interrupted': r'rclpy\.spin\(node\)',
     'test_live_kernel::test_unruly_nodes_do_not_abort_the_kernel_when_it_ends': r'never_returns',
     'test_checks_topics::test_a_wrong_message_fails': r'Degrees-.*',
-    'test_checks_topics::test_a_question_gets_its_answer': r'1-2|2-1',
     'test_checks_topics::test_a_notebook_that_does_not_say_is_waited_for': r'None',
     'test_checks_logs::test_a_near_miss_is_told_what_is_missing': r'ik_one_branch-.*',
     'test_checks_relays::test_a_monitor_passes_whatever_it_offers_and_nothing_is_said': (
@@ -173,7 +158,6 @@ ORDINARY = {
     'test_kernel_exits::test_who_ends_it_while_a_check_asks_gets_a_zero_too': (
         r'forked-9|started-15'
     ),
-    'test_doctor_service_healthy::test_an_honest_server': r'serves two',
     'test_validate::test_a_cell_that_does_not_return_is_given_up_sooner_and_not_called_wrong': (
         r'a cell'
     ),
@@ -184,7 +168,6 @@ ORDINARY = {
         r'a publisher without a stamp'
     ),
     'test_doctor_faults::test_a_publisher_out_of_reach': r'environment1-.*',
-    'test_checks_actions::test_who_ignores_the_clock_passes_with_short_moves': r'WallThreads',
     'test_checks_actions_wrong::test_who_gets_nowhere_is_told_why': r'NeverEnds-.*',
     'test_checks_parameters::test_an_honest_way_passes': r'Adjustable',
     'test_checks_stamps::test_the_nodes_clock_passes_and_is_given_back': r'SteadyClock',
@@ -195,7 +178,7 @@ ORDINARY = {
     'test_ros2_notebook::test_an_interrupt_ends_a_cell_and_leaves_nothing_behind': (
         r'ros2 run .*'
     ),
-    'test_synthetic_class::test_what_is_varied_decides_nothing': r'0[0-9]_.*-pass-[a-h].*',
+    'test_synthetic_class::test_what_is_varied_decides_nothing': r'0[34]_.*-pass-[a-h].*',
 }
 
 

@@ -72,6 +72,7 @@ def cut_off(page):
     )
 
 
+@pytest.mark.slow
 def test_axe_finds_what_is_wrong(page):
     # or the tests below would find nothing in anything
     html = '<html lang="en"><title>Arm</title><main><h1>Arm</h1><img src="arm.png"></main></html>'

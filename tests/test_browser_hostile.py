@@ -188,6 +188,7 @@ def formgrader(course):
         server.communicate()
 
 
+@pytest.mark.slow
 def test_what_does_harm_is_seen(browser, tmp_path):
     page = tmp_path / 'page.html'
     page.write_text(f'<!doctype html><body>{EVIL}{SVG}')

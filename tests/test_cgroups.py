@@ -81,6 +81,7 @@ def pids(cgroup, controller='memory'):
     return {int(pid) for pid in (cgroup.folders[controller] / 'cgroup.procs').read_text().split()}
 
 
+@pytest.mark.slow
 def test_a_kernel_and_all_that_it_starts_are_in_their_rooms_cgroup(loop, sandbox, kernels):
     for room, kernel in kernels.items():
         cgroup = sandbox.cgroup(room)

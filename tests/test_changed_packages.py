@@ -47,6 +47,7 @@ def test_each_package_is_another_one():
     assert {change.name for change in ALL} >= ORDINARY
 
 
+@pytest.mark.slow
 @pytest.mark.starts
 def test_telling_packages_are_judged_as_they_should_be(tmp_path):
     changes = tuple(change for change in ALL if change.name in ORDINARY)

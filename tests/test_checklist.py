@@ -32,6 +32,7 @@ def test_the_lesson_leads_to_it():
     assert '](checklist.html)' in cells()['checklist']
 
 
+@pytest.mark.slow
 @pytest.mark.browser
 @pytest.mark.skipif(PROGRAM is None, reason='no chromium here: .ci/run installs it')
 def test_it_prints_on_one_page():

@@ -389,6 +389,7 @@ WRONG_CANCELS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(('node_class', 'message'), WRONG_CANCELS)
 @pytest.mark.usefixtures('impatient')
 def test_a_wrong_cancel_is_named_and_outcomes_are_right(run, node_class, message):

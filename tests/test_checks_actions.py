@@ -233,6 +233,7 @@ def ticks(monkeypatch):
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ('node_class', 'least', 'most'), [(MoveArmServer, 200, 400), (FixedSteps, 1150, 1300)]
 )
@@ -281,6 +282,7 @@ class NoParameterServices(MoveArmServer):
 ON_THE_WALL_CLOCK = [WallThreads, ThreadOfItsOwn, NoParameterServices]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('node_class', ON_THE_WALL_CLOCK)
 def test_who_ignores_the_clock_passes_with_short_moves(run, node_class):
     run(node_class)

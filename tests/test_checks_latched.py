@@ -25,9 +25,8 @@ def description():
     return String(data=f'an arm with {next(numbers)} joints')
 
 
-@pytest.mark.parametrize(
-    'times', [5, pytest.param(200, marks=[pytest.mark.slow, pytest.mark.timeout(1200)])]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize('times', [5, pytest.param(200, marks=pytest.mark.timeout(1200))])
 @pytest.mark.parametrize('place', ['here', 'elsewhere'])
 def test_nobody_gets_what_was_said_before_without_asking_for_it(run, place, times):
     heard, said_before = [], set()

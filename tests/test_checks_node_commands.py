@@ -114,6 +114,7 @@ def test_a_text_that_starts_something_else_is_told(start, monkeypatch):
         look()
 
 
+@pytest.mark.slow
 def test_other_poses_than_those_of_the_seed_are_told(start):
     start(left=LEFT + ' -p seed:=8')
     left = node_command('left_arm', '/left/arm')
@@ -136,6 +137,7 @@ class Arm(Node):
         self.poses.publish(JointState(position=[math.radians(angle) for angle in pose_deg]))
 
 
+@pytest.mark.slow
 def test_nodes_that_the_command_lines_do_not_start_are_told(start):
     start(left=START, right=START)
     live.run(Arm, 'left', 1, key='left')

@@ -80,6 +80,7 @@ def test_a_mistake_with_the_rate_fails_that_check_alone(run, NodeClass, words):
     look_at_refusals()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(('NodeClass', 'words'), OF_REFUSALS)
 def test_a_mistake_with_refusals_fails_that_check_alone(run, NodeClass, words):
     run(NodeClass)

@@ -454,6 +454,7 @@ class AsksForATrigger(IKClient):
         self.client.call_async(Trigger.Request())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ('node_class', 'message'),
     [
@@ -478,6 +479,7 @@ class ServesLater(IKClient):
         super().ask(target)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('check', [check_asks, check_never_blocks])
 def test_a_server_that_comes_later_is_found(run, check):
     run(ServesLater)

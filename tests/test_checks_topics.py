@@ -197,6 +197,7 @@ class Echo(Node):
         self.publisher.publish(message)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     'reliability', [ReliabilityPolicy.RELIABLE, ReliabilityPolicy.BEST_EFFORT]
 )

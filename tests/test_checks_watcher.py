@@ -36,6 +36,7 @@ def test_a_crowd_of_services_fails_a_check(node, monkeypatch):
         topic('/nowhere').wait_for()
 
 
+@pytest.mark.slow
 def test_the_nodes_of_a_lesson_are_no_crowd():
     nodes = [live.run(Node, f'node_{number}', key=number) for number in range(5)]
     with Watcher() as here:

@@ -56,6 +56,7 @@ def programs(tmp_path, monkeypatch):
     return add
 
 
+@pytest.mark.slow
 @pytest.mark.starts
 def test_without_a_compiler_colcon_says_one_sentence(folder, programs):
     done = bash(folder, BUILD)

@@ -65,6 +65,7 @@ def test_a_goal_that_goes_on_is_no_fault():
     assert '1 goal goes on' in said
 
 
+@pytest.mark.slow
 def test_without_a_server_the_line_that_makes_one_is_shown():
     run(Sender)
     said, titles = told()
@@ -73,6 +74,7 @@ def test_without_a_server_the_line_that_makes_one_is_shown():
     assert 'saw none; clients: /sender; other nodes: none' in said
 
 
+@pytest.mark.slow
 def test_a_name_that_is_misspelt_is_found():
     run(MoveArmServer)
     run(Sender, name='/movearm')

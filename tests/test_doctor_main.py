@@ -19,6 +19,7 @@ def _talker():
     stop()
 
 
+@pytest.mark.slow
 @pytest.mark.starts
 @pytest.mark.usefixtures('_talker')
 def test_a_fault_and_then_all_is_well(capfd):

@@ -167,6 +167,7 @@ DEADLOCKS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('fault', DEADLOCKS)
 def test_a_client_that_blocks_its_own_executor(fault):
     edits, why = DEADLOCKS[fault]

@@ -139,6 +139,7 @@ SERVERS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('kind', SERVERS)
 def test_an_honest_server(kind):
     run(node_class(SERVER, SERVERS[kind]))

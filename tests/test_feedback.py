@@ -191,6 +191,7 @@ def test_a_course_without_submissions_has_no_pages(tmp_path):
     assert write_feedback(Course.at(tmp_path)) == []
 
 
+@pytest.mark.slow
 def test_text_that_takes_for_ever_is_shown_as_it_was_typed(course, monkeypatch):
     """Each of these formulas is searched for its end, from each of them on."""
     monkeypatch.setattr(module, 'LIMITS', Limits(cpu_sec=2))

@@ -33,6 +33,7 @@ def test_text_code_and_output_look_as_they_are_meant():
     assert 'onclick' not in html
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     'text', [FORMULAS, '<a ' * 60_000, '![a](files/' * 60_000], ids=['math', 'tags', 'files']
 )

@@ -185,6 +185,7 @@ def test_the_table_shows_scores_reasons_and_no_escape(course, capsys):
     ]
 
 
+@pytest.mark.slow
 def test_a_demo_compares_what_came_with_what_the_names_say(course, tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(tempfile, 'tempdir', str(tmp_path))
     samples = tmp_path / 'samples'

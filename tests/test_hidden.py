@@ -76,6 +76,7 @@ def test_no_log_and_no_line_on_the_terminal_holds_any(left):
     assert found_in(said) == []
 
 
+@pytest.mark.slow
 def test_no_file_that_tells_of_the_class_holds_any(left):
     course, _ = left
     seeds = [course.seed(TOY, student) for student in ANSWERS]
@@ -97,6 +98,7 @@ def test_nothing_that_students_are_given_holds_any(left):
             assert found_in(path.read_text(encoding='utf-8')) == [], path
 
 
+@pytest.mark.slow
 def test_no_output_and_no_reason_in_the_gradebook_holds_any(left):
     course, _ = left
     for student in ANSWERS:

@@ -126,6 +126,7 @@ def test_a_table_of_all_that_ten_pages_tell_earns_nothing(course, backend):
     assert scores == [0.0 if number % 2 else 2.0 for number in range(len(WAYS))]
 
 
+@pytest.mark.slow
 @pytest.mark.isolation
 def test_the_cause_is_told_and_whoever_teaches_reads_the_rest(course, backend):
     handed_in(course, backend, 'return x + 1', table={}, later=False)

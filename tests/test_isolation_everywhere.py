@@ -46,6 +46,7 @@ def path(tmp_path_factory):
     return str(folder)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('way', WAYS.values(), ids=WAYS)
 def test_nothing_runs_unasked(tmp_path, path, way):
     course, mark = released_course(tmp_path / 'course'), tmp_path / 'it_ran'

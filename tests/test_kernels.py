@@ -271,6 +271,7 @@ ENDLESS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('code', ENDLESS.values(), ids=ENDLESS)
 def test_an_endless_flood_does_not_keep_the_time_limit_waiting(spare, run, code):
     result = run(spare, code, timeout_sec=1.0)

@@ -26,6 +26,7 @@ def test_who_asks_for_all_pictures_gets_them_in_their_order(viewer):
     assert numbers == [*range(1, 13)]
 
 
+@pytest.mark.slow
 def test_a_short_queue_of_the_publisher_loses_pictures_though_it_is_reliable(viewer):
     """Lesson 6: what RELIABLE is to send again must still be in the publisher's queue."""
     numbers = []

@@ -128,6 +128,7 @@ class Quick(Node):
         return MoveArm.Result()
 
 
+@pytest.mark.slow
 @pytest.mark.starts
 def test_a_running_action_tells_all_of_it():
     view = GoalView('/quick', l1=1.0, l2=0.8)

@@ -116,6 +116,7 @@ def test_an_empty_graph_has_a_picture():
     assert draw({}).startswith(b'\x89PNG')
 
 
+@pytest.mark.slow
 @pytest.mark.starts
 def test_live_nodes_are_shown_and_hidden_ones_and_ros_own_topics_are_not(capsys):
     talker, listener, hidden = (live.run(Node, n, key=n) for n in ('talker', 'listener', '_own'))

@@ -200,6 +200,7 @@ def test_one_that_leaves_its_process_group_is_ended_too(folder, monkeypatch):
     assert one.process.code is not None
 
 
+@pytest.mark.slow
 @pytest.mark.starts
 def test_an_executable_that_ends_at_once_says_why(folder, capsys):
     make_package(folder, node='def main():\n    import no_such_module\n')
@@ -322,6 +323,7 @@ def test_an_interrupt_ends_the_build_with_all_that_it_started(folder, monkeypatc
     assert wait is not interrupted
 
 
+@pytest.mark.slow
 @pytest.mark.starts
 def test_what_setup_py_leaves_running_holds_no_build_up(folder):
     """A child in a session of its own, with colcon's pipe."""

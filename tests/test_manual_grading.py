@@ -133,6 +133,7 @@ def test_the_reason_of_a_check_comes_before_what_waits(course):
     assert why(SubmissionOutcome('ada', TOY, row.stored, 'expected 42')) == 'expected 42'
 
 
+@pytest.mark.slow
 def test_the_formgrader_gives_points_that_a_regrade_keeps(course, formgrader):
     grade(course, 'ada', BECAUSE)
     [ada] = [

@@ -146,6 +146,7 @@ def test_the_formgrader_grades_alike_inside_its_event_loop(courses):
     assert [r for r in records(theirs) if r.student_id == 'small'] == before
 
 
+@pytest.mark.slow
 def test_nbgrader_stops_where_our_grader_is_missing(courses):
     ours, _ = courses
     code = (

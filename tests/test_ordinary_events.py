@@ -112,6 +112,7 @@ def changed(out):
     return re.findall(r'^  (\w+  \w+  .+ → .+)$', out, re.MULTILINE)
 
 
+@pytest.mark.slow
 def test_a_check_that_was_wrong_is_fixed_after_the_class_has_been_graded(
     course, tmp_path, capsys, run_now
 ):
@@ -163,6 +164,7 @@ def test_an_extension_takes_a_penalty_back_and_runs_nothing(course, tmp_path, ca
     assert changed(said(capsys, course, 'grade')) == []
 
 
+@pytest.mark.slow
 def test_who_hands_in_again_late_keeps_the_earlier_grade_aside(course, tmp_path, capsys):
     collect(course, tmp_path)
     said(capsys, course, 'grade')

@@ -26,6 +26,7 @@ def test_a_right_package_passes_and_no_cell_of_the_students_is_run(tmp_path):
     assert verdicts == {'builds': ('passed', ''), 'runs': ('passed', '')}
 
 
+@pytest.mark.slow
 def test_no_package_and_a_wrong_one_are_told(tmp_path):
     verdicts = graded(None)
     assert {outcome for outcome, _ in verdicts.values()} == {'failed'}

@@ -113,6 +113,7 @@ def test_a_notebook_runs_isolated_by_the_kernels_name(monkeypatch, tmp_path, lef
     assert left() == (0, [])
 
 
+@pytest.mark.slow
 def test_a_cell_that_takes_too_long_is_interrupted_and_the_kernel_goes_on(left):
     client = NotebookClient(
         notebook('x = 5', 'while True: pass', 'print(x)'),
@@ -127,6 +128,7 @@ def test_a_cell_that_takes_too_long_is_interrupted_and_the_kernel_goes_on(left):
     assert left() == (0, [])
 
 
+@pytest.mark.slow
 def test_a_cell_that_takes_too_long_for_good_ends_it_all(left):
     with pytest.raises(CellTimeoutError):
         run('while True: pass', timeout=1)

@@ -71,6 +71,7 @@ def test_each_question_says_what_to_guess_in_few_words(name):
     assert max(lines) <= 29
 
 
+@pytest.mark.slow
 @each_quiz
 @pytest.mark.starts
 def test_what_is_guessed_right_is_right_and_what_is_not_is_told(name, capsys):

@@ -44,6 +44,7 @@ def test_everything_public_has_a_docstring_and_types(page, name):
     assert untyped == []
 
 
+@pytest.mark.slow
 @pytest.mark.starts
 def test_the_pages_can_be_built(tmp_path):
     command = [sys.executable, '-P', str(ROOT / 'docs/build_reference.py'), str(tmp_path)]

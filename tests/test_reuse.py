@@ -273,6 +273,7 @@ def test_what_lateness_costs_follows_the_file_without_a_run(course, looked):
     assert len(looked) == 1
 
 
+@pytest.mark.slow
 def test_a_lesson_that_was_released_again_grades_its_submissions_again(course, looked, capsys):
     submit(course, 'ada', answered(course, RIGHT, explained='so'))
     submit(course, 'bob', answered(course, WRONG))

@@ -97,6 +97,7 @@ def test_the_names_of_a_notebook_are_the_students_alone(shared, student):
     assert text_of(seen) == "['In', 'Out', 'exit', 'get_ipython', 'open', 'quit']\n"
 
 
+@pytest.mark.slow
 def test_all_time_that_a_students_room_takes_is_counted_however_it_is_taken(rooms, student):
     before_sec = rooms.student_cpu_sec()
     assert (before_sec is None) is (

@@ -83,6 +83,7 @@ def in_this_process(monkeypatch):
             monkeypatch.setattr(module, 'Graph', BriefGraph)
 
 
+@pytest.mark.slow
 @pytest.mark.starts
 @settings(
     max_examples=300,

@@ -207,6 +207,7 @@ def test_one_process_serves_a_gradebook(course, inbound):
         serve_here(course, inbound)
 
 
+@pytest.mark.slow
 def test_inputs_are_chosen_anew_for_another_answer_and_kept_for_the_same(course, inbound):
     """The final grade replays: the seed follows from what was handed in."""
 
@@ -287,13 +288,15 @@ def same_as_undisturbed(course, inbound, handed_in, latest):
             assert page_of(inbound, secret).read_text().rstrip().endswith('</html>')
 
 
-@pytest.mark.parametrize('rounds', [2, pytest.param(20, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize('rounds', [2, 20])
 def test_killed_at_random_moments_it_loses_nothing(rounds, tmp_path, inbound):
     course = released_course(tmp_path / 'course')
     handed_in, latest = killed_rounds(course, inbound, rounds, random.Random(rounds))
     same_as_undisturbed(course, inbound, handed_in, latest)
 
 
+@pytest.mark.slow
 def test_sigterm_ends_it_and_the_next_one_goes_on(tmp_path, inbound):
     course = released_course(tmp_path / 'course')
     hand_in(course, inbound, 'ada', f'# 600 s\n{RIGHT}')

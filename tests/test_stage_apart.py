@@ -76,6 +76,7 @@ def said(run):
     return ''.join(output.text for output in run.outputs).strip()
 
 
+@pytest.mark.slow
 def test_who_publishes_on_every_topic_that_there_is_changes_nothing():
     meets, late, met = asyncio.run(intruded())
     assert said(meets) in {*'12345'}  # so it does reach what it can

@@ -25,6 +25,7 @@ def papers():
     return synthetic_class(80)
 
 
+@pytest.mark.slow
 def test_the_same_arguments_give_the_same_class(papers):
     assert synthetic_class(80) == papers
     assert synthetic_class(20, seed=1) != papers[:20]

@@ -93,6 +93,7 @@ def test_a_report_comes_at_the_end_of_lines_of_progress(server):
     assert last['report']['summary'].startswith('All visible checks pass.')
 
 
+@pytest.mark.slow
 def test_meanwhile_the_server_answers_and_who_closes_the_dialog_ends_it_all(server):
     response = server.validate('03_publisher.ipynb')
     assert b'starting two kernels' in response.readline()
@@ -131,6 +132,7 @@ def test_nobody_validates_outside_or_without_a_token(server, path, token, code):
     assert refused.value.code == code
 
 
+@pytest.mark.slow
 def test_where_validate_itself_fails_its_last_line_is_told(server, folder):
     broken = json.loads((folder / '02_joint_state.ipynb').read_text())
     for cell in broken['cells']:
@@ -141,6 +143,7 @@ def test_where_validate_itself_fails_its_last_line_is_told(server, folder):
     assert line['failed'].startswith('Validate itself failed: ValueError: could not convert')
 
 
+@pytest.mark.slow
 def test_progress_is_what_validate_has_written_down_for_this_user(server, folder):
     shutil.copy(ROOT / 'notebooks/index.ipynb', folder)
     answered('01_topics', folder / '01_topics')

@@ -76,6 +76,7 @@ def test_what_students_get_holds_no_answer_and_no_hidden_test(course):
     assert 'uniform' not in text
 
 
+@pytest.mark.slow
 @pytest.mark.isolation
 def test_it_earns_what_the_page_says(course):
     source = next(cell.source for cell in example().cells if cell.id == 'doubler')

@@ -14,7 +14,7 @@ from traitlets import Dict, List, Unicode
 from walls import Room, bubblewrap
 
 INSIDE = Path(__file__).with_name('room.py')
-PATIENCE_SEC = 60.0
+START_TIMEOUT_SEC = 60.0
 
 
 class RoomSpawner(LocalProcessSpawner):
@@ -55,7 +55,9 @@ class RoomSpawner(LocalProcessSpawner):
             finally:
                 os.close(tell)
         # signals go to the room's process 1: with it ends all that is in there
-        self.pid = await asyncio.wait_for(asyncio.to_thread(first_process, told), PATIENCE_SEC)
+        self.pid = await asyncio.wait_for(
+            asyncio.to_thread(first_process, told), START_TIMEOUT_SEC
+        )
         return address
 
 
