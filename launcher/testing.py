@@ -25,7 +25,9 @@ ALL_THE_SAME = (*TIERS, '--no-isolation', SHARD)
 """How the options begin that leave it a check of everything."""
 LESSONS = 'solutions/*/*.ipynb'
 WORKERS = 6
-"""How many processes run tests at a time."""
+"""How many processes run tests at a time …"""
+LESSON_WORKERS = 9
+"""… and how many lessons, which wait for most of their time."""
 RECORD = 'unstable_tests.txt'
 """In the course's root; one line for each test that failed beside others and passed alone."""
 
@@ -95,7 +97,7 @@ class Checks:
         return self.twice(
             'lessons',
             lambda report: self.pytest(
-                report, *options, '-n', str(WORKERS), '--dist', 'loadfile', 'solutions'
+                report, *options, '-n', str(LESSON_WORKERS), '--dist', 'loadfile', 'solutions'
             ),
             again,
         )

@@ -57,6 +57,7 @@ def test_the_usual_answer_to_each_exercise_and_all_that_it_takes_are_there():
     assert all(each.points == each.full for each in usual)
 
 
+@pytest.mark.slow
 @pytest.mark.starts
 def test_telling_answers_are_judged_as_they_should_be(tmp_path):
     answers = [each for each in all_answers() if each.id in ORDINARY]

@@ -361,6 +361,7 @@ def drag_first_slider(lesson, cell, *, before):
     return readout.inner_text()
 
 
+@pytest.mark.slow
 def test_validate_says_what_is_wrong_and_then_that_all_is_right(opened):
     lesson = opened('02_joint_state')
     lesson.type('to_joint_state', WRONG)

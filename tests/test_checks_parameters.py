@@ -72,6 +72,7 @@ OF_BOTH = [
 ]  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(('NodeClass', 'words'), OF_THE_RATE)
 def test_a_mistake_with_the_rate_fails_that_check_alone(run, NodeClass, words):
     run(NodeClass)

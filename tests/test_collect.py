@@ -376,6 +376,7 @@ def a_tar_of_digits(path):
         packed.write(tarfile.TarInfo('a.ipynb').tobuf() + bytes(1024))
 
 
+@pytest.mark.slow
 def test_an_archive_that_takes_for_ever_costs_only_itself(course, source, monkeypatch):
     monkeypatch.setattr(uploads, 'LIMITS_OF_ONE', Limits(cpu_sec=2))
     for place in (source, source / f'bob/{TOY}'):

@@ -91,6 +91,7 @@ def test_no_file_that_tells_of_the_class_holds_any(left):
         assert found_in(path.read_text(encoding='utf-8')) == [], path
 
 
+@pytest.mark.slow
 def test_nothing_that_students_are_given_holds_any(left):
     course, _ = left
     for path in (course.root / 'notebooks').rglob('*'):

@@ -140,6 +140,7 @@ def test_the_cause_is_told_and_whoever_teaches_reads_the_rest(course, backend):
 
 
 @pytest.mark.isolation
+@pytest.mark.slow
 def test_a_visible_part_that_fails_later_is_told_in_full(course, backend):
     submit(course, 'eve', answered(course, 'def double(x):\n    return x + x if x else "none"'))
     list(grade_all(course, find_submissions(course), backend=backend))

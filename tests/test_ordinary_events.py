@@ -148,6 +148,7 @@ def test_a_check_that_was_wrong_is_fixed_after_the_class_has_been_graded(
     assert changed(said(capsys, course, 'grade')) == []
 
 
+@pytest.mark.slow
 def test_an_extension_takes_a_penalty_back_and_runs_nothing(course, tmp_path, capsys, run_now):
     collect(course, tmp_path)
     (course.gradebook / FILE).write_text(LATE)
