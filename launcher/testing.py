@@ -4,7 +4,7 @@ import os
 import subprocess
 import tempfile
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -26,8 +26,14 @@ ALL_THE_SAME = (*TIERS, '--no-isolation', SHARD)
 LESSONS = 'solutions/*/*.ipynb'
 WORKERS = 6
 """How many processes run tests at a time …"""
-LESSON_WORKERS = 9
-"""… and how many lessons, which wait for most of their time."""
+LESSON_WORKERS = 3
+"""… and how many run lessons, beside them."""
+LESSONS_CACHE = Path('.pytest_cache/lessons')
+"""Of the pytest that runs the lessons: beside the other, which has its own."""
+NBVAL = (
+    *('-p', 'tests.conftest', '--nbval', '--nbval-cell-timeout', '60'),
+    *('-o', f'cache_dir={LESSONS_CACHE}'),
+)
 RECORD = 'unstable_tests.txt'
 """In the course's root; one line for each test that failed beside others and passed alone."""
 
@@ -47,12 +53,12 @@ class Checks:
         return subprocess.call(command, cwd=root, env=self.variables)
 
     @contextmanager
-    def beside(self, command: str) -> Iterator[subprocess.Popen]:
+    def beside(self, name: str, *command: str) -> Iterator[subprocess.Popen]:
         """Run a command beside what else is done; at the end print what it said."""
-        said = self.reports / f'{Path(command).name}.txt'
+        said = self.reports / f'{name}.txt'
         with said.open('wb') as written:
             running = subprocess.Popen(
-                [command],
+                command,
                 cwd=self.environment.root,
                 env=self.variables,
                 stdout=written,
@@ -64,52 +70,42 @@ class Checks:
             running.wait()
             print(said.read_text(encoding='utf-8', errors='replace'), end='', flush=True)
 
-    def pytest(self, report: str, *arguments: str) -> int:
-        """Run pytest; `report` is the name of what it writes."""
+    def pytest(self, report: str, *arguments: str) -> list[str]:
+        """Return the command that runs pytest; `report` is the name of what it writes."""
         python = str(self.environment.python)
-        written = f'--junitxml={self.reports / report}'
-        return self.call(python, '-P', '-m', 'pytest', written, *arguments)
+        return [python, '-P', '-m', 'pytest', f'--junitxml={self.reports / report}', *arguments]
 
-    def tests(self, arguments: list[str]) -> int:
-        """Run the tests, several at a time, and once more alone what failed."""
+    def tests(self, arguments: list[str]) -> list[str]:
+        """Return the command that runs the tests, several at a time."""
         # most tests wait most of the time, those of the quick tier do not; one file stays on one
         # worker: its tests share kernels and a ROS domain
         processors = len(os.sched_getaffinity(0))
         workers = min(processors, WORKERS) if '--quick' in arguments else WORKERS
         many = ('-n', str(workers), '--dist', 'loadfile', '--no-loadscope-reorder')
-        return self.twice(
-            'tests',
-            lambda report: self.pytest(report, *many, *arguments),
-            lambda report: self.pytest(
-                report, '-v', *arguments, '--last-failed', '-n', '0', '--maxfail', '5'
-            ),
-        )
+        return self.pytest('tests.xml', *many, *arguments)
 
-    def lessons(self, shard: list[str]) -> int:
-        """Run the lessons against their stored outputs, and once more alone those that differ."""
-        options = (*shard, '-p', 'tests.conftest', '--nbval', '--nbval-cell-timeout', '60')
+    def failed_tests(self, arguments: list[str]) -> list[str]:
+        """Return the command that runs alone the tests that failed."""
+        alone = ('--last-failed', '-n', '0', '--maxfail', '5')
+        return self.pytest('tests-alone.xml', '-v', *arguments, *alone)
 
-        def again(report: str) -> int:
-            # whole ones: a cell needs those before it
-            failed = failed_lessons(self.environment.root)
-            return self.pytest(report, *options, '-v', '-n', '0', *(failed or ['solutions']))
+    def lessons(self, shard: list[str]) -> list[str]:
+        """Return the command that runs the lessons against their stored outputs."""
+        many = ('-n', str(LESSON_WORKERS), '--dist', 'loadfile', 'solutions')
+        return self.pytest('lessons.xml', *NBVAL, *shard, *many)
 
-        return self.twice(
-            'lessons',
-            lambda report: self.pytest(
-                report, *options, '-n', str(LESSON_WORKERS), '--dist', 'loadfile', 'solutions'
-            ),
-            again,
-        )
+    def failed_lessons(self, shard: list[str]) -> list[str]:
+        """Return the command that runs alone the lessons that differed, each whole."""
+        failed = failed_lessons(self.environment.root) or ['solutions']
+        return self.pytest('lessons-alone.xml', *NBVAL, *shard, '-v', '-n', '0', *failed)
 
-    def twice(self, what: str, first: Callable[[str], int], again: Callable[[str], int]) -> int:
-        """Run checks, and again alone what failed: what fails twice has failed.
+    def again(self, what: str, status: int, command: Callable[[], list[str]]) -> int:
+        """Run alone what failed beside others: what fails twice has failed.
 
         A machine that was short of time fails tests that nothing is wrong with. They are written
         down, with why: more than MOST of them in a run have failed, too. A file that cannot be
         imported is no such test.
         """
-        status = first(f'{what}.xml')
         if status != 1:
             return status
         if errors := read_import_errors(self.reports / f'{what}.xml'):
@@ -118,7 +114,7 @@ class Checks:
             say('fix that, and run this again')
             return status
         say(f'now the {what} that failed beside others once more, alone; they are named above')
-        status = again(f'{what}-alone.xml')
+        status = self.call(*command())
         passed = unstable(
             read_failures(self.reports / f'{what}.xml'),
             read_passes(self.reports / f'{what}-alone.xml'),
@@ -140,23 +136,32 @@ def run(environment: Environment, variables: dict[str, str], arguments: list[str
     """Run everything even after a failure; return the last failure's exit status."""
     options = [argument for argument in arguments if argument.startswith(ALL_THE_SAME)]
     named = [argument for argument in arguments if not argument.startswith(ALL_THE_SAME)]
-    shard = [option for option in options if option.startswith(SHARD)]
     with tempfile.TemporaryDirectory(prefix='reports-') as reports:
         checks = Checks(environment, variables, Path(reports))
         ruff = str(environment.venv / 'bin/ruff')
         statuses = [checks.call(ruff, 'check', '.'), checks.call(ruff, 'format', '--check', '.')]
-        with checks.beside(str(environment.venv / 'bin/mypy')) as types:
-            statuses.append(checks.tests([*options, *named]))
-        statuses.append(types.returncode)
+        tests, shard = [*options, *named], [each for each in options if each.startswith(SHARD)]
         # unless single tests were asked for, or what starts no kernel
-        if not named and '--quick' not in options and any(environment.root.glob(LESSONS)):
-            statuses.append(checks.lessons(shard))
+        has_lessons = (
+            not named and '--quick' not in options and any(environment.root.glob(LESSONS))
+        )
+        with ExitStack() as beside:
+            mypy = checks.beside('mypy', str(environment.venv / 'bin/mypy'))
+            types = beside.enter_context(mypy)
+            if has_lessons:
+                lessons = beside.enter_context(checks.beside('lessons', *checks.lessons(shard)))
+            status = checks.call(*checks.tests(tests))
+        statuses.append(types.returncode)
+        statuses.append(checks.again('tests', status, lambda: checks.failed_tests(tests)))
+        if has_lessons:
+            status = lessons.returncode
+            statuses.append(checks.again('lessons', status, lambda: checks.failed_lessons(shard)))
     return next((status for status in reversed(statuses) if status), 0)
 
 
 def failed_lessons(root: Path) -> list[str]:
     """Return the paths of the lessons in which a cell failed last, as pytest remembers it."""
-    remembered = root / '.pytest_cache/v/cache/lastfailed'
+    remembered = root / LESSONS_CACHE / 'v/cache/lastfailed'
     text = remembered.read_text(encoding='utf-8') if remembered.is_file() else ''
     lessons = (str(path.relative_to(root)) for path in sorted(root.glob(LESSONS)))
     return [lesson for lesson in lessons if f'"{lesson}::' in text]

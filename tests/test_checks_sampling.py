@@ -9,6 +9,7 @@ from my_robot_basics.checks.clock import SimulatedClock
 from my_robot_basics.checks.recording import Recording, Sample
 from my_robot_basics.feedback.errors import Starved
 from my_robot_basics.graph.watcher import Watcher
+from my_robot_basics.session.pressure import Stopwatch
 from nodes.running import running
 
 TOPIC = '/kinematics/joint_states'
@@ -139,7 +140,7 @@ def test_a_near_miss_fails_on_the_wall_clock(node, seen):
 def looked_at(node, *, timeout_sec):
     with running(node), Watcher() as watcher:
         recorder = topic(TOPIC).listen(watcher)
-        return wall_recording.wall(watcher, recorder, why='', seconds=0.1, timeout_sec=timeout_sec)
+        return wall_recording.wall(watcher, recorder, seconds=0.1, timeout_sec=timeout_sec)
 
 
 def test_the_wall_clock_waits_for_the_next_message_of_a_slow_node():
@@ -168,6 +169,39 @@ def on_wall(gaps_sec, *, late_sec):
         start_sec=0.0,
         late_sec=late_sec,
     )
+
+
+LOOKS_EVERY_10_MS = [0.21, 0.21, 0.2, 0.21, 0.21, 0.22, 0.21] * 3
+
+
+@pytest.mark.parametrize(
+    ('gaps_sec', 'is_makeshift', 'doubt'),
+    [
+        (LOOKS_EVERY_10_MS, True, Starved),
+        (LOOKS_EVERY_10_MS, False, CheckFailed),
+        ([1.0, 1.01, 1.0, 1.01], True, CheckFailed),
+        ([0.1, 0.11] * 15, True, CheckFailed),
+    ],
+    ids=['nearly right', 'the clock was driven', '1 Hz', '10 Hz'],
+)
+def test_what_is_exact_on_the_robots_clock_alone_is_no_zero_where_that_had_no_time(
+    monkeypatch, gaps_sec, is_makeshift, doubt
+):
+    monkeypatch.setattr(recording_module.callbacks, 'expect_none_so_far', lambda names: None)
+    recording = replace(on_wall(gaps_sec, late_sec=0.0), is_makeshift=is_makeshift)
+    with pytest.raises(CheckFailed) as failed:
+        recording.assert_rate(hz=5.0)
+    assert failed.type is doubt
+
+
+@pytest.mark.parametrize(('is_busy', 'is_makeshift'), [(True, True), (False, False)])
+def test_a_busy_machine_is_to_blame_where_the_clock_could_not_be_driven(
+    monkeypatch, is_busy, is_makeshift
+):
+    monkeypatch.setattr(Stopwatch, 'is_busy', lambda watch: is_busy)
+    with running('unresponsive'):
+        recording = topic(TOPIC).record()
+    assert (recording.clock, recording.is_makeshift) == ('wall', is_makeshift)
 
 
 STARVED_GAPS = [0.2, 0.33, 0.21, 0.41, 0.2, 0.28, 0.2, 0.37, 0.22, 0.2, 0.3, 0.25, 0.44, 0.2]

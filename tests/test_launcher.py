@@ -255,15 +255,13 @@ def test_more_than_two_unstable_tests_fail_a_run(number, status, tmp_path, capsy
     names = [f't{each}' for each in range(number)]
     checks = Checks(Environment(tmp_path), {}, tmp_path)
 
-    def first(name):
-        report(tmp_path / name, good='', **dict.fromkeys(names, 'late'))
-        return 1
+    report(tmp_path / 'tests.xml', good='', **dict.fromkeys(names, 'late'))
 
-    def again(name):
-        report(tmp_path / name, **dict.fromkeys(names, ''))
-        return 0
+    def pass_alone():
+        report(tmp_path / 'tests-alone.xml', **dict.fromkeys(names, ''))
+        return ['true']
 
-    assert checks.twice('tests', first, again) == status
+    assert checks.again('tests', 1, pass_alone) == status
     record = tmp_path / 'unstable_tests.txt'
     assert record.exists() == bool(number)
     if number:
@@ -286,22 +284,11 @@ def test_a_file_that_cannot_be_imported_is_named_and_not_run_again(source, why, 
     (tmp_path / 'test_good.py').write_text('def test_good(): pass')
     checks = Checks(Environment(tmp_path), {}, tmp_path)
 
-    def first(name):
-        command = (
-            sys.executable,
-            '-m',
-            'pytest',
-            '-q',
-            '-n',
-            '1',
-            f'--junitxml={tmp_path / name}',
-        )
-        return subprocess.run(command, cwd=tmp_path, stdout=subprocess.DEVNULL).returncode
-
-    def again(name):
-        raise AssertionError('what cannot be imported is not run once more')
-
-    assert checks.twice('tests', first, again) == 1
+    written = f'--junitxml={tmp_path / "tests.xml"}'
+    command = [sys.executable, '-m', 'pytest', '-q', '-n', '1', written]
+    status = subprocess.run(command, cwd=tmp_path, stdout=subprocess.DEVNULL).returncode
+    alone = pytest.fail  # what cannot be imported is not run once more
+    assert checks.again('tests', status, alone) == 1
     said = capsys.readouterr().err
     assert said.startswith('course: test_broken.py could not be imported, so none of its tests')
     assert f' were run: {why}' in said

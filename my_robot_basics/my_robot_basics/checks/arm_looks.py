@@ -12,7 +12,8 @@ from rcl_interfaces.srv import GetParameters
 
 from arm_interfaces.action import MoveArm
 from my_robot_basics.checks.actions import Action, FollowedClock
-from my_robot_basics.checks.clock import Inconclusive, SimulatedClock
+from my_robot_basics.checks.clock import SimulatedClock
+from my_robot_basics.checks.inconclusive import Inconclusive
 from my_robot_basics.checks.open_action import OpenAction
 from my_robot_basics.checks.reported_speed import is_of_wall_time
 from my_robot_basics.checks.robot_time import DrivenTime, WallTime

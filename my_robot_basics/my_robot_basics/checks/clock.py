@@ -19,6 +19,7 @@ from rosgraph_msgs.msg import Clock
 
 from my_robot_basics.checks.clock_budget import ClockBudget
 from my_robot_basics.checks.clock_use import ANOTHERS, why_not_driven
+from my_robot_basics.checks.inconclusive import Inconclusive, TooSlow
 from my_robot_basics.checks.parameter_services import nodes_with_services, use_sim_time
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
@@ -33,10 +34,6 @@ MEDIAN_EVERY = 40
 HELD_EVERY_SEC = 0.02
 _latest_ns = 0
 """What `/clock` showed last: a node that waits for a time would else wait for it once more."""
-
-
-class Inconclusive(Exception):
-    """The simulated look proves nothing; the message is a clause that says why."""
 
 
 class SimulatedClock:
@@ -114,7 +111,7 @@ class SimulatedClock:
             raise Inconclusive(ANOTHERS)
         if self._budget.part_used() > 1.0:
             within_sec = self._budget.wall_sec()
-            raise Inconclusive(f'the clock could not be driven within {within_sec:.0f} s')
+            raise TooSlow(f'the clock could not be driven within {within_sec:.0f} s')
 
     def _publish(self) -> None:
         self._publisher.publish(Clock(clock=Time(nanoseconds=self.now_ns).to_msg()))
@@ -124,12 +121,12 @@ class SimulatedClock:
         watch = Stopwatch()
         asked = [self._ask(client) for client in self._barriers.values() for _ in range(questions)]
         if not self._answered(asked, SLOWEST_BARRIER_SEC):
-            raise Inconclusive('a node did not answer in time')
+            raise TooSlow('a node did not answer in time')
         self._barrier_sec.append(watch.free_sec())
         # over all of them: on a busy machine everybody is slow for a moment
         is_time = len(self._barrier_sec) % MEDIAN_EVERY == 0
         if is_time and statistics.median(self._barrier_sec) > SLOWEST_MEDIAN_SEC:
-            raise Inconclusive('a node answers too slowly')
+            raise TooSlow('a node answers too slowly')
 
     def _switch(self) -> None:
         """Turn `use_sim_time` on for every node that answers, and start `/clock` at wall time."""
@@ -151,7 +148,7 @@ class SimulatedClock:
         answered = {name: future.result() for name, future in asked.items() if future.done()}
         self._barriers = {name: self._barriers[name] for name in answered}
         if not self._needed <= set(answered):
-            raise Inconclusive('its parameter services do not answer')
+            raise TooSlow('its parameter services do not answer')
         self._former = {
             name: any(value.bool_value for value in reply.values)
             for name, reply in answered.items()

@@ -20,6 +20,8 @@ SHUFFLES = 50
 """So many other orders of the same gaps are tried: each is more even."""
 FEWEST_LEFT_OUT = 3
 """Messages that are missing, each as many behind the one before: no thread is late so evenly."""
+SHORTEST_ROUND = 3
+"""Gaps from one missing message to the next: a long and a short one by turns may be anything."""
 
 
 def spanned(times_sec: np.ndarray, slack_sec: float) -> tuple[float, float]:
@@ -90,7 +92,7 @@ def left_out(times_sec: np.ndarray, slack_sec: float) -> int:
     rounds = set(np.diff(missing_at).tolist())
     if np.min(steps) < 1 or len(missing_at) < FEWEST_LEFT_OUT or len(rounds) > 1:
         return 0
-    if len(set(steps[missing_at].tolist())) > 1:
+    if len(set(steps[missing_at].tolist())) > 1 or min(rounds) < SHORTEST_ROUND:
         return 0
     calls = np.concatenate([[0], np.cumsum(steps)])
     earlier, later = np.triu_indices(len(calls), k=1)

@@ -4,11 +4,13 @@ import time
 from dataclasses import replace
 
 from my_robot_basics.checks import rates
-from my_robot_basics.checks.clock import Inconclusive, SimulatedClock
+from my_robot_basics.checks.clock import SimulatedClock
+from my_robot_basics.checks.inconclusive import Inconclusive, TooSlow
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.recording import Recording, Sample
 from my_robot_basics.checks.wall_recording import IGNORES
 from my_robot_basics.graph.watcher import Watcher
+from my_robot_basics.session.pressure import Stopwatch
 
 HOLD_SEC = 1.0
 FIRST_MESSAGE_SEC = 20.0
@@ -41,11 +43,12 @@ def simulated(
     seconds: float,
     step_sec: float,
     hold_sec: float = HOLD_SEC,
-) -> Recording | str:
-    """A recording on the robot's clock, or a clause that says why there is none.
+) -> Recording | Inconclusive:
+    """A recording on the robot's clock, or why there is none: TooSlow on a busy machine alone.
 
     `hold_sec`: how long the clock stands still before.
     """
+    watch = Stopwatch()
     try:
         with SimulatedClock(watcher, needed=set(recorder.publishers())) as clock:
             _hold(recorder, clock, hold_sec)
@@ -59,16 +62,18 @@ def simulated(
                 if rates.leaves_out(recording):
                     return recording
                 if not rates.is_even(recording):
-                    return UNEVEN
+                    return Inconclusive(UNEVEN)
                 proof = _prove(recorder, clock, recording)
                 if proof is None:
                     continue
                 if not rates.is_nearly_even(proof):
-                    return UNEVEN
+                    return Inconclusive(UNEVEN)
                 return replace(recording, proof=proof)
+    except TooSlow as why:
+        return why if watch.is_busy() else Inconclusive(str(why))
     except Inconclusive as why:
-        return str(why)
-    return COUNTS
+        return why
+    return Inconclusive(COUNTS)
 
 
 def _hold(recorder: Recorder, clock: SimulatedClock, seconds: float) -> None:

@@ -16,8 +16,9 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.time import Time
 from rosgraph_msgs.msg import Clock
 
-from my_robot_basics.checks.clock import Inconclusive, SimulatedClock
+from my_robot_basics.checks.clock import SimulatedClock
 from my_robot_basics.checks.clock_use import are_left_alone
+from my_robot_basics.checks.inconclusive import Inconclusive
 from my_robot_basics.exchange import student
 from my_robot_basics.feedback.errors import fail
 from my_robot_basics.graph.message_info import with_info

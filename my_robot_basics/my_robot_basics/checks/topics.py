@@ -9,6 +9,7 @@ from rclpy.duration import Duration
 
 from my_robot_basics.checks import sampling, wall_recording
 from my_robot_basics.checks.clock_use import are_left_alone
+from my_robot_basics.checks.inconclusive import Inconclusive
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.recording import Recording
 from my_robot_basics.checks.topic_endpoints import DISCOVERY_SEC, TopicEndpoints
@@ -63,10 +64,10 @@ class Topic(TopicEndpoints):
             found = sampling.simulated(
                 watcher, recorder, seconds=seconds, step_sec=step_sec, hold_sec=hold_sec
             )
-            if isinstance(found, str):
+            if isinstance(found, Inconclusive):
                 why, recording = found, wall_recording.wall(watcher, recorder, why=found)
             else:
-                why, recording = '', found
+                why, recording = None, found
             if not recording.messages and sent and not are_left_alone():
                 self._expect_ends_by_itself(recorder)
             if not recording.messages:
@@ -148,7 +149,7 @@ class Topic(TopicEndpoints):
             return found()[0]
 
     def _to_look_again(
-        self, recording: Recording, why: str, *, left_sec: float, late_looks: int
+        self, recording: Recording, why: Inconclusive | None, *, left_sec: float, late_looks: int
     ) -> Recording:
         def look_again(seconds: float) -> Recording:
             # it may have to wait as long for the message to begin at

@@ -2,6 +2,7 @@
 
 import time
 
+from my_robot_basics.checks.inconclusive import Inconclusive, TooSlow
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.recording import Recording, Sample
 from my_robot_basics.graph.raised import what_raised
@@ -23,14 +24,14 @@ def wall(
     watcher: Watcher,
     recorder: Recorder,
     *,
-    why: str,
+    why: Inconclusive | None = None,
     seconds: float = WALL_SEC,
     timeout_sec: float = TIMEOUT_SEC,
 ) -> Recording:
     """A recording of `seconds` on the wall clock, beginning at a message.
 
     It waits for that one `timeout_sec` at most, and as long for the next one, should that be
-    longer: then it ends there.
+    longer: then it ends there. `why`: what spoke against the robot's clock.
     """
     if not recorder.received and what_raised(recorder.publishers()):
         seconds = timeout_sec = RAISED_SEC
@@ -55,13 +56,12 @@ def wall(
         publishers=recorder.publishers(),
         seconds=seconds,
         start_sec=start_ns / 1e9,
-        note=_note(recorder, why),
+        note=_note(recorder) if str(why) == IGNORES else '',
         late_sec=watcher.late_sec,
+        is_makeshift=isinstance(why, TooSlow),
     )
 
 
-def _note(recorder: Recorder, why: str) -> str:
-    if why != IGNORES:
-        return ''
+def _note(recorder: Recorder) -> str:
     name = ', '.join(recorder.publishers())
     return f"note: {name} ignores the robot's clock (use_sim_time); judged on the wall clock"

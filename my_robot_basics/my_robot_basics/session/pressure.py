@@ -34,3 +34,7 @@ class Stopwatch:
     def free_sec(self) -> float:
         """Seconds of it in which no process had to wait for a processor."""
         return max(0.0, self.wall_sec() - (stalled_sec() - self._stalled_sec))
+
+    def is_busy(self) -> bool:
+        """Whether some process had to wait for a processor for most of it."""
+        return self.free_sec() < 0.5 * self.wall_sec()
