@@ -14,10 +14,9 @@ import pytest
 
 ATTACKS = (
     # what the sandbox forbids, bounds or hides
-    r'fork_bomb|makes_rare_system_calls|memory_bomb|network_out|reads_the_seed'
+    r'fork_bomb|makes_rare_system_calls|network_out|reads_the_seed'
     # what the grader believes
-    r'|forges_a_verdict|html_and_escapes|patches_what_checks_use|client_counts_ahead'
-    r'|edits_its_checks'
+    r'|forges_a_verdict|html_and_escapes|patches_what_checks_use|edits_its_checks'
 )
 ALL = r'.*'
 FEW = 2
@@ -37,7 +36,7 @@ ORDINARY = {
         r'03_publisher'
     ),
     'test_browser::test_run_all_goes_through_an_unanswered_lesson_and_stops_at_no_check': (
-        r'03_publisher'
+        r'06_qos'
     ),
     'test_attacks::test_an_attack_earns_what_its_honest_work_does': ATTACKS,
     'test_attacks::test_an_attack_brings_nothing_hidden_back': ATTACKS,
@@ -72,7 +71,6 @@ ORDINARY = {
     'test_checks_servers::test_who_asks_right_passes_in_whatever_way': r'IKClient',
     'test_checks_servers::test_what_is_wrong_is_named': r'(ElbowDown|AsksNobody)-.*',
     'test_checks_servers::test_who_waits_inside_a_callback_is_told': r'Calls',
-    'test_doctor_service_faults::test_a_wrong_name_is_named_first_and_fixed': r'server misspelt',
     'test_doctor_service_faults::test_a_client_that_blocks_its_own_executor': r'call',
     'test_doctor_service_healthy::test_an_honest_client_of_a_quick_and_of_a_slow_server': (
         r'add_done_callback-2\.0'

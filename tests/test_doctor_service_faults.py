@@ -100,6 +100,7 @@ NAMES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('fault', NAMES)
 def test_a_wrong_name_is_named_first_and_fixed(fault):
     source, line, name, title = NAMES[fault]

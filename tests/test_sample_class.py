@@ -92,10 +92,7 @@ BROKEN = {
 """Samples with a cell that can't run, and how their rows begin."""
 WITH_DEMOS = {'02_joint_state-pass-numpy', '03_publisher-pass-sleep_loop'}
 """Those that it runs whole: for the others, what the lesson shows would be run once more each."""
-RIGHT = {
-    *('03_publisher-pass-deleted_grade_cells', '08_services-pass-a_thread_that_waits'),
-    '09_actions-pass-coroutine_and_done_callbacks',
-}
+RIGHT = {'03_publisher-pass-deleted_grade_cells'}
 AT_ONCE = {'03_publisher-fail-callback_raises'}
 """Samples that go through Validate in an ordinary run; `./course test --slow` takes all."""
 ORDINARY = {*AT_ONCE, *BROKEN, *RIGHT, *most_telling()}

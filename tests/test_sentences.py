@@ -138,6 +138,12 @@ OF_THE_DOCTOR_AND_LIVE = {
         '/waver 的回调 ask 返回，这样它的响应才能发出'
     ),
     'none; /user asks it, and these run, too: /arm': '没有；/user 在请求它，还有这些在运行：/arm',
+    'it raised an exception a moment ago (ValueError: no), and the goal was aborted': (
+        '它刚才抛出了异常（ValueError: no），目标因此被中止'
+    ),
+    'a goal that was executing for at least 5 s, and no feedback': (
+        '目标处于 executing 状态至少 5 s，而且没有反馈'
+    ),
     'written  $ROS_WS/src/my_robot_basics/five_hz.py': (
         '已写入   $ROS_WS/src/my_robot_basics/five_hz.py'
     ),
