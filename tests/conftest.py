@@ -49,6 +49,8 @@ LONG_LESSONS = ('12_package', '09_actions', '11_parameters', '07_common_errors',
 
 
 GUARD = pytest.StashKey[tiers.Guard]()
+FOLDERS = pytest.StashKey[list[Path]]()
+"""What a session has made for itself: the workspace, what Validate remembers, what is shared."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -102,6 +104,10 @@ def pytest_runtest_teardown(item: pytest.Item) -> Iterator[None]:
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_setup(item: pytest.Item) -> None:
     item.config.stash[GUARD].begin(item)
+    if item.path.suffix == '.ipynb':
+        # its kernel is started next: what another lesson has written is not there
+        workspace = item.config.stash[FOLDERS][0] / item.path.stem
+        os.environ['MY_ROBOT_BASICS_WORKSPACE'] = str(workspace)
     if item.get_closest_marker('isolation') and missing():
         pytest.fail(f'{missing()}. Or leave these tests out: --no-isolation', pytrace=False)
 
@@ -133,19 +139,20 @@ def pytest_configure(config: pytest.Config) -> None:
     os.environ.pop('PYTHONDONTWRITEBYTECODE', None)
     sys.dont_write_bytecode = False  # else each xdist worker would compile every test, every time
     # once in each xdist worker, too: two workers do not discover each other's nodes
-    os.environ['MY_ROBOT_BASICS_WORKSPACE'] = tempfile.mkdtemp(prefix='ros ws ')
+    folders = config.stash[FOLDERS] = [Path(tempfile.mkdtemp(prefix='ros ws '))]
+    os.environ['MY_ROBOT_BASICS_WORKSPACE'] = str(folders[0])
     # Validate writes there what has passed
-    os.environ['XDG_DATA_HOME'] = tempfile.mkdtemp(prefix='data ')
+    folders.append(Path(tempfile.mkdtemp(prefix='data ')))
+    os.environ['XDG_DATA_HOME'] = str(folders[1])
     if not hasattr(config, 'workerinput'):  # what is made once, also for xdist's workers
-        os.environ['MY_ROBOT_BASICS_TESTS'] = tempfile.mkdtemp(prefix='shared-')
+        folders.append(Path(tempfile.mkdtemp(prefix='shared-')))
+        os.environ['MY_ROBOT_BASICS_TESTS'] = str(folders[2])
     classroom.enter()
 
 
 def pytest_unconfigure(config: pytest.Config) -> None:
-    shutil.rmtree(os.environ['MY_ROBOT_BASICS_WORKSPACE'])
-    shutil.rmtree(os.environ['XDG_DATA_HOME'])
-    if not hasattr(config, 'workerinput'):
-        shutil.rmtree(os.environ['MY_ROBOT_BASICS_TESTS'])
+    for folder in config.stash[FOLDERS]:
+        shutil.rmtree(folder)
 
 
 LEAVE_SEC = 10.0
