@@ -24,7 +24,7 @@ SHARD = '--shard='
 ALL_THE_SAME = (*TIERS, '--no-isolation', SHARD)
 """How the options begin that leave it a check of everything."""
 LESSONS = 'solutions/*/*.ipynb'
-WORKERS = 6
+WORKERS = 8
 """How many processes run tests at a time …"""
 LESSON_WORKERS = 3
 """… and how many run lessons, beside them."""

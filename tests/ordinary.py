@@ -1,7 +1,7 @@
 """What `./course test` takes of tests that are many and alike; `./course test --slow` takes all.
 
 Of a test that starts something (tests/tiers.py) and has several cases, an ordinary run takes the
-first two. A row of the table names others: a regular expression for what stands in the brackets of
+first. A row of the table names others: a regular expression for what stands in the brackets of
 those that it takes. One right and one wrong case of each check, and one attack on each kind of
 limit, stay in it. A test that takes long, and has a quicker one beside it for the same behaviour,
 has the mark `slow` where it stands.
@@ -19,7 +19,7 @@ ATTACKS = (
     r'|forges_a_verdict|html_and_escapes|patches_what_checks_use|edits_its_checks'
 )
 ALL = r'.*'
-FEW = 2
+FEW = 1
 """How many cases of a test without a row."""
 ORDINARY = {
     # they are quick, and each is another limit, or another end
@@ -51,7 +51,7 @@ ORDINARY = {
         r'(forked|started)-node\.kill.*|forked-import os.*'
     ),
     'test_checks_sampling::test_a_wrong_rate_fails': r'a_little_fast-.*',
-    'test_checks_sampling::test_honest_nodes_that_are_no_plain_timers_pass': r'multithreaded-.*',
+    'test_checks_sampling::test_honest_nodes_that_are_no_plain_timers_pass': r'sleep_loop-.*',
     # one right and one wrong node for each check of an action, a service, a parameter
     'test_checks_actions::test_who_serves_right_passes_in_whatever_way': r'MoveArmServer',
     'test_checks_actions_wrong::test_a_mistake_fails_its_check_alone_with_the_cause': (
