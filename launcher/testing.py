@@ -80,6 +80,14 @@ class Checks:
         python = str(self.environment.python)
         return [python, '-P', '-m', 'pytest', f'--junitxml={self.reports / report}', *arguments]
 
+    def compile_tests(self) -> None:
+        """Compile all tests of a fresh clone once: each worker would, all at the same time."""
+        if any(self.environment.root.glob('tests/__pycache__/*-pytest-*.pyc')):
+            return
+        command = self.pytest('none.xml', '--collect-only', '-q', '-n', '0')
+        # what is wrong with a test is said by the run that follows
+        subprocess.run(command, cwd=self.environment.root, env=self.variables, capture_output=True)
+
     def tests(self, arguments: list[str]) -> list[str]:
         """Return the command that runs the tests, several at a time."""
         # most tests wait most of the time, those of the quick tier do not; one file stays on one
@@ -147,13 +155,14 @@ def run(environment: Environment, variables: dict[str, str], arguments: list[str
         statuses = [checks.call(ruff, 'check', '.'), checks.call(ruff, 'format', '--check', '.')]
         tests, shard = [*options, *named], [each for each in options if each.startswith(SHARD)]
         # unless single tests were asked for, or what starts no kernel
-        has_lessons = (
-            not named and '--quick' not in options and any(environment.root.glob(LESSONS))
-        )
+        is_all = not named and '--quick' not in options
+        has_lessons = is_all and any(environment.root.glob(LESSONS))
         with ExitStack() as beside:
             mypy = checks.beside('mypy', str(environment.venv / 'bin/mypy'))
             types = beside.enter_context(mypy)
             in_lessons = None
+            if is_all:
+                checks.compile_tests()
             if has_lessons and has_own_network():
                 command = [*OWN_NETWORK, *checks.lessons(shard)]
                 in_lessons = beside.enter_context(checks.beside('lessons', *command))

@@ -36,7 +36,7 @@ ORDINARY = {
         r'03_publisher'
     ),
     'test_browser::test_run_all_goes_through_an_unanswered_lesson_and_stops_at_no_check': (
-        r'06_qos'
+        r'02_joint_state'
     ),
     'test_attacks::test_an_attack_earns_what_its_honest_work_does': ATTACKS,
     'test_attacks::test_an_attack_brings_nothing_hidden_back': ATTACKS,

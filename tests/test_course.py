@@ -662,7 +662,8 @@ def checks(machine, *arguments, ruff=0, mypy=0, pytest=0, again=None):
         f'case $* in *--last-failed*) exit {again} ;; *pytest*) exit {pytest} ;; esac\n'
     )
     run = machine.course('test', *arguments)
-    return run.returncode, [call for call in machine.calls('python') if 'pytest' in call]
+    calls = [call for call in machine.calls('python') if 'pytest' in call]
+    return run.returncode, [call for call in calls if '--collect-only' not in call]
 
 
 @pytest.mark.parametrize(

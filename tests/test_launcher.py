@@ -11,6 +11,7 @@ from my_robot_basics.language.catalogues import read_translations
 
 from grader.cli.arguments import make_parser
 from grader.course import ROOT
+from launcher import testing
 from launcher.environment import Environment, without_foreign
 from launcher.installer import DISK_IS_FULL, FAILED, NETWORK_IS_AWAY, progress, reason_of
 from launcher.languages import TRANSLATION, jupyterlab_settings
@@ -301,6 +302,42 @@ def test_every_package_without_a_wheel_is_built_with_tools_that_are_pinned():
     pins = build_tools(ROOT / 'environment.txt')
     assert [line.split('==')[0] for line in pins.splitlines()[::2]] == list(BUILD_TOOLS)
     assert pins.count('--hash=sha256:') >= len(BUILD_TOOLS)
+
+
+@pytest.mark.parametrize(
+    ('command', 'has_one'), [(('env',), True), (('false',), False), (('no-such-program',), False)]
+)
+def test_without_a_network_of_their_own_the_lessons_come_after_the_tests(
+    monkeypatch, command, has_one
+):
+    monkeypatch.setattr(testing, 'OWN_NETWORK', command)
+    assert testing.has_own_network() == has_one
+
+
+@pytest.mark.starts
+def test_the_lessons_are_in_a_network_of_their_own():
+    if not testing.has_own_network():
+        pytest.skip('bubblewrap cannot be used here')
+    seen = subprocess.run(
+        [*testing.OWN_NETWORK, 'sh', '-c', 'readlink /proc/self/ns/net; ls -A /dev/shm'],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert seen.stdout.strip() != os.readlink('/proc/self/ns/net')
+    assert seen.stdout.count('\n') == 1  # shared memory of others is not there
+
+
+def test_the_tests_of_a_fresh_clone_are_compiled_once(tmp_path, monkeypatch):
+    calls = []
+    monkeypatch.setattr(testing.subprocess, 'run', lambda command, **_: calls.append(command))
+    checks = Checks(Environment(tmp_path), {}, tmp_path)
+    checks.compile_tests()
+    compiled = tmp_path / 'tests/__pycache__/test_a.cpython-311-pytest-9.2.0.pyc'
+    compiled.parent.mkdir(parents=True)
+    compiled.touch()
+    checks.compile_tests()
+    assert ['--collect-only' in command for command in calls] == [True]
 
 
 # --- languages -----------------------------------------------------------------------------------
