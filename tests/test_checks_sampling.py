@@ -194,12 +194,19 @@ def test_what_is_exact_on_the_robots_clock_alone_is_no_zero_where_that_had_no_ti
     assert failed.type is doubt
 
 
-@pytest.mark.parametrize(('is_busy', 'is_makeshift'), [(True, True), (False, False)])
+@pytest.mark.parametrize(
+    ('node', 'is_busy', 'is_makeshift'),
+    [
+        ('unresponsive', True, True),
+        ('unresponsive', False, False),
+        ('no_parameter_services', True, False),  # no machine is to blame for that
+    ],
+)
 def test_a_busy_machine_is_to_blame_where_the_clock_could_not_be_driven(
-    monkeypatch, is_busy, is_makeshift
+    monkeypatch, node, is_busy, is_makeshift
 ):
     monkeypatch.setattr(Stopwatch, 'is_busy', lambda watch: is_busy)
-    with running('unresponsive'):
+    with running(node):
         recording = topic(TOPIC).record()
     assert (recording.clock, recording.is_makeshift) == ('wall', is_makeshift)
 

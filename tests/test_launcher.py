@@ -315,9 +315,8 @@ def test_without_a_network_of_their_own_the_lessons_come_after_the_tests(
 
 
 @pytest.mark.starts
+@pytest.mark.isolation
 def test_the_lessons_are_in_a_network_of_their_own():
-    if not testing.has_own_network():
-        pytest.skip('bubblewrap cannot be used here')
     seen = subprocess.run(
         [*testing.OWN_NETWORK, 'sh', '-c', 'readlink /proc/self/ns/net; ls -A /dev/shm'],
         capture_output=True,

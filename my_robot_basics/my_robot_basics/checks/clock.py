@@ -148,7 +148,9 @@ class SimulatedClock:
         answered = {name: future.result() for name, future in asked.items() if future.done()}
         self._barriers = {name: self._barriers[name] for name in answered}
         if not self._needed <= set(answered):
-            raise TooSlow('its parameter services do not answer')
+            has_them = self._needed <= nodes_with_services(node)
+            why = TooSlow if has_them else Inconclusive
+            raise why('its parameter services do not answer')
         self._former = {
             name: any(value.bool_value for value in reply.values)
             for name, reply in answered.items()
