@@ -233,3 +233,23 @@ def test_a_machine_is_blamed_only_for_what_it_can_do(monkeypatch, gaps_sec, late
     with pytest.raises(CheckFailed) as failed:
         on_wall(gaps_sec, late_sec=late_sec).assert_rate(hz=5.0)
     assert failed.type is doubt
+
+
+@pytest.mark.parametrize(
+    ('gaps_sec', 'was_busy', 'doubt'),
+    [
+        (STARVED_GAPS[:6], True, CheckFailed),
+        ([*STARVED_GAPS, *[0.2] * 12], True, Starved),
+        ([*STARVED_GAPS, *[0.2] * 12], False, CheckFailed),
+        ([0.22] * 16, True, CheckFailed),
+    ],
+    ids=['0.7 of the rate', 'nearly right', 'idle', '4.5 Hz'],
+)
+def test_a_busy_machine_is_to_blame_also_where_the_recording_itself_was_in_time(
+    monkeypatch, gaps_sec, was_busy, doubt
+):
+    monkeypatch.setattr(recording_module.callbacks, 'expect_none_so_far', lambda names: None)
+    recording = replace(on_wall(gaps_sec, late_sec=0.0), was_busy=was_busy)
+    with pytest.raises(CheckFailed) as failed:
+        recording.assert_rate(hz=5.0)
+    assert failed.type is doubt

@@ -47,6 +47,8 @@ class Recording:
     """A remark for the feedback that costs nothing."""
     late_sec: float = 0.0
     """How long the machine kept the recording itself waiting at most: a node fares no better."""
+    was_busy: bool = False
+    """Whether processes waited for a processor for most of it."""
     is_makeshift: bool = False
     """Of the wall clock, since a busy machine left no time for the robot's."""
     proof: 'Recording | None' = field(default=None, repr=False)

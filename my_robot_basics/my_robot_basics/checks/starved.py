@@ -27,19 +27,23 @@ def may_be(recording: 'Recording', hz: float) -> bool:
 
     A machine that is too busy makes messages late, each by another time, and no more of them. How
     much is told by how late the recording itself was; what comes by turns, or as evenly as with
-    a timer of another period, is no machine's doing. But where there was no time for the robot's
-    clock, a rate that is nearly right is no proof: a node that looks at its clock again and again
-    is exact on that one alone.
+    a timer of another period, is no machine's doing. Where processes waited for a processor most
+    of the time, a rate that is nearly right is no proof either, whoever had to wait; and where
+    there was no time for the robot's clock, not even an even one: a node that looks at its clock
+    again and again is exact on that one alone.
     """
-    late_sec, messages = recording.late_sec, recording.messages
-    if recording.is_makeshift and NEAR_LEAST <= recording.rate_hz / hz <= MOST_TIMES:
+    messages = recording.messages
+    is_near = NEAR_LEAST <= recording.rate_hz / hz <= MOST_TIMES
+    if recording.is_makeshift and is_near:
         return True
-    if recording.clock != 'wall' or late_sec < LATE_SEC or not messages:
+    if recording.clock != 'wall' or not messages:
         return False
     times = np.array([0.0, *(sample.time_sec for sample in messages)])
     gaps = np.diff(times)
     often, seldom = np.quantile(gaps, [0.25, 0.75])
     is_steady = seldom - often < STEADY_PART * np.median(gaps)
-    is_late = recording.largest_gap_sec - 1.0 / hz <= LATE_TIMES * late_sec
+    late_sec, longest_sec = recording.late_sec, recording.largest_gap_sec - 1.0 / hz
+    is_late = late_sec >= LATE_SEC and longest_sec <= LATE_TIMES * late_sec
     is_slow = recording.rate_hz <= MOST_TIMES * hz
-    return bool(is_late and is_slow and not is_steady and not periods.come_by_turns(times))
+    is_excused = (is_late and is_slow) or (recording.was_busy and is_near)
+    return bool(is_excused and not is_steady and not periods.come_by_turns(times))

@@ -7,6 +7,7 @@ from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.recording import Recording, Sample
 from my_robot_basics.graph.raised import what_raised
 from my_robot_basics.graph.watcher import Watcher
+from my_robot_basics.session.pressure import Stopwatch
 
 WALL_SEC = 4.0
 
@@ -35,9 +36,9 @@ def wall(
     """
     if not recorder.received and what_raised(recorder.publishers()):
         seconds = timeout_sec = RAISED_SEC
-    since_ns = time.time_ns()
+    since_ns, watch = time.time_ns(), Stopwatch()
     if watcher.spin_until(lambda: recorder.count_since(since_ns) > 0, timeout_sec=timeout_sec):
-        watcher.late_sec = 0.0
+        watcher.late_sec, watch = 0.0, Stopwatch()
         watcher.spin_for(seconds)
         watcher.spin_until(
             lambda: recorder.count_since(since_ns) > 1, timeout_sec=timeout_sec - seconds
@@ -58,6 +59,7 @@ def wall(
         start_sec=start_ns / 1e9,
         note=_note(recorder) if str(why) == IGNORES else '',
         late_sec=watcher.late_sec,
+        was_busy=watch.is_busy(),
         is_makeshift=isinstance(why, TooSlow),
     )
 
