@@ -1,7 +1,7 @@
 """A real Chromium, for the tests that drive one."""
 
 import shutil
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 
 import pytest
 from playwright.sync_api import expect, sync_playwright
@@ -20,7 +20,18 @@ drives_chromium = [
 @contextmanager
 def launched():
     """Yield a browser, which ends with the `with`."""
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=PROGRAM, args=['--no-sandbox'])
+    with several_launched(1) as (browser,):
         yield browser
-        browser.close()
+
+
+@contextmanager
+def several_launched(number):
+    """Yield so many browsers, each a program of its own, which end with the `with`."""
+    with sync_playwright() as playwright, ExitStack() as stack:
+        chromium = playwright.chromium
+        browsers = []
+        for _ in range(number):
+            browser = chromium.launch(executable_path=PROGRAM, args=['--no-sandbox'])
+            stack.callback(browser.close)
+            browsers.append(browser)
+        yield browsers

@@ -1,0 +1,66 @@
+"""What a student runs in their room to be heard, and to hear and disturb somebody else."""
+
+MESSAGES = 20
+MEANS_IT = """
+import os
+os.environ |= {
+    'ROS_DOMAIN_ID': '7',
+    'ROS_AUTOMATIC_DISCOVERY_RANGE': 'SUBNET',
+    'ROS_STATIC_PEERS': '127.0.0.1',
+    'FASTDDS_BUILTIN_TRANSPORTS': 'UDPv4',
+}
+import subprocess, threading, time, rclpy
+from std_msgs.msg import String
+"""
+"""Who wants to meet others' nodes on one machine sets this up, wherever they are."""
+RUN = (
+    MEANS_IT
+    + """
+rclpy.init()
+heard = []
+node = rclpy.create_node('node_of_%(name)s')
+talks = node.create_publisher(String, '/talk_of_%(name)s', 10)
+node.create_subscription(String, '/orders_of_%(name)s', lambda m: heard.append(m.data), 50)
+node.create_timer(0.05, lambda: talks.publish(String(data='mine')))
+threading.Thread(target=rclpy.spin, args=(node,), daemon=True).start()
+"""
+)
+"""A node that talks, and takes orders from whoever reaches it."""
+LIST = (
+    MEANS_IT
+    + """
+for what in 'node', 'topic':
+    words = ['ros2', what, 'list', '--no-daemon', '--spin-time', '3']
+    print(subprocess.run(words, capture_output=True, text=True, check=True).stdout)
+"""
+)
+LISTEN_AND_INJECT = (
+    MEANS_IT
+    + """
+rclpy.init()
+stranger = rclpy.create_node('stranger')
+listened = []
+stranger.create_subscription(String, '/talk_of_%(name)s', lambda m: listened.append(m.data), 50)
+orders = stranger.create_publisher(String, '/orders_of_%(name)s', 50)
+at_most = time.monotonic() + 5
+while time.monotonic() < at_most and not (listened and orders.get_subscription_count()):
+    rclpy.spin_once(stranger, timeout_sec=0.1)
+for number in range({number}):
+    orders.publish(String(data=str(number)))
+    rclpy.spin_once(stranger, timeout_sec=0.05)
+reached = orders.get_subscription_count() and orders.wait_for_all_acked(
+    rclpy.duration.Duration(seconds=30)
+)
+print(bool(listened), bool(reached))
+stranger.destroy_node()
+""".replace('{number}', str(MESSAGES))
+)
+"""Prints whether the talk was heard, and whether anybody has taken the orders."""
+LOOK_AROUND = """
+import os, pathlib
+print(os.listdir('/home'))
+print(os.listdir('/tmp'))
+print({path.owner() for path in pathlib.Path('/proc').glob('[0-9]*')})
+print(pathlib.Path('/proc/net/unix').read_text().count('@'))
+"""
+"""Prints which homes and files there are, whose processes, and how many abstract sockets."""
