@@ -48,6 +48,14 @@ def test_an_honest_way_passes(run, NodeClass):
     look_at_refusals()
 
 
+@pytest.mark.parametrize('NodeClass', [adjustable.ReadsInEachTick, adjustable.SleepsInAThread])
+def test_an_honest_way_passes_at_each_rate_that_may_be_asked_for(run, NodeClass):
+    run(NodeClass)
+    # 20 Hz: who looks at the clock every 10 ms needs steps that 10 ms are a multiple of
+    rate = rate_parameter('/adjustable_publisher', 'rate_hz', topic_name=TOPIC)
+    rate.expect_follows(2.0, 2.5, 4.0, 20.0)
+
+
 OF_THE_RATE = [
     (adjustable.ReadsOnce, 'expected 10 Hz after rate_hz went from 5 to 10, saw 5 Hz as before: '
      'a timer keeps its period'),

@@ -22,8 +22,11 @@ SECONDS_LEAST = 2.0
 """… It records no less."""
 SECONDS_ENOUGH = 10.0
 """Where the machine is so busy that half of the time is gone, so much is a recording, too."""
-FINER = (1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01)
-"""Steps of the clock, as parts of the one asked for, tried until messages skip a tick."""
+FINER = (1.0, 0.5, 0.1, 0.05, 0.01)
+"""Steps of the clock, as parts of the one asked for, tried until messages skip a tick.
+
+Each is a multiple of all finer ones: of a node that looks at the clock every 10 ms, steps of 20 ms
+and their proof of 4 ms would make 60 ms of 50."""
 PROOF_PARTS = 5
 """The proof takes steps so many times as fine as the recording's, or as coarse …"""
 PROOF_STEPS = 30
