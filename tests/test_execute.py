@@ -183,6 +183,32 @@ def test_a_function_may_use_names_that_the_lesson_has_shown(demos, answer):
     assert outcomes(execute(handed_in(source, a=answer)))['a-check'] == 'passed'
 
 
+IS_TWO = """
+from my_robot_basics.checks import expect, student
+expect(student.value('made') == 2, expected=2, seen='less', hint='two')
+"""
+AT_ONCE, LATER = 'made = double()', 'try: made = double()\nexcept NameError: made = 0'
+"""What a constructor does when the answer is started, and what its first callback does."""
+BELOW = {
+    'a constructor that calls a helper': ('def double(): return two()', AT_ONCE),
+    'a callback that does': ('def double(): return two()', LATER),
+    'a decorator': ('@same\ndef double(): return two()', AT_ONCE),
+    'a default argument': ('def double(n=two()): return n', AT_ONCE),
+    'a base class': ('class double(Two):\n    def __new__(cls): return 2', AT_ONCE),
+}
+
+
+@pytest.mark.parametrize(('answer', 'start'), BELOW.values(), ids=BELOW)
+def test_a_helper_may_stand_below_the_cell_that_starts_the_answer(answer, start):
+    """As the student had it who wrote it there, and started the answer again."""
+    helpers = 'def two(): return 2\ndef same(x): return x\nTwo = int'
+    source = lesson('a', check=IS_TWO)
+    source.cells.insert(3, marked('a-run', start.replace('double', 'double_a')))
+    notebook = handed_in(source, a=answer)
+    next(cell for cell in notebook.cells if cell.source == '# try it').source = helpers
+    assert outcomes(execute(notebook))['a-check'] == 'passed'
+
+
 def test_the_seed_reaches_the_checks_and_not_the_student():
     check = "import os; print('note: ' + os.environ['MY_ROBOT_BASICS_SEED'])"
     source = lesson('a', check=check)

@@ -34,13 +34,48 @@ CELLS = {
     'with': ('with open(p) as f: f.read()', 'f', 'p'),
     'a match': ('match v:\n    case {"k": w}: print(w)', 'w', 'v'),
     'an f-string': ("print(f'{x!r:>{w}}')", '', 'x w'),
-    'augmented': ('x += 1', 'x', ''),
-    'deleted': ('del x', 'x', ''),
+    'augmented': ('x += 1', '', 'x'),
+    'augmented once it is there': ('x = 0\nx += 1', 'x', ''),
+    'augmented in a function': ('def f():\n    global x\n    x += 1', 'f', 'x'),
+    'set in a function that reads it': (
+        'def f():\n    global x\n    if x: x = 1', 'f x', 'x',
+    ),
+    'deleted': ('del x', '', 'x'),
+    'declared': ('x: int', '', ''),
+    'annotated': ('x: T = 3', 'x', 'T'),
+    'in a try': ('try:\n    import a\nexcept E:\n    a = None', 'a', 'E'),
+    'a function in an if': ('if x:\n    def h(): return k', 'h', 'x k'),
+    'a loop over several': ('for i, (j, *k) in z: pass', 'i j k', 'z'),
+    'a walrus in a while': ('while m := f(): pass', 'm', 'f'),
+    'a walrus in a comprehension': ('[y := i for i in z]', 'y', 'z'),
+    'all patterns': (
+        'match v:\n    case [a, *b]: pass\n    case {**r}: pass\n    case P(x=q) as s: pass',
+        'a b r q s', 'v P',
+    ),
+    'of a class body': ('class A:\n    h = 1\n    def f(self): return h', 'A', 'h'),
+    'set globally in a class body': ('class A:\n    global h\n    h = 1', 'A h', ''),
+    'a name of a comprehension and of a function': (
+        'def h(): pass\nx = [h for h in y]', 'h x', 'y',
+    ),
+    'a name of a comprehension and of an import': (
+        'import h\nx = [h for h in y]', 'h x', 'y',
+    ),
+    'a name of a comprehension, and from elsewhere': ('x = [h for h in y]\nh()', 'x', 'y h'),
+    'a comprehension over its own name': ('[x for x in x]', '', 'x'),
+    'comprehensions in comprehensions': ('[[j for j in i] for i in z]', '', 'z'),
+    'in a lambda of a comprehension': ('f = [lambda: i + k for i in z]', 'f', 'z k'),
+    'a default, a decorator, a base and a metaclass': (
+        '@d\nclass C(B, metaclass=M):\n    def f(self, a=q): pass', 'C', 'd B M q',
+    ),
     'builtins and IPython': ('display(len(In), get_ipython(), _)', '', ''),
     'a star import may bring some': ('from math import *\ny = sin(x)', 'y', 'sin x'),
     'a line magic': ('%matplotlib inline\nx = y', 'x', 'y'),
     'a shell line': ('out = !ls {d}\nx = 1', 'out x', ''),
     'a cell magic': ('%%bash\necho $x', '', ''),
+    'a cell that is timed': ('%%time\ndef h(): return k', 'h', 'k'),
+    'a cell whose output is kept': ('%%capture out\nh = k\n!ls', 'h', 'k'),
+    'a line that is timed': ('if x:\n    %time h = f()', 'h', 'x f'),
+    'a line that is timed for itself': ('%time\nh = 1', 'h', ''),
     'a question': ('math?', '', ''),
     'an await': ('x = await y', 'x', 'y'),
     'a syntax error': ('def f(:\n  pass', '', ''),
@@ -62,8 +97,15 @@ def test_names_of_a_cell(source, bound, needed):
     assert (names.bound, names.needed) == (set(bound.split()), set(needed.split()))
 
 
-def test_a_star_import_binds_more_than_is_told():
-    assert names_of('from math import *').binds_more
+@pytest.mark.parametrize(
+    'source',
+    ['from math import *', '%run helper.py', 'x = 1\nexec("h = 1")', 'globals()["h"] = 1'],
+)
+def test_some_cells_bind_more_than_is_told(source):
+    assert names_of(source).binds_more
+
+
+def test_an_import_binds_no_more_than_is_told():
     assert not names_of('from math import sin\nimport cmath').binds_more
 
 

@@ -37,6 +37,11 @@ def role(cell: NotebookNode) -> str:
     return 'demo' if 'demo' in cell.metadata.get('tags', ()) else 'setup'
 
 
+def is_code(cell: NotebookNode) -> bool:
+    """Whether the cell holds code."""
+    return cell.cell_type == 'code'
+
+
 def is_reset(cell: NotebookNode) -> bool:
     """Whether the cell begins an exercise: it forgets what earlier cells made."""
     return (grade_id(cell) or '').endswith('-reset')

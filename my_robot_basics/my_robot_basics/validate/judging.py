@@ -12,15 +12,11 @@ from my_robot_basics.validate.budget import Budget
 from my_robot_basics.validate.cell_names import number_of
 from my_robot_basics.validate.cells import grade_id, graded_id
 from my_robot_basics.validate.errors import RoomFailure
-from my_robot_basics.validate.exercises import (
-    Exercise,
-    Plan,
-    plan_for_names,
-    plans,
-)
+from my_robot_basics.validate.exercises import Exercise
 from my_robot_basics.validate.names import names_not_defined
 from my_robot_basics.validate.outputs import CellRun
 from my_robot_basics.validate.overdue import judge_overdue
+from my_robot_basics.validate.plans import Plan, plan_for_names, plans
 from my_robot_basics.validate.rooms_interface import OpenRooms, R, Rooms
 from my_robot_basics.validate.second_look import Attempts
 from my_robot_basics.validate.verdict import Verdict, judge, ungraded
@@ -88,14 +84,14 @@ async def _try_plan(
     """Judge an exercise after a plan's cells; None where it lacks a name and others are left."""
     async with looks.rooms() as rooms:
         # as they are now: a display that is updated later may show hidden inputs
-        runs = copy.deepcopy(await _run_cells(notebook, plan, rooms, budget))
+        runs = copy.deepcopy(await _run_cells(notebook, exercise, plan, rooms, budget))
         if not is_last and _lacks_a_name(runs, exercise, plan):
             return None
         checks, cut = await _judge_cells(notebook, exercise, looks, rooms, runs)
     if cut:
         with suppress(RoomFailure):  # the verdicts stand, with their causes alone
             async with looks.rooms() as rooms:
-                await _run_cells(notebook, plan, rooms, budget)
+                await _run_cells(notebook, exercise, plan, rooms, budget)
                 checks |= await _explained_in_full(notebook, rooms, {i: checks[i] for i in cut})
     return JudgedExercise(runs, checks)
 
@@ -111,9 +107,17 @@ def _points(judged: JudgedExercise) -> float:
 
 
 async def _run_cells(
-    notebook: NotebookNode, plan: Plan, rooms: R, budget: Budget[R]
+    notebook: NotebookNode, exercise: Exercise, plan: Plan, rooms: R, budget: Budget[R]
 ) -> dict[int, CellRun]:
-    return {i: await budget.run(rooms, notebook.cells[i]) for i in plan.cells}
+    """Run a plan's cells; the answer and what starts it once more, where a name came only later.
+
+    So does a student who adds a helper below.
+    """
+    runs = {i: await budget.run(rooms, notebook.cells[i]) for i in plan.cells}
+    own = [i for i in (exercise.answer, *exercise.run) if i in runs]
+    stopped = [i for i in own if _wants_a_name(runs[i]) and plan.cells[-1] > own[-1]]
+    again = own[own.index(stopped[0]) :] if stopped else plan.again
+    return runs | {i: await budget.run(rooms, notebook.cells[i]) for i in again}
 
 
 async def _judge_cells(
@@ -167,7 +171,8 @@ def _lacks_a_name(runs: dict[int, CellRun], exercise: Exercise, plan: Plan) -> b
     """Whether the answer, or starting it, stopped for want of a name, or may when it is called."""
     if not all(runs[i].ran_to_end for i in plan.demonstrations):
         return True  # what the lesson shows may need more than names
-    return any(
-        (error := runs[i].error) is not None and error.ename == 'NameError'
-        for i in (exercise.answer, *exercise.run)
-    )
+    return any(_wants_a_name(runs[i]) for i in (exercise.answer, *exercise.run))
+
+
+def _wants_a_name(run: CellRun) -> bool:
+    return run.error is not None and run.error.ename == 'NameError'

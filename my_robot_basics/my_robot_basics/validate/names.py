@@ -6,6 +6,7 @@ import re
 import symtable
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import TypeGuard
 
 from IPython.core.inputtransformer2 import TransformerManager
 
@@ -21,9 +22,12 @@ class Names:
 
     bound: frozenset[str] = frozenset()
     needed: frozenset[str] = frozenset()
-    """Read somewhere in the cell, in its functions too, bound nowhere in it, and no builtin."""
+    """Read somewhere in the cell, in its functions too, no builtin, and not there once it ran.
+
+    A function that binds a global one has to be called first.
+    """
     binds_more: bool = False
-    """Whether a star import binds names that its text does not tell."""
+    """Whether it binds names that its text does not tell: a star import, `%run`, `exec`, …"""
     needs_more: bool = False
     """Whether it looks names up by other means than its text: `eval`, `globals()`, `__main__`."""
 
@@ -39,15 +43,19 @@ def names_of(source: str) -> Names:
         nodes = list(ast.walk(tree))
     except (SyntaxError, ValueError, RuntimeError, MemoryError):  # a RecursionError, too
         return Names()
-    bound: set[str] = set()
-    read: set[str] = set()
-    _collect(table, bound, read)
-    loop_names = _names_of_comprehensions_alone(nodes)
+    here, later, read = _globals(table)
+    # from Python 3.12 on, symtable does not tell that `[y := x for x in z]` binds y
+    walrus = {node.target.id for node in nodes if isinstance(node, ast.NamedExpr)}
+    here |= walrus & {*table.get_identifiers()}
+    stored, loaded = _said_to_bind_and_read(nodes)
+    there = here & stored | vars(builtins).keys() | _IPYTHON
+    needs_more = any(_said(node) & _LOOK_UP for node in nodes)
+    imports_all = any(isinstance(n, ast.ImportFrom) and n.names[0].name == '*' for n in nodes)
     return Names(
-        bound=frozenset(bound - loop_names),
-        needed=frozenset(read - bound - vars(builtins).keys() - _IPYTHON),
-        binds_more=any(isinstance(n, ast.ImportFrom) and n.names[0].name == '*' for n in nodes),
-        needs_more=any(_said(node) & _LOOK_UP for node in nodes),
+        bound=frozenset((here | later) & stored),
+        needed=frozenset((here | later | read) & loaded - there),
+        binds_more=imports_all or needs_more or bool(_RUN.search(source)),
+        needs_more=needs_more,
     )
 
 
@@ -87,6 +95,11 @@ def _said(node: ast.AST) -> set[str]:
     return set()
 
 
+_AT_ONCE = ('listcomp', 'setcomp', 'dictcomp')
+_RUN = re.compile(r'^\s*%run\s', re.MULTILINE)
+_AROUND_CELL = re.compile(r'\A\s*%%(?:time|capture|prun)\b.*\n')
+_BEFORE_LINE = re.compile(r'^([ \t]*)%(?:time|prun)[ \t]+(?=[^\W\d])', re.MULTILINE)
+"""Magics that run the Python behind them as if they were not there."""
 _MAGIC = re.compile(r'^\s*[!%?,;/]|\?\s*$|=\s*[!%]', re.MULTILINE)
 _IPYTHON = {'display', 'get_ipython', 'In', 'Out', '_', '__', '___', '__name__', '__file__'}
 
@@ -111,28 +124,74 @@ def _python(source: str) -> tuple[str, ast.Module]:
         lines = len(_MAGIC.findall(source))
         if len(source) > MAX_IPYTHON['characters'] or lines > MAX_IPYTHON['lines']:
             raise
+    source = _BEFORE_LINE.sub(r'\1', _AROUND_CELL.sub('', source))
     code = _Transformer().transform_cell(source)
     return code, ast.parse(code)
 
 
-def _collect(outermost: symtable.SymbolTable, bound: set[str], read: set[str]) -> None:
-    tables = [outermost]
+def _globals(outermost: symtable.SymbolTable) -> tuple[set[str], set[str], set[str]]:
+    """Return global names by scope: set when the cell runs, set by its functions, and read."""
+    here: set[str] = set()
+    later: set[str] = set()
+    read: set[str] = set()
+    tables = [(outermost, here)]
     while tables:  # not by recursion: a table lies in a table for each `lambda:` of a thousand
-        table = tables.pop()
-        is_module = table.get_type() == 'module'
+        table, bound = tables.pop()
         for symbol in table.get_symbols():
-            is_global = is_module or symbol.is_global()
-            if is_global and (symbol.is_assigned() or symbol.is_imported()):
-                bound.add(symbol.get_name())
-            if is_global and symbol.is_referenced():
-                read.add(symbol.get_name())
-        tables.extend(table.get_children())
+            if table.get_type() == 'module' or symbol.is_global():
+                if symbol.is_assigned() or symbol.is_imported():
+                    bound.add(symbol.get_name())
+                if symbol.is_referenced():
+                    read.add(symbol.get_name())
+        for child in table.get_children():
+            runs_at_once = child.get_type() == 'class' or child.get_name() in _AT_ONCE
+            tables.append((child, bound if runs_at_once else later))
+    return here, later, read
 
 
-def _names_of_comprehensions_alone(nodes: list[ast.AST]) -> set[str]:
-    """Names that only comprehensions bind: from Python 3.12 on, symtable tells them as ours."""
-    targets = [n.target for n in nodes if isinstance(n, ast.comprehension)]
-    inside = {id(n) for target in targets for n in ast.walk(target)}
-    stored = [n for n in nodes if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)]
-    elsewhere = {n.id for n in stored if id(n) not in inside}
-    return {n.id for n in stored if id(n) in inside} - elsewhere
+def _said_to_bind_and_read(nodes: list[ast.AST]) -> tuple[set[str], set[str]]:
+    """Return names of every scope: those that are bound, and those that have to be there."""
+    aside = _inside_comprehensions(nodes)
+    aside |= {id(n.target) for n in nodes if isinstance(n, ast.AnnAssign) and n.value is None}
+    added_to = {id(n.target) for n in nodes if isinstance(n, ast.AugAssign)}
+    bound: set[str] = set()
+    read: set[str] = set()
+    for node in nodes:
+        match node:
+            case ast.Name() if id(node) in aside:
+                pass
+            case ast.Name(id=name, ctx=ast.Store()) if id(node) not in added_to:
+                bound.add(name)
+            case ast.Name(id=name):
+                read.add(name)
+            case ast.alias(name=name, asname=other):
+                bound.add((other or name).partition('.')[0])
+            case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name):
+                bound.add(name)
+            case ast.ClassDef(name=name) | ast.ExceptHandler(name=str(name)):
+                bound.add(name)
+            case ast.MatchAs(name=str(name)) | ast.MatchStar(name=str(name)):
+                bound.add(name)
+            case ast.MatchMapping(rest=str(name)):
+                bound.add(name)
+    return bound, read
+
+
+def _inside_comprehensions(nodes: list[ast.AST]) -> set[int]:
+    """Return which nodes name what only a comprehension binds, and that only inside.
+
+    From Python 3.12 on, symtable tells such names as those of the scope around it.
+    """
+    found: set[int] = set()
+    for node in nodes:
+        if loops := getattr(node, 'generators', None):
+            inside = [n for part in (node, *loops) for n in ast.iter_child_nodes(part)]
+            parts = [n for n in inside if n is not loops[0].iter and n not in loops]
+            names = [n for part in parts for n in ast.walk(part) if isinstance(n, ast.Name)]
+            targets = {n.id for each in loops for n in ast.walk(each.target) if _is_stored(n)}
+            found |= {id(n) for n in names if n.id in targets}
+    return found
+
+
+def _is_stored(node: ast.AST) -> TypeGuard[ast.Name]:
+    return isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)

@@ -1,0 +1,175 @@
+"""Plan which student cells to run before an exercise is judged."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from nbformat import NotebookNode
+
+from my_robot_basics.validate.cells import is_code, role
+from my_robot_basics.validate.exercises import Exercise
+from my_robot_basics.validate.names import names_of
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Which student cells to run, in order, before an exercise is judged."""
+
+    cells: tuple[int, ...]
+    why: str
+    demonstrations: tuple[int, ...] = ()
+    """Those of them that the lesson shows, run for the names that they bind."""
+    again: tuple[int, ...] = ()
+    """What starts the answer, once more at the end: a cell below binds what it will need."""
+
+
+def plans(notebook: NotebookNode, exercise: Exercise) -> Iterator[Plan]:
+    """Yield what to run, least first: the answer alone, with what it missing, the whole lesson.
+
+    The first plan is left out where the text shows already that the answer needs a name that
+    only another of the student's cells binds. Demonstrations come with the names that they bind:
+    a function asks for a name only when it is called, and then it is too late to run more.
+    Where a package is the answer, there is one plan, which has no cell of the student's: what runs
+    of theirs is what is started of the package.
+    """
+    cells = notebook.cells
+    own = (exercise.reset, exercise.answer, *exercise.run)
+    setup = [i for i, cell in enumerate(cells) if role(cell) == 'setup' and i < exercise.reset]
+    if exercise.packages:
+        ours = (i for i in own if role(cells[i]) == 'locked')
+        yield Plan(tuple(sorted({*setup, *ours})), why='the package alone')
+        return
+    missing = _missing(cells, exercise, setup)
+    students = [i for i, c in enumerate(cells) if _is_students(c) and i != exercise.answer]
+    lending, _ = _lending(cells, students, missing)
+    others = [i for i in students if i < _end(exercise) or i in lending]
+    alone = {*setup, *own}
+    if names_of(cells[exercise.answer].source).needs_more:
+        yield _with_all_shown(cells, exercise)
+    elif not others or not _binds_what_is_missing(cells, others, missing):
+        yield _with_what_is_shown(cells, exercise, alone, why='the answer alone')
+    if others:
+        yield _with_what_is_shown(cells, exercise, alone | {*others}, why='with your other cells')
+    code = [i for i, cell in enumerate(cells) if is_code(cell) and not _is_apart(cell)]
+    whole = tuple(i for i in code if role(cells[i]) not in ('grade', 'locked') or i in own)
+    again = _again(cells, exercise, whole)
+    yield Plan(whole, why='the whole lesson', again=again)
+
+
+def plan_for_names(
+    notebook: NotebookNode, exercise: Exercise, plan: Plan, names: set[str]
+) -> Plan | None:
+    """Plan the answer with what binds names that it turned out to need, and all that is shown.
+
+    None where no cell that was left out binds one of them.
+    """
+    cells = notebook.cells
+    more = _with_all_shown(cells, exercise)
+    binds = {i for i, cell in enumerate(cells) if is_code(cell) and _binds(cell, names)}
+    others = {i for i in binds if _is_students(cells[i])}
+    if not (binds & {*more.cells, *others}) - {*plan.cells}:
+        return None
+    chosen = tuple(sorted({*more.cells, *others}))
+    again = _again(cells, exercise, chosen, names=names)
+    return Plan(chosen, why='with what binds a name that it needs', again=again)
+
+
+def _lending(
+    cells: list[NotebookNode], indexes: Iterable[int], names: Iterable[str]
+) -> tuple[set[int], set[str]]:
+    """Which of these cells bind such a name, or one that those need; and all such names."""
+    lending: set[int] = set()
+    met, todo = set[str](), {*names}
+    while todo:
+        met |= todo
+        binding = {i for i in indexes if _binds(cells[i], todo)} - lending
+        lending |= binding
+        todo = set().union(*(names_of(cells[i].source).needed for i in binding)) - met
+    return lending, met
+
+
+def _with_all_shown(cells: list[NotebookNode], exercise: Exercise) -> Plan:
+    """Plan the answer after all that the lesson shows before it.
+
+    So it is where a text looks names up by other means: which it will need, nobody can know.
+    """
+    before = [i for i in range(exercise.reset) if role(cells[i]) in ('demo', 'setup')]
+    shown = [i for i in before if is_code(cells[i]) and not _is_apart(cells[i])]
+    own = (exercise.reset, exercise.answer, *exercise.run)
+    return Plan((*shown, *own), why='with all that the lesson shows')
+
+
+def _binds(cell: NotebookNode, names: set[str]) -> bool:
+    return bool(names_of(cell.source).bound & names)
+
+
+def _end(exercise: Exercise) -> int:
+    return max((exercise.answer, *exercise.run, *exercise.grades))
+
+
+def _missing(cells: list[NotebookNode], exercise: Exercise, setup: list[int]) -> frozenset[str]:
+    """Names that the answer needs, or owes, and that neither it nor the setup binds."""
+    answer = names_of(cells[exercise.answer].source)
+    return (answer.needed | {*exercise.defines} - answer.bound) - _bound(cells, setup)
+
+
+def _binds_what_is_missing(
+    cells: list[NotebookNode], others: list[int], missing: frozenset[str]
+) -> bool:
+    """Whether one of these cells binds a name that is lacking, as far as its text tells."""
+    names = [names_of(cells[i].source) for i in others]
+    return bool(missing) and any(each.binds_more or each.bound & missing for each in names)
+
+
+def _with_what_is_shown(
+    cells: list[NotebookNode], exercise: Exercise, chosen: set[int], *, why: str
+) -> Plan:
+    """Plan the chosen cells, and what the lesson shows that binds a name which they need."""
+    shown = [i for i, c in enumerate(cells) if is_code(c) and role(c) in ('demo', 'setup')]
+    demonstrations: set[int] = set()
+    todo = [(exercise.answer, names_of(cells[i].source).needed) for i in chosen]
+    while todo:
+        place, needed = todo.pop()
+        for name in needed - _bound(cells, chosen | demonstrations):
+            binding = [i for i in shown if name in names_of(cells[i].source).bound]
+            # of several, the one that ran last when the lesson was read from top to bottom
+            nearest = [i for i in binding if i < place][-1:] or binding[:1]
+            demonstrations.update(nearest)
+            todo += [(i, names_of(cells[i].source).needed) for i in nearest]
+    every = tuple(sorted(chosen | demonstrations))
+    return Plan(every, why, tuple(sorted(demonstrations)), _again(cells, exercise, every))
+
+
+def _again(
+    cells: list[NotebookNode],
+    exercise: Exercise,
+    chosen: tuple[int, ...],
+    *,
+    names: Iterable[str] = (),
+) -> tuple[int, ...]:
+    """Which cells start the answer before all is there that it will need, these names or others.
+
+    A callback may ask for a name at once, and a constructor does.
+    """
+    if not exercise.run:
+        return ()
+    above = [i for i in chosen if i <= exercise.run[-1]]
+    below = [i for i in chosen if i > exercise.run[-1]]
+    there, lent = _bound(cells, above), _bound(cells, below)
+    needed = names_of(cells[exercise.answer].source).needed
+    _, met = _lending(cells, chosen, {*names, *needed})
+    if any(names_of(cells[i].source).binds_more for i in below):
+        lent |= met  # one of them, perhaps
+    return exercise.run if met & lent - there else ()
+
+
+def _bound(cells: list[NotebookNode], indexes: Iterable[int]) -> set[str]:
+    return set().union(*(names_of(cells[i].source).bound for i in indexes))
+
+
+def _is_students(cell: NotebookNode) -> bool:
+    return is_code(cell) and role(cell) in ('free', 'answer')
+
+
+def _is_apart(cell: NotebookNode) -> bool:
+    """Whether the lesson writes or runs a program in this cell: it binds no name."""
+    return role(cell) in ('demo', 'setup') and cell.source.startswith(('%%bash', '%%write_node'))
