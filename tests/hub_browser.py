@@ -1,10 +1,13 @@
 """What somebody does on a hub with a browser alone: log in, run code, fetch, submit, read."""
 
+import re
 import shutil
 from pathlib import Path
 
 from chromium import LONG
 from hub_machine import PASSWORD
+from playwright.sync_api import expect
+from test_browser import close_all
 
 START = """async () => {
     window.started = window.started || [];
@@ -34,8 +37,9 @@ def log_in(browser, machine, name):
     settings.write_text('{"LabApp": {"expose_app_in_browser": true}}', encoding='utf-8')
     for made in (settings.parent, settings):
         shutil.chown(made, name, name)
-    page = browser.new_page(viewport={'width': 1200, 'height': 900})
-    page.set_default_timeout(LONG)
+    context = browser.new_context(viewport={'width': 1200, 'height': 900})
+    context.set_default_timeout(LONG)
+    page = context.new_page()
     page.goto(machine.address)
     page.get_by_label('Username').fill(name)
     page.get_by_label('Password').fill(PASSWORD)
@@ -65,3 +69,79 @@ class Kernel:
 def end_kernels(page):
     """End what `Kernel` has begun in a page."""
     page.evaluate(END_ALL)
+
+
+class AssignmentList:
+    """The panel of that name, in JupyterLab."""
+
+    def __init__(self, page):
+        self.page = page
+        page.get_by_role('menuitem', name='Nbgrader').click()
+        page.get_by_role('menuitem', name='Assignment List').click()
+
+    def row(self, state, lesson):
+        """The row of a lesson that was `released`, `fetched` or `submitted`."""
+        return self.page.locator(f'#{state}_assignments_list > .list_item', has_text=lesson)
+
+    def press(self, state, lesson, name):
+        """Press the button of a row."""
+        self.row(state, lesson).get_by_role('button', name=name, exact=True).click()
+
+    def fetch(self, lesson):
+        """Fetch a lesson, and wait for it."""
+        self.press('released', lesson, 'Fetch')
+        expect(self.row('fetched', lesson)).to_be_visible()
+
+    def submit(self, lesson):
+        """Hand a lesson in, and wait until it is listed so."""
+        self.press('fetched', lesson, 'Submit')
+        expect(self.row('submitted', lesson)).to_be_visible()
+
+    def open_feedback(self, lesson):
+        """Fetch the feedback of what was handed in last, and open its page; return its words."""
+        self.press('submitted', lesson, 'Fetch Feedback')
+        self.row('submitted', lesson).get_by_text('(view feedback)').first.click()
+        self.page.locator('.jp-DirListing-item', has_text=f'{lesson}.html').dblclick()
+        body = self.page.frame_locator('.jp-HTMLViewer iframe').locator('body')
+        expect(body).to_contain_text(lesson)
+        said = ' '.join(body.inner_text().split())
+        close_all(self.page)
+        return said
+
+
+def answer(lesson, cell_id, text):
+    """Write an answer, and save."""
+    lesson.page.evaluate(
+        """async ([index, text]) => {
+            const {content, context} = jupyterapp.shell.currentWidget;
+            content.widgets[index].model.sharedModel.setSource(text);
+            await context.save();
+        }""",
+        [lesson.index(cell_id), text],
+    )
+
+
+def score_by_hand(formgrader, lesson, cell_id, points):
+    """Give points for each student's text: the `formgrader` is its page, or its frame.
+
+    `points` has what each text contains, and what it then earns and is told.
+    """
+    for number in range(1, len(points) + 1):
+        formgrader.get_by_role('link', name='Manual Grading').first.click()
+        for crumb in (lesson, lesson):  # the assignment, then its notebook
+            formgrader.locator('td a', has_text=crumb).click()
+            expect(formgrader.locator('.breadcrumb li', has_text=crumb).last).to_be_visible()
+        formgrader.locator('td a', has_text=f'Submission #{number}').click()
+        score = formgrader.locator(f'input.score#{cell_id}')
+        expect(score).to_have_class(re.compile('needs_manual_grade'))
+        text = formgrader.locator('body').inner_text()
+        [(earned, comment)] = [given for words, given in points.items() if words in text]
+        for field, value, api in (
+            (score, earned, 'grade'),
+            (formgrader.locator(f'textarea#{cell_id}-comment'), comment, 'comment'),
+        ):
+            field.fill(value)
+            page = field.page
+            with page.expect_response(lambda reply, api=api: f'/api/{api}/' in reply.url) as saved:
+                field.press('Tab')
+            assert saved.value.ok

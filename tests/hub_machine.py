@@ -23,7 +23,7 @@ from fresh_machine import KEPT, ROOT, fresh_clone
 DEPLOY = ROOT / 'deploy/jupyterhub'
 PATH = '/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin'
 """As in jupyterhub.service."""
-UP_SEC = 60.0
+UP_SEC = STOP_SEC = 60.0
 PASSWORD = 'only-while-this-test-runs'
 
 needs_root = pytest.mark.skipif(
@@ -60,24 +60,6 @@ class HubMachine:
         """The course's folder in nbgrader's exchange."""
         return Path(self.settings['exchange'], self.settings['course'])
 
-    @property
-    def log(self) -> Path:
-        """What the hub, its proxy and the servers say."""
-        return self.folder / 'log'
-
-    def as_instructor(self, *command: str | Path) -> str:
-        """Run a command in the checkout, as in the instructor's terminal; return what it says."""
-        done = subprocess.run(
-            [*as_user(self.instructor), *command],
-            cwd=self.checkout,
-            env=outside(),
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-        )
-        assert done.returncode == 0, done.stdout
-        return done.stdout
-
     @contextmanager
     def serving(self) -> Iterator[Path]:
         """Let `./course serve` of the instructor watch the exchange; give its log."""
@@ -92,7 +74,7 @@ class HubMachine:
             yield log
         finally:
             process.terminate()
-            process.wait(60)
+            process.wait(STOP_SEC)
 
 
 def outside() -> dict[str, str]:
@@ -188,7 +170,8 @@ def set_up(machine: HubMachine) -> None:
 def running(machine: HubMachine) -> Iterator[None]:
     """Run the hub, as its service does, and end it with all that it has started."""
     command = ['../venv/bin/jupyterhub', '-f', '../jupyterhub_config.py']
-    with machine.log.open('w') as log:
+    said = machine.folder / 'log'
+    with said.open('w') as log:
         hub = subprocess.Popen(
             command, cwd=machine.folder / 'state', env=outside(), stdout=log, stderr=log
         )
@@ -199,10 +182,10 @@ def running(machine: HubMachine) -> Iterator[None]:
                 urllib.request.urlopen(f'{machine.address}/hub/health').close()
                 break
             except urllib.error.URLError:
-                assert hub.poll() is None, machine.log.read_text()
-                assert time.monotonic() < deadline, machine.log.read_text()
+                assert hub.poll() is None, said.read_text()
+                assert time.monotonic() < deadline, said.read_text()
                 time.sleep(0.2)
         yield
     finally:
         hub.terminate()
-        hub.wait(60)
+        hub.wait(STOP_SEC)

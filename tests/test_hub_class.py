@@ -1,11 +1,23 @@
 """A real hub with two students and an instructor: what becomes of their work, who hears whom."""
 
+import time
+
 import pytest
-from chromium import drives_chromium, several_launched
-from hub_browser import Kernel, end_kernels, log_in, wait_for_lab
+from answered import read
+from chromium import LONG, drives_chromium, several_launched
+from hub_browser import (
+    AssignmentList,
+    Kernel,
+    answer,
+    end_kernels,
+    log_in,
+    score_by_hand,
+    wait_for_lab,
+)
 from hub_machine import hub_machine, needs_root
 from hub_nodes import LIST, LISTEN_AND_INJECT, LOOK_AROUND, MESSAGES, RUN
 from playwright.sync_api import expect
+from test_browser import Lesson, close_all
 
 pytestmark = [
     *drives_chromium,
@@ -14,6 +26,18 @@ pytestmark = [
     pytest.mark.isolation,
     pytest.mark.timeout(2400),  # the first test sets the hub up
 ]
+
+LESSON, ANSWER, WRITTEN = '05_command_line', 'find_endpoints', 'explain_counts'
+RIGHT = next(cell.source for cell in read('solutions', LESSON).cells if cell.id == ANSWER)
+WRONG = "endpoints = {'publishers': [], 'subscriptions': []}"
+TEXT = 'The simulation counts, too, says %s.'
+COMMENTS = ('Right. Which node is it?', 'What does it do there?')
+COMMAND = """
+import subprocess
+done = subprocess.run(%r, shell=True, stdout=-1, stderr=-2, text=True)
+print(done.stdout)
+assert done.returncode == 0
+"""
 
 
 @pytest.fixture(scope='module')
@@ -34,6 +58,13 @@ def pages(machine):
         for page in pages.values():
             wait_for_lab(page)
         yield pages
+
+
+@pytest.fixture(scope='module')
+def in_checkout(machine, pages):
+    """Runs commands as the instructor does in their JupyterLab."""
+    kernel = Kernel(pages[machine.instructor])
+    return lambda command: kernel.run(COMMAND % command)
 
 
 @pytest.fixture
@@ -60,9 +91,9 @@ def test_a_student_neither_sees_nor_hears_nor_reaches_the_node_of_another(machin
     kernel(theirs).run(RUN % {'name': theirs})  # their tools see something
     names = kernel(theirs).run(LIST)
     assert f'node_of_{theirs}' in names
-    assert mine not in names
-    assert kernel(theirs).run(LISTEN_AND_INJECT % {'name': mine}) == 'False False\n'
-    assert node.run('print(len(heard))') == '0\n'
+    reached = kernel(theirs).run(LISTEN_AND_INJECT % {'name': mine})
+    arrived = int(node.run('print(len(heard))'))
+    assert (mine in names, reached, arrived) == (False, 'False False\n', 0)
 
     # and in one room all of that is possible
     assert {f'/node_of_{mine}', f'/talk_of_{mine}'} <= {*kernel(mine).run(LIST).split()}
@@ -76,3 +107,77 @@ def test_a_student_sees_no_others_home_files_processes_or_sockets(machine, kerne
     assert (homes, files) == (f"['{mine}']", '[]')
     assert owners == f"{{'{mine}'}}"
     assert sockets == '0'
+
+
+# --- a lesson on its way ------------------------------------------------------------------------
+
+
+@pytest.fixture(scope='module')
+def handed_in(machine, pages, in_checkout):
+    """Both students' notebooks, fetched, answered, validated and submitted: what Validate said."""
+    in_checkout(f'.venv/bin/nbgrader release_assignment {LESSON}')
+    said = {}
+    for student, text in zip(machine.students, (RIGHT, WRONG), strict=True):
+        page = pages[student]
+        AssignmentList(page).fetch(LESSON)
+        lesson = Lesson(page, f'{LESSON}/{LESSON}.ipynb')
+        answer(lesson, ANSWER, text)
+        answer(lesson, WRITTEN, TEXT % student)
+        said[student] = lesson.validate()
+        close_all(page)
+        AssignmentList(page).submit(LESSON)
+    return said
+
+
+def test_validate_in_a_room_tells_right_from_wrong(machine, handed_in):
+    right, wrong = map(handed_in.get, machine.students)
+    assert 'All visible checks pass' in right
+    assert 'expected 2 publishers, saw 0' in wrong
+
+
+def released(machine):
+    """The pages of feedback in the exchange."""
+    return {*machine.of_course.glob('feedback/*.html')}
+
+
+@pytest.fixture(scope='module')
+def served(machine, handed_in):
+    """`./course serve`, which has released the feedback of all that was handed in."""
+    with machine.serving() as log:
+        deadline = time.monotonic() + 5 * LONG / 1000
+        while len(released(machine)) < len(machine.students):
+            assert time.monotonic() < deadline, log.read_text()
+            time.sleep(0.5)
+        yield log
+
+
+def test_each_student_reads_their_own_feedback_in_jupyterlab(machine, pages, served):
+    for student, points in zip(machine.students, (2, 0), strict=True):
+        said = AssignmentList(pages[student]).open_feedback(LESSON)
+        assert f'Feedback for {student} · {LESSON} {points} of 4 points' in said
+        assert f'Your answer {TEXT % student} Your written answer … waiting' in said
+        assert not [other for other in machine.students if other != student and other in said]
+
+
+@pytest.fixture(scope='module')
+def scored_by_hand(machine, pages, served, in_checkout):
+    """The instructor has scored both texts, and released that: each one's points and comment."""
+    given = {'1.5': COMMENTS[0], '0.5': COMMENTS[1]}
+    points = dict(zip(machine.students, given.items(), strict=True))
+    page = pages[machine.instructor].context.new_page()
+    page.goto(f'{machine.address}/user/{machine.instructor}/formgrader')
+    score_by_hand(page, LESSON, WRITTEN, {TEXT % who: points[who] for who in points})
+    page.close()
+    for command in ('./course grade', './course feedback'):
+        in_checkout(command)
+    in_checkout(f'.venv/bin/nbgrader release_feedback {LESSON}')
+    return points
+
+
+def test_points_and_comment_of_a_person_reach_the_student(machine, pages, scored_by_hand):
+    for student, total in zip(machine.students, ('3.5', '0.5'), strict=True):
+        points, comment = scored_by_hand[student]
+        said = AssignmentList(pages[student]).open_feedback(LESSON)
+        assert f'Feedback for {student} · {LESSON} {total} of 4 points' in said
+        assert f'Your written answer {points} of 2' in said
+        assert comment in said
