@@ -121,8 +121,15 @@ def answer(lesson, cell_id, text):
     )
 
 
+def open_formgrader(page):
+    """Open the formgrader as the README says, in JupyterLab's menu; return its frame."""
+    page.get_by_role('menuitem', name='Nbgrader').click()
+    page.get_by_role('menuitem', name='Formgrader').click()
+    return page.frame_locator('iframe[src*="formgrader"]')
+
+
 def score_by_hand(formgrader, lesson, cell_id, points):
-    """Give points for each student's text: the `formgrader` is its page, or its frame.
+    """Give points for each student's text, in the formgrader.
 
     `points` has what each text contains, and what it then earns and is told.
     """

@@ -29,11 +29,18 @@ threading.Thread(target=rclpy.spin, args=(node,), daemon=True).start()
 LIST = (
     MEANS_IT
     + """
-for what in 'node', 'topic':
-    words = ['ros2', what, 'list', '--no-daemon', '--spin-time', '3']
-    print(subprocess.run(words, capture_output=True, text=True, check=True).stdout)
+own = {'/node_of_%(name)s', '/talk_of_%(name)s'}
+seen = set()
+at_most = time.monotonic() + 60
+while not own <= seen and time.monotonic() < at_most:
+    seen.clear()
+    for what in 'node', 'topic':
+        words = ['ros2', what, 'list', '--no-daemon', '--spin-time', '3']
+        seen.update(subprocess.run(words, stdout=-1, text=True, check=True).stdout.split())
+print(*sorted(seen))
 """
 )
+"""Prints all nodes and topics, looked for until those of `name` are among them."""
 LISTEN_AND_INJECT = (
     MEANS_IT
     + """

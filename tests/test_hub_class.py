@@ -11,6 +11,7 @@ from hub_browser import (
     answer,
     end_kernels,
     log_in,
+    open_formgrader,
     score_by_hand,
     wait_for_lab,
 )
@@ -89,14 +90,15 @@ def test_a_student_neither_sees_nor_hears_nor_reaches_the_node_of_another(machin
     node.run(RUN % {'name': mine})
 
     kernel(theirs).run(RUN % {'name': theirs})  # their tools see something
-    names = kernel(theirs).run(LIST)
-    assert f'node_of_{theirs}' in names
+    names = kernel(theirs).run(LIST % {'name': theirs})
+    assert {f'/node_of_{theirs}', f'/talk_of_{theirs}'} <= {*names.split()}
     reached = kernel(theirs).run(LISTEN_AND_INJECT % {'name': mine})
     arrived = int(node.run('print(len(heard))'))
     assert (mine in names, reached, arrived) == (False, 'False False\n', 0)
 
     # and in one room all of that is possible
-    assert {f'/node_of_{mine}', f'/talk_of_{mine}'} <= {*kernel(mine).run(LIST).split()}
+    names = kernel(mine).run(LIST % {'name': mine})
+    assert {f'/node_of_{mine}', f'/talk_of_{mine}'} <= {*names.split()}
     assert kernel(mine).run(LISTEN_AND_INJECT % {'name': mine}) == 'True True\n'
     assert node.run('print(len(heard))') == f'{MESSAGES}\n'
 
@@ -164,10 +166,8 @@ def scored_by_hand(machine, pages, served, in_checkout):
     """The instructor has scored both texts, and released that: each one's points and comment."""
     given = {'1.5': COMMENTS[0], '0.5': COMMENTS[1]}
     points = dict(zip(machine.students, given.items(), strict=True))
-    page = pages[machine.instructor].context.new_page()
-    page.goto(f'{machine.address}/user/{machine.instructor}/formgrader')
-    score_by_hand(page, LESSON, WRITTEN, {TEXT % who: points[who] for who in points})
-    page.close()
+    formgrader = open_formgrader(pages[machine.instructor])
+    score_by_hand(formgrader, LESSON, WRITTEN, {TEXT % who: points[who] for who in points})
     for command in ('./course grade', './course feedback'):
         in_checkout(command)
     in_checkout(f'.venv/bin/nbgrader release_feedback {LESSON}')
