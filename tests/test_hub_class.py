@@ -181,3 +181,12 @@ def test_points_and_comment_of_a_person_reach_the_student(machine, pages, scored
         assert f'Feedback for {student} · {LESSON} {total} of 4 points' in said
         assert f'Your written answer {points} of 2' in said
         assert comment in said
+
+
+def test_no_page_but_the_instructors_may_be_shown_in_a_frame(machine, pages):
+    allowed = {}
+    for user, page in pages.items():
+        reply = page.request.get(f'{machine.address}/user/{user}/api/status')
+        allowed[user] = reply.headers['content-security-policy'].partition(';')[0]
+    nowhere = dict.fromkeys(machine.students, "frame-ancestors 'none'")
+    assert allowed == nowhere | {machine.instructor: "frame-ancestors 'self'"}
