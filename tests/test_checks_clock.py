@@ -149,6 +149,7 @@ def test_slow_answers_tell_of_a_slow_node_only_where_processors_are_free(
     monkeypatch.setattr(clock, 'SLOWEST_MEDIAN_SEC', 0.0)
     share = 2.0 if is_busy else 0.0
     monkeypatch.setattr(pressure, 'stalled_sec', lambda: share * time.monotonic())
+    monkeypatch.setattr(pressure, 'idle_sec', time.monotonic)
     with running('five_hz'):
         assert topic(TOPIC).record().clock == clock_name
 
@@ -168,6 +169,7 @@ def test_a_busy_machine_gives_more_time_to_answer_but_not_without_end(
 
     monkeypatch.setattr(pressure, 'time', types.SimpleNamespace(monotonic=lambda: now[0]))
     monkeypatch.setattr(pressure, 'stalled_sec', lambda: stalled_share * now[0])
+    monkeypatch.setattr(pressure, 'idle_sec', lambda: now[0])
     watcher = Watcher()
     monkeypatch.setattr(watcher, 'spin_until', spin_until)
     is_done = watcher.spin_until_free(lambda: now[0] >= answers_after_sec, free_sec=0.5)
@@ -189,6 +191,7 @@ def test_a_busy_machine_does_not_use_up_the_time_for_driving_the_clock(
     now = [0.0]
     monkeypatch.setattr(pressure, 'time', types.SimpleNamespace(monotonic=lambda: now[0]))
     monkeypatch.setattr(pressure, 'stalled_sec', lambda: stalled_share * now[0])
+    monkeypatch.setattr(pressure, 'idle_sec', lambda: now[0])
     monkeypatch.setattr(clock_budget, 'BUDGET_SEC', 15.0)
     monkeypatch.setattr(clock_budget, 'is_in_test_room', lambda: in_room)
     budget = clock_budget.ClockBudget()

@@ -28,6 +28,35 @@ def test_only_time_that_was_free_counts(monkeypatch, share, free_sec):
     now = [100.0]
     monkeypatch.setattr(pressure, 'time', types.SimpleNamespace(monotonic=lambda: now[0]))
     monkeypatch.setattr(pressure, 'stalled_sec', lambda: share * now[0])
+    monkeypatch.setattr(pressure, 'idle_sec', lambda: 2 * now[0])
     watch = pressure.Stopwatch()
     now[0] += 4.0
     assert (watch.wall_sec(), watch.free_sec()) == (4.0, free_sec)
+
+
+@pytest.mark.parametrize(('idle_share', 'free_sec'), [(0.0, 0.02), (0.25, 1.02), (1.9, 4.0)])
+def test_no_more_time_was_free_than_processors_were_idle(monkeypatch, idle_share, free_sec):
+    now = [100.0]
+    monkeypatch.setattr(pressure, 'time', types.SimpleNamespace(monotonic=lambda: now[0]))
+    monkeypatch.setattr(pressure, 'stalled_sec', lambda: 0.0)
+    monkeypatch.setattr(pressure, 'idle_sec', lambda: idle_share * now[0])
+    watch = pressure.Stopwatch()
+    now[0] += 4.0
+    assert watch.free_sec() == pytest.approx(free_sec)
+    assert watch.is_busy() == (free_sec < 2.0)
+
+
+def test_the_idle_time_of_all_processors_is_read(monkeypatch, tmp_path):
+    told = tmp_path / 'uptime'
+    told.write_text('350735.47 234388.90\n')
+    monkeypatch.setattr(pressure, 'UPTIME', told)
+    assert pressure.idle_sec() == 234388.90
+
+
+def test_a_linux_that_tells_no_idle_time_counts_as_idle(monkeypatch, tmp_path):
+    monkeypatch.setattr(pressure, 'UPTIME', tmp_path / 'none')
+    before_sec = pressure.idle_sec()
+    watch = pressure.Stopwatch()
+    while watch.wall_sec() < 0.1:
+        pass
+    assert pressure.idle_sec() - before_sec >= 0.1

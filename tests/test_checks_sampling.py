@@ -172,6 +172,7 @@ def on_wall(gaps_sec, *, late_sec):
 
 
 LOOKS_EVERY_10_MS = [0.21, 0.21, 0.2, 0.21, 0.21, 0.22, 0.21] * 3
+KEPT_WAITING = [0.2, 0.21, 0.9, 0.2, 0.33, 0.2, 0.2, 0.8, 1.1, 0.2, 0.27, 0.5]
 
 
 @pytest.mark.parametrize(
@@ -179,10 +180,12 @@ LOOKS_EVERY_10_MS = [0.21, 0.21, 0.2, 0.21, 0.21, 0.22, 0.21] * 3
     [
         (LOOKS_EVERY_10_MS, True, Starved),
         (LOOKS_EVERY_10_MS, False, CheckFailed),
+        (KEPT_WAITING, True, Starved),
+        (KEPT_WAITING, False, CheckFailed),
         ([1.0, 1.01, 1.0, 1.01], True, CheckFailed),
         ([0.1, 0.11] * 15, True, CheckFailed),
     ],
-    ids=['nearly right', 'the clock was driven', '1 Hz', '10 Hz'],
+    ids=['nearly right', 'the clock was driven', 'pauses', 'pauses of its own', '1 Hz', '10 Hz'],
 )
 def test_what_is_exact_on_the_robots_clock_alone_is_no_zero_where_that_had_no_time(
     monkeypatch, gaps_sec, is_makeshift, doubt

@@ -336,6 +336,7 @@ def test_a_machine_is_busy_only_where_processes_wait_without_the_answer(monkeypa
     monkeypatch.setattr(second_look, 'BUSY_LOOK_SEC', 0.05)
     for share, crowd in [(0.0, False), (0.2, False), (0.9, True)]:
         monkeypatch.setattr(pressure, 'stalled_sec', lambda share=share: share * time.monotonic())
+        monkeypatch.setattr(pressure, 'idle_sec', time.monotonic)
         assert asyncio.run(second_look.is_machine_busy()) is crowd
 
 

@@ -215,6 +215,7 @@ def test_a_busy_machine_gives_an_interrupted_cell_more_time(
 ):
     stalled_sec = time.monotonic if is_busy else lambda: 0.0
     monkeypatch.setattr(timeouts.pressure, 'stalled_sec', stalled_sec)
+    monkeypatch.setattr(timeouts.pressure, 'idle_sec', time.monotonic)
     result = run(spare, SLOW_TO_END, timeout_sec=1.5)
     assert (result.timed_out, result.died) == (True, died)
 

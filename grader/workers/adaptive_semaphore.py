@@ -24,7 +24,7 @@ class AdaptiveSemaphore:
         self._least, self._most, self._step = least, most, step
         self._places = asyncio.Semaphore(least)
         self._too_many = 0
-        self._watch = pressure.Stopwatch()
+        self._begin_look()
 
     async def __aenter__(self) -> Self:
         """Wait for a place."""
@@ -33,10 +33,14 @@ class AdaptiveSemaphore:
 
     async def __aexit__(self, *_: object) -> None:
         """Leave it to the next, and look how busy the machine is."""
-        if self._watch.wall_sec() >= LOOK_SEC and pressure.stalled_sec():
-            self._follow(1.0 - self._watch.free_sec() / self._watch.wall_sec())
-            self._watch = pressure.Stopwatch()
+        stalled_sec, wall_sec = pressure.stalled_sec(), self._watch.wall_sec()
+        if wall_sec >= LOOK_SEC and stalled_sec:
+            self._follow((stalled_sec - self._stalled_sec) / wall_sec)
+            self._begin_look()
         self._give(1)
+
+    def _begin_look(self) -> None:
+        self._watch, self._stalled_sec = pressure.Stopwatch(), pressure.stalled_sec()
 
     def _follow(self, stalled_share: float) -> None:
         before = self.allowed

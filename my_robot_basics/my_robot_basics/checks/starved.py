@@ -30,14 +30,14 @@ def may_be(recording: 'Recording', hz: float) -> bool:
     a timer of another period, is no machine's doing. Where processes waited for a processor most
     of the time, a rate that is nearly right is no proof either, whoever had to wait; and where
     there was no time for the robot's clock, not even an even one: a node that looks at its clock
-    again and again is exact on that one alone.
+    again and again is exact on that one alone. Such a machine may bring any pause, too.
     """
     messages = recording.messages
     is_near = NEAR_LEAST <= recording.rate_hz / hz <= MOST_TIMES
-    if recording.is_makeshift and is_near:
-        return True
     if recording.clock != 'wall' or not messages:
         return False
+    if recording.is_makeshift and is_near:
+        return True
     times = np.array([0.0, *(sample.time_sec for sample in messages)])
     gaps = np.diff(times)
     often, seldom = np.quantile(gaps, [0.25, 0.75])
@@ -45,5 +45,6 @@ def may_be(recording: 'Recording', hz: float) -> bool:
     late_sec, longest_sec = recording.late_sec, recording.largest_gap_sec - 1.0 / hz
     is_late = late_sec >= LATE_SEC and longest_sec <= LATE_TIMES * late_sec
     is_slow = recording.rate_hz <= MOST_TIMES * hz
-    is_excused = (is_late and is_slow) or (recording.was_busy and is_near)
+    is_makeshift = recording.is_makeshift
+    is_excused = (is_slow and (is_late or is_makeshift)) or (recording.was_busy and is_near)
     return bool(is_excused and not is_steady and not periods.come_by_turns(times))

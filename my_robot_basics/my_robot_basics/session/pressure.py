@@ -4,7 +4,9 @@ import re
 import time
 from pathlib import Path
 
-CPU = Path('/proc/pressure/cpu')
+CPU, UPTIME = Path('/proc/pressure/cpu'), Path('/proc/uptime')
+COARSE_SEC = 0.02
+"""Linux counts idle time in hundredths of a second."""
 
 
 def stalled_sec() -> float:
@@ -20,20 +22,36 @@ def stalled_sec() -> float:
     return int(total_us[1]) / 1e6 if total_us else 0.0
 
 
+def idle_sec() -> float:
+    """For how long so far the processors were idle, all of them together, in seconds.
+
+    Only differences mean anything.
+    """
+    try:
+        return float(UPTIME.read_text(encoding='ascii').split()[1])
+    except (OSError, IndexError, ValueError):  # where Linux does not tell: as if one had been
+        return time.monotonic()
+
+
 class Stopwatch:
     """Measures time from when it is made."""
 
     def __init__(self) -> None:
         self._start = time.monotonic()
-        self._stalled_sec = stalled_sec()
+        self._stalled_sec, self._idle_sec = stalled_sec(), idle_sec()
 
     def wall_sec(self) -> float:
         """Seconds of steady wall time."""
         return time.monotonic() - self._start
 
     def free_sec(self) -> float:
-        """Seconds of it in which no process had to wait for a processor."""
-        return max(0.0, self.wall_sec() - (stalled_sec() - self._stalled_sec))
+        """Seconds of it in which no process had to wait for a processor.
+
+        Nor is more of it free than processors were idle: a virtual machine that shares them tells
+        of a part of the waiting alone.
+        """
+        told_sec = self.wall_sec() - (stalled_sec() - self._stalled_sec)
+        return max(0.0, min(told_sec, idle_sec() - self._idle_sec + COARSE_SEC))
 
     def is_busy(self) -> bool:
         """Whether some process had to wait for a processor for most of it."""

@@ -1,7 +1,6 @@
 """How long a cell is waited for: time that nobody could use does not count."""
 
 import asyncio
-import time
 from collections.abc import Awaitable, Callable
 
 from my_robot_basics.session import pressure
@@ -40,10 +39,8 @@ async def finished(
 
 async def finished_in_grace(done: asyncio.Future, is_alive: IsAlive) -> bool:
     """Wait for the end of a cell that was interrupted, while processors are free for it."""
-    start, stalled = time.monotonic(), pressure.stalled_sec()
+    watch = pressure.Stopwatch()
     while not await finished(done, LOOK_EVERY_SEC, is_alive):
-        waited = time.monotonic() - start
-        free = waited - (pressure.stalled_sec() - stalled)
-        if free >= INTERRUPT_GRACE_SEC or waited >= INTERRUPT_MOST_SEC:
+        if watch.free_sec() >= INTERRUPT_GRACE_SEC or watch.wall_sec() >= INTERRUPT_MOST_SEC:
             return False
     return True
