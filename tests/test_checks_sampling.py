@@ -245,8 +245,14 @@ def test_a_machine_is_blamed_only_for_what_it_can_do(monkeypatch, gaps_sec, late
         ([*STARVED_GAPS, *[0.2] * 12], True, Starved),
         ([*STARVED_GAPS, *[0.2] * 12], False, CheckFailed),
         ([0.22] * 16, True, CheckFailed),
+        ([*[0.2] * 9, 0.4, *[0.2] * 9], True, Starved),
+        ([*[0.2] * 9, 0.4, *[0.2] * 9], False, CheckFailed),
+        ([*[0.21] * 9, 0.42, *[0.21] * 9], True, CheckFailed),
     ],
-    ids=['0.7 of the rate', 'nearly right', 'idle', '4.5 Hz'],
+    ids=[
+        *('0.7 of the rate', 'nearly right', 'idle', '4.5 Hz'),
+        *('one pause', 'one pause, idle', 'one pause of another rate'),
+    ],
 )
 def test_a_busy_machine_is_to_blame_also_where_the_recording_itself_was_in_time(
     monkeypatch, gaps_sec, was_busy, doubt

@@ -292,16 +292,18 @@ def test_the_graders_own_failure_is_tried_again_and_then_left_to_a_person(
 
 
 STARVED, DISTURBED = ended(error='Starved'), ended(error='Disturbed')
+CHECK_FAILED = ended(error='CheckFailed')
 DOUBTS = {
     'a busy machine, once': ([STARVED, ended()], True, 0.0, 'passed', 2),
     'a busy machine, twice': ([STARVED, STARVED], True, 0.0, 'ungraded', 2),
     'an idle machine': ([STARVED, STARVED], False, 0.0, 'failed', 2),
-    'a failure at the second look': (
-        [STARVED, ended(error='CheckFailed')],
-        True,
-        0.0,
-        'failed',
-        2,
+    'a machine that is busy in the checks alone': (
+        [STARVED, STARVED], False, 0.0, 'ungraded', 2, True,
+    ),
+    'a failure at the second look': ([STARVED, CHECK_FAILED], True, 0.0, 'failed', 2),
+    'who burns the time in the checks': ([STARVED, STARVED], False, 0.9, 'failed', 2, True),
+    'one that goes on ending, on a busy machine': (
+        [DISTURBED, DISTURBED], False, 0.0, 'failed', 2, True,
     ),
     'who burns the time itself': ([STARVED, STARVED], True, 0.9, 'failed', 2),
     'whom the clock kept busy': ([STARVED, ended()], True, 0.9, 'passed', 2),
@@ -309,15 +311,16 @@ DOUBTS = {
     'one that goes on ending': ([DISTURBED, DISTURBED], True, 0.0, 'failed', 2),
     'a busy machine after it': ([DISTURBED, STARVED], True, 0.0, 'ungraded', 2),
     'who ends and burns after it': ([DISTURBED, STARVED], True, 0.9, 'failed', 2),
-}
+}  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ('checks', 'is_machine_busy', 'used_sec', 'outcome', 'opened'), DOUBTS.values(), ids=DOUBTS
-)
+@pytest.mark.parametrize('doubt', DOUBTS.values(), ids=DOUBTS)
 def test_what_others_may_be_to_blame_for_is_looked_at_again_and_burning_time_gains_nothing(
-    monkeypatch, checks, is_machine_busy, used_sec, outcome, opened
+    monkeypatch, doubt
 ):
+    checks, is_machine_busy, used_sec, outcome, opened, *in_checks = doubt
+    monkeypatch.setattr(pressure.Stopwatch, 'is_busy', lambda watch: bool(in_checks))
+
     async def answer():
         return is_machine_busy
 

@@ -15,6 +15,8 @@ LATE_TIMES = 3.0
 """… may keep a node waiting so many times as long: several of its threads take turns."""
 STEADY_PART = 0.05
 """Gaps that differ by no more of them are those of a node that nobody kept waiting."""
+RIGHT_PART = 0.02
+"""Even gaps that are off by no more of a period are those of the right timer."""
 MOST_TIMES = 1.03
 """So many times as many messages may a busy machine bring: those that were late, at once."""
 
@@ -27,10 +29,11 @@ def may_be(recording: 'Recording', hz: float) -> bool:
 
     A machine that is too busy makes messages late, each by another time, and no more of them. How
     much is told by how late the recording itself was; what comes by turns, or as evenly as with
-    a timer of another period, is no machine's doing. Where processes waited for a processor most
-    of the time, a rate that is nearly right is no proof either, whoever had to wait; and where
-    there was no time for the robot's clock, not even an even one: a node that looks at its clock
-    again and again is exact on that one alone. Such a machine may bring any pause, too.
+    a timer of another period, is no machine's doing, but a pause of the right one may be. Where
+    processes waited for a processor most of the time, a rate that is nearly right is no proof
+    either, whoever had to wait; and where there was no time for the robot's clock, not even an
+    even one: a node that looks at its clock again and again is exact on that one alone. Such a
+    machine may bring any pause, too.
     """
     messages = recording.messages
     is_near = NEAR_LEAST <= recording.rate_hz / hz <= MOST_TIMES
@@ -41,10 +44,12 @@ def may_be(recording: 'Recording', hz: float) -> bool:
     times = np.array([0.0, *(sample.time_sec for sample in messages)])
     gaps = np.diff(times)
     often, seldom = np.quantile(gaps, [0.25, 0.75])
-    is_steady = seldom - often < STEADY_PART * np.median(gaps)
+    median_sec = float(np.median(gaps))
+    is_steady = seldom - often < STEADY_PART * median_sec
+    is_another = is_steady and abs(median_sec * hz - 1.0) > RIGHT_PART
     late_sec, longest_sec = recording.late_sec, recording.largest_gap_sec - 1.0 / hz
     is_late = late_sec >= LATE_SEC and longest_sec <= LATE_TIMES * late_sec
     is_slow = recording.rate_hz <= MOST_TIMES * hz
     is_makeshift = recording.is_makeshift
     is_excused = (is_slow and (is_late or is_makeshift)) or (recording.was_busy and is_near)
-    return bool(is_excused and not is_steady and not periods.come_by_turns(times))
+    return bool(is_excused and not is_another and not periods.come_by_turns(times))

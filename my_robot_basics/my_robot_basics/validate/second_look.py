@@ -72,7 +72,9 @@ class Attempts(Generic[R]):
         )
         # a clock that is driven in haste keeps an honest node busy, too: see what it uses without
         is_to_blame = by_itself and self._leaves_clocks
-        if run.error and kind in self._doubted and not is_to_blame:
+        # a machine that was free between the looks may have been busy in both
+        is_doubted = kind in self._doubted or (kind == STARVED and watch.is_busy())
+        if run.error and is_doubted and not is_to_blame:
             leaves_clocks = by_itself or kind == DISTURBED
             raise Doubt(kind, run.error.evalue, leaves_clocks=leaves_clocks)
         return run
