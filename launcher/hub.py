@@ -29,7 +29,8 @@ def run(environment: Environment, variables: dict[str, str], arguments: list[str
         )
     if not any(environment.venv.glob(f'lib/python*/site-packages/{SERVER}')):
         raise LauncherError(
-            f'.venv has no {SERVER}, expected it on a hub: install deploy/jupyterhub/server.txt.'
+            '.venv has no {package}, expected it on a hub: install deploy/jupyterhub/server.txt.',
+            package=SERVER,
         )
     released, home = environment.root / 'notebooks', Path(variables['HOME'])
     language, arguments = choose_language(released, variables, arguments)

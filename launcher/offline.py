@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from launcher.messages import LauncherError
+from launcher.words import put
 
 VARIABLE = 'COURSE_WHEELS'
 """Names the folder to install from; `./course --offline FOLDER` sets it."""
@@ -102,8 +103,10 @@ def check_wheels(folder: Path, version: str, pins: Path) -> None:
 def in_words(pins: Iterable[str]) -> str:
     """Return a few of the packages, and how many more there are."""
     pins = list(pins)
-    more = f' and {len(pins) - NAMED} more' if len(pins) > NAMED else ''
-    return ', '.join(pins[:NAMED]) + more
+    named = ', '.join(pins[:NAMED])
+    if len(pins) <= NAMED:
+        return named
+    return put('{packages} and {count} more', packages=named, count=len(pins) - NAMED)
 
 
 def sha256_of(file: Path) -> str:

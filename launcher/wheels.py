@@ -50,9 +50,12 @@ def run(environment: Environment, variables: dict[str, str], arguments: list[str
         wheels = fill(environment, lock, asked.folder.absolute(), asked.python)
     size = sum((wheels.folder / name).stat().st_size for name in names_in(wheels))
     say(
-        f'{wheels.folder} has {len(names_in(wheels))} files, {size / 1e6:.0f} MB, for Python '
-        f'{", ".join(wheels.files)}: copy it to the other machine with the course, and start '
-        './course --offline FOLDER lab there'
+        '{folder} has {count} files, {size_mb:.0f} MB, for Python {pythons}: copy it to the other '
+        'machine with the course, and start ./course --offline FOLDER lab there',
+        folder=wheels.folder,
+        count=len(names_in(wheels)),
+        size_mb=size / 1e6,
+        pythons=', '.join(wheels.files),
     )
     return 0
 
@@ -66,7 +69,10 @@ def fill(environment: Environment, lock: int, folder: Path, versions: list[str])
     installer = Installer(environment, environment.outside(os.environ), lock)
     files: dict[str, dict[str, str]] = {}
     for version in versions:
-        say(f'downloading the packages for Python {version} (some minutes the first time)')
+        say(
+            'downloading the packages for Python {version} (some minutes the first time)',
+            version=version,
+        )
         files[version] = download(installer, folder, version)
     wheels = Wheels(folder, files)
     for old in names_in(before) - names_in(wheels):
@@ -84,7 +90,8 @@ def what_is_there(folder: Path) -> Wheels:
         each for each in folder.iterdir() if not each.name.endswith(('.whl', '.tar.gz', '.part'))
     ):
         raise LauncherError(
-            f'{folder} is not empty and was not made by ./course wheels: name a new folder.'
+            '{folder} is not empty and was not made by ./course wheels: name a new folder.',
+            folder=folder,
         )
     return Wheels(folder, {})
 
@@ -105,8 +112,10 @@ def download(installer: Installer, folder: Path, version: str) -> dict[str, str]
         lacks = [pin for pin, digests in pins.items() if not digests & {*found.values()}]
         if lacks:
             raise LauncherError(
-                f'pip brought no file of {in_words(lacks)} for Python {version}: start again, '
-                'and report it if that does not help.'
+                'pip brought no file of {packages} for Python {version}: start again, and report '
+                'it if that does not help.',
+                packages=in_words(lacks),
+                version=version,
             )
         for name in found:
             os.replace(Path(part) / name, folder / name)

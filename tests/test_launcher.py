@@ -1,3 +1,4 @@
+import ast
 import json
 import os
 import re
@@ -140,6 +141,25 @@ def test_the_launcher_reads_catalogues_as_others_do(monkeypatch):
     assert str(failed).startswith('文件夹 /a {b} 是只读的：')
     assert reason_of(['No space left on device']) == DISK_IS_FULL
     assert str(LauncherError(DISK_IS_FULL)).startswith('磁盘已满：')
+
+
+SPEAKS = {'say', 'put', 'marked', 'LauncherError'}
+SPEAKING = sorted({*(ROOT / 'launcher').glob('*.py')} - {ROOT / 'launcher/testing.py'})
+"""`./course test` speaks to developers, in English."""
+
+
+@pytest.mark.parametrize('path', SPEAKING, ids=lambda path: path.name)
+def test_every_sentence_of_the_launcher_can_be_translated(path):
+    calls = [node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.Call)]
+    assert not [
+        call.lineno
+        for call in calls
+        if getattr(call.func, 'id', '') in SPEAKS
+        and call.args
+        and isinstance(
+            call.args[0], ast.JoinedStr
+        )  # translate finds no text that has values in it
+    ]
 
 
 def test_what_somebody_has_to_look_at_stays_english(tmp_path, monkeypatch):
