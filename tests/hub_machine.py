@@ -101,7 +101,8 @@ def user(name: str, *groups: str) -> Iterator[None]:
         for process in psutil.process_iter(['username']):  # a user with processes cannot go
             if process.info['username'] == name:
                 process.kill()
-        subprocess.run(['userdel', '--force', '--remove', name], check=True)
+        shutil.rmtree(f'/home/{name}')  # userdel would lock the list of users for as long
+        subprocess.run(['userdel', '--force', name], check=True)
 
 
 @contextmanager

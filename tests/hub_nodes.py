@@ -1,4 +1,4 @@
-"""What a student runs in their room to be heard, and to hear and disturb somebody else."""
+"""What the users of a hub run in kernels: to be heard, to disturb somebody else, to build."""
 
 MESSAGES = 20
 MEANS_IT = """
@@ -71,3 +71,23 @@ print({path.owner() for path in pathlib.Path('/proc').glob('[0-9]*')})
 print(pathlib.Path('/proc/net/unix').read_text().count('@'))
 """
 """Prints which homes and files there are, whose processes, and how many abstract sockets."""
+BUILD = """
+import os, pathlib, shutil, subprocess
+from my_robot_basics.live.workspace import BUILD, make_workspace
+make_workspace()
+words = ['bash', '--rcfile', os.environ['COURSE_TERMINAL'], '-i', '-c']
+words.append(f'{BUILD} >&2 && ros2 pkg prefix my_robot_basics')
+done = subprocess.run(words, capture_output=True, text=True)
+assert done.returncode == 0, done.stderr
+print('built', done.stdout.split()[-1])
+bundle = pathlib.Path(os.environ['COURSE_TERMINAL']).parents[3]
+shutil.copytree(bundle / 'notebooks/03_publisher', 'arm')
+"""
+"""Builds the workspace as in a terminal, and says where its package is; takes lesson 3, too."""
+COMMAND = """
+import subprocess
+done = subprocess.run(%r, shell=True, stdout=-1, stderr=-2, text=True)
+print(done.stdout)
+assert done.returncode == 0
+"""
+"""Runs a command, says what that says, and fails where it does."""

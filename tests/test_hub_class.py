@@ -16,9 +16,9 @@ from hub_browser import (
     wait_for_lab,
 )
 from hub_machine import hub_machine, needs_root
-from hub_nodes import LIST, LISTEN_AND_INJECT, LOOK_AROUND, MESSAGES, RUN
+from hub_nodes import BUILD, COMMAND, LIST, LISTEN_AND_INJECT, LOOK_AROUND, MESSAGES, RUN
 from playwright.sync_api import expect
-from test_browser import Lesson, close_all
+from test_browser import Lesson, close_all, see_the_arm_move
 
 pytestmark = [
     *drives_chromium,
@@ -33,12 +33,6 @@ RIGHT = next(cell.source for cell in read('solutions', LESSON).cells if cell.id 
 WRONG = "endpoints = {'publishers': [], 'subscriptions': []}"
 TEXT = 'The simulation counts, too, says %s.'
 COMMENTS = ('Right. Which node is it?', 'What does it do there?')
-COMMAND = """
-import subprocess
-done = subprocess.run(%r, shell=True, stdout=-1, stderr=-2, text=True)
-print(done.stdout)
-assert done.returncode == 0
-"""
 
 
 @pytest.fixture(scope='module')
@@ -109,6 +103,14 @@ def test_a_student_sees_no_others_home_files_processes_or_sockets(machine, kerne
     assert (homes, files) == (f"['{mine}']", '[]')
     assert owners == f"{{'{mine}'}}"
     assert sockets == '0'
+
+
+def test_a_room_builds_the_workspace_and_shows_the_live_arm(machine, pages, kernel):
+    mine = machine.students[0]
+    said = kernel(mine).run(BUILD)
+    assert f'\nbuilt /home/{mine}/lessons/ros_ws/install/my_robot_basics' in said
+    see_the_arm_move(Lesson(pages[mine], 'arm/03_publisher.ipynb'))
+    close_all(pages[mine])
 
 
 # --- a lesson on its way ------------------------------------------------------------------------
