@@ -3,7 +3,14 @@
 from dataclasses import replace
 
 import pytest
-from my_robot_basics.checks import CheckFailed, topic, topic_endpoints, topics, wall_recording
+from my_robot_basics.checks import (
+    CheckFailed,
+    sampling,
+    topic,
+    topic_endpoints,
+    topics,
+    wall_recording,
+)
 from my_robot_basics.checks import recording as recording_module
 from my_robot_basics.checks.clock import SimulatedClock
 from my_robot_basics.checks.recording import Recording, Sample
@@ -90,6 +97,21 @@ def test_a_machine_that_is_late_itself_looks_again_while_there_is_time(
         with pytest.raises(CheckFailed, match=r'expected 4\.0 Hz, saw \d'):
             recording.assert_rate(hz=4.0)
     assert len(recorded) == looks_in_all
+
+
+def test_who_has_followed_the_clock_need_not_show_it_again(monkeypatch):
+    held, hold = [], sampling._hold
+
+    def note_and_hold(recorder, clock, seconds):
+        held.append(seconds)
+        hold(recorder, clock, seconds)
+
+    monkeypatch.setattr(sampling, '_hold', note_and_hold)
+    for node in 'five_hz', 'sleep_loop', 'five_hz':
+        with running(node):
+            topic(TOPIC).record(seconds=2.0)
+            topic(TOPIC).record(seconds=2.0).assert_rate(hz=5.0)
+    assert held == [1.0, 0.1, 1.0, 1.0, 1.0, 0.1]
 
 
 IGNORES = (

@@ -38,6 +38,11 @@ class Recorder:
         self._publishers = max(now, self._publishers, key=len)
         return self._publishers
 
+    def endpoint_gids(self) -> set[tuple[int, ...]]:
+        """The publishers that are there now, each as DDS knows it."""
+        infos = graphs.publisher_infos(self._node, self.topic_name)
+        return {tuple(info.endpoint_gid) for info in infos}
+
     def messages(self) -> list[Any]:
         """The messages received so far."""
         return [message for message, _ in self.received]

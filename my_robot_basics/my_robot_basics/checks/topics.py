@@ -7,7 +7,7 @@ from typing import Any
 
 from rclpy.duration import Duration
 
-from my_robot_basics.checks import sampling, wall_recording
+from my_robot_basics.checks import followers, sampling, wall_recording
 from my_robot_basics.checks.clock_use import are_left_alone
 from my_robot_basics.checks.inconclusive import Inconclusive
 from my_robot_basics.checks.recorder import Recorder
@@ -52,15 +52,16 @@ class Topic(TopicEndpoints):
 
         The robot's clock is driven by the check in steps of `step_sec`, or in finer ones where
         messages come faster than every second step. Before, it stands still for `hold_sec` of wall
-        time: a node that ignores it publishes then. Where that proves nothing (the node does not
-        follow the clock, answers too slowly, …) 4 s of wall time are recorded instead; up to
-        7 s where no second message comes sooner.
+        time, unless the node has followed it before: one that ignores it publishes then. Where
+        that proves nothing (the node does not follow the clock, answers too slowly, …) 4 s of wall
+        time are recorded instead; up to 7 s where no second message comes sooner.
         Raises CheckFailed when there is no publisher or no message.
         """
         start = time.monotonic()
         with Watcher(shared=True) as watcher:
             recorder = self.listen(watcher)
             sent = watcher.spin_until_free(lambda: bool(recorder.received), free_sec=BEFORE_SEC)
+            hold_sec = followers.hold_sec(recorder, hold_sec)
             found = sampling.simulated(
                 watcher, recorder, seconds=seconds, step_sec=step_sec, hold_sec=hold_sec
             )
@@ -68,6 +69,7 @@ class Topic(TopicEndpoints):
                 why, recording = found, wall_recording.wall(watcher, recorder, why=found)
             else:
                 why, recording = None, found
+                followers.remember(recorder)
             if not recording.messages and sent and not are_left_alone():
                 self._expect_ends_by_itself(recorder)
             if not recording.messages:
