@@ -205,6 +205,84 @@ RIGHT += (
     ),
 )
 
+
+def _module_of_its_own(files: Files) -> None:
+    """What the ends are called stands in a file beside the player."""
+    head, rest = files[PLAYER].split('ENDS = {')
+    ends, rest = rest.split('}\n', maxsplit=1)
+    head = head.replace('from action_msgs.msg import GoalStatus\n', '')
+    files[PLAYER] = f'{head.rstrip()}\n\nfrom .ends import ENDS\n\n{rest.lstrip()}'
+    files['arm_player/ends.py'] = f'from action_msgs.msg import GoalStatus\n\nENDS = {{{ends}}}\n'
+
+
+_SOLVES_FIRST = (
+    (
+        '[self.visit(x, y) for x, y in targets]',
+        '[self.visit(answer) for answer in [self.solve(x, y) for x, y in targets]]',
+    ),
+    ('    def visit(self, x, y):\n', '    def visit(self, answer):\n'),
+    (
+        '        answer = self.wait_for(self.solver.call_async('
+        'SolveIK.Request(target=Point(x=x, y=y))))\n',
+        '',
+    ),
+    (
+        '    def wait_for(self, future):\n',
+        '    def solve(self, x, y):\n'
+        '        asked = SolveIK.Request(target=Point(x=x, y=y))\n'
+        '        return self.wait_for(self.solver.call_async(asked))\n\n'
+        '    def wait_for(self, future):\n',
+    ),
+)
+
+RIGHT += (
+    Change(
+        'finds_its_packages',
+        swap(
+            SETUP,
+            ('import setup\n', 'import find_packages, setup\n'),
+            ("packages=['arm_player']", "packages=find_packages(exclude=['test'])"),
+        ),
+    ),
+    Change('module_of_its_own', _module_of_its_own),
+    Change(
+        'spins_once_and_again',
+        swap(
+            PLAYER,
+            (
+                '        rclpy.spin_until_future_complete(self, future)\n',
+                '        while rclpy.ok() and not future.done():\n'
+                '            rclpy.spin_once(self, timeout_sec=0.1)\n',
+            ),
+        ),
+    ),
+    Change('solves_all_before_it_moves', swap(PLAYER, *_SOLVES_FIRST)),
+    Change(
+        'numpy_and_arguments',
+        swap(
+            PLAYER,
+            ('import rclpy\n', 'import numpy as np\nimport rclpy\n'),
+            ('zip(numbers[::2], numbers[1::2], strict=True)', 'np.reshape(numbers, (-1, 2))'),
+            ('def main():', 'def main(args=None):'),
+            ('rclpy.init()', 'rclpy.init(args=args)'),
+        ),
+    ),
+    Change(
+        'suppresses_and_returns_0',
+        swap(
+            PLAYER,
+            ('import rclpy\n', 'from contextlib import suppress\n\nimport rclpy\n'),
+            ('    try:\n        rclpy.init()\n', '    rclpy.init()\n    with suppress(END):\n'),
+            (
+                '    except (KeyboardInterrupt, ExternalShutdownException):\n        pass\n'
+                '    finally:\n        rclpy.try_shutdown()\n',
+                '    rclpy.try_shutdown()\n    return 0\n',
+            ),
+            ('suppress(END)', 'suppress(KeyboardInterrupt, ExternalShutdownException)'),
+        ),
+    ),
+)
+
 # --- wrong ---------------------------------------------------------------------------------------
 
 NOTHING = 0, 0, 0

@@ -66,6 +66,7 @@ def test_telling_answers_are_judged_as_they_should_be(tmp_path):
 
 @pytest.mark.slow
 @pytest.mark.starts
+@pytest.mark.timeout(3600)
 @pytest.mark.parametrize('exercise', sorted({each.exercise for each in all_answers()}))
 def test_every_answer_is_judged_as_it_should_be(exercise, tmp_path):
     assert wrongly_judged(answers_to(exercise), Course(gradebook=tmp_path)) == []

@@ -312,7 +312,7 @@ def test_an_interrupt_ends_the_build_with_all_that_it_started(folder, monkeypatc
     make_package(folder, **{'setup.py': sleeper.format(pid)})
     wait = package_build._end_of
 
-    def interrupted(colcon, mark):
+    def interrupted(colcon):
         until(lambda: pid.exists() and pid.read_text())
         raise KeyboardInterrupt
 
@@ -323,24 +323,39 @@ def test_an_interrupt_ends_the_build_with_all_that_it_started(folder, monkeypatc
     assert wait is not interrupted
 
 
+LEFT_RUNNING = {
+    'as it is': 'time.sleep(600)',
+    'without an environment': 'os.execve("/bin/sleep", ["sleep", "600"], {})',
+    'by a child that has ended': 'os.fork() and os._exit(0); note(); time.sleep(600)',
+    'by no signal but one': (
+        'import signal\n'
+        '    signals = signal.valid_signals() - {signal.SIGKILL, signal.SIGSTOP}\n'
+        '    for each in signals: signal.signal(each, signal.SIG_IGN)\n'
+        '    os.environ.clear(); time.sleep(600)'
+    ),
+}
+
+
 @pytest.mark.slow
 @pytest.mark.starts
-def test_what_setup_py_leaves_running_holds_no_build_up(folder):
+@pytest.mark.timeout(300)
+@pytest.mark.parametrize('what', LEFT_RUNNING.values(), ids=LEFT_RUNNING)
+def test_what_setup_py_leaves_running_holds_no_build_up(folder, capsys, what):
     """A child in a session of its own, with colcon's pipe."""
     leaves = (
         'import os, time\n'
+        'def note(): open("{0}", "w").write(str(os.getpid()))\n'
         'if not os.path.exists("{0}") and os.fork() == 0:\n'
         '    os.setsid()\n'
-        '    open("{0}", "w").write(str(os.getpid()))\n'
-        '    time.sleep(600)\n'
+        '    note()\n'
+        f'    {what.replace("{", "{{").replace("}", "}}")}\n'
         'from setuptools import setup\n'
         'setup(name="greeter", version="0.1.0", packages=["greeter"])\n'
     )
     pid = folder / 'pid'
     make_package(folder, **{'setup.py': leaves.format(pid)})
-    began = time.monotonic()
     live.build_package(PACKAGE)
-    assert time.monotonic() - began < PATIENCE_SEC
+    assert 'greeter was built, and has no executable' in capsys.readouterr().out
     until(lambda: not Path('/proc', pid.read_text()).exists())
 
 

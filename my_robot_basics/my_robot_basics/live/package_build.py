@@ -8,21 +8,20 @@ import shutil
 import signal
 import subprocess
 import sys
-import uuid
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from my_robot_basics.live.install_faults import fault_in_install
 from my_robot_basics.live.package_faults import fault_in_sources, fault_in_words
-from my_robot_basics.session import classroom, marked_processes, package_files
+from my_robot_basics.session import classroom, package_files, subreaper
 
 MOST_WORDS = 20_000
 """Characters of what colcon prints that are kept, the last ones."""
 _LOOK_EVERY_SEC, _IN_A_PIPE = 0.5, 65_536
 """How often to look whether colcon has ended, and the bytes that may wait in its pipe then."""
-_MARK = 'MY_ROBOT_BASICS_BUILD'
-"""Names, in the environment of all that a build has started, which one that was."""
+_END_SEC = 10.0
+"""How long to wait until all that a build has started is ended."""
 _STAGED = '.packages'
 """Where in the workspace the copy is; colcon passes over folders that begin with a dot."""
 _ESCAPES = re.compile(r'\x1b\[[0-9;?]*[A-Za-z]')
@@ -91,36 +90,37 @@ def _run_colcon(package: str, files: Mapping[str, Path]) -> tuple[int, str]:
         _remove(former)
     package_files.write(files, staged)
     command = [
+        *(sys.executable, '-I', '-S', subreaper.__file__),
         *(str(Path(sys.prefix, 'bin', 'colcon')), '--log-base', str(workspace / 'log')),
         *('build', '--base-paths', str(staged), '--packages-select', package),
         *('--build-base', str(workspace / 'build'), '--install-base', str(workspace / 'install')),
         *('--executor', 'sequential', '--event-handlers', 'console_cohesion-', 'console_stderr+'),
     ]
-    mark = uuid.uuid4().hex
     colcon = subprocess.Popen(
         command,
         cwd=workspace,
-        env=os.environ | {_MARK: mark},
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         process_group=0,
     )
     try:
-        words = _end_of(colcon, mark)
+        words = _end_of(colcon)
         return colcon.wait(), words
     finally:
-        # an interrupt of the cell, or what the package's setup.py has left running
+        # an interrupt of the cell: it ends all that the package's setup.py has started, too
+        colcon.terminate()
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            colcon.wait(_END_SEC)
         with contextlib.suppress(ProcessLookupError, PermissionError):
             os.killpg(colcon.pid, signal.SIGKILL)
-        marked_processes.end(_MARK, mark)
         colcon.wait()
 
 
-def _end_of(colcon: subprocess.Popen, mark: str) -> str:
+def _end_of(colcon: subprocess.Popen) -> str:
     """Read all that it prints until it ends; return the end of it as text.
 
-    What setup.py has left running is ended at once: it may hold the pipe that colcon reads.
+    What setup.py has left running is ended meanwhile: it may hold the pipe that colcon reads.
     """
     assert colcon.stdout is not None  # it is a pipe
     kept = b''
@@ -131,8 +131,6 @@ def _end_of(colcon: subprocess.Popen, mark: str) -> str:
             is_ready = bool(select.select([pipe], [], [], waits_sec)[0])
             chunk = os.read(pipe.fileno(), _IN_A_PIPE) if is_ready else b''
             kept = (kept + chunk)[-MOST_WORDS:]
-            if not chunk:
-                marked_processes.end(_MARK, mark, but_below=colcon.pid)
             if has_ended or (is_ready and not chunk):
                 break
     return _ESCAPES.sub('', kept.decode(errors='replace'))
