@@ -70,7 +70,7 @@ def fill(environment: Environment, lock: int, folder: Path, versions: list[str])
     files: dict[str, dict[str, str]] = {}
     for version in versions:
         say(
-            'downloading the packages for Python {version} (some minutes the first time)',
+            'downloading the wheels for Python {version} (some minutes the first time)',
             version=version,
         )
         files[version] = download(installer, folder, version)

@@ -76,7 +76,9 @@ def test_what_connects_outside_reaches_the_server_inside_both_ways():
                 reader, writer = await asyncio.open_connection(*listening.getsockname())
                 writer.write(b'hello' * 100_000)
                 writer.write_eof()
-                return await reader.read()
+                shouted = await reader.read()
+                writer.close()
+                return shouted
 
     assert zlib.crc32(asyncio.run(walk())) == zlib.crc32(b'HELLO' * 100_000)
 
@@ -87,13 +89,16 @@ def test_a_connection_before_the_server_is_up_is_closed_and_the_next_one_is_not(
         with socket.create_server(('127.0.0.1', 0)) as taken:
             port = taken.getsockname()[1]
         async with await relay(listening, port):
-            reader, _ = await asyncio.open_connection(*listening.getsockname())
+            reader, writer = await asyncio.open_connection(*listening.getsockname())
             assert await reader.read() == b''
+            writer.close()
             async with await asyncio.start_server(
                 lambda reader, writer: writer.write(b'up') or writer.close(), '127.0.0.1', port
             ):
-                reader, _ = await asyncio.open_connection(*listening.getsockname())
-                return await reader.read()
+                reader, writer = await asyncio.open_connection(*listening.getsockname())
+                said = await reader.read()
+                writer.close()  # from Python 3.12 on, a server that closes waits for it
+                return said
 
     assert asyncio.run(walk()) == b'up'
 

@@ -324,6 +324,7 @@ def test_every_package_without_a_wheel_is_built_with_tools_that_are_pinned():
     assert pins.count('--hash=sha256:') >= len(BUILD_TOOLS)
 
 
+@pytest.mark.starts
 @pytest.mark.parametrize(
     ('command', 'has_one'), [(('env',), True), (('false',), False), (('no-such-program',), False)]
 )
