@@ -97,7 +97,7 @@ def expect_to_follow(topic_name: str, type_: type, publishers: Collection[str]) 
 
 def _while_ahead(topic_name: str, type_: type, publishers: Collection[str]) -> list[float]:
     """How far stamps are ahead of the computer's clock, in seconds, while the nodes' clock is."""
-    with Watcher() as watcher:
+    with Watcher(listens=True) as watcher:
         proofs = _receive_stamps(watcher, topic_name, type_)
         with SimulatedClock(watcher, needed=set(publishers)) as clock:
             clock.tick(round(AHEAD_SEC * 1e9))
@@ -117,7 +117,7 @@ def _while_ahead_inside(
 
     None where it does not. Nothing tells when a node has dealt with a tick: it gets wall time.
     """
-    with Watcher() as watcher:
+    with Watcher(listens=True) as watcher:
         if watcher.node.get_publishers_info_by_topic('/clock'):
             return None
         proofs = _receive_stamps(watcher, topic_name, type_)

@@ -19,6 +19,7 @@ from my_robot_basics.exchange.expected_types import (
 from my_robot_basics.feedback import hidden
 from my_robot_basics.feedback.errors import fail, shorten
 from my_robot_basics.feedback.hidden import is_in_test_room
+from my_robot_basics.session import interactions
 
 __all__ = ['call', 'value']
 
@@ -33,6 +34,7 @@ def call(name: str, *args: object, returns: type | tuple[type, ...] | None = Non
     where there is no such function, or it raises, returns None, or does not end in 10 s.
     """
     shown = hidden.theirs(shorten(f'{name}({", ".join(brief(argument) for argument in args)})'))
+    interactions.note()
     kind, body = _ask(wire.request(op='call', name=name, args=args), shown)
     if kind == 'missing':
         _fail_missing(name, what='function')
@@ -139,6 +141,7 @@ def ask_package(package: str, verb: str, *args: object) -> dict[str, Any]:
     It is a claim: of what the student's room has started, and with which exit code it ended. What
     a package does is seen over DDS.
     """
+    interactions.note()
     body = _told(wire.request(op='package', name=package, args=(verb, *args)))
     is_told = isinstance(body, dict) and all(isinstance(key, str) for key in body)
     return body if is_told else {}

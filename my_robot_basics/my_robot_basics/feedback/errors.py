@@ -1,6 +1,8 @@
 """The one exception of a failing check, and the two functions that raise it."""
 
 import sys
+from collections.abc import Callable
+from functools import partial
 from typing import NoReturn
 
 import numpy as np
@@ -15,6 +17,9 @@ MOST_CHARACTERS = 200
 
 class CheckFailed(AssertionError):
     """A check's verdict in one readable sentence: what was expected, seen, and what to try."""
+
+    repeat: Callable[[], NoReturn] | None = None
+    """Fails for the same reason in another check; None where `fail` did not raise it."""
 
     def _render_traceback_(self) -> list[str]:
         # IPython asks for this: the sentence alone, never the source of a test.
@@ -78,10 +83,12 @@ def fail(
     if hidden.is_quiet():
         hidden.tell_grader(sentence)
         why = hidden.without_inputs(f'{cause}: {hint}' if cause else hint)
-        raise Failure(f'{hidden.PLACE}{why}')
-    if picture is not None:
+        sentence = f'{hidden.PLACE}{why}'
+    elif picture is not None:
         show(picture, alt=f'Picture of what was seen: {seen}')
-    raise Failure(sentence)
+    failure = Failure(sentence)
+    failure.repeat = partial(fail, expected=expected, seen=seen, hint=hint, cause=cause)
+    raise failure
 
 
 def shorten(text: object, most: int = MOST_CHARACTERS) -> str:

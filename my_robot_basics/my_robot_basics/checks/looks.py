@@ -1,0 +1,97 @@
+"""Look at what a topic carries: on the robot's clock, or else on the wall clock, and again."""
+
+import time
+from dataclasses import replace
+
+from my_robot_basics.checks import followers, sampling, wall_recording
+from my_robot_basics.checks.clock_use import are_left_alone
+from my_robot_basics.checks.earlier_looks import Look, Wanted, look_once
+from my_robot_basics.checks.inconclusive import Inconclusive
+from my_robot_basics.checks.recorder import Recorder
+from my_robot_basics.checks.recording import Recording
+from my_robot_basics.checks.topic_endpoints import TopicEndpoints
+from my_robot_basics.exchange import student
+from my_robot_basics.feedback.errors import CheckFailed, Disturbed, expect
+from my_robot_basics.graph.raised import what_raised
+from my_robot_basics.graph.watcher import Watcher
+
+LATE_SEC = 0.02
+"""A machine that keeps a check waiting so long may make an honest node miss a period."""
+LATE_LOOKS = 2
+"""How many more recordings such a machine gets."""
+VALIDATE_SEC = 28.0
+"""How long a recording may take with all other looks at it: *Validate* gives a cell 30 s …"""
+GRADING_SEC = 60.0
+"""… and the grader 150 s, for two recordings at most."""
+BEFORE_SEC = 0.5
+"""How long to listen for a message before a node's clock is touched."""
+
+
+def record(topic: TopicEndpoints, wanted: Wanted, *, hold_sec: float) -> Recording:
+    """What the topic carries; see `Topic.record`. Raises CheckFailed."""
+    start = time.monotonic()
+    look = look_once(wanted, lambda: _look(topic, wanted, hold_sec))
+    left_sec = _looks_sec() - (time.monotonic() - start)
+    return _to_look_again(topic, look, left_sec=left_sec, late_looks=LATE_LOOKS)
+
+
+def _look(topic: TopicEndpoints, wanted: Wanted, hold_sec: float) -> Look:
+    with Watcher(shared=True, listens=True) as watcher:
+        recorder = topic.listen(watcher)
+        sent = watcher.spin_until_free(lambda: bool(recorder.received), free_sec=BEFORE_SEC)
+        found = sampling.simulated(
+            watcher,
+            recorder,
+            seconds=wanted.seconds,
+            step_sec=wanted.step_sec,
+            hold_sec=followers.hold_sec(recorder, hold_sec),
+        )
+        if isinstance(found, Inconclusive):
+            look = Look(wall_recording.wall(watcher, recorder, why=found), found)
+        else:
+            look = Look(found, None)
+            followers.remember(recorder)
+        if not look.recording.messages:
+            if sent and not are_left_alone():
+                _expect_ends_by_itself(recorder)
+            topic.fail_silent(watcher, seen=f'no message in {look.recording.seconds:g} s')
+        return look
+
+
+def _to_look_again(
+    topic: TopicEndpoints, look: Look, *, left_sec: float, late_looks: int
+) -> Recording:
+    def look_again(seconds: float) -> Recording:
+        # it may have to wait as long for the message to begin at
+        if left_sec < 2.0 * seconds:
+            raise CheckFailed('there is no time for another look')
+        start = time.monotonic()
+        with Watcher(shared=True, listens=True) as watcher:
+            recorder = topic.listen(watcher)
+            again = wall_recording.wall(
+                watcher, recorder, why=look.why, seconds=seconds, timeout_sec=seconds
+            )
+        if again.late_sec < LATE_SEC or not late_looks:
+            return again
+        left = left_sec - (time.monotonic() - start)
+        return _to_look_again(
+            topic, Look(again, look.why), left_sec=left, late_looks=late_looks - 1
+        )
+
+    return replace(look.recording, look_again=look_again)
+
+
+def _expect_ends_by_itself(recorder: Recorder) -> None:
+    """Who sends nothing any more has raised something, or the change of its clock ended it."""
+    expect(
+        bool(what_raised(recorder.publishers())),
+        expected=f'messages on {recorder.topic_name}',
+        seen="some, and none any more once the node was on the robot's clock (use_sim_time)",
+        hint='let no loop end when sleep_for returns False: it does so when the clock changes',
+        cause='the messages end',
+        doubt=Disturbed,
+    )
+
+
+def _looks_sec() -> float:
+    return GRADING_SEC if student.is_in_test_room() else VALIDATE_SEC
