@@ -5,33 +5,32 @@ loaded the machine is. A node that doesn't follow raises Inconclusive, and wall 
 """
 
 import bisect
-import statistics
 import time
 from collections.abc import Iterable
 from typing import Self
 
-from rcl_interfaces.srv import GetParameters, SetParameters
+from rcl_interfaces.srv import SetParameters
 from rclpy.client import Client
+from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.task import Future
 from rclpy.time import Time
 from rosgraph_msgs.msg import Clock
 
+from my_robot_basics.checks.barriers import SLOWEST_BARRIER_SEC, Barriers
 from my_robot_basics.checks.clock_budget import ClockBudget
 from my_robot_basics.checks.clock_use import ANOTHERS, why_not_driven
 from my_robot_basics.checks.inconclusive import Inconclusive, TooSlow
 from my_robot_basics.checks.parameter_services import nodes_with_services, use_sim_time
 from my_robot_basics.graph.watcher import Watcher
-from my_robot_basics.session.pressure import Stopwatch
 
-SLOWEST_BARRIER_SEC = 0.5
-SLOWEST_MEDIAN_SEC = 0.02
 FIRST_ANSWER_SEC = 1.0
 """What a node may take to answer, of time that was free: an honest node on a busy machine is
 slow, too."""
 RESTORE_SEC = 10.0
-MEDIAN_EVERY = 40
 HELD_EVERY_SEC = 0.02
+_NO_EVENTS = PublisherEventCallbacks(use_default_callbacks=False)
+"""Each look of an executor costs more for every event; nobody waits for these."""
 _latest_ns = 0
 """What `/clock` showed last: a node that waits for a time would else wait for it once more."""
 
@@ -48,9 +47,8 @@ class SimulatedClock:
         self._needed = needed
         self._budget = ClockBudget()
         self._former: dict[str, bool] = {}
-        self._barriers: dict[str, Client] = {}
+        self._barriers = Barriers(watcher)
         self._setters: dict[str, Client] = {}
-        self._barrier_sec: list[float] = []
         self._tick_ns: list[int] = []
         self._tick_wall_ns: list[int] = []
         self.now_ns = 0
@@ -61,7 +59,9 @@ class SimulatedClock:
         if why := why_not_driven(node):
             raise Inconclusive(why)
         best_effort = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
-        self._publisher = node.create_publisher(Clock, '/clock', best_effort)
+        self._publisher = node.create_publisher(
+            Clock, '/clock', best_effort, event_callbacks=_NO_EVENTS
+        )
         try:
             self._switch()
         except BaseException:
@@ -104,12 +104,12 @@ class SimulatedClock:
 
     def is_half_over(self) -> bool:
         """Whether half of the time is gone for which the clock may be driven."""
-        return self._budget.part_used() > 0.5
+        return self._budget.is_used(0.5)
 
     def _expect_time_left(self) -> None:
         if self._watcher.node.count_publishers('/clock') > 1:
             raise Inconclusive(ANOTHERS)
-        if self._budget.part_used() > 1.0:
+        if self._budget.is_used(1.0):
             within_sec = self._budget.wall_sec()
             raise TooSlow(f'the clock could not be driven within {within_sec:.0f} s')
 
@@ -118,15 +118,7 @@ class SimulatedClock:
 
     def acknowledge(self, questions: int = 2) -> None:
         """Wait until every node has answered so many questions. Raises Inconclusive."""
-        watch = Stopwatch()
-        asked = [self._ask(client) for client in self._barriers.values() for _ in range(questions)]
-        if not self._answered(asked, SLOWEST_BARRIER_SEC):
-            raise TooSlow('a node did not answer in time')
-        self._barrier_sec.append(watch.free_sec())
-        # over all of them: on a busy machine everybody is slow for a moment
-        is_time = len(self._barrier_sec) % MEDIAN_EVERY == 0
-        if is_time and statistics.median(self._barrier_sec) > SLOWEST_MEDIAN_SEC:
-            raise TooSlow('a node answers too slowly')
+        self._barriers.acknowledge(questions)
 
     def _switch(self) -> None:
         """Turn `use_sim_time` on for every node that answers, and start `/clock` at wall time."""
@@ -134,19 +126,19 @@ class SimulatedClock:
         self._watcher.spin_until_free(
             lambda: self._needed <= nodes_with_services(node), free_sec=FIRST_ANSWER_SEC
         )
+        clients = []
         for name in nodes_with_services(node):
-            self._barriers[name] = node.create_client(GetParameters, f'{name}/get_parameters')
             self._setters[name] = node.create_client(SetParameters, f'{name}/set_parameters')
+            clients += [self._barriers.add(name), self._setters[name]]
             self._expect_time_left()
-        clients = [*self._barriers.values(), *self._setters.values()]
         self._watcher.spin_until_free(
             lambda: all(client.service_is_ready() for client in clients),
             free_sec=FIRST_ANSWER_SEC,
         )
-        asked = {name: self._ask(client) for name, client in self._barriers.items()}
+        asked = self._barriers.ask()
         self._answered(asked.values(), FIRST_ANSWER_SEC)
         answered = {name: future.result() for name, future in asked.items() if future.done()}
-        self._barriers = {name: self._barriers[name] for name in answered}
+        self._barriers.keep(answered)
         if not self._needed <= set(answered):
             has_them = self._needed <= nodes_with_services(node)
             why = TooSlow if has_them else Inconclusive
@@ -173,7 +165,7 @@ class SimulatedClock:
         # in the future of wall time it would be silent until that has come
         self.now_ns = time.time_ns()
         self._publish()
-        self._wait([self._ask(self._barriers[name]) for name in former], SLOWEST_BARRIER_SEC)
+        self._wait(self._barriers.ask(former).values(), SLOWEST_BARRIER_SEC)
         # a busy node gets its time: left on a clock that nobody drives, it would be frozen
         self._wait(self._set_all(former), RESTORE_SEC)
         self._watcher.node.destroy_publisher(self._publisher)
@@ -183,9 +175,6 @@ class SimulatedClock:
             self._setters[name].call_async(SetParameters.Request(parameters=[use_sim_time(value)]))
             for name, value in values.items()
         ]
-
-    def _ask(self, client: Client) -> Future:
-        return client.call_async(GetParameters.Request(names=['use_sim_time']))
 
     def _wait(self, asked: Iterable[Future], timeout_sec: float) -> bool:
         return self._watcher.spin_until(

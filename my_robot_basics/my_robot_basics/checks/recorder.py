@@ -2,11 +2,15 @@
 
 from typing import Any
 
+from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.qos import QoSProfile
 
 from my_robot_basics.graph import graphs
 from my_robot_basics.graph.message_info import with_info
 from my_robot_basics.graph.watcher import Watcher
+
+_NO_EVENTS = SubscriptionEventCallbacks(use_default_callbacks=False)
+"""Each look of an executor costs more for every event; nobody waits for these."""
 
 
 class Recorder:
@@ -20,7 +24,11 @@ class Recorder:
         self.received: list[tuple[Any, int]] = []
         self._node = watcher.node
         self._subscription = self._node.create_subscription(
-            type_, topic_name, with_info(self._receive), qos_profile
+            type_,
+            topic_name,
+            with_info(self._receive),
+            qos_profile,
+            event_callbacks=_NO_EVENTS,
         )
         self._publishers: tuple[str, ...] = ()
 

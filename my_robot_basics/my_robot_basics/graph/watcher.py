@@ -143,6 +143,9 @@ class Watcher:
 
         Time in which processes had to wait for a processor does not count.
         """
+        # most is done at once: then Linux need not be asked how busy the machine is
+        if self.spin_until(done, timeout_sec=min(LOOK_EVERY_SEC, free_sec)):
+            return True
         watch = Stopwatch()
         while not self.spin_until(done, timeout_sec=LOOK_EVERY_SEC):
             waited_sec = watch.wall_sec()

@@ -1,0 +1,68 @@
+"""Questions to nodes that are answered when they have dealt with what came before them."""
+
+import statistics
+import time
+from collections.abc import Iterable
+
+from rcl_interfaces.srv import GetParameters
+from rclpy.client import Client
+from rclpy.task import Future
+
+from my_robot_basics.checks.inconclusive import TooSlow
+from my_robot_basics.graph.watcher import Watcher
+from my_robot_basics.session.pressure import Stopwatch
+
+SLOWEST_BARRIER_SEC = 0.5
+SLOWEST_MEDIAN_SEC = 0.02
+MEDIAN_EVERY = 40
+
+
+class Barriers:
+    """The parameter services of some nodes, and how long they take to answer."""
+
+    def __init__(self, watcher: Watcher) -> None:
+        """No node is asked yet."""
+        self._watcher = watcher
+        self._clients: dict[str, Client] = {}
+        self._took_sec: list[float] = []
+
+    def __len__(self) -> int:
+        """How many nodes there are."""
+        return len(self._clients)
+
+    def add(self, name: str) -> Client:
+        """Prepare to ask the node of that full name."""
+        service = f'{name}/get_parameters'
+        self._clients[name] = self._watcher.node.create_client(GetParameters, service)
+        return self._clients[name]
+
+    def keep(self, names: Iterable[str]) -> None:
+        """Ask only these from now on."""
+        self._clients = {name: self._clients[name] for name in names}
+
+    def ask(self, names: Iterable[str] | None = None) -> dict[str, Future]:
+        """Ask each node, or these, for its `use_sim_time`; the futures by the nodes' names."""
+        request = GetParameters.Request(names=['use_sim_time'])
+        asked = self._clients if names is None else names
+        return {name: self._clients[name].call_async(request) for name in asked}
+
+    def acknowledge(self, questions: int) -> None:
+        """Wait until every node has answered so many questions. Raises TooSlow."""
+        if not self._took_sec:
+            self._since_first = Stopwatch()
+        start = time.monotonic()
+        asked = [future for _ in range(questions) for future in self.ask().values()]
+        if not self._watcher.spin_until_free(
+            lambda: all(future.done() for future in asked), free_sec=SLOWEST_BARRIER_SEC
+        ):
+            raise TooSlow('a node did not answer in time')
+        self._took_sec.append(time.monotonic() - start)
+        # over all of them: on a busy machine everybody is slow for a moment
+        is_time = len(self._took_sec) % MEDIAN_EVERY == 0
+        if is_time and self._usual_sec() > SLOWEST_MEDIAN_SEC:
+            raise TooSlow('a node answers too slowly')
+
+    def _usual_sec(self) -> float:
+        """What a node usually takes to answer, of time that was free."""
+        free_share = self._since_first.free_sec() / self._since_first.wall_sec()
+        return statistics.median(self._took_sec) * free_share
