@@ -344,10 +344,40 @@ def test_a_machine_is_busy_only_where_processes_wait_without_the_answer(monkeypa
 
 
 def test_a_failure_in_one_exercise_leaves_the_others_their_verdicts(monkeypatch):
-    rooms = type('GradingRooms', (FakeRooms,), {'checks': [DEAD, DEAD, ended()]})
-    monkeypatch.setattr(module, 'GradingRooms', rooms)
+    class DeadForOne(FakeRooms):
+        checks = []
+
+        async def run_check(self, source):
+            return DEAD if 'double_a' in source else ended()
+
+    monkeypatch.setattr(module, 'GradingRooms', DeadForOne)
     execution = execute(handed_in(lesson('a', 'b')))
     assert outcomes(execution) == {'a-check': 'ungraded', 'b-check': 'passed', 'why': 'manual'}
+
+
+@pytest.mark.parametrize(('notebooks', 'most'), [(1, 2), (2, 3), (3, 4)])
+def test_exercises_run_side_by_side_where_no_other_notebook_does(monkeypatch, notebooks, most):
+    at_work, counts = [], []
+
+    class Counting(FakeRooms):
+        checks = []
+
+        async def run_check(self, source):
+            at_work.append(self)
+            counts.append(len(at_work))
+            await asyncio.sleep(0.1)
+            at_work.remove(self)
+            return ended()
+
+    async def several():
+        papers = [handed_in(lesson('a', 'b', 'c'), a=GOOD) for _ in range(notebooks)]
+        return await asyncio.gather(*map(module.execute_exercises, papers))
+
+    monkeypatch.setattr(module, 'GradingRooms', Counting)
+    first, *_ = asyncio.run(several())
+    # the first notebook has begun before the others, which take one exercise after the other
+    assert max(counts) == most
+    assert [each.grade_id for each in first.verdicts[:3]] == ['a-check', 'b-check', 'c-check']
 
 
 def test_a_check_with_a_defect_is_ungraded_and_quotes_nothing():

@@ -1,6 +1,8 @@
-"""Student cells run in the one kernel, grade cells in the other; each exercise is judged alone."""
+"""Student cells run in the one kernel, grade cells in the other, for each exercise alone."""
 
-from collections.abc import Sequence
+import asyncio
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -8,9 +10,10 @@ from pathlib import Path
 import nbformat
 from my_robot_basics.validate.budget import Budget
 from my_robot_basics.validate.cells import KEY, grade_id, role
-from my_robot_basics.validate.exercises import find_exercises
-from my_robot_basics.validate.judging import judge_exercise
+from my_robot_basics.validate.exercises import Exercise, find_exercises
+from my_robot_basics.validate.judging import JudgedExercise, judge_exercise
 from my_robot_basics.validate.limits import MAX_NOTEBOOK_OUTPUT_CHARACTERS
+from my_robot_basics.validate.together import together
 from my_robot_basics.validate.verdict import Verdict, refuse, write_verdict
 from nbformat import NotebookNode
 
@@ -18,6 +21,11 @@ from grader.common.pool import Pool
 from grader.judging.local_paths import hide_local_paths
 from grader.kernels.isolation import require_isolation
 from grader.kernels.rooms import GradingRooms
+
+SIDE_BY_SIDE = 2
+"""Exercises of a notebook at a time, where this process runs no other one: they wait more than
+they work. With several notebooks, these are what runs side by side."""
+_under_way = 0
 
 
 @dataclass(frozen=True)
@@ -116,13 +124,34 @@ async def execute_exercises(
 
 async def _execute(work: _NotebookRun) -> list[Verdict]:
     verdicts = []
-    for exercise in find_exercises(work.notebook):
-        rooms = partial(work.rooms, [])
-        judged = await judge_exercise(work.notebook, exercise, rooms, work.budget)
+    with _counted() as others:
+        places = asyncio.Semaphore(1 if others else SIDE_BY_SIDE)
+        exercises = find_exercises(work.notebook)
+        in_order = await together(*(_judge(work, exercise, places) for exercise in exercises))
+    for judged in in_order:
         for index, run in judged.runs.items():
             work.notebook.cells[index].outputs = work.space.fit(run.outputs)
         verdicts += [work.write(index, *check) for index, check in judged.checks.items()]
     return verdicts
+
+
+async def _judge(
+    work: _NotebookRun, exercise: Exercise, places: asyncio.Semaphore
+) -> JudgedExercise:
+    async with places:
+        rooms = partial(work.rooms, [])
+        return await judge_exercise(work.notebook, exercise, rooms, work.budget)
+
+
+@contextmanager
+def _counted() -> Iterator[int]:
+    """Count a notebook while it runs; gives how many others this process runs already."""
+    global _under_way
+    _under_way += 1
+    try:
+        yield _under_way - 1
+    finally:
+        _under_way -= 1
 
 
 def _by_hand(cell: NotebookNode) -> Verdict:
