@@ -130,7 +130,9 @@ class MoveReport:
         if np.diff(parts).min() < -PROGRESS_PART:
             self._fail_steady('the arm moves back and forth: see how the position is computed')
         steady = np.interp(times, [times[0], times[-1]], [parts[0], parts[-1]])
-        if np.abs(parts - steady).max() > PROGRESS_PART:
+        # on a busy machine a message of one step of the robot's clock comes in the next
+        step_part = self.arm.time.step_ns / 1e9 / np.ptp(times)
+        if np.abs(parts - steady).max() > PROGRESS_PART + step_part:
             self._fail_steady('move at one speed from start to goal, and publish each position')
 
     def expect_remaining(self) -> None:
@@ -196,5 +198,5 @@ class MoveReport:
             seen='others',
             hint=hint,
             cause='feedback.position is wrong',
-            doubt=self.arm.doubt(self.sent, self.end),
+            doubt=self.arm.doubt(),  # be the move too fast: steady it is all the same
         )

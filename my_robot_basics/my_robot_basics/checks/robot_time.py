@@ -23,6 +23,8 @@ class RobotTime(Protocol):
     """What both have in common."""
 
     is_driven: bool
+    step_ns: int
+    """How far a tick moves it; 0 where it goes by itself."""
 
     def now_ns(self) -> int:
         """The time now."""
@@ -41,6 +43,7 @@ class WallTime:
     """The wall clock; of a wait, only time counts that was free."""
 
     is_driven = False
+    step_ns = 0
 
     def __init__(self, watcher: Watcher) -> None:
         self._watcher = watcher

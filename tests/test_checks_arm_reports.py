@@ -1,0 +1,82 @@
+"""What the feedback on a move tells, on made-up messages, each with a near miss."""
+
+from types import SimpleNamespace
+
+import pytest
+from my_robot_basics.checks.arm_reports import MoveReport
+from my_robot_basics.checks.robot_time import WallTime
+from my_robot_basics.checks.watched_arm import WatchedArm
+from my_robot_basics.feedback.errors import CheckFailed, Starved
+
+from arm_interfaces.action import MoveArm
+
+STEP_NS = 50_000_000
+END = (0.8, -0.4)
+
+
+class Wall(WallTime):
+    def __init__(self, stalled_share=0.0):
+        self.stalled_share = stalled_share
+
+    def wall_sec(self):
+        return 2.0
+
+    def stalled_sec(self):
+        return 2.0 * self.stalled_share
+
+
+DRIVEN = SimpleNamespace(is_driven=True, step_ns=STEP_NS, at_ns=lambda wall_ns: wall_ns)
+
+
+def report(parts, times, time):
+    """Feedback that said at these times (s) which part of the way was done."""
+    found = [
+        (round(1e9 * at), MoveArm.Feedback(position=[part * each for each in END]))
+        for at, part in zip(times, parts, strict=True)
+    ]
+    sent = SimpleNamespace(
+        feedback=lambda: found,
+        is_over=lambda: True,
+        goal=SimpleNamespace(speed=0.8),
+        statuses=lambda: [(0, None)],
+        sent_ns=0,
+        over_ns=lambda: found[-1][0],
+    )
+    arm = WatchedArm(SimpleNamespace(), time, (0.0, 0.0))
+    return MoveReport(arm, sent, END)
+
+
+def evenly(seconds, step_sec=STEP_NS / 1e9):
+    """Times and parts of a steady move, with its last message at the goal."""
+    count = round(seconds / step_sec)
+    return [i * step_sec for i in range(1, count + 1)], [i / count for i in range(1, count + 1)]
+
+
+@pytest.mark.parametrize('seconds', [0.5, 2.0, 60.0])
+def test_a_message_that_a_busy_machine_brings_a_step_late_is_steady(seconds):
+    times, parts = evenly(seconds)
+    times[3] += STEP_NS / 1e9
+    report(parts, times, DRIVEN).expect_steady()
+
+
+def test_two_steps_of_a_short_move_are_not():
+    times, parts = evenly(0.5)
+    times[3] += 2 * STEP_NS / 1e9
+    with pytest.raises(CheckFailed, match='go steadily'):
+        report(parts, times, DRIVEN).expect_steady()
+
+
+def test_a_step_does_not_excuse_a_long_move_that_slows_down():
+    times, parts = evenly(20.0)
+    with pytest.raises(CheckFailed, match='move at one speed'):
+        report([part**1.5 for part in parts], times, DRIVEN).expect_steady()
+
+
+@pytest.mark.parametrize(('stalled_share', 'failure'), [(0.0, CheckFailed), (0.5, Starved)])
+def test_a_busy_machine_may_be_to_blame_for_an_unsteady_move_be_it_too_fast(
+    stalled_share, failure
+):
+    times, parts = evenly(0.5)  # asked for: 1 s
+    with pytest.raises(CheckFailed) as error:
+        report([part**2 for part in parts], times, Wall(stalled_share)).expect_steady()
+    assert type(error.value) is failure
