@@ -8,8 +8,9 @@ from grader.common.futures import run_ahead
 from grader.course import Course
 from grader.grading import GradedSubmission, Grading, PreparedAssignment, SubmissionOutcome
 from grader.storage.backups import bring_in_order
-from grader.storage.database import in_sentences, one_engine
-from grader.storage.late_penalties import deadlines
+from grader.storage.database import one_engine
+from grader.storage.deadlines import deadlines
+from grader.storage.failures import in_sentences
 from grader.storage.lock import gradebook_lock
 from grader.storage.submitted import SubmissionFolder
 from grader.workers.backend import Backend
@@ -37,6 +38,8 @@ def grade_all(
     no sandbox, unless told to `trust_students`.
     """
     with backend or Workers() as backend:
+        if _has_new(course, submissions):
+            backend.begin()
         isolated = backend.require_isolation(trust_students=trust_students)
         grading = Grading(course, backend, isolated, seed, trust_students, force)
         assignments = _prepare(grading, submissions)
@@ -49,6 +52,16 @@ def grade_all(
         with one_engine(course.db_url):
             for found, work in run_ahead(submissions, start, at_most=AHEAD * backend.capacity):
                 yield grading.store(found, work)
+
+
+def _has_new(course: Course, submissions: Sequence[SubmissionFolder]) -> bool:
+    """Whether something was never graded; what has changed since is found out later."""
+    folders = (
+        course.folder('autograded', each.student_id, each.assignment)
+        for each in submissions
+        if not each.problem
+    )
+    return not all(folder.exists() for folder in folders)
 
 
 def _prepare(
