@@ -38,8 +38,6 @@ def grade_all(
     no sandbox, unless told to `trust_students`.
     """
     with backend or Workers() as backend:
-        if _has_new(course, submissions):
-            backend.begin()
         isolated = backend.require_isolation(trust_students=trust_students)
         grading = Grading(course, backend, isolated, seed, trust_students, force)
         assignments = _prepare(grading, submissions)
@@ -52,16 +50,6 @@ def grade_all(
         with one_engine(course.db_url):
             for found, work in run_ahead(submissions, start, at_most=AHEAD * backend.capacity):
                 yield grading.store(found, work)
-
-
-def _has_new(course: Course, submissions: Sequence[SubmissionFolder]) -> bool:
-    """Whether something was never graded; what has changed since is found out later."""
-    folders = (
-        course.folder('autograded', each.student_id, each.assignment)
-        for each in submissions
-        if not each.problem
-    )
-    return not all(folder.exists() for folder in folders)
 
 
 def _prepare(

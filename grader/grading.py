@@ -120,6 +120,8 @@ class Grading:
         key = key_of(submission, prepared.conditions, seed=its_seed)
         if not self.force and (earlier := find_earlier_result(self.course, submission, key)):
             return completed(GradedSubmission(submission, earlier, files))
+        if not submission.problem:
+            self.backend.begin()  # it gets ready while the first template is prepared
         judged = submit_for_grading(  # restores it here; runs and judges it in a worker
             submission,
             prepared.template(),

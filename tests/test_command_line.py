@@ -81,7 +81,6 @@ def test_the_launcher_imports_little(do):
     assert found & SLOW_TO_START == set()
 
 
-@pytest.mark.starts
 def test_a_run_without_anything_new_imports_no_kernels_and_makes_no_lesson_anew(tmp_path, capsys):
     course = released_course(tmp_path)
     submit(course, 'ada', b'')  # nothing that could be run

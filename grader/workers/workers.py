@@ -63,10 +63,12 @@ class Workers:
 
     def begin(self) -> None:
         """Start the first process: it imports while this one does other things."""
-        self._pool.submit(self._start)
+        if not self._processes:
+            self._pool.submit(self._start)
 
     async def _start(self) -> None:
-        self._next()
+        if not self._processes:
+            self._next()
 
     def require_isolation(self, *, trust_students: bool = False) -> bool:
         """Return whether student code runs in a sandbox; raises CourseError where it must."""
