@@ -2,29 +2,39 @@
 
 import contextlib
 import sys
+from typing import TYPE_CHECKING
 
 from grader.cli.arguments import make_parser
 from grader.cli.stopping import stoppable
 from grader.common.errors import CourseError
-from grader.common.logs import log_visibly
-from grader.common.text import printable
-from grader.course import Course
-from grader.storage.database import in_sentences
+
+if TYPE_CHECKING:
+    from grader.course import Course
 
 
-def main(arguments: list[str] | None = None, *, course: Course | None = None) -> int:
+def main(arguments: list[str] | None = None, *, course: 'Course | None' = None) -> int:
     """Run one command; return its exit status: 0, 1 when something needs a look, 130 on Ctrl-C.
 
     It is 143 on SIGTERM and 129 on SIGHUP, which end a run in the same way.
     """
     asked = make_parser().parse_args(arguments)
-    log_visibly()
     with stoppable() as stop:
         try:
+            # arguments are known to be right: only now what takes long to import
+            from grader.common.lean_imports import leave_out_servers
+
+            leave_out_servers()
+            from grader.common.logs import log_visibly
+            from grader.course import Course
+            from grader.storage.failures import in_sentences
+
+            log_visibly()
             course = course or Course()
             with in_sentences(course):
                 return asked.run(course, asked)
         except CourseError as error:
+            from grader.common.text import printable
+
             print(f'course: {printable(error)}', file=sys.stderr)
             return 1
         except KeyboardInterrupt as interrupt:

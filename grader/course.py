@@ -5,9 +5,11 @@ import hashlib
 import hmac
 import json
 import os
+import pickle
 import secrets
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 
 import nbformat
@@ -150,9 +152,15 @@ class Course:
         return f'there is no assignment {assignment!r} in solutions/; there are: {known}'
 
 
+@lru_cache(maxsize=64)
+def _parsed(text: str) -> bytes:
+    """Parse and validate a lesson, which is read a dozen times in a run; return a copy, packed."""
+    return pickle.dumps(nbformat.reads(text, as_version=4), pickle.HIGHEST_PROTOCOL)
+
+
 def _read(path: Path, *, otherwise: str) -> NotebookNode:
     try:
-        return nbformat.read(path, as_version=4)
+        return pickle.loads(_parsed(path.read_text(encoding='utf-8')))
     except FileNotFoundError:
         raise CourseError(otherwise) from None
     except (nbformat.reader.NotJSONError, nbformat.ValidationError) as error:

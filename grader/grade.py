@@ -8,8 +8,9 @@ from grader.common.futures import run_ahead
 from grader.course import Course
 from grader.grading import GradedSubmission, Grading, PreparedAssignment, SubmissionOutcome
 from grader.storage.backups import bring_in_order
-from grader.storage.database import in_sentences, one_engine
-from grader.storage.late_penalties import deadlines
+from grader.storage.database import one_engine
+from grader.storage.deadlines import deadlines
+from grader.storage.failures import in_sentences
 from grader.storage.lock import gradebook_lock
 from grader.storage.submitted import SubmissionFolder
 from grader.workers.backend import Backend

@@ -4,6 +4,7 @@ import logging
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from dataclasses import dataclass
+from functools import cache, partial
 
 from nbformat import NotebookNode
 
@@ -15,10 +16,10 @@ from grader.course import Course
 from grader.judging.task import Result
 from grader.notebook.restore import AssignmentTemplate
 from grader.notebook.submission import Submission, read_submission
-from grader.storage.database import in_sentences
+from grader.storage.failures import in_sentences
 from grader.storage.gradebook import StoredResult, store
 from grader.storage.lock import gradebook_lock
-from grader.storage.pipeline import prepared_template
+from grader.storage.pipeline import prepare_template
 from grader.storage.registering import register
 from grader.storage.reuse import (
     conditions,
@@ -66,7 +67,8 @@ class SubmissionOutcome:
 class PreparedAssignment:
     """What the submissions of one assignment have in common."""
 
-    template: AssignmentTemplate
+    template: Callable[[], AssignmentTemplate]
+    """Gives what they are restored from: made for the first one that has to be run."""
     seed_of: Callable[[Submission], str]
     """Gives the seed of a submission."""
     packages: tuple[str, ...]
@@ -91,12 +93,17 @@ class Grading:
         """Register an assignment, and return what its submissions are graded by."""
         with in_sentences(self.course), gradebook_lock(self.course.gradebook):
             register(self.course, assignment)
+            template = self.course.template(assignment)
             return PreparedAssignment(
-                template=prepared_template(self.course, assignment),
+                template=cache(partial(self._prepared, assignment, template)),
                 seed_of=(lambda _: self.seed) if self.seed else seeds(self.course, assignment),
                 packages=self.course.packages(assignment),
                 conditions=conditions(self.course, assignment, isolated=self.isolated),
             )
+
+    def _prepared(self, assignment: str, template: AssignmentTemplate) -> AssignmentTemplate:
+        with in_sentences(self.course), gradebook_lock(self.course.gradebook):
+            return prepare_template(self.course, assignment, template)
 
     def start(
         self, found: SubmissionFolder, prepared: PreparedAssignment
@@ -113,9 +120,11 @@ class Grading:
         key = key_of(submission, prepared.conditions, seed=its_seed)
         if not self.force and (earlier := find_earlier_result(self.course, submission, key)):
             return completed(GradedSubmission(submission, earlier, files))
+        if not submission.problem:
+            self.backend.begin()  # it gets ready while the first template is prepared
         judged = submit_for_grading(  # restores it here; runs and judges it in a worker
             submission,
-            prepared.template,
+            prepared.template(),
             backend=self.backend,
             seed=its_seed,
             trust_students=self.trust_students,

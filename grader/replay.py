@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 
+from grader.common.asked import RECORDED
 from grader.common.errors import CourseError
 from grader.common.text import printable
 from grader.course import Course
@@ -13,9 +14,6 @@ from grader.storage.seeds import seeds
 from grader.storage.submitted import SubmissionFolder
 from grader.workers.backend import Backend, submit_for_grading
 from grader.workers.workers import Workers
-
-RECORDED = 'recorded'
-"""Stands for the seed that a submission's stored result came from."""
 
 
 def replay(

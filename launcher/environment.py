@@ -2,7 +2,6 @@
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 FOREIGN: tuple[str, ...] = (
@@ -32,11 +31,12 @@ PREFIXES = ('AMENT_PREFIX_PATH', 'COLCON_PREFIX_PATH', 'CMAKE_PREFIX_PATH')
 """Variables that list where a ROS sourced in the caller's shell lies."""
 
 
-@dataclass(frozen=True)
 class Environment:
     """A checkout of the course, or a student's bundle."""
 
-    root: Path
+    def __init__(self, root: Path) -> None:
+        """Take the folder that has everything."""
+        self.root = root
 
     @property
     def venv(self) -> Path:

@@ -157,7 +157,7 @@ def writing() -> Iterator[None]:
         raise LauncherError(DISK_IS_FULL if full else f'{error}\n{put(FAILED)}') from error
 
 
-def version_of(python: Path) -> str:
+def version_of(python: str | Path) -> str:
     """Return the version of a Python, '3.12.1' say, or '' where it does not run."""
     code = 'import sys; print("%d.%d.%d" % sys.version_info[:3])'
     try:

@@ -6,18 +6,12 @@ from pathlib import Path
 
 from launcher.environment import Environment
 from launcher.installer import version_of
+from launcher.made import FOREIGN_HEADERS, LINE, MODULE
 from launcher.shares import point
 
 EXPORTS = 'share/*/cmake/export_*__rosidl_generator_pyExport.cmake'
 """What CMake reads of an interface package's Python part."""
-FOREIGN_HEADERS = re.compile(r'(INTERFACE_INCLUDE_DIRECTORIES) "/opt/python/[^"]*"')
-"""Python's and NumPy's, where they lie on the machine that made the wheels: CMake refuses a
-folder that does not exist. Whoever compiles such a part names its own Python's headers anyway."""
 SOURCED = 'my_robot_basics/my_robot_basics/session/sourced.py'
-MODULE = 'my_robot_basics_sourced'
-LINE = f"import os; os.environ.get('PYTHONPATH') and __import__('{MODULE}').start()\n"
-"""What each Python of .venv runs first: `.pth` files are read by name, and that of ROS's wheels,
-ros_wheels_bootstrapper.pth, starts Python again."""
 
 
 def fix_exports(environment: Environment) -> None:
@@ -27,7 +21,7 @@ def fix_exports(environment: Environment) -> None:
     """
     for file in sorted(environment.venv.glob(EXPORTS)):
         text = file.read_text(encoding='utf-8')
-        fixed = FOREIGN_HEADERS.sub(r'\1 ""', text)
+        fixed = re.sub(FOREIGN_HEADERS, r'\1 ""', text)
         if fixed != text:
             replace(file, fixed)
 

@@ -1,30 +1,30 @@
 """Set up, then run a verb."""
 
-import importlib
 import os
 import sys
 from pathlib import Path
 
 from launcher.environment import Environment
-from launcher.languages import VARIABLE, of_the_locale
 from launcher.messages import LauncherError, say
-from launcher.set_up import is_set_up, set_up
 from launcher.verbs import Verb, read_verbs
 
 ROOT = Path(__file__).resolve().parents[1]
+READY = '--ready'
+"""Stands for the Python where nothing has to be set up: `course` has just asked."""
 
 
 def main(arguments: list[str]) -> int:
-    """Run `--is-set-up`, or `PYTHON VERB [ARGUMENT...]`; return the exit status.
+    """Run `PYTHON VERB [ARGUMENT...]`; return the exit status.
 
-    PYTHON is the interpreter that a new `.venv` would be made with.
+    PYTHON is the interpreter that a new `.venv` would be made with, or READY.
     """
     environment = Environment(ROOT)
-    if arguments == ['--is-set-up']:
-        return 0 if is_set_up(environment) else 1
     python, name, *rest = arguments
     try:
-        set_up(environment, Path(python))
+        if python != READY:
+            from launcher.set_up import set_up  # installers, which most calls do without
+
+            set_up(environment, Path(python))
         return run_verb(environment, read_verbs()[name], rest)
     except LauncherError as error:
         say(str(error))
@@ -37,14 +37,18 @@ def run_verb(environment: Environment, verb: Verb, arguments: list[str]) -> int:
     """Run a verb in its folder; return the exit status, if this process does not become it."""
     variables = environment.variables(os.environ)
     if verb.owner == 'everyone':
+        from launcher.languages import VARIABLE, of_the_locale
+
         lessons = environment.root / 'notebooks'
         variables.setdefault(VARIABLE, of_the_locale(lessons, variables))
     else:
-        variables.pop(VARIABLE, None)  # a terminal's: what grades speaks English
+        variables.pop('COURSE_LANGUAGE', None)  # a terminal's: what grades speaks English
     if verb.folder == 'root':
         os.chdir(environment.root)
         variables['PWD'] = str(environment.root)
     if verb.runs.startswith('launcher.'):
+        import importlib
+
         return importlib.import_module(verb.runs).run(environment, variables, arguments)
     command = [str(environment.python), '-P', '-m', *verb.runs.split(), *arguments]
     sys.stdout.flush()

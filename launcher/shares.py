@@ -6,24 +6,13 @@ import shutil
 from pathlib import Path
 
 from launcher.environment import Environment
+from launcher.made import KERNELS, TOOLS, UNDERLAY
 
-TOOLS = {'ros2': 'ros2.main', 'topic_doctor': 'doctor.main', 'colcon': 'ros2.colcon'}
-"""The tools and their modules: colcon, too, says in a sentence what it lacks. setup.py names the
-nodes alone, which students build, too."""
 TOOL = r"""#!/bin/sh
 # PYTHON_ARGCOMPLETE_OK
 # {name}, of the package that is installed here
 exec "${{0%/*}}/python" -P "${{0%/*}}/../../my_robot_basics/my_robot_basics/ros2/start.py" {module} "$@"
 """  # noqa: E501
-UNDERLAY = r"""case :$PATH: in *:"$COLCON_CURRENT_PREFIX/bin":*) ;; *) export PATH="$COLCON_CURRENT_PREFIX/bin:$PATH" ;; esac
-case :${AMENT_PREFIX_PATH:-}: in
-    *:"$COLCON_CURRENT_PREFIX":*) ;;
-    *) export AMENT_PREFIX_PATH="$COLCON_CURRENT_PREFIX${AMENT_PREFIX_PATH:+:$AMENT_PREFIX_PATH}" ;;
-esac
-"""  # noqa: E501
-"""What a workspace's setup.bash reads of the ROS that it was built on: any terminal can."""
-KERNELS = "c.InteractiveShellApp.extensions.append('my_robot_basics.live.extension')\n"
-"""What each IPython kernel of .venv reads at its start."""
 BUTTON = 'my_robot_basics/my_robot_basics/validate/labextension'
 KERNEL = 'share/jupyter/kernels/my_robot_basics_sandbox'
 

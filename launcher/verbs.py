@@ -1,24 +1,24 @@
 """The table of the verbs; `course` reads the same file for `--help`."""
 
-from dataclasses import dataclass
 from pathlib import Path
 
 TABLE = Path(__file__).with_name('verbs.txt')
 
 
-@dataclass(frozen=True)
 class Verb:
     """A row of the table."""
 
-    name: str
-    owner: str
-    """`everyone`, or `course` where it needs the whole repository."""
-    runs: str
-    """`launcher.lab`, say, or else the arguments that follow `python -P -m`."""
-    folder: str
-    """`root`, the course's, or `caller`, that in which ./course was called."""
-    help: str
-    """What it is for, in a line."""
+    def __init__(self, name: str, owner: str, runs: str, folder: str, explained: str) -> None:
+        """Take what the row says."""
+        self.name = name
+        self.owner = owner
+        """`everyone`, or `course` where it needs the whole repository."""
+        self.runs = runs
+        """`launcher.lab`, say, or else the arguments that follow `python -P -m`."""
+        self.folder = folder
+        """`root`, the course's, or `caller`, that in which ./course was called."""
+        self.help = explained
+        """What it is for, in a line."""
 
 
 def read_verbs(table: Path = TABLE) -> dict[str, Verb]:

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from launcher.environment import Environment
 from launcher.installer import Installer, writing
+from launcher.made import PINS
 from launcher.messages import LauncherError, say
 from launcher.offline import (
     CONTENTS,
@@ -22,7 +23,7 @@ from launcher.offline import (
     sha256_of,
     write_wheels,
 )
-from launcher.set_up import PINS, locked
+from launcher.set_up import locked
 
 PLATFORMS: tuple[str, ...] = ('manylinux1_x86_64', 'manylinux2010_x86_64', 'manylinux2014_x86_64')
 PLATFORMS += tuple(f'manylinux_2_{minor}_x86_64' for minor in range(5, 29))

@@ -1,6 +1,5 @@
 """What `./course` says in the user's language, before there is a package that reads catalogues."""
 
-import json
 import os
 import re
 from functools import cache
@@ -40,4 +39,6 @@ def _is_fuzzy(about: str) -> bool:
 
 
 def _text(lines: str) -> str:
+    import json  # only for who has another language
+
     return ''.join(map(json.loads, lines.splitlines()))

@@ -11,7 +11,7 @@ from nbgrader.api import Gradebook, InvalidEntry, Student
 
 from grader.common.errors import CourseError, GradebookError
 from grader.course import Course
-from grader.storage import database
+from grader.storage import failures
 from grader.storage.database import (
     connected,
     in_sentences,
@@ -68,7 +68,7 @@ def test_a_locked_database_is_waited_for_with_a_word(course, other):
 
 
 def test_a_database_that_stays_locked_is_told_in_the_end(course, other, monkeypatch, capsys):
-    monkeypatch.setattr(database, 'TIMEOUT_SEC', 0.2)
+    monkeypatch.setattr(failures, 'TIMEOUT_SEC', 0.2)
     with (
         pytest.raises(GradebookError, match=r'locked for 0 s.*run the same command again'),
         in_sentences(course),

@@ -6,8 +6,8 @@ import pytest
 from course_maker import TOY, make_course
 
 from grader.__main__ import main
-from grader.storage.due_dates import local_time
-from grader.storage.late_penalties import FILE, deadlines
+from grader.common.asked import local_time
+from grader.storage.deadlines import FILE, deadlines
 
 
 @pytest.fixture

@@ -91,7 +91,7 @@ class Standing:
 
     def __init__(self, backend):
         self.capacity, self.submit = backend.capacity, backend.submit
-        self.require_isolation = backend.require_isolation
+        self.require_isolation, self.begin = backend.require_isolation, backend.begin
 
     def __enter__(self):
         return self

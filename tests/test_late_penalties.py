@@ -10,8 +10,8 @@ from grader.course import Course
 from grader.grade import grade_all
 from grader.notebook.restore import restore
 from grader.notebook.submission import read_submission
+from grader.storage.deadlines import FILE, Deadlines, deadlines, extended_for_nobody
 from grader.storage.gradebook import store
-from grader.storage.late_penalties import FILE, Deadlines, deadlines, extended_for_nobody
 from grader.storage.pipeline import prepare
 from grader.storage.records import records
 

@@ -13,7 +13,7 @@ from course_maker import TOY, make_course, submit
 from grader.__main__ import main
 from grader.common.errors import CourseError
 from grader.course import Course
-from grader.storage import database
+from grader.storage import failures
 from grader.storage.database import make_database
 from grader.storage.lock import gradebook_lock
 
@@ -91,7 +91,7 @@ def test_all_verbs_in_a_row(tmp_path, capsys):
 def test_a_database_in_use_is_waited_for_with_a_word(tmp_path, capsys, monkeypatch):
     course = make_course(tmp_path)
     make_database(course)
-    monkeypatch.setattr(database, 'TIMEOUT_SEC', 0.2)
+    monkeypatch.setattr(failures, 'TIMEOUT_SEC', 0.2)
     with closing(sqlite3.connect(course.database, isolation_level=None)) as other:
         other.execute('BEGIN EXCLUSIVE')
         for verb in ('scores', 'feedback'):

@@ -18,7 +18,7 @@ from grader.course import Course
 from grader.judging.execute import Execution
 from grader.notebook.restore import grade_id
 from grader.storage import reuse
-from grader.storage.late_penalties import FILE
+from grader.storage.deadlines import FILE
 from grader.storage.registering import register
 
 OTHER = '01_other'

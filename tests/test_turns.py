@@ -5,7 +5,7 @@ import pytest
 from grader.common.errors import CourseError
 from grader.serving.queue import WAITING, Arrival
 from grader.serving.turns import next_turn, replaced_by, why_it_waits
-from grader.storage.late_penalties import read_deadlines
+from grader.storage.deadlines import read_deadlines
 from grader.storage.resubmissions import ResubmissionRules
 
 NO_RULES = ResubmissionRules()

@@ -1,18 +1,16 @@
-"""What may stand behind `./course`: verbs, their arguments, and what `--help` says of them."""
+"""What may stand behind `./course`: verbs, their arguments, and what `--help` says of them.
+
+Reading them needs nothing that grades: `tests/test_command_line.py` says what is not imported.
+"""
 
 import argparse
 from datetime import datetime
 from pathlib import Path
 
-from my_robot_basics.language.catalogues import ENGLISH, languages
-from my_robot_basics.language.speaking import LOCALE
+from my_robot_basics.language.catalogues import ENGLISH, LOCALE, languages
 
 from grader.cli import verbs
-from grader.cli.grade_verb import run_grade
-from grader.cli.serve_verb import run_serve
-from grader.passback.write import TABLES
-from grader.replay import RECORDED
-from grader.storage.due_dates import local_time
+from grader.common.asked import PLATFORMS, RECORDED, local_time
 
 
 def make_parser() -> argparse.ArgumentParser:
@@ -102,7 +100,7 @@ def make_parser() -> argparse.ArgumentParser:
     )
     text, known = 'of the page that reports the run', [ENGLISH, *languages(LOCALE)]
     verb.add_argument('--language', choices=known, default=ENGLISH, help=text)
-    verb.set_defaults(run=run_grade)
+    verb.set_defaults(run=verbs.run_grade)
 
     verb = subparsers.add_parser('serve', help='grade what is handed in, as soon as it is')
     verb.add_argument(
@@ -118,7 +116,7 @@ def make_parser() -> argparse.ArgumentParser:
     verb.add_argument('--once', action='store_true', help='end when nothing is left to grade')
     verb.add_argument('--workers', type=at_least_one, metavar='N', help='as for grade')
     verb.add_argument('--trust-students', action='store_true', help='as for grade')
-    verb.set_defaults(run=run_serve)
+    verb.set_defaults(run=verbs.run_serve)
 
     verb = subparsers.add_parser('scores', help='write gradebook/scores.csv')
     verb.add_argument(
@@ -136,7 +134,7 @@ def make_parser() -> argparse.ArgumentParser:
     )
     form.add_argument(
         '--format',
-        choices=sorted(TABLES),
+        choices=PLATFORMS,
         help='write what this platform imports, a file for each assignment: gradebook/PLATFORM/',
     )
     form.add_argument(

@@ -3,6 +3,7 @@
 import argparse
 from datetime import datetime
 
+from grader.common.asked import RECORDED
 from grader.common.errors import CourseError
 from grader.course import Course
 from grader.grade import grade_all
@@ -10,19 +11,23 @@ from grader.kernels.isolation import (
     NO_SANDBOX,
     require_isolation,
 )
-from grader.replay import RECORDED, replay
+from grader.replay import replay
 from grader.report.progress_table import changes, print_rows
 from grader.report.report import Run, write_report
-from grader.storage.late_penalties import extended_for_nobody
+from grader.storage.database import one_engine
+from grader.storage.deadlines import extended_for_nobody
 from grader.storage.submitted import SubmissionFolder, find_submissions
 from grader.workers.backend import Backend
-from grader.workers.dask_backend import Cluster
-from grader.workers.dask_client import Certificates
 from grader.workers.workers import Workers
 
 
 def run_grade(course: Course, asked: argparse.Namespace) -> int:
     """Grade, a row for each submission, and write the report. 1 where one could not be graded."""
+    with one_engine(course.db_url):
+        return _run_grade(course, asked)
+
+
+def _run_grade(course: Course, asked: argparse.Namespace) -> int:
     backend = _backend(asked)
     submissions = find_submissions(course, assignment=asked.assignment, student_id=asked.student)
     if asked.store and asked.seed == RECORDED:
@@ -65,6 +70,8 @@ def run_grade(course: Course, asked: argparse.Namespace) -> int:
 
 
 def _backend(asked: argparse.Namespace) -> Backend | None:
+    from grader.workers.dask_client import Certificates
+
     certificates = Certificates(asked.tls_ca_file, asked.tls_cert, asked.tls_key)
     if not asked.dask:
         if certificates != Certificates():
@@ -75,6 +82,8 @@ def _backend(asked: argparse.Namespace) -> Backend | None:
             '--trust-students and --dask do not go together: a worker without a sandbox would '
             'run what students wrote with the rights of all the cluster'
         )
+    from grader.workers.dask_backend import Cluster
+
     return Cluster(asked.dask, certificates)
 
 

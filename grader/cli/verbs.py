@@ -1,39 +1,25 @@
-"""What `./course VERB` does and prints: a function for each verb, which returns the status."""
+"""What `./course VERB` does and prints: a function for each verb, which returns the status.
+
+Each imports what it needs: `--help` and a wrong argument need none of it, and most verbs little.
+"""
 
 import argparse
+from typing import TYPE_CHECKING
 
-from grader.authoring import translate
-from grader.authoring.bundle import bundle
-from grader.authoring.release import release
-from grader.cli.audiences import describe_audiences
-from grader.cli.demo import demo
-from grader.collect.collect import LEFT, collect
-from grader.collect.collect_table import lines
 from grader.common.errors import CourseError
-from grader.common.text import printable
-from grader.course import Course
-from grader.export.sample_solutions import write_solutions
-from grader.export.scores import write_scores
-from grader.export.totals import write_totals
-from grader.kernels.isolation import (
-    accounting,
-    missing,
-    protections,
-    slow,
-)
-from grader.passback.write import write_feedback_archives, write_platform_scores
-from grader.report.feedback import write_feedback
-from grader.storage.database import wait_until_free
-from grader.storage.due_dates import describe_deadlines, set_due
-from grader.storage.late_penalties import extended_for_nobody
-from grader.storage.registering import register
+
+if TYPE_CHECKING:
+    from grader.course import Course
 
 NO_DATE = 'none'
 """Stands for a due date that is taken back."""
 
 
-def run_release(course: Course, asked: argparse.Namespace) -> int:
+def run_release(course: 'Course', asked: argparse.Namespace) -> int:
     """Write notebooks/ anew, and name the files that have changed."""
+    from grader.authoring.release import release
+    from grader.storage.registering import register
+
     wanted = [asked.assignment] if asked.assignment else course.assignments()
     if course.database.exists():
         for assignment in wanted:
@@ -47,8 +33,10 @@ def run_release(course: Course, asked: argparse.Namespace) -> int:
     return 0
 
 
-def run_bundle(course: Course, asked: argparse.Namespace) -> int:
+def run_bundle(course: 'Course', asked: argparse.Namespace) -> int:
     """Make the zip that students get, and say what it leaves out."""
+    from grader.authoring.bundle import bundle
+
     made = bundle(course, asked.file)
     for path in made.left_out:
         print(f'left out: {path}')
@@ -56,15 +44,20 @@ def run_bundle(course: Course, asked: argparse.Namespace) -> int:
     return 0
 
 
-def run_translate(course: Course, asked: argparse.Namespace) -> int:
+def run_translate(course: 'Course', asked: argparse.Namespace) -> int:
     """Bring locale/ up to date with the English texts, and list what is to be translated."""
+    from grader.authoring import translate
+
     for line in translate.lines(translate.update(course)):
         print(line)
     return 0
 
 
-def run_collect(course: Course, asked: argparse.Namespace) -> int:
+def run_collect(course: 'Course', asked: argparse.Namespace) -> int:
     """Take in submissions, a line for each file. 1 where none was taken or one wants a look."""
+    from grader.collect.collect import LEFT, collect
+    from grader.collect.collect_table import lines
+
     rows = list(collect(course, asked.source, file_times=asked.file_times))
     for line in lines(rows):
         print(line)
@@ -74,8 +67,11 @@ def run_collect(course: Course, asked: argparse.Namespace) -> int:
     return 0 if taken and not any(row.outcome == LEFT for row in rows) else 1
 
 
-def run_due(course: Course, asked: argparse.Namespace) -> int:
+def run_due(course: 'Course', asked: argparse.Namespace) -> int:
     """Set a due date or an extension where one is given, and list all of them."""
+    from grader.storage.deadlines import extended_for_nobody
+    from grader.storage.due_dates import describe_deadlines, set_due
+
     if asked.assignment:
         if asked.when is None:
             raise CourseError(
@@ -88,8 +84,32 @@ def run_due(course: Course, asked: argparse.Namespace) -> int:
     return 0
 
 
-def run_scores(course: Course, asked: argparse.Namespace) -> int:
+def run_grade(course: 'Course', asked: argparse.Namespace) -> int:
+    """Grade, a row for each submission, or grade once more and compare."""
+    from grader.common.lean_imports import uncollected
+    from grader.kernels.isolation import look_ahead
+
+    if not asked.dask:
+        look_ahead()  # what it starts is waited for while the rest is imported
+    with uncollected():
+        from grader.cli import grade_verb
+
+    return grade_verb.run_grade(course, asked)
+
+
+def run_serve(course: 'Course', asked: argparse.Namespace) -> int:
+    """Serve a folder until it is ended, or say what the process that does it is at."""
+    from grader.cli import serve_verb
+
+    return serve_verb.run_serve(course, asked)
+
+
+def run_scores(course: 'Course', asked: argparse.Namespace) -> int:
     """Write a table of scores, and say where it lies."""
+    from grader.export.scores import write_scores
+    from grader.export.totals import write_totals
+    from grader.passback.write import write_platform_scores
+
     to_platform = asked.format or (asked.send and not asked.roster)
     if (asked.assignment or asked.roster) and not to_platform:
         raise CourseError(
@@ -110,7 +130,7 @@ def run_scores(course: Course, asked: argparse.Namespace) -> int:
     return 0
 
 
-def _send_scores(course: Course, assignment: str) -> int:
+def _send_scores(course: 'Course', assignment: str) -> int:
     """Send what has changed. 1 where the platform has not taken all of it."""
     from grader.passback.lti import send_scores  # an extra, and half a second to import
 
@@ -121,16 +141,21 @@ def _send_scores(course: Course, assignment: str) -> int:
     return 1 if done.waiting else 0
 
 
-def run_solutions(course: Course, asked: argparse.Namespace) -> int:
+def run_solutions(course: 'Course', asked: argparse.Namespace) -> int:
     """Write notebooks with the answers, to give out after the deadline."""
+    from grader.export.sample_solutions import write_solutions
+
     wanted = [asked.assignment] if asked.assignment else ()
     for path in write_solutions(course, wanted, early=asked.early):
         print(path)
     return 0
 
 
-def run_feedback(course: Course, asked: argparse.Namespace) -> int:
+def run_feedback(course: 'Course', asked: argparse.Namespace) -> int:
     """Write the pages of feedback, and say where they lie."""
+    from grader.passback.write import write_feedback_archives
+    from grader.report.feedback import write_feedback
+
     _wait_for_database(course)
     pages = write_feedback(course, say=_say_line)
     print(f'{len(pages)} pages in {course.folder("feedback", "", "")}')
@@ -141,41 +166,32 @@ def run_feedback(course: Course, asked: argparse.Namespace) -> int:
 
 
 def _say_line(line: str) -> None:
+    from grader.common.text import printable
+
     print(printable(line))
 
 
-def _wait_for_database(course: Course) -> None:
+def _wait_for_database(course: 'Course') -> None:
+    from grader.storage.database import wait_until_free
+
     if course.database.exists():
         wait_until_free(course)
 
 
-def _say_what_comes_first(course: Course) -> None:
+def _say_what_comes_first(course: 'Course') -> None:
     if not any(course.folder('autograded', '', '').glob('*/*/*.ipynb')):
         print('Nothing is graded yet. Next: ./course grade')
 
 
-def run_demo(course: Course, asked: argparse.Namespace) -> int:
+def run_demo(course: 'Course', asked: argparse.Namespace) -> int:
     """Grade the sample class. 1 where a notebook does not come out as it is named."""
+    from grader.cli.demo import demo
+
     return 0 if demo(root=course.root) else 1
 
 
-def run_doctor(course: Course, asked: argparse.Namespace) -> int:
-    """Print what isolates student code on this machine. Return 1 if something is missing."""
-    print('What isolates student code while it is graded:')
-    counted = accounting()
-    isolating = protections()
-    for protection in (*isolating, counted):
-        lacks = 'without' if protection is counted else 'MISSING'
-        print(f'  {lacks if protection.problem else "ok     "}  {protection.name}')
-    print(*describe_audiences(isolating), sep='\n')
-    if problem := missing():
-        print(f'\n{problem[0].upper()}{problem[1:]}.')
-        return 1
-    print('Nothing is missing: ./course grade runs each submission in a sandbox.')
-    if counted.problem:
-        print(
-            f'Its limits are less strict than they could be: {counted.problem}. {counted.remedy}.'
-        )
-    if problem := slow():
-        print(f'It is slower than it could be: no kernel can be forked here, for {problem}.')
-    return 0
+def run_doctor(course: 'Course', asked: argparse.Namespace) -> int:
+    """Print what isolates student code on this machine."""
+    from grader.cli import doctor_verb
+
+    return doctor_verb.run_doctor(course, asked)

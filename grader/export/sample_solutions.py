@@ -16,7 +16,7 @@ from grader.authoring.release import last_release, sanitizer_of
 from grader.common.errors import CourseError
 from grader.common.files import write_whole
 from grader.course import Course
-from grader.storage.late_penalties import Deadlines, deadlines
+from grader.storage.deadlines import Deadlines, deadlines
 from grader.storage.pipeline import apply, resources_of
 
 PASSES = (

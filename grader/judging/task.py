@@ -9,15 +9,18 @@ import traceback
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import nbformat
 from nbformat import NotebookNode
 
 from grader.common.errors import CourseError
-from grader.judging.execute import execute_exercises
 from grader.judging.result_schema import read_result
 from grader.sandbox.limits import MAX_REASON_CHARACTERS, SUBMISSION_TIMEOUT_SEC
 from grader.sandbox.temporary_folders import own_folder
+
+if TYPE_CHECKING:
+    from grader.judging.execute import Execution
 
 
 @dataclass(frozen=True)
@@ -79,6 +82,14 @@ def _inside(name: str) -> str:
     if Path(name).is_absolute() or not {*Path(name).parts}.isdisjoint({'..', '.'}):
         raise ValueError(f'{name!r} is no path of a file in a submission')
     return name
+
+
+async def execute_exercises(notebook: NotebookNode, **options: Any) -> 'Execution':
+    """Run and judge a notebook's exercises."""
+    # not before: who only hands tasks out needs no kernels, nor what they are made with
+    from grader.judging import execute
+
+    return await execute.execute_exercises(notebook, **options)
 
 
 async def _graded(task: dict) -> dict:

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import IO
 
 from grader.sandbox.bubblewrap import ENVIRONMENT
+from grader.sandbox.font_cache import font_cache
 from grader.sandbox.kernel_paths import passed_on
 
 MAX_ANSWER = 4_000
@@ -111,6 +112,14 @@ def send(connection: socket.socket, *, room: str) -> RoomForkServer:
     raise NoForkedKernel('the process that forks them ends at once')
 
 
+def start_servers() -> None:
+    """Let the servers of both rooms import already: the first kernels need not wait for it."""
+    with _lock:
+        for room in ('student', 'test'):
+            if room not in _servers:
+                _servers[room] = RoomForkServer(room)
+
+
 def close_servers() -> None:
     """End the servers of this process; the next kernel starts a new one."""
     with _lock:
@@ -150,6 +159,4 @@ def _sealed_copy(path: Path) -> IO[bytes]:
 
 def _environment() -> dict[str, str]:
     """Return what a server is told: what its kernels are, but for what is only in their rooms."""
-    import matplotlib  # not before: it takes long, and most commands run no student code
-
-    return passed_on() | ENVIRONMENT | {'MPLCONFIGDIR': matplotlib.get_cachedir()}
+    return passed_on() | ENVIRONMENT | {'MPLCONFIGDIR': font_cache()}

@@ -1,10 +1,12 @@
 """Whether this machine can keep student code in a sandbox; and if not, what is missing."""
 
+import contextlib
 import os
 import re
 import shutil
 import subprocess
 import sys
+import threading
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
@@ -69,8 +71,24 @@ def protections() -> tuple[Protection, ...]:
     return tuple(found)
 
 
+_looking: list[threading.Thread] = []
+
+
+def look_ahead() -> None:
+    """Begin to try what a sandbox needs: programs are waited for, and so much can be done."""
+
+    def look() -> None:
+        with contextlib.suppress(Exception):  # whoever asks meets it again
+            protections()
+
+    _looking.append(threading.Thread(target=look, name='isolation'))
+    _looking[-1].start()
+
+
 def missing() -> str:
     """Return what is missing and how to get it, in sentences; '' where nothing is."""
+    while _looking:
+        _looking.pop().join()
     for protection in protections():
         if protection.problem:
             return (

@@ -8,8 +8,8 @@ from functools import cache, partial
 from pathlib import Path
 
 from jinja2 import Template
-from my_robot_basics.language.catalogues import ENGLISH, read_translations
-from my_robot_basics.language.speaking import LOCALE, in_language
+from my_robot_basics.language.catalogues import ENGLISH, LOCALE, read_translations
+from my_robot_basics.language.speaking import in_language
 from my_robot_basics.validate.cells import title_of
 
 from grader.common.files import make_folder_for, write_whole

@@ -4,7 +4,6 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import nbformat
-from my_robot_basics.validate.exercises import find_exercises
 
 from grader.common.parsing import Limits, ParsingFailed, parse
 from grader.common.text import visible
@@ -66,6 +65,9 @@ def find_similar(course: Course, assignments: Iterable[str]) -> SimilarAnswers:
 
 def _answers(course: Course, assignment: str) -> dict[str, tuple[str, dict[str, str]]]:
     """Return for each exercise the text that students began with, and theirs by student."""
+    # not before: it takes long, and where nothing was graded nothing is compared
+    from my_robot_basics.validate.exercises import find_exercises
+
     released = course.release(assignment)
     given = {
         exercise.name: released.cells[exercise.answer]

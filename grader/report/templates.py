@@ -1,9 +1,10 @@
 """Jinja templates of the grader's pages: whatever they are given is escaped, and visible."""
 
+import os
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from jinja2 import Environment, FileSystemLoader, Template
+from jinja2 import Environment, FileSystemBytecodeCache, FileSystemLoader, Template
 from markupsafe import Markup, escape
 from my_robot_basics.validate.text import visible
 
@@ -22,6 +23,8 @@ def template(
         lstrip_blocks=True,
         finalize=_visible,
     )
+    if os.access(compiled := Path(__file__).with_name('__pycache__'), os.W_OK):
+        environment.bytecode_cache = FileSystemBytecodeCache(str(compiled))  # as Python's own
     environment.filters |= filters or {}
     environment.globals |= values or {}
     return environment.get_template(name)

@@ -27,7 +27,7 @@ from grader.serving.queue import (
     Queue,
 )
 from grader.serving.turns import next_turn, replaced_by
-from grader.storage.late_penalties import FILE, Deadlines, deadlines
+from grader.storage.deadlines import FILE, Deadlines, deadlines
 from grader.storage.submitted import SubmissionFolder
 
 

@@ -14,7 +14,7 @@ from grader.course import Course
 from grader.serving.queue import FAILED, GRADED, GRADING, REFUSED, WAITING, Arrival, Queue
 from grader.serving.serve import LOCK
 from grader.serving.turns import why_it_waits
-from grader.storage.late_penalties import Deadlines, deadlines
+from grader.storage.deadlines import Deadlines, deadlines
 
 PAGE = 'serve_status.html'
 SHOWN = 20

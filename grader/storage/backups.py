@@ -7,7 +7,8 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from grader.course import Course
-from grader.storage.database import in_sentences, wait_until_free
+from grader.storage.database import wait_until_free
+from grader.storage.failures import in_sentences
 from grader.storage.gradebook import recover
 
 KEPT = 10

@@ -1,6 +1,5 @@
 """nbgrader's database as a file: made whole, waited for, written in one go."""
 
-import errno
 import logging
 import os
 import sqlite3
@@ -14,20 +13,15 @@ from nbgrader.api import Base, Gradebook
 from nbgrader.dbutil import ALEMBIC_DIR
 from sqlalchemy import create_engine
 
-from grader.common.errors import CourseError, GradebookError
 from grader.course import Course
-
-TIMEOUT_SEC = 60.0
-"""How long another program may keep the database; the formgrader takes it for milliseconds."""
+from grader.storage import failures
+from grader.storage.failures import BUSY
+from grader.storage.failures import in_sentences as in_sentences
 
 # nbgrader prints a traceback of what it raises all the same
 logging.getLogger('tornado.application').addFilter(
     lambda record: not str(record.msg).startswith('Rolling back session')
 )
-
-_FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
-_BUSY = {sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED}
-_DAMAGED = {sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB}
 
 
 def make_ready(course: Course) -> None:
@@ -72,7 +66,7 @@ def _make_tables(db_url: str) -> None:
 
 def wait_until_free(course: Course, say: Callable[[str], None] = print) -> None:
     """Wait while another program holds the database, and say so. Raises GradebookError at last."""
-    deadline, said = time.monotonic() + TIMEOUT_SEC, False
+    deadline, said = time.monotonic() + failures.TIMEOUT_SEC, False
     with closing(sqlite3.connect(course.database, timeout=0, isolation_level=None)) as database:
         while True:
             try:
@@ -80,7 +74,7 @@ def wait_until_free(course: Course, say: Callable[[str], None] = print) -> None:
                 database.execute('ROLLBACK')
                 return
             except sqlite3.OperationalError as error:
-                if error.sqlite_errorcode & 0xFF not in _BUSY or time.monotonic() > deadline:
+                if error.sqlite_errorcode & 0xFF not in BUSY or time.monotonic() > deadline:
                     raise
             if not said:
                 say(f'waiting: another program is using {course.database}')
@@ -96,8 +90,11 @@ _engines: dict[str, Gradebook | None] = {}
 def one_engine(db_url: str) -> Iterator[None]:
     """Let `connected` make what opens this database once: it costs more than all the rest.
 
-    Each time the file is opened anew all the same, and let go at the end.
+    Each time the file is opened anew all the same, and let go at the end of the outermost block.
     """
+    if db_url in _engines:
+        yield
+        return
     _engines[db_url] = None
     try:
         yield
@@ -125,42 +122,3 @@ def transaction(db_url: str) -> Iterator[Gradebook]:
             commit()
         finally:
             book.db.commit = commit
-
-
-@contextmanager
-def in_sentences(course: Course) -> Iterator[None]:
-    """Say in a GradebookError what a disk or a database can't do; other errors pass."""
-    try:
-        yield
-    except Exception as error:
-        if sentence := _sentence(error, course):
-            raise GradebookError(sentence) from error
-        raise
-
-
-def _sentence(error: BaseException | None, course: Course) -> str | None:
-    """Return what to tell of an error, or of what led to it: nbgrader wraps what it gets."""
-    if error is None or isinstance(error, CourseError):
-        return None
-    code = getattr(error, 'sqlite_errorcode', 0) & 0xFF
-    if code == sqlite3.SQLITE_FULL or (isinstance(error, OSError) and error.errno in _FULL):
-        return (
-            f'the disk is full: nothing more can be written into {course.gradebook}. What was '
-            'stored before is kept, and no file is half written. Free some space, then run the '
-            'same command again: it goes on.'
-        )
-    if code in _BUSY:
-        return (
-            f'another program has kept {course.database} locked for {TIMEOUT_SEC:.0f} s. What '
-            'was stored before is kept. Close what has it open (a database browser, a '
-            'formgrader that hangs), then run the same command again: it goes on.'
-        )
-    if code in _DAMAGED:
-        backups = course.gradebook / 'backups'
-        newest = max(backups.glob('*.db'), default=backups / 'NAME')
-        return (
-            f'{course.database} is damaged ({error}). Put a backup in its place with '
-            f"cp '{newest}' '{course.database}', remove {course.database.name}-journal if there "
-            'is one, then run ./course grade again.'
-        )
-    return _sentence(error.__cause__ or error.__context__, course)

@@ -1,7 +1,7 @@
 """Set due dates and extensions in gradebook/deadlines.toml, and list them."""
 
 from collections.abc import Iterator
-from datetime import UTC, datetime, time
+from datetime import UTC, datetime
 
 import tomlkit
 
@@ -9,21 +9,7 @@ from grader.common.errors import CourseError
 from grader.common.files import write_whole
 from grader.common.text import printable
 from grader.course import Course
-from grader.storage.late_penalties import FILE, Deadlines, deadlines, read_deadlines
-
-END_OF_DAY = time(23, 59)
-"""What a date without a time stands for."""
-
-
-def local_time(text: str) -> datetime:
-    """Read '2026-11-30', '2026-11-30 18:00' or a time with its zone; ours is taken without one.
-
-    Raises ValueError on anything else.
-    """
-    found = datetime.fromisoformat(text)
-    if len(text) <= len('2026-11-30'):
-        found = datetime.combine(found, END_OF_DAY)
-    return found if found.tzinfo else found.astimezone()
+from grader.storage.deadlines import FILE, Deadlines, deadlines, read_deadlines
 
 
 def set_due(

@@ -21,7 +21,7 @@ from grader.notebook.submission import Submission, from_exchange, handed_in, rea
 from grader.storage.database import connected, in_sentences, make_database, wait_until_free
 from grader.storage.lock import gradebook_lock
 from grader.storage.pipeline import finish, first_reason, resources_of
-from grader.storage.registering import register
+from grader.storage.registering import register, register_all
 
 _JOURNAL = '.{}.ipynb.begun'
 """A journal: the executed notebook, kept beside its place until all of it is stored."""
@@ -141,8 +141,7 @@ def _journal(course: Course, submission: Submission) -> Path:
 def opened(course: Course) -> Iterator[Gradebook]:
     """Open the database to read in it; every assignment of the course is known to it then."""
     recover(course)
-    for assignment in course.assignments():
-        register(course, assignment)
+    register_all(course)
     with connected(course.db_url) as book:
         yield book
 

@@ -5,11 +5,8 @@ from dataclasses import replace
 
 import nbformat
 from my_robot_basics.validate.verdict import refuse
-from nbconvert.exporters import Exporter
 from nbformat import NotebookNode
-from traitlets.config import Config
 
-from grader.authoring.release_passes import CODE_STUB
 from grader.course import Course
 from grader.notebook.restore import KEY, NO_ANSWERS, AssignmentTemplate, restore
 
@@ -33,6 +30,12 @@ AUTOGRADE_PASSES = (
 
 def apply(passes: Sequence[str], notebook: NotebookNode, resources: dict) -> NotebookNode:
     """Put a notebook through passes, given by name, as nbgrader would; return the result."""
+    # only now: what is graded already needs no passes, and these take a third of a second
+    from nbconvert.exporters import Exporter
+    from traitlets.config import Config
+
+    from grader.authoring.release_passes import CODE_STUB
+
     exporter = Exporter(
         config=Config(
             {
@@ -73,7 +76,13 @@ def prepared_template(course: Course, assignment: str) -> AssignmentTemplate:
 
     What is restored from it need not be prepared: whatever nbgrader changes is the template's.
     """
-    template = course.template(assignment)
+    return prepare_template(course, assignment, course.template(assignment))
+
+
+def prepare_template(
+    course: Course, assignment: str, template: AssignmentTemplate
+) -> AssignmentTemplate:
+    """Do to a template, once for all submissions, what `prepare` does to what is restored."""
     return replace(template, notebook=prepare(course, assignment, template.notebook))
 
 

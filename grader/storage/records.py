@@ -1,16 +1,18 @@
 """What the gradebook and the executed notebooks say, cell by cell."""
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache, partial
 
 import nbformat
 from nbformat import NotebookNode
-from nbgrader.api import Gradebook, GradeCell
+from nbgrader.api import Assignment, Gradebook, GradeCell, Notebook
+from sqlalchemy import select
 
 from grader.course import Course
 from grader.notebook.restore import KEY, grade_id
+from grader.storage.database import connected
 from grader.storage.gradebook import opened, submitted_notebook, waits_for_a_person
+from grader.storage.lesson_checksums import checksums
 
 
 @dataclass(frozen=True)
@@ -35,15 +37,34 @@ def records(course: Course, *, only: Collection[tuple[str, str]] | None = None) 
 
     `only` asks for some submissions that were graded, as pairs of student and assignment.
     """
-    place_in = cache(partial(_place_in, course))
-    with opened(course) if only is None else Gradebook(course.db_url) as book:
+    with opened(course) if only is None else connected(course.db_url) as book:
+        cells_of = _cells_of(course, book, only)
         return [
             record
             for student in sorted(student.id for student in book.students)
-            for assignment in sorted(assignment.name for assignment in book.assignments)
+            for assignment, cells in cells_of.items()
             if only is None or (student, assignment) in only
-            for record in _records(book, student, assignment, place_in(assignment))
+            for record in _records(book, student, assignment, cells)
         ]
+
+
+def _cells_of(
+    course: Course, book: Gradebook, only: Collection[tuple[str, str]] | None
+) -> dict[str, list[GradeCell]]:
+    """Return the graded cells of each assignment that is asked for, in the lesson's order."""
+    names = sorted(name for [name] in book.db.execute(select(Assignment.name)))
+    if only is not None:
+        names = sorted({assignment for _, assignment in only}.intersection(names))
+    asked = (
+        select(Assignment.name, GradeCell)
+        .join(Notebook, GradeCell.notebook_id == Notebook.id)
+        .join(Assignment, Notebook.assignment_id == Assignment.id)
+        .where(Assignment.name.in_(names))
+    )
+    found: dict[str, list[GradeCell]] = {name: [] for name in names}
+    for name, cell in book.db.execute(asked):
+        found[name].append(cell)
+    return {name: sorted(cells, key=_place_in(course, name)) for name, cells in found.items()}
 
 
 def verdicts(course: Course, student_id: str, assignment: str) -> dict[str, dict]:
@@ -63,15 +84,14 @@ def graded_notebook(course: Course, student_id: str, assignment: str) -> Noteboo
 
 
 def _records(
-    book: Gradebook, student: str, assignment: str, place: Callable[[GradeCell], tuple[int, str]]
+    book: Gradebook, student: str, assignment: str, cells: Sequence[GradeCell]
 ) -> Iterator[CellScore]:
-    known = [cell for nb in book.find_assignment(assignment).notebooks for cell in nb.grade_cells]
     found = submitted_notebook(book, student, assignment)
     grades = {grade.name: grade for grade in found.grades} if found else {}
     comments = (
         {comment.name: comment.manual_comment for comment in found.comments} if found else {}
     )
-    for cell in sorted(known, key=place):
+    for cell in cells:
         grade = grades.get(cell.name)
         yield CellScore(
             student_id=student,
@@ -89,7 +109,7 @@ def _records(
 
 def _place_in(course: Course, assignment: str) -> Callable[[GradeCell], tuple[int, str]]:
     """Return a sort key that puts graded cells in the lesson's order; strangers come last."""
-    order = []
+    order: list[str] = []
     if course.source_path(assignment).exists():
-        order = [grade_id(cell) for cell in course.source(assignment).cells]
+        order = list(checksums(course, assignment))
     return lambda cell: (order.index(cell.name) if cell.name in order else len(order), cell.name)

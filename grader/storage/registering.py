@@ -1,15 +1,13 @@
 """Tell nbgrader's database what an assignment consists of."""
 
-from nbgrader.api import Gradebook, MissingEntry
+from nbgrader.api import Assignment, Gradebook, MissingEntry, Notebook, SourceCell
+from sqlalchemy import select
 
-from grader.authoring.release_passes import PASSES
 from grader.common.errors import CourseError
 from grader.course import Course
-from grader.notebook.restore import grade_id
 from grader.storage.database import connected, make_database
+from grader.storage.lesson_checksums import SAVE_CELLS, checksums, tidied
 from grader.storage.pipeline import apply, resources_of
-
-SAVE_CELLS = 'nbgrader.preprocessors.SaveCells'
 
 
 def register(course: Course, assignment: str) -> bool:
@@ -17,16 +15,10 @@ def register(course: Course, assignment: str) -> bool:
 
     Raises CourseError when cells came or went although submissions are graded already.
     """
-    resources = resources_of(course, assignment)
-    tidied = apply(PASSES[: PASSES.index(SAVE_CELLS)], course.source(assignment), resources)
+    wanted = checksums(course, assignment)
     make_database(course)
     with connected(course.db_url) as book:
         known = _checksums_in(book, assignment)
-        wanted = {
-            grade_id(cell) or '': cell.metadata['nbgrader']['checksum']
-            for cell in tidied.cells
-            if 'checksum' in cell.metadata.get('nbgrader', {})
-        }
         if known == wanted:
             return False
         came, went = (
@@ -41,8 +33,30 @@ def register(course: Course, assignment: str) -> bool:
                 'begin a new one.'
             )
         book.update_or_create_assignment(assignment)
-    apply((SAVE_CELLS,), tidied, resources)
+    apply((SAVE_CELLS,), tidied(course, assignment), resources_of(course, assignment))
     return True
+
+
+def register_all(course: Course) -> None:
+    """Tell the database of every assignment that it does not know as it is now.
+
+    Raises CourseError as `register` does.
+    """
+    wanted = {name: checksums(course, name) for name in course.assignments()}
+    make_database(course)
+    asked = (
+        select(Assignment.name, SourceCell.name, SourceCell.checksum)
+        .join(Notebook, SourceCell.notebook_id == Notebook.id)
+        .join(Assignment, Notebook.assignment_id == Assignment.id)
+        .where(Notebook.name == Assignment.name)
+    )
+    known: dict[str, dict[str, str]] = {}
+    with connected(course.db_url) as book:
+        for assignment, name, checksum in book.db.execute(asked):
+            known.setdefault(assignment, {})[name] = checksum
+    for assignment, cells in wanted.items():
+        if known.get(assignment) != cells:
+            register(course, assignment)
 
 
 def _checksums_in(book: Gradebook, assignment: str) -> dict[str, str] | None:

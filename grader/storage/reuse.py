@@ -15,6 +15,7 @@ from grader.notebook.restore import KEY, grade_id, role
 from grader.notebook.submission import TIMESTAMP, Submission
 from grader.storage.database import connected
 from grader.storage.gradebook import StoredResult, submitted_notebook, waits_for_a_person
+from grader.storage.lateness import tell_what_is_due
 from grader.storage.pipeline import apply, first_reason, resources_of
 
 LATE = ('grader.storage.late_penalties.LatePenalties',)
@@ -69,7 +70,8 @@ def refresh_late_penalty(
         if found is None or not _agree(found.grades, graded):
             return None
         former = _score(found)
-    apply(LATE, graded, resources_of(course, assignment, student))
+    if tell_what_is_due(course.gradebook, course.db_url, assignment, student):
+        apply(LATE, graded, resources_of(course, assignment, student))
     with connected(course.db_url) as book:
         found = submitted_notebook(book, student, assignment)
         assert found is not None  # as before

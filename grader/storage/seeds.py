@@ -7,7 +7,7 @@ from pathlib import Path
 
 from grader.course import Course
 from grader.notebook.submission import Submission
-from grader.storage.late_penalties import Deadlines, deadlines
+from grader.storage.deadlines import Deadlines, deadlines
 from grader.storage.resubmissions import ANEW
 
 

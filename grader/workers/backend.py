@@ -25,6 +25,10 @@ class Backend(Protocol):
         """End what still runs."""
         ...
 
+    def begin(self) -> None:
+        """Prepare for a task, of which it is known that there is going to be one."""
+        ...
+
     def require_isolation(self, *, trust_students: bool) -> bool:
         """Return whether student code runs in a sandbox; raises CourseError where it must."""
         ...

@@ -49,6 +49,9 @@ class Cluster:
             self._client.cancel(list(self._asked))
         self._client.close()
 
+    def begin(self) -> None:
+        """Do nothing: a cluster's workers are there."""
+
     def require_isolation(self, *, trust_students: bool = False) -> bool:
         """Return True: a worker without a sandbox grades nothing."""
         return True

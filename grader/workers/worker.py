@@ -4,6 +4,7 @@
 """
 
 import asyncio
+import importlib
 import os
 import socket
 import struct
@@ -11,6 +12,8 @@ import sys
 
 from grader.common.logs import log_visibly
 from grader.judging.task import run_packed
+from grader.kernels.fork_servers import start_servers
+from grader.kernels.isolation import look_ahead
 from grader.sandbox.limits import MAX_TASK_BYTES
 
 BEAT_SEC = 5.0
@@ -76,5 +79,13 @@ def main(handle: str) -> None:
     asyncio.run(serve(connection))
 
 
+def prepare() -> None:
+    """Have at hand what the first task needs; processes import and try it side by side."""
+    start_servers()
+    look_ahead()
+    importlib.import_module('grader.judging.execute')
+
+
 if __name__ == '__main__':
+    prepare()
     main(sys.argv[1])

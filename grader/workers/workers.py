@@ -61,6 +61,15 @@ class Workers:
         """End what still runs."""
         self._pool.__exit__(*exception)
 
+    def begin(self) -> None:
+        """Start the first process: it imports while this one does other things."""
+        if not self._processes:
+            self._pool.submit(self._start)
+
+    async def _start(self) -> None:
+        if not self._processes:
+            self._next()
+
     def require_isolation(self, *, trust_students: bool = False) -> bool:
         """Return whether student code runs in a sandbox; raises CourseError where it must."""
         return require_isolation(trust_students=trust_students)

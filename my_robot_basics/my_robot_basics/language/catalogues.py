@@ -6,6 +6,8 @@ there stays English.
 
 from pathlib import Path
 
+LOCALE = Path(__file__).resolve().parents[3] / 'locale'
+"""The catalogues beside the package, in the course and in a student's bundle of it."""
 ENGLISH = 'en'
 """The language of the source: it needs no catalogue."""
 MESSAGES = 'LC_MESSAGES'
@@ -27,11 +29,11 @@ def read_translations(locale: Path, language: str, part: str) -> dict[str, str]:
 
     Raises babel.messages.pofile.PoFileError where the file is damaged.
     """
-    from babel.messages.pofile import read_po  # takes 50 ms; English readers do without
-
     path = catalogue_path(locale, language, part)
     if not path.is_file():
         return {}
+    from babel.messages.pofile import read_po  # takes 50 ms; English readers do without
+
     with path.open('rb') as file:
         catalogue = read_po(file, locale=language, abort_invalid=True)
     return {

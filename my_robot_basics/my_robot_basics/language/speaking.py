@@ -5,11 +5,9 @@ from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 
-from my_robot_basics.language.catalogues import ENGLISH, languages, read_translations
+from my_robot_basics.language.catalogues import ENGLISH, LOCALE, languages, read_translations
 from my_robot_basics.language.sentences import Sentences
 
-LOCALE = Path(__file__).resolve().parents[3] / 'locale'
-"""The catalogues beside the package, in the course and in a student's bundle of it."""
 FOR_STUDENTS = ('checks', 'validate', 'lesson_checks', 'quiz', 'live', 'doctor')
 """The parts of the software that students have, and of the checks that they may read."""
 PARTS = (*FOR_STUDENTS, 'hidden_checks', 'feedback')

@@ -1,0 +1,29 @@
+"""What `./course doctor` prints: what keeps student code in, and who can hear whose nodes."""
+
+import argparse
+
+from grader.cli.audiences import describe_audiences
+from grader.course import Course
+from grader.kernels.isolation import accounting, missing, protections, slow
+
+
+def run_doctor(course: Course, asked: argparse.Namespace) -> int:
+    """Print what isolates student code on this machine. Return 1 if something is missing."""
+    print('What isolates student code while it is graded:')
+    counted = accounting()
+    isolating = protections()
+    for protection in (*isolating, counted):
+        lacks = 'without' if protection is counted else 'MISSING'
+        print(f'  {lacks if protection.problem else "ok     "}  {protection.name}')
+    print(*describe_audiences(isolating), sep='\n')
+    if problem := missing():
+        print(f'\n{problem[0].upper()}{problem[1:]}.')
+        return 1
+    print('Nothing is missing: ./course grade runs each submission in a sandbox.')
+    if counted.problem:
+        print(
+            f'Its limits are less strict than they could be: {counted.problem}. {counted.remedy}.'
+        )
+    if problem := slow():
+        print(f'It is slower than it could be: no kernel can be forked here, for {problem}.')
+    return 0

@@ -1,0 +1,122 @@
+"""What gradebook/deadlines.toml says; `grader/storage/late_penalties.py` has an example."""
+
+import math
+import tomllib
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from pathlib import Path
+
+from grader.common.errors import CourseError
+from grader.common.text import printable
+from grader.course import Course
+from grader.storage.resubmissions import ResubmissionRules, read_rules
+
+FILE = 'deadlines.toml'
+DAY_SEC = 86_400
+_TABLES = {'due', 'extended', 'late', 'resubmissions'}
+_POLICY = {'per_day': 1.0, 'at_most': 1.0, 'grace_minutes': math.inf}
+"""The keys of [late], and the most that each may be."""
+
+
+@dataclass(frozen=True)
+class Deadlines:
+    """What the file says; times in UTC, without a zone, as nbgrader keeps them."""
+
+    due: Mapping[str, datetime] = field(default_factory=dict)
+    extended: Mapping[tuple[str, str], datetime] = field(default_factory=dict)
+    """By assignment and student."""
+    per_day: float = 0.0
+    at_most: float = 1.0
+    grace_minutes: float = 0.0
+    resubmissions: ResubmissionRules = field(default_factory=ResubmissionRules)
+
+    def penalty(self, score: float, seconds_late: float) -> float | None:
+        """Return what lateness takes from a score; None where it takes nothing."""
+        if not self.per_day or seconds_late <= 60 * self.grace_minutes:
+            return None
+        return score * min(self.at_most, self.per_day * math.ceil(seconds_late / DAY_SEC))
+
+
+def deadlines(gradebook: Path, assignments: Collection[str] | None = None) -> Deadlines | None:
+    """Read the file; None where there is none.
+
+    Raises CourseError on what is wrong in it, and on names that are not among the `assignments`.
+    """
+    path = gradebook / FILE
+    if not path.exists():
+        return None
+    return read_deadlines(path.read_bytes(), path, assignments)
+
+
+def read_deadlines(
+    content: bytes, path: Path, assignments: Collection[str] | None = None
+) -> Deadlines:
+    """Read what stands, or is going to stand, in the file at `path`.
+
+    Raises CourseError on what is wrong in it, and on names that are not among the `assignments`.
+    """
+    try:
+        return _understood(tomllib.loads(content.decode()), assignments)
+    except (ValueError, _Wrong) as error:
+        raise CourseError(
+            f'{path}: {error}: see the example in grader/storage/late_penalties.py'
+        ) from None
+
+
+def extended_for_nobody(course: Course) -> list[str]:
+    """Return a line for each extension of a student who has handed nothing in.
+
+    Their name may be misspelt, and then somebody else pays for it.
+    """
+    found = deadlines(course.gradebook) or Deadlines()
+    return [
+        f'{FILE} extends {assignment} for {printable(student)}, who has handed in nothing: is '
+        'that the name?'
+        for assignment, student in sorted(found.extended)
+        if not course.folder('submitted', student, assignment).is_dir()
+    ]
+
+
+class _Wrong(Exception):
+    """Says what is wrong in the file."""
+
+
+def _understood(said: dict, assignments: Collection[str] | None) -> Deadlines:
+    due, extended, late = (_table(said, name) for name in ('due', 'extended', 'late'))
+    if strange := [*(said.keys() - _TABLES), *(late.keys() - _POLICY.keys())]:
+        raise _Wrong(f'{strange[0]!r} is not known')
+    for assignment in (*due, *extended):
+        if assignments is not None and assignment not in assignments:
+            raise _Wrong(f'there is no assignment {assignment!r}')
+    for assignment in extended:
+        if assignment not in due:
+            raise _Wrong(f'{assignment} is extended, and has no due date')
+    for key, value in late.items():
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise _Wrong(f'{key} is no number')
+        if not 0 <= value <= _POLICY[key]:
+            raise _Wrong(f'{key} = {value} is out of range')
+    return Deadlines(
+        due={assignment: _time(assignment, value) for assignment, value in due.items()},
+        extended={
+            (assignment, student): _time(f'{assignment} of {student}', value)
+            for assignment in extended
+            for student, value in _table(extended, assignment).items()
+        },
+        **late,
+        resubmissions=read_rules(_table(said, 'resubmissions')),
+    )
+
+
+def _table(said: dict, name: str) -> dict:
+    table = said.get(name, {})
+    if not isinstance(table, dict):
+        raise _Wrong(f'[{name}] is no table')
+    return table
+
+
+def _time(what: str, value: object) -> datetime:
+    if not isinstance(value, datetime) or value.tzinfo is None:
+        raise _Wrong(f'{what} has no time with its zone, such as 2026-11-30T23:59:00+01:00')
+    return value.astimezone(UTC).replace(tzinfo=None)

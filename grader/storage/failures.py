@@ -1,0 +1,56 @@
+"""What a disk or a database can't do, in sentences: known without nbgrader's database."""
+
+import errno
+import sqlite3
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from grader.common.errors import CourseError, GradebookError
+from grader.course import Course
+
+TIMEOUT_SEC = 60.0
+"""How long another program may keep the database; the formgrader takes it for milliseconds."""
+BUSY = {sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED}
+"""What SQLite says of a database that another program keeps."""
+
+_FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
+_DAMAGED = {sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB}
+
+
+@contextmanager
+def in_sentences(course: Course) -> Iterator[None]:
+    """Say in a GradebookError what a disk or a database can't do; other errors pass."""
+    try:
+        yield
+    except Exception as error:
+        if sentence := _sentence(error, course):
+            raise GradebookError(sentence) from error
+        raise
+
+
+def _sentence(error: BaseException | None, course: Course) -> str | None:
+    """Return what to tell of an error, or of what led to it: nbgrader wraps what it gets."""
+    if error is None or isinstance(error, CourseError):
+        return None
+    code = getattr(error, 'sqlite_errorcode', 0) & 0xFF
+    if code == sqlite3.SQLITE_FULL or (isinstance(error, OSError) and error.errno in _FULL):
+        return (
+            f'the disk is full: nothing more can be written into {course.gradebook}. What was '
+            'stored before is kept, and no file is half written. Free some space, then run the '
+            'same command again: it goes on.'
+        )
+    if code in BUSY:
+        return (
+            f'another program has kept {course.database} locked for {TIMEOUT_SEC:.0f} s. What '
+            'was stored before is kept. Close what has it open (a database browser, a '
+            'formgrader that hangs), then run the same command again: it goes on.'
+        )
+    if code in _DAMAGED:
+        backups = course.gradebook / 'backups'
+        newest = max(backups.glob('*.db'), default=backups / 'NAME')
+        return (
+            f'{course.database} is damaged ({error}). Put a backup in its place with '
+            f"cp '{newest}' '{course.database}', remove {course.database.name}-journal if there "
+            'is one, then run ./course grade again.'
+        )
+    return _sentence(error.__cause__ or error.__context__, course)

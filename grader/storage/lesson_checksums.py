@@ -1,0 +1,55 @@
+"""nbgrader's checksum of each graded cell of a lesson, made once for each text of it."""
+
+import hashlib
+import json
+
+from nbformat import NotebookNode
+
+from grader.common.files import write_whole
+from grader.common.versions import machinery
+from grader.course import Course
+from grader.notebook.restore import grade_id
+from grader.storage.pipeline import apply, resources_of
+
+FOLDER = 'lessons'
+"""In the gradebook: what was made of each lesson. What is removed there is made again."""
+SAVE_CELLS = 'nbgrader.preprocessors.SaveCells'
+
+
+def tidied(course: Course, assignment: str) -> NotebookNode:
+    """Return a lesson as the gradebook keeps it. Raises CourseError where it can't be released."""
+    from grader.authoring.release_passes import PASSES  # nbconvert: only where it has to be made
+
+    passes = PASSES[: PASSES.index(SAVE_CELLS)]
+    return apply(passes, course.source(assignment), resources_of(course, assignment))
+
+
+def checksums(course: Course, assignment: str) -> dict[str, str]:
+    """Return the checksum of each graded cell that the lesson wants the gradebook to have.
+
+    They follow from the lesson's text and the grader's code: what was made of the same is reused.
+    """
+    path = course.gradebook / FOLDER / f'{assignment}.json'
+    made_from = _made_from(course, assignment)
+    try:
+        kept = json.loads(path.read_text(encoding='utf-8'))
+        if made_from and kept['made_from'] == made_from:
+            return {str(name): str(checksum) for name, checksum in kept['checksums'].items()}
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        pass  # none yet, or damaged
+    made = {
+        grade_id(cell) or '': cell.metadata['nbgrader']['checksum']
+        for cell in tidied(course, assignment).cells
+        if 'checksum' in cell.metadata.get('nbgrader', {})
+    }
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_whole(path, json.dumps({'made_from': made_from, 'checksums': made}))
+    return made
+
+
+def _made_from(course: Course, assignment: str) -> str:
+    try:
+        lesson = course.source_path(assignment).read_bytes()
+    except OSError:
+        return ''  # whoever reads it says what is wrong
+    return hashlib.sha256(f'{machinery()}\n'.encode() + lesson).hexdigest()
