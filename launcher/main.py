@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 from launcher.environment import Environment
-from launcher.languages import VARIABLE, of_the_locale
+from launcher.languages import VARIABLE, of_the_locale, replaced_locale
 from launcher.messages import LauncherError, say
 from launcher.set_up import is_set_up, set_up
 from launcher.verbs import Verb, read_verbs
@@ -39,6 +39,7 @@ def run_verb(environment: Environment, verb: Verb, arguments: list[str]) -> int:
     if verb.owner == 'everyone':
         lessons = environment.root / 'notebooks'
         variables.setdefault(VARIABLE, of_the_locale(lessons, variables))
+        variables |= replaced_locale(variables)
     else:
         variables.pop(VARIABLE, None)  # a terminal's: what grades speaks English
     if verb.folder == 'root':

@@ -30,7 +30,10 @@ MODULES = {
         f'my_robot_basics/my_robot_basics/{package}/*.py'
         for package in ('checks', 'feedback', 'exchange', 'graph')
     ]
-    + ['my_robot_basics/my_robot_basics/ros2/definition*.py'],
+    + [
+        f'my_robot_basics/my_robot_basics/ros2/{each}.py'
+        for each in ('definition*', 'command_line')
+    ],
     'validate': ['my_robot_basics/my_robot_basics/validate/*.py'],
     'live': [
         f'my_robot_basics/my_robot_basics/{module}.py'
