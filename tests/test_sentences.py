@@ -151,8 +151,8 @@ WITH_COLONS = {
         '所以先改正它',
     },
     'expected rate_hz = 5.0 to be set, saw it refused: Wrong parameter type, expected '
-    "'Type.INTEGER' got 'Type.DOUBLE': a parameter has the type of its default value: declare it with 5.0, "
-    'not 5': {
+    "'Type.INTEGER' got 'Type.DOUBLE': a parameter has the type of its default value: "
+    'declare it with 5.0, not 5': {
         'expected': '设置 rate_hz = 5.0',
         'seen': "被拒绝了：Wrong parameter type, expected 'Type.INTEGER' got 'Type.DOUBLE'",
         'hint': '参数的类型就是默认值的类型：声明时写 5.0，不要写 5',
@@ -161,8 +161,8 @@ WITH_COLONS = {
         'expected': '每个字符串都定义它的表格所说的内容',
         'seen': '`turns_msg` 里是别的内容',
         'hint': "`turns_msg` 里：这一行 'int[2] turns'：没有类型 int："
-        "请写 int32，或者带有位数的其他 int；这一行 'float[2] gear_ratios [100.0, 50.0]'：没有类型 float：请写 float64，"
-        '或者位数减半的 float32',
+        "请写 int32，或者带有位数的其他 int；这一行 'float[2] gear_ratios [100.0, 50.0]'："
+        '没有类型 float：请写 float64，或者位数减半的 float32',
     },
 }
 
