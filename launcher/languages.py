@@ -1,6 +1,7 @@
 """The language of the lessons that a user gets, of JupyterLab around them and of its terminals."""
 
 import json
+import locale
 import shutil
 from collections.abc import Mapping
 from pathlib import Path
@@ -12,6 +13,8 @@ from launcher.words import put
 ENGLISH = 'en'
 OPTION, VARIABLE = '--language', 'COURSE_LANGUAGE'
 """What chooses a language, and what tells it to all that is started."""
+PLAIN_LOCALE = 'C.UTF-8'
+"""A locale that no machine has to generate."""
 INDEX = 'index.ipynb'
 SETTINGS, OVERRIDES = '.jupyterlab', 'overrides.json'
 """JupyterLab's settings for lessons: they leave out the instructors' panels."""
@@ -55,9 +58,30 @@ def of_the_locale(lessons: Path, variables: Mapping[str, str]) -> str:
     """Return the edition that fits the user's locale best: zh_CN, or another Chinese one."""
     known = [ENGLISH, *languages(lessons)]
     said = (variables.get(name) for name in ('LC_ALL', 'LC_MESSAGES', 'LANG'))
-    locale = next(filter(None, said), '').partition('.')[0].partition('@')[0]
-    alike = [each for each in known if each.split('_')[0] == locale.split('_')[0]]
-    return locale if locale in known else next(iter(alike), ENGLISH)
+    theirs = next(filter(None, said), '').partition('.')[0].partition('@')[0]
+    alike = [each for each in known if each.split('_')[0] == theirs.split('_')[0]]
+    return theirs if theirs in known else next(iter(alike), ENGLISH)
+
+
+def replaced_locale(variables: Mapping[str, str]) -> dict[str, str]:
+    """Return what stands in for an LC_ALL that this machine has not generated; else nothing.
+
+    Each bash warns of one, in every cell that has a `!`. The language is told by `VARIABLE`.
+    """
+    asked = variables.get('LC_ALL', '')
+    return {'LC_ALL': PLAIN_LOCALE} if not _is_there(asked) and _is_there(PLAIN_LOCALE) else {}
+
+
+def _is_there(name: str) -> bool:
+    before = locale.setlocale(locale.LC_ALL)
+    try:
+        locale.setlocale(locale.LC_ALL, name or before)
+    except locale.Error:
+        return False
+    else:
+        return True
+    finally:
+        locale.setlocale(locale.LC_ALL, before)
 
 
 def jupyterlab_settings(environment: Environment, language: str) -> Path:

@@ -37,10 +37,11 @@ def run_verb(environment: Environment, verb: Verb, arguments: list[str]) -> int:
     """Run a verb in its folder; return the exit status, if this process does not become it."""
     variables = environment.variables(os.environ)
     if verb.owner == 'everyone':
-        from launcher.languages import VARIABLE, of_the_locale
+        from launcher.languages import VARIABLE, of_the_locale, replaced_locale
 
         lessons = environment.root / 'notebooks'
         variables.setdefault(VARIABLE, of_the_locale(lessons, variables))
+        variables |= replaced_locale(variables)
     else:
         variables.pop('COURSE_LANGUAGE', None)  # a terminal's: what grades speaks English
     if verb.folder == 'root':

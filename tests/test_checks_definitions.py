@@ -179,7 +179,10 @@ WRONG = {
     ),
     'in both parts': (count('bool success', 'bool success\nuint8 motor'), 'motor is in the respo'),
     'empty': ({'turns_msg': '# YOUR CODE HERE'}, 'in `turns_msg`, there is no field yet'),
-    'no such name': ({'turns_msg': None}, 'in `turns_msg`, expected a value `turns_msg`, saw no'),
+    'no such name': (
+        {'turns_msg': None},
+        'in `turns_msg`, expected a value for `turns_msg`, saw no',
+    ),
     'no text': ({'count_turns_srv': ['uint8 motor']}, 'expected `count_turns_srv` to be'),
 }
 
@@ -212,7 +215,9 @@ def test_of_many_mistakes_three_are_told(check):
 
 
 def test_where_nothing_is_written_that_is_all(check):
-    with pytest.raises(CheckFailed, match=r'^expected a value `turns_msg`, saw no such name: '):
+    with pytest.raises(
+        CheckFailed, match=r'^expected a value for `turns_msg`, saw no such name: '
+    ):
         check(None, None)
 
 

@@ -120,5 +120,5 @@ def test_anything_but_a_dict_is_said_to_be_so(monkeypatch):
     with pytest.raises(CheckFailed, match='expected `answer` to be a dict, saw a list'):
         Predictions('answer', KEYS)
     monkeypatch.delattr(sys.modules['__main__'], 'answer')
-    with pytest.raises(CheckFailed, match='expected a value `answer`, saw no such name'):
+    with pytest.raises(CheckFailed, match='expected a value for `answer`, saw no such name'):
         Predictions('answer', KEYS)

@@ -65,7 +65,7 @@ def test_call_returns_what_the_function_returned(notebook, function, returns, ex
 
 
 FAILURES = {
-    'missing': (None, 'expected a function `f`, saw no such name: define `f` in the answer cell'),
+    'missing': (None, 'a function named `f`, saw no such name: define it as `def f(…):` in'),
     'raises': (raising, 'expected `f(2)` to return, saw ValueError: out of reach: call'),
     'exits': (exiting, 'expected `f(2)` to return, saw SystemExit: 3: call'),
     'forgot return': (lambda x: print('!'), 'expected `f(2)` to return a value, saw None: end'),
@@ -108,7 +108,7 @@ def test_value_reads_a_name(notebook):
     assert student.value('endpoints', type=dict)['subscriptions'] == ('c',)
     with pytest.raises(CheckFailed, match='expected `endpoints` to be a list, saw a dict'):
         student.value('endpoints', type=list)
-    with pytest.raises(CheckFailed, match='expected a value `nothing`, saw no such name'):
+    with pytest.raises(CheckFailed, match='expected a value for `nothing`, saw no such name'):
         student.value('nothing')
 
 

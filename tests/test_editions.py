@@ -132,6 +132,12 @@ def test_the_contents_lead_to_the_other_languages_and_back():
     assert '[English](../index.ipynb)' in page
 
 
+def test_no_space_follows_a_chinese_full_stop_in_the_contents():
+    cells = nbformat.read(ROOT / 'notebooks/zh_CN/index.ipynb', as_version=4).cells
+    assert '解释。学完' in cells[-1].source
+    assert [cell.id for cell in cells if re.search('[，。；：] ', cell.source)] == []
+
+
 def test_the_chinese_contents_say_the_same_of_each_lesson():
     row = re.compile(r'^\| \[(.+?)\]\((.+?)\) \| .+ \| (\d+) \| (.+?) \| (\d+) \|$', re.MULTILINE)
     pages = [

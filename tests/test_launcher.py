@@ -15,7 +15,7 @@ from grader.course import ROOT
 from launcher import testing
 from launcher.environment import Environment, without_foreign
 from launcher.installer import DISK_IS_FULL, FAILED, NETWORK_IS_AWAY, progress, reason_of
-from launcher.languages import TRANSLATION, jupyterlab_settings
+from launcher.languages import TRANSLATION, jupyterlab_settings, replaced_locale
 from launcher.main import run_verb
 from launcher.messages import LauncherError
 from launcher.set_up import BUILD_TOOLS, build_tools
@@ -395,3 +395,26 @@ def test_each_language_of_the_course_has_a_language_pack():
         from jupyterlab_server.translation_utils import get_language_packs
 
         assert language in get_language_packs()[0]
+
+
+@pytest.mark.parametrize(
+    ('asked', 'found'),
+    [({'LC_ALL': 'zh_XX.UTF-8'}, 'C.UTF-8'), ({'LC_ALL': 'C'}, 'C'), ({'LANG': 'zh_XX'}, None)],
+    ids=['not generated', 'there', 'of a variable that bash does not warn of'],
+)
+def test_bash_does_not_warn_of_a_locale_that_is_not_generated(asked, found):
+    variables = asked | replaced_locale(asked)
+    assert variables.get('LC_ALL') == found
+    run = subprocess.run(['bash', '-c', ':'], env=variables, capture_output=True, text=True)
+    assert (run.returncode, run.stderr) == (0, '')
+
+
+def test_lessons_stay_chinese_in_a_chinese_locale_that_is_not_generated(monkeypatch):
+    monkeypatch.setenv('LC_ALL', 'zh_XX.UTF-8')
+    monkeypatch.delenv('COURSE_LANGUAGE', raising=False)
+    called = {}
+    monkeypatch.setattr(os, 'chdir', lambda folder: None)
+    monkeypatch.setattr(os, 'execve', lambda *call: called.update(call[-1]))
+    run_verb(Environment(ROOT), read_verbs()['workspace'], [])
+    assert called['LC_ALL'] == 'C.UTF-8'
+    assert called['COURSE_LANGUAGE'] == 'zh_CN'

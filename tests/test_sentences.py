@@ -8,6 +8,7 @@ from my_robot_basics.feedback.errors import CheckFailed
 from my_robot_basics.language import speaking
 from my_robot_basics.language.lines import in_lines
 from my_robot_basics.language.sentences import MOST_CHARACTERS, Sentences
+from my_robot_basics.language.sentences import REASON as REASON_FORM
 from my_robot_basics.language.speaking import in_language, language_of
 from my_robot_basics.validate.as_text import as_text
 from my_robot_basics.validate.cell_names import in_words
@@ -121,6 +122,61 @@ CHINESE_REASON = (
 def test_a_reason_of_the_course_is_told_in_chinese():
     assert in_language('zh_CN', REASON) == CHINESE_REASON
     assert in_language('en', REASON) == REASON
+
+
+LONG = (
+    'expected each text to define what its table says, saw something else in `turns_msg`: in '
+    "`turns_msg`, the line 'int[2] turns': there is no type int: write int32 or another int with "
+    "its number of bits; the line 'float[2] gear_ratios [100.0, 50.0]': there is no type float: "
+    'write float64, or float32 for half the digits'
+)
+WITH_COLONS = {
+    'expected [0.5236, -1.5708] rad for (30.0, -90.0) degrees, saw [30.0, -90.0]: these are '
+    'degrees: convert both with radians()': {
+        'expected': '(30.0, -90.0) 度对应的 [0.5236, -1.5708] rad',
+        'seen': '[30.0, -90.0]',
+        'hint': '这些是度：两个都用 radians() 换算',
+    },
+    "expected only {'joint1': 0.5} for (30.0, -90.0) degrees, saw {'joint1': 30.0, 'joint2': "
+    '-90.0}: joint2 is still in degrees: convert both with radians()': {
+        'expected': "(30.0, -90.0) 度只对应 {'joint1': 0.5}",
+        'seen': "{'joint1': 30.0, 'joint2': -90.0}",
+        'hint': 'joint2 还是度：两个都用 radians() 换算',
+    },
+    'expected a message from /a to be republished on /b, unchanged, saw none in 1 s: its callback '
+    "raised AttributeError: no 'send' (line 1, in f: self.send(m)), so fix that first": {
+        'expected': '来自 /a 的消息原样转发到 /b',
+        'seen': '1 s 内一个也没有',
+        'hint': "它的回调抛出了 AttributeError: no 'send' (line 1, in f: self.send(m))，"
+        '所以先改正它',
+    },
+    'expected rate_hz = 5.0 to be set, saw it refused: Wrong parameter type, expected '
+    "'Type.INTEGER' got 'Type.DOUBLE': a parameter has the type of its default value: "
+    'declare it with 5.0, not 5': {
+        'expected': '设置 rate_hz = 5.0',
+        'seen': "被拒绝了：Wrong parameter type, expected 'Type.INTEGER' got 'Type.DOUBLE'",
+        'hint': '参数的类型就是默认值的类型：声明时写 5.0，不要写 5',
+    },
+    LONG: {
+        'expected': '每个字符串都定义它的表格所说的内容',
+        'seen': '`turns_msg` 里是别的内容',
+        'hint': "`turns_msg` 里：这一行 'int[2] turns'：没有类型 int："
+        "请写 int32，或者带有位数的其他 int；这一行 'float[2] gear_ratios [100.0, 50.0]'："
+        '没有类型 float：请写 float64，或者位数减半的 float32',
+    },
+}
+
+
+@pytest.mark.parametrize(('english', 'parts'), WITH_COLONS.items())
+def test_a_reason_is_parted_where_what_was_seen_and_the_hint_are_known(english, parts):
+    assert speaking.sentences('zh_CN').parts(REASON_FORM, english) == parts
+    assert in_language('zh_CN', english) == (
+        '预期：{expected}；实际：{seen}。{hint}'.format(**parts)
+    )
+
+
+def test_what_is_no_reason_has_no_parts():
+    assert speaking.sentences('zh_CN').parts(REASON_FORM, 'it ended') == {}
 
 
 OF_THE_DOCTOR_AND_LIVE = {
@@ -295,3 +351,17 @@ def test_a_check_that_is_run_by_hand_speaks_the_language_of_its_edition(monkeypa
 def test_without_catalogues_everything_is_english(monkeypatch, tmp_path):
     monkeypatch.setattr(speaking, 'LOCALE', tmp_path)
     assert language_of({'my_robot_basics': {'language': 'zh_CN'}}) == 'en'
+
+
+def test_the_feedback_page_parts_a_reason_by_what_is_known():
+    notebook = graded({'language': 'zh_CN'})
+    notebook.cells[0].metadata.my_robot_basics.update(
+        reason='expected [0.5] rad for (30.0) degrees, saw [30.0]: these are degrees: '
+        'convert both with radians()',
+        failed_at_grading=True,
+    )
+    notebook.cells[0].source = '"""name holds joint1 and joint2, in this order"""\ncheck()'
+    html = page(notebook, ABOUT)
+    assert '<dt>实际</dt><dd>[30.0]</dd>' in html
+    assert '>这些是度：两个都用 radians() 换算</dd>' in html
+    assert '评分时检查，超出“name 里依次是 joint1 和 joint2”的部分' in html

@@ -4,6 +4,7 @@ import contextlib
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -88,6 +89,19 @@ def test_a_right_answer_passes_and_what_is_still_open_is_said(tmp_path):
     assert 'HIDDEN' not in names['radians']['source']
     assert progress[0] == 'to_joint_state: starting two kernels'
     assert progress[-1].startswith('to_joint_state: checking: The header holds')
+
+
+def test_what_goes_on_is_told_in_the_language_of_the_lesson(tmp_path):
+    shutil.copy(ROOT / 'notebooks/zh_CN/02_joint_state/02_joint_state.ipynb', tmp_path)
+    run = command(tmp_path / '02_joint_state.ipynb', '--json')
+    (first, *progress, last) = map(json.loads, run.stdout.splitlines())
+    assert first['words']['Validation Results'] == '检查结果'
+    assert progress[0] == {'progress': 'to_joint_state：正在启动两个内核'}
+    assert (
+        progress[-1]['progress']
+        == 'to_joint_state：正在检查：消息头里是给定的时间戳，以及坐标系 base_link'
+    )
+    assert 'report' in last
 
 
 def test_a_text_is_left_to_a_person(tmp_path):

@@ -53,6 +53,11 @@ def progress_row(name: str, lesson: NotebookNode) -> dict:
     return {'lesson': name, 'title': title_of(lesson), 'exercises': exercises}
 
 
+def one_behind_the_other(sentences: Iterable[str]) -> str:
+    """Return sentences of one paragraph: there is no space behind a Chinese full stop."""
+    return ' '.join(sentences).replace('。 ', '。')
+
+
 def _joined(abilities: Iterable[str], pattern: str) -> str:
     return reduce(
         lambda before, ability: pattern.format(abilities=before, ability=ability),

@@ -20,8 +20,8 @@ Texts = dict[str, list[str]]
 """Where each English text of a part stands, in the order in which they are read."""
 
 IN_WORDS: tuple[str, ...] = ('background', 'camera', 'commands', 'course_nodes')
-IN_WORDS += ('definition_view',)
-IN_WORDS += ('entry_points', 'exercise')
+IN_WORDS += ('definition_view', 'executables', 'install_faults')
+IN_WORDS += ('entry_points', 'exercise', 'package_build', 'package_faults', 'packages')
 IN_WORDS += ('node_file', 'panel', 'program', 'refusals', 'runner', 'spinning', 'unknown_robot')
 IN_WORDS += ('waiting', 'workspace')
 """The modules of `live` that say something in sentences; the others draw."""
@@ -30,7 +30,10 @@ MODULES = {
         f'my_robot_basics/my_robot_basics/{package}/*.py'
         for package in ('checks', 'feedback', 'exchange', 'graph')
     ]
-    + ['my_robot_basics/my_robot_basics/ros2/definition*.py'],
+    + [
+        f'my_robot_basics/my_robot_basics/ros2/{each}.py'
+        for each in ('definition*', 'command_line')
+    ],
     'validate': ['my_robot_basics/my_robot_basics/validate/*.py'],
     'live': [
         f'my_robot_basics/my_robot_basics/{module}.py'

@@ -86,7 +86,7 @@ def _read_json(path: Path) -> object:
     if size > MAX_NOTEBOOK_BYTES:
         raise UnreadableSubmission(
             f'{path.name} has {size / 1e6:.0f} MB, more than {MAX_NOTEBOOK_BYTES / 1e6:.0f} MB: '
-            'choose "Clear All Outputs" in JupyterLab, save, and submit again.'
+            'choose "Clear Outputs of All Cells" in JupyterLab, save, and submit again.'
         )
     try:
         raw = path.read_bytes()

@@ -74,8 +74,8 @@ def read_notebook(path: Path) -> NotebookNode:
         said = parse(f'{raw_notebook.__name__}:read', str(path))
     except ParsingFailed as why:
         raise UnreadableSubmission(
-            f'{path.name} is not read, for {why}: choose "Clear All Outputs" in JupyterLab, save, '
-            'and submit again.'
+            f'{path.name} is not read, for {why}: choose "Clear Outputs of All Cells" in '
+            'JupyterLab, save, and submit again.'
         ) from None
     for error in _READ.iter_errors(said):
         raise CourseError(f'what read {path.name} came to no notebook: {error.json_path}')

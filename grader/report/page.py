@@ -36,10 +36,10 @@ def page(as_json: dict, about: dict, plain: str = '') -> str:
     why text and code are shown as they were typed. All of it is JSON.
     """
     notebook = nbformat.from_dict(as_json)
-    sections, others = find_sections(notebook)
     ours = notebook.metadata.get(KEY, {})
     problem = ours.get('problem', '')
     language = language_of(notebook.metadata)
+    sections, others = find_sections(notebook, language)
     return _template(language, is_plain=bool(plain)).render(
         about=about,
         sections=[]

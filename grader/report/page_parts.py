@@ -4,6 +4,9 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
+from my_robot_basics.language.catalogues import ENGLISH
+from my_robot_basics.language.sentences import REASON
+from my_robot_basics.language.speaking import sentences
 from my_robot_basics.validate.pictures import KINDS, why_not_shown
 from my_robot_basics.validate.titles import title_of_check, title_of_failure
 from nbconvert.filters import strip_ansi
@@ -65,7 +68,7 @@ class PageSection:
 
 
 def find_sections(
-    notebook: NotebookNode,
+    notebook: NotebookNode, language: str = ENGLISH
 ) -> tuple[list[PageSection], list[tuple[str, list[CellOutput]]]]:
     """Return the exercises, and the other cells that have outputs."""
     sections, others = [PageSection('')], []
@@ -77,9 +80,9 @@ def find_sections(
             sections[-1].comment = marks.get('comment') or ''
             sections[-1].outputs += _outputs(cell)
             if marks.get('grade'):
-                sections[-1].checks.append(_check(cell))
+                sections[-1].checks.append(_check(cell, language))
         elif kind == 'grade':
-            sections[-1].checks.append(_check(cell))
+            sections[-1].checks.append(_check(cell, language))
         elif kind == 'locked' and name.startswith(f'{sections[-1].name}-'):
             sections[-1].outputs += _outputs(cell)
         elif cell.cell_type == 'code' and cell.get('outputs'):
@@ -87,7 +90,7 @@ def find_sections(
     return sections, others
 
 
-def _check(cell: NotebookNode) -> CheckedCell:
+def _check(cell: NotebookNode, language: str = ENGLISH) -> CheckedCell:
     marks, verdict = cell.metadata.nbgrader, cell.metadata.get(KEY, {})
     score, points = marks.get('score') or 0.0, marks.get('points') or 0.0
     name, is_answer = grade_id(cell) or '', role(cell) == 'answer'
@@ -95,7 +98,6 @@ def _check(cell: NotebookNode) -> CheckedCell:
     status = 'waiting' if verdict.get('waits') else 'by hand' if verdict.get('by_hand') else status
     reason = verdict.get('reason') or _missing_reason(status, is_answer=is_answer)
     title = 'Your written answer' if is_answer else _title(cell) or name
-    said = _REASON.fullmatch(reason)
     return CheckedCell(
         name=name,
         title=title,
@@ -107,8 +109,21 @@ def _check(cell: NotebookNode) -> CheckedCell:
         comment='' if is_answer else marks.get('comment') or '',
         outputs=() if is_answer else tuple(_outputs(cell, about=title, reason=reason)),
         source='' if is_answer else cell.source.strip(),
-        **(said.groupdict() if said else {'expected': '', 'seen': '', 'hint': ''}),
+        **_parts(reason, language),
     )
+
+
+def _parts(reason: str, language: str) -> dict[str, str]:
+    """Return what was expected and seen, and what to try, in a language; blanks if it says none.
+
+    A hint may have a colon in it, and so may what was seen: a catalogue tells which words belong
+    together.
+    """
+    said = _REASON.fullmatch(reason)
+    if said is None:
+        return {'expected': '', 'seen': '', 'hint': ''}
+    parts = {} if language == ENGLISH else sentences(language).parts(REASON, reason)
+    return parts or said.groupdict()
 
 
 def _title(cell: NotebookNode) -> str:

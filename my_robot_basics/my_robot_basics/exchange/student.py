@@ -174,5 +174,10 @@ def _ask(question: str, shown: str) -> tuple[str, Any]:
 
 
 def _fail_missing(name: str, *, what: str) -> None:
-    verb = f'define `{name}`' if what == 'function' else f'assign `{name}`'
-    fail(expected=f'a {what} `{name}`', seen='no such name', hint=f'{verb} {_ANSWER_CELL}')
+    wanted, hint = f'a value for `{name}`', f'assign a value to `{name}` {_ANSWER_CELL}'
+    if what == 'function':
+        wanted, hint = (
+            f'a function named `{name}`',
+            f'define it as `def {name}(…):` {_ANSWER_CELL}',
+        )
+    fail(expected=wanted, seen='no such name', hint=hint)

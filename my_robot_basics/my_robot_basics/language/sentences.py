@@ -11,18 +11,18 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import islice
 
+from my_robot_basics.language.english import PHRASE, is_raised, letters_in_names, letters_left
 from my_robot_basics.language.templates import LETTERS, PLACE, Template
 
 SENTENCES, SPACED = '{sentence} {other}', '{one} {other}'
 """One sentence behind another one; and what begins as some template does, behind anything."""
-JOINED: tuple[str, ...] = (SENTENCES, SPACED, '{one}; {other}', '{one}. {other}')
+REASON, CLAUSES = 'expected {expected}, saw {seen}: {hint}', '{one}; {other}'
+JOINED: tuple[str, ...] = (SENTENCES, SPACED, CLAUSES, '{one}. {other}')
 JOINED += ('{one}: {other}', '{one}, {other}', '{one} and {other}', '{one} or {other}', '({one})')
 JOINED += ('{one} ({other})',)
 """How sentences are put together of others, anywhere."""
 MOST_CHARACTERS = 2_000
 """No sentence of ours is longer; what a student's code made may be."""
-PHRASE = 10_000
-"""What counts for several words in English, one behind the other, over that for their letters."""
 FEW_LETTERS = 4
 """Templates with fewer, such as '{name} is {value}', fit anything: none is part of a phrase,
 unless there are quotes in it."""
@@ -41,14 +41,6 @@ _QUOTED = re.compile(r'`[^`]*`|\'[^\']*\'|"[^"]*"')
 _HAN = '[\u3400-\u9fff（），。；：]'
 _IN_HAN = re.compile(rf'({_QUOTED.pattern})|(?<={_HAN}) (?={_HAN})')
 """A space between Chinese words, beside a place: there is none; and what is quoted."""
-_TWO_WORDS = re.compile(r'[^\W\d_]{2,} [^\W\d_]{2,}')
-_NAME = re.compile(
-    r'`[^`]*`|\'[^\']*\'|"[^"]*"|/[\w/]+|\w+\(.*?\)|\b[A-Z_]{2,}\b|\w*[\d_]\w*|\w+Error\b|NotRunnable'
-    r'|\b(True|False|None|Hz|rad|nan|inf|JointState|Point|String|Int32)\b|\w+(/\w+)+|\b\w\b'
-)
-"""What is a name in each language, or quoted."""
-_RAISED = re.compile(r'[\w.]*(Error|Exception|Interrupt)(: .*)?', re.DOTALL)
-"""What Python says of an exception: it stays in English."""
 
 
 @dataclass
@@ -58,8 +50,10 @@ class Sentences:
     translations: Mapping[str, str]
     """Of each English template, as in the catalogues."""
     _templates: list[Template] = field(default_factory=list)
-    _found: dict[str, tuple[int, tuple[int, str]]] = field(default_factory=dict)
+    _found: dict[str, tuple[int, tuple[float, str]]] = field(default_factory=dict)
     """The best of each text so far, for one sentence, and how deep it was looked for."""
+    _first: tuple[Template, ...] = ()
+    """A reason, and a list of faults: each part by itself takes far fewer tries."""
     _starts: tuple[str, ...] = ()
     _tries: int = 0
 
@@ -75,6 +69,8 @@ class Sentences:
             key=lambda each: each.letters,
             reverse=True,
         )
+        first = (Template.of(each, '').literals for each in (REASON, CLAUSES))
+        self._first = tuple(t for literals in first for t in templates if t.literals == literals)
         starts = (*self.translations, *(each.literals[0] for each in self._templates))
         self._starts = tuple({start for start in starts if len(LETTERS.findall(start)) > 2})
 
@@ -86,21 +82,42 @@ class Sentences:
         shown = self._best(text, 0)[1]
         return text if shown == text else close_up(shown)
 
-    def _best(self, text: str, deep: int) -> tuple[int, str]:
+    def parts(self, english: str, text: str) -> dict[str, str]:
+        """Return what stands in a template's places in a text, in this language.
+
+        Where it fits in several ways, it is the one that leaves the least in English; where in
+        none, there is nothing.
+        """
+        template = Template.of(english, english)
+        self._found, self._tries = {}, 0
+        least, parts = 0.0, dict[str, str]()
+        for found in islice(template.fits(text[:MOST_CHARACTERS]), MOST_SPLITS):
+            if _cuts(template, found):
+                continue
+            best = {name: self._best(said, 0) for name, said in found.items()}
+            left = sum(each for each, _ in best.values())
+            if not parts or left < least:
+                least, parts = left, {name: close_up(shown) for name, (_, shown) in best.items()}
+        return parts
+
+    def _best(self, text: str, deep: int) -> tuple[float, str]:
         """Return how many letters stay English, and the text with the fewest of them."""
         if (exact := self.translations.get(text)) is not None:
             return 0, exact
         known = self._found.get(text)
         if known is None or (known[0] > deep and known[1][0] > 0):
-            best = 0 if _RAISED.fullmatch(text) else _left(text), text
-            if best[0] and deep < MOST_DEEP:
+            raised = is_raised(text)
+            best = (letters_in_names(text) if raised else letters_left(text)), text
+            if best[0] and not raised and deep < MOST_DEEP:
                 for fitted in self._fitted(text, deep + 1):
                     best = min(best, fitted, key=lambda each: each[0])
+                    if not best[0]:
+                        break
             self._found[text] = known = deep, best
         return known[1]
 
-    def _fitted(self, text: str, deep: int) -> Iterator[tuple[int, str]]:
-        for template in self._templates:
+    def _fitted(self, text: str, deep: int) -> Iterator[tuple[float, str]]:
+        for template in (*self._first, *self._templates):
             if any(literal not in text for literal in template.literals):
                 continue
             for found in islice(template.fits(text), MOST_SPLITS):
@@ -113,7 +130,7 @@ class Sentences:
                         yield left, shown
         yield from self._at_spaces(text, deep)
 
-    def _at_spaces(self, text: str, deep: int) -> Iterator[tuple[int, str]]:
+    def _at_spaces(self, text: str, deep: int) -> Iterator[tuple[float, str]]:
         """Split a text behind a sentence, or before what begins as some template does."""
         for space in islice(re.finditer(' ', text), MOST_SPACES):
             before, after = text[: space.start()], text[space.end() :]
@@ -126,11 +143,12 @@ class Sentences:
                     if left < PHRASE or joined == SENTENCES:
                         yield left, shown
 
-    def _put(self, template: Template, found: Mapping[str, str], deep: int) -> tuple[int, str]:
+    def _put(self, template: Template, found: Mapping[str, str], deep: int) -> tuple[float, str]:
         """Return a template's translation with that in its places, and how much stays English."""
         best = {
             name: (0, found[name]) if name in template.quoted else self._best(found[name], deep)
-            for name in template.used
+            for name in template.places
+            if name in template.used
         }
         shown = PLACE.sub(lambda place: best[place[1]][1], template.translation)
         return sum(left for left, _ in best.values()), shown
@@ -150,7 +168,9 @@ def _cuts(template: Template, found: Mapping[str, str]) -> bool:
     ):
         return True
     return ended or any(
-        text.count('(') != text.count(')') and '…' not in text for text in said.values()
+        text.count(opened) != text.count(closed) and '…' not in text
+        for text in said.values()
+        for opened, closed in ('()', '[]', '{}')
     )
 
 
@@ -165,9 +185,3 @@ def _with_places(text: str, english: str = '') -> str:
     if english[-1:] == ' ' and english.strip():
         return text + '{rest}'
     return '{rest}' + text if english[:1] in ' ,;' and english.strip() else text
-
-
-def _left(text: str) -> int:
-    """Count the letters of a text that may be words: names and what is quoted are none."""
-    unknown = _NAME.sub('', text)
-    return len(LETTERS.findall(unknown)) + PHRASE * bool(_TWO_WORDS.search(unknown))

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 PLACE = re.compile(r'\{(\w*)\}')
 LETTERS = re.compile(r'[^\W\d_]')
 _WORD = re.compile(r'[^\s,;(]*')
-_QUOTES = tuple('`\'"“')
+_QUOTES = tuple('`\'"')
+"""Between “these” stands what the course calls something."""
 
 
 @dataclass(frozen=True)

@@ -62,7 +62,8 @@ def parse(text: str, *, package: str, executable: str) -> CommandLine:
         raise BadCommandLine(shlex.join(words[:4]) or 'nothing', hint)
     if words[4:5] != ['--ros-args']:
         hint = 'write --ros-args after the executable, and rules and parameters after that'
-        raise BadCommandLine(f'{words[4] if words[4:] else "nothing"} after {executable}', hint)
+        before = words[4] if words[4:] else 'nothing'
+        raise BadCommandLine(f'{before} where --ros-args belongs', hint)
     return CommandLine(tuple(words))
 
 

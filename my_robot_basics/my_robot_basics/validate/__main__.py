@@ -11,9 +11,11 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from my_robot_basics.language.catalogues import ENGLISH
 from my_robot_basics.language.speaking import in_language_here
 from my_robot_basics.validate.errors import CourseError
 from my_robot_basics.validate.forks import ForkServer
+from my_robot_basics.validate.report_words import words_around
 
 if TYPE_CHECKING:
     from my_robot_basics.validate.report import Report
@@ -51,12 +53,13 @@ def main(arguments: list[str] | None = None) -> int:
                     _clear()
                     print(as_text(told[0]), flush=True)
 
-            asyncio.run(validate(options.notebook, server, say=say, tell=tell))
+            speak = _write_words if options.json else lambda language: None
+            asyncio.run(validate(options.notebook, server, say=say, speak=speak, tell=tell))
     except KeyboardInterrupt:
         return 130
     except CourseError as error:
         if options.json:
-            _write({'failed': str(error)})
+            _write({'failed': in_language_here(str(error))})
         else:
             print(f'validate: {in_language_here(str(error))}', file=sys.stderr)
         return 2
@@ -76,6 +79,12 @@ def _clear() -> None:
 
 def _say_json(line: str) -> None:
     _write({'progress': line})
+
+
+def _write_words(language: str) -> None:
+    """Give the dialog its own words, which are there in English."""
+    if language != ENGLISH:
+        _write({'words': words_around(language)})
 
 
 def _write(message: dict) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from nbformat import NotebookNode
 
-from my_robot_basics.language.speaking import in_language, language_of
+from my_robot_basics.language.speaking import in_language, language_of, put
 from my_robot_basics.validate.cell_names import in_words
 from my_robot_basics.validate.cells import grade_id, graded_id, role
 from my_robot_basics.validate.exercises import Exercise, find_exercises
@@ -36,21 +36,24 @@ async def validate(
     server: ForkServer,
     *,
     say: Say = lambda line: None,
+    speak: Callable[[str], None] = lambda language: None,
     tell: Callable[[Report], None] = lambda report: None,
 ) -> Report:
     """Run the visible checks of a notebook, each exercise in fresh kernels of a server.
 
-    `say` gets a line whenever something else begins, and `tell` the report, while the kernels
-    still end. Raises CourseError where the file is no notebook of the course.
+    `speak` gets the notebook's language, `say` a line in it whenever something else begins, and
+    `tell` the report, while the kernels still end. Raises CourseError where the file is
+    no notebook of the course.
     """
     lesson = read_lesson(path)
+    language = language_of(lesson.notebook.metadata)
+    speak(language)
     files = [p for p in sorted(path.parent.glob('*.py')) if p.is_file()]
     make_rooms = partial(LocalRooms, files=files, server=server, beside=path.parent)
-    run = _Run(lesson, path.parent, make_rooms, say)
+    run = _Run(lesson, path.parent, make_rooms, say, language)
     parts = await together(*map(run.part, find_exercises(lesson.notebook)))
     named = {check.name for part in parts for check in part.checks}
     parts += [*_by_hand(lesson), *_without_exercise(lesson, named), *_missing(lesson)]
-    language = language_of(lesson.notebook.metadata)
     report = Report(path.name, tuple(parts), lesson.notes, language)
     report = report.with_words(
         lambda text: in_words(text, lesson.notebook, language),
@@ -69,6 +72,7 @@ class _Run:
     folder: Path
     make_rooms: Callable[[], LocalRooms]
     say: Say
+    language: str
     places: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(SIDE_BY_SIDE))
     budget: ShortBudget = field(default_factory=ShortBudget)
     ends: list[asyncio.Task] = field(default_factory=list)
@@ -93,13 +97,13 @@ class _Run:
 
     def _rooms(self, exercise: Exercise) -> LocalRooms:
         rooms = self.make_rooms()
-        rooms.say = partial(_say_of, exercise.name, self.say)
+        rooms.say = partial(_say_of, exercise.name, self.say, self.language)
         rooms.end_later = lambda end: self.ends.append(asyncio.create_task(end))
         return rooms
 
 
-def _say_of(exercise: str, say: Say, line: str) -> None:
-    say(f'{exercise}: {line}')
+def _say_of(exercise: str, say: Say, language: str, line: str) -> None:
+    say(put(language, '{one}: {other}', one=exercise, other=in_language(language, line)))
 
 
 def _can_run(lesson: Lesson, index: int) -> bool:

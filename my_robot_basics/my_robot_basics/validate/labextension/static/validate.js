@@ -70,14 +70,19 @@ needs no build. What it shows is text; nothing in a report is read as HTML. */
     return row;
   }
 
-  function showReport(body, report) {
+  /** Show what stands around a report in its language. */
+  function showWords(body, words) {
     const dialog = body.closest('.jp-Dialog-content');
     for (const [part, text] of [['header', 'Validation Results'], ['buttonLabel', 'Close']]) {
       const shown = dialog?.querySelector(`.jp-Dialog-${part}`);
-      if (!shown || report.words[text] === text) continue;
-      shown.textContent = report.words[text];
-      shown.closest('button')?.setAttribute('aria-label', report.words[text]);
+      if (!shown || words[text] === text) continue;
+      shown.textContent = words[text];
+      shown.closest('button')?.setAttribute('aria-label', words[text]);
     }
+  }
+
+  function showReport(body, report) {
+    showWords(body, report.words);
     body.replaceChildren(element('p', report.passed ? 'summary' : 'summary mrb-validate-bad', report.summary));
     for (const note of report.notes) body.append(element('p', 'message', note));
     for (const part of report.parts) {
@@ -104,6 +109,7 @@ needs no build. What it shows is text; nothing in a report is read as HTML. */
       const lines = text.split('\n');
       text = lines.pop();
       for (const line of lines.filter(Boolean).map(JSON.parse)) {
+        if (line.words) showWords(body, line.words);
         if (line.progress) showLine(body, `${line.progress} …`);
         if (line.report) showReport(body, line.report);
         if (line.failed) showLine(body, line.failed);
@@ -124,7 +130,7 @@ needs no build. What it shows is text; nothing in a report is read as HTML. */
     button.enabled = false;
     dialog.launch().finally(() => stop.abort());
     try {
-      showLine(body, 'saving the notebook …');
+      showLine(body, '…');
       await panel.context.save();
       const settings = services.ServerConnection.makeSettings();
       const response = await services.ServerConnection.makeRequest(
