@@ -4,7 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-SOURCE = Path(__file__).parents[1] / 'solutions/12_package/arm_player'
+LESSON = '12_package'
+SOURCE = Path(__file__).parents[1] / 'solutions' / LESSON / 'arm_player'
 CHECKS = 'package_builds', 'package_runs', 'arm_player_plays'
 FULL = 1, 2, 4
 

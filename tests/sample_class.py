@@ -6,6 +6,8 @@ import sys
 from collections.abc import Iterable
 from pathlib import Path
 
+from changed_packages import ALL, LESSON, Files, write
+
 from grader.course import Course
 from grader.grade import grade_all
 from grader.grading import SubmissionOutcome
@@ -19,6 +21,8 @@ from rebase import assignment_of, rebased, samples  # noqa: E402 - found only no
 
 __all__ = ['EXPECTED', 'FOLDER', 'PATHS', 'assignment_of', 'grade', 'hand_in', 'rebased']
 
+_CHANGES = {change.name: change for change in ALL}
+
 PATHS = {path.stem: path for path in samples()}
 """Every sample, by its name."""
 EXPECTED = {
@@ -29,6 +33,15 @@ EXPECTED = {
 """For each sample, for each grade cell: its score and what its reason must say."""
 
 
+def package_of(name: str) -> Files:
+    """Return the files of the package that a sample hands in, by path; none where it has none.
+
+    It is ours with the change of tests/changed_packages.py after which the sample is named.
+    """
+    assignment, _, why = name.split('-', 2)
+    return _CHANGES[why].files() if assignment == LESSON and why != 'untouched' else {}
+
+
 def hand_in(course: Course, names: Iterable[str]) -> None:
     """Put samples where a course's submissions lie; each is its own student."""
     for name in names:
@@ -36,6 +49,7 @@ def hand_in(course: Course, names: Iterable[str]) -> None:
         folder = course.folder('submitted', name, assignment)
         folder.mkdir(parents=True)
         shutil.copyfile(PATHS[name], folder / f'{assignment}.ipynb')
+        write(package_of(name), folder)
 
 
 def grade(

@@ -46,6 +46,8 @@ def _validate(path: Path) -> dict:
     # kernels of other tests may take the TCP ports that were chosen for this one
     with TemporaryDirectory(prefix='validate-') as sockets:
         config = Config(KernelManager={'transport': 'ipc', 'ip': f'{sockets}/zmq'})
+        # each student has a workspace of their own: of two packages of one name, one would stay
+        os.environ['MY_ROBOT_BASICS_WORKSPACE'] = f'{sockets}/ros_ws'
         try:
             return Validator(config=config).validate(str(path))
         except Exception as error:

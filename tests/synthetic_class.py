@@ -23,7 +23,8 @@ from nbformat.v4 import new_code_cell, new_markdown_cell, new_output
 if __name__ == '__main__':
     sys.path[:0] = [str(Path(__file__).parents[1])]
 
-from sample_class import EXPECTED, PATHS, assignment_of, rebased
+from changed_packages import Files, write
+from sample_class import EXPECTED, PATHS, assignment_of, package_of, rebased
 
 from grader.course import Course
 from grader.notebook.restore import grade_id, role
@@ -54,8 +55,14 @@ class Paper:
 
     @property
     def file_name(self) -> str:
-        """Return the name under which it comes in."""
-        return f'{self.student_id}_{self.assignment}.ipynb'
+        """Return the path under which it comes in: a folder of the student's, with a package."""
+        between = '/' if self.package else '_'
+        return f'{self.student_id}{between}{self.assignment}.ipynb'
+
+    @property
+    def package(self) -> Files:
+        """Return the files of the package beside the notebook."""
+        return package_of(self.sample)
 
     @property
     def expected(self) -> dict[str, float | None]:
@@ -87,6 +94,7 @@ def hand_in(course: Course, papers: Sequence[Paper]) -> None:
         folder = course.folder('submitted', paper.student_id, paper.assignment)
         folder.mkdir(parents=True)
         (folder / f'{paper.assignment}.ipynb').write_text(paper.text, encoding='utf-8')
+        write(paper.package, folder)
 
 
 def zip_up(papers: Sequence[Paper], archive: Path) -> None:
@@ -94,6 +102,8 @@ def zip_up(papers: Sequence[Paper], archive: Path) -> None:
     with zipfile.ZipFile(archive, 'w', zipfile.ZIP_DEFLATED) as file:
         for paper in papers:
             file.writestr(paper.file_name, paper.text)
+            for name, text in paper.package.items():
+                file.writestr(f'{paper.student_id}/arm_player/{name}', text)
 
 
 def wrong_scores(course: Course, papers: Sequence[Paper]) -> list[str]:

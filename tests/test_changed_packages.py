@@ -5,14 +5,13 @@ import re
 import nbformat
 import pytest
 from answered import read
-from changed_packages import ALL, CHECKS, FULL, HOSTILE, RIGHT, WRONG, Change, ours, write
+from changed_packages import ALL, CHECKS, FULL, HOSTILE, LESSON, RIGHT, WRONG, Change, ours, write
 
 from grader.course import Course
 from grader.grade import grade_all
 from grader.storage.records import records, verdicts
 from grader.storage.submitted import find_submissions
 
-LESSON = '12_package'
 ORDINARY = {'stops_at_the_first_unreachable'}
 """Those that an ordinary run grades; `./course test --slow` takes all."""
 

@@ -2,6 +2,7 @@ import csv
 import gzip
 import json
 import os
+import shutil
 import tarfile
 import tracemalloc
 import zipfile
@@ -320,6 +321,19 @@ def test_canvas_numbers_a_student_once(course, source):
     write(source / f'lovelaceada_19061_22000_{TOY}.ipynb', 'another’s')
     assert set(rows(course, source).values()) == {LEFT}
     assert numbers(course) == {'lovelaceada': {TOY: {'canvas': '18151'}}}
+
+
+@pytest.mark.parametrize('packed', [False, True])
+def test_a_class_s_folder_like_a_name_of_canvas_s_is_no_student(packed, course, source):
+    folder = source / 'kurs_101_202'
+    write(folder / 'ada' / NOTEBOOK, 'hers')
+    write(folder / f'bob_{TOY}.ipynb', 'his')
+    if packed:
+        shutil.make_archive(str(folder), 'zip', source, folder.name)
+        folder = folder.with_suffix('.zip')
+    assert set(rows(course, folder).values()) == {NEW}
+    assert [submitted(course, who)[NOTEBOOK] for who in ('ada', 'bob')] == ['hers', 'his']
+    assert not course.folder('submitted', 'kurs', TOY).exists()
 
 
 def test_blackboard_has_times_and_no_numbers(course, source):

@@ -468,8 +468,14 @@ def test_the_real_rooms_are_used_unless_a_test_says_otherwise():
 
 
 def test_a_notebook_keeps_so_much_output_and_says_so_of_the_rest():
-    space, cell = module._OutputSpace(1_000), [new_output('stream', text='x' * 400)]
+    space, cell = module._OutputSpace(2_000), [new_output('stream', text='x' * 400)]
     assert space.fit(cell) == space.fit(cell) == cell
     [output] = space.fit(cell)
     assert output.text.startswith('[not kept: all cells together printed more than 4,000,000')
     assert space.fit([]) == []
+
+
+def test_of_many_small_outputs_few_are_kept():
+    space, cell = module._OutputSpace(), [new_output('stream', text='x')] * 1_000
+    kept = sum(len(space.fit(cell)) == 1_000 for _ in range(40))
+    assert kept * len(cell) <= 8_000

@@ -7,11 +7,12 @@ from functools import cache
 
 import nbformat
 import pytest
+from changed_packages import write
 from course_maker import TOY, answered, executed, released_course, submit
 from my_robot_basics.language.catalogues import languages
 from my_robot_basics.language.speaking import LANGUAGE
 from nbformat import NotebookNode
-from sample_class import EXPECTED, PATHS, assignment_of
+from sample_class import EXPECTED, PATHS, assignment_of, package_of
 from stand_in import stand_in
 
 from grader.authoring.editions import is_translated
@@ -85,6 +86,7 @@ def test_the_whole_sample_class_earns_the_same_in_another_edition(language, assi
         folder.mkdir(parents=True)
         target = folder / f'{assignment}.ipynb'
         shutil.copyfile(path, target)
+        write(package_of(name), folder)
         if name != UNREADABLE:
             nbformat.write(in_edition(language, read_notebook(path), assignment), target)
     rows = {row.student_id: row for row in grade_all(course, find_submissions(course))}

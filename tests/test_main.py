@@ -1,5 +1,6 @@
 import errno
 import os
+import shutil
 import signal
 import sqlite3
 import subprocess
@@ -154,6 +155,25 @@ def test_the_sample_class_is_what_demo_grades():
     names = [path.stem.split('-', 2) for path in SAMPLES.glob('*.ipynb')]
     assert 16 <= len(names) <= 20
     assert {outcome for _, outcome, _ in names} <= {'pass', 'fail', 'mixed', 'zero'}
+
+
+def test_a_sample_hands_in_the_solution_s_package_with_the_files_beside_it(tmp_path):
+    from grader.cli.demo import SAMPLES, hand_in
+
+    course = Course(gradebook=tmp_path / 'gradebook')
+    ours = course.source_path('12_package').with_name('arm_player')
+    (sample,) = SAMPLES.glob('12_package-pass-*.ipynb')
+    other = tmp_path / '12_package-fail-other.ipynb'
+    shutil.copyfile(sample, other)
+    (tmp_path / other.stem / 'arm_player').mkdir(parents=True)
+    (tmp_path / other.stem / 'arm_player/setup.py').write_text('1 / 0')
+    for path, setup in ((sample, (ours / 'setup.py').read_text()), (other, '1 / 0')):
+        hand_in(course, path, '12_package')
+        place = course.folder('submitted', path.stem, '12_package')
+        assert (place / '12_package.ipynb').read_bytes() == sample.read_bytes()
+        assert (place / 'arm_player/setup.py').read_text() == setup
+        came = {file.relative_to(place / 'arm_player') for file in place.rglob('*.py')}
+        assert came == {file.relative_to(ours) for file in ours.rglob('*.py')}
 
 
 def test_the_seed_of_an_unknown_assignment_is_refused(tmp_path):

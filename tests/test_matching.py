@@ -80,6 +80,54 @@ def test_a_folder_of_a_term_is_no_upload_of_canvas(folder, at):
     assert (taken, why[:10]) == ([], 'it may be ')
 
 
+@pytest.mark.parametrize('folder', ['kurs_101_202', 'kurs_101_202_b', 'ros_101_202', 'ros_12_345'])
+@pytest.mark.parametrize('form', ['{0}/{1}.ipynb', '{0}_{1}.ipynb', '{0}_18151_21012_{1}.ipynb'])
+def test_nor_is_one_of_a_class_with_numbers(folder, form, at):
+    class_of_two = ('ada', '02_joint_state'), ('bob', '03_publisher')
+    found = [at(f'{folder}/{form.format(*each)}') for each in class_of_two]
+    assert owners(*found) == ([*class_of_two], [])
+
+
+@pytest.mark.parametrize('folder', ['kurs_101_202', 'ros_101_202', 'ros_101_202_b', 'kurs_7_8'])
+def test_no_class_is_a_student_because_one_of_it_handed_in(folder, at):
+    for path in ('ada/02_joint_state.ipynb', 'ada.zip/02_joint_state.ipynb'):
+        taken, _ = owners(at(f'{folder}/{path}'))
+        assert {student for student, _ in taken} <= {'ada'}
+
+
+def test_a_class_in_a_folder_like_an_unpacked_upload_is_left_to_a_person(at):
+    taken, left = owners(
+        at('ros_101_202_b/ada/02_joint_state.ipynb'), at('ros_101_202_b/bob/03_publisher.ipynb')
+    )
+    assert taken == []
+    assert [why[:31] for _, why in left] == [
+        'it may be of ros or of ada: col',
+        'it may be of ros or of bob: col',
+    ]
+
+
+@pytest.mark.parametrize('inside', ['', 'notebooks/', 'turtle/', 'Ada/', '02_joint_state/'])
+def test_an_upload_of_canvas_that_was_unpacked_is_its_student_s(inside, at):
+    found = owners(at(f'ada_18151_21012_turtle/{inside}02_joint_state.ipynb'))
+    assert found == ([('ada', '02_joint_state')], [])
+
+
+@pytest.mark.parametrize(
+    'path',
+    [
+        'Kurs ROS_101_assignsubmission_file_/ada/02_joint_state.ipynb',
+        'ROS_Kurs_attempt_2026-01-02-03-04-05/ada/02_joint_state.ipynb',
+        'kurs+02_joint_state+2026-01-01 10:00:00 UTC/02_joint_state.ipynb',
+        'homework_02_joint_state.zip/02_joint_state.ipynb',
+        'Hausaufgabe 2_02_joint_state.ipynb',
+    ],
+)
+def test_a_word_for_work_or_a_class_is_no_student_whoever_wrote_it(path, at):
+    taken, [(_, why)] = owners(at(path))
+    assert taken == []
+    assert 'names work or a class' in why
+
+
 UPLOADS = {
     'moodle': 'ada_1815_assignsubmission_file_/{}.zip/02_joint_state.ipynb',
     'moodle, flat': 'ada_1815_assignsubmission_file_{}.zip/02_joint_state.ipynb',

@@ -1,10 +1,12 @@
 import copy
 import json
 
+import jsonschema
 import nbformat
 import pytest
 from course_maker import executed as judged
 from course_maker import toy_lesson
+from nbformat.v4 import new_output
 
 from grader.common.errors import TaskFailed
 from grader.judging.result_schema import read_result
@@ -14,6 +16,7 @@ from grader.sandbox.limits import (
     MAX_NOTES,
     MAX_REASON_CHARACTERS,
     MAX_RESULT_BYTES,
+    MAX_RESULT_PARTS,
 )
 
 WHY = 'expected 2, saw 3: add it to itself'
@@ -211,11 +214,55 @@ def another_key_beside_the_verdict(notebook):
     notebook.cells[CHECK].metadata['more'] = 1
 
 
+def another_key_in_an_output(notebook):
+    """It would pass `nbformat.validate(…, relax_add_props=True)`, and no reading or writing."""
+    notebook.cells[1].outputs = [{'output_type': 'stream', 'name': 'stdout', 'text': '', 'a': 1}]
+
+
+def an_output_of_no_kind(notebook):
+    notebook.cells[1].outputs = [{'output_type': 'x'}]
+
+
+def a_later_format(notebook):
+    notebook.nbformat_minor = 6
+
+
 SPOILED_NOTEBOOKS = [
     another_text, another_check, more_points, negative_points, no_number_of_points,
     an_unknown_grade_id, one_more_check, one_less, another_kernel, a_picture_that_nobody_pasted,
-    another_key_beside_the_verdict,
+    another_key_beside_the_verdict, another_key_in_an_output, an_output_of_no_kind, a_later_format,
 ]  # fmt: skip
+
+
+@pytest.mark.parametrize('spoil', [another_key_in_an_output, an_output_of_no_kind])
+def test_no_words_are_looked_for_where_a_notebook_is_broken(asked, answer, spoil, monkeypatch):
+    """jsonschema would take 40 s and 1.4 GB for 30,000 outputs."""
+    spoil(answer['notebook'])
+    text = json.dumps(answer)
+    asked_again = []
+    monkeypatch.setattr(jsonschema.Draft4Validator, 'iter_errors', lambda *_: asked_again)
+    with pytest.raises(TaskFailed, match='not a notebook'):
+        read(text, asked)
+
+
+@pytest.mark.parametrize('part', ['{}', '[]', '{"a": 1}', '["{", {}]'])
+def test_what_takes_many_times_its_text_is_not_even_read(asked, monkeypatch, part):
+    monkeypatch.setattr(json, 'loads', lambda *_, **__: pytest.fail('it was read'))
+    cells = ','.join([part] * (MAX_RESULT_PARTS + 1))
+    with pytest.raises(TaskFailed, match='objects and lists, more than 200,000'):
+        read('{"seconds": 1, "notebook": {"cells": [' + cells + ']}}', asked)
+
+
+@pytest.mark.parametrize('text', ['{[' * 150_000, '\\"{' * 150_000, '{\\' * 210_000])
+def test_what_a_student_printed_is_no_part_of_a_result(asked, answer, text):
+    answer['notebook'].cells[1].outputs = [new_output('stream', name='stdout', text=text)]
+    assert read(answer, asked)[0].cells[1].outputs[0].text == text
+
+
+@pytest.mark.parametrize('text', ['"' + '\\"{' * 300_000, '"' + '\\"' * 300_000 + '\\'])
+def test_a_text_that_never_ends_is_looked_at_once(asked, text):
+    with pytest.raises(TaskFailed, match='what came back is not a result: Unterminated string'):
+        read(text, asked)
 
 
 @pytest.mark.parametrize('spoil', SPOILED_NOTEBOOKS)

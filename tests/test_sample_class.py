@@ -1,11 +1,14 @@
 """The sample class: of each notebook comes what should, in the grader and in Validate."""
 
 import re
+import tempfile
 from functools import cache
+from pathlib import Path
 
 import nbformat
 import pytest
-from sample_class import EXPECTED, PATHS, assignment_of, grade, rebased
+from changed_packages import ALL, FULL, LESSON, write
+from sample_class import EXPECTED, PATHS, assignment_of, grade, package_of, rebased
 from stock_validator import validators
 
 from grader.course import Course
@@ -147,7 +150,9 @@ def validated(tmp_path_factory):
     def as_validated(name):
         if name in WITH_DEMOS:
             return PATHS[name]
-        shorter = folder / PATHS[name].name
+        shorter = folder / name / PATHS[name].name
+        shorter.parent.mkdir()
+        write(package_of(name), shorter.parent)
         shorter.write_text(rebased(PATHS[name], with_demos=False), encoding='utf-8')
         return shorter
 
@@ -162,6 +167,16 @@ def validated(tmp_path_factory):
 
 def test_something_is_expected_of_every_sample():
     assert set(EXPECTED) == set(PATHS)
+
+
+def test_a_sample_with_a_package_earns_what_that_package_does():
+    packages = {change.name: change.points for change in ALL}
+    names = [name for name in of_assignment(LESSON) if package_of(name)]
+    assert len(names) >= 5
+    for name in names:
+        earned = tuple(score for score, *_ in EXPECTED[name].values())
+        assert earned == packages[name.split('-', 2)[2]]
+        assert ('-pass-' in name) == (earned == FULL)
 
 
 @pytest.mark.parametrize('name', PATHS)
@@ -229,7 +244,7 @@ def test_validate_says_the_same_of_each_visible_cell(graded, validated, name):
     else:
         # a visible part comes first in its cell: what fails there fails here, and in those words
         if numberless(ours) != numberless(theirs):
-            ours = visible_parts_alone(notebook, assignment_of(PATHS[name]))
+            ours = visible_parts_alone(notebook, name)
         if name in BESIDE_THE_ARM:
             assert ours.pop(RELAY) != theirs.pop(RELAY)
         if name in WAITS_ALREADY:
@@ -264,10 +279,13 @@ def by_cell(notebook, found, name):
     }
 
 
-def visible_parts_alone(notebook, assignment):
+def visible_parts_alone(notebook, name):
     """What the grader says of each grade cell as students see it."""
-    release = Course().release(assignment)
-    execution = execute(restore(notebook, make_template(release, release)).notebook)
+    release = Course().release(assignment_of(PATHS[name]))
+    restored = restore(notebook, make_template(release, release)).notebook
+    with tempfile.TemporaryDirectory() as folder:
+        write(package_of(name), Path(folder))
+        execution = execute(restored, extra_files=[*Path(folder).iterdir()])
     return {v.grade_id: v.reason for v in execution.verdicts if v.outcome != 'manual'}
 
 

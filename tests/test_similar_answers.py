@@ -159,3 +159,15 @@ def test_what_could_not_be_compared_is_said_and_stops_no_report(course, monkeypa
     assert similar.problems == (
         f'{TOY}, double: answers were not compared, for it took more than 60 s',
     )
+
+
+@pytest.mark.parametrize('more', ['#' * 20_000, '\u202e' * 10_000])
+def test_an_answer_that_is_far_too_long_is_compared_with_none(course, monkeypatch, more):
+    for student, text in (('ada', LONG), ('bob', LONG), ('eve', f'{LONG}# {more}')):
+        graded(course, student, text)
+    compared = []
+    monkeypatch.setattr(
+        similar_answers, 'parse', lambda _, answers, *__, **___: compared.append(answers) or []
+    )
+    find_similar(course, [TOY])
+    assert [answers.keys() for answers in compared] == [{'ada', 'bob'}]

@@ -59,7 +59,7 @@ UNREADABLE = {
     'cells are an object': ('{"nbformat": 4, "cells": {"a": 1}}', 'has no cells'),
     'cells hold no objects': ('{"nbformat": 4, "cells": [1, null, "x", []]}', 'has no cells'),
     'old, worksheets are a number': ('{"nbformat": 3, "worksheets": 7}', 'has no cells'),
-    'too many cells': (notebook_text(*[CODE] * (MAX_CELLS + 1)), 'cells, more than the 2000'),
+    'too many cells': (notebook_text(*[CODE] * (MAX_CELLS + 1)), 'cells, more than the 800'),
     'too much text': (
         notebook_text(*[CODE | {'source': 'x' * 100_000}] * (MAX_CHARACTERS // 100_000 + 1)),
         'has 600,000 characters',
@@ -99,6 +99,7 @@ CELLS = {
     'outputs of any type': (CODE | {'outputs': 'forged'}, 'x = 1'),
     'metadata is a list': (CODE | {'metadata': [1]}, 'x = 1'),
     'nbgrader is text': (CODE | {'metadata': {'nbgrader': 'solution'}}, 'x = 1'),
+    'grade id is long': (CODE | {'metadata': {'nbgrader': {'grade_id': 'a' * 999}}}, 'x = 1'),
     'grade id is a list': (CODE | {'metadata': {'nbgrader': {'grade_id': ['a']}}}, 'x = 1'),
     'id is a number': (CODE | {'id': 9}, 'x = 1'),
     'id is a surrogate': (CODE | {'id': '\ud800'}, 'x = 1'),
@@ -219,6 +220,16 @@ FORGED = {
     'an output': {
         'cells': [{'id': 'a', 'cell_type': 'code', 'source': '', 'metadata': {}, 'outputs': [1]}]
     },
+    'a long grade id': {
+        'cells': [
+            {
+                'id': 'a',
+                'cell_type': 'raw',
+                'source': '',
+                'metadata': {'nbgrader': {'grade_id': 'a' * 129}},
+            }
+        ]
+    },
     'a newline in an id': {
         'cells': [{'id': 'a\n', 'cell_type': 'raw', 'source': '', 'metadata': {}}]
     },
@@ -301,7 +312,7 @@ def test_a_notebook_that_takes_all_memory_is_refused_and_takes_none_here(read):
     """Read in this process, it took 7 GB."""
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     cells = ','.join(['{}'] * 6_000_000)
-    with pytest.raises(UnreadableSubmission, match=r'the 2000 that are graded|too much memory'):
+    with pytest.raises(UnreadableSubmission, match=r'the 800 that are graded|too much memory'):
         read(f'{{"nbformat": 4, "cells": [{cells}]}}')
     kilobytes = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before
     assert kilobytes < 400_000  # of which this test itself takes some

@@ -40,11 +40,7 @@ def demo(samples: Path = SAMPLES, *, root: Path = ROOT) -> bool:
     for sample in sorted(samples.glob('*.ipynb')):
         assignment, outcome, _ = _parts(sample, course)
         expected[sample.stem] = outcome
-        folder = course.folder('submitted', sample.stem, assignment)
-        folder.mkdir(parents=True)
-        shutil.copyfile(sample, folder / f'{assignment}.ipynb')
-        if sample.with_suffix('').is_dir():  # what is handed in beside it: packages
-            shutil.copytree(sample.with_suffix(''), folder, dirs_exist_ok=True)
+        hand_in(course, sample, assignment)
     submissions = find_submissions(course)
     if not require_isolation(trust_students=True):
         print(f'The samples are {NO_SANDBOX}. They are part of the course, and do no harm.')
@@ -60,6 +56,23 @@ def demo(samples: Path = SAMPLES, *, root: Path = ROOT) -> bool:
         print(f'A page of feedback: {_most_telling(pages, expected)}')
     print(f'A report of the run: {write_report(course, run, rows)}')
     return not surprises
+
+
+def hand_in(course: Course, sample: Path, assignment: str) -> None:
+    """Put a sample where submissions lie.
+
+    A package that its lesson asks for is the solution's; files in a folder that is named as the
+    sample is replace those.
+    """
+    folder = course.folder('submitted', sample.stem, assignment)
+    folder.mkdir(parents=True)
+    shutil.copyfile(sample, folder / f'{assignment}.ipynb')
+    for package in course.packages(assignment):
+        ours = course.source_path(assignment).with_name(package)
+        if ours.is_dir():
+            shutil.copytree(ours, folder / package)
+    if sample.with_suffix('').is_dir():
+        shutil.copytree(sample.with_suffix(''), folder, dirs_exist_ok=True)
 
 
 def _parts(sample: Path, course: Course) -> tuple[str, str, str]:

@@ -4,7 +4,7 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator
 
 from grader.collect.collect import AGAIN, EARLIER, KNOWN, LEFT, NEW, UNUSED, FileOutcome
-from grader.collect.naming import shared_folders
+from grader.collect.name_forms import shared_folders
 from grader.common.text import columns, pad, printable, shorten
 
 WORDS = {NEW: 'new', AGAIN: 'handed in again', EARLIER: 'an earlier one', KNOWN: 'there already'}

@@ -1,7 +1,7 @@
 """The forms of names that tell a student and an assignment: STUDENT_ASSIGNMENT, the exchange's."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from grader.collect.archive_entries import ARCHIVE
@@ -69,3 +69,12 @@ def bare(name: str) -> str:
     if not ARCHIVE.search(name):
         return name
     return re.sub(r' \(\d+\)$', '', ARCHIVE.sub('', name))
+
+
+def shared_folders(folders: Sequence[tuple[str, ...]]) -> tuple[str, ...]:
+    """Return the folders in which everything lies."""
+    if not folders:
+        return ()
+    low, high = min(folders), max(folders)
+    alike = [a == b for a, b in zip(low, high, strict=False)]
+    return low[: alike.index(False) if False in alike else len(alike)]

@@ -9,8 +9,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
+from grader.collect.archive_entries import ARCHIVE
 from grader.collect.incoming import Incoming, is_notebook
-from grader.collect.name_forms import NameForms, bare, stem_of
+from grader.collect.name_forms import NameForms, bare, shared_folders, stem_of
 from grader.collect.platforms import PlatformLabel, label_in, student_in
 from grader.common.dates import date_in
 from grader.common.student_names import UnclearOwner, is_nobody, same_person
@@ -21,6 +22,7 @@ EXPECTED = (
     'expected STUDENT_ASSIGNMENT.ipynb, STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb or an archive named '
     'after the student'
 )
+_SEVERAL = "collect the folder by itself in which the students' folders lie, or rename it"
 
 
 @dataclass(frozen=True)
@@ -81,6 +83,8 @@ class Naming:
             return Owner(student_in(exchanged.who), stem, True, when, above=above)
         assignment = self._assignment(stem, each.parts[:-1])
         student = student_in(self._forms.who(name))
+        if label and label.platform.names_files_only and not ARCHIVE.search(name):
+            self._expect_no_class(student, label, each.parts[at + 1 : -1])
         if (named := self._forms.named(stem)) and not same_person(named.who, student):
             where = f'in the archive of {student}' if each.archive else f'in a folder {student}'
             where = f'in what {student} handed in' if label else where
@@ -102,9 +106,19 @@ class Naming:
         """Yield whom else the names inside an upload may name, and whether that is their form."""
         for name in owner.inside:
             who = self._forms.who(name)
-            ours = who in self._known or is_nobody(who) or same_person(who, owner.student_id)
-            if not ours:
+            if not self._may_name(who, owner.student_id):
                 yield who, who != bare(name)
+
+    def _may_name(self, who: str, *students: str) -> bool:
+        """Whether a folder of that name may be one of these students': it names no other one."""
+        ours = (same_person(who, student) for student in students)
+        return who in self._known or is_nobody(who) or any(ours)
+
+    def _expect_no_class(self, student: str, label: PlatformLabel, folders: Sequence[str]) -> None:
+        """Raise UnclearOwner where a folder, named like an unpacked upload, may hold a class."""
+        for who in map(self._forms.who, folders):
+            if not self._may_name(who, student, label.rest):
+                raise UnclearOwner(f'it may be of {student} or of {who}: {_SEVERAL}')
 
     def _decides(self, each: Incoming) -> int | None:
         """Return which part of its path says whose it is; None where only the file's name does.
@@ -126,10 +140,7 @@ class Naming:
             return first
         names = [self._forms.who(folders[at]) for at in (first, *others)]
         if not all(same_person(name, names[0]) for name in names):
-            raise UnclearOwner(
-                f'it may be of {" or of ".join(names)}: collect the folder by itself in which the '
-                "students' folders lie, or rename it"
-            )
+            raise UnclearOwner(f'it may be of {" or of ".join(names)}: {_SEVERAL}')
         return first
 
     def _candidates(self, folders: Sequence[str], start: int) -> list[int]:
@@ -183,12 +194,3 @@ class Naming:
             if label_in(part) or (at < len(each.parts) - 1 and self._forms.exchanged(part)):
                 return at
         return None
-
-
-def shared_folders(folders: Sequence[tuple[str, ...]]) -> tuple[str, ...]:
-    """Return the folders in which everything lies."""
-    if not folders:
-        return ()
-    low, high = min(folders), max(folders)
-    alike = [a == b for a, b in zip(low, high, strict=False)]
-    return low[: alike.index(False) if False in alike else len(alike)]

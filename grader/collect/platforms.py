@@ -2,12 +2,11 @@
 
 import re
 import unicodedata
-from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import Literal
 
-from grader.common.student_names import UnclearOwner, problem_of_id
+from grader.common.student_names import UnclearOwner, is_nobody, problem_of_id
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,6 +28,9 @@ class Platform:
     """Whether it puts -1, -2, … behind the name of a file that is handed in again."""
     is_plain: bool = False
     """Whether one student's upload can be collected by itself: nothing else has such a name."""
+    names_files_only: bool = False
+    """Whether it names no folder: one of its form is an upload that somebody unpacked, or a
+    teacher's, whose class is called so."""
 
 
 # The part before `rest` ends as early as it can: what stands behind it was the student's choice.
@@ -44,10 +46,11 @@ PLATFORMS = (
     Platform(
         name='canvas',
         form=re.compile(
-            r'(?P<who>[^_]+)(_LATE)?_(?P<number>\d{3,})_(?P<upload>\d{3,})(_(?P<rest>.*))?', re.I
+            r'(?P<who>[^_]+)(_LATE)?_(?P<number>\d{3,})_(?P<upload>\d{3,})_(?P<rest>.+)', re.I
         ),
         number_of='student',
         numbers_copies=True,
+        names_files_only=True,
     ),
     # it has no numbers: what stands before the time tells a_lovelace and b_lovelace apart
     Platform(
@@ -86,7 +89,8 @@ def label_in(name: str) -> PlatformLabel | None:
     found = [
         (match.end('who'), place, match)
         for place, platform in enumerate(PLATFORMS)
-        if (match := platform.form.fullmatch(name)) and not _is_term(match.groupdict())
+        if (match := platform.form.fullmatch(name))
+        and not (platform.names_files_only and _is_class(match))
     ]
     if not found:
         return None
@@ -102,15 +106,21 @@ def student_in(name: str) -> str:
     if label := label_in(name):
         name = label.who
     name = name.strip(' ')
+    if is_nobody(name):
+        raise UnclearOwner(f'{name!r} names work or a class: rename it after a student')
     if problem := problem_of_id(name):
         raise UnclearOwner(problem)
     return name
 
 
-def _is_term(found: Mapping[str, str]) -> bool:
-    """Whether two numbers are those of a year and the next, as in ws_2026_2027_group_a."""
-    number, upload = found['number'], found.get('upload', '')
-    return len(number) == len(upload) == 4 and int(upload) - int(number) in (0, 1)
+def _is_class(found: re.Match[str]) -> bool:
+    """Whether a class is called so: ws_2026_2027_a, with a year and the next, or kurs_101_202_a.
+
+    Names with words for work or a class are nobody's.
+    """
+    number, other = found['number'], found.groupdict().get('upload', '')
+    of_years = len(number) == len(other) == 4 and int(other) - int(number) in (0, 1)
+    return of_years or is_nobody(found['who'])
 
 
 def _time(platform: Platform, found: re.Match[str]) -> datetime | None:

@@ -26,6 +26,8 @@ SIDE_BY_SIDE = 2
 """Exercises of a notebook at a time, where this process runs no other one: they wait more than
 they work. With several notebooks, these are what runs side by side."""
 _under_way = 0
+OUTPUT_CHARACTERS = 400
+"""What an output counts for besides its own: of small ones, some 8,000 are kept of a notebook."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +49,7 @@ class _OutputSpace:
 
     def fit(self, outputs: list[NotebookNode]) -> list[NotebookNode]:
         """Return a cell's outputs while there is room for them, or a word that there is none."""
-        size = len(str(outputs))
+        size = len(str(outputs)) + OUTPUT_CHARACTERS * len(outputs)
         if size <= self.characters:
             self.characters -= size
             return outputs

@@ -17,9 +17,12 @@ MAX_NOTEBOOK_BYTES = 20_000_000
 """More than any lesson with all its pictures; a larger file is refused, not read."""
 LANGUAGES = '[A-Za-z_]{2,20}'
 """What names of languages are made of: zh_CN."""
-MAX_CELLS = 2_000
+MAX_CELLS = 800
 MAX_CHARACTERS = 500_000
-"""Of all cells together, pictures apart: twenty times what a lesson has."""
+"""Of all cells together, pictures apart. Both are twenty times what a lesson has: what is read is
+restored, checked and written several times in the process that holds the gradebook."""
+MAX_GRADE_ID_CHARACTERS = 128
+"""A longer one is no lesson's, and is dropped."""
 MAX_PICTURES, MAX_PICTURE_NAME_CHARACTERS = 200, 255
 """Pasted ones, of all cells together; each is checked anew whenever the notebook is written."""
 
@@ -108,7 +111,7 @@ def _clean_cell(cell: dict) -> dict:
     nbgrader = cell.get('metadata')
     nbgrader = nbgrader.get('nbgrader') if isinstance(nbgrader, dict) else None
     grade_id = nbgrader.get('grade_id') if isinstance(nbgrader, dict) else None
-    if isinstance(grade_id, str):
+    if isinstance(grade_id, str) and len(grade_id) <= MAX_GRADE_ID_CHARACTERS:
         metadata = {'nbgrader': {'grade_id': grade_id}}
     kind = cell.get('cell_type')
     clean = {

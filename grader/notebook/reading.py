@@ -11,7 +11,13 @@ from nbformat import NotebookNode
 from grader.common.errors import CourseError, UnreadableSubmission
 from grader.common.parsing import ParsingFailed, parse
 from grader.notebook import raw_notebook
-from grader.notebook.raw_notebook import LANGUAGES, MAX_CELLS, MAX_CHARACTERS, MAX_PICTURES
+from grader.notebook.raw_notebook import (
+    LANGUAGES,
+    MAX_CELLS,
+    MAX_CHARACTERS,
+    MAX_GRADE_ID_CHARACTERS,
+    MAX_PICTURES,
+)
 
 _EMPTY = {'nbformat': 4, 'nbformat_minor': 5, 'metadata': {}, 'cells': []}
 """A notebook; nbformat's own functions check it, cell by cell, against all of their schema."""
@@ -26,7 +32,9 @@ _CELL = {
             'properties': {
                 'nbgrader': {
                     'type': 'object',
-                    'properties': {'grade_id': {'type': 'string'}},
+                    'properties': {
+                        'grade_id': {'type': 'string', 'maxLength': MAX_GRADE_ID_CHARACTERS}
+                    },
                     'additionalProperties': False,
                 }
             },

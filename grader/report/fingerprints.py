@@ -20,7 +20,6 @@ LEAST_SHARE = 0.7
 """Of the shorter answer's own groups, those that the other has, too."""
 COMMON_SHARE, COMMON_STUDENTS = 0.1, 3
 """What more than this share of the class wrote, and more than so many, does not count."""
-MOST_CHARACTERS = 20_000
 
 
 def find_pairs(answers: dict[str, str], released: str, most: int) -> list[dict]:
@@ -29,14 +28,13 @@ def find_pairs(answers: dict[str, str], released: str, most: int) -> list[dict]:
     Each has `students`, two names, `share`, from 0 to 1, and `texts`, both answers as HTML with
     marks around what they have in common. The released text does not count.
     """
-    texts = {student: code for student, code in answers.items() if len(code) <= MOST_CHARACTERS}
-    prints = {student: _fingerprint(code) for student, code in texts.items()}
+    prints = {student: _fingerprint(code) for student, code in answers.items()}
     given = _fingerprint(released).hashes
     who = defaultdict(set)
     for student, found in prints.items():
         for group in found.hashes - given:
             who[group].add(student)
-    limit = max(COMMON_STUDENTS, COMMON_SHARE * len(texts))
+    limit = max(COMMON_STUDENTS, COMMON_SHARE * len(answers))
     rare = {group: students for group, students in who.items() if len(students) <= limit}
     for found in prints.values():
         _keep(found, rare)

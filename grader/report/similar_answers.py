@@ -12,6 +12,8 @@ from grader.notebook.restore import grade_id
 
 MOST_PAIRS = 10
 """Of one exercise, those that are most alike."""
+MOST_CHARACTERS = 20_000
+"""A longer answer is compared with none."""
 LIMITS = Limits(cpu_sec=60)
 
 
@@ -77,6 +79,8 @@ def _answers(course: Course, assignment: str) -> dict[str, tuple[str, dict[str, 
     answers: dict[str, dict[str, str]] = {name: {} for name in given}
     for path in course.folder('autograded', '', '').glob(f'*/{assignment}/{assignment}.ipynb'):
         for cell in nbformat.read(path, as_version=4).cells:
-            if (name := grade_id(cell)) in given and cell.source.strip():
-                answers[name][path.parts[-3]] = visible(cell.source)
+            if (name := grade_id(cell)) in given and len(cell.source) <= MOST_CHARACTERS:
+                shown = visible(cell.source)
+                if shown.strip() and len(shown) <= MOST_CHARACTERS:
+                    answers[name][path.parts[-3]] = shown
     return {name: (given[name].source, answers[name]) for name in given if len(answers[name]) > 1}

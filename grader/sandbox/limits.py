@@ -13,6 +13,8 @@ MAX_TASK_BYTES = 100_000_000
 """A notebook that is to be graded as JSON, with its pasted pictures and files."""
 MAX_RESULT_BYTES = 100_000_000
 """A graded notebook as JSON: its text, pasted pictures, and outputs within their own limits."""
+MAX_RESULT_PARTS = 200_000
+"""Objects and lists in it: one takes 200 times what it takes as text. A lesson: some 500."""
 
 ROOM_MEMORY_BYTES = 2 * 2**30
 """All processes of a room together; the kernel of a lesson uses 0.15 GB."""

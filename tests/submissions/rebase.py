@@ -6,7 +6,8 @@ Each sample keeps its answers and its own cells (those whose id begins with `own
 from notebooks/, those in more/ without the demonstrations: shorter to read, and to run whole. A
 sample whose point is a damaged notebook is damaged again; one of which nothing can be read
 (`-zero-`) stays as it is. A new sample is a copy of another one with another answer, and
-a line in expected/<assignment>.json.
+a line in expected/<assignment>.json. Where a package is handed in, the sample is named after a
+change in tests/changed_packages.py.
 """
 
 import sys
