@@ -14,7 +14,7 @@ ORDINARY = {
     *('five_hz-drops_tenth', 'ik_solver_node-gives_up', 'fix_topic_name-lags'),
     *('ik_client-await_in_the_group', 'count_turns-a_bound_less'),
 }
-"""Answers that an ordinary run grades; `./course test --slow` takes all."""
+"""Answers that tell most of a grader that judges wrongly: few enough to be tried at once."""
 
 
 def wrongly_judged(answers: list[Answer], course: Course) -> list[str]:

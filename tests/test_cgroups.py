@@ -144,6 +144,11 @@ def test_the_limits_are_those_of_the_table(sandbox):
     assert int((cgroup.folders['memory'] / name).read_text()) == ROOM_MEMORY_BYTES
     most = int((cgroup.folders['pids'] / 'pids.max').read_text())
     assert ROOM_PROCESSES <= most <= ROOM_PROCESSES + 20
+    if not (cpu := cgroup.folders.get('cpu')):
+        pytest.skip('no controller of processors can be had here')
+    name, one = ('cpu.weight', 100) if cgroup.version == 2 else ('cpu.shares', 1024)
+    weights = [int((folder / name).read_text()) for folder in (cpu, cpu.parent)]
+    assert weights == [one, 2 * one]  # a sandbox has twice that of a room, for it has two
 
 
 def test_nothing_is_left_of_a_sandbox_whoever_is_still_in_it(loop):

@@ -1,8 +1,10 @@
 """The image and the development container name what exists: verbs, pins, ports, files, stages."""
 
+import configparser
 import json
 import re
 import shlex
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -95,3 +97,19 @@ def test_the_document_names_each_option_once_and_no_wider_one(option):
     assert line.count(f'--security-opt {option}=') == 1
     assert '--privileged' not in line
     assert 'seccomp=unconfined' not in line
+
+
+def test_the_service_is_what_the_recipe_says_and_gets_cgroups_for_its_rooms():
+    """Of the machine that grades: where the recipe puts the course, and where a hub hands in."""
+    unit = configparser.ConfigParser()
+    unit.optionxform = str
+    unit.read_string((ROOT / 'docs/serve.service').read_text())
+    service = unit['Service']
+    program, verb, inbound = service['ExecStart'].split()
+    assert verb in read_verbs()
+    assert program == f'{service["WorkingDirectory"]}/course'
+    assert f'git clone ADDRESS {service["WorkingDirectory"]} ' in DOCUMENT
+    assert f'useradd --create-home --shell /bin/bash {service["User"]}\n' in DOCUMENT
+    hub = tomllib.loads((ROOT / 'deploy/jupyterhub/class.toml').read_text())
+    assert inbound == f'{hub["exchange"]}/{hub["course"]}/inbound'
+    assert (service['Delegate'], service['Restart']) == ('yes', 'on-failure')

@@ -139,7 +139,6 @@ def found(**seen):
     return [(each.title, each.code) for each in judge(evidence).findings]
 
 
-@pytest.mark.slow
 def test_two_types_are_named_and_the_servers_is_right():
     line = "self.client = ActionClient(self, MoveArm, '/a')"
     assert found(endpoints=(SERVER, CLIENT)) == [('types differ', line)]

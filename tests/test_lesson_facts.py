@@ -23,6 +23,7 @@ from std_msgs.msg import Int32, String
 
 from arm_interfaces.action import MoveArm
 
+ROOT = Path(__file__).parents[1]
 EXECUTORS = """
 import rclpy
 from my_robot_basics.live import run, stop
@@ -162,6 +163,19 @@ def test_what_comes_next_is_not_in_the_course(tool):
     """What next: these tools need a ROS 2 of one's own."""
     assert find_spec(tool) is None
     assert shutil.which(tool, path=str(Path(sys.executable).parent)) is None
+
+
+LEFT_OUT = ['launch', 'tf2', 'URDF', 'RViz', 'simulation', 'bags', 'several machines']
+IN_CHINESE = {'simulation': '仿真', 'bags': 'bag 文件', 'several machines': '多台计算机'}
+
+
+@pytest.mark.parametrize('what', LEFT_OUT)
+def test_what_is_left_out_has_its_row_and_link_in_what_next(what):
+    """There are no packages of it; a student who looks for it is told where to read on."""
+    for folder, name in ('.', what), ('zh_CN', IN_CHINESE.get(what, what)):
+        page = (ROOT / 'notebooks' / folder / 'what_next.md').read_text(encoding='utf-8')
+        (row,) = (line for line in page.splitlines() if line.startswith(f'| {name} |'))
+        assert '](https://docs.ros.org/en/jazzy/' in row
 
 
 def test_a_lesson_looks_for_nodes_on_its_own_machine_only():

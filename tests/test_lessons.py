@@ -334,6 +334,28 @@ def test_what_a_grade_cell_calls_is_there(lesson):
                     assert hasattr(owner, node.attr), f'{cell.id}: {ast.unparse(node)}'
 
 
+def test_nodes_obey_what_the_lessons_teach_or_say_why_not(lesson):
+    """Who publishes joint states sets stamp and frame, or a comment says that it does not."""
+    for cell in code_cells(lesson):
+        source = TransformerManager().transform_cell(cell.source)
+        for node in ast.walk(ast.parse(source)):
+            if isinstance(node, ast.ClassDef):
+                text = '\n'.join(source.splitlines()[node.lineno - 1 : node.end_lineno])
+                if 'JointState(' in text and not re.search(r'#.*\bno stamp\b', text):
+                    assert re.search(r'header\.stamp =|stamp=', text), (cell.id, node.name)
+                    assert 'frame_id' in text, (cell.id, node.name)
+
+
+def test_what_is_to_be_fixed_is_not_pointed_at(lesson):
+    """Hints stand above the node; none stands at the line that is broken, or beside it."""
+    for cell in code_cells(lesson):
+        if '### BROKEN' in cell.source:
+            released = broken(as_released(cell.source))
+            first = released[: released.index('class ')].splitlines()
+            assert all(line.startswith('# ') for line in first), cell.id
+            assert '#' not in released[released.index('class ') :], cell.id
+
+
 def test_an_untouched_answer_is_valid_python_with_hints(lesson):
     for cell in code_cells(lesson):
         if marks(cell).get('solution'):

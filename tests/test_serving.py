@@ -6,8 +6,10 @@ import signal
 import sqlite3
 import subprocess
 import time
+from concurrent.futures import Future
 from contextlib import closing
 from pathlib import Path
+from types import SimpleNamespace
 
 import nbformat
 import pytest
@@ -17,14 +19,17 @@ from nbgrader.auth import Authenticator
 from nbgrader.coursedir import CourseDirectory
 from nbgrader.exchange.default import ExchangeFetchFeedback, ExchangeSubmit
 from nbgrader.utils import notebook_hash
-from serving_desk import grade_here, serve_here
+from serving_desk import grade_here, serve_here, stood_in
 from traitlets.config import Config
 
 from grader.__main__ import main
 from grader.common.errors import CourseError
 from grader.course import Course
+from grader.grading import REPLACED as REPLACED_MEANWHILE
 from grader.notebook.restore import KEY
+from grader.serving import desk as desk_module
 from grader.serving import intake
+from grader.serving.desk import Desk, begin_turns
 from grader.serving.inbound import new_entries
 from grader.serving.queue import (
     FAILED,
@@ -32,6 +37,8 @@ from grader.serving.queue import (
     REFUSED,
     REPLACED,
     WAITING,
+    Arrival,
+    opened_queue,
     queue_to_read,
 )
 from grader.serving.serve import only_one
@@ -229,6 +236,46 @@ def test_inputs_are_chosen_anew_for_another_answer_and_kept_for_the_same(course,
     assert row.reused
 
 
+def test_one_of_a_student_s_is_begun_at_a_time_though_there_is_room(course, tmp_path, monkeypatch):
+    begun = []
+
+    def begin(desk, arrival, earlier):
+        desk.queue.update(arrival)
+        desk.running[Future()] = arrival
+        begun.append(arrival.whose)
+
+    monkeypatch.setattr(desk_module, 'begin', begin)
+    handed_in = [('ada', 'a'), ('ada', 'b'), ('bob', 'a')]
+    arrivals = [
+        Arrival(0, who, at, WAITING, who, lesson) for at, (who, lesson) in enumerate(handed_in)
+    ]
+    grading = SimpleNamespace(backend=SimpleNamespace(capacity=4))
+    with opened_queue(course.gradebook) as queue:
+        queue.add('all of them', '', arrivals)
+        desk = Desk(course, queue, grading, tmp_path, None, print, exporter=None)
+        assert begin_turns(desk)
+        assert begun == [('ada', 'b'), ('bob', 'a')]
+        assert not begin_turns(desk)  # while these are graded
+        desk.running.clear()
+        assert begin_turns(desk)
+    assert begun[2:] == [('ada', 'a')]
+
+
+def test_the_final_grade_of_inputs_that_are_chosen_anew_replays_exactly(course, inbound, capsys):
+    (course.gradebook / 'deadlines.toml').write_text('[resubmissions]\nhidden_inputs = "anew"\n')
+    hand_in(course, inbound, 'ada', WRONG)
+    serve_here(course, inbound)
+    seed = graded_notebook(course, 'ada', TOY).metadata[KEY].seed
+    assert seed != course.seed(TOY, 'ada')
+    with stood_in():
+        main(['grade', '--student', 'ada', '--seed', 'recorded'], course=course)
+        said = capsys.readouterr().out
+        assert f'seed {seed}\n' in said
+        assert 'The same as in the gradebook.' in said
+        assert main(['grade', '--force'], course=course) == 0
+    assert graded_notebook(course, 'ada', TOY).metadata[KEY].seed == seed
+
+
 def killed_rounds(course, inbound, rounds, chance):
     """Serve under load, and SIGKILL it at random moments; then serve to the end."""
     command = serving_desk.command(course, inbound)
@@ -294,6 +341,38 @@ def test_killed_at_random_moments_it_loses_nothing(rounds, tmp_path, inbound):
     course = released_course(tmp_path / 'course')
     handed_in, latest = killed_rounds(course, inbound, rounds, random.Random(rounds))
     same_as_undisturbed(course, inbound, handed_in, latest)
+
+
+@pytest.mark.slow
+def test_grade_may_run_beside_it(tmp_path, inbound):
+    course = released_course(tmp_path / 'course')
+    process = subprocess.Popen(
+        serving_desk.command(course, inbound), stdout=subprocess.PIPE, text=True
+    )
+    latest, others = {}, []
+    try:
+        for number in range(1, 4):
+            for student in ('ada', 'bob'):
+                answer = f'# {number / 20:.2f} s\n{RIGHT if number % 2 else WRONG}'
+                secret = f'{student}{number}'
+                hand_in(course, inbound, student, answer, number=number, secret=secret)
+                latest[student] = answer, secret
+        deadline = time.monotonic() + 300
+        while not any(course.gradebook.glob('submitted/*/*/*.ipynb')):
+            assert time.monotonic() < deadline
+            time.sleep(0.05)
+        while not all(page_of(inbound, secret).exists() for _, secret in latest.values()):
+            assert time.monotonic() < deadline
+            assert process.poll() is None
+            others += grade_here(course)
+    finally:
+        process.terminate()
+        process.wait(timeout=60)
+        process.stdout.close()
+    assert others
+    refused = {row.reason for row in others if not row.stored}
+    assert refused <= {f'not graded, the grader failed: {REPLACED_MEANWHILE}'}
+    same_as_undisturbed(course, inbound, 6, latest)
 
 
 @pytest.mark.slow

@@ -44,7 +44,7 @@ NOT_SHOWN = [
 
 
 @pytest.mark.parametrize('encoded', SHOWN)
-def test_ordinary_pictures_areshow_data(encoded):
+def test_ordinary_pictures_are_shown(encoded):
     assert why_not_shown(encoded) == ''
 
 
@@ -59,7 +59,7 @@ def test_a_small_file_can_be_a_large_picture():
     assert MAX_PIXELS < 16_000**2
 
 
-def test_it_is_left_out_wherever_it_would_beshow_data():
+def test_it_is_left_out_wherever_it_would_be_shown():
     run = CellRun()
     output = run.keep('display_data', {'data': {'image/png': BOMB, 'text/plain': 'x'}})
     said = '[a picture of 16,000 × 16,000 pixels, of 25,000,000 at most, was left out]'
