@@ -12,7 +12,9 @@ from grader.common.student_names import UnclearOwner, problem_of_id
         ('Ada Lovelace', 'Ada Lovelace'),
         (' ada ', 'ada'),
         ('Ada Lovelace_1815_assignsubmission_file_', 'Ada Lovelace'),
-        ('lovelaceada_18151_21012', 'lovelaceada'),
+        ('lovelaceada_18151_21012_ada', 'lovelaceada'),
+        # no upload: Canvas writes the name of a file behind it
+        ('lovelaceada_18151_21012', 'lovelaceada_18151_21012'),
         ('lovelaceada_LATE_18151_21012_ada', 'lovelaceada'),
         ('group_1_2', 'group_1_2'),
         ('Zoe\u0308', 'Zo\u00eb'),
