@@ -9,6 +9,7 @@ try:
     from grader.authoring.release_passes import CODE_STUB, PASSES
     from grader.autograde.locking import lock_while_grading
     from grader.autograde.submitted_files import read_timestamps_as_we_do
+    from grader.common.errors import CourseError
     from grader.common.logs import NBGRADER_LOGGING
     from grader.course import Course
     from grader.report.feedback import FEEDBACK_PASSES
@@ -17,7 +18,11 @@ try:
     from grader.storage.pipeline import AUTOGRADE_PASSES, SANITIZE_PASSES
 
     course = Course.at(Path(__file__).parent)
-    make_ready(course)
+    try:
+        db_url = course.db_url  # in SQLite, or what gradebook/database.toml says
+        make_ready(course)
+    except CourseError as problem:
+        raise SystemExit(f'course: {problem}') from None
     read_timestamps_as_we_do()
     lock_while_grading()
 except (ImportError, OSError) as error:
@@ -37,7 +42,7 @@ c.CourseDirectory.release_directory = 'notebooks'
 c.CourseDirectory.submitted_directory = 'gradebook/submitted'
 c.CourseDirectory.autograded_directory = 'gradebook/autograded'
 c.CourseDirectory.feedback_directory = 'gradebook/feedback'
-c.CourseDirectory.db_url = course.db_url
+c.CourseDirectory.db_url = db_url
 
 c.GenerateAssignment.preprocessors = list(PASSES)
 c.ClearSolutions.code_stub = CODE_STUB

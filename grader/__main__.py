@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from grader.cli.arguments import make_parser
 from grader.cli.stopping import stoppable
+from grader.common.db_url import refuse_another_place
 from grader.common.errors import CourseError
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ def main(arguments: list[str] | None = None, *, course: 'Course | None' = None) 
 
             log_visibly()
             course = course or Course()
+            refuse_another_place(course.root / 'nbgrader_config.py')
             with in_sentences(course):
                 return asked.run(course, asked)
         except CourseError as error:

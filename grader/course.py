@@ -16,6 +16,7 @@ import nbformat
 from my_robot_basics.validate.packages import BUILD, packages_of
 from nbformat import NotebookNode
 
+from grader.common.db_url import configured_db_url, gradebook_of
 from grader.common.errors import CourseError
 from grader.notebook.restore import AssignmentTemplate, make_template
 
@@ -42,19 +43,24 @@ class Course:
     def of_nbgrader(cls, resources: dict) -> 'Course':
         """Return the course of which nbgrader converts a notebook: it runs in the course's root.
 
-        The gradebook lies where the database does that it has been told to use.
+        The gradebook lies where the database does that it has been told to use; our own passes say
+        where it lies.
         """
-        database = resources['nbgrader']['db_url'].removeprefix('sqlite:///').split('?')[0]
-        return cls(root=Path.cwd(), gradebook=Path(database).parent)
+        at = resources['nbgrader']
+        gradebook = at.get('gradebook') or gradebook_of(at['db_url'], Path.cwd())
+        return cls(root=Path.cwd(), gradebook=Path(gradebook))
 
     @property
     def db_url(self) -> str:
-        """The database's address; a writer waits up to 60 s for another one."""
-        return f'sqlite:///{self.database}?timeout=60'
+        """The database's address; a writer waits up to 60 s for another one.
+
+        It may have a password. Raises CourseError where gradebook/database.toml gives none.
+        """
+        return configured_db_url(self.gradebook) or f'sqlite:///{self.database}?timeout=60'
 
     @property
     def database(self) -> Path:
-        """The file that holds lessons and scores."""
+        """The file that holds lessons and scores, unless they are in PostgreSQL."""
         return self.gradebook / 'gradebook.db'
 
     def folder(self, step: str, student_id: str, assignment: str) -> Path:

@@ -14,11 +14,11 @@ def starter(folder):
     """Yield a function that starts a scheduler or a worker, as a fixture does; end them all."""
     started = []
 
-    def start(*arguments, **environment):
+    def start(*arguments, on=(), **environment):
         log = folder / f'dask {len(started)}.log'
         with log.open('w') as file:
             process = subprocess.Popen(
-                [DASK, *arguments, '--no-dashboard'],
+                [*on, DASK, *arguments, '--no-dashboard'],
                 env=os.environ | {'PYTHONPATH': str(TESTS)} | environment,
                 stdout=file,
                 stderr=file,

@@ -21,11 +21,25 @@ PARTS = ('all', 'storing', 'scores')
 """Of a run: all of it, the storing of submissions, and of that the writing of their scores."""
 
 
-def run(root: str, gradebook_at: str, log: str, kill_at: int = 0, part: str = 'all') -> None:
+def kill() -> None:
+    """End this process at once."""
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def run(
+    root: str,
+    gradebook_at: str,
+    log: str,
+    kill_at: int = 0,
+    part: str = 'all',
+    strike: Callable[[], object] = kill,
+    said: str = os.devnull,
+) -> None:
     """Run `./course grade`; be killed at the so manieth call of a function, Python's or C's.
 
     Counted are those in a part of the run. What is judged goes into `log`, and at the end the
-    status and how many calls there were in each part.
+    status and how many calls there were in each part; what is printed into `said`. Another
+    `strike` hits something else.
     """
     calls, within = dict.fromkeys(PARTS, 0), dict.fromkeys(PARTS, 0) | {'all': 1}
 
@@ -35,7 +49,10 @@ def run(root: str, gradebook_at: str, log: str, kill_at: int = 0, part: str = 'a
                 if within[name]:
                     calls[name] += 1
             if kill_at and calls[part] == kill_at:
-                os.kill(os.getpid(), signal.SIGKILL)
+                calls[part] += 1  # once
+                sys.setprofile(None)
+                strike()
+                sys.setprofile(count)
 
     def counted(name: str, work: Callable) -> Callable:
         def wrapper(*args: object) -> object:
@@ -51,7 +68,7 @@ def run(root: str, gradebook_at: str, log: str, kill_at: int = 0, part: str = 'a
     grading.store = counted('storing', grading.store)
     gradebook._finish = counted('storing', gradebook._finish)
     SaveGrades.preprocess = counted('scores', SaveGrades.preprocess)
-    sys.stdout = sys.stderr = open(os.devnull, 'w')  # noqa: SIM115 - open to the end
+    sys.stdout = sys.stderr = open(said, 'w', encoding='utf-8')  # noqa: SIM115 - open to the end
     sys.setprofile(count)
     status = main(['grade'], course=Course(root=Path(root), gradebook=Path(gradebook_at)))
     sys.setprofile(None)

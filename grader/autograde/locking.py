@@ -4,6 +4,7 @@ from pathlib import Path
 
 from nbgrader.converters import Autograde
 
+from grader.common.db_url import gradebook_of
 from grader.storage.lock import gradebook_lock
 
 _convert = Autograde.convert_single_notebook
@@ -11,8 +12,8 @@ _convert = Autograde.convert_single_notebook
 
 def convert_under_lock(converter: Autograde, notebook_filename: str) -> None:
     """Restore, grade and write one notebook while no other process writes into the gradebook."""
-    database = converter.coursedir.db_url.removeprefix('sqlite:///').split('?')[0]
-    with gradebook_lock(Path(database).parent, converter.log.warning):
+    gradebook = gradebook_of(converter.coursedir.db_url, Path(converter.coursedir.root))
+    with gradebook_lock(gradebook, converter.log.warning):
         _convert(converter, notebook_filename)
 
 

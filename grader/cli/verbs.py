@@ -18,10 +18,11 @@ NO_DATE = 'none'
 def run_release(course: 'Course', asked: argparse.Namespace) -> int:
     """Write notebooks/ anew, and name the files that have changed."""
     from grader.authoring.release import release
+    from grader.storage.database import has_database
     from grader.storage.registering import register
 
     wanted = [asked.assignment] if asked.assignment else course.assignments()
-    if course.database.exists():
+    if has_database(course):
         for assignment in wanted:
             register(course, assignment)  # refuses what graded submissions can't follow
     changed = release(
@@ -172,9 +173,9 @@ def _say_line(line: str) -> None:
 
 
 def _wait_for_database(course: 'Course') -> None:
-    from grader.storage.database import wait_until_free
+    from grader.storage.database import has_database, wait_until_free
 
-    if course.database.exists():
+    if has_database(course):
         wait_until_free(course)
 
 

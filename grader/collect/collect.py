@@ -31,6 +31,7 @@ from grader.common.files import write_whole
 from grader.course import Course
 from grader.export.scores import as_csv
 from grader.notebook.submission import TIMESTAMP
+from grader.storage.database import has_database
 from grader.storage.lock import gradebook_lock
 from grader.storage.records import CellScore, records
 from grader.storage.submitted import known_students
@@ -153,7 +154,7 @@ def _copy_all(
         there = course.folder(step, each.student_id, each.assignment)
         if there.is_dir():
             shutil.copytree(there, folder / step, symlinks=True)
-    if not course.database.exists():
+    if not has_database(course):
         return
     whose = (each.student_id, each.assignment)
     theirs = [grade for grade in grades() if (grade.student_id, grade.assignment) == whose]

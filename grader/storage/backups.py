@@ -2,12 +2,16 @@
 
 import os
 import sqlite3
+import sys
 from contextlib import closing
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 
+from grader.common.db_url import is_in_postgresql
 from grader.course import Course
-from grader.storage.database import wait_until_free
+from grader.storage.database import has_database, wait_until_free
+from grader.storage.dumps import dump
 from grader.storage.failures import in_sentences
 from grader.storage.gradebook import recover
 
@@ -19,7 +23,7 @@ def bring_in_order(course: Course) -> None:
     """Finish what a run that was killed had begun, and back the database up, before a run."""
     recover(course)
     with in_sentences(course):
-        if course.database.exists():
+        if has_database(course):
             wait_until_free(course)
             back_up(course)
 
@@ -27,12 +31,15 @@ def bring_in_order(course: Course) -> None:
 def back_up(course: Course) -> Path | None:
     """Copy the database into gradebook/backups/, unless the newest copy holds the same.
 
-    Returns the newest copy, or None where there is nothing to copy. Raises sqlite3.DatabaseError,
-    and leaves the copies as they are, when the database is damaged.
+    Returns the newest copy, or None where there is nothing to copy, or nothing that can dump
+    PostgreSQL. Raises sqlite3.DatabaseError, and leaves the copies as they are, when the database
+    is damaged.
     """
-    if not course.database.exists():
+    if not has_database(course):
         return None
     folder = course.gradebook / 'backups'
+    if is_in_postgresql(course.db_url):
+        return dump(course.db_url, folder, KEPT, partial(print, file=sys.stderr))
     folder.mkdir(exist_ok=True)
     written = course.database.stat().st_mtime_ns
     backups = sorted(folder.glob('gradebook-*.db'))

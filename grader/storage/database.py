@@ -1,4 +1,4 @@
-"""nbgrader's database as a file: made whole, waited for, written in one go."""
+"""nbgrader's database, in a file or in PostgreSQL: made whole, waited for, written in one go."""
 
 import logging
 import os
@@ -13,8 +13,9 @@ from nbgrader.api import Base, Gradebook
 from nbgrader.dbutil import ALEMBIC_DIR
 from sqlalchemy import create_engine
 
+from grader.common.db_url import is_in_postgresql
 from grader.course import Course
-from grader.storage import failures
+from grader.storage import failures, postgresql
 from grader.storage.failures import BUSY
 from grader.storage.failures import in_sentences as in_sentences
 
@@ -27,18 +28,32 @@ logging.getLogger('tornado.application').addFilter(
 def make_ready(course: Course) -> None:
     """Make the gradebook's folder, and let nbgrader find the command that makes its database.
 
-    nbgrader's own commands start it: nbgrader_config.py calls this first.
+    nbgrader's own commands start it: nbgrader_config.py calls this first. Raises GradebookError
+    in a command of nbgrader's where its database is in PostgreSQL, and can't be had.
     """
     course.gradebook.mkdir(parents=True, exist_ok=True)
     programs = os.environ.get('PATH', os.defpath).split(os.pathsep)
     ours = str(Path(sys.executable).parent)  # where `alembic` is
     if ours not in programs:
         os.environ['PATH'] = os.pathsep.join([ours, *programs])
+    if is_in_postgresql(course.db_url) and 'nbgrader' in Path(sys.argv[0]).parts:
+        with in_sentences(course):  # nbgrader would say that the database has to be upgraded
+            make_database(course)
+
+
+def has_database(course: Course) -> bool:
+    """Whether there is a database yet."""
+    if is_in_postgresql(course.db_url):
+        return postgresql.has_tables(course.db_url)
+    return course.database.exists()
 
 
 def make_database(course: Course) -> None:
     """Make the database where there is none: aside, for nbgrader would not repair half of one."""
     course.gradebook.mkdir(parents=True, exist_ok=True)
+    if is_in_postgresql(course.db_url):
+        postgresql.make_tables(course.db_url)
+        return
     if course.database.exists() and course.database.stat().st_size:
         return
     aside = course.database.with_name('.gradebook.db.new')
@@ -65,7 +80,13 @@ def _make_tables(db_url: str) -> None:
 
 
 def wait_until_free(course: Course, say: Callable[[str], None] = print) -> None:
-    """Wait while another program holds the database, and say so. Raises GradebookError at last."""
+    """Wait while another program holds the database, and say so. Raises GradebookError at last.
+
+    PostgreSQL serves several programs; there, wait for the server.
+    """
+    if is_in_postgresql(course.db_url):
+        postgresql.wait_until_there(course.db_url, failures.TIMEOUT_SEC, say)
+        return
     deadline, said = time.monotonic() + failures.TIMEOUT_SEC, False
     with closing(sqlite3.connect(course.database, timeout=0, isolation_level=None)) as database:
         while True:

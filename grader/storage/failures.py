@@ -5,6 +5,7 @@ import sqlite3
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from grader.common.db_url import is_in_postgresql
 from grader.common.errors import CourseError, GradebookError
 from grader.course import Course
 
@@ -32,6 +33,11 @@ def _sentence(error: BaseException | None, course: Course) -> str | None:
     """Return what to tell of an error, or of what led to it: nbgrader wraps what it gets."""
     if error is None or isinstance(error, CourseError):
         return None
+    if is_in_postgresql(course.db_url):
+        from grader.storage.postgresql import sentence_of  # with nbgrader's database
+
+        if told := sentence_of(error, course.db_url):
+            return told
     code = getattr(error, 'sqlite_errorcode', 0) & 0xFF
     if code == sqlite3.SQLITE_FULL or (isinstance(error, OSError) and error.errno in _FULL):
         return (

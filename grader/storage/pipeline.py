@@ -58,6 +58,7 @@ def resources_of(course: Course, assignment: str, student_id: str = '.') -> dict
             'assignment': assignment,
             'student': student_id,
             'db_url': course.db_url,
+            'gradebook': str(course.gradebook),
         }
     }
 

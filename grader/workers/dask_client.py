@@ -81,6 +81,12 @@ def connected(address: str, certificates: Certificates) -> 'Client':
         )
     except (OSError, ValueError) as error:
         why = str(error).partition('\n')[0]
+        if 'certificate' in why:
+            raise ClusterError(
+                f'the scheduler at {address} has a certificate of another authority than that of '
+                '--tls-ca-file, or is another program. Sign those of the scheduler, the workers '
+                'and this machine by one authority, and name it to each of them.'
+            ) from None
         raise ClusterError(
             f'there is no scheduler at {address} that answers ({why}). Start one: '
             '.venv/bin/dask scheduler'
