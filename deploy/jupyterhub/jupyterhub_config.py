@@ -34,11 +34,23 @@ c.ConfigurableHTTPProxy.command = [
     str(HERE / 'node_modules/configurable-http-proxy/bin/configurable-http-proxy'),
 ]
 
-# users of this machine, with their passwords; another authenticator may take its place
-c.JupyterHub.authenticator_class = 'pam'
-c.PAMAuthenticator.open_sessions = False
-c.PAMAuthenticator.allowed_groups = {SETTINGS['students']}
-c.Authenticator.allowed_users = {SETTINGS['instructor']}
+# users of this machine: with their passwords, or as a learning platform names them (docs/lti.md)
+if 'lti' in SETTINGS:
+    from lti_login import PlatformAuthenticator
+    from lti_users import read_login
+
+    c.JupyterHub.authenticator_class = PlatformAuthenticator
+    c.PlatformAuthenticator.login = login = read_login(SETTINGS)
+    c.PlatformAuthenticator.issuer = login.issuer
+    c.PlatformAuthenticator.client_id = login.client_id
+    c.PlatformAuthenticator.authorize_url = login.authorize_url
+    c.PlatformAuthenticator.jwks_endpoint = login.jwks_endpoint
+    c.PlatformAuthenticator.allow_all = True  # login.user_of() has decided
+else:
+    c.JupyterHub.authenticator_class = 'pam'  # another one may take its place
+    c.PAMAuthenticator.open_sessions = False
+    c.PAMAuthenticator.allowed_groups = {SETTINGS['students']}
+    c.Authenticator.allowed_users = {SETTINGS['instructor']}
 
 # each student's server in a room of its own; the instructor's in the checkout, without one
 c.JupyterHub.spawner_class = RoomSpawner
