@@ -50,6 +50,9 @@ class LtiPlatform:
         self.token_seconds = 3600
         self.address = ''
 
+    def page(self, path, query):
+        """Return (status, type, text) of a page that a browser asks for, or None."""
+
     def token_for(self, form):
         """Return (status, answer) for a client that says who it is."""
         if form.get('grant_type') != 'client_credentials':
@@ -123,6 +126,9 @@ class Handler(BaseHTTPRequestHandler):
             return None
         if platform.mood == 'talks nonsense':
             return self.say(200, ['down', 'for', 'maintenance'])
+        if page := platform.page(path, query):
+            status, kind, text = page
+            return self.say(status, text.encode(), {'Content-Type': kind})
         if path == '/token':
             return self.say(*platform.token_for({k: v[0] for k, v in parse_qs(body).items()}))
         token = self.headers.get('Authorization', '').removeprefix('Bearer ')
@@ -146,7 +152,9 @@ class Handler(BaseHTTPRequestHandler):
         return self.say(status, said)
 
     def say(self, status, body, headers=()):
-        content = b'' if body is None else json.dumps(body).encode()
+        content = b'' if body is None else body
+        if not isinstance(content, bytes):
+            content = json.dumps(body).encode()
         self.send_response(status)
         for name, value in dict(headers).items():
             self.send_header(name, value)

@@ -164,6 +164,7 @@ def test_the_hub_says_how_many_servers_fit_and_starts_no_more(tmp_path, monkeypa
     config = Config()
     runpy.run_path(str(hub), init_globals={'get_config': lambda: config})
     assert config.JupyterHub.active_server_limit == 36
+    assert config.JupyterHub.authenticator_class == 'pam'  # where no table [lti] says otherwise
     said = (
         'Memory for 36 servers at a time, at 400 MB each; further ones are asked to come later.\n'
     )

@@ -42,7 +42,7 @@ if 'lti' in SETTINGS:
     c.JupyterHub.authenticator_class = PlatformAuthenticator
     c.PlatformAuthenticator.login = login = read_login(SETTINGS)
     c.PlatformAuthenticator.issuer = login.issuer
-    c.PlatformAuthenticator.client_id = login.client_id
+    c.PlatformAuthenticator.client_id = {*login.client_id}
     c.PlatformAuthenticator.authorize_url = login.authorize_url
     c.PlatformAuthenticator.jwks_endpoint = login.jwks_endpoint
     c.PlatformAuthenticator.allow_all = True  # login.user_of() has decided

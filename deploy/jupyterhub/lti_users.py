@@ -18,6 +18,14 @@ CUSTOM = 'custom_'
 """Begins the name of a parameter that the platform was told to send, as in the library."""
 TEXTS = ('issuer', 'authorize_url', 'jwks_endpoint')
 OTHERS = ('client_id', 'username_claim', 'email_domain', 'context_id', 'user_ids')
+SELF_CHOSEN = (
+    'name',
+    'given_name',
+    'middle_name',
+    'family_name',
+    'nickname',
+    'preferred_username',
+)
 LOCAL = ('localhost', '127.0.0.1', '::1')
 LONGEST = 100
 """Characters of what was received that a refusal repeats."""
@@ -137,6 +145,8 @@ def _problem_in(table: dict[str, Any]) -> str:
         address = urlsplit(table[name])
         if address.scheme != 'https' and address.hostname not in LOCAL:
             return f'{name} does not begin with https://: anyone on the way could be anybody here'
+    if table.get('username_claim') in SELF_CHOSEN:
+        return f'{table["username_claim"]} is what people call themselves, and so could be anybody'
     if table.get('username_claim') == 'email' and 'email_domain' not in table:
         return 'email needs an email_domain: ada@ANYWHERE would be ada'
     user_ids = table.get('user_ids', {})
