@@ -34,7 +34,7 @@ def lti_hub(platform):
 
 def install(folder):
     """What deploy/jupyterhub/install does for the hub alone, without root."""
-    for file in (*DEPLOY.glob('*.py'), *DEPLOY.glob('package*.json')):
+    for file in (*DEPLOY.glob('*.py'), *DEPLOY.glob('*.cjs'), *DEPLOY.glob('package*.json')):
         shutil.copy(file, folder)
     (folder / 'state').mkdir()
     uv = Path(sys.executable).with_name('uv')

