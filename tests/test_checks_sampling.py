@@ -57,7 +57,7 @@ def test_a_timer_that_leaves_every_twentieth_out_fails_without_another_look(monk
 @pytest.mark.slow
 @pytest.mark.usefixtures('patient')
 def test_on_a_busy_machine_the_clock_is_driven_for_a_shorter_time(monkeypatch):
-    monkeypatch.setattr(SimulatedClock, 'is_half_over', lambda clock: True)
+    monkeypatch.setattr(SimulatedClock, 'takes_long', lambda clock: True)
     with running('well_equipped'):
         recording = topic(TOPIC).record(seconds=60.0)
         assert (recording.clock, recording.seconds) == ('simulated', 10.0)

@@ -21,7 +21,7 @@ CLOSER = (1.0, 0.1)
 SECONDS_LEAST = 2.0
 """… It records no less."""
 SECONDS_ENOUGH = 10.0
-"""Where the machine is so busy that half of the time is gone, so much is a recording, too."""
+"""Where that takes long, so much is a recording, too."""
 FINER = (1.0, 0.5, 0.1, 0.05, 0.01)
 """Steps of the clock, as parts of the one asked for, tried until messages skip a tick.
 
@@ -94,12 +94,12 @@ def _drive(
 ) -> Recording:
     """Record `seconds`, or until there are FEWEST messages. Raises Inconclusive.
 
-    Where the machine is too busy for that, it leaves the proof its time and records less.
+    Where that takes long, it leaves the proof its time and records less.
     """
     step_ns, start_ns = _find_step(recorder, clock, step_sec=step_sec)
     before = len(recorder.received)
     for done in range(round(seconds * 1e9 / step_ns)):
-        if clock.is_half_over() and done * step_ns >= SECONDS_ENOUGH * 1e9:
+        if clock.takes_long() and done * step_ns >= SECONDS_ENOUGH * 1e9:
             break
         clock.tick(step_ns)
     while len(recorder.received) < before + rates.FEWEST:
