@@ -1,5 +1,7 @@
 """When a check takes what was recorded for the one before it, and when it looks for itself."""
 
+from dataclasses import replace
+
 import pytest
 from my_robot_basics.checks import CheckFailed, earlier_looks
 from my_robot_basics.checks.earlier_looks import Look, Wanted, look_once
@@ -64,18 +66,26 @@ def test_where_messages_are_rare_the_first_two_are_taken():
     assert (found.recording.messages, found.recording.seconds) == (samples, 40.0)
 
 
-def test_a_longer_one_is_recorded_anew_unless_it_is_no_longer_on_the_wall_clock():
-    topic, wall = Topic(), Topic(clock='wall')
-    topic.record(10.0), topic.record(60.0)
+@pytest.mark.parametrize('clock', ['simulated', 'wall'])
+def test_a_longer_one_is_recorded_anew(clock):
+    topic = Topic(clock=clock)
+    topic.record(10.0), topic.record(60.0), topic.record(60.0)
     assert topic.looks == 2
-    wall.record(10.0, name='/wall'), wall.record(60.0, name='/wall')
-    assert wall.looks == 1
 
 
 @pytest.mark.parametrize('differs', [{'name': '/other'}, {'step_sec': 0.02}])
 def test_another_topic_or_step_is_recorded_anew(differs):
     topic = Topic()
     topic.record(10.0), topic.record(10.0, **differs)
+    assert topic.looks == 2
+
+
+def test_messages_that_have_ended_are_looked_for_once_more():
+    topic = Topic(clock='wall')
+    samples = tuple(Sample('one', 0.2 * i, 0.2 * i) for i in range(1, 11))
+    ended = replace(topic.record(10.0), messages=samples, seconds=4.0)
+    look_once(Wanted('/ended', 10.0, 0.1), lambda: Look(ended, None))
+    topic.record(10.0, name='/ended')
     assert topic.looks == 2
 
 

@@ -28,7 +28,8 @@ def joint_state(time_sec, **changes):
 def recording(times=None, *, clock='simulated', message=joint_state, **changes):
     times = [0.2 * i for i in range(1, 51)] if times is None else times
     samples = (Sample(message(time), time, START_SEC + time) for time in times)
-    fields = {'publishers': ('/a',), 'seconds': 10.0, 'start_sec': START_SEC, 'step_sec': 0.1}
+    seconds = times[-1] if clock == 'wall' and times else 10.0
+    fields = {'publishers': ('/a',), 'seconds': seconds, 'start_sec': START_SEC, 'step_sec': 0.1}
     fields |= changes
     return Recording(topic_name='/t', messages=tuple(samples), clock=clock, **fields)
 
@@ -216,7 +217,7 @@ def test_a_doubt_on_the_wall_clock_asks_for_a_longer_look():
     look(0.205, 0.201)
     assert asked == [8.0, 8.0]
     for first_sec in 0.203, 0.205:
-        with pytest.raises(CheckFailed, match=r'saw 4\.88 Hz over 10 s'):
+        with pytest.raises(CheckFailed, match=r'saw 4\.88 Hz over 10\.2 s'):
             look(first_sec, 0.205)
 
 
@@ -411,3 +412,16 @@ def test_no_message_proves_nothing(assertion):
     arguments = {'assert_joint_names': [('joint1',)], 'assert_frame_id': ['base_link']}
     with pytest.raises(CheckFailed, match='expected messages on /t, saw none'):
         getattr(recording([]), assertion)(*arguments.get(assertion, []))
+
+
+@pytest.mark.parametrize(('until_sec', 'passes'), [(3.8, True), (3.6, True), (2.0, False)])
+def test_messages_that_end_on_the_wall_clock_are_no_rate(until_sec, passes):
+    times = every(0.2, round(until_sec / 0.2))
+    ending = recording(times, clock='wall', seconds=4.0)
+    if passes:
+        ending.assert_rate(hz=5.0)
+        return
+    with pytest.raises(
+        CheckFailed, match=r'saw none in the last 2\.0 s over 4 s \(10 messages\): pub'
+    ):
+        ending.assert_rate(hz=5.0)

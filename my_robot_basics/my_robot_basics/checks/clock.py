@@ -28,9 +28,9 @@ FIRST_ANSWER_SEC = 1.0
 """What a node may take to answer, of time that was free: an honest node on a busy machine is
 slow, too."""
 RESTORE_SEC = 10.0
-LONG_PART = 0.2
-"""Of the time for which the clock may be driven: who needs more is a slow node, or has a busy
-machine. Of some rclpy nodes with several threads, a tick takes 7 ms."""
+LONG_SEC = 3.0
+"""Of time that was free: whoever needs more to be driven is slow. A tick of some rclpy nodes with
+several threads takes 7 ms."""
 HELD_EVERY_SEC = 0.02
 _NO_EVENTS = PublisherEventCallbacks(use_default_callbacks=False)
 """Each look of an executor costs more for every event; nobody waits for these."""
@@ -106,8 +106,10 @@ class SimulatedClock:
         return self._tick_ns[tick] if tick >= 0 else 0
 
     def takes_long(self) -> bool:
-        """Whether so much of the time is gone that a shorter recording will do."""
-        return self._budget.is_used(LONG_PART)
+        """Whether a shorter recording will do: the node is slow, or half of the time is gone."""
+        if self._budget.wall_sec() <= LONG_SEC:
+            return False
+        return self._budget.free_sec() > LONG_SEC or self._budget.is_used(0.5)
 
     def _expect_time_left(self) -> None:
         if self._watcher.node.count_publishers('/clock') > 1:

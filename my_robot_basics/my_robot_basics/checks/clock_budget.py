@@ -17,6 +17,10 @@ class ClockBudget:
         """Begin."""
         self._watch = Stopwatch()
 
+    def free_sec(self) -> float:
+        """How much of that time no process had to wait for a processor."""
+        return self._watch.free_sec()
+
     def wall_sec(self) -> float:
         """How long ago it began."""
         return self._watch.wall_sec()

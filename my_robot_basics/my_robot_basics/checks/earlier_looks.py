@@ -1,9 +1,9 @@
 """What was recorded last: the next check of the exercise need not record the same once more.
 
 In the test's room alone, where no cell of the student's runs between two checks, and only while
-no check does more than listen. A look on the wall clock is as long for each check, and serves all
-of them, unless it was only a makeshift on a busy machine; one on the robot's clock serves whoever
-asks for no more of its time.
+no check does more than listen. It serves those that ask for no more of the robot's time, unless
+the messages had ended, or it was only a makeshift on a busy machine. A look on the wall clock is
+as long for all, and yet whoever asks for more gets another: it tells whether the node goes on.
 """
 
 from collections.abc import Callable
@@ -74,8 +74,8 @@ def _serves(kept: _Kept, wanted: Wanted) -> bool:
     if isinstance(kept.look, CheckFailed):
         return True
     recording = kept.look.recording
-    is_long = recording.clock == 'wall' or wanted.seconds <= kept.wanted.seconds
-    return is_long and not recording.is_makeshift
+    is_whole = not recording.is_makeshift and not recording.has_ended
+    return is_whole and wanted.seconds <= kept.wanted.seconds
 
 
 def _again(look: Look | CheckFailed, seconds: float) -> Look:

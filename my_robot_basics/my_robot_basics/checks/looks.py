@@ -39,13 +39,7 @@ def _look(topic: TopicEndpoints, wanted: Wanted, hold_sec: float) -> Look:
     with Watcher(shared=True, listens=True) as watcher:
         recorder = topic.listen(watcher)
         sent = watcher.spin_until_free(lambda: bool(recorder.received), free_sec=BEFORE_SEC)
-        found = sampling.simulated(
-            watcher,
-            recorder,
-            seconds=wanted.seconds,
-            step_sec=wanted.step_sec,
-            hold_sec=followers.hold_sec(recorder, hold_sec),
-        )
+        found = _simulated(watcher, recorder, wanted, hold_sec)
         if isinstance(found, Inconclusive):
             look = Look(wall_recording.wall(watcher, recorder, why=found), found)
         else:
@@ -56,6 +50,23 @@ def _look(topic: TopicEndpoints, wanted: Wanted, hold_sec: float) -> Look:
                 _expect_ends_by_itself(recorder)
             topic.fail_silent(watcher, seen=f'no message in {look.recording.seconds:g} s')
         return look
+
+
+def _simulated(
+    watcher: Watcher, recorder: Recorder, wanted: Wanted, hold_sec: float
+) -> Recording | Inconclusive:
+    if followers.ignore(recorder):
+        return Inconclusive(wall_recording.IGNORES)
+    found = sampling.simulated(
+        watcher,
+        recorder,
+        seconds=wanted.seconds,
+        step_sec=wanted.step_sec,
+        hold_sec=followers.hold_sec(recorder, hold_sec),
+    )
+    if str(found) == wall_recording.IGNORES:
+        followers.remember_ignoring(recorder)
+    return found
 
 
 def _to_look_again(

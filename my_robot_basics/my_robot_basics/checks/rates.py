@@ -17,6 +17,8 @@ DOUBTFUL = 0.01, 0.04
 """Off by more, and by no more than that: 4 s of a busy machine do not decide it."""
 LARGEST_GAP_PERIODS = 1.75
 """More between two messages (on the wall clock) is a pause: bursts are not a rate."""
+SILENT_PERIODS = 2.75
+"""More at the end tells that none comes any more: the last message may be on its way."""
 GAP_SLACK_SEC = 0.05
 UNEVEN_PART = 0.25
 """So much of a period may most messages be off: 0.1 s and 0.3 s by turns are no 5 Hz."""
@@ -89,9 +91,13 @@ def has_rate(recording: 'Recording', hz: float) -> bool:
 
 
 def is_steady(recording: 'Recording', hz: float) -> bool:
-    """Whether messages on the wall clock came without pauses, and evenly, as `hz` asks for."""
+    """Whether messages on the wall clock came without pauses, and evenly, as `hz` asks for.
+
+    And went on to the end.
+    """
     largest = max(LARGEST_GAP_PERIODS / hz, 1.0 / hz + GAP_SLACK_SEC)
-    return recording.largest_gap_sec <= largest and not _is_uneven(recording, hz)
+    goes_on = recording.largest_gap_sec <= largest and not recording.has_ended
+    return goes_on and not _is_uneven(recording, hz)
 
 
 def is_doubtful(recording: 'Recording', hz: float) -> bool:
@@ -108,6 +114,9 @@ def fail_rate(recording: 'Recording', hz: float) -> NoReturn:
     if every := leaves_out(recording):
         seen, cause = f'one message of {every} missing each time {over}', 'messages are left out'
         hint = 'publish in every call of the timer'
+    elif near and recording.has_ended:
+        seen, cause = f'none in the last {recording.silent_sec:.1f} s {over}', 'the messages end'
+        hint = 'publish as long as the node runs, in each call of a timer'
     elif recording.rate_hz > TOO_FAST_TIMES * hz:
         seen, cause = f'{_hz(recording.rate_hz)} {over}', 'far too many messages'
         hint = 'the timer period is 0, or nearly: period = 1 / rate, and 1 // rate is 0'

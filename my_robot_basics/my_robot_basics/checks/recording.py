@@ -67,6 +67,16 @@ class Recording:
         times = [0.0, *(sample.time_sec for sample in self.messages)]
         return max((b - a for a, b in itertools.pairwise(times)), default=math.inf)
 
+    @property
+    def silent_sec(self) -> float:
+        """How long before its end the last message came."""
+        return self.seconds - self.messages[-1].time_sec if self.messages else self.seconds
+
+    @property
+    def has_ended(self) -> bool:
+        """Whether its end is so silent that no next message seems to come."""
+        return self.silent_sec * self.rate_hz > rates.SILENT_PERIODS
+
     def assert_rate(self, hz: float) -> None:
         """The one publisher sends `hz` messages a second, evenly, within ±2 %.
 
