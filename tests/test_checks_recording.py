@@ -1,8 +1,10 @@
 """What a recording may say: assertions on made-up arrivals, each with a near miss."""
 
+import contextlib
 import itertools
 import math
 import random
+import resource
 
 import pytest
 from builtin_interfaces.msg import Time
@@ -32,6 +34,16 @@ def recording(times=None, *, clock='simulated', message=joint_state, **changes):
     fields = {'publishers': ('/a',), 'seconds': seconds, 'start_sec': START_SEC, 'step_sec': 0.1}
     fields |= changes
     return Recording(topic_name='/t', messages=tuple(samples), clock=clock, **fields)
+
+
+@contextlib.contextmanager
+def resource_limit(addresses):
+    former = resource.getrlimit(resource.RLIMIT_AS)
+    resource.setrlimit(resource.RLIMIT_AS, (addresses, former[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_AS, former)
 
 
 def every(period_sec, count=50):
@@ -425,3 +437,16 @@ def test_messages_that_end_on_the_wall_clock_are_no_rate(until_sec, passes):
         CheckFailed, match=r'saw none in the last 2\.0 s over 4 s \(10 messages\): pub'
     ):
         ending.assert_rate(hz=5.0)
+
+
+def test_no_message_in_another_look_says_that_they_end():
+    nothing = recording([], clock='wall', seconds=4.0)
+    with pytest.raises(CheckFailed, match=r'saw none in the last 4\.0 s over 4 s \(0 messages\)'):
+        nothing.assert_rate(hz=5.0)
+
+
+@pytest.mark.parametrize('clock', ['wall', 'simulated'])
+def test_a_flood_is_told_within_some_memory(clock):
+    flood = recording(every(0.0002, 50_000), clock=clock, message=lambda time: None)
+    with resource_limit(3 * 2**30), pytest.raises(CheckFailed, match='the timer period is 0'):
+        flood.assert_rate(hz=5.0)

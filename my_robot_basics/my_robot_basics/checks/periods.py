@@ -6,6 +6,9 @@ those that came after it.
 
 import numpy as np
 
+MOST_TIMES = 3_000
+"""So many of the first are compared, each with each: a minute at 50 Hz. A timer with a period of 0
+sends so many in a second, and all of them would take gigabytes."""
 FEWEST_GAPS = 8
 """So many gaps between messages tell a timer from a loop; fewer have their mean alone."""
 FLOOR_PART = 0.01
@@ -29,8 +32,7 @@ def spanned(times_sec: np.ndarray, slack_sec: float) -> tuple[float, float]:
 
     Each may be late by `slack_sec`. The least is above the greatest where none explains them.
     """
-    earlier, later = np.triu_indices(len(times_sec), k=1)
-    lengths, apart = times_sec[later] - times_sec[earlier], later - earlier
+    lengths, apart = _pairs(times_sec)
     # each pair of arrivals leaves the period a range; they must all agree on one
     low, high = (lengths - slack_sec) / apart, (lengths + slack_sec) / apart
     return float(np.max(low)), float(np.min(high))
@@ -49,8 +51,15 @@ def meant(times_sec: np.ndarray) -> float:
     often = float(np.quantile(gaps, 0.25))
     if np.min(gaps) >= (1.0 - FLOOR_PART) * often:
         return often
-    earlier, later = np.triu_indices(len(times_sec), k=1)
-    return float(np.median((times_sec[later] - times_sec[earlier]) / (later - earlier)))
+    lengths, apart = _pairs(times_sec)
+    return float(np.median(lengths / apart))
+
+
+def _pairs(times_sec: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """How long, and how many messages, two of them are apart: each pair of the first ones."""
+    first = times_sec[:MOST_TIMES]
+    earlier, later = np.triu_indices(len(first), k=1)
+    return first[later] - first[earlier], later - earlier
 
 
 def come_by_turns(times_sec: np.ndarray, slack_sec: float = 0.0) -> bool:
@@ -84,6 +93,7 @@ def left_out(times_sec: np.ndarray, slack_sec: float) -> int:
     One period explains all that came, each late by `slack_sec` at most, and what is missing is
     missing evenly.
     """
+    times_sec = times_sec[:MOST_TIMES]
     gaps = np.diff(times_sec)
     if len(gaps) < FEWEST_GAPS or not np.median(gaps):  # messages of a burst have one time
         return 0

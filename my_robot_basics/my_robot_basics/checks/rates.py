@@ -114,7 +114,7 @@ def fail_rate(recording: 'Recording', hz: float) -> NoReturn:
     if every := leaves_out(recording):
         seen, cause = f'one message of {every} missing each time {over}', 'messages are left out'
         hint = 'publish in every call of the timer'
-    elif near and recording.has_ended:
+    elif recording.has_ended and (near or n == 0):
         seen, cause = f'none in the last {recording.silent_sec:.1f} s {over}', 'the messages end'
         hint = 'publish as long as the node runs, in each call of a timer'
     elif recording.rate_hz > TOO_FAST_TIMES * hz:

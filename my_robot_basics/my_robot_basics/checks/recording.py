@@ -75,7 +75,7 @@ class Recording:
     @property
     def has_ended(self) -> bool:
         """Whether its end is so silent that no next message seems to come."""
-        return self.silent_sec * self.rate_hz > rates.SILENT_PERIODS
+        return not self.messages or self.silent_sec * self.rate_hz > rates.SILENT_PERIODS
 
     def assert_rate(self, hz: float) -> None:
         """The one publisher sends `hz` messages a second, evenly, within ±2 %.
