@@ -194,7 +194,8 @@ while True: time.sleep(1)
 
 
 def test_a_cell_that_ignores_the_interrupt_is_killed(own, run):
-    result = run(own, IGNORES, timeout_sec=0.5)
+    # it must have begun to ignore interrupts by then, on a busy machine too
+    result = run(own, IGNORES, timeout_sec=3.0)
     assert (result.timed_out, result.died, own.alive) == (True, True, False)
     assert processes_of(own) == []
 
@@ -223,7 +224,7 @@ def test_a_busy_machine_gives_an_interrupted_cell_more_time(
 def test_no_busy_machine_gives_more_than_its_limit(monkeypatch, own, run):
     monkeypatch.setattr(timeouts.pressure, 'stalled_sec', time.monotonic)
     monkeypatch.setattr(timeouts, 'INTERRUPT_MOST_SEC', 1.0)
-    assert run(own, IGNORES, timeout_sec=0.5).died
+    assert run(own, IGNORES, timeout_sec=3.0).died
 
 
 FATAL = {
