@@ -5,6 +5,7 @@ import time
 from collections.abc import Iterable
 
 from rcl_interfaces.srv import GetParameters
+from rclpy.callback_groups import CallbackGroup
 from rclpy.client import Client
 from rclpy.task import Future
 
@@ -12,9 +13,19 @@ from my_robot_basics.checks.inconclusive import TooSlow
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
 
+NOTHING = GetParameters.Request()
+"""A question about no parameter: the answer is all that counts."""
 SLOWEST_BARRIER_SEC = 0.5
 SLOWEST_MEDIAN_SEC = 0.02
 MEDIAN_EVERY = 40
+
+
+class _Deaf(CallbackGroup):
+    """Its clients' answers are left where they are: nobody is woken up for them."""
+
+    def can_execute(self, entity: object) -> bool:
+        """Never."""
+        return False
 
 
 class Barriers:
@@ -24,21 +35,26 @@ class Barriers:
         """No node is asked yet."""
         self._watcher = watcher
         self._clients: dict[str, Client] = {}
+        self._deaf_clients: dict[str, Client] = {}
         self._took_sec: list[float] = []
 
     def __len__(self) -> int:
         """How many nodes there are."""
         return len(self._clients)
 
-    def add(self, name: str) -> Client:
-        """Prepare to ask the node of that full name."""
-        service = f'{name}/get_parameters'
-        self._clients[name] = self._watcher.node.create_client(GetParameters, service)
-        return self._clients[name]
+    def add(self, name: str) -> tuple[Client, Client]:
+        """Prepare to ask the node of that full name, by two clients."""
+        node, service = self._watcher.node, f'{name}/get_parameters'
+        self._clients[name] = node.create_client(GetParameters, service)
+        self._deaf_clients[name] = node.create_client(
+            GetParameters, service, callback_group=_Deaf()
+        )
+        return self._clients[name], self._deaf_clients[name]
 
     def keep(self, names: Iterable[str]) -> None:
         """Ask only these from now on."""
         self._clients = {name: self._clients[name] for name in names}
+        self._deaf_clients = {name: self._deaf_clients[name] for name in self._clients}
 
     def ask(self, names: Iterable[str] | None = None) -> dict[str, Future]:
         """Ask each node, or these, for its `use_sim_time`; the futures by the nodes' names."""
@@ -47,11 +63,17 @@ class Barriers:
         return {name: self._clients[name].call_async(request) for name in asked}
 
     def acknowledge(self, questions: int) -> None:
-        """Wait until every node has answered so many questions. Raises TooSlow."""
+        """Wait until every node has answered so many questions. Raises TooSlow.
+
+        They are answered one after the other, so that the last answer tells of all.
+        """
         if not self._took_sec:
             self._since_first = Stopwatch()
         start = time.monotonic()
-        asked = [future for _ in range(questions) for future in self.ask().values()]
+        for _ in range(questions - 1):
+            for client in self._deaf_clients.values():
+                client.remove_pending_request(client.call_async(NOTHING))
+        asked = [client.call_async(NOTHING) for client in self._clients.values()]
         if not self._watcher.spin_until_free(
             lambda: all(future.done() for future in asked), free_sec=SLOWEST_BARRIER_SEC
         ):

@@ -134,7 +134,7 @@ class SimulatedClock:
         clients = []
         for name in nodes_with_services(node):
             self._setters[name] = node.create_client(SetParameters, f'{name}/set_parameters')
-            clients += [self._barriers.add(name), self._setters[name]]
+            clients += [*self._barriers.add(name), self._setters[name]]
             self._expect_time_left()
         self._watcher.spin_until_free(
             lambda: all(client.service_is_ready() for client in clients),

@@ -27,7 +27,7 @@ FINER = (1.0, 0.5, 0.1, 0.05, 0.01)
 
 Each is a multiple of all finer ones: of a node that looks at the clock every 10 ms, steps of 20 ms
 and their proof of 4 ms would make 60 ms of 50."""
-PROOF_PARTS = 5
+FINE_PARTS, COARSE_TIMES = 2.5, 5
 """The proof takes steps so many times as fine as the recording's, or as coarse …"""
 PROOF_STEPS = 30
 """… for at least so many of the recording's steps, or of the coarse ones. …"""
@@ -147,12 +147,12 @@ def _prove(recorder: Recorder, clock: SimulatedClock, recording: Recording) -> R
     many calls, shows a period that the steps have made.
     """
     step_ns = round(recording.step_sec * 1e9)
-    coarse_ns, fine_ns = step_ns * PROOF_PARTS, round(step_ns / PROOF_PARTS)
+    coarse_ns, fine_ns = step_ns * COARSE_TIMES, round(step_ns / FINE_PARTS)
     is_slow = recording.rate_hz * COARSE_STEPS * coarse_ns <= 1e9
     coarse = is_slow and _same_period(
         recorder, clock, recording, coarse_ns, ticks_least=PROOF_STEPS
     )
-    ticks_least = PROOF_STEPS * PROOF_PARTS
+    ticks_least = round(PROOF_STEPS * FINE_PARTS)
     return coarse or _same_period(recorder, clock, recording, fine_ns, ticks_least=ticks_least)
 
 
