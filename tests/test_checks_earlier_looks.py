@@ -26,7 +26,8 @@ class Topic:
         self._of_recording = {'clock': 'simulated', 'step_sec': 0.1} | of_recording
 
     def record(self, seconds, *, name='/t', step_sec=0.1):
-        def look():
+        def look(earlier):
+            self.earlier = earlier
             self.looks += 1
             samples = (Sample(f'{i}', 0.2 * i, 0.2 * i) for i in range(1, round(5 * seconds) + 1))
             recording = Recording(
@@ -61,8 +62,8 @@ def test_where_messages_are_rare_the_first_two_are_taken():
         seconds=60.0,
         start_sec=0.0,
     )
-    look_once(Wanted('/t', 60.0, 0.1), lambda: Look(rare, None))
-    found = look_once(Wanted('/t', 10.0, 0.1), lambda: None)
+    look_once(Wanted('/t', 60.0, 0.1), lambda _: Look(rare, None))
+    found = look_once(Wanted('/t', 10.0, 0.1), lambda _: None)
     assert (found.recording.messages, found.recording.seconds) == (samples, 40.0)
 
 
@@ -71,6 +72,22 @@ def test_a_longer_one_is_recorded_anew(clock):
     topic = Topic(clock=clock)
     topic.record(10.0), topic.record(60.0), topic.record(60.0)
     assert topic.looks == 2
+
+
+def test_who_looks_longer_on_the_wall_clock_is_told_what_was_seen_there():
+    topic = Topic(clock='wall')
+    shorter = topic.record(10.0)
+    topic.record(60.0)
+    assert topic.earlier.recording is shorter
+    interactions.note()
+    topic.record(90.0)
+    assert topic.earlier is None
+
+
+def test_who_looks_longer_on_the_robots_clock_begins_anew():
+    topic = Topic()
+    topic.record(10.0), topic.record(60.0)
+    assert topic.earlier is None
 
 
 @pytest.mark.parametrize('differs', [{'name': '/other'}, {'step_sec': 0.02}])
@@ -84,7 +101,7 @@ def test_messages_that_have_ended_are_looked_for_once_more():
     topic = Topic(clock='wall')
     samples = tuple(Sample('one', 0.2 * i, 0.2 * i) for i in range(1, 11))
     ended = replace(topic.record(10.0), messages=samples, seconds=4.0)
-    look_once(Wanted('/ended', 10.0, 0.1), lambda: Look(ended, None))
+    look_once(Wanted('/ended', 10.0, 0.1), lambda _: Look(ended, None))
     topic.record(10.0, name='/ended')
     assert topic.looks == 2
 
@@ -126,7 +143,7 @@ def nothing(**doubt):
 def test_silence_is_told_again_and_by_its_cause_alone_in_a_hidden_part(monkeypatch):
     wanted, looks = Wanted('/t', 10.0, 0.1), []
 
-    def look():
+    def look(_):
         looks.append(1)
         nothing(cause='nothing comes')
 
@@ -141,7 +158,7 @@ def test_silence_is_told_again_and_by_its_cause_alone_in_a_hidden_part(monkeypat
 def test_a_failure_that_may_be_the_machines_is_looked_into_again():
     looks = []
 
-    def look():
+    def look(_):
         looks.append(1)
         nothing(doubt=Starved)
 

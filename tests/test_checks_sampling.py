@@ -5,7 +5,6 @@ from dataclasses import replace
 import pytest
 from my_robot_basics.checks import (
     CheckFailed,
-    sampling,
     topic,
     topic_endpoints,
     topics,
@@ -13,6 +12,7 @@ from my_robot_basics.checks import (
 )
 from my_robot_basics.checks import recording as recording_module
 from my_robot_basics.checks.clock import SimulatedClock
+from my_robot_basics.checks.driven_topic import DrivenTopic
 from my_robot_basics.checks.recording import Recording, Sample
 from my_robot_basics.feedback.errors import Starved
 from my_robot_basics.graph.watcher import Watcher
@@ -99,19 +99,19 @@ def test_a_machine_that_is_late_itself_looks_again_while_there_is_time(
     assert len(recorded) == looks_in_all
 
 
-def test_who_has_followed_the_clock_or_ignored_it_need_not_show_it_again(monkeypatch):
-    held, hold = [], sampling._hold
+def test_who_may_ignore_the_clock_has_to_show_once_that_it_does(monkeypatch):
+    held, hold = [], DrivenTopic._hold
 
-    def note_and_hold(recorder, clock, seconds):
+    def note_and_hold(driven, seconds):
         held.append(seconds)
-        hold(recorder, clock, seconds)
+        hold(driven, seconds)
 
-    monkeypatch.setattr(sampling, '_hold', note_and_hold)
+    monkeypatch.setattr(DrivenTopic, '_hold', note_and_hold)
     for node in 'five_hz', 'sleep_loop', 'five_hz':
         with running(node):
             topic(TOPIC).record(seconds=2.0)
             topic(TOPIC).record(seconds=2.0).assert_rate(hz=5.0)
-    assert held == [1.0, 0.1, 1.0, 1.0, 0.1]
+    assert held == [0.1, 0.1, 0.1, 1.0, 0.1, 0.1]
 
 
 IGNORES = (

@@ -3,7 +3,7 @@
 In the test's room alone, where no cell of the student's runs between two checks, and only while
 no check does more than listen. It serves those that ask for no more of the robot's time, unless
 the messages had ended, or it was only a makeshift on a busy machine. A look on the wall clock is
-as long for all, and yet whoever asks for more gets another: it tells whether the node goes on.
+as long for all, and yet whoever asks for more looks again: whether the node goes on.
 """
 
 from collections.abc import Callable
@@ -46,17 +46,18 @@ class _Kept:
 _last: _Kept | None = None
 
 
-def look_once(wanted: Wanted, look: Callable[[], Look]) -> Look:
+def look_once(wanted: Wanted, look: Callable[[Look | None], Look]) -> Look:
     """What `look` finds, or what the last one has found, if that tells as much.
 
+    `look` is given the last one where that was on the wall clock, and shorter than is wanted.
     Raises CheckFailed where there is nothing to record, once more in the same words.
     """
     global _last
     if _last is not None and _serves(_last, wanted):
         return _again(_last.look, wanted.seconds)
-    _last = None
+    earlier, _last = _on_wall(_last, wanted), None
     try:
-        found = look()
+        found = look(earlier)
     except CheckFailed as failure:
         # one of another class says that the answer may not be to blame: rooms are made anew
         if type(failure) is CheckFailed and failure.repeat is not None:
@@ -67,15 +68,28 @@ def look_once(wanted: Wanted, look: Callable[[], Look]) -> Look:
 
 
 def _serves(kept: _Kept, wanted: Wanted) -> bool:
-    if not is_in_test_room() or kept.interactions != interactions.count():
-        return False
-    if replace(wanted, seconds=kept.wanted.seconds) != kept.wanted:
+    if not _is_of_the_same(kept, wanted):
         return False
     if isinstance(kept.look, CheckFailed):
         return True
+    return _is_whole(kept.look.recording) and wanted.seconds <= kept.wanted.seconds
+
+
+def _on_wall(kept: _Kept | None, wanted: Wanted) -> Look | None:
+    if kept is None or isinstance(kept.look, CheckFailed) or not _is_of_the_same(kept, wanted):
+        return None
     recording = kept.look.recording
-    is_whole = not recording.is_makeshift and not recording.has_ended
-    return is_whole and wanted.seconds <= kept.wanted.seconds
+    return kept.look if recording.clock == 'wall' and _is_whole(recording) else None
+
+
+def _is_of_the_same(kept: _Kept, wanted: Wanted) -> bool:
+    if not is_in_test_room() or kept.interactions != interactions.count():
+        return False
+    return replace(wanted, seconds=kept.wanted.seconds) == kept.wanted
+
+
+def _is_whole(recording: Recording) -> bool:
+    return not recording.is_makeshift and not recording.has_ended
 
 
 def _again(look: Look | CheckFailed, seconds: float) -> Look:

@@ -3,7 +3,7 @@
 import time
 from dataclasses import replace
 
-from my_robot_basics.checks import followers, sampling, wall_recording
+from my_robot_basics.checks import ignoring, sampling, wall_recording
 from my_robot_basics.checks.clock_use import are_left_alone
 from my_robot_basics.checks.earlier_looks import Look, Wanted, look_once
 from my_robot_basics.checks.inconclusive import Inconclusive
@@ -30,21 +30,22 @@ BEFORE_SEC = 0.5
 def record(topic: TopicEndpoints, wanted: Wanted, *, hold_sec: float) -> Recording:
     """What the topic carries; see `Topic.record`. Raises CheckFailed."""
     start = time.monotonic()
-    look = look_once(wanted, lambda: _look(topic, wanted, hold_sec))
+    look = look_once(wanted, lambda earlier: _look(topic, wanted, hold_sec, earlier))
     left_sec = _looks_sec() - (time.monotonic() - start)
     return _to_look_again(topic, look, left_sec=left_sec, late_looks=LATE_LOOKS)
 
 
-def _look(topic: TopicEndpoints, wanted: Wanted, hold_sec: float) -> Look:
+def _look(topic: TopicEndpoints, wanted: Wanted, hold_sec: float, earlier: Look | None) -> Look:
     with Watcher(shared=True, listens=True) as watcher:
         recorder = topic.listen(watcher)
+        if earlier is not None and wall_recording.goes_on(watcher, recorder, earlier.recording):
+            return earlier
         sent = watcher.spin_until_free(lambda: bool(recorder.received), free_sec=BEFORE_SEC)
         found = _simulated(watcher, recorder, wanted, hold_sec)
         if isinstance(found, Inconclusive):
             look = Look(wall_recording.wall(watcher, recorder, why=found), found)
         else:
             look = Look(found, None)
-            followers.remember(recorder)
         if not look.recording.messages:
             if sent and not are_left_alone():
                 _expect_ends_by_itself(recorder)
@@ -55,17 +56,17 @@ def _look(topic: TopicEndpoints, wanted: Wanted, hold_sec: float) -> Look:
 def _simulated(
     watcher: Watcher, recorder: Recorder, wanted: Wanted, hold_sec: float
 ) -> Recording | Inconclusive:
-    if followers.ignore(recorder):
+    if ignoring.is_known(recorder):
         return Inconclusive(wall_recording.IGNORES)
     found = sampling.simulated(
         watcher,
         recorder,
         seconds=wanted.seconds,
         step_sec=wanted.step_sec,
-        hold_sec=followers.hold_sec(recorder, hold_sec),
+        hold_sec=hold_sec,
     )
     if str(found) == wall_recording.IGNORES:
-        followers.remember_ignoring(recorder)
+        ignoring.remember(recorder)
     return found
 
 

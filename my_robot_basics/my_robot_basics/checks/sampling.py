@@ -1,19 +1,17 @@
 """Record a topic on the clock that the check drives."""
 
-import time
 from dataclasses import replace
 
 from my_robot_basics.checks import rates
 from my_robot_basics.checks.clock import SimulatedClock
+from my_robot_basics.checks.driven_topic import DrivenTopic, NoMessage
 from my_robot_basics.checks.inconclusive import Inconclusive, TooSlow
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.recording import Recording, Sample
-from my_robot_basics.checks.wall_recording import IGNORES
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
 
 HOLD_SEC = 1.0
-FIRST_MESSAGE_SEC = 20.0
 UNEVEN = 'its messages are not evenly spaced'
 COUNTS = "it counts the calls of a timer that is faster than the clock's steps"
 CLOSER = (1.0, 0.1)
@@ -35,10 +33,6 @@ COARSE_STEPS = 4
 """… Coarse ones take a slow timer less time; so many of them fit in its period at least."""
 
 
-class NoMessage(Inconclusive):
-    """No message came for as long as one is waited for."""
-
-
 def simulated(
     watcher: Watcher,
     recorder: Recorder,
@@ -49,68 +43,67 @@ def simulated(
 ) -> Recording | Inconclusive:
     """A recording on the robot's clock, or why there is none: TooSlow on a busy machine alone.
 
-    `hold_sec`: how long the clock stands still before.
+    `hold_sec`: how long the clock stands still where messages may ignore it.
     """
     watch = Stopwatch()
     try:
         with SimulatedClock(watcher, needed=set(recorder.publishers())) as clock:
-            _hold(recorder, clock, hold_sec)
-            for part in CLOSER:
-                recording = _drive(
-                    recorder,
-                    clock,
-                    seconds=max(seconds * part, SECONDS_LEAST),
-                    step_sec=step_sec * part,
-                )
-                if rates.leaves_out(recording):
-                    return recording
-                if not rates.is_even(recording):
-                    return Inconclusive(UNEVEN)
-                proof = _prove(recorder, clock, recording)
-                if proof is None:
-                    continue
-                if not rates.is_nearly_even(proof):
-                    return Inconclusive(UNEVEN)
-                return replace(recording, proof=proof)
+            topic = DrivenTopic(watcher, recorder, clock, hold_sec=hold_sec)
+            try:
+                found = _sampled(topic, seconds=seconds, step_sec=step_sec)
+            except TooSlow:
+                topic.expect_follows()
+                raise
+            if isinstance(found, Inconclusive) or rates.leaves_out(found):
+                topic.expect_follows()
+            if isinstance(found, Inconclusive):
+                topic.wait_for_threads()
+                found = _sampled(topic, seconds=seconds, step_sec=step_sec)
+            return found
     except TooSlow as why:
         return why if watch.is_busy() else Inconclusive(str(why))
     except Inconclusive as why:
         return why
+
+
+def _sampled(topic: DrivenTopic, *, seconds: float, step_sec: float) -> Recording | Inconclusive:
+    for part in CLOSER:
+        recording = _drive(
+            topic, seconds=max(seconds * part, SECONDS_LEAST), step_sec=step_sec * part
+        )
+        if rates.leaves_out(recording):
+            return recording
+        if not rates.is_even(recording):
+            return Inconclusive(UNEVEN)
+        proof = _prove(topic, recording)
+        if proof is None:
+            continue
+        if not rates.is_nearly_even(proof):
+            return Inconclusive(UNEVEN)
+        return replace(recording, proof=proof)
     return Inconclusive(COUNTS)
 
 
-def _hold(recorder: Recorder, clock: SimulatedClock, seconds: float) -> None:
-    """The clock stands still: a node that keeps publishing does not follow it."""
-    since_ns = time.time_ns()
-    end = time.monotonic() + seconds
-    while time.monotonic() < end:
-        clock.hold(0.05)
-        if recorder.count_since(since_ns) >= 2:
-            raise Inconclusive(IGNORES)
-
-
-def _drive(
-    recorder: Recorder, clock: SimulatedClock, *, seconds: float, step_sec: float
-) -> Recording:
+def _drive(topic: DrivenTopic, *, seconds: float, step_sec: float) -> Recording:
     """Record `seconds`, or until there are FEWEST messages. Raises Inconclusive.
 
     Where that takes long, it leaves the proof its time and records less.
     """
-    step_ns, start_ns = _find_step(recorder, clock, step_sec=step_sec)
-    before = len(recorder.received)
+    step_ns, start_ns = _find_step(topic, step_sec=step_sec)
+    received, clock = topic.recorder.received, topic.clock
+    before = len(received)
     for done in range(round(seconds * 1e9 / step_ns)):
         if clock.takes_long() and done * step_ns >= SECONDS_ENOUGH * 1e9:
             break
-        clock.tick(step_ns)
-    while len(recorder.received) < before + rates.FEWEST:
-        _tick_to_message(recorder, clock, step_ns=step_ns)
-    return _recorded(recorder, clock, start_ns=start_ns, step_ns=step_ns)
+        topic.tick(step_ns)
+    while len(received) < before + rates.FEWEST:
+        topic.tick_to_message(step_ns)
+    return _recorded(topic, start_ns=start_ns, step_ns=step_ns)
 
 
-def _recorded(
-    recorder: Recorder, clock: SimulatedClock, *, start_ns: int, step_ns: int
-) -> Recording:
+def _recorded(topic: DrivenTopic, *, start_ns: int, step_ns: int) -> Recording:
     """What was received on the robot's clock since a message."""
+    recorder, clock = topic.recorder, topic.clock
     samples = [
         Sample(message, (clock.time_ns(sent_ns) - start_ns) / 1e9, sent_ns / 1e9)
         for message, sent_ns in recorder.received
@@ -127,20 +120,20 @@ def _recorded(
     )
 
 
-def _find_step(recorder: Recorder, clock: SimulatedClock, *, step_sec: float) -> tuple[int, int]:
+def _find_step(topic: DrivenTopic, *, step_sec: float) -> tuple[int, int]:
     """A step that skips no period of the timer, and the time of the message to begin at.
 
     A timer fires once a tick at most, so messages in two ticks running ask for a finer step.
     """
     for part in FINER:
         step_ns = round(step_sec * part * 1e9)
-        _tick_to_message(recorder, clock, step_ns=step_ns)
-        if _tick_to_message(recorder, clock, step_ns=step_ns) > 1:
+        topic.tick_to_message(step_ns)
+        if topic.tick_to_message(step_ns) > 1:
             break
-    return step_ns, clock.now_ns
+    return step_ns, topic.clock.now_ns
 
 
-def _prove(recorder: Recorder, clock: SimulatedClock, recording: Recording) -> Recording | None:
+def _prove(topic: DrivenTopic, recording: Recording) -> Recording | None:
     """A recording with other steps that shows the same period, or None. Raises Inconclusive.
 
     A timer fires once a tick at most. One that is faster than the ticks, and publishes every so
@@ -149,27 +142,20 @@ def _prove(recorder: Recorder, clock: SimulatedClock, recording: Recording) -> R
     step_ns = round(recording.step_sec * 1e9)
     coarse_ns, fine_ns = step_ns * COARSE_TIMES, round(step_ns / FINE_PARTS)
     is_slow = recording.rate_hz * COARSE_STEPS * coarse_ns <= 1e9
-    coarse = is_slow and _same_period(
-        recorder, clock, recording, coarse_ns, ticks_least=PROOF_STEPS
-    )
+    coarse = is_slow and _same_period(topic, recording, coarse_ns, ticks_least=PROOF_STEPS)
     ticks_least = round(PROOF_STEPS * FINE_PARTS)
-    return coarse or _same_period(recorder, clock, recording, fine_ns, ticks_least=ticks_least)
+    return coarse or _same_period(topic, recording, fine_ns, ticks_least=ticks_least)
 
 
 def _same_period(
-    recorder: Recorder,
-    clock: SimulatedClock,
-    recording: Recording,
-    step_ns: int,
-    *,
-    ticks_least: int,
+    topic: DrivenTopic, recording: Recording, step_ns: int, *, ticks_least: int
 ) -> Recording | None:
     ticks = messages = 0
     try:
-        _tick_to_message(recorder, clock, step_ns=step_ns)
-        start_ns = clock.now_ns
+        topic.tick_to_message(step_ns)
+        start_ns = topic.clock.now_ns
         while ticks < ticks_least:
-            ticks += _tick_to_message(recorder, clock, step_ns=step_ns)
+            ticks += topic.tick_to_message(step_ns)
             messages += 1
     except NoMessage:
         return None
@@ -177,14 +163,4 @@ def _same_period(
     unsure_ns = step_ns + messages * recording.step_sec * 1e9 / len(recording.messages)
     if abs(ticks * step_ns - recorded_ns) > 1.5 * unsure_ns:
         return None
-    return _recorded(recorder, clock, start_ns=start_ns, step_ns=step_ns)
-
-
-def _tick_to_message(recorder: Recorder, clock: SimulatedClock, *, step_ns: int) -> int:
-    """Tick until a message arrives; how many ticks it took. Raises Inconclusive."""
-    before = len(recorder.received)
-    for ticks in range(1, round(FIRST_MESSAGE_SEC * 1e9 / step_ns) + 1):
-        clock.tick(step_ns)
-        if len(recorder.received) > before:
-            return ticks
-    raise NoMessage(f"no message arrived in {FIRST_MESSAGE_SEC:g} s of the robot's time")
+    return _recorded(topic, start_ns=start_ns, step_ns=step_ns)

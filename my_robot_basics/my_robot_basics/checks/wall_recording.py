@@ -2,6 +2,7 @@
 
 import time
 
+from my_robot_basics.checks import rates
 from my_robot_basics.checks.inconclusive import Inconclusive, TooSlow
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.recording import Recording, Sample
@@ -17,6 +18,9 @@ no silence."""
 
 RAISED_SEC = 2.0
 """The same where nothing has come yet and a callback raised: rclpy.spin would have ended there."""
+
+GOES_ON_SEC = 1.0
+"""So long does it have to go on as it did before."""
 
 IGNORES = 'the node ignores the clock'
 
@@ -62,6 +66,12 @@ def wall(
         was_busy=watch.is_busy(),
         is_makeshift=isinstance(why, TooSlow),
     )
+
+
+def goes_on(watcher: Watcher, recorder: Recorder, earlier: Recording) -> bool:
+    """Whether the messages of an earlier recording still come, as often and as evenly."""
+    again = wall(watcher, recorder, seconds=GOES_ON_SEC, timeout_sec=GOES_ON_SEC)
+    return again.publishers == earlier.publishers and rates.is_steady(again, earlier.rate_hz)
 
 
 def _note(recorder: Recorder) -> str:

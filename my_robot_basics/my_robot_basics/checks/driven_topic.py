@@ -1,0 +1,74 @@
+"""A topic on the clock that a check drives: tick until a message comes, see that it follows."""
+
+import time
+
+from my_robot_basics.checks.clock import SimulatedClock
+from my_robot_basics.checks.inconclusive import Inconclusive
+from my_robot_basics.checks.recorder import Recorder
+from my_robot_basics.checks.wall_recording import IGNORES
+from my_robot_basics.graph.watcher import Watcher
+
+SETTLE_SEC = 0.1
+"""So long does the clock stand still first: a message may be under way."""
+FIRST_MESSAGE_SEC = 20.0
+SUSPICIOUS_TICKS = 30
+"""A tick takes a millisecond or two: of a node that ignores the clock, messages are far apart."""
+PATIENT_SEC = 0.002
+"""What a thread that sleeps on the clock takes to wake up and to publish."""
+
+
+class NoMessage(Inconclusive):
+    """No message came for as long as one is waited for."""
+
+
+class DrivenTopic:
+    """What is received while the clock is driven.
+
+    A node that ignores the clock goes on while that stands still. A plain timer, whose messages
+    come as the ticks do, is not asked to prove that it stands still, too.
+    """
+
+    def __init__(
+        self, watcher: Watcher, recorder: Recorder, clock: SimulatedClock, *, hold_sec: float
+    ) -> None:
+        """`hold_sec`: how long the clock stands still to see whether messages do."""
+        self.recorder, self.clock = recorder, clock
+        self._watcher, self._hold_sec = watcher, hold_sec
+        self._has_stood = False
+        self._patient_sec = 0.0
+        self._hold(SETTLE_SEC)
+
+    def expect_follows(self) -> None:
+        """Let the clock stand still, once. Raises Inconclusive where messages go on."""
+        if not self._has_stood:
+            self._has_stood = True
+            self._hold(self._hold_sec)
+
+    def wait_for_threads(self) -> None:
+        """Wait a little after each tick from now on: a thread of the node acknowledges none."""
+        self._patient_sec = PATIENT_SEC
+
+    def tick(self, step_ns: int) -> None:
+        """Move the clock, and receive what that brings. Raises Inconclusive."""
+        self.clock.tick(step_ns)
+        if self._patient_sec:
+            self._watcher.spin_for(self._patient_sec)
+
+    def tick_to_message(self, step_ns: int) -> int:
+        """Tick until a message arrives; how many ticks it took. Raises Inconclusive."""
+        before = len(self.recorder.received)
+        for ticks in range(1, round(FIRST_MESSAGE_SEC * 1e9 / step_ns) + 1):
+            self.tick(step_ns)
+            if len(self.recorder.received) > before:
+                return ticks
+            if ticks == SUSPICIOUS_TICKS:
+                self.expect_follows()
+        raise NoMessage(f"no message arrived in {FIRST_MESSAGE_SEC:g} s of the robot's time")
+
+    def _hold(self, seconds: float) -> None:
+        since_ns = time.time_ns()
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            self.clock.hold(min(seconds, 0.05))
+            if self.recorder.count_since(since_ns) >= 2:
+                raise Inconclusive(IGNORES)
