@@ -1,7 +1,8 @@
 """A parameter that sets a node's rate: every honest way passes, and each mistake is named."""
 
 import pytest
-from my_robot_basics.checks import CheckFailed, node_parameters, rate_parameter
+from my_robot_basics.checks import CheckFailed, node_parameters, rate_parameter, sampling, topic
+from my_robot_basics.checks.inconclusive import Inconclusive
 from nodes.running import imported
 
 from my_robot_basics import live
@@ -54,6 +55,19 @@ def test_an_honest_way_passes_at_each_rate_that_may_be_asked_for(run, NodeClass)
     # 20 Hz: who looks at the clock every 10 ms needs steps that 10 ms are a multiple of
     rate = rate_parameter('/adjustable_publisher', 'rate_hz', topic_name=TOPIC)
     rate.expect_follows(2.0, 2.5, 4.0, 20.0)
+
+
+def test_who_remembers_the_robots_time_is_waited_for_on_the_wall_clock(run, monkeypatch):
+    def drive_in_vain(driven, **_):
+        for _ in range(60):
+            driven.tick(100_000_000)
+        return Inconclusive(sampling.UNEVEN)
+
+    monkeypatch.setattr(sampling, '_sampled', drive_in_vain)
+    run(adjustable.ReadsInEachTick)
+    recording = topic(TOPIC).record()
+    recording.assert_rate(hz=5.0)
+    assert recording.clock == 'wall'
 
 
 OF_THE_RATE = [

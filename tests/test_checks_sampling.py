@@ -5,9 +5,9 @@ from dataclasses import replace
 import pytest
 from my_robot_basics.checks import (
     CheckFailed,
+    looks,
     topic,
     topic_endpoints,
-    topics,
     wall_recording,
 )
 from my_robot_basics.checks import recording as recording_module
@@ -83,7 +83,7 @@ def test_a_machine_that_is_late_itself_looks_again_while_there_is_time(
     monkeypatch, late_sec, validate_sec, looks_in_all
 ):
     recorded = []
-    monkeypatch.setattr(topics, 'VALIDATE_SEC', validate_sec)
+    monkeypatch.setattr(looks, 'VALIDATE_SEC', validate_sec)
 
     def wall(*args, **options):
         recorded.append(replace(on_wall(*args, **options), late_sec=late_sec))

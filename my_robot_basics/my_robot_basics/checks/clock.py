@@ -38,6 +38,14 @@ _latest_ns = 0
 """What `/clock` showed last: a node that waits for a time would else wait for it once more."""
 
 
+def ahead_sec() -> float:
+    """How far what `/clock` showed last is ahead of the wall clock, in seconds; 0 where not.
+
+    So long is a node silent, back on wall time, that remembers when it published last.
+    """
+    return max(0.0, (_latest_ns - time.time_ns()) / 1e9)
+
+
 class SimulatedClock:
     """A context manager that holds `/clock` for the nodes on the graph that let it.
 

@@ -25,8 +25,10 @@ FINER = (1.0, 0.5, 0.1, 0.05, 0.01)
 
 Each is a multiple of all finer ones: of a node that looks at the clock every 10 ms, steps of 20 ms
 and their proof of 4 ms would make 60 ms of 50."""
-FINE_PARTS, COARSE_TIMES = 2.5, 5
+FINE_PARTS, FINER_PARTS, COARSE_TIMES = 2.5, 5, 5
 """The proof takes steps so many times as fine as the recording's, or as coarse …"""
+FINER_BELOW_SEC = 0.05
+"""… and finer ones below this, or 10 ms would be no multiple of them, either."""
 PROOF_STEPS = 30
 """… for at least so many of the recording's steps, or of the coarse ones. …"""
 COARSE_STEPS = 4
@@ -140,10 +142,11 @@ def _prove(topic: DrivenTopic, recording: Recording) -> Recording | None:
     many calls, shows a period that the steps have made.
     """
     step_ns = round(recording.step_sec * 1e9)
-    coarse_ns, fine_ns = step_ns * COARSE_TIMES, round(step_ns / FINE_PARTS)
+    parts = FINE_PARTS if recording.step_sec >= FINER_BELOW_SEC else FINER_PARTS
+    coarse_ns, fine_ns = step_ns * COARSE_TIMES, round(step_ns / parts)
     is_slow = recording.rate_hz * COARSE_STEPS * coarse_ns <= 1e9
     coarse = is_slow and _same_period(topic, recording, coarse_ns, ticks_least=PROOF_STEPS)
-    ticks_least = round(PROOF_STEPS * FINE_PARTS)
+    ticks_least = round(PROOF_STEPS * parts)
     return coarse or _same_period(topic, recording, fine_ns, ticks_least=ticks_least)
 
 

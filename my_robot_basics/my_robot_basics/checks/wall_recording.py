@@ -3,6 +3,7 @@
 import time
 
 from my_robot_basics.checks import rates
+from my_robot_basics.checks.clock import ahead_sec
 from my_robot_basics.checks.inconclusive import Inconclusive, TooSlow
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.recording import Recording, Sample
@@ -35,13 +36,15 @@ def wall(
 ) -> Recording:
     """A recording of `seconds` on the wall clock, beginning at a message.
 
-    It waits for that one `timeout_sec` at most, and as long for the next one, should that be
-    longer: then it ends there. `why`: what spoke against the robot's clock.
+    It waits for that one `timeout_sec` at most, or until the wall clock has come to where a driven
+    one was; and as long for the next one, should that be longer: then it ends there. `why`: what
+    spoke against the robot's clock.
     """
+    first_sec = timeout_sec + ahead_sec()
     if not recorder.received and what_raised(recorder.publishers()):
-        seconds = timeout_sec = RAISED_SEC
+        seconds = timeout_sec = first_sec = RAISED_SEC
     since_ns, watch = time.time_ns(), Stopwatch()
-    if watcher.spin_until(lambda: recorder.count_since(since_ns) > 0, timeout_sec=timeout_sec):
+    if watcher.spin_until(lambda: recorder.count_since(since_ns) > 0, timeout_sec=first_sec):
         watcher.late_sec, watch = 0.0, Stopwatch()
         watcher.spin_for(seconds)
         watcher.spin_until(
