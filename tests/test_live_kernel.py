@@ -512,6 +512,34 @@ if not rclpy.ok(): rclpy.init()""")
     assert cell.stderr == ''
 
 
+MEETING = """class Meeting:
+    def __init__(self, lock): self.lock = lock
+    def acquire(self, *args):
+        self.lock.acquire(*args)
+        raise KeyboardInterrupt  # where Python may raise it
+    def __getattr__(self, name): return getattr(self.lock, name)
+
+def interrupt(ask, thread):
+    lock, thread._tstate_lock = thread._tstate_lock, Meeting(thread._tstate_lock)
+    try: ask()
+    except KeyboardInterrupt: pass
+    if thread._tstate_lock is not None: thread._tstate_lock = lock"""
+
+
+@pytest.mark.skipif(sys.version_info >= (3, 13), reason='a thread has no such lock')
+def test_an_interrupt_takes_no_thread_for_dead(lesson):
+    """As ipykernel's that sends a kernel's outputs: two would send them at the same time then."""
+    lesson.run(f"""{MEETING}
+import threading
+end = threading.Event()
+runs = threading.Thread(target=end.wait); runs.start()
+interrupt(runs.is_alive, runs)""")
+    assert lesson.value('runs.is_alive()') == 'True'
+    # where it has ended, as whoever asked was interrupted, that is not forgotten
+    lesson.run('end.set(); interrupt(runs.join, runs); runs.join()')
+    assert lesson.value('runs.is_alive()') == 'False'
+
+
 def test_a_second_init_is_explained_in_a_sentence(lesson):
     lesson.run('run(Talker)')
     error = ' '.join(lesson.run('rclpy.init()').error.split())

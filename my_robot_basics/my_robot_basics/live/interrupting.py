@@ -35,6 +35,8 @@ def let_cells_be_interrupted() -> None:
     patch(Executor, 'wait_for_ready_callbacks', wait)
     wait_for_message._rclpy = SimpleNamespace(WaitSet=_InterruptibleWaitSet)
     sys.unraisablehook = _sending_again(sys.unraisablehook)
+    if sys.version_info < (3, 13):
+        patch(threading.Thread, '_wait_for_tstate_lock', _wait_for_end)
 
 
 def forget_dead_executor() -> None:
@@ -117,3 +119,24 @@ def _sending_again(
         again.start()
 
     return hook
+
+
+def _wait_for_end(thread: Any, block: bool = True, timeout: float = -1) -> None:
+    """Do what `Thread.is_alive` and `join` do, and take no running thread for one that has ended.
+
+    Before 3.13 Python does where an interrupt comes then. ipykernel asks at each print whether
+    its thread that sends outputs runs: once it takes it for dead, all threads send, at the same
+    time, until messages are lost, such as the one that says that a cell has ended.
+    """
+    lock = thread._tstate_lock
+    if lock is None:
+        return
+    try:
+        if lock.acquire(block, timeout):
+            lock.release()
+            thread._stop()
+    except BaseException:
+        if lock.locked() and thread.ident not in sys._current_frames():
+            lock.release()  # it was acquired here: the thread has ended
+            thread._stop()
+        raise
