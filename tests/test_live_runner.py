@@ -2,8 +2,10 @@
 
 import subprocess
 import sys
+from types import SimpleNamespace
 
 import pytest
+from my_robot_basics.session.errors import tell
 
 FORGET = """
 import weakref
@@ -11,6 +13,7 @@ import weakref
 import rclpy
 from my_robot_basics.live import runner
 from rclpy.executors import SingleThreadedExecutor
+from rclpy.signals import SignalHandlerGuardCondition
 
 
 class Careless:
@@ -27,6 +30,9 @@ executor.shutdown()
 del executor
 careless = Careless()
 del careless
+# as when an interrupt comes while one is made
+SingleThreadedExecutor.__new__(SingleThreadedExecutor)
+SignalHandlerGuardCondition.__new__(SignalHandlerGuardCondition)
 rclpy.shutdown()
 """
 
@@ -77,10 +83,22 @@ def test_a_node_starts_and_lives_after_a_main_that_was_interrupted(pause_sec):
     assert run.stdout.splitlines()[-2:] == ['starts True', 'lives True'], run.stderr
 
 
-def test_a_race_of_rclpys_own_is_not_told_and_other_errors_are():
+def test_races_of_rclpys_own_are_not_told_and_other_errors_are():
     run = subprocess.run(
         [sys.executable, '-c', FORGET], capture_output=True, text=True, check=False
     )
     assert run.returncode == 0
     assert 'list.remove' not in run.stderr
+    assert 'AttributeError' not in run.stderr
     assert 'ValueError: of the student' in run.stderr
+
+
+def test_what_is_told_comes_in_one_piece_whatever_interrupts(monkeypatch):
+    pieces = []
+    stdout = SimpleNamespace(write=pieces.append, flush=lambda: None)
+    monkeypatch.setattr(sys, 'stdout', stdout)
+    tell('One sentence, and another one. ' * 6, in_one=False)
+    monkeypatch.undo()
+    [piece] = filter(None, pieces)
+    assert piece.count('\n') == 3
+    assert piece.endswith('one.\n')

@@ -4,7 +4,10 @@ import sys
 import threading
 from collections.abc import Callable
 
-from rclpy.executors import ExternalShutdownException
+from rclpy.executors import Executor, ExternalShutdownException
+from rclpy.signals import SignalHandlerGuardCondition
+
+_OF_EXECUTORS = {each.__del__.__qualname__ for each in (Executor, SignalHandlerGuardCondition)}
 
 
 def hide() -> None:
@@ -28,15 +31,18 @@ def _without_shutdowns(
 def _without_races(
     former: Callable[['sys.UnraisableHookArgs'], object],
 ) -> Callable[['sys.UnraisableHookArgs'], None]:
-    """Make a hook for what is raised while a Context forgets executors that are gone.
+    """Make a hook for what rclpy raises while something of its own is deleted.
 
-    It removes them from a list without a lock; where two go at the same moment, it may miss one.
+    A Context removes executors that are gone from a list without a lock; where two go at the same
+    moment, it may miss one. An executor misses its parts where an interrupt came as it was made.
     Shown in a cell that is being validated, that would cost its points.
     """
 
     def hook(args: 'sys.UnraisableHookArgs') -> None:
         where = getattr(args.object, '__qualname__', '')
-        if not (args.exc_type is ValueError and where.startswith('WeakMethod.')):
+        missed = args.exc_type is ValueError and where.startswith('WeakMethod.')
+        half_made = args.exc_type is AttributeError and where in _OF_EXECUTORS
+        if not (missed or half_made):
             former(args)
 
     return hook

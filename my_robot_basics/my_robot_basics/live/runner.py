@@ -14,6 +14,7 @@ from my_robot_basics.live import (
     commands,
     executables,
     harmless_errors,
+    interrupting,
     node_file,
     notebook,
     spinning,
@@ -147,6 +148,7 @@ def ensure_rclpy() -> None:
     if not rclpy.ok():
         rclpy.try_shutdown()  # a context that was shut down by hand cannot be initialised again
         rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
+        interrupting.forget_dead_executor()
     domain_id = rclpy.get_default_context().get_domain_id()
     if domain_id != domain_of_lesson:
         tell(
@@ -176,6 +178,7 @@ def set_up() -> int:
         _is_set_up = True
         if notebook.in_kernel():
             node_file.register()
+            interrupting.let_cells_be_interrupted()
             if not classroom.in_grading_room():
                 spinning.help_in_cells()
         harmless_errors.hide()

@@ -15,7 +15,9 @@ def in_lines(text: str) -> list[str]:
 def tell(text: str, *, in_one: bool = True) -> None:
     """Print a sentence of the course's in the reader's language, in one line or several."""
     shown = in_language_here(text)
-    print(*[shown] if in_one else in_lines(shown), sep='\n', flush=True)
+    lines = [shown] if in_one else in_lines(shown)
+    # in one piece: an interrupt between the text and its end would leave the line open
+    print('\n'.join([*lines, '']), end='', flush=True)
 
 
 class LiveError(Exception):

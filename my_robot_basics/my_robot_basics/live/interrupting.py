@@ -1,0 +1,142 @@
+"""Whatever a cell waits for, its interrupt ends it: JupyterLab's ■, or the end of a cell's time.
+
+Python raises KeyboardInterrupt between two of its own instructions. In a program of its own, rclpy
+sees to it that a wait ends; in a kernel, where ipykernel sets the handler of SIGINT anew for each
+cell, nothing does.
+"""
+
+import contextlib
+import functools
+import os
+import signal
+import sys
+import threading
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
+
+import rclpy
+from rclpy import wait_for_message
+from rclpy.executors import Executor, TimeoutException, TimeoutObject
+from rclpy.impl.implementation_singleton import rclpy_implementation
+
+from my_robot_basics.live.patching import patch
+
+POLL_SEC = 0.1
+"""How long a cell may take to notice that it is interrupted."""
+
+
+def let_cells_be_interrupted() -> None:
+    """Let a cell that waits in rclpy for ever be interrupted, at whatever moment.
+
+    Only the thread in which cells run sees a difference: a student's own threads spin as ever.
+    """
+    wait = _interruptible(Executor.wait_for_ready_callbacks)
+    patch(Executor, 'wait_for_ready_callbacks', wait)
+    wait_for_message._rclpy = SimpleNamespace(WaitSet=_InterruptibleWaitSet)
+    sys.unraisablehook = _sending_again(sys.unraisablehook)
+    if sys.version_info < (3, 13):
+        patch(threading.Thread, '_wait_for_tstate_lock', _wait_for_end)
+
+
+def forget_dead_executor() -> None:
+    """Let `rclpy.spin` make an executor where the one that it keeps has a context that is over.
+
+    An interrupt that came as it was made, or that rclpy's own handler answered, has left it so:
+    each `spin` would return at once.
+    """
+    kept = vars(rclpy).get('__executor')
+    if kept is not None and not kept.context.ok():
+        vars(rclpy)['__executor'] = None
+
+
+def in_a_cell() -> bool:
+    """Whether this thread is the one in which cells run."""
+    return threading.current_thread() is threading.main_thread()
+
+
+def _interruptible(wait: Callable[..., Any]) -> Callable[..., Any]:
+    """Make an endless wait one of many short ones: Python sees the interrupt between them."""
+
+    @functools.wraps(wait)
+    def wait_in_steps(
+        self: Executor,
+        timeout_sec: float | TimeoutObject | None = None,
+        *args: Any,
+        **kwargs: Any,
+    ) -> Any:
+        limit = timeout_sec.timeout if isinstance(timeout_sec, TimeoutObject) else timeout_sec
+        if not in_a_cell() or (limit is not None and limit >= 0):
+            return wait(self, timeout_sec, *args, **kwargs)
+        while True:
+            with contextlib.suppress(TimeoutException):
+                return wait(self, POLL_SEC, *args, **kwargs)
+
+    return wait_in_steps
+
+
+class _InterruptibleWaitSet(rclpy_implementation.WaitSet):
+    """The same for `wait_for_message`, which waits for one subscription without an executor."""
+
+    def __init__(self, *numbers_and_context: Any) -> None:
+        super().__init__(*numbers_and_context)
+        self._added: list[tuple[Callable[[Any], object], Any]] = []
+
+    def add_subscription(self, handle: Any) -> None:
+        self._add(super().add_subscription, handle)
+
+    def add_guard_condition(self, handle: Any) -> None:
+        self._add(super().add_guard_condition, handle)
+
+    def _add(self, add: Callable[[Any], object], handle: Any) -> None:
+        add(handle)
+        self._added.append((add, handle))
+
+    def wait(self, timeout_nsec: int) -> None:
+        if not in_a_cell() or timeout_nsec >= 0:
+            super().wait(timeout_nsec)
+            return
+        super().wait(int(POLL_SEC * 1e9))
+        while not any(map(self.get_ready_entities, ('subscription', 'guard_condition'))):
+            self.clear_entities()  # what was not ready is no longer in it
+            for add, handle in self._added:
+                add(handle)
+            super().wait(int(POLL_SEC * 1e9))
+
+
+def _sending_again(
+    former: Callable[['sys.UnraisableHookArgs'], object],
+) -> Callable[['sys.UnraisableHookArgs'], None]:
+    """Make a hook for an interrupt that meets the deletion of an object, where Python drops it."""
+
+    def hook(args: 'sys.UnraisableHookArgs') -> None:
+        if not (issubclass(args.exc_type, KeyboardInterrupt) and in_a_cell()):
+            former(args)
+            return
+        # not at once: it would meet this hook, and be dropped again
+        again = threading.Timer(POLL_SEC, os.kill, (os.getpid(), signal.SIGINT))
+        again.daemon = True
+        again.start()
+
+    return hook
+
+
+def _wait_for_end(thread: Any, block: bool = True, timeout: float = -1) -> None:
+    """Do what `Thread.is_alive` and `join` do, and take no running thread for one that has ended.
+
+    Before 3.13 Python does where an interrupt comes then. ipykernel asks at each print whether
+    its thread that sends outputs runs: once it takes it for dead, all threads send, at the same
+    time, until messages are lost, such as the one that says that a cell has ended.
+    """
+    lock = thread._tstate_lock
+    if lock is None:
+        return
+    try:
+        if lock.acquire(block, timeout):
+            lock.release()
+            thread._stop()
+    except BaseException:
+        if lock.locked() and thread.ident not in sys._current_frames():
+            lock.release()  # it was acquired here: the thread has ended
+            thread._stop()
+        raise
