@@ -36,10 +36,10 @@ class Topic(TopicEndpoints):
         """Record `seconds` of the robot's time, beginning at a message (which does not count).
 
         The robot's clock is driven by the check in steps of `step_sec`, or in finer ones where
-        messages come faster than every second step. Before, it stands still for `hold_sec` of wall
-        time, unless the node has followed it before: one that ignores it publishes then. Where
-        that proves nothing (the node does not follow the clock, answers too slowly, …) 4 s of wall
-        time are recorded instead; up to 7 s where no second message comes sooner.
+        messages come faster than every second step. Where they may ignore it, it stands still for
+        `hold_sec` of wall time: they go on then. Where that proves nothing (the node does not
+        follow the clock, answers too slowly, …) 4 s of wall time are recorded instead; up to 7 s
+        where no second message comes sooner.
         Where an exercise is judged, an earlier recording that tells as much is taken instead.
         Raises CheckFailed when there is no publisher or no message.
         """
