@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 from my_robot_basics.checks import (
     CheckFailed,
+    driven_topic,
     looks,
     topic,
     topic_endpoints,
@@ -112,6 +113,19 @@ def test_who_may_ignore_the_clock_has_to_show_once_that_it_does(monkeypatch):
             topic(TOPIC).record(seconds=2.0)
             topic(TOPIC).record(seconds=2.0).assert_rate(hz=5.0)
     assert held == [0.1, 0.1, 0.1, 1.0, 0.1, 0.1]
+
+
+def test_who_works_for_longer_than_a_period_has_no_rate_on_the_robots_clock(monkeypatch):
+    reasons, on_wall = [], wall_recording.wall
+
+    def wall(*args, why=None, **options):
+        reasons.append(str(why))
+        return on_wall(*args, why=why, **options)
+
+    monkeypatch.setattr(wall_recording, 'wall', wall)
+    with running('overruns'), pytest.raises(CheckFailed, match=r'expected 5\.0 Hz, saw [34]\.'):
+        topic(TOPIC).record().assert_rate(hz=5.0)
+    assert reasons[0] == driven_topic.OVERRUNS
 
 
 IGNORES = (

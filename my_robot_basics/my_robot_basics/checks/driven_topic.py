@@ -1,5 +1,6 @@
 """A topic on the clock that a check drives: tick until a message comes, see that it follows."""
 
+import statistics
 import time
 
 from my_robot_basics.checks.clock import SimulatedClock
@@ -15,6 +16,7 @@ SUSPICIOUS_TICKS = 30
 """A tick takes a millisecond or two: of a node that ignores the clock, messages are far apart."""
 PATIENT_SEC = 0.002
 """What a thread that sleeps on the clock takes to wake up and to publish."""
+OVERRUNS = 'its callback takes longer than its period'
 
 
 class NoMessage(Inconclusive):
@@ -36,6 +38,8 @@ class DrivenTopic:
         self._watcher, self._hold_sec = watcher, hold_sec
         self._has_stood = False
         self._patient_sec = 0.0
+        self._ticks: list[tuple[float, int]] = []
+        """How long each took, in s of wall time, and how many messages came in it."""
         self._hold(SETTLE_SEC)
 
     def expect_follows(self) -> None:
@@ -50,9 +54,25 @@ class DrivenTopic:
 
     def tick(self, step_ns: int) -> None:
         """Move the clock, and receive what that brings. Raises Inconclusive."""
+        before, start = len(self.recorder.received), time.monotonic()
         self.clock.tick(step_ns)
+        took_sec = time.monotonic() - start
         if self._patient_sec:
             self._watcher.spin_for(self._patient_sec)
+        self._ticks.append((took_sec, len(self.recorder.received) - before))
+
+    def expect_keeps_up(self, ticks: int, step_ns: int) -> None:
+        """In the last ticks, callbacks that publish took less than a period. Raises Inconclusive.
+
+        How busy the machine is makes all ticks slow: only what a message adds to one counts.
+        """
+        last = self._ticks[-ticks:]
+        with_one = [took_sec for took_sec, messages in last if messages]
+        without = [took_sec for took_sec, messages in last if not messages]
+        if with_one and without:
+            works_sec = statistics.median(with_one) - statistics.median(without)
+            if works_sec > len(last) * step_ns / 1e9 / sum(messages for _, messages in last):
+                raise Inconclusive(OVERRUNS)
 
     def tick_to_message(self, step_ns: int) -> int:
         """Tick until a message arrives; how many ticks it took. Raises Inconclusive."""

@@ -2,6 +2,7 @@
 
 import time
 from dataclasses import replace
+from typing import NoReturn
 
 from my_robot_basics.checks import ignoring, sampling, wall_recording
 from my_robot_basics.checks.clock import ahead_sec
@@ -12,7 +13,7 @@ from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.recording import Recording
 from my_robot_basics.checks.topic_endpoints import TopicEndpoints
 from my_robot_basics.exchange import student
-from my_robot_basics.feedback.errors import CheckFailed, Disturbed, expect
+from my_robot_basics.feedback.errors import CheckFailed, Disturbed, expect, fail
 from my_robot_basics.graph.raised import what_raised
 from my_robot_basics.graph.watcher import Watcher
 
@@ -48,6 +49,8 @@ def _look(topic: TopicEndpoints, wanted: Wanted, hold_sec: float, earlier: Look 
         else:
             look = Look(found, None)
         if not look.recording.messages:
+            if earlier is not None:
+                _fail_ended(recorder)
             if sent and not are_left_alone():
                 _expect_ends_by_itself(recorder)
             topic.fail_silent(watcher, seen=f'no message in {look.recording.seconds:g} s')
@@ -92,6 +95,15 @@ def _to_look_again(
         )
 
     return replace(look.recording, look_again=look_again)
+
+
+def _fail_ended(recorder: Recorder) -> NoReturn:
+    fail(
+        expected=f'messages on {recorder.topic_name}',
+        seen='some, and none any more',
+        hint='publish as long as the node runs, in each call of a timer',
+        cause='the messages end',
+    )
 
 
 def _expect_ends_by_itself(recorder: Recorder) -> None:

@@ -33,6 +33,8 @@ PROOF_STEPS = 30
 """… for at least so many of the recording's steps, or of the coarse ones. …"""
 COARSE_STEPS = 4
 """… Coarse ones take a slow timer less time; so many of them fit in its period at least."""
+KEEPS_UP_EVERY = 20
+"""Ticks that tell whether a callback takes longer than its period."""
 
 
 def simulated(
@@ -94,10 +96,12 @@ def _drive(topic: DrivenTopic, *, seconds: float, step_sec: float) -> Recording:
     step_ns, start_ns = _find_step(topic, step_sec=step_sec)
     received, clock = topic.recorder.received, topic.clock
     before = len(received)
-    for done in range(round(seconds * 1e9 / step_ns)):
-        if clock.takes_long() and done * step_ns >= SECONDS_ENOUGH * 1e9:
-            break
+    for done in range(1, round(seconds * 1e9 / step_ns) + 1):
         topic.tick(step_ns)
+        if done % KEEPS_UP_EVERY == 0:
+            topic.expect_keeps_up(KEEPS_UP_EVERY, step_ns)
+            if clock.takes_long() and done * step_ns >= SECONDS_ENOUGH * 1e9:
+                break
     while len(received) < before + rates.FEWEST:
         topic.tick_to_message(step_ns)
     return _recorded(topic, start_ns=start_ns, step_ns=step_ns)
