@@ -385,7 +385,7 @@ def test_validate_says_what_is_wrong_and_then_that_all_is_right(opened):
 def test_validate_speaks_the_language_of_the_lesson(opened):
     lesson = opened('02_joint_state', 'zh_CN')
     lesson.type('to_joint_state', WRONG)
-    button = lesson.page.get_by_role('button', name='Validate')
+    button = lesson.page.locator('jp-button', has_text='Validate')
     expect(button).to_have_attribute('title', '运行这一课中看得见的检查')
     said = lesson.validate('检查结果', '关闭')
     assert '预期：(30.0, -90.0) 度对应的 [0.5236, -1.5708] rad；实际：[30.0, -90.0]。' in said

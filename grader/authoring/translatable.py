@@ -22,8 +22,8 @@ Texts = dict[str, list[str]]
 IN_WORDS: tuple[str, ...] = ('background', 'camera', 'commands', 'copies', 'course_nodes')
 IN_WORDS += ('definition_view', 'executables', 'install_faults')
 IN_WORDS += ('entry_points', 'exercise', 'package_build', 'package_faults', 'packages')
-IN_WORDS += ('node_file', 'panel', 'program', 'refusals', 'runner', 'spinning', 'unknown_robot')
-IN_WORDS += ('waiting', 'workspace')
+IN_WORDS += ('node_file', 'panel', 'program', 'refusals', 'runner', 'sliders', 'spinning')
+IN_WORDS += ('unknown_robot', 'waiting', 'workspace')
 """The modules of `live` that say something in sentences; the others draw."""
 MODULES = {
     'checks': [
