@@ -193,7 +193,8 @@ OF_THE_DOCTOR_AND_LIVE = {
     ),
     'none, and /a publishes on /b (the namespace differs): in /a, a name without a leading / '
     "begins with the node's namespace": (
-        '没有，/a 发布的是 /b（命名空间不同）：在 /a 里，不以 / 开头的名称前面会加上节点的命名空间'
+        '没有，而 /a 发布的是 /b（命名空间不同）：在 /a 里，'
+        '不以 / 开头的名称前面会加上节点的命名空间'
     ),
     'the callback ask of /waver to return, so that its response is sent': (
         '/waver 的回调 ask 返回，这样它的响应才能发出'
@@ -228,6 +229,33 @@ COUNTED = (
     'expected 2 publishers, saw 4 (motor_guard, pose_logger, self_test, tool_tracker): read the '
     'names in ros2 topic info --verbose /kinematics/joint_states'
 )
+
+
+OF_STUDENTS = {
+    "your cell `a` stopped with SyntaxError: expected ':' (line 15)": (
+        "你的单元格 `a` 停止了：SyntaxError: expected ':'（第 15 行）"
+    ),
+    "expected a warning in the log of /a, saw 'IK: x=1, y=2': keep both keys": (
+        "预期：/a 的日志里有一条警告；实际：'IK: x=1, y=2'。两个键都要保留"
+    ),
+    'in the part checked at grading: a wrong message on /a/b: publish the angles of the response, '
+    'not a solution of your own': (
+        '在评分时检查的部分：/a/b 上的消息不对：发布响应里的角度，而不是你自己的解'
+    ),
+    'expected `f(1)` to return a bool, saw an int (1): keep both keys': (
+        '预期：`f(1)` 返回 bool；实际：int (1)。两个键都要保留'
+    ),
+    "its callback raised TypeError: 'NoneType' object is not callable, so give a method by its "
+    'name, without parentheses': (
+        "它的回调抛出了 TypeError: 'NoneType' object is not callable，"
+        '给出方法时只写名字，不加圆括号'
+    ),
+}
+
+
+@pytest.mark.parametrize(('english', 'chinese'), OF_STUDENTS.items())
+def test_what_is_a_students_stays_whole_between_chinese_words(english, chinese):
+    assert in_language('zh_CN', english) == chinese
 
 
 def test_a_number_of_ends_is_told_in_chinese():
