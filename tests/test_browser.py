@@ -385,6 +385,8 @@ def test_validate_says_what_is_wrong_and_then_that_all_is_right(opened):
 def test_validate_speaks_the_language_of_the_lesson(opened):
     lesson = opened('02_joint_state', 'zh_CN')
     lesson.type('to_joint_state', WRONG)
+    button = lesson.page.locator('jp-button', has_text='Validate')
+    expect(button).to_have_attribute('title', '运行这一课中看得见的检查')
     said = lesson.validate('检查结果', '关闭')
     assert '预期：(30.0, -90.0) 度对应的 [0.5236, -1.5708] rad；实际：[30.0, -90.0]。' in said
     assert '✗ position 里是两个角度，以弧度为单位 0 / 2 分，评分时还有更多检查' in said
@@ -473,7 +475,7 @@ def test_an_answer_passes_where_it_is_written(opened):
 @pytest.mark.slow
 def test_students_see_the_lessons_and_no_panel_of_instructors(opened):
     page = opened('02_joint_state').page
-    assert page.get_by_role('button', name='Validate').is_visible()
+    expect(page.get_by_role('button', name='Validate')).to_be_visible()
     for words in ['Nbgrader', 'Create Assignment', 'Jupyter news']:
         expect(page.get_by_text(words)).to_have_count(0)
 

@@ -6,11 +6,25 @@ import shutil
 import pytest
 from chromium import LONG, drives_chromium, launched
 from playwright.sync_api import expect
-from test_browser import LESSONS, ROOT, TOKEN, Lab, Lesson, close_all, run_through, wait_until_open
+from test_browser import (
+    ALL_RAN,
+    LESSONS,
+    ROOT,
+    TOKEN,
+    Lab,
+    Lesson,
+    close_all,
+    errors,
+    run_through,
+    wait_until_open,
+    warnings,
+)
 
 pytestmark = [*drives_chromium, pytest.mark.slow]  # the English edition has the same driver
 
 LANGUAGE = 'zh_CN'
+QUIZZES = sorted(path.name for path in ROOT.glob('notebooks/quiz_*.ipynb'))
+PAGES = ('terms.md', 'what_next.md')
 CHINESE = re.compile(r'[\u3400-\u9fff]')
 ENGLISH = re.compile(r"[A-Za-z][a-z']+(?:[ ,:;]+[A-Za-z][a-z']*){3,}")
 """Four Latin words, one behind the other: no name."""
@@ -51,7 +65,10 @@ def blocks(lesson):
 
 
 def check_text(lesson):
-    shown = list(blocks(lesson))
+    check_blocks(list(blocks(lesson)))
+
+
+def check_blocks(shown):
     words = [block for block in shown if re.search(r'[^\W\d_]', block)]
     assert sum(bool(CHINESE.search(block)) for block in words) > 0.8 * len(words)
     assert [block for block in shown if RAW.search(block)] == []
@@ -74,3 +91,40 @@ def test_each_chinese_lesson_runs_in_a_browser(page, name):
     lesson = Lesson(page, f'{LANGUAGE}/{name}/{name}.ipynb')
     check_text(lesson)
     run_through(lesson)
+
+
+def printed(lesson):
+    """What the cells of a lesson have printed, line by line."""
+    outputs = (output for cell in lesson.cells for output in cell.get('outputs', []))
+    texts = (output.text for output in outputs if output.output_type == 'stream')
+    return [line for text in texts for line in text.splitlines()]
+
+
+@pytest.mark.parametrize('name', QUIZZES)
+def test_each_chinese_quiz_asks_and_answers_in_chinese(page, name):
+    close_all(page)
+    lesson = Lesson(page, f'{LANGUAGE}/{name}')
+    check_text(lesson)
+    asked = [cell for cell in lesson.cells if 'guess=...' in cell.source]
+    assert len(asked) == 10
+    first = asked[0]
+    lesson.type(first.id, first.source.replace('guess=...', "guess='no'"))
+    lesson.command('notebook:run-all-cells')
+    page.wait_for_function(ALL_RAN, timeout=3 * LONG)
+    assert errors(lesson.cells) == {}
+    assert warnings(lesson.cells) == []
+    said = printed(lesson)
+    assert sum(line.startswith('把你的猜测写在') for line in said) == len(asked) - 1
+    assert [line for line in said if line.startswith("你猜的是 'no'，而结果是")]
+    assert [line for line in said if not CHINESE.search(line) and ENGLISH.search(line)] == []
+
+
+@pytest.mark.parametrize('name', PAGES)
+def test_each_page_beside_the_lessons_is_shown_in_chinese(page, name):
+    close_all(page)
+    opened = f'{LANGUAGE}/{name}'
+    open_path = "async path => { await jupyterapp.commands.execute('docmanager:open', {path}) }"
+    page.evaluate(open_path, opened)
+    shown = page.locator('.jp-MarkdownViewer:visible .jp-RenderedMarkdown')
+    expect(shown.locator('h1')).to_contain_text(CHINESE)
+    check_blocks(shown.evaluate(BLOCKS))

@@ -142,7 +142,9 @@ def test_nodes_that_the_command_lines_do_not_start_are_told(start):
     start(left=START, right=START)
     live.run(Arm, 'left', 1, key='left')
     live.run(Arm, 'right', 7, key='right')
-    words = 'expected /left/arm to be the node of the command line, saw /kinematics_publisher is'
+    words = (
+        'expected /left/arm to be the node of the command line, saw the node /kinematics_publisher'
+    )
     with pytest.raises(CheckFailed, match=words):
         look()
 

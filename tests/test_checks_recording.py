@@ -439,6 +439,14 @@ def test_messages_that_end_on_the_wall_clock_are_no_rate(until_sec, passes):
         ending.assert_rate(hz=5.0)
 
 
+def test_a_pause_at_the_end_is_one_of_those_before():
+    bursts = [start + 0.0625 * n for start in (0.0, 1.25, 2.5) for n in range(1, 7)]
+    ending = recording(bursts, clock='wall', seconds=3.75)
+    assert ending.has_ended
+    with pytest.raises(CheckFailed, match=r'saw pauses of 0\.9 s over 3\.75 s'):
+        ending.assert_rate(hz=5.0)
+
+
 def test_no_message_in_another_look_says_that_they_end():
     nothing = recording([], clock='wall', seconds=4.0)
     with pytest.raises(CheckFailed, match=r'saw none in the last 4\.0 s over 4 s \(0 messages\)'):

@@ -9,6 +9,7 @@ from my_robot_basics.language.catalogues import catalogue_path
 from my_robot_basics.language.speaking import LANGUAGE
 from my_robot_basics.validate.cells import KEY
 
+from grader.authoring.edition_outputs import OutputWords
 from grader.authoring.editions import editions, is_translated
 from grader.authoring.leaks import files_in
 from grader.authoring.release import release, stale_or_leaking
@@ -78,9 +79,12 @@ def test_there_is_a_chinese_edition():
 def test_all_but_the_text_is_the_same_in_each_byte(language, name):
     english, other = both(language, name)
     assert len(english.cells) == len(other.cells)
+    words = OutputWords(ROOT / 'locale', language)  # tests/test_edition_outputs.py
     for ours, theirs in zip(english.cells, other.cells, strict=True):
         if is_translated(ours):
             theirs = {**theirs, 'source': ours.source}
+        for output in ours.get('outputs', []):
+            words.translate(output)
         assert theirs == ours
     marks = dict(other.metadata[KEY])
     assert marks.pop(LANGUAGE) == language

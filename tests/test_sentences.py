@@ -4,12 +4,17 @@ import json
 
 import nbformat
 import pytest
+from my_robot_basics.doctor.evidence import Finding
+from my_robot_basics.doctor.report import fields
 from my_robot_basics.feedback.errors import CheckFailed
 from my_robot_basics.language import speaking
 from my_robot_basics.language.lines import in_lines
 from my_robot_basics.language.sentences import MOST_CHARACTERS, Sentences
 from my_robot_basics.language.sentences import REASON as REASON_FORM
 from my_robot_basics.language.speaking import in_language, language_of
+from my_robot_basics.ros2 import environment
+from my_robot_basics.session import overlays
+from my_robot_basics.session.lessons import RunningLesson
 from my_robot_basics.validate.as_text import as_text
 from my_robot_basics.validate.cell_names import in_words
 from my_robot_basics.validate.report import CheckFeedback, ExerciseFeedback, Report
@@ -188,7 +193,8 @@ OF_THE_DOCTOR_AND_LIVE = {
     ),
     'none, and /a publishes on /b (the namespace differs): in /a, a name without a leading / '
     "begins with the node's namespace": (
-        '没有，/a 发布的是 /b（命名空间不同）：在 /a 里，不以 / 开头的名称前面会加上节点的命名空间'
+        '没有，而 /a 发布的是 /b（命名空间不同）：在 /a 里，'
+        '不以 / 开头的名称前面会加上节点的命名空间'
     ),
     'the callback ask of /waver to return, so that its response is sent': (
         '/waver 的回调 ask 返回，这样它的响应才能发出'
@@ -217,6 +223,66 @@ OF_THE_DOCTOR_AND_LIVE = {
 @pytest.mark.parametrize(('english', 'chinese'), OF_THE_DOCTOR_AND_LIVE.items())
 def test_the_doctor_and_live_speak_chinese(english, chinese):
     assert in_language('zh_CN', english) == chinese
+
+
+COUNTED = (
+    'expected 2 publishers, saw 4 (motor_guard, pose_logger, self_test, tool_tracker): read the '
+    'names in ros2 topic info --verbose /kinematics/joint_states'
+)
+
+
+OF_STUDENTS = {
+    "your cell `a` stopped with SyntaxError: expected ':' (line 15)": (
+        "你的单元格 `a` 停止了：SyntaxError: expected ':'（第 15 行）"
+    ),
+    "expected a warning in the log of /a, saw 'IK: x=1, y=2': keep both keys": (
+        "预期：/a 的日志里有一条警告；实际：'IK: x=1, y=2'。两个键都要保留"
+    ),
+    'in the part checked at grading: a wrong message on /a/b: publish the angles of the response, '
+    'not a solution of your own': (
+        '在评分时检查的部分：/a/b 上的消息不对：发布响应里的角度，而不是你自己的解'
+    ),
+    'expected `f(1)` to return a bool, saw an int (1): keep both keys': (
+        '预期：`f(1)` 返回 bool；实际：int (1)。两个键都要保留'
+    ),
+    "its callback raised TypeError: 'NoneType' object is not callable, so give a method by its "
+    'name, without parentheses': (
+        "它的回调抛出了 TypeError: 'NoneType' object is not callable，"
+        '给出方法时只写名字，不加圆括号'
+    ),
+}
+
+
+@pytest.mark.parametrize(('english', 'chinese'), OF_STUDENTS.items())
+def test_what_is_a_students_stays_whole_between_chinese_words(english, chinese):
+    assert in_language('zh_CN', english) == chinese
+
+
+def test_a_number_of_ends_is_told_in_chinese():
+    shown = in_language('zh_CN', COUNTED)
+    assert shown.startswith('预期：2 个发布者；实际：4')
+    assert in_language('zh_CN', 'expected 4 subscriptions, saw 0 (no name): keep both keys') == (
+        '预期：4 个订阅；实际：0（没有名字）。两个键都要保留'
+    )
+
+
+def test_the_line_that_fixes_a_fault_follows_a_colon_of_the_language():
+    fix = 'fix that, and send the goal again'
+    finding = Finding(title='', expected='', seen='', fix=fix, code='abort()')
+    assert fields(finding, 'en')['to do'] == 'fix that, and send the goal again:'
+    assert fields(finding, 'zh_CN')['做法'] == '改正它，再发送一次目标：'
+
+
+def test_what_the_course_says_beside_ros2_is_in_the_language_of_the_terminal(monkeypatch, capsys):
+    monkeypatch.delenv('JPY_SESSION_NAME', raising=False)
+    monkeypatch.setenv(speaking.OF_TERMINALS, 'zh_CN')
+    monkeypatch.setattr(environment, '_joined', RunningLesson(0, 7, 1, '03_publisher'))
+    monkeypatch.setattr(overlays, '_said', set())
+    environment.say_where()
+    overlays.say(overlays.gone('/ws/install/arm'))
+    joined, gone = capsys.readouterr().err.splitlines()
+    assert joined == '已加入最后启动的课 03_publisher：ROS_DOMAIN_ID=7'
+    assert gone.startswith('course: /ws/install/arm 已经不在了')
 
 
 def test_a_terminal_has_the_language_that_the_course_has_chosen(monkeypatch):

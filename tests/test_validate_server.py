@@ -85,6 +85,23 @@ def server(folder):
         server.process.wait(30)
 
 
+def test_the_button_has_the_words_of_its_notebook(server, folder):
+    english = json.loads((folder / '02_joint_state.ipynb').read_text(encoding='utf-8'))
+    english['metadata'].setdefault('my_robot_basics', {})['language'] = 'zh_CN'
+    (folder / 'chinese.ipynb').write_text(json.dumps(english), encoding='utf-8')
+    shown = {
+        path: json.load(server.ask(f'my_robot_basics/validate?path={path}'))['words']
+        for path in ('02_joint_state.ipynb', 'chinese.ipynb', 'nothing.ipynb')
+    }
+    about = 'Run the visible checks of this lesson'
+    assert shown['02_joint_state.ipynb'][about] == about
+    assert shown['chinese.ipynb'][about] == '运行这一课中看得见的检查'
+    assert shown['nothing.ipynb'] == {}
+    with pytest.raises(urllib.error.HTTPError) as refused:
+        server.ask('my_robot_basics/validate?path=../secret.ipynb')
+    assert refused.value.code == 403
+
+
 def test_a_report_comes_at_the_end_of_lines_of_progress(server):
     with server.validate('02_joint_state.ipynb') as response:
         assert response.headers['Content-Type'] == 'application/x-ndjson'

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from jupyter_client.manager import start_new_kernel
+from my_robot_basics.language.speaking import OF_TERMINALS
 from my_robot_basics.live import workspace
 from my_robot_basics.live.workspace import make_workspace
 from my_robot_basics.session import classroom
@@ -95,7 +96,7 @@ def test_it_holds_a_package_of_nodes_and_the_files_to_copy_from(folder, capsys):
     assert workspace.BUILD in said
 
 
-def test_what_the_student_wrote_is_kept_and_named(package, capsys):
+def test_what_the_student_wrote_is_kept_and_named(package, capsys, monkeypatch):
     (package / 'setup.py').write_text('mine')
     (package / 'my_robot_basics/my_node.py').write_text('mine, too')
     (package / 'my_robot_basics/hello_node.py').unlink()
@@ -113,6 +114,15 @@ def test_what_the_student_wrote_is_kept_and_named(package, capsys):
         ['changed', 'setup.py'],
     ]
     assert './course workspace --refresh' in said
+    monkeypatch.delenv('JPY_SESSION_NAME', raising=False)
+    monkeypatch.setenv(OF_TERMINALS, 'zh_CN')
+    make_workspace()
+    lines = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert [line[0] for line in lines if line[1:] == ['setup.py']] == ['已改']
+    assert {line[0] for line in lines if line[1].startswith('my_robot_basics/')} == {
+        '新增',
+        '缺少',
+    }
 
 
 def test_a_workspace_that_nobody_has_edited_is_said_to_be_so(package, capsys):

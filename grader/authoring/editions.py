@@ -1,8 +1,8 @@
 """The editions of the course: the same release in another language, in notebooks/LANGUAGE/.
 
-Only what people read is translated, block by block. Code, outputs, ids and marks are those of the
-English release, so an answer from any edition is graded by the same source. A block without a
-translation stays English.
+Only what people read is translated, block by block, and what the course itself says in an output.
+Code, ids and marks are those of the English release, so an answer from any edition is graded by
+the same source. A block without a translation stays English.
 """
 
 from collections.abc import Mapping
@@ -22,6 +22,7 @@ from my_robot_basics.validate.cells import KEY, role
 from nbformat import NotebookNode
 
 from grader.authoring.blocks import translate_blocks
+from grader.authoring.edition_outputs import OutputWords
 from grader.common.errors import CourseError
 from grader.course import Course
 
@@ -55,13 +56,16 @@ class Edition:
         return translate_blocks(english, self.translations(part))
 
     def notebook(self, name: str, english: NotebookNode) -> NotebookNode:
-        """Return a lesson in this language: its text cells are translated, nothing else."""
+        """Return a lesson in this language: its text cells, and the course's words in outputs."""
         notebook = nbformat.from_dict(english)
-        if self.language == ENGLISH:
+        if self.locale is None:
             return notebook
+        words = OutputWords(self.locale, self.language)
         for cell in notebook.cells:
             if is_translated(cell):
                 cell.source = self.text(name, cell.source)
+            for output in cell.get('outputs', []):
+                words.translate(output)
         notebook.metadata.setdefault(KEY, NotebookNode())[LANGUAGE] = self.language
         return notebook
 

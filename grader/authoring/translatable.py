@@ -19,11 +19,11 @@ from grader.course import Course
 Texts = dict[str, list[str]]
 """Where each English text of a part stands, in the order in which they are read."""
 
-IN_WORDS: tuple[str, ...] = ('background', 'camera', 'commands', 'course_nodes')
+IN_WORDS: tuple[str, ...] = ('background', 'camera', 'commands', 'copies', 'course_nodes')
 IN_WORDS += ('definition_view', 'executables', 'install_faults')
 IN_WORDS += ('entry_points', 'exercise', 'package_build', 'package_faults', 'packages')
-IN_WORDS += ('node_file', 'panel', 'program', 'refusals', 'runner', 'spinning', 'unknown_robot')
-IN_WORDS += ('waiting', 'workspace')
+IN_WORDS += ('node_file', 'panel', 'program', 'refusals', 'runner', 'sliders', 'spinning')
+IN_WORDS += ('unknown_robot', 'waiting', 'workspace')
 """The modules of `live` that say something in sentences; the others draw."""
 MODULES = {
     'checks': [
@@ -37,7 +37,10 @@ MODULES = {
     'validate': ['my_robot_basics/my_robot_basics/validate/*.py'],
     'live': [
         f'my_robot_basics/my_robot_basics/{module}.py'
-        for module in ('session/*', 'ros2/shell', *(f'live/{each}' for each in IN_WORDS))
+        for module in (
+            *('session/*', 'ros2/environment', 'ros2/shell'),
+            *(f'live/{each}' for each in IN_WORDS),
+        )
     ],
     'doctor': [
         f'my_robot_basics/my_robot_basics/doctor/{modules}.py'

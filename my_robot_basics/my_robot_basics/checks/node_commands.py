@@ -88,7 +88,7 @@ class NodeCommand:
         expect(
             started is not None and started.name == self.node_name,
             expected=f'{self.node_name} to be the node of the command line',
-            seen=f'{theirs(started.name)} is' if started else 'rcl refuses a rule',
+            seen=f'the node {theirs(started.name)}' if started else 'rcl refuses a rule',
             hint=remap_hints.for_a_name(self.line, self.node_name),
             cause=f'the command line does not start {self.node_name}',
         )

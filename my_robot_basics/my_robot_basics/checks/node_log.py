@@ -145,4 +145,4 @@ class NodeLog:
         if texts := self.texts(level):
             return f"'{shorten(' | '.join(texts))}'"
         others = ' | '.join(f'{record.level} {record.text}' for record in self.records)
-        return f'no {level} record' + (f" but '{shorten(others)}'" if others else '')
+        return f"no {level} record but '{shorten(others)}'" if others else f'no {level} record'

@@ -19,6 +19,7 @@ LARGEST_GAP_PERIODS = 1.75
 """More between two messages (on the wall clock) is a pause: bursts are not a rate."""
 SILENT_PERIODS = 2.75
 """More at the end tells that none comes any more: the last message may be on its way."""
+LONGER_PAUSE = 1.5
 GAP_SLACK_SEC = 0.05
 UNEVEN_PART = 0.25
 """So much of a period may most messages be off: 0.1 s and 0.3 s by turns are no 5 Hz."""
@@ -114,7 +115,7 @@ def fail_rate(recording: 'Recording', hz: float) -> NoReturn:
     if every := leaves_out(recording):
         seen, cause = f'one message of {every} missing each time {over}', 'messages are left out'
         hint = 'publish in every call of the timer'
-    elif recording.has_ended and (near or n == 0):
+    elif recording.is_over and (near or n == 0):
         seen, cause = f'none in the last {recording.silent_sec:.1f} s {over}', 'the messages end'
         hint = 'publish as long as the node runs, in each call of a timer'
     elif recording.rate_hz > TOO_FAST_TIMES * hz:

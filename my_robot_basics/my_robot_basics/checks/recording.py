@@ -77,6 +77,12 @@ class Recording:
         """Whether its end is so silent that no next message seems to come."""
         return not self.messages or self.silent_sec * self.rate_hz > rates.SILENT_PERIODS
 
+    @property
+    def is_over(self) -> bool:
+        """Whether it has ended with more than one of the pauses that it has had."""
+        is_longest = self.silent_sec > rates.LONGER_PAUSE * self.largest_gap_sec
+        return not self.messages or (self.has_ended and is_longest)
+
     def assert_rate(self, hz: float) -> None:
         """The one publisher sends `hz` messages a second, evenly, within ±2 %.
 

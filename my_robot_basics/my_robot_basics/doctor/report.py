@@ -9,7 +9,7 @@ from my_robot_basics.doctor.evidence import VERBS, Diagnosis, Evidence, Finding,
 from my_robot_basics.doctor.service_evidence import ServiceEvidence
 from my_robot_basics.language.catalogues import ENGLISH
 from my_robot_basics.language.lines import in_lines
-from my_robot_basics.language.speaking import in_language
+from my_robot_basics.language.speaking import in_language, put
 from my_robot_basics.session.errors import COLUMNS
 
 _PLURALS: dict[Kind, str] = {
@@ -114,7 +114,9 @@ def _paragraph(number: int, finding: Finding, language: str) -> str:
 def fields(finding: Finding, language: str) -> dict[str, str]:
     """What is said of a fault, by its label, in a language."""
     say = partial(in_language, language)
-    fix = f'{say(finding.fix)}{":" if finding.code else ""}'
+    fix = say(finding.fix)
+    if finding.code:
+        fix = put(language, '{one}: {other}', one=fix, other='').rstrip()
     return {
         say('expected'): say(finding.expected),
         say('saw'): say(finding.seen),

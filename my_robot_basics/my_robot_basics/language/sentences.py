@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from itertools import islice
 
 from my_robot_basics.language.english import PHRASE, is_raised, letters_in_names, letters_left
+from my_robot_basics.language.spaces import QUOTED, close_up
 from my_robot_basics.language.templates import LETTERS, PLACE, Template
 
 SENTENCES, SPACED = '{sentence} {other}', '{one} {other}'
@@ -37,10 +38,8 @@ MOST_DROPPED = 5
 MOST_SPLITS = 10
 """In how many ways one template may fit one text."""
 
-_QUOTED = re.compile(r'`[^`]*`|\'[^\']*\'|"[^"]*"')
-_HAN = '[\u3400-\u9fff（），。；：]'
-_IN_HAN = re.compile(rf'({_QUOTED.pattern})|(?<={_HAN}) (?={_HAN})')
-"""A space between Chinese words, beside a place: there is none; and what is quoted."""
+_OPENED = re.compile(r'(?<!\w)[\'"](?=\w)')
+"""A quote that is not closed."""
 
 
 @dataclass
@@ -92,7 +91,7 @@ class Sentences:
         self._found, self._tries = {}, 0
         least, parts = 0.0, dict[str, str]()
         for found in islice(template.fits(text[:MOST_CHARACTERS]), MOST_SPLITS):
-            if _cuts(template, found):
+            if self._cuts(template, found):
                 continue
             best = {name: self._best(said, 0) for name, said in found.items()}
             left = sum(each for each, _ in best.values())
@@ -124,7 +123,7 @@ class Sentences:
                 self._tries += 1
                 if self._tries > MOST_TRIES:
                     return
-                if text not in found.values() and not _cuts(template, found):
+                if text not in found.values() and not self._cuts(template, found):
                     left, shown = self._put(template, found, deep)
                     if left < PHRASE or template.letters >= FEW_LETTERS or template.quoted:
                         yield left, shown
@@ -143,6 +142,16 @@ class Sentences:
                     if left < PHRASE or joined == SENTENCES:
                         yield left, shown
 
+    def _cuts(self, template: Template, found: Mapping[str, str]) -> bool:
+        """Whether a template would cut a sentence in two, or take one for what the code names."""
+        for place, text in found.items():
+            known = text in self.translations or text.strip() in self.translations
+            if (place.isupper() and ' ' in text.strip() and not known) or (
+                place.endswith('name') and ': ' in text
+            ):
+                return True
+        return _cuts(template, found)
+
     def _put(self, template: Template, found: Mapping[str, str], deep: int) -> tuple[float, str]:
         """Return a template's translation with that in its places, and how much stays English."""
         best = {
@@ -156,7 +165,7 @@ class Sentences:
 
 def _cuts(template: Template, found: Mapping[str, str]) -> bool:
     """Whether a template would cut a sentence or a bracket in two, or leave a place empty."""
-    said = {place: _QUOTED.sub('', text) for place, text in found.items()}
+    said = {place: QUOTED.sub('', text) for place, text in found.items()}
     ended = any('. ' in said[place] for place in template.places[:-1]) and template.letters > 0
     named = {place for place in template.used if not place.startswith('value')}
     if any('`' in found[place] for place in template.quoted):
@@ -168,15 +177,13 @@ def _cuts(template: Template, found: Mapping[str, str]) -> bool:
     ):
         return True
     return ended or any(
-        text.count(opened) != text.count(closed) and '…' not in text
+        '…' not in text
+        and (
+            any(text.count(one) != text.count(other) for one, other in ('()', '[]', '{}'))
+            or _OPENED.search(text)
+        )
         for text in said.values()
-        for opened, closed in ('()', '[]', '{}')
     )
-
-
-def close_up(text: str) -> str:
-    """Return a text without spaces between Chinese words, but for what is quoted."""
-    return _IN_HAN.sub(lambda found: found[1] or '', text)
 
 
 def _with_places(text: str, english: str = '') -> str:

@@ -6,8 +6,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from my_robot_basics.language.speaking import in_language_here
+
 LEFTOVERS = ('.', '__pycache__', 'build', 'install', 'log')
 """How folders begin that programs leave behind."""
+TO_SHOW: tuple[str, ...] = ('new', 'changed', 'missing')
+NEW, CHANGED, MISSING = TO_SHOW
+"""How a file of the copy differs."""
 
 
 @dataclass(frozen=True)
@@ -49,11 +54,11 @@ class Copied:
             for name in there
             if not any(part.startswith(LEFTOVERS) for part in name.parts[:-1])
         }
-        words = dict.fromkeys(theirs - ours, 'new') | dict.fromkeys(ours - theirs, 'missing')
+        words = dict.fromkeys(theirs - ours, NEW) | dict.fromkeys(ours - theirs, MISSING)
         for name in ours & theirs:
             if not filecmp.cmp(self.target / name, self.source / name, shallow=False):
-                words[name] = 'changed'
-        return [f'{words[name]:8} {name}' for name in sorted(words)]
+                words[name] = CHANGED
+        return [f'{in_language_here(words[name]):8} {name}' for name in sorted(words)]
 
     def _files(self) -> Iterator[Path]:
         for pattern in self.patterns:

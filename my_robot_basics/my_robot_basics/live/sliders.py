@@ -8,6 +8,9 @@ from my_robot_basics.live import notebook
 from my_robot_basics.two_link_kinematics import L1, L2
 
 WITHOUT_WIDGETS = 'Run this cell: two sliders, for θ1 and θ2, appear here and move the arm.'
+TARGET_WITHOUT_WIDGETS = (
+    'Run this cell: two sliders, for x and y, appear here and publish the target point.'
+)
 """What stands for the sliders where no kernel runs, as on GitHub."""
 
 

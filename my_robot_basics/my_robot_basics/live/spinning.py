@@ -50,10 +50,11 @@ def _explaining_init(init: Callable[..., None]) -> Callable[..., None]:
     ) -> None:
         __tracebackhide__ = True
         if context is None and rclpy.ok():
-            raise AlreadyInitialised(
+            why = (
                 'rclpy is initialised already, by the first run(...) or by your own cell: leave '
                 'rclpy.init() out here, and run this cell again'
             )
+            raise AlreadyInitialised(in_language_here(why))  # lesson 7 prints it
         if signal_handler_options is None:
             # an interrupt ends the cell without rclpy's handler. That one also shuts down, in a
             # thread, all contexts of this kernel: the program's own rclpy.shutdown() fails then

@@ -9,14 +9,10 @@ from rclpy.publisher import Publisher
 
 from my_robot_basics.live import notebook, runner
 from my_robot_basics.live.follow import FIRST_MESSAGE_SEC, ArmView
-from my_robot_basics.live.sliders import show_widgets
+from my_robot_basics.live.sliders import TARGET_WITHOUT_WIDGETS, show_widgets
 from my_robot_basics.two_link_kinematics import L1, L2, inverse_kinematics
 
 NODE_NAME = '_drag_target'
-WITHOUT_WIDGETS = (
-    'Run this cell: two sliders, for x and y, appear here and publish the target point.'
-)
-"""What stands for the sliders where no kernel runs, as on GitHub."""
 
 
 def drag_target(
@@ -71,7 +67,7 @@ class TargetView(ArmView):
     def publish(self) -> None:
         """Show sliders and picture for the first time."""
         if notebook.in_kernel():
-            show_widgets(self.x, self.y, without=WITHOUT_WIDGETS)
+            show_widgets(self.x, self.y, without=TARGET_WITHOUT_WIDGETS)
         super().publish()
         for slider in (self.x, self.y):
             slider.observe(self.publish_target, names='value')

@@ -3,6 +3,7 @@
 import os
 import sys
 
+from my_robot_basics.language.speaking import in_language_here
 from my_robot_basics.ros2.errors import CommandError
 from my_robot_basics.session import lessons, overlays
 from my_robot_basics.session.classroom import FAST_DISCOVERY, HIGHEST_DOMAIN
@@ -41,11 +42,11 @@ def _domain_to_join() -> str:
 def say_where() -> None:
     """Tell the user of the shell which lesson was joined, unless the shell named a domain."""
     if _joined and '_ARGCOMPLETE' not in os.environ:
-        print(
+        told = (
             f'joined the lesson {_joined.name}, which started last: '
-            f'ROS_DOMAIN_ID={_joined.domain_id}',
-            file=sys.stderr,
+            f'ROS_DOMAIN_ID={_joined.domain_id}'
         )
+        print(in_language_here(told), file=sys.stderr)
 
 
 def domain_id() -> int:

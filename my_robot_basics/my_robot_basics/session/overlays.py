@@ -12,6 +12,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from my_robot_basics.language.speaking import in_language_here
+
 INDEX = 'share/ament_index/resource_index/rosidl_interfaces'
 """Where ROS looks for packages with .msg, .srv and .action files: a file for each, which lists
 them."""
@@ -139,7 +141,7 @@ def say(sentence: str) -> None:
     """Tell the user, once in a process."""
     if sentence not in _said:
         _said.add(sentence)
-        print(f'course: {sentence}', file=sys.stderr)
+        print(f'course: {in_language_here(sentence)}', file=sys.stderr)
 
 
 def was_said(sentence: str) -> bool:

@@ -8,7 +8,7 @@ import re
 from nbformat import NotebookNode
 
 from my_robot_basics.language.catalogues import ENGLISH
-from my_robot_basics.language.sentences import close_up
+from my_robot_basics.language.spaces import close_up
 from my_robot_basics.language.speaking import in_language
 from my_robot_basics.validate.cells import KEY, grade_id, graded_id, is_reset, role
 from my_robot_basics.validate.titles import title_of_check

@@ -1,4 +1,4 @@
-"""What JupyterLab's dialog, and a terminal, say around a report."""
+"""What JupyterLab's button and dialog, and a terminal, say around a report."""
 
 from my_robot_basics.language.speaking import in_language
 
@@ -8,6 +8,8 @@ TO_SHOW: tuple[str, ...] = (
     'Show the check',
     'checked only at grading',
 )
+TO_SHOW += ('Run the visible checks of this lesson', 'passed', 'failed', 'partial')
+TO_SHOW += ('Validate could not run: {why}', 'the server answered {status}')
 TO_SHOW += ('a person reads it', 'could not be checked', 'more checks at grading')
 TO_SHOW += ('{number} point', '{number} points', '{earned} of {points}', '{score}, {more}')
 TO_SHOW += ('({points}; {more})', '({points})')

@@ -17,7 +17,9 @@ from jupyter_server.serverapp import ServerApp
 from jupyter_server.utils import url_path_join
 from tornado import iostream, web
 
+from my_robot_basics.language.speaking import language_of
 from my_robot_basics.validate import progress_server
+from my_robot_basics.validate.report_words import words_around
 from my_robot_basics.validate.served import path_below
 
 ADDRESS = 'my_robot_basics/validate'
@@ -27,9 +29,18 @@ STOP_TIMEOUT_SEC = 15.0
 
 
 class ValidateHandler(APIHandler):
-    """Takes {"path": ...}, answers with lines of JSON: progress, and a report at the end."""
+    """Takes {"path": ...}, answers with lines of JSON: progress, and a report at the end.
+
+    Asked with ?path= alone, it answers with the words around them.
+    """
 
     _process: asyncio.subprocess.Process | None = None
+
+    @web.authenticated
+    async def get(self) -> None:
+        """Answer with the words of the button and its dialog, in the language of ?path=."""
+        path = self._notebook({'path': self.get_query_argument('path')})
+        self.finish({'words': await asyncio.to_thread(_words_for, path)})
 
     @web.authenticated
     async def post(self) -> None:
@@ -74,6 +85,15 @@ class ValidateHandler(APIHandler):
             self.log.error('Validate failed: %s', trace)
             why = (trace.strip().splitlines() or ['it ended without a message'])[-1]
             self.write(json.dumps({'failed': f'Validate itself failed: {why}'}) + '\n')
+
+
+def _words_for(path: Path) -> dict[str, str]:
+    """Return the words for a notebook; what cannot be read has none, and Validate says why."""
+    try:
+        metadata = json.loads(path.read_bytes())['metadata']
+        return words_around(language_of(metadata))
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        return {}
 
 
 def _interrupt(process: asyncio.subprocess.Process) -> None:

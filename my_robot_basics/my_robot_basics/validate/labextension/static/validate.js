@@ -48,7 +48,7 @@ needs no build. What it shows is text; nothing in a report is read as HTML. */
     const score = missed ? say(words, '{earned} of {points}', { earned: check.earned, points }) : points;
     const row = element('li', check.outcome.replace(' ', '-'));
     const mark = element('span', 'mark', marks[check.outcome]);
-    mark.setAttribute('aria-label', check.outcome);
+    mark.setAttribute('aria-label', say(words, MORE[check.outcome] ?? check.outcome));
     mark.setAttribute('role', 'img');
     row.append(
       element('div', 'row', mark, element('span', 'title', check.title),
@@ -118,13 +118,28 @@ needs no build. What it shows is text; nothing in a report is read as HTML. */
     }
   }
 
-  async function validate(panel, button, { apputils, services, coreutils, widgets }) {
+  const pathOf = panel => panel.context.localPath ?? panel.context.path;
+
+  /** Return what the button and its dialog say for a notebook; what is missing is in English. */
+  async function wordsFor(panel, { services, coreutils }) {
+    const settings = services.ServerConnection.makeSettings();
+    const address = coreutils.URLExt.join(settings.baseUrl, URL_PATH);
+    const query = coreutils.URLExt.objectToQueryString({ path: pathOf(panel) });
+    try {
+      const response = await services.ServerConnection.makeRequest(address + query, {}, settings);
+      return response.ok ? (await response.json()).words : {};
+    } catch {
+      return {};
+    }
+  }
+
+  async function validate(panel, button, words, { apputils, services, coreutils, widgets }) {
     const body = element('div', 'report');
     const node = new widgets.Widget({ node: body });
     const dialog = new apputils.Dialog({
-      title: 'Validation Results',
+      title: say(words, 'Validation Results'),
       body: node,
-      buttons: [apputils.Dialog.okButton({ label: 'Close' })]
+      buttons: [apputils.Dialog.okButton({ label: say(words, 'Close') })]
     });
     const stop = new AbortController();
     button.enabled = false;
@@ -135,13 +150,16 @@ needs no build. What it shows is text; nothing in a report is read as HTML. */
       const settings = services.ServerConnection.makeSettings();
       const response = await services.ServerConnection.makeRequest(
         coreutils.URLExt.join(settings.baseUrl, URL_PATH),
-        { method: 'POST', body: JSON.stringify({ path: panel.context.localPath ?? panel.context.path }), signal: stop.signal },
+        { method: 'POST', body: JSON.stringify({ path: pathOf(panel) }), signal: stop.signal },
         settings
       );
-      if (!response.ok) throw new Error(`the server answered ${response.status} ${response.statusText}`);
+      if (!response.ok) {
+        const status = `${response.status} ${response.statusText}`;
+        throw new Error(say(words, 'the server answered {status}', { status }));
+      }
       await follow(response, body);
     } catch (error) {
-      if (!stop.signal.aborted) showLine(body, `Validate could not run: ${error.message}`);
+      if (!stop.signal.aborted) showLine(body, say(words, 'Validate could not run: {why}', { why: error.message }));
     } finally {
       button.enabled = true;
     }
@@ -176,14 +194,16 @@ needs no build. What it shows is text; nothing in a report is read as HTML. */
     const progress = await import(PROGRESS);
     const factory = {
       createNew(panel) {
-        const button = new apputils.ToolbarButton({
-          className: 'validate-button',
-          label: 'Validate',
-          tooltip: 'Run the visible checks of this lesson',
-          onClick: () => void validate(panel, button, parts)
+        void panel.context.ready.then(() => wordsFor(panel, parts)).then(words => {
+          if (panel.isDisposed) return;
+          const button = new apputils.ToolbarButton({
+            className: 'validate-button',
+            label: 'Validate',
+            tooltip: say(words, 'Run the visible checks of this lesson'),
+            onClick: () => void validate(panel, button, words, parts)
+          });
+          panel.toolbar.insertBefore('spacer', 'validate', button);
         });
-        panel.toolbar.insertBefore('spacer', 'validate', button);
-        return button;
       }
     };
     return {

@@ -1,0 +1,124 @@
+"""What a lesson shows before it is run, in an edition's language: the course's own words alone.
+
+The outputs are those of the English release. Run again, a cell of an edition shows the course's
+displays and sentences in its language, and what the lesson's code or `ros2` prints in English.
+"""
+
+import html
+import re
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from my_robot_basics.language.catalogues import read_translations
+from my_robot_basics.language.english import PHRASE, letters_left
+from my_robot_basics.language.sentences import Sentences
+from my_robot_basics.language.templates import LETTERS, Template
+from nbformat import NotebookNode
+
+PANEL, DOCTOR = '<pre style="margin:0;padding-left:8px;', '<div style="font-size:13px;line-height'
+"""How a node's panel begins, and what the topic doctor says."""
+PARTS = ('live', 'doctor', 'checks')
+"""The catalogues of what a cell may print."""
+COLON = '{one}: {other}'
+"""How a sentence ends before a line of code."""
+BEGINS = 4
+"""Letters with which a sentence of the course begins; with fewer, it may be anybody's."""
+
+_TEXT = re.compile(r'(<pre.*?</pre>)|(?<=>)([^<>]*[^\W\d_][^<>]*)', re.DOTALL)
+"""Code in a page, which stays; and a text between two tags."""
+_GOES_ON = re.compile(r'(?<=^  )\w+ goes on$')
+"""What follows an exception in a panel."""
+_COLUMNS = re.compile(r'(.*\s{2})(\S.*)|(\w[\w ]*: )(.+)')
+"""A line whose words begin in its second column, or behind what the lesson's code says."""
+
+
+@dataclass(frozen=True)
+class OutputWords:
+    """The course's own words in the outputs of a language's edition."""
+
+    locale: Path
+    language: str
+
+    def translate(self, output: NotebookNode) -> None:
+        """Put an output's words, where they are the course's, into this language."""
+        if output.output_type == 'stream':
+            output.text = _by_line(output.text, self._printed)
+        data = output.get('data', {})
+        page = data.get('text/html', '')
+        if output.output_type != 'display_data':
+            return
+        if page.startswith(DOCTOR):
+            data['text/html'] = _TEXT.sub(lambda found: found[1] or self._told(found[2]), page)
+        elif page.startswith(PANEL):
+            data['text/plain'] = self._panel(data['text/plain'])
+            tag, end, _ = page.partition('>')
+            data['text/html'] = f'{tag}{end}{html.escape(data["text/plain"])}</pre>'
+        elif not page and 'text/plain' in data:
+            data['text/plain'] = _by_line(data['text/plain'], self._printed)
+
+    @cached_property
+    def _sentences(self) -> Sentences:
+        known: dict[str, str] = {}
+        for part in PARTS:
+            known |= read_translations(self.locale, self.language, part)
+        return Sentences(known)
+
+    @cached_property
+    def _begin(self) -> list[Template]:
+        """The sentences with places that begin with words."""
+        known: Mapping[str, str] = self._sentences.translations
+        made = (Template.of(english, translation) for english, translation in known.items())
+        return [t for t in made if t.places and len(LETTERS.findall(t.literals[0])) >= BEGINS]
+
+    def _say(self, text: str) -> str:
+        return self._sentences.translate(text)
+
+    def _told(self, text: str) -> str:
+        """Translate a text of the topic doctor's page."""
+        said = html.unescape(text.strip())
+        shown = self._say(said.removesuffix(':'))
+        if said.endswith(':'):
+            colon = self._sentences.translations.get(COLON, COLON)
+            shown = colon.format(one=shown, other='').rstrip()
+        return text.replace(text.strip(), html.escape(shown))
+
+    def _panel(self, text: str) -> str:
+        """Translate the state of a node, and what follows an exception; a log line stays."""
+        first, *lines = text.split('\n')
+        title, colon, state = first.partition(': ')
+        lines = [_GOES_ON.sub(lambda found: self._say(found[0]), line) for line in lines]
+        return '\n'.join([f'{title}{colon}{self._say(state)}', *lines])
+
+    def _printed(self, line: str) -> str:
+        """Translate a line that the course printed, or what it printed in one."""
+        if self._is_ours(line):
+            return self._say(line)
+        if columns := _COLUMNS.fullmatch(line):
+            before, words, said, sentence = columns.groups()
+            if words and self._is_ours(words):
+                return before + self._say(words)
+            if sentence and ' ' in sentence and sentence in self._sentences.translations:
+                return said + self._say(sentence)
+        return line
+
+    def _is_ours(self, text: str) -> bool:
+        """Whether it is a sentence of the course, or made from one without a foreign phrase."""
+        if text in self._sentences.translations:
+            return ' ' in text
+        return any(all(map(self._is_said, found.values())) for found in self._fits(text))
+
+    def _fits(self, text: str) -> Iterator[dict[str, str]]:
+        for template in self._begin:
+            yield from template.fits(text)
+
+    def _is_said(self, part: str) -> bool:
+        return letters_left(part) < PHRASE or self._say(part) != part
+
+
+def _by_line(text: str, translate: Callable[[str], str]) -> str:
+    return ''.join(
+        translate(line.rstrip('\r\n')) + line[len(line.rstrip('\r\n')) :]
+        for line in text.splitlines(keepends=True)
+    )

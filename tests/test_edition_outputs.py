@@ -1,0 +1,116 @@
+"""What a lesson of an edition shows before it is run: the course's own words are translated."""
+
+import re
+
+import nbformat
+import pytest
+from my_robot_basics.doctor import as_html
+from my_robot_basics.live import panel
+from nbformat.v4 import new_output
+
+from grader.authoring import edition_outputs
+from grader.authoring.edition_outputs import OutputWords
+from grader.course import ROOT, Course
+
+WORDS = OutputWords(ROOT / 'locale', 'zh_CN')
+TREE = '├── src/                          '
+PRINTED = {
+    'made     $ROS_WS/src/arm: the package, yours to edit\n': (
+        '已建立   $ROS_WS/src/arm：功能包，由你编辑\n'
+    ),
+    f'{TREE}sources: what you write\n': f'{TREE}源代码：你写的内容\n',
+    'In a terminal, join this lesson: export ROS_DOMAIN_ID=11\r\n': (
+        '在终端里加入这一课：export ROS_DOMAIN_ID=11\r\n'
+    ),
+    'int count                    refused: there is no type int: write int32 or another int with '
+    'its number of bits': (
+        'int count                    被拒绝：没有类型 int：请写 int32，或者带有位数的其他 int'
+    ),
+    'run 2: rclpy is initialised already, by the first run(...) or by your own cell: leave '
+    'rclpy.init() out here, and run this cell again\n': (
+        'run 2: rclpy 已经初始化了，是由第一个 run(...) 或者你自己的单元格做的：'
+        '请在这里去掉 rclpy.init()，再运行这个单元格\n'
+    ),
+}
+NOT_OURS = (
+    'by hand:            (1.073, 1.273) m',
+    'there is a server: True',
+    'not spun:     []',
+    'stops on request: stopped',
+    'RELIABLE lost none: True',
+    '147 of 300 by elbow_down',
+    "Package 'hello_arm' not found",
+    'refused: Failed to create publisher: create_publisher() called for existing topic name',
+    '[INFO] [arm]: no node is running',
+)
+PANEL = """Arm: stopped
+[INFO] [arm]: running
+ValueError: the third tick
+  line 4, in tick: raise ValueError('no node is running')
+  Arm goes on"""
+DOCTOR = (
+    f'<div style="{as_html.STYLE}"><p>Something is wrong on /a: /b serves, /c asks.</p>\n<ol>\n'
+    '<li><b>the callback returned no response</b><br>\n<i>to do</i> end the callback with this '
+    'line, in each of its branches; then ask again:\n<pre>return &#x27;no node is running&#x27;'
+    '</pre></li>\n</ol></div>'
+)
+LESSONS = Course().assignments()
+
+
+def shown(output):
+    WORDS.translate(output)
+    return output
+
+
+@pytest.mark.parametrize(('english', 'chinese'), PRINTED.items())
+def test_what_the_course_printed_is_translated(english, chinese):
+    assert shown(new_output('stream', text=english)).text == chinese
+
+
+@pytest.mark.parametrize('line', NOT_OURS)
+def test_what_the_lessons_code_or_ros2_printed_stays(line):
+    assert shown(new_output('stream', text=line)).text == line
+
+
+def test_a_panel_tells_its_nodes_state_and_keeps_its_log():
+    page = f'<pre style="{panel.STYLE}">{PANEL}</pre>'
+    assert page.startswith(edition_outputs.PANEL)
+    data = shown(new_output('display_data', {'text/html': page, 'text/plain': PANEL})).data
+    first, *log, last = data['text/plain'].split('\n')
+    assert (first, last) == ('Arm: 已停止', '  Arm 继续运行')
+    assert log == PANEL.split('\n')[1:-1]
+    assert data['text/html'].endswith('Arm 继续运行</pre>')
+    assert data['text/html'].startswith(f'<pre style="{panel.STYLE}">Arm: 已停止\n')
+
+
+def test_what_the_doctor_found_is_translated_but_for_its_code():
+    assert DOCTOR.startswith(edition_outputs.DOCTOR)
+    page = shown(new_output('display_data', {'text/html': DOCTOR, 'text/plain': ''})).data
+    assert page['text/html'] == (
+        f'<div style="{as_html.STYLE}"><p>/a 有问题：/b 提供，/c 请求。</p>\n<ol>\n'
+        '<li><b>回调没有返回响应</b><br>\n<i>做法</i> 回调的每个分支都要以这一行结束；'
+        '然后再请求一次：\n<pre>return &#x27;no node is running&#x27;</pre></li>\n</ol></div>'
+    )
+
+
+def test_a_value_and_a_picture_stay():
+    value = new_output('execute_result', {'text/plain': 'no node is running'}, execution_count=1)
+    assert shown(value).data['text/plain'] == 'no node is running'
+    picture = {'text/html': '<img alt="no node is running">', 'text/plain': 'no node is running'}
+    assert shown(new_output('display_data', dict(picture))).data == picture
+
+
+@pytest.mark.parametrize('name', LESSONS)
+def test_no_display_of_the_course_is_in_english_in_a_released_lesson(name):
+    path = ROOT / 'notebooks/zh_CN' / name / f'{name}.ipynb'
+    lesson = nbformat.read(path, as_version=4)
+    pages = [
+        output.data['text/html']
+        for cell in lesson.cells
+        for output in cell.get('outputs', [])
+        if output.get('data', {}).get('text/html')
+    ]
+    ours = [p for p in pages if p.startswith((edition_outputs.PANEL, edition_outputs.DOCTOR))]
+    # in what stands outside of code and log lines
+    texts = [re.sub(r'<pre style="margin:2px.*?</pre>|\n(?s:.*)', '', page) for page in ours]
+    assert [text for text in texts if not re.search('[\u3400-\u9fff]', text)] == []
