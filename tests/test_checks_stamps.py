@@ -3,6 +3,7 @@
 import pytest
 from my_robot_basics.checks import CheckFailed, stamps, topic
 from my_robot_basics.checks.clock import Inconclusive
+from my_robot_basics.checks.recording import Recording, Sample
 from nodes.running import imported, running
 from sensor_msgs.msg import JointState
 
@@ -94,3 +95,30 @@ def test_only_stamps_that_stay_behind_are_held_against_a_node(monkeypatch, looks
         with pytest.raises(CheckFailed, match=COMPUTER):
             stamps.expect_to_follow(TOPIC, JointState, ['/a'])
     assert left == []
+
+
+@pytest.mark.parametrize(
+    ('apart_sec', 'told'),
+    [
+        # a busy machine parts the two messages of one callback
+        ([0.001, 0.001, 0.1, 0.001], 'two messages with one stamp at once'),
+        ([0.2, 0.2, 0.2, 0.001], 'a stamp that does not advance'),
+    ],
+)
+def test_a_stamp_that_comes_twice_at_once_is_told_from_one_that_stays(apart_sec, told):
+    samples = []
+    for number, between_sec in enumerate(apart_sec):
+        message = JointState()
+        message.header.stamp.sec = 1 + number
+        samples += [Sample(message, number, number)]
+        samples += [Sample(message, number + between_sec, number + between_sec)]
+    recording = Recording(
+        topic_name=TOPIC,
+        messages=tuple(samples),
+        clock='wall',
+        publishers=('/a',),
+        seconds=4.0,
+        start_sec=0.0,
+    )
+    with pytest.raises(CheckFailed, match=told):
+        recording.assert_stamps()

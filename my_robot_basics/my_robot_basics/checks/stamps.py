@@ -171,7 +171,7 @@ def _come_in_pairs(recording: 'Recording', stamps: Sequence[float]) -> bool:
         )
         if stamp == after
     ]
-    return bool(apart) and max(apart) < AT_ONCE_SEC
+    return bool(apart) and statistics.median(apart) < AT_ONCE_SEC  # a busy machine parts some
 
 
 def _offs(recording: 'Recording', stamps: Sequence[float]) -> list[float]:
