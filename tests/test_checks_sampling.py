@@ -7,6 +7,7 @@ from my_robot_basics.checks import (
     CheckFailed,
     driven_topic,
     looks,
+    sampling,
     topic,
     topic_endpoints,
     wall_recording,
@@ -14,6 +15,7 @@ from my_robot_basics.checks import (
 from my_robot_basics.checks import recording as recording_module
 from my_robot_basics.checks.clock import SimulatedClock
 from my_robot_basics.checks.driven_topic import DrivenTopic
+from my_robot_basics.checks.inconclusive import Inconclusive, NoMessage
 from my_robot_basics.checks.recording import Recording, Sample
 from my_robot_basics.feedback.errors import Starved
 from my_robot_basics.graph.watcher import Watcher
@@ -32,6 +34,8 @@ TOPIC = '/kinematics/joint_states'
         # nearer than the wall clock could tell
         ('a_little_slow', r'4\.88 Hz over 10 s'),
         ('a_little_fast', r'5\.13 Hz over 10 s'),
+        # 5 Hz in steps of 0.1 s, and of 0.04 s
+        ('looks_too_early', r'5\.88 Hz over 2 s'),
     ],
 )
 @pytest.mark.usefixtures('patient')
@@ -100,7 +104,8 @@ def test_a_machine_that_is_late_itself_looks_again_while_there_is_time(
     assert len(recorded) == looks_in_all
 
 
-def test_who_may_ignore_the_clock_has_to_show_once_that_it_does(monkeypatch):
+@pytest.fixture
+def held(monkeypatch):
     held, hold = [], DrivenTopic._hold
 
     def note_and_hold(driven, seconds):
@@ -108,6 +113,10 @@ def test_who_may_ignore_the_clock_has_to_show_once_that_it_does(monkeypatch):
         hold(driven, seconds)
 
     monkeypatch.setattr(DrivenTopic, '_hold', note_and_hold)
+    return held
+
+
+def test_who_may_ignore_the_clock_has_to_show_once_that_it_does(held):
     for node in 'five_hz', 'sleep_loop', 'five_hz':
         with running(node):
             topic(TOPIC).record(seconds=2.0)
@@ -126,6 +135,41 @@ def test_who_works_for_longer_than_a_period_has_no_rate_on_the_robots_clock(monk
     with running('overruns'), pytest.raises(CheckFailed, match=r'expected 5\.0 Hz, saw [34]\.'):
         topic(TOPIC).record().assert_rate(hz=5.0)
     assert reasons[0] == driven_topic.OVERRUNS
+
+
+def test_the_clock_stands_still_before_finer_steps_prove_what_coarser_ones_do_not(held):
+    with running('looks_too_early'):
+        assert topic(TOPIC).record(seconds=10.0).clock == 'simulated'
+    assert held == [0.1, 1.0]
+
+
+def test_a_drive_in_vain_is_a_short_one_the_second_time(monkeypatch):
+    asked = []
+
+    def drive_in_vain(driven, *, seconds, step_sec):
+        asked.append(seconds)
+        return Inconclusive(sampling.UNEVEN)
+
+    monkeypatch.setattr(sampling, '_sampled', drive_in_vain)
+    with running('five_hz'):
+        assert topic(TOPIC).record(seconds=10.0).clock == 'wall'
+    assert asked == [10.0, 2.0]
+
+
+@pytest.mark.parametrize(
+    ('why', 'is_waited_for'),
+    [
+        (Inconclusive(sampling.UNEVEN), True),
+        (NoMessage('no message arrived'), False),
+        (Inconclusive(wall_recording.IGNORES), False),
+    ],
+    ids=['uneven', 'silent', 'ignores the clock'],
+)
+def test_only_who_published_on_the_robots_clock_may_remember_its_time(
+    monkeypatch, why, is_waited_for
+):
+    monkeypatch.setattr(wall_recording, 'ahead_sec', lambda: 30.0)
+    assert wall_recording.remembers_sec(why) == (30.0 if is_waited_for else 0.0)
 
 
 IGNORES = (
@@ -208,6 +252,16 @@ def on_wall(gaps_sec, *, late_sec):
 
 
 LOOKS_EVERY_10_MS = [0.21, 0.21, 0.2, 0.21, 0.21, 0.22, 0.21] * 3
+SLOWER = [0.23, 0.231] * 7
+
+
+@pytest.mark.parametrize(('gaps_sec', 'goes_on'), [([0.2] * 15, True), (SLOWER, False)])
+def test_who_goes_on_at_another_rate_is_looked_at_anew(monkeypatch, gaps_sec, goes_on):
+    again, earlier = on_wall(gaps_sec, late_sec=0.0), on_wall([0.2] * 20, late_sec=0.0)
+    monkeypatch.setattr(wall_recording, 'wall', lambda *_, **__: again)
+    assert wall_recording.goes_on(None, None, earlier) is goes_on
+
+
 KEPT_WAITING = [0.2, 0.21, 0.9, 0.2, 0.33, 0.2, 0.2, 0.8, 1.1, 0.2, 0.27, 0.5]
 
 

@@ -4,7 +4,7 @@ import statistics
 import time
 
 from my_robot_basics.checks.clock import SimulatedClock
-from my_robot_basics.checks.inconclusive import Inconclusive
+from my_robot_basics.checks.inconclusive import Inconclusive, NoMessage
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.wall_recording import IGNORES
 from my_robot_basics.graph.watcher import Watcher
@@ -17,10 +17,6 @@ SUSPICIOUS_TICKS = 30
 PATIENT_SEC = 0.002
 """What a thread that sleeps on the clock takes to wake up and to publish."""
 OVERRUNS = 'its callback takes longer than its period'
-
-
-class NoMessage(Inconclusive):
-    """No message came for as long as one is waited for."""
 
 
 class DrivenTopic:

@@ -5,7 +5,6 @@ from dataclasses import replace
 from typing import NoReturn
 
 from my_robot_basics.checks import ignoring, sampling, wall_recording
-from my_robot_basics.checks.clock import ahead_sec
 from my_robot_basics.checks.clock_use import are_left_alone
 from my_robot_basics.checks.earlier_looks import Look, Wanted, look_once
 from my_robot_basics.checks.inconclusive import Inconclusive
@@ -79,7 +78,7 @@ def _to_look_again(
 ) -> Recording:
     def look_again(seconds: float) -> Recording:
         # it may have to wait as long for the message to begin at
-        if left_sec < 2.0 * seconds + ahead_sec():
+        if left_sec < 2.0 * seconds + wall_recording.remembers_sec(look.why):
             raise CheckFailed('there is no time for another look')
         start = time.monotonic()
         with Watcher(shared=True, listens=True) as watcher:

@@ -4,7 +4,7 @@ import time
 
 from my_robot_basics.checks import rates
 from my_robot_basics.checks.clock import ahead_sec
-from my_robot_basics.checks.inconclusive import Inconclusive, TooSlow
+from my_robot_basics.checks.inconclusive import Inconclusive, NoMessage, TooSlow
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.recording import Recording, Sample
 from my_robot_basics.graph.raised import what_raised
@@ -21,8 +21,8 @@ RAISED_SEC = 2.0
 """The same where nothing has come yet and a callback raised: rclpy.spin would have ended there."""
 
 GOES_ON_SEC = 4.0
-"""So long does it have to go on as it did before: with the first look, for 9 s in all.
-A loop that publishes forty times has ended by then."""
+"""So long does it have to go on as it did before: with the first look, for 9 s in all. A loop that
+publishes forty times has ended by then, and is silent for longer than a timer may be."""
 
 IGNORES = 'the node ignores the clock'
 
@@ -41,7 +41,7 @@ def wall(
     one was; and as long for the next one, should that be longer: then it ends there. `why`: what
     spoke against the robot's clock.
     """
-    first_sec = timeout_sec + ahead_sec()
+    first_sec = timeout_sec + remembers_sec(why)
     if not recorder.received and what_raised(recorder.publishers()):
         seconds = timeout_sec = first_sec = RAISED_SEC
     since_ns, watch = time.time_ns(), Stopwatch()
@@ -72,10 +72,18 @@ def wall(
     )
 
 
+def remembers_sec(why: Inconclusive | None) -> float:
+    """How long a node may be silent that remembers when it published last, on the robot's clock.
+
+    None does that published nothing then, or while it stood still.
+    """
+    return 0.0 if isinstance(why, NoMessage) or str(why) == IGNORES else ahead_sec()
+
+
 def goes_on(watcher: Watcher, recorder: Recorder, earlier: Recording) -> bool:
     """Whether the messages of an earlier recording still come, as often and as evenly."""
     again = wall(watcher, recorder, seconds=GOES_ON_SEC, timeout_sec=GOES_ON_SEC)
-    return again.publishers == earlier.publishers and rates.is_steady(again, earlier.rate_hz)
+    return again.publishers == earlier.publishers and rates.has_rate(again, earlier.rate_hz)
 
 
 def _note(recorder: Recorder) -> str:
