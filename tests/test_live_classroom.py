@@ -43,6 +43,14 @@ def test_sets_what_a_lesson_needs():
     assert Path(env['FASTRTPS_DEFAULT_PROFILES_FILE']).is_file()
 
 
+def test_a_traceback_reads_the_same_on_each_python():
+    traceback = 'import os, subprocess, sys; subprocess.run([sys.executable, "-c", "1/0"])'
+    program = f'from my_robot_basics.session import classroom; classroom.enter(); {traceback}'
+    env = os.environ | {'FORCE_COLOR': '1'}
+    run = subprocess.run([sys.executable, '-c', program], env=env, capture_output=True, text=True)
+    assert run.stderr.splitlines()[-1] == 'ZeroDivisionError: division by zero'
+
+
 def test_a_prefix_that_is_there_stays_where_it_is():
     path = f'/opt/ros:{sys.prefix}'
     assert seen(AMENT_PREFIX_PATH=path)['AMENT_PREFIX_PATH'] == path

@@ -80,6 +80,8 @@ def _set_environment(domain_id: int) -> None:
     os.environ['RCUTILS_LOGGING_USE_STDOUT'] = '1'
     os.environ['RCUTILS_LOGGING_BUFFERED_STREAM'] = '1'
     os.environ['RCUTILS_COLORIZED_OUTPUT'] = '0'
+    # ipykernel asks for colors (FORCE_COLOR), and from 3.13 Python obeys, even into a pipe
+    os.environ['PYTHON_COLORS'] = '0'
     os.environ['ROS_DOMAIN_ID'] = str(domain_id)
     os.environ['ROS_WS'] = str(workspace())
     if ' ' in sys.prefix:
