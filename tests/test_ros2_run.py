@@ -17,6 +17,7 @@ EXECUTABLES = {
     'fails': 'sys.exit(3)',
     'dies': 'os.kill(os.getpid(), signal.SIGKILL)',
     'asks': 'print("hello", input())',
+    'handles': 'print(signal.getsignal(signal.SIGINT).__name__)',
     # counts the signals that reach it; the second ends it
     'counts': """
         def count(number, frame):
@@ -127,6 +128,14 @@ def test_a_signal_reaches_the_executable_once(number, to):
     assert (err, process.returncode) == ('', 5)
 
 
+def test_an_executable_in_the_background_of_a_script_can_be_interrupted():
+    # there the shell has SIGINT ignored: Python would raise no KeyboardInterrupt, and rclpy's own
+    # handler alone misses some signals
+    script = f'"{SCRIPT}" run demo handles & wait'
+    done = subprocess.run(['bash', '-c', script], capture_output=True, text=True)
+    assert (done.stdout, done.stderr) == ('default_int_handler\n', '')
+
+
 def test_the_executable_does_not_outlive_a_killed_command():
     with started(SCRIPT, 'run', 'demo', 'counts') as process:
         process.stdout.readline()
@@ -195,7 +204,17 @@ def test_packages_and_their_executables_are_listed(prefix):
     listed = ros2('pkg', 'executables', 'demo').out.splitlines()
     paths = ros2('pkg', 'executables', 'demo', '--full-path').out.splitlines()
     folder = prefix / 'lib/demo'
-    expected = ['asks', 'broken', 'counts', 'deeper/once', 'deeper/says', 'dies', 'fails', 'says']
+    expected = [
+        'asks',
+        'broken',
+        'counts',
+        'deeper/once',
+        'deeper/says',
+        'dies',
+        'fails',
+        'handles',
+        'says',
+    ]
     assert paths == [str(folder / path) for path in expected]
     assert listed == [f'demo {path.rpartition("/")[2]}' for path in expected]
     assert set(listed) <= set(ros2('pkg', 'executables').out.splitlines())
