@@ -116,6 +116,7 @@ def held(monkeypatch):
     return held
 
 
+@pytest.mark.usefixtures('patient')
 def test_who_may_ignore_the_clock_has_to_show_once_that_it_does(held):
     for node in 'five_hz', 'sleep_loop', 'five_hz':
         with running(node):
@@ -137,6 +138,7 @@ def test_who_works_for_longer_than_a_period_has_no_rate_on_the_robots_clock(monk
     assert reasons[0] == driven_topic.OVERRUNS
 
 
+@pytest.mark.usefixtures('patient')
 def test_the_clock_stands_still_before_finer_steps_prove_what_coarser_ones_do_not(held):
     with running('looks_too_early'):
         assert topic(TOPIC).record(seconds=10.0).clock == 'simulated'
