@@ -2,8 +2,9 @@
 
     .venv/bin/python tests/benchmarks/ended_by_signal.py [TIMES]
 
-Beside a busy loop for each processor; by turns with both signals, and with SIGINT as a shell's
-`&` leaves it to its children: ignored, until rclpy takes it over. Nothing is asserted.
+Beside a busy loop for each processor, three nodes at a time: one for each signal, and one that
+gets SIGINT as a shell's `&` leaves it to its children: ignored, until rclpy takes it over. Nothing
+is asserted.
 """
 
 import os
@@ -13,6 +14,7 @@ import subprocess
 import sys
 import time
 from collections import Counter
+from concurrent.futures import ThreadPoolExecutor
 
 from measuring import table
 
@@ -68,8 +70,10 @@ def main() -> None:
     ]
     wait_on: Counter[str] = Counter()
     try:
-        for _ in range(times):
-            wait_on.update(way for way in WAYS if not ends(way))
+        with ThreadPoolExecutor(len(WAYS)) as nodes:
+            for _ in range(times):
+                ended = zip(WAYS, nodes.map(ends, WAYS), strict=True)
+                wait_on.update(way for way, has_ended in ended if not has_ended)
     finally:
         for loop in loops:
             loop.kill()
