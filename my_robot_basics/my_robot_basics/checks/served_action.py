@@ -18,9 +18,10 @@ from my_robot_basics.graph.watcher import Watcher
 
 REPLY_SEC = 4.0
 """How long to wait for a goal, a request to cancel or an outcome, of time that was free."""
-QUIET_SEC, MORE_SEC = 0.5, 0.1
-"""How long to listen for what must not come, and for more of a callback that has published."""
-AGAIN_SEC, MEET_SEC = 1.0, 2.0
+QUIET_SEC, SOON_SEC, MORE_SEC = 0.5, 0.25, 0.05
+"""How long to listen for what must not come, for what a node that has dealt with all that came
+must not publish, and for more of a callback that has published."""
+AGAIN_SEC, MEET_SEC, MET_SEC = 1.0, 2.0, 0.2
 """A client that has just met the server may lose a goal: its message is published again then."""
 
 
@@ -143,14 +144,15 @@ class ServedAction(ScriptedActionServer):
         )
 
     def forget_outcomes(self) -> None:
-        """What goals of earlier come to counts no more: wait for it, and expect others."""
+        """Wait for what goals of earlier come to, and count it no more."""
         self._watcher.spin_for(QUIET_SEC)
         self._before = len(self._outcomes.received)
 
     def expect_no_outcome(self, while_: str) -> None:
         """Nothing comes there for a while, as `while_`, a clause, is so. Raises CheckFailed."""
         before = self._before
-        self._watcher.spin_for(QUIET_SEC)
+        self._let_client_know()
+        self._watcher.spin_for(SOON_SEC)
         others = [message.data for message in self._outcomes.messages()[before:]]
         expect(
             not others,
@@ -177,15 +179,12 @@ class ServedAction(ScriptedActionServer):
     def _meet_client(self) -> None:
         """Wait for who sends goals: it meets the server at about the same time."""
         if self._known_starts < self.starts:
-            node = self._watcher.node
-            self._watcher.spin_until(
-                lambda: node.count_clients(f'{self.name}/_action/send_goal') > 0,
-                timeout_sec=MEET_SEC,
-            )
-            self._watcher.spin_for(QUIET_SEC)
+            node, name = self._watcher.node, f'{self.name}/_action/send_goal'
+            self._watcher.spin_until(lambda: node.count_clients(name) > 0, timeout_sec=MEET_SEC)
+            self._watcher.spin_for(MET_SEC)
 
     def _let_client_know(self) -> None:
-        """Wait until it has had turns enough to receive the answer to its goal."""
+        """Wait until it has had turns enough to receive the answer to what it asked."""
         for name in {*self._outcomes.publishers()}:
             answers_parameters(self._watcher, name)
 
