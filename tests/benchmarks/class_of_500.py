@@ -1,6 +1,7 @@
 """A class of five hundred, from the archive that comes in to feedback; every score is verified.
 
     .venv/bin/python tests/benchmarks/class_of_500.py [--students 500] [--workers N]
+    .venv/bin/python tests/benchmarks/class_of_500.py --lessons 00 01 02 03 04 05 06 07
     .venv/bin/python tests/benchmarks/class_of_500.py --kill run worker
     .venv/bin/python tests/benchmarks/class_of_500.py --steady 200 [--at GRADEBOOK]
     .venv/bin/python tests/benchmarks/class_of_500.py --steady 20 --lesson 08_services
@@ -22,6 +23,7 @@ from pathlib import Path
 
 from killing import MOST_SHOWN, killed
 from measuring import ROW, Course, Watched, course_command, new_course, table, watch
+from sample_class import PATHS, assignment_of
 from steady import steady
 from synthetic_class import Paper, synthetic_class, wrong_scores, zip_up
 
@@ -31,6 +33,8 @@ def main() -> int:
     parser = argparse.ArgumentParser()
     parser.add_argument('--students', type=int, default=500)
     parser.add_argument('--seed', type=int, default=0)
+    about = 'for a class: these alone, by how their names begin; default: all'
+    parser.add_argument('--lessons', nargs='+', default=[''], help=about)
     parser.add_argument('--workers', help='for ./course grade; default: its own')
     parser.add_argument('--kill', nargs='+', choices=('run', 'worker'), default=())
     parser.add_argument('--steady', type=int, metavar='TIMES')
@@ -40,7 +44,9 @@ def main() -> int:
     options = ['--workers', asked.workers] if asked.workers else []
     if asked.steady:
         return steady(asked.steady, options, asked.at, asked.lesson)
-    papers = synthetic_class(asked.students, seed=asked.seed)
+    all_lessons = sorted({assignment_of(path) for path in PATHS.values()})
+    lessons = [name for name in all_lessons if name.startswith(tuple(asked.lessons))]
+    papers = synthetic_class(asked.students, seed=asked.seed, assignments=lessons)
     course, status = _whole_class(papers, options)
     differs = [killed(what, course, papers, options) for what in asked.kill]
     return status or int(any(differs))
