@@ -1,12 +1,14 @@
-"""Two messages in quick succession, and what a busy machine makes of them."""
+"""What becomes of messages that go through a node, where a machine is busy, or others publish."""
 
 from itertools import count
 from types import SimpleNamespace
 
 import pytest
-from my_robot_basics.checks import passage
+from my_robot_basics.checks import pairs
 from my_robot_basics.checks.passage import Passage
 from my_robot_basics.checks.variety import Sent
+
+SEC = 1_000_000_000
 
 
 class Node:
@@ -18,24 +20,23 @@ class Node:
     def publish(self, message):
         number = next(self.numbers)
         if not (number % 2 == 0 and self.loses(number // 2)):
-            self.received.append(message)
-
-    def messages(self):
-        return self.received
+            self.received.append((message, SEC * number))
 
 
-def loses_one_of_two(loses):
+def passage_through(node):
     watcher = SimpleNamespace(
         spin_for=lambda _: None, spin_until_free=lambda done, free_sec: done()
     )
-    node = Node(loses)
-    over = Passage(watcher, node, publish=node.publish, what=lambda message: message)
-    return over.loses_one_of_two(Sent(number, '') for number in count())
+    return Passage(watcher, node, publish=node.publish, what=lambda message: message)
+
+
+def loses_one_of_two(loses):
+    return passage_through(Node(loses)).loses_one_of_two(Sent(n, '') for n in count())
 
 
 @pytest.fixture(params=[False, True], ids=['free', 'busy'])
 def is_busy(request, monkeypatch):
-    monkeypatch.setattr(passage.Stopwatch, 'is_busy', lambda _: request.param)
+    monkeypatch.setattr(pairs.Stopwatch, 'is_busy', lambda _: request.param)
     return request.param
 
 
@@ -53,3 +54,17 @@ def test_who_mostly_lets_out_one_of_two_loses_the_other(loses):
 
 def test_a_busy_machine_may_lose_most_pairs_of_a_short_queue(is_busy):
     assert loses_one_of_two(lambda pair: pair < 6 or pair % 3) == (not is_busy)
+
+
+@pytest.mark.parametrize(
+    ('heard', 'invents'),
+    [(range(3, 8), False), (range(1), True), (range(0), True)],
+    ids=['heard late', 'heard once', 'not heard'],
+)
+def test_what_others_sent_before_they_were_heard_is_not_invented(heard, invents):
+    node = Node(lambda pair: False)
+    passage = passage_through(node)
+    node.received += [(f'of another {n}', SEC * n) for n in range(8)]
+    assert not passage.loses_one_of_two(Sent(n, '') for n in count())
+    own = [(n, SEC * n) for n in range(4)]
+    assert passage.invents(own + [(f'of another {n}', SEC * n) for n in heard]) == invents

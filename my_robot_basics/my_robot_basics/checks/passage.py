@@ -1,8 +1,9 @@
 """What becomes of messages that go through a node one at a time: each comes out at once, once."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
+from my_robot_basics.checks.pairs import GAP_SEC, Pairs
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.relay_faults import RelayFaults
 from my_robot_basics.checks.variety import Sent
@@ -43,13 +44,6 @@ FEWEST_INVENTED = 3
 """Messages that nobody sent: one or two may have been on their way before the check listened."""
 RECENT = 20
 """A copy is one of so many that came out last."""
-PAIR_GAP_SEC = 0.01
-"""Two messages so near to each other: a node that keeps only the latest for a timer loses one."""
-MOST_GAP_SEC, MOST_APART = 0.015, 20
-"""A busy machine lets more time pass between them: so many such pairs prove nothing."""
-WHOLE_PAIRS, MOST_SPLIT = 2, 6
-"""So many pairs have to come out, before so many did not: a queue of depth 1 may lose one. On a
-busy machine it loses many, and some come out: each that does is worth so many that do not."""
 PAUSE_SEC = 1.1
 PAUSES = 3
 
@@ -73,7 +67,9 @@ class Passage:
         self._out: list[Sent] = []
         self._copies: list[int] = []
         """How often each of those came out."""
-        self._others: list[Any] = []
+        self._own: set[Any] = set()
+        """What of each message that was published here."""
+        self._others: list[tuple[Any, int]] = []
         self._slowest_sec = 0.0
         self._watch = Stopwatch()
 
@@ -107,32 +103,33 @@ class Passage:
             late=late, lost=tuple(sent.kind for sent in self._waiting), copies=copies
         )
 
-    def invents(self, sent: Iterable[Any]) -> bool:
-        """Whether messages came out that are not among those that anybody `sent`."""
-        known = {self._what(message) for message in sent}
-        invented = [each for each in self._others if self._what(each) not in known]
+    def invents(self, sent: Sequence[tuple[Any, int]]) -> bool:
+        """Whether messages came out that are not among those that anybody `sent`, with the time.
+
+        What another publisher sent before the first that was received here is not known.
+        """
+        known = {self._what(message) for message, _ in sent}
+        of_others_ns = (ns for message, ns in sent if self._what(message) not in self._own)
+        since_ns = next(of_others_ns, 0) + round(LEAST_SEC * 1e9)
+        invented = [
+            message
+            for message, sent_ns in self._others
+            if sent_ns > since_ns and self._what(message) not in known
+        ]
         return len(invented) >= FEWEST_INVENTED
 
     def loses_one_of_two(self, messages: Iterator[Sent]) -> bool:
         """Whether of two messages in quick succession mostly one alone comes out."""
-        whole = split = apart = 0
-        watch = Stopwatch()
-        while whole < WHOLE_PAIRS + split // MOST_SPLIT and not self._is_over(LAST_SEC):
-            if split >= MOST_SPLIT * (2 + whole if watch.is_busy() else 1):
-                return True
+        pairs = Pairs()
+        while (told := pairs.tell()) is None and not self._is_over(LAST_SEC):
             first, gap = next(messages), Stopwatch()
             self._waiting = [first]
-            self._publish(first.message)
-            self._watcher.spin_for(PAIR_GAP_SEC)
-            is_apart = gap.wall_sec() > MOST_GAP_SEC
+            self._let_in(first)
+            self._watcher.spin_for(GAP_SEC)
+            gap_sec = gap.wall_sec()
             self._send(next(messages))
-            if self._waiting:
-                split += 1
-            elif is_apart and apart < MOST_APART:
-                apart += 1
-            else:
-                whole += 1
-        return split >= MOST_SPLIT and whole < WHOLE_PAIRS
+            pairs.count(is_whole=not self._waiting, gap_sec=gap_sec)
+        return pairs.tell_at_last() if told is None else told
 
     def loses_after_a_pause(self, messages: Iterator[Sent]) -> bool:
         """Whether a message that comes after a pause never comes out."""
@@ -150,7 +147,7 @@ class Passage:
     def _send(self, sent: Sent) -> bool:
         """Publish it; whether it has come out in time."""
         self._waiting.append(sent)
-        self._publish(sent.message)
+        self._let_in(sent)
 
         def is_out() -> bool:
             self._take()
@@ -164,11 +161,15 @@ class Passage:
         self._slowest_sec = max(self._slowest_sec, watch.wall_sec())
         return True
 
+    def _let_in(self, sent: Sent) -> None:
+        self._own.add(self._what(sent.message))
+        self._publish(sent.message)
+
     def _take(self) -> None:
         """Sort what was received: the first of those that are waited for, a copy, or another's."""
-        received = self._recorder.messages()[self._seen :]
+        received = self._recorder.received[self._seen :]
         self._seen += len(received)
-        for message in received:
+        for message, sent_ns in received:
             for place, sent in enumerate(self._waiting):
                 if self._what(message) == self._what(sent.message):
                     del self._waiting[place]
@@ -176,14 +177,14 @@ class Passage:
                     self._copies.append(1)
                     break
             else:
-                self._count(message)
+                self._count(message, sent_ns)
 
-    def _count(self, message: Any) -> None:
+    def _count(self, message: Any, sent_ns: int) -> None:
         for place in reversed(range(max(0, len(self._out) - RECENT), len(self._out))):
             if self._what(message) == self._what(self._out[place].message):
                 self._copies[place] += 1
                 return
-        self._others.append(message)
+        self._others.append((message, sent_ns))
 
 
 def _fewest(row: Stopwatch) -> int:

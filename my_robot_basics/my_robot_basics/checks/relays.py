@@ -129,7 +129,7 @@ class Relay:
                 raised.hint()
                 or 'publish each in the callback itself, or keep all of them until then',
             )
-        if passage.invents(source_recorder.messages()):
+        if passage.invents(source_recorder.received):
             self._fail(
                 f'messages that nobody published on {self.source}',
                 'publish in that callback alone, and only the message that it is given',
