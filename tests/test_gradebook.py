@@ -10,6 +10,8 @@ import nbformat
 import pytest
 from course_maker import TOY, answered, executed, released_course, submit, toy_lesson, write_source
 from nbgrader.api import Gradebook
+from sqlalchemy import event
+from sqlalchemy.engine import Engine
 
 from grader.common.errors import CourseError
 from grader.course import Course
@@ -17,6 +19,7 @@ from grader.export.scores import COLUMNS, write_scores
 from grader.notebook.restore import KEY, restore
 from grader.notebook.submission import read_submission
 from grader.storage import gradebook
+from grader.storage import records as records_module
 from grader.storage.gradebook import store
 from grader.storage.pipeline import prepare, prepared_template, unanswered
 from grader.storage.records import records, verdicts
@@ -277,6 +280,35 @@ def test_scores_are_a_table_that_no_spreadsheet_runs(course):
     assert first.startswith(b'\xef\xbb\xbf')  # else a spreadsheet shows other letters
     assert rows[6]['comment'] == 'not submitted'
     assert {r['assignment'] for r in rows} == {TOY}
+
+
+def test_a_large_class_takes_no_more_questions_to_the_database(course, monkeypatch):
+    questions = []
+
+    @event.listens_for(Engine, 'before_cursor_execute')
+    def count(*_):
+        questions.append(1)
+
+    def questions_with(students):
+        with Gradebook(course.db_url) as book:
+            for number in students:
+                book.add_student(f'student_{number}')
+        questions.clear()
+        found = records(course)
+        return len(questions), {each.student_id for each in found}
+
+    try:
+        grade(course, 'ada', {})
+        few, _ = questions_with(range(3))
+        many, whose = questions_with(range(3, 43))
+    finally:
+        event.remove(Engine, 'before_cursor_execute', count)
+    assert 0 < many <= few
+    assert len(whose) == 44
+    at_once = records(course)
+    assert any(each.submitted for each in at_once)
+    monkeypatch.setattr(records_module, 'MOST_ASKED', 10)
+    assert records(course) == at_once
 
 
 def test_a_seed_is_a_students_own_and_follows_the_lessons_text(course, released, tmp_path):

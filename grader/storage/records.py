@@ -2,17 +2,32 @@
 
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import product
 
 import nbformat
 from nbformat import NotebookNode
-from nbgrader.api import Assignment, Gradebook, GradeCell, Notebook
+from nbgrader.api import (
+    Assignment,
+    Comment,
+    Grade,
+    Gradebook,
+    GradeCell,
+    Notebook,
+    Student,
+    SubmittedAssignment,
+    SubmittedNotebook,
+)
 from sqlalchemy import select
+from sqlalchemy.orm import selectinload
 
 from grader.course import Course
 from grader.notebook.restore import KEY, grade_id
 from grader.storage.database import connected
-from grader.storage.gradebook import opened, submitted_notebook, waits_for_a_person
+from grader.storage.gradebook import opened, waits_for_a_person
 from grader.storage.lesson_checksums import checksums
+
+MOST_ASKED = 500
+"""Of so many students a database is asked at once; all of them have a limit."""
 
 
 @dataclass(frozen=True)
@@ -39,13 +54,17 @@ def records(course: Course, *, only: Collection[tuple[str, str]] | None = None) 
     """
     with opened(course) if only is None else connected(course.db_url) as book:
         cells_of = _cells_of(course, book, only)
-        return [
-            record
-            for student in sorted(student.id for student in book.students)
-            for assignment, cells in cells_of.items()
-            if only is None or (student, assignment) in only
-            for record in _records(book, student, assignment, cells)
-        ]
+        students = sorted(book.db.scalars(select(Student.id)))
+        asked = {*only} if only is not None else {*product(students, cells_of)}
+        found: dict[tuple[str, str], list[CellScore]] = {}
+        for assignment, cells in cells_of.items():
+            whose = [student for student in students if (student, assignment) in asked]
+            graded = _graded(book, assignment, whose)
+            for student in whose:
+                scores = _scores(student, assignment, cells, graded.get(student))
+                found[student, assignment] = [*scores]
+            book.db.expunge_all()  # no lesson of a large class is needed beside another
+        return [record for whose in sorted(found) for record in found[whose]]
 
 
 def _cells_of(
@@ -83,10 +102,34 @@ def graded_notebook(course: Course, student_id: str, assignment: str) -> Noteboo
     return nbformat.read(path, as_version=4) if path.exists() else nbformat.v4.new_notebook()
 
 
-def _records(
-    book: Gradebook, student: str, assignment: str, cells: Sequence[GradeCell]
+def _graded(
+    book: Gradebook, assignment: str, students: Sequence[str]
+) -> dict[str, SubmittedNotebook]:
+    """Return what the database holds of an assignment, by student: all in a few questions."""
+    asked = (
+        select(SubmittedAssignment.student_id, SubmittedNotebook)
+        .join(SubmittedAssignment, SubmittedNotebook.assignment_id == SubmittedAssignment.id)
+        .join(Notebook, SubmittedNotebook.notebook_id == Notebook.id)
+        .join(Assignment, SubmittedAssignment.assignment_id == Assignment.id)
+        .where(Assignment.name == assignment, Notebook.name == assignment)
+        .options(
+            selectinload(SubmittedNotebook.grades).selectinload(Grade.cell),
+            selectinload(SubmittedNotebook.comments).selectinload(Comment.cell),
+        )
+    )
+    found: dict[str, SubmittedNotebook] = {}
+    for first in range(0, len(students), MOST_ASKED):
+        some = SubmittedAssignment.student_id.in_(students[first : first + MOST_ASKED])
+        found |= dict(book.db.execute(asked.where(some)).tuples().all())
+    return found
+
+
+def _scores(
+    student: str,
+    assignment: str,
+    cells: Sequence[GradeCell],
+    found: SubmittedNotebook | None,
 ) -> Iterator[CellScore]:
-    found = submitted_notebook(book, student, assignment)
     grades = {grade.name: grade for grade in found.grades} if found else {}
     comments = (
         {comment.name: comment.manual_comment for comment in found.comments} if found else {}
