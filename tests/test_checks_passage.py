@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 from my_robot_basics.checks import pairs
+from my_robot_basics.checks import passage as passage_module
 from my_robot_basics.checks.passage import Passage
 from my_robot_basics.checks.variety import Sent
 
@@ -57,11 +58,14 @@ def test_a_busy_machine_may_lose_most_pairs_of_a_short_queue(is_busy):
 
 
 @pytest.mark.parametrize(
-    ('heard', 'invents'),
-    [(range(3, 8), False), (range(1), True), (range(0), True)],
-    ids=['heard late', 'heard once', 'not heard'],
+    ('heard', 'began_sec', 'invents'),
+    [(range(3, 8), 3, False), (range(6, 8), 0, True), (range(1), 0, True), (range(0), 0, True)],
+    ids=['heard late', 'heard too late', 'heard once', 'not heard'],
 )
-def test_what_others_sent_before_they_were_heard_is_not_invented(heard, invents):
+def test_what_others_sent_before_they_were_heard_is_not_invented(
+    monkeypatch, heard, began_sec, invents
+):
+    monkeypatch.setattr(passage_module.time, 'time_ns', lambda: began_sec * SEC)
     node = Node(lambda pair: False)
     passage = passage_through(node)
     node.received += [(f'of another {n}', SEC * n) for n in range(8)]

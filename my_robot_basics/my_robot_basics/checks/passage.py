@@ -1,5 +1,6 @@
 """What becomes of messages that go through a node one at a time: each comes out at once, once."""
 
+import time
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
@@ -71,7 +72,7 @@ class Passage:
         """What of each message that was published here."""
         self._others: list[tuple[Any, int]] = []
         self._slowest_sec = 0.0
-        self._watch = Stopwatch()
+        self._watch, self._began_ns = Stopwatch(), time.time_ns()
 
     def carry(self, messages: Iterator[Sent]) -> RelayFaults:
         """Publish each once the one before has come out or is late, until enough came in a row.
@@ -106,11 +107,13 @@ class Passage:
     def invents(self, sent: Sequence[tuple[Any, int]]) -> bool:
         """Whether messages came out that are not among those that anybody `sent`, with the time.
 
-        What another publisher sent before the first that was received here is not known.
+        What another publisher sent before the first that was received here is not known: that
+        comes within ON_TIME_SEC, or nobody else publishes.
         """
         known = {self._what(message) for message, _ in sent}
         of_others_ns = (ns for message, ns in sent if self._what(message) not in self._own)
-        since_ns = next(of_others_ns, 0) + round(LEAST_SEC * 1e9)
+        heard_ns = min(next(of_others_ns, 0), self._began_ns + round(ON_TIME_SEC * 1e9))
+        since_ns = heard_ns + round(LEAST_SEC * 1e9)
         invented = [
             message
             for message, sent_ns in self._others

@@ -44,6 +44,7 @@ class ServedAction(ScriptedActionServer):
         self._raised = CallbackErrors(set(outcomes.publishers()))
         self._publishers: dict[str, Publisher] = {}
         self._known_starts = self._before = 0
+        self._mute: set[str] = set()  # nodes that tell no parameters are asked once
         self._cancelled_sec = 0.0  # how long a request took that an obstacle asked for, at most
 
     def publish(self, message: Any) -> None:
@@ -185,8 +186,8 @@ class ServedAction(ScriptedActionServer):
 
     def _let_client_know(self) -> None:
         """Wait until it has had turns enough to receive the answer to what it asked."""
-        for name in {*self._outcomes.publishers()}:
-            answers_parameters(self._watcher, name)
+        names = {*self._outcomes.publishers()} - self._mute
+        self._mute |= {name for name in names if not answers_parameters(self._watcher, name)}
 
     def _why_no_goal(self) -> str:
         who = self._who()

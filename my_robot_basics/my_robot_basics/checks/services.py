@@ -151,9 +151,10 @@ def wait_for_all(
 def answers_parameters(watcher: Watcher, node_name: str) -> bool:
     """Whether a node tells a parameter: then it spins, and nothing keeps it busy."""
     client = watcher.node.create_client(GetParameters, f'{node_name}/get_parameters')
-    watcher.spin_until(client.service_is_ready, timeout_sec=PARAMETERS_SEC)
-    asked = client.call_async(GetParameters.Request(names=['use_sim_time']))
-    told = watcher.spin_until_free(asked.done, free_sec=PARAMETERS_SEC)
+    told = watcher.spin_until_free(client.service_is_ready, free_sec=PARAMETERS_SEC)
+    if told:
+        asked = client.call_async(GetParameters.Request(names=['use_sim_time']))
+        told = watcher.spin_until_free(asked.done, free_sec=PARAMETERS_SEC)
     watcher.node.destroy_client(client)
     return told
 
