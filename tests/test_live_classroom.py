@@ -38,7 +38,7 @@ def test_sets_what_a_lesson_needs():
     assert env['ROS_DOMAIN_ID'] == str(env['domain_id'])
     assert env['ROS_AUTOMATIC_DISCOVERY_RANGE'] == 'LOCALHOST'
     assert env['RCUTILS_LOGGING_USE_STDOUT'] == '1'
-    assert env['RCUTILS_COLORIZED_OUTPUT'] == '0'
+    assert env['RCUTILS_COLORIZED_OUTPUT'] == env['PYTHON_COLORS'] == '0'
     assert env['AMENT_PREFIX_PATH'] == f'{sys.prefix}:/opt/ros'
     assert Path(env['FASTRTPS_DEFAULT_PROFILES_FILE']).is_file()
 
