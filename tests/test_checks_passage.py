@@ -61,12 +61,12 @@ def test_a_busy_machine_may_lose_most_pairs_of_a_short_queue(is_busy):
 
 
 @pytest.mark.parametrize(
-    ('heard', 'began_sec', 'invents'),
+    ('received', 'began_sec', 'invents'),
     [(range(3, 8), 3, False), (range(6, 8), 0, True), (range(1), 0, True), (range(0), 0, True)],
-    ids=['heard late', 'heard too late', 'heard once', 'not heard'],
+    ids=['received late', 'received too late', 'received once', 'not received'],
 )
-def test_what_others_sent_before_they_were_heard_is_not_invented(
-    monkeypatch, heard, began_sec, invents
+def test_what_others_sent_before_they_were_received_is_not_invented(
+    monkeypatch, received, began_sec, invents
 ):
     monkeypatch.setattr(passage_module.time, 'time_ns', lambda: began_sec * SEC)
     node = Node(lambda pair: False)
@@ -74,4 +74,4 @@ def test_what_others_sent_before_they_were_heard_is_not_invented(
     node.received += [(f'of another {n}', SEC * n) for n in range(8)]
     assert not passage.loses_one_of_two(Sent(n, '') for n in count())
     own = [(n, SEC * n) for n in range(4)]
-    assert passage.invents(own + [(f'of another {n}', SEC * n) for n in heard]) == invents
+    assert passage.invents(own + [(f'of another {n}', SEC * n) for n in received]) == invents

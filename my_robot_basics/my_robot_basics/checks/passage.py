@@ -112,8 +112,8 @@ class Passage:
         """
         known = {self._what(message) for message, _ in sent}
         of_others_ns = (ns for message, ns in sent if self._what(message) not in self._own)
-        heard_ns = min(next(of_others_ns, 0), self._began_ns + round(ON_TIME_SEC * 1e9))
-        since_ns = heard_ns + round(LEAST_SEC * 1e9)
+        received_ns = min(next(of_others_ns, 0), self._began_ns + round(ON_TIME_SEC * 1e9))
+        since_ns = received_ns + round(LEAST_SEC * 1e9)
         invented = [
             message
             for message, sent_ns in self._others
