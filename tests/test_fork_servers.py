@@ -1,6 +1,7 @@
 """What kernels are forked from: what it holds, how long it lives, and where it can't be."""
 
 import asyncio
+import json
 import os
 import re
 import shutil
@@ -71,6 +72,31 @@ def test_a_server_holds_nothing_of_the_grader(forked):
     maps = Path(f'/proc/{server.pid}/maps').read_text().splitlines()
     shared = [line for line in maps if line.split()[1].endswith('s')]
     assert [line for line in shared if '/dev/shm' in line or 'w' in line.split()[1]] == []
+
+
+@pytest.mark.parametrize(('room', 'package'), [('student', 'live'), ('test', 'checks')])
+def test_what_each_kernel_needs_has_been_imported_once(loop, room, package):
+    sandbox, kernel = loop.run(opened(room=room))
+    try:
+        code = f'from my_robot_basics import {package} as package\nimport json, sys\n'
+        code += 'for name in package.__all__:\n    getattr(package, name)\n'
+        imported = json.loads(printed(loop, kernel, code + 'print(json.dumps([*sys.modules]))'))
+    finally:
+        loop.run(closed(sandbox, kernel))
+    assert set(imported) <= _held_by_a_server(room)
+
+
+def _held_by_a_server(room):
+    code = """
+import json, sys
+folder, room = sys.argv[1:]
+sys.path.insert(0, folder)
+import imports, libc, offline, privilege_drop, single_thread
+imports.import_for(room)
+print(json.dumps([*sys.modules]))
+"""
+    command = [sys.executable, '-P', '-c', code, fork_servers._PROGRAM, room]
+    return set(json.loads(subprocess.run(command, stdout=subprocess.PIPE, check=True).stdout))
 
 
 @pytest.mark.slow

@@ -5,25 +5,38 @@ Nothing here may start a thread, call rclpy.init or make a ZMQ context: a fork t
 
 import ctypes
 import importlib
+import pkgutil
 import sys
 
 _BOTH = (
+    'argcomplete',
+    'faulthandler',
     'runpy',
     'ipykernel.kernelapp',
     'ipykernel.debugger',
     'IPython.core.completerlib',
+    'IPython.core.debugger',
     'IPython.core.display',
+    'IPython.core.logger',
+    'IPython.core.oinspect',
     'IPython.core.pylabtools',
     'IPython.extensions.storemagic',
     'IPython.display',
+    'IPython.utils.wildcard',
     'ipywidgets',
     'matplotlib.backends.backend_agg',
     'matplotlib.font_manager',
     'matplotlib.pyplot',
-    'numpy',
+    'numpy.random',  # each kernel makes other numbers, see `_forget`
+    'pygments.formatters.terminal256',
     'rclpy',
+    'rclpy.action',
     'rclpy.executors',
     'rclpy.node',
+    'rclpy.wait_for_message',
+    'stack_data',
+    'tornado.platform.asyncio',
+    'traitlets.config.argcomplete_config',
     'arm_interfaces.action',
     'arm_interfaces.srv',
     'builtin_interfaces.msg',
@@ -33,40 +46,46 @@ _BOTH = (
     'rosgraph_msgs.msg',
     'sensor_msgs.msg',
     'std_msgs.msg',
+    'std_srvs.srv',
     'my_robot_basics.two_link_kinematics',
     'my_robot_basics.session.classroom',
+    'my_robot_basics.live.extension',
 )
 _ROOMS = {
-    'student': ('my_robot_basics.exchange.responder', 'my_robot_basics.exchange.probe'),
+    'student': (
+        'my_robot_basics.doctor',
+        'my_robot_basics.drawing',
+        'my_robot_basics.exchange',
+        'my_robot_basics.live',
+        'my_robot_basics.session',
+    ),
     'test': (
         'my_robot_basics.checks',
-        'my_robot_basics.checks.clock',
-        'my_robot_basics.graph.graphs',
-        'my_robot_basics.feedback.hidden',
-        'my_robot_basics.checks.latched',
-        'my_robot_basics.checks.logs',
-        'my_robot_basics.checks.sampling',
-        'my_robot_basics.checks.pictures',
-        'my_robot_basics.checks.predictions',
-        'my_robot_basics.exchange.probe',
-        'my_robot_basics.checks.recording',
-        'my_robot_basics.checks.relays',
-        'my_robot_basics.checks.seeds',
-        'my_robot_basics.checks.delivery_experiment',
-        'my_robot_basics.checks.stamps',
-        'my_robot_basics.exchange.student',
-        'my_robot_basics.checks.ik',
-        'my_robot_basics.checks.topics',
+        'my_robot_basics.exchange',
+        'my_robot_basics.feedback',
+        'my_robot_basics.graph',
     ),
 }
-"""What is imported for each room, beside what both need."""
+"""What is imported for each room, with all that is in it, beside what both need."""
 
 
 def import_for(room: str) -> None:
     """Import what the kernels of the 'student' or the 'test' room need. Raises what fails."""
-    for name in (*_BOTH, *_ROOMS[room]):
+    for name in _BOTH:
         importlib.import_module(name)
+    for name in _ROOMS[room]:
+        _import_all_of(name)
     _load_type_supports()
+
+
+def _import_all_of(name: str) -> None:
+    """Import a package and all modules in it but programs: a list of them would not stay whole."""
+    package = importlib.import_module(name)
+    for module in pkgutil.iter_modules(package.__path__, f'{name}.'):
+        if module.ispkg:
+            _import_all_of(module.name)
+        elif not module.name.endswith('.__main__'):
+            importlib.import_module(module.name)
 
 
 def _load_type_supports() -> None:
