@@ -24,6 +24,7 @@ from grader.storage.gradebook import store
 from grader.storage.pipeline import prepare, prepared_template, unanswered
 from grader.storage.records import records, verdicts
 from grader.storage.registering import register
+from grader.storage.submission_rows import SubmissionRows
 
 RIGHT = 'def double(x):\n    return 2 * x'
 
@@ -163,14 +164,14 @@ def test_a_timestamp_that_is_none_is_noted(course):
 def test_a_storing_that_fails_half_way_changes_nothing(course, monkeypatch):
     grade(course, 'ada', {})
     bad = answered(course, RIGHT)
-    found = Gradebook.find_grade
+    found = SubmissionRows.find_grade
 
     def fails_late(self, cell, *where):
         if cell == 'explain':
             raise sqlite3.OperationalError('disk full')
         return found(self, cell, *where)
 
-    monkeypatch.setattr(Gradebook, 'find_grade', fails_late)
+    monkeypatch.setattr(SubmissionRows, 'find_grade', fails_late)
     with pytest.raises(sqlite3.OperationalError):
         grade(course, 'ada', {'double-check': 'no', 'double-hidden': 'no'}, notebook=bad)
     with pytest.raises(sqlite3.OperationalError):

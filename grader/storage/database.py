@@ -123,14 +123,31 @@ def one_engine(db_url: str) -> Iterator[None]:
         del _engines[db_url]
 
 
+_connected: dict[str, Gradebook] = {}
+"""Databases that are open just now."""
+
+
 @contextmanager
 def connected(db_url: str) -> Iterator[Gradebook]:
-    """Open the database; what is not committed at the end is forgotten."""
+    """Open the database; what is not committed at the end is forgotten.
+
+    A block inside another one has its connection, and what it has asked for is forgotten as well.
+    """
+    if open_already := _connected.get(db_url):
+        try:
+            yield open_already
+        finally:
+            open_already.db.remove()
+        return
     book = _engines.get(db_url) or Gradebook(db_url)
     if db_url in _engines:
         _engines[db_url] = book
-    with book:  # the end of its connections, which it makes again when it has to
-        yield book
+    _connected[db_url] = book
+    try:
+        with book:  # the end of its connections, which it makes again when it has to
+            yield book
+    finally:
+        del _connected[db_url]
 
 
 @contextmanager

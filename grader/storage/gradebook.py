@@ -1,5 +1,6 @@
 """The only writer of nbgrader's database: lessons, scores, executed notebooks."""
 
+import json
 import logging
 import shutil
 from collections.abc import Iterator
@@ -10,7 +11,7 @@ from pathlib import Path
 import nbformat
 from my_robot_basics.session import package_files
 from nbformat import NotebookNode
-from nbgrader.api import Grade, Gradebook, MissingEntry, SubmittedNotebook
+from nbgrader.api import Grade, Gradebook
 
 from grader.common.errors import GradebookError
 from grader.common.files import write_whole
@@ -19,6 +20,7 @@ from grader.course import Course
 from grader.notebook.restore import KEY
 from grader.notebook.submission import Submission, from_exchange, handed_in, read_submission
 from grader.storage.database import connected, in_sentences, make_database, wait_until_free
+from grader.storage.held_scores import held_score
 from grader.storage.lock import gradebook_lock
 from grader.storage.pipeline import finish, first_reason, resources_of
 from grader.storage.registering import register, register_all
@@ -60,14 +62,16 @@ def store(course: Course, submission: Submission, graded: NotebookNode) -> Store
     the disk is full or the database can't be had.
     """
     journal = _journal(course, submission)
+    whose = submission.student_id, submission.assignment
     try:
         with in_sentences(course):
             wait_until_free(course)
-            former = _find(course, submission)
-            journal.parent.mkdir(parents=True, exist_ok=True)
-            write_whole(journal, nbformat.writes(graded))
-            saved = _finish(course, submission, graded)
-            now = _find(course, submission)
+            with connected(course.db_url) as book:  # once for all that follows
+                former = held_score(book, *whose)
+                journal.parent.mkdir(parents=True, exist_ok=True)
+                write_whole(journal, json.dumps(graded))
+                saved = _finish(course, submission, graded)
+                now = held_score(book, *whose)
     except (GradebookError, OSError):
         raise  # that can be fixed, and then `recover` goes on
     except Exception:
@@ -75,12 +79,12 @@ def store(course: Course, submission: Submission, graded: NotebookNode) -> Store
         raise
     assert now is not None  # it was stored
     return StoredResult(
-        score=now[0],
-        max_score=now[1],
-        former=former[0] if former else None,
-        pending=now[2],
+        score=now.score,
+        max_score=now.max_score,
+        former=former.score if former else None,
+        pending=now.pending,
         reason=first_reason(saved),
-        late=now[3],
+        late=now.late,
     )
 
 
@@ -127,7 +131,7 @@ def _finish(course: Course, submission: Submission, graded: NotebookNode) -> Not
     for name, file in submission.package_files.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         write_whole(folder / name, package_files.content(file))
-    write_whole(folder / f'{assignment}.ipynb', nbformat.writes(saved))
+    write_whole(folder / f'{assignment}.ipynb', nbformat.v4.writes(saved))
     _journal(course, submission).unlink()
     return saved
 
@@ -146,30 +150,6 @@ def opened(course: Course) -> Iterator[Gradebook]:
         yield book
 
 
-def submitted_notebook(
-    book: Gradebook, student_id: str, assignment: str
-) -> SubmittedNotebook | None:
-    """Return what the database holds of a submission, if there is one."""
-    try:
-        return book.find_submission_notebook(assignment, assignment, student_id)
-    except MissingEntry:
-        return None
-
-
 def waits_for_a_person(grade: Grade) -> bool:
     """Whether nobody has given a score yet."""
     return grade.auto_score is None and grade.manual_score is None
-
-
-def _find(course: Course, submission: Submission) -> tuple[float, float, bool, float] | None:
-    """Return score, most that can be had, whether a person has to look, and the late penalty.
-
-    None if it is not graded.
-    """
-    with connected(course.db_url) as book:
-        found = submitted_notebook(book, submission.student_id, submission.assignment)
-        if found is None:
-            return None
-        waits = any(waits_for_a_person(grade) for grade in found.grades)
-        late = found.late_submission_penalty or 0.0
-        return found.score - late, found.max_score, waits, late

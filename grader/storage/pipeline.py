@@ -1,14 +1,21 @@
 """The passes that a submission goes through, the same for `nbgrader autograde` and for us."""
 
+import copy
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cache
+from typing import TYPE_CHECKING
 
 import nbformat
 from my_robot_basics.validate.verdict import refuse
 from nbformat import NotebookNode
+from nbformat.validator import normalize
 
 from grader.course import Course
 from grader.notebook.restore import KEY, NO_ANSWERS, AssignmentTemplate, restore
+
+if TYPE_CHECKING:
+    from nbconvert.preprocessors import Preprocessor
 
 SANITIZE_PASSES = (
     'grader.autograde.preprocessors.RestoreSubmission',
@@ -23,31 +30,38 @@ AUTOGRADE_PASSES = (
     'nbgrader.preprocessors.LimitOutput',
     'grader.storage.save_grades.SaveGrades',
     'grader.storage.late_penalties.LatePenalties',
-    'nbgrader.preprocessors.CheckCellMetadata',
+    'grader.storage.cell_metadata.CheckMetadataOnce',
 )
 """What nbgrader does with it then."""
 
 
 def apply(passes: Sequence[str], notebook: NotebookNode, resources: dict) -> NotebookNode:
     """Put a notebook through passes, given by name, as nbgrader would; return the result."""
+    _, changed = normalize(notebook)  # a copy
+    resources = copy.deepcopy(resources)
+    for each in _made(tuple(passes)):
+        changed, resources = each(changed, resources)
+        nbformat.validate(changed, relax_add_props=True)
+    return changed
+
+
+@cache
+def _made(passes: tuple[str, ...]) -> 'tuple[Preprocessor, ...]':
+    """Make passes as nbconvert's Exporter would; once, for that takes longer than their work."""
     # only now: what is graded already needs no passes, and these take a third of a second
-    from nbconvert.exporters import Exporter
+    from nbconvert.preprocessors import Preprocessor  # noqa: F401
     from traitlets.config import Config
+    from traitlets.utils.importstring import import_item
 
     from grader.authoring.release_passes import CODE_STUB
 
-    exporter = Exporter(
-        config=Config(
-            {
-                'Exporter': {'default_preprocessors': []},
-                'ClearSolutions': {'code_stub': CODE_STUB},
-                'ClearMarkScheme': {'enforce_metadata': False},
-            }
-        )
+    config = Config(
+        {
+            'ClearSolutions': {'code_stub': CODE_STUB},
+            'ClearMarkScheme': {'enforce_metadata': False},
+        }
     )
-    for name in passes:
-        exporter.register_preprocessor(name)
-    return exporter.from_notebook_node(notebook, resources)[0]
+    return tuple(import_item(name)(config=config) for name in passes)
 
 
 def resources_of(course: Course, assignment: str, student_id: str = '.') -> dict:
@@ -88,9 +102,14 @@ def prepare_template(
 
 
 def finish(executed: NotebookNode, resources: dict) -> NotebookNode:
-    """Do with an executed notebook what nbgrader does then: it stores the scores."""
-    passes = _after('grader.autograde.preprocessors.ExecuteRooms', AUTOGRADE_PASSES)
-    return apply(passes, executed, resources)
+    """Do with an executed notebook, in place, what nbgrader does then: it stores the scores.
+
+    Raises ValidationError, and stores nothing, where it is no notebook.
+    """
+    nbformat.validate(executed, relax_add_props=True)
+    for each in _made(_after('grader.autograde.preprocessors.ExecuteRooms', AUTOGRADE_PASSES)):
+        executed, resources = each(executed, resources)
+    return executed
 
 
 def unanswered(template: AssignmentTemplate, reason: str) -> NotebookNode:

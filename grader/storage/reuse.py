@@ -7,14 +7,14 @@ from pathlib import Path
 import nbformat
 from my_robot_basics.validate.verdict import SCORED
 from nbformat import NotebookNode
-from nbgrader.api import SubmittedNotebook
 
 from grader.common.versions import machinery
 from grader.course import Course
 from grader.notebook.restore import KEY, grade_id, role
 from grader.notebook.submission import TIMESTAMP, Submission
 from grader.storage.database import connected
-from grader.storage.gradebook import StoredResult, submitted_notebook, waits_for_a_person
+from grader.storage.gradebook import StoredResult
+from grader.storage.held_scores import auto_scores, held_score
 from grader.storage.lateness import tell_what_is_due
 from grader.storage.pipeline import apply, first_reason, resources_of
 
@@ -66,35 +66,28 @@ def refresh_late_penalty(
     """
     student, assignment = submission.student_id, submission.assignment
     with connected(course.db_url) as book:
-        found = submitted_notebook(book, student, assignment)
-        if found is None or not _agree(found.grades, graded):
+        former = now = held_score(book, student, assignment)
+        if former is None or not _agree(auto_scores(book, student, assignment), graded):
             return None
-        former = _score(found)
-    if tell_what_is_due(course.gradebook, course.db_url, assignment, student):
-        apply(LATE, graded, resources_of(course, assignment, student))
-    with connected(course.db_url) as book:
-        found = submitted_notebook(book, student, assignment)
-        assert found is not None  # as before
-        return StoredResult(
-            score=_score(found),
-            max_score=found.max_score,
-            former=former,
-            pending=any(waits_for_a_person(grade) for grade in found.grades),
-            reason=first_reason(graded),
-            late=found.late_submission_penalty or 0.0,
-        )
+        if tell_what_is_due(course.gradebook, course.db_url, assignment, student):
+            apply(LATE, graded, resources_of(course, assignment, student))
+            now = held_score(book, student, assignment)
+    assert now is not None  # as before
+    return StoredResult(
+        score=now.score,
+        max_score=now.max_score,
+        former=former.score,
+        pending=now.pending,
+        reason=first_reason(graded),
+        late=now.late,
+    )
 
 
-def _score(found: SubmittedNotebook) -> float:
-    return found.score - (found.late_submission_penalty or 0)
-
-
-def _agree(grades: list, graded: NotebookNode) -> bool:
+def _agree(held: dict[str, float | None], graded: NotebookNode) -> bool:
     """Whether the scores are those of the notebook's verdicts."""
     outcomes = _outcomes(graded)
-    scores = {grade.name: grade.auto_score for grade in grades if grade.name in outcomes}
     cells = {grade_id(cell): cell.metadata for cell in _checks(graded)}
-    return scores == {
+    return {name: score for name, score in held.items() if name in outcomes} == {
         name: cells[name].nbgrader.points
         if outcome == 'passed'
         else cells[name][KEY].get('earned', 0.0)

@@ -7,6 +7,7 @@ from nbgrader.preprocessors import SaveAutoGrades
 
 from grader.notebook.restore import KEY, grade_id
 from grader.storage.database import transaction
+from grader.storage.submission_rows import SubmissionRows
 
 NO_ANSWER = 'there is no answer'
 """Why a text that a person would have graded earns nothing."""
@@ -25,12 +26,13 @@ class SaveGrades(SaveAutoGrades):
         self.notebook_id, self.assignment_id = at['notebook'], at['assignment']
         self.student_id, self.db_url = at['student'], at['db_url']
         dated = {'timestamp': at['timestamp']} if at.get('timestamp') else {}
-        with transaction(self.db_url) as self.gradebook:
-            self.gradebook.update_or_create_student(self.student_id)
-            with self.gradebook.db.no_autoflush:  # it warns of what is half built meanwhile
-                self.gradebook.update_or_create_submission(
+        with transaction(self.db_url) as book:
+            book.update_or_create_student(self.student_id)
+            with book.db.no_autoflush:  # it warns of what is half built meanwhile
+                submission = book.update_or_create_submission(
                     self.assignment_id, self.student_id, **dated
                 )
+            self.gradebook = SubmissionRows(book, submission, self.notebook_id)
             for index, cell in enumerate(nb.cells):
                 self.preprocess_cell(cell, resources, index)
         return nb, resources

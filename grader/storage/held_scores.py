@@ -1,0 +1,77 @@
+"""What the database holds of a graded submission, in a question or two."""
+
+from dataclasses import dataclass
+
+from nbgrader.api import (
+    Assignment,
+    BaseCell,
+    Grade,
+    Gradebook,
+    Notebook,
+    SubmittedAssignment,
+    SubmittedNotebook,
+)
+from sqlalchemy import Select, bindparam, exists, select
+
+
+@dataclass(frozen=True)
+class HeldScore:
+    """What a submission has come to."""
+
+    score: float
+    """After what lateness took off."""
+    max_score: float
+    late: float
+    """What lateness took off."""
+    pending: bool
+    """Whether some of it waits for a person."""
+
+
+def _of_one_submission(asked: Select) -> Select:
+    """Return a question about submitted notebooks as one about those of one submission."""
+    return (
+        asked.join(Notebook, Notebook.id == SubmittedNotebook.notebook_id)
+        .join(SubmittedAssignment, SubmittedAssignment.id == SubmittedNotebook.assignment_id)
+        .join(Assignment, Assignment.id == SubmittedAssignment.assignment_id)
+        .where(
+            Assignment.name == bindparam('assignment'),
+            Notebook.name == bindparam('assignment'),
+            SubmittedAssignment.student_id == bindparam('student'),
+        )
+    )
+
+
+_PENDING = exists().where(
+    Grade.notebook_id == SubmittedNotebook.id,
+    Grade.auto_score.is_(None),
+    Grade.manual_score.is_(None),
+)
+_SCORE = _of_one_submission(
+    select(
+        SubmittedNotebook.score,
+        SubmittedNotebook.max_score,
+        SubmittedNotebook.late_submission_penalty.label('late'),
+        _PENDING.label('pending'),
+    )
+)
+_AUTO_SCORES = _of_one_submission(
+    select(BaseCell.name, Grade.auto_score)
+    .join(BaseCell, BaseCell.id == Grade.cell_id)
+    .join(SubmittedNotebook, SubmittedNotebook.id == Grade.notebook_id)
+)
+
+
+def held_score(book: Gradebook, student_id: str, assignment: str) -> HeldScore | None:
+    """Return what a submission has come to; None if it is not graded."""
+    whose = {'assignment': assignment, 'student': student_id}
+    found = book.db.execute(_SCORE, whose).one_or_none()
+    if found is None:
+        return None
+    late = found.late or 0.0
+    return HeldScore(found.score - late, found.max_score, late, bool(found.pending))
+
+
+def auto_scores(book: Gradebook, student_id: str, assignment: str) -> dict[str, float | None]:
+    """Return what the checks of a submission gave, by grade id; None where they gave nothing."""
+    whose = {'assignment': assignment, 'student': student_id}
+    return dict(book.db.execute(_AUTO_SCORES, whose).all())
