@@ -15,7 +15,7 @@ from grader.common.text import printable
 from grader.course import Course
 from grader.judging.task import Result
 from grader.notebook.restore import AssignmentTemplate
-from grader.notebook.submission import Submission, read_submission
+from grader.notebook.submission import Submission, unread_submission, with_notebook
 from grader.storage.failures import in_sentences
 from grader.storage.gradebook import StoredResult, store
 from grader.storage.lock import gradebook_lock
@@ -40,6 +40,7 @@ class GradedSubmission:
     """A submission that was judged, and is not stored yet."""
 
     submission: Submission
+    """Not read where an earlier result still holds."""
     notebook: NotebookNode
     """With a verdict in each grade cell."""
     files: Mapping[str, bytes]
@@ -110,7 +111,7 @@ class Grading:
     ) -> 'Future[GradedSubmission]':
         """Read and restore a submission; have it run and judged, unless a result still holds."""
         files = contents(found.folder)
-        submission = read_submission(
+        submission = unread_submission(
             found.folder,
             student_id=found.student_id,
             assignment=found.assignment,
@@ -118,7 +119,13 @@ class Grading:
         )
         its_seed = prepared.seed_of(submission)
         key = key_of(submission, prepared.conditions, seed=its_seed)
-        if not self.force and (earlier := find_earlier_result(self.course, submission, key)):
+        earlier = self._earlier(submission, key)
+        if earlier is None:  # the same bytes could be read then, and need not be read again
+            submission = with_notebook(submission)
+            if submission.problem:
+                key = key_of(submission, prepared.conditions, seed=its_seed)
+                earlier = self._earlier(submission, key)
+        if earlier:
             return completed(GradedSubmission(submission, earlier, files))
         if not submission.problem:
             self.backend.begin()  # it gets ready while the first template is prepared
@@ -130,6 +137,9 @@ class Grading:
             trust_students=self.trust_students,
         )
         return then(judged, lambda result: _graded(submission, files, result, key))
+
+    def _earlier(self, submission: Submission, key: str) -> NotebookNode | None:
+        return None if self.force else find_earlier_result(self.course, submission, key)
 
     def store(
         self, found: SubmissionFolder, work: 'Future[GradedSubmission]'

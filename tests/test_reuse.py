@@ -9,6 +9,8 @@ import pytest
 from course_maker import TOY, answered, executed, released_course, submit, toy_lesson, write_source
 from nbformat.v4 import new_markdown_cell
 from nbgrader.api import Gradebook
+from sqlalchemy import event
+from sqlalchemy.engine import Engine
 from stand_in import Here, stand_in
 
 from grader.__main__ import main
@@ -16,6 +18,7 @@ from grader.common import versions
 from grader.course import ROOT
 from grader.grade import grade_all
 from grader.judging.execute import Execution
+from grader.notebook import submission
 from grader.notebook.restore import KEY
 from grader.report.progress_table import changes
 from grader.sandbox import limits
@@ -81,6 +84,68 @@ def test_what_has_not_changed_is_not_run_again_and_says_so(course, looked):
         assert row.stored.score == row.stored.former == first[name].stored.score
         assert row.stored.pending == first[name].stored.pending
     assert graded_path(course, 'ada').read_bytes() == kept
+
+
+def test_what_was_read_once_is_not_read_again(course, looked, monkeypatch):
+    submit(course, 'ada', answered(course, RIGHT))
+    submit(course, 'eve', b'')
+    rows_of(course)
+    read = []
+    does = submission.read_notebook
+    monkeypatch.setattr(
+        submission, 'read_notebook', lambda path: read.append(path.parts[-3]) or does(path)
+    )
+    assert all(row.reused for row in rows_of(course).values())
+    assert read == ['eve']  # why it can't be read may be another reason now
+    submit(course, 'ada', answered(course, WRONG))
+    assert not rows_of(course)['ada'].reused
+    assert read == ['eve', 'ada', 'eve']
+    assert len(looked) == 2
+
+
+@pytest.mark.parametrize(
+    'damage',
+    [
+        '{"nbformat": 4, "x": "KEY',
+        '["KEY"]',
+        '{"x": "KEY"}',
+        '{"nbformat": 4, "nbformat_minor": 5, "x": "KEY"}',
+        '{"nbformat": 4, "nbformat_minor": 5, "cells": 1, "metadata": {"x": "KEY"}}',
+        '{"nbformat": 4, "nbformat_minor": 5, "cells": [], "metadata": {"x": "KEY"}}',
+        '{"nbformat": 4, "nbformat_minor": 5, "cells": [1], "metadata": []}  KEY',
+    ],
+)
+def test_a_damaged_result_is_made_again(course, looked, damage):
+    submit(course, 'ada', answered(course, RIGHT))
+    rows_of(course)
+    path = graded_path(course, 'ada')
+    whole = path.read_text(encoding='utf-8')
+    key = nbformat.reads(whole, as_version=4).metadata[KEY]['graded_under']
+    path.write_text(damage.replace('KEY', key))
+    row = rows_of(course)['ada']
+    assert (row.reused, row.stored.score, len(looked)) == (False, 3.0, 2)
+    assert path.read_text(encoding='utf-8') == whole
+
+
+def test_a_result_that_holds_takes_few_questions_to_the_database(course, looked):
+    questions = []
+
+    @event.listens_for(Engine, 'before_cursor_execute')
+    def count(*_):
+        questions.append(1)
+
+    try:
+        asked = []
+        for students in (['a', 'b'], ['c', 'd']):
+            for name in students:
+                submit(course, name, answered(course, RIGHT))
+            rows_of(course)
+            questions.clear()
+            assert all(row.reused for row in rows_of(course).values())
+            asked.append(len(questions))
+    finally:
+        event.remove(Engine, 'before_cursor_execute', count)
+    assert 0 < (asked[1] - asked[0]) / 2 <= 3
 
 
 def test_force_runs_it_again(course, looked):

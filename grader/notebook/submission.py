@@ -1,7 +1,7 @@
 """Read what a student handed in; refuse what cannot be read, by name and reason."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import datetime
 from pathlib import Path
 
@@ -36,7 +36,8 @@ class Submission:
     path: Path
     """Where the notebook is, or was expected."""
     notebook: NotebookNode | None
-    """Cell types, sources, grade ids and its language only; None when it could not be read."""
+    """Cell types, sources, grade ids and its language only; None when it could not be read, or was
+    not yet."""
     extra_files: tuple[Path, ...] = ()
     """The student's own Python files beside the notebook."""
     package_files: Mapping[str, Path] = field(default_factory=dict)
@@ -59,7 +60,15 @@ def read_submission(
 
     `packages` are the ROS packages that the lesson asks for, folders beside the notebook.
     """
-    path = folder / f'{assignment}.ipynb'
+    return with_notebook(
+        unread_submission(folder, student_id=student_id, assignment=assignment, packages=packages)
+    )
+
+
+def unread_submission(
+    folder: Path, *, student_id: str, assignment: str, packages: Sequence[str] = ()
+) -> Submission:
+    """Return a submission's files; its notebook has still to be read."""
     taken, notes = _python_files(folder)
     of_packages: dict[str, Path] = {}
     for name in packages:
@@ -68,20 +77,23 @@ def read_submission(
         notes += more
     if packages:
         notes += _left_out_before(folder)
-    try:
-        notebook, problem = read_notebook(path), None
-    except UnreadableSubmission as error:
-        notebook, problem = None, str(error)
     return Submission(
         student_id=student_id,
         assignment=assignment,
-        path=path,
-        notebook=notebook,
+        path=folder / f'{assignment}.ipynb',
+        notebook=None,
         extra_files=tuple(taken),
         package_files=of_packages,
-        problem=problem,
         notes=tuple(notes),
     )
+
+
+def with_notebook(unread: Submission) -> Submission:
+    """Return a submission whose notebook is read; what is wrong with it ends up in `problem`."""
+    try:
+        return replace(unread, notebook=read_notebook(unread.path))
+    except UnreadableSubmission as error:
+        return replace(unread, problem=str(error))
 
 
 def _package_in(folder: Path, name: str) -> tuple[dict[str, Path], list[str]]:

@@ -88,15 +88,27 @@ class Tally:
         return sorted(missed, key=lambda found: -found[1].missed / found[1].students)
 
 
+@dataclass(frozen=True)
+class _Said:
+    """What a graded notebook says: the notebooks of a large class would fill the memory."""
+
+    problem: str
+    verdicts: dict[str, dict]
+
+
+def _said(graded: NotebookNode) -> _Said:
+    return _Said(graded.metadata.get(KEY, {}).get('problem') or '', verdicts_in(graded))
+
+
 def tally(course: Course, rows: Sequence[SubmissionOutcome]) -> Tally:
     """Count what came of the submissions of one run."""
     whose = {(row.student_id, row.assignment): row for row in rows if row.stored}
     of_cells = defaultdict(list)
     for record in records(course, only=whose.keys()):
         of_cells[record.student_id, record.assignment].append(record)
-    notebooks = {each: graded_notebook(course, *each) for each in whose}
-    failures = list(_failures(notebooks))
-    looks = grouped(_looks(rows, of_cells, notebooks))
+    said = {each: _said(graded_notebook(course, *each)) for each in whose}
+    failures = list(_failures(said))
+    looks = grouped(_looks(rows, of_cells, said))
     return Tally(
         assignments=tuple(_assignments(course, whose, of_cells, failures)),
         reasons=tuple(grouped(failures)),
@@ -155,9 +167,9 @@ def _check(
     )
 
 
-def _failures(notebooks: dict[tuple[str, str], NotebookNode]) -> Iterable[CellMessage]:
-    for whose, notebook in notebooks.items():
-        for name, verdict in verdicts_in(notebook).items():
+def _failures(all_said: dict[tuple[str, str], _Said]) -> Iterable[CellMessage]:
+    for whose, said in all_said.items():
+        for name, verdict in said.verdicts.items():
             if verdict.get('outcome') in ('partial', 'failed'):
                 yield CellMessage(
                     *whose, name, verdict.get('details') or verdict.get('reason', '')
@@ -167,19 +179,18 @@ def _failures(notebooks: dict[tuple[str, str], NotebookNode]) -> Iterable[CellMe
 def _looks(
     rows: Sequence[SubmissionOutcome],
     of_cells: dict[tuple, list[CellScore]],
-    notebooks: dict[tuple[str, str], NotebookNode],
+    all_said: dict[tuple[str, str], _Said],
 ) -> Iterable[CellMessage]:
     for row in rows:
         whose = row.student_id, row.assignment
         if row.stored is None:
             yield CellMessage(*whose, '', row.reason)
             continue
-        notebook = notebooks[whose]
-        if problem := notebook.metadata.get(KEY, {}).get('problem'):
-            yield CellMessage(*whose, '', f'unreadable, so it earned nothing: {problem}')
+        said = all_said[whose]
+        if said.problem:
+            yield CellMessage(*whose, '', f'unreadable, so it earned nothing: {said.problem}')
             continue
-        verdicts = verdicts_in(notebook)
         for record in of_cells[whose]:
             if record.score is None:
-                reason = verdicts.get(record.grade_id, {}).get('reason') or WRITTEN
+                reason = said.verdicts.get(record.grade_id, {}).get('reason') or WRITTEN
                 yield CellMessage(*whose, record.grade_id, reason)

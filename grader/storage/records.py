@@ -21,6 +21,7 @@ from sqlalchemy import select
 from sqlalchemy.orm import selectinload
 
 from grader.course import Course
+from grader.notebook.own_files import parsed
 from grader.notebook.restore import KEY, grade_id
 from grader.storage.database import connected
 from grader.storage.gradebook import opened, waits_for_a_person
@@ -99,7 +100,7 @@ def verdicts_in(graded: NotebookNode) -> dict[str, dict]:
 def graded_notebook(course: Course, student_id: str, assignment: str) -> NotebookNode:
     """Return the executed notebook of a submission; one without cells where there is none."""
     path = course.folder('autograded', student_id, assignment) / f'{assignment}.ipynb'
-    return nbformat.read(path, as_version=4) if path.exists() else nbformat.v4.new_notebook()
+    return parsed(path.read_text('utf-8')) if path.exists() else nbformat.v4.new_notebook()
 
 
 def _graded(

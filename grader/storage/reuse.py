@@ -10,6 +10,7 @@ from nbformat import NotebookNode
 
 from grader.common.versions import machinery
 from grader.course import Course
+from grader.notebook.own_files import parsed
 from grader.notebook.restore import KEY, grade_id, role
 from grader.notebook.submission import TIMESTAMP, Submission
 from grader.storage.database import connected
@@ -49,8 +50,8 @@ def find_earlier_result(course: Course, submission: Submission, key: str) -> Not
     folder = course.folder('autograded', submission.student_id, submission.assignment)
     try:
         text = (folder / f'{submission.assignment}.ipynb').read_text(encoding='utf-8')
-        notebook = nbformat.reads(text, as_version=4) if key in text else None
-    except (OSError, ValueError, nbformat.ValidationError):
+        notebook = parsed(text) if key in text else None
+    except (OSError, ValueError):
         return None  # none yet, or damaged: it is graded again
     if notebook is None or notebook.metadata.get(KEY, {}).get(_UNDER) != key:
         return None

@@ -1,0 +1,104 @@
+"""What `./course grade` takes where nothing is new, in a gradebook of any size.
+
+    .venv/bin/python tests/benchmarks/nothing_new.py GRADEBOOK [--against FOLDER] [--rounds 3]
+
+GRADEBOOK is one that was graded, as class_of_500.py leaves it. A copy of it is told that its
+results are those of this very grader. FOLDER is an earlier commit's working copy with a .venv of
+its own: it has a copy, too, and both grade by turns, so that they meet the same machine. CPU is
+that of all processes that were waited for. Ends with 1 where the tables that they print differ.
+"""
+
+import argparse
+import os
+import resource
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+GRADE = """
+import sys
+from pathlib import Path
+from grader.__main__ import main
+from grader.course import Course
+sys.exit(main(['grade'], course=Course(gradebook=Path(sys.argv[1]))))
+"""
+OF_THIS_GRADER = """
+import sys
+from pathlib import Path
+import nbformat
+from grader.course import Course
+from grader.kernels.isolation import require_isolation
+from grader.notebook.submission import read_submission
+from grader.storage.reuse import conditions, key_of, remember
+from grader.storage.seeds import seeds
+course = Course(gradebook=Path(sys.argv[1]))
+known = {}
+for path in sorted(course.gradebook.glob('autograded/*/*/*.ipynb')):
+    student, name = path.parts[-3:-1]
+    if name not in known:
+        isolated = require_isolation(trust_students=True)
+        known[name] = conditions(course, name, isolated=isolated), seeds(course, name)
+    given, seed = known[name]
+    submission = read_submission(
+        course.folder('submitted', student, name), student_id=student, assignment=name,
+        packages=course.packages(name),
+    )
+    graded = nbformat.read(path, as_version=4)
+    remember(graded, key_of(submission, given, seed=seed(submission)))
+    nbformat.write(graded, path)
+"""
+
+
+def main(source: Path, against: Path | None, rounds: int) -> int:
+    """Print a row for each working copy; return 1 where their tables differ."""
+    taken: dict[Path, list[tuple[float, float]]] = {}
+    said: set[str] = set()
+    with tempfile.TemporaryDirectory(prefix='nothing_new-') as folder:
+        roots = [ROOT, *([against] if against else [])]
+        gradebooks = {root: Path(folder, f'{n}', 'gradebook') for n, root in enumerate(roots)}
+        for root, gradebook in gradebooks.items():
+            shutil.copytree(source, gradebook, ignore=shutil.ignore_patterns('feedback', 'runs'))
+            _run(root, OF_THIS_GRADER, gradebook)
+        for _ in range(rounds):
+            for root, gradebook in gradebooks.items():
+                before, began = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
+                table = _run(root, GRADE, gradebook)
+                wall = time.perf_counter() - began
+                after = resource.getrusage(resource.RUSAGE_CHILDREN)
+                cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+                taken.setdefault(root, []).append((wall, cpu))
+                said.add(table.partition('Report:')[0])
+    print(f'{"median, in seconds":24} {"wall":>7} {"CPU":>7}')
+    for root, each in taken.items():
+        wall, cpu = (statistics.median(column) for column in zip(*each, strict=True))
+        print(f'{"here" if root == ROOT else "there":24} {wall:7.2f} {cpu:7.2f}')
+    print('All have said the same' if len(said) == 1 else 'What they have said differs')
+    return 0 if len(said) == 1 else 1
+
+
+def _run(root: Path, code: str, gradebook: Path) -> str:
+    """Run code by a working copy's grader; return what it prints."""
+    return subprocess.run(
+        [f'{root}/.venv/bin/python', '-P', '-c', code, str(gradebook)],
+        cwd=root,
+        env=os.environ | {'PATH': f'{root}/.venv/bin:{os.environ["PATH"]}'},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        text=True,
+        check=True,
+    ).stdout
+
+
+if __name__ == '__main__':
+    parser = argparse.ArgumentParser(description=__doc__.partition('\n')[0])
+    parser.add_argument('source', type=Path, metavar='GRADEBOOK')
+    parser.add_argument('--against', type=Path, metavar='FOLDER')
+    parser.add_argument('--rounds', type=int, default=3)
+    args = parser.parse_args()
+    there = args.against and args.against.resolve()
+    sys.exit(main(args.source.resolve(), there, args.rounds))
