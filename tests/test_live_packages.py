@@ -1,5 +1,8 @@
 """A package beside the notebook: built by colcon, run as processes, and told what is wrong."""
 
+import os
+import signal
+import sys
 import time
 from pathlib import Path
 
@@ -183,6 +186,39 @@ def test_an_end_that_is_not_clean_is_told(folder, capsys, monkeypatch, handler, 
         until(lambda: 'up' in one.process.lines)
         with pytest.raises(CheckFailed, match=check):
             greeter.expect_clean_end()
+
+
+NODE_IN_A_CHILD = """
+import os, signal, sys, time
+child = os.fork()
+if child:
+    signal.signal(signal.SIGINT, lambda *_: sys.exit(0))
+    time.sleep(600)
+os.setsid()
+import rclpy
+from rclpy.node import Node
+rclpy.init()
+print(os.getpid(), flush=True)
+rclpy.spin(Node('greeter'))
+"""
+
+
+@pytest.mark.starts
+def test_a_node_that_outlives_its_program_is_told(folder, monkeypatch):
+    monkeypatch.setattr('my_robot_basics.checks.package_processes.GONE_SEC', 1.0)
+    script = folder / 'ros_ws/install/greeter/lib/greeter/greet'
+    script.parent.mkdir(parents=True)
+    script.write_text(f'#!{sys.executable}\n{NODE_IN_A_CHILD}')
+    script.chmod(0o755)
+    with package_of(PACKAGE).run('greet') as greeter:
+        greeter.expect_node('/greeter')
+        [one] = executables._started.values()
+        until(lambda: one.process.lines)
+        try:
+            with pytest.raises(CheckFailed, match='expected /greeter to be gone from the graph'):
+                greeter.expect_clean_end()
+        finally:
+            os.kill(int(one.process.lines[0]), signal.SIGKILL)
 
 
 @pytest.mark.starts

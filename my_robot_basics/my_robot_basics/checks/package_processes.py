@@ -28,7 +28,9 @@ GONE_SEC = 8.0
 """How long its node may be on the graph afterwards: a lease of 5 s, and more."""
 SPIN_SEC = 2.0
 """How long a node may take to answer for its parameters before it is told to end."""
-ASK_EVERY_SEC = 0.3
+ASK_EVERY_SEC, ASK_END_EVERY_SEC = 0.3, 0.05
+"""How often the notebook is asked whether it has ended, and where it is about to."""
+AT_ONCE = 'let no callback and no loop go on for long, and do not catch KeyboardInterrupt there'
 CLEANLY = (
     'in main, catch KeyboardInterrupt and ExternalShutdownException around rclpy.spin, and call '
     'rclpy.try_shutdown() at the end'
@@ -43,7 +45,9 @@ class RunningExecutable:
         self.package, self.executable, self.arguments = package, executable, arguments
         self._number: int | None = None
         self._nodes: list[str] = []
-        self._next_question = 0.0
+        self._next_question, self._ask_every_sec = 0.0, ASK_EVERY_SEC
+        self._watcher: Watcher
+        """There while it runs: what was never seen on the graph can't be seen to leave it."""
 
     def __enter__(self) -> Self:
         """Start it. Raises CheckFailed where it can't be."""
@@ -58,32 +62,35 @@ class RunningExecutable:
                 cause=f'{self.executable} could not be started',
             )
         self._number = number
+        self._watcher = Watcher().__enter__()
         return self
 
-    def __exit__(self, *_: object) -> None:
+    def __exit__(self, *error: Any) -> None:
         """End it, if it still runs; that is no verdict."""
         send = partial(self._ask, 'signal', self._number)
         polite_end.end(send, lambda: self._ask('state', self._number).get('code') is not None)
+        self._watcher.__exit__(*error)
 
     def expect_node(self, node_name: str) -> None:
         """A node of that full name, '/arm_driver', comes up. Raises CheckFailed."""
-        with Watcher() as watcher:
-            watch = Stopwatch()
-            is_there = watcher.spin_until_free(
-                lambda: node_name in graphs.node_names(watcher.node) or self._has_ended(),
-                free_sec=NODE_SEC,
-            )
+        watcher, watch = self._watcher, Stopwatch()
+
+        def is_there() -> bool:
+            return node_name in graphs.node_names(watcher.node)
+
+        watcher.spin_until_free(lambda: is_there() or self._has_ended(), free_sec=NODE_SEC)
+        if not is_there():
+            doubt, wanted = _doubt(watch, NODE_SEC), f'the node {node_name} of {self.executable}'
             names = graphs.take(watcher).nodes()
-        if is_there and node_name not in names:
-            self._fail_ended(f'the node {node_name} of {self.executable}')
-        expect(
-            node_name in names,
-            expected=f'the node {node_name} of {self.executable}',
-            seen=theirs(shorten(', '.join(names))) or 'no node',
-            hint="look at super().__init__('…') of its class, and at what main does before",
-            cause=f'there is no node {node_name}',
-            doubt=_doubt(watch, NODE_SEC),
-        )
+            if self._state()[0] is not None:
+                self._fail_ended(wanted)
+            fail(
+                expected=wanted,
+                seen=theirs(shorten(', '.join(names))) or 'no node',
+                hint="look at super().__init__('…') of its class, and at what main does before",
+                cause=f'there is no node {node_name}',
+                doubt=doubt,
+            )
         self._nodes.append(node_name)
 
     def expect_running(self) -> None:
@@ -104,10 +111,7 @@ class RunningExecutable:
         self.expect_running()
         self._wait_until_it_spins()
         self._ask('signal', self._number, 'SIGINT')
-        hint = (
-            'let no callback and no loop go on for long, and do not catch KeyboardInterrupt there'
-        )
-        self._wait_for_end('to end after SIGINT', END_SEC, hint=hint)
+        self._wait_for_end('to end after SIGINT', END_SEC, hint=AT_ONCE)
         code, said = self._state()
         if not is_clean(code, said.splitlines()):
             self._expect_code(0, hint=CLEANLY)
@@ -119,19 +123,18 @@ class RunningExecutable:
         SIGINT between would meet rclpy half set up, which is no mistake of the student's. A node
         without these services, or one that is busy, is not waited for long.
         """
-        with Watcher() as watcher:
-            for name in self._nodes:
-                client = watcher.node.create_client(GetParameters, f'{name}/get_parameters')
-                if watcher.spin_until_free(client.service_is_ready, free_sec=SPIN_SEC):
-                    answer = client.call_async(GetParameters.Request())
-                    watcher.spin_until_free(answer.done, free_sec=SPIN_SEC)
+        watcher = self._watcher
+        for name in self._nodes:
+            client = watcher.node.create_client(GetParameters, f'{name}/get_parameters')
+            if watcher.spin_until_free(client.service_is_ready, free_sec=SPIN_SEC):
+                answer = client.call_async(GetParameters.Request())
+                watcher.spin_until_free(answer.done, free_sec=SPIN_SEC)
 
     def _wait_for_end(self, what: str, free_sec: float, *, hint: str) -> None:
-        with Watcher() as watcher:
-            watch = Stopwatch()
-            has_ended = watcher.spin_until_free(self._has_ended, free_sec=free_sec)
+        watch = Stopwatch()
+        self._ask_every_sec, self._next_question = ASK_END_EVERY_SEC, 0.0
         expect(
-            has_ended,
+            self._watcher.spin_until_free(self._has_ended, free_sec=free_sec),
             expected=f'{self.executable} {what}',
             seen=f'it still runs after {free_sec:g} s',
             hint=hint,
@@ -146,18 +149,17 @@ class RunningExecutable:
         expect(code == wanted, expected=wanted_end, seen=seen, hint=hint, cause=cause)
 
     def _expect_gone(self) -> None:
-        with Watcher() as watcher:
-            watch = Stopwatch()
-            for name in self._nodes:
-                is_gone = partial(graphs.is_gone, watcher, name)
-                expect(
-                    watcher.spin_until_free(is_gone, free_sec=GONE_SEC),
-                    expected=f'{name} to be gone from the graph',
-                    seen='it is still there',
-                    hint='let main end all that it has started',
-                    cause=f'{name} lives on',
-                    doubt=_doubt(watch, GONE_SEC),
-                )
+        watch = Stopwatch()
+        for name in self._nodes:
+            is_gone = partial(graphs.is_gone, self._watcher, name)
+            expect(
+                self._watcher.spin_until_free(is_gone, free_sec=GONE_SEC),
+                expected=f'{name} to be gone from the graph',
+                seen='it is still there',
+                hint='let main end all that it has started',
+                cause=f'{name} lives on',
+                doubt=_doubt(watch, GONE_SEC),
+            )
 
     def _fail_ended(self, expected: str) -> NoReturn:
         code, said = self._state()
@@ -172,7 +174,7 @@ class RunningExecutable:
         """Whether it has; asked now and then."""
         if time.monotonic() < self._next_question:
             return False
-        self._next_question = time.monotonic() + ASK_EVERY_SEC
+        self._next_question = time.monotonic() + self._ask_every_sec
         return self._state()[0] is not None
 
     def _state(self) -> tuple[int | None, str]:
