@@ -7,6 +7,11 @@ import sys
 from pathlib import Path
 
 import pytest
+from geometry_msgs.msg import Point
+from my_robot_basics.graph.watcher import Watcher
+from my_robot_basics.session import classroom
+from nodes.running import running
+from rclpy.duration import Duration
 
 ENTER = """
 import json, os
@@ -82,3 +87,15 @@ def test_only_a_grading_room_keeps_a_network_of_its_own(room, expected):
     if room:
         given['MY_ROBOT_BASICS_ROOM'] = room
     assert seen(**given)['ROS_AUTOMATIC_DISCOVERY_RANGE'] == expected
+
+
+@pytest.mark.starts
+def test_who_sends_is_told_soon_that_a_message_has_arrived():
+    """Without a word of ours DDS asks after 3 s: so long took each message of a check."""
+    classroom.enter()
+    with running('ik_client'), Watcher() as watcher:
+        publisher = watcher.node.create_publisher(Point, '/target_point', 10)
+        assert watcher.spin_until(lambda: publisher.get_subscription_count() > 0, timeout_sec=20.0)
+        for _ in range(3):
+            publisher.publish(Point())
+            assert publisher.wait_for_all_acked(Duration(seconds=1))
