@@ -17,6 +17,7 @@ from my_robot_basics.checks.relay_endpoints import RelayEndpoints
 from my_robot_basics.checks.relay_faults import RelayFaults
 from my_robot_basics.checks.variety import filled, varied
 from my_robot_basics.feedback.errors import fail
+from my_robot_basics.graph import familiar
 from my_robot_basics.graph.watcher import Watcher
 
 EVERYTHING = QoSProfile(depth=5000, reliability=ReliabilityPolicy.BEST_EFFORT)
@@ -59,7 +60,7 @@ class Relay:
         raises.
         """
         make_message = filled(make_message)
-        with Watcher() as watcher:
+        with Watcher(shared=True) as watcher:
             endpoints = RelayEndpoints(self.source, self.to)
             first = make_message()
             recorder = endpoints.listen(watcher, type(first))
@@ -78,7 +79,7 @@ class Relay:
         TRANSIENT_LOCAL. What the last participant publishes then comes out, too.
         """
         make_message = filled(make_message)
-        with Watcher() as watcher:
+        with Watcher(shared=True) as watcher:
             endpoints = RelayEndpoints(self.source, self.to)
             message_type = type(make_message())
             recorder = endpoints.listen(watcher, message_type)
@@ -91,9 +92,7 @@ class Relay:
                     self._expect_out(watcher, recorder, message, raised)
                     # one behind the other, should there be two
                     watcher.spin_for(QUIET_SEC)
-                    count = sum(
-                        self._is_same(received, message) for received in recorder.messages()
-                    )
+                    count = sum(self._is_same(each, message) for each in recorder.messages())
                     if count > 1:
                         self._fail(*RelayFaults(copies=count).fault())
                     if number + 1 == times:
@@ -116,13 +115,15 @@ class Relay:
         messages = varied(make_message)
         carried = passage.carry(messages)
         if not carried.is_whole():
-            seen, hint = carried.fault()
-            self._fail(seen, raised.hint() or hint)
-        if passage.loses_after_a_pause(messages):
+            fault, hint = carried.fault()
+            self._fail(fault, raised.hint() or hint)
+        seen = watcher.context, ('passes on after a pause', self), recorder.endpoint_gids()
+        if not familiar.is_known(*seen) and passage.loses_after_a_pause(messages):
             self._fail(
                 'a message that is not republished when it is the first after a pause',
                 raised.hint() or 'publish in every call of the callback, whenever it comes',
             )
+        familiar.remember(*seen)
         if passage.loses_one_of_two(messages):
             self._fail(
                 'two messages in quick succession of which only one is republished',

@@ -51,7 +51,7 @@ def serve(
             server.expect(is_right, expected='…', hint=lambda message: '…')
     """
     served = {'name': name, 'type_': type_, 'answer': answer}
-    with Watcher() as watcher:
+    with Watcher(shared=True) as watcher:
         answers, beats = (Topic(topic_name).listen(watcher) for topic_name in (to, alive))
         server = Server(watcher, asked_on=asked_on, answers=answers, beats=beats, **served)
         server.expect_alone()

@@ -12,7 +12,7 @@ from my_robot_basics.checks.callbacks import CallbackErrors
 from my_robot_basics.exchange import student
 from my_robot_basics.feedback.errors import expect, fail
 from my_robot_basics.feedback.hidden import theirs
-from my_robot_basics.graph import graphs, services
+from my_robot_basics.graph import familiar, graphs, services
 from my_robot_basics.graph.watcher import Watcher
 
 SERVER_SEC = 10.0
@@ -56,7 +56,7 @@ class Service:
         free, with the reason: the callback raised, returned no response, does not return, or the
         node does not spin.
         """
-        with Watcher() as watcher:
+        with Watcher(shared=True) as watcher:
             server = self._meet(watcher)
             raised = CallbackErrors([server])
             client = watcher.node.create_client(self.type, self.name, qos_profile=RESPONSES)
@@ -93,8 +93,10 @@ class Service:
             hint='compare the type in create_service(…)',
             cause=f'{self.name} has another type',
         )
+        known = ('service', self.name), {**found}
+        if not familiar.is_known(watcher.context, *known):
+            watcher.spin_for(graphs.NEWCOMER_SEC)
         # two nodes may have one name
-        watcher.spin_for(graphs.NEWCOMER_SEC)
         count = watcher.node.count_services(self.name)
         expect(
             count == 1,
@@ -103,6 +105,7 @@ class Service:
             hint='stop the other node: nobody knows whose answer arrives',
             cause=f'{self.name} has more than one server',
         )
+        familiar.remember(watcher.context, *known)
         return next(iter(found))
 
     def _fail_unanswered(

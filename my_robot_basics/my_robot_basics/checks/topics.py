@@ -51,7 +51,7 @@ class Topic(TopicEndpoints):
 
         The publisher is RELIABLE and TRANSIENT_LOCAL, which every subscription is content with.
         """
-        with Watcher() as watcher:
+        with Watcher(shared=True) as watcher:
             publisher = self.meet(
                 watcher, type(messages[0]), depth=len(messages), timeout_sec=timeout_sec
             )
@@ -82,7 +82,7 @@ class Topic(TopicEndpoints):
         `once`, a second one for which the predicate holds fails, too, in words for a node that
         publishes once for each message: so publish one message in `after`.
         """
-        with Watcher() as watcher:
+        with Watcher(shared=True) as watcher:
             recorder = self.listen(watcher)
             if after is not None:
                 after()

@@ -7,6 +7,7 @@ from rclpy.node import Node
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 from my_robot_basics.exchange import student
+from my_robot_basics.graph import familiar
 from my_robot_basics.graph.snapshot import GraphSnapshot
 from my_robot_basics.graph.watcher import HIDDEN, Watcher
 
@@ -72,7 +73,10 @@ def full_name(info: TopicEndpointInfo) -> str:
 
 
 def wait_for_publisher(watcher: Watcher, topic_name: str, *, timeout_sec: float) -> bool:
-    """Wait until somebody publishes on the topic, and no other publisher turns up for a moment."""
+    """Wait until somebody publishes on the topic, and no other publisher turns up for a moment.
+
+    Those that a shared participant has met so before are not waited for again.
+    """
     last: set = set()
     since = time.monotonic()
 
@@ -85,9 +89,13 @@ def wait_for_publisher(watcher: Watcher, topic_name: str, *, timeout_sec: float)
         if now != last:
             last, since = now, time.monotonic()
         known = bool(now) and all(node_name != UNKNOWN for node_name, *_ in now)
-        return known and time.monotonic() - since >= NEWCOMER_SEC
+        is_long = time.monotonic() - since >= NEWCOMER_SEC
+        return known and (is_long or familiar.is_known(watcher.context, topic_name, now))
 
-    return watcher.spin_until(is_settled, timeout_sec=timeout_sec)
+    is_there = watcher.spin_until(is_settled, timeout_sec=timeout_sec)
+    if is_there:
+        familiar.remember(watcher.context, topic_name, last)
+    return is_there
 
 
 def is_settled(watcher: Watcher, node_name: str = '') -> bool:
