@@ -1,10 +1,9 @@
 """A check's own node among more endpoints than a lesson can have."""
 
-from types import SimpleNamespace
-
 import pytest
+from grade_cell import grade_cell
 from my_robot_basics.checks import CheckFailed, topic
-from my_robot_basics.graph import cell_context, graphs, watcher
+from my_robot_basics.graph import graphs, watcher
 from my_robot_basics.graph.watcher import Watcher
 from rclpy.node import Node
 from std_msgs.msg import Empty, String
@@ -69,14 +68,8 @@ def test_a_name_that_is_no_text_fails_a_check(node, monkeypatch):
 
 @pytest.fixture
 def end_cell(monkeypatch):
-    """In a test's room: what ends the grade cell that runs."""
-    ends = []
-    shell = SimpleNamespace(events=SimpleNamespace(register=lambda _, end: ends.append(end)))
-    monkeypatch.setattr(cell_context.kernel, 'shell', lambda: shell)
-    monkeypatch.setenv('MY_ROBOT_BASICS_ROOM', 'test')
-    yield lambda: [end() for end in ends]
-    for end in ends:
-        end()
+    with grade_cell(monkeypatch) as end:
+        yield end
 
 
 def test_the_watchers_of_a_grade_cell_share_a_participant_that_ends_with_it(node, end_cell):

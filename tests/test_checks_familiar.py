@@ -1,0 +1,89 @@
+"""In a grade cell, what a check has waited for once is not waited for again."""
+
+import pytest
+from grade_cell import grade_cell
+from my_robot_basics.checks import service
+from my_robot_basics.checks.passage import Passage
+from my_robot_basics.graph import graphs
+from my_robot_basics.graph.watcher import Watcher
+from rclpy.node import Node
+from std_msgs.msg import String
+from std_srvs.srv import Trigger
+from test_checks_relays import check_delivery, monitor
+
+from my_robot_basics import live
+
+pytestmark = pytest.mark.starts
+NEVER_SEC = 1e6
+
+
+@pytest.fixture
+def end_cell(monkeypatch):
+    with grade_cell(monkeypatch) as end:
+        yield end
+
+
+@pytest.fixture
+def run():
+    yield live.run
+    live.stop()
+
+
+@pytest.fixture
+def node():
+    yield live.run(Node, 'talker', key='talker')
+    live.stop()
+
+
+def is_met(topic_name):
+    with Watcher(shared=True) as watcher:
+        return graphs.wait_for_publisher(watcher, topic_name, timeout_sec=3.0)
+
+
+def test_a_publisher_is_settled_once_in_a_cell(node, end_cell, monkeypatch):
+    node.create_publisher(String, '/talk', 10)
+    assert is_met('/talk')
+    monkeypatch.setattr(graphs, 'NEWCOMER_SEC', NEVER_SEC)
+    assert is_met('/talk')
+    end_cell()
+    assert not is_met('/talk')
+
+
+def test_another_publisher_is_waited_for(node, end_cell, monkeypatch):
+    node.create_publisher(String, '/talk', 10)
+    assert is_met('/talk')
+    monkeypatch.setattr(graphs, 'NEWCOMER_SEC', NEVER_SEC)
+    node.create_publisher(String, '/talk', 10)
+    assert not is_met('/talk')
+
+
+def test_elsewhere_each_check_waits(node, monkeypatch):
+    node.create_publisher(String, '/talk', 10)
+    assert is_met('/talk')
+    monkeypatch.setattr(graphs, 'NEWCOMER_SEC', NEVER_SEC)
+    assert not is_met('/talk')
+
+
+def test_a_service_is_settled_once_in_a_cell(node, end_cell, monkeypatch):
+    node.create_service(Trigger, '/go', lambda request, response: response)
+    waits = []
+    spin_for = Watcher.spin_for
+    monkeypatch.setattr(Watcher, 'spin_for', lambda *args: waits.append(args) or spin_for(*args))
+    for _ in range(3):
+        service('/go', Trigger).call(Trigger.Request())
+    assert len(waits) == 1
+    end_cell()
+    service('/go', Trigger).call(Trigger.Request())
+    assert len(waits) == 2
+
+
+def test_a_relay_is_looked_at_after_a_pause_once_in_a_cell(run, end_cell, monkeypatch):
+    looks = []
+    monkeypatch.setattr(Passage, 'loses_after_a_pause', lambda *_: bool(looks.append(1)))
+    run(monitor.JointStateMonitor)
+    check_delivery()
+    check_delivery()
+    assert len(looks) == 1
+    run(monitor.JointStateMonitor)
+    check_delivery()
+    assert len(looks) == 2
