@@ -10,18 +10,20 @@ from my_robot_basics.checks.passage import Passage
 from my_robot_basics.checks.variety import Sent
 
 SEC = 1_000_000_000
+GAP_NS = SEC // 100
 
 
 class Node:
     """Lets out what it receives at once, but only the second of those pairs, counted from 0."""
 
-    def __init__(self, loses):
+    def __init__(self, loses, apart_ns=GAP_NS):
         self.loses, self.received, self.numbers = loses, [], count()
+        self.apart_ns = apart_ns
 
     def publish(self, message):
         number = next(self.numbers)
         if not (number % 2 == 0 and self.loses(number // 2)):
-            self.received.append((message, SEC * number))
+            self.received.append((message, self.apart_ns * number))
 
 
 def passage_through(node):
@@ -31,8 +33,8 @@ def passage_through(node):
     return Passage(watcher, node, publish=node.publish, what=lambda message: message)
 
 
-def loses_one_of_two(loses):
-    return passage_through(Node(loses)).loses_one_of_two(Sent(n, '') for n in count())
+def loses_one_of_two(loses, **options):
+    return passage_through(Node(loses, **options)).loses_one_of_two(Sent(n, '') for n in count())
 
 
 @pytest.fixture(params=[False, True], ids=['free', 'busy'])
@@ -58,6 +60,12 @@ def test_who_mostly_lets_out_one_of_two_loses_the_other(loses):
 
 def test_a_busy_machine_may_lose_most_pairs_of_a_short_queue(is_busy):
     assert loses_one_of_two(lambda pair: pair < 6 or pair % 3) == (not is_busy)
+
+
+@pytest.mark.usefixtures('is_busy')
+def test_a_slow_timer_that_publishes_between_the_two_keeps_no_pair():
+    """On a busy machine its period ended there in each seventh pair: it earned its points so."""
+    assert loses_one_of_two(lambda pair: pair % 7 != 5, apart_ns=SEC // 2)
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,9 @@ from my_robot_basics.session.pressure import Stopwatch
 GAP_SEC = 0.01
 """Two messages so near to each other: a node that keeps only the latest for a timer loses one."""
 MOST_GAP_SEC, MOST_APART = 0.015, 20
-"""A busy machine lets more time pass between them: so many such pairs prove nothing."""
+"""A busy machine lets more time pass between them: so many such pairs prove nothing. …"""
+MOST_OUT_SEC = 0.1
+"""… Nor do those that come out so far apart: a slow timer published between the two."""
 WHOLE, MOST_SPLIT = 2, 6
 """So many pairs have to come out, before so many did not: a queue of depth 1 may lose one. On a
 busy machine it loses many, and some come out: each that does is worth so many that do not."""
@@ -22,11 +24,12 @@ class Pairs:
     apart: int = 0
     watch: Stopwatch = field(default_factory=Stopwatch)
 
-    def count(self, *, is_whole: bool, gap_sec: float) -> None:
-        """Count one more, with so much time between its two messages."""
+    def count(self, *, is_whole: bool, gap_sec: float, out_sec: float = 0.0) -> None:
+        """Count one more, with so much time between its two messages, in and out."""
+        is_apart = gap_sec > MOST_GAP_SEC or out_sec > MOST_OUT_SEC
         if not is_whole:
             self.split += 1
-        elif gap_sec > MOST_GAP_SEC and self.apart < MOST_APART:
+        elif is_apart and self.apart < MOST_APART:
             self.apart += 1
         else:
             self.whole += 1

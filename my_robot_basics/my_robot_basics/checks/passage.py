@@ -65,7 +65,7 @@ class Passage:
         self._publish, self._what = publish, what
         self._seen = len(recorder.received)
         self._waiting: list[Sent] = []
-        self._out: list[Sent] = []
+        self._out: list[tuple[Sent, int]] = []
         self._copies: list[int] = []
         """How often each of those came out."""
         self._own: set[Any] = set()
@@ -131,7 +131,8 @@ class Passage:
             self._watcher.spin_for(GAP_SEC)
             gap_sec = gap.wall_sec()
             self._send(next(messages))
-            pairs.count(is_whole=not self._waiting, gap_sec=gap_sec)
+            out_sec = 0.0 if self._waiting else (self._out[-1][1] - self._out[-2][1]) / 1e9
+            pairs.count(is_whole=not self._waiting, gap_sec=gap_sec, out_sec=out_sec)
         return pairs.tell_at_last() if told is None else told
 
     def loses_after_a_pause(self, messages: Iterator[Sent]) -> bool:
@@ -176,7 +177,7 @@ class Passage:
             for place, sent in enumerate(self._waiting):
                 if self._what(message) == self._what(sent.message):
                     del self._waiting[place]
-                    self._out.append(sent)
+                    self._out.append((sent, sent_ns))
                     self._copies.append(1)
                     break
             else:
@@ -184,7 +185,7 @@ class Passage:
 
     def _count(self, message: Any, sent_ns: int) -> None:
         for place in reversed(range(max(0, len(self._out) - RECENT), len(self._out))):
-            if self._what(message) == self._what(self._out[place].message):
+            if self._what(message) == self._what(self._out[place][0].message):
                 self._copies[place] += 1
                 return
         self._others.append((message, sent_ns))
