@@ -6,13 +6,13 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from typing import Self
 
-from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from my_robot_basics.feedback.errors import fail
 from my_robot_basics.feedback.hidden import is_in_test_room
 from my_robot_basics.graph.cell_context import context_of_cell, new_context
+from my_robot_basics.graph.lean_executor import LeanExecutor
 from my_robot_basics.session import classroom, interactions
 from my_robot_basics.session.pressure import Stopwatch
 
@@ -77,7 +77,7 @@ class Watcher:
         found = context_of_cell(domain_id) if self._shared else None
         self._is_own = found is None
         self.context = found or new_context(domain_id)
-        self._executor = SingleThreadedExecutor(context=self.context)
+        self._executor = LeanExecutor(context=self.context)
         self._nodes: list[Node] = []
         with self._transports():  # the first node makes the participant
             self.node = self.add_node('check')
