@@ -66,6 +66,13 @@ def test_a_name_that_is_no_text_fails_a_check(node, monkeypatch):
         topic('/talk').wait_for()
 
 
+def test_a_look_asks_for_no_event_that_nobody_waits_for():
+    with Watcher() as here:
+        assert not [
+            event for event in here.node.waitables if event.callback_group.can_execute(event)
+        ]
+
+
 @pytest.fixture
 def end_cell(monkeypatch):
     with grade_cell(monkeypatch) as end:

@@ -7,9 +7,9 @@ import time
 
 import pytest
 from action_msgs.msg import GoalStatus
-from my_robot_basics.checks.barriers import _Deaf
 from my_robot_basics.graph.cell_context import new_context
 from my_robot_basics.graph.lean_executor import LeanExecutor
+from my_robot_basics.graph.unheeded import Unheeded
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session import classroom
 from rcl_interfaces.srv import GetParameters
@@ -89,7 +89,7 @@ def test_a_service_may_wait_for_something(watcher):
 
 
 def test_a_client_that_nobody_hears_does_not_get_its_answer(watcher):
-    asked = ask(watcher, lambda _, response: response, callback_group=_Deaf())
+    asked = ask(watcher, lambda _, response: response, callback_group=Unheeded())
     assert not watcher.spin_until(asked.done, timeout_sec=0.3)
 
 

@@ -5,11 +5,11 @@ import time
 from collections.abc import Iterable
 
 from rcl_interfaces.srv import GetParameters
-from rclpy.callback_groups import CallbackGroup
 from rclpy.client import Client
 from rclpy.task import Future
 
 from my_robot_basics.checks.inconclusive import TooSlow
+from my_robot_basics.graph.unheeded import Unheeded
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
 
@@ -20,14 +20,6 @@ SLOWEST_MEDIAN_SEC = 0.02
 MEDIAN_EVERY = 40
 
 
-class _Deaf(CallbackGroup):
-    """Its clients' answers are left where they are: nobody is woken up for them."""
-
-    def can_execute(self, entity: object) -> bool:
-        """Never."""
-        return False
-
-
 class Barriers:
     """The parameter services of some nodes, and how long they take to answer."""
 
@@ -35,7 +27,7 @@ class Barriers:
         """No node is asked yet."""
         self._watcher = watcher
         self._clients: dict[str, Client] = {}
-        self._deaf_clients: dict[str, Client] = {}
+        self._unheeded: dict[str, Client] = {}
         self._took_sec: list[float] = []
 
     def __len__(self) -> int:
@@ -46,15 +38,15 @@ class Barriers:
         """Prepare to ask the node of that full name, by two clients."""
         node, service = self._watcher.node, f'{name}/get_parameters'
         self._clients[name] = node.create_client(GetParameters, service)
-        self._deaf_clients[name] = node.create_client(
-            GetParameters, service, callback_group=_Deaf()
+        self._unheeded[name] = node.create_client(
+            GetParameters, service, callback_group=Unheeded()
         )
-        return self._clients[name], self._deaf_clients[name]
+        return self._clients[name], self._unheeded[name]
 
     def keep(self, names: Iterable[str]) -> None:
         """Ask only these from now on."""
         self._clients = {name: self._clients[name] for name in names}
-        self._deaf_clients = {name: self._deaf_clients[name] for name in self._clients}
+        self._unheeded = {name: self._unheeded[name] for name in self._clients}
 
     def ask(self, names: Iterable[str] | None = None) -> dict[str, Future]:
         """Ask each node, or these, for its `use_sim_time`; the futures by the nodes' names."""
@@ -71,8 +63,10 @@ class Barriers:
             self._since_first = Stopwatch()
         start = time.monotonic()
         for _ in range(questions - 1):
-            for client in self._deaf_clients.values():
-                client.remove_pending_request(client.call_async(NOTHING))
+            for client in self._unheeded.values():
+                # no future is made for an answer that nobody takes
+                with client.handle:
+                    client.handle.send_request(NOTHING)
         asked = [client.call_async(NOTHING) for client in self._clients.values()]
         if not self._watcher.spin_until_free(
             lambda: all(future.done() for future in asked), free_sec=SLOWEST_BARRIER_SEC

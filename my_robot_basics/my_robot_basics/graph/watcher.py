@@ -13,6 +13,7 @@ from my_robot_basics.feedback.errors import fail
 from my_robot_basics.feedback.hidden import is_in_test_room
 from my_robot_basics.graph.cell_context import context_of_cell, new_context
 from my_robot_basics.graph.lean_executor import LeanExecutor
+from my_robot_basics.graph.unheeded import Unheeded
 from my_robot_basics.session import classroom, interactions
 from my_robot_basics.session.pressure import Stopwatch
 
@@ -111,6 +112,8 @@ class Watcher:
             start_parameter_services=False,
             parameter_overrides=[Parameter('start_type_description_service', value=False)],
         )
+        for event in node.waitables:  # of its /parameter_events; each costs every look something
+            event.callback_group = Unheeded()
         self._executor.add_node(node)
         self._nodes.append(node)
         return node
