@@ -1,12 +1,15 @@
 import base64
 import re
+import time
 from html import unescape
 
 import pytest
 from course_maker import PIXEL, TOY, answered, executed, released_course, submit
+from nbformat.reader import NotJSONError
 from nbformat.v4 import new_code_cell, new_output
 
-from grader.common.parsing import Limits, ParsingFailed, parse
+from grader.common import parsing
+from grader.common.parsing import AT_ONCE, Limits, ParsingFailed, parse
 from grader.course import Course
 from grader.notebook.restore import KEY, restore
 from grader.notebook.submission import read_submission
@@ -15,6 +18,7 @@ from grader.report import page_parts
 from grader.report.feedback import write_feedback
 from grader.storage.gradebook import store
 from grader.storage.pipeline import prepare, prepared_template, unanswered
+from grader.storage.registering import register
 
 RIGHT = 'def double(x):\n    return 2 * x'
 SCRIPT = '<script>alert("from a student")</script>'
@@ -229,3 +233,45 @@ def test_what_nbgrader_needs_to_release_a_page_lies_beside_it(course):
     (page,) = (each for each in write_feedback(course) if 'ada' in each.parts)
     assert (page.parent / 'timestamp.txt').read_text() == '2026-01-01 10:00:00 UTC'
     assert (page.parent / 'submission_secret.txt').read_text() == 'aa'
+
+
+def test_of_many_pages_each_is_there_and_told_in_order(course, tmp_path):
+    course = Course(root=course.root, gradebook=tmp_path / 'gradebook')
+    register(course, TOY)
+    students = [f's{number:02}' for number in range(3 * AT_ONCE)]
+    for student in students:
+        submission = handed_in(course, student)
+        store(course, submission, executed(prepared_template(course, TOY).notebook, {}))
+    told = []
+    pages = write_feedback(course, say=told.append)
+    assert [page.parts[-3] for page in pages] == students
+    assert told == [str(page) for page in pages]
+    whole = {page: page.read_bytes() for page in pages}
+    assert all(f'{page.parts[-3]}'.encode() in html for page, html in whole.items())
+    told.clear()
+    assert write_feedback(course, say=told.append) == pages
+    assert not told
+    assert whole == {page: page.read_bytes() for page in pages}
+    pages[1].unlink()
+    (course.folder('autograded', students[2], TOY) / f'{TOY}.ipynb').write_text('damaged')
+    with pytest.raises(NotJSONError) as raised:
+        write_feedback(course)
+    assert students[2] in ''.join(raised.value.__notes__)
+    assert pages[1].read_bytes() == whole[pages[1]]  # all before it are there
+
+
+def test_who_is_told_to_stop_waits_for_no_page():
+    with pytest.raises(KeyboardInterrupt), module._threads() as threads:  # noqa: PT012
+        work = threads.submit(parse, 'time:sleep', 60, limits=Limits(wall_sec=20))
+        later = [threads.submit(parse, 'os:getpid') for _ in range(5 * AT_ONCE)]
+        while not parsing._SERVERS._busy:
+            time.sleep(0.01)
+        raise KeyboardInterrupt
+    assert not isinstance(work.exception(), ParsingFailed)
+    assert later[-1].cancelled()
+
+
+def handed_in(course, student):
+    submit(course, student, answered(course, RIGHT))
+    folder = course.folder('submitted', student, TOY)
+    return read_submission(folder, student_id=student, assignment=TOY)

@@ -2,12 +2,16 @@
 
 import os
 import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
+from my_robot_basics.language.catalogues import LOCALE, languages
 
-from grader.common import parsing
+from grader.common import parsing, parsing_process
 from grader.common.errors import CourseError
 from grader.common.parsing import Limits, ParsingFailed, parse
+from grader.report import page
 
 SHORT = Limits(cpu_sec=1, wall_sec=60)
 
@@ -54,6 +58,39 @@ def test_an_answer_that_is_too_long_is_none(monkeypatch):
 def test_a_full_disk_is_not_the_text_s_fault():
     with pytest.raises(FileNotFoundError):
         parse('os:listdir', '/nowhere')
+
+
+@pytest.mark.skipif(parsing.AT_ONCE < 2, reason='one processor: one question at a time')
+def test_two_questions_are_answered_side_by_side(tmp_path):
+    """Each end of a FIFO is open once the other one is."""
+    os.mkfifo(tmp_path / 'fifo')
+    with ThreadPoolExecutor(2) as threads:
+        ends = [
+            threads.submit(
+                parse, 'os:open', str(tmp_path / 'fifo'), flags, limits=Limits(wall_sec=20)
+            )
+            for flags in (os.O_RDONLY, os.O_WRONLY)
+        ]
+        assert all(isinstance(end.result(), int) for end in ends)
+
+
+def test_what_is_called_off_ends_and_the_next_one_is_answered():
+    with ThreadPoolExecutor(1) as threads:
+        waiting = threads.submit(parse, 'time:sleep', 60, limits=Limits(wall_sec=20))
+        while not parsing._SERVERS._busy:
+            time.sleep(0.01)
+        parsing.call_off()
+        with pytest.raises((CourseError, BrokenPipeError)):
+            waiting.result()
+    assert parse('json:loads', '1') == 1
+
+
+def test_what_all_answers_need_is_made_once_before():
+    page._template.cache_clear()
+    for _ in range(2):
+        assert parsing_process._function('grader.report.page:page') is page.page
+    assert page._template.cache_info().misses == 1 + len(languages(LOCALE))
+    page._template.cache_clear()
 
 
 def test_questions_of_several_threads_are_answered_in_turn():

@@ -1,6 +1,8 @@
 """What a student reads: each check's reason and picture, what to try next, never a hidden test."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import contextmanager
 from pathlib import Path
 
 import nbformat
@@ -10,12 +12,16 @@ from nbgrader.preprocessors import ClearHiddenTests, GetGrades
 from traitlets.config import Config
 
 from grader.common.files import write_whole
-from grader.common.parsing import Limits, ParsingFailed, parse
+from grader.common.futures import run_ahead
+from grader.common.parsing import AT_ONCE, Limits, ParsingFailed, call_off, parse
 from grader.course import Course
 from grader.notebook.restore import KEY, grade_id
 from grader.notebook.submission import SECRET, TIMESTAMP
+from grader.storage.database import connected, one_engine
 from grader.storage.gradebook import recover
+from grader.storage.held_scores import held_score
 from grader.storage.pipeline import resources_of
+from grader.storage.submission_rows import SubmissionRows
 
 ABOUT = ('student', 'assignment', 'score', 'max_score', 'late_penalty')
 LIMITS = Limits(cpu_sec=10)
@@ -26,6 +32,24 @@ FEEDBACK_PASSES = ('grader.report.feedback.GatherVerdicts',)
 
 class GatherVerdicts(GetGrades):
     """Put scores and comments into the notebook, and take hidden tests and tracebacks out."""
+
+    def preprocess(self, nb: NotebookNode, resources: dict) -> tuple[NotebookNode, dict]:
+        """Do as nbgrader does, which asks the database for each cell."""
+        at = resources['nbgrader']
+        self.notebook_id, self.assignment_id = at['notebook'], at['assignment']
+        self.student_id = at['student']
+        whose = self.student_id, self.assignment_id
+        with connected(at['db_url']) as book:
+            submission = book.find_submission(self.assignment_id, self.student_id)
+            self.gradebook = SubmissionRows(book, submission, self.notebook_id)
+            for index, cell in enumerate(nb.cells):
+                self.preprocess_cell(cell, resources, index)
+            held = held_score(book, *whose)
+        assert held is not None  # it was found above
+        if held.late:
+            self.log.warning('Late submission penalty: %s', held.late)
+        at |= {'score': held.score, 'max_score': held.max_score, 'late_penalty': held.late}
+        return nb, resources
 
     def preprocess_cell(
         self, cell: NotebookNode, resources: dict, index: int
@@ -59,8 +83,14 @@ class FeedbackPage(Exporter):
         self, nb: NotebookNode, resources: dict | None = None, **options: object
     ) -> tuple[str, dict]:
         """Return the page of a graded notebook as HTML."""
-        nb, resources = super().from_notebook_node(nb, resources, **options)
+        nb, resources = self.gathered(nb, resources, **options)
         return _page(nb, resources['nbgrader']), resources
+
+    def gathered(
+        self, nb: NotebookNode, resources: dict | None = None, **options: object
+    ) -> tuple[NotebookNode, dict]:
+        """Return what a page shows, and of whom."""
+        return super().from_notebook_node(nb, resources, **options)
 
 
 def _page(notebook: NotebookNode, about: dict) -> str:
@@ -82,20 +112,43 @@ def write_feedback(
     """
     exporter = page_exporter()
     recover(course)
+    found = sorted(course.folder('autograded', '', '').glob('*/*/*.ipynb'))
+    whose = [each.parts[-3:] for each in found if each.stem == each.parts[-2]]
     pages = []
-    for graded in sorted(course.folder('autograded', '', '').glob('*/*/*.ipynb')):
-        student, assignment = graded.parts[-3:-1]
-        if graded.stem != assignment:
-            continue
-        try:
-            place, is_new = write_page(course, student, assignment, exporter)
-        except ParsingFailed as why:
-            say(f'{assignment} of {student} has no page of feedback, for {why}')
-            continue
-        if is_new:
-            say(str(place))
-        pages.append(place)
+    with one_engine(course.db_url), _threads() as threads:
+
+        def start(each: tuple[str, ...]) -> 'Future[str]':
+            student, assignment, _ = each
+            return threads.submit(_page, *_gathered(course, student, assignment, exporter))
+
+        # its process makes one page while this one asks the database for the next
+        for (student, assignment, _), work in run_ahead(whose, start, at_most=2 * AT_ONCE):
+            try:
+                place, is_new = _put(course, student, assignment, work.result())
+            except ParsingFailed as why:
+                say(f'{assignment} of {student} has no page of feedback, for {why}')
+                continue
+            except Exception as error:
+                error.add_note(f'This was the page of {student} for {assignment}.')
+                raise
+            if is_new:
+                say(str(place))
+            pages.append(place)
     return pages
+
+
+@contextmanager
+def _threads() -> Iterator[ThreadPoolExecutor]:
+    """Give threads that wait for pages; what they wait for ends where the block is left early."""
+    threads = ThreadPoolExecutor(AT_ONCE)
+    try:
+        yield threads
+    except BaseException:
+        threads.shutdown(wait=False, cancel_futures=True)
+        call_off()
+        raise
+    finally:
+        threads.shutdown()
 
 
 def page_exporter() -> FeedbackPage:
@@ -114,9 +167,23 @@ def write_page(
     What `nbgrader release_feedback` wants to know lies beside it then. Raises ParsingFailed where
     no page can be made.
     """
+    return _put(
+        course, student, assignment, _page(*_gathered(course, student, assignment, exporter))
+    )
+
+
+def _gathered(
+    course: Course, student: str, assignment: str, exporter: FeedbackPage
+) -> tuple[NotebookNode, dict]:
+    graded = course.folder('autograded', student, assignment) / f'{assignment}.ipynb'
+    notebook = nbformat.read(graded, as_version=4)
+    shown, at = exporter.gathered(notebook, resources_of(course, assignment, student))
+    return shown, at['nbgrader']
+
+
+def _put(course: Course, student: str, assignment: str, html: str) -> tuple[Path, bool]:
+    """Put a page in its place, unless it is there; return that, and whether it was not."""
     graded = course.folder('autograded', student, assignment)
-    notebook = nbformat.read(graded / f'{assignment}.ipynb', as_version=4)
-    html, _ = exporter.from_notebook_node(notebook, resources_of(course, assignment, student))
     folder = course.folder('feedback', student, assignment)
     folder.mkdir(parents=True, exist_ok=True)
     for name in (TIMESTAMP, SECRET):

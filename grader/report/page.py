@@ -1,6 +1,7 @@
 """Lay out a graded notebook as one HTML page that needs nothing else and runs nothing."""
 
 import re
+from contextlib import suppress
 from functools import cache, partial
 from html import unescape
 
@@ -8,7 +9,7 @@ import bleach
 import nbformat
 from jinja2 import Template
 from markupsafe import Markup, escape
-from my_robot_basics.language.catalogues import ENGLISH, read_translations
+from my_robot_basics.language.catalogues import ENGLISH, languages, read_translations
 from my_robot_basics.language.speaking import LOCALE, in_language, language_of, sentences
 from nbconvert.filters import markdown2html
 from pygments import highlight
@@ -52,6 +53,16 @@ def page(as_json: dict, about: dict, plain: str = '') -> str:
         no_sandbox='' if ours.get('in_sandbox', True) else NO_SANDBOX,
         notes=[note for note in (plain, *ours.get('notes', ())) if note not in ('', problem)],
     )
+
+
+def get_ready() -> None:
+    """Make what all pages need: each is made in a process of its own, which would begin anew."""
+    _colour('None')
+    _rich('None')
+    _template(ENGLISH, is_plain=False)
+    for language in languages(LOCALE):
+        with suppress(Exception):  # the pages in this language say what is wrong
+            _template(language, is_plain=False)
 
 
 def _colour(source: str) -> Markup:

@@ -14,6 +14,7 @@ from nbgrader.api import (
     SubmittedNotebook,
 )
 from sqlalchemy import Select, bindparam, select
+from sqlalchemy.orm import undefer
 
 Row = TypeVar('Row', Grade, Comment)
 
@@ -32,7 +33,8 @@ def _rows_of(kind: type[Grade] | type[Comment]) -> Select:
     )
 
 
-_GRADES, _COMMENTS = _rows_of(Grade), _rows_of(Comment)
+_GRADES = _rows_of(Grade).options(undefer(Grade.max_score))
+_COMMENTS = _rows_of(Comment)
 
 
 class SubmissionRows:

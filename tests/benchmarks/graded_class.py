@@ -1,14 +1,16 @@
-"""What `./course grade` takes where nothing is new, in a gradebook of any size.
+"""What a class that is graded takes: `./course grade` without anything new, and `feedback`.
 
-    .venv/bin/python tests/benchmarks/nothing_new.py GRADEBOOK [--against FOLDER] [--rounds 3]
+    .venv/bin/python tests/benchmarks/graded_class.py grade GRADEBOOK [--against FOLDER]
+    .venv/bin/python tests/benchmarks/graded_class.py feedback GRADEBOOK [--rounds 3]
 
 GRADEBOOK is one that was graded, as class_of_500.py leaves it. A copy of it is told that its
 results are those of this very grader. FOLDER is an earlier commit's working copy with a .venv of
-its own: it has a copy, too, and both grade by turns, so that they meet the same machine. CPU is
-that of all processes that were waited for. Ends with 1 where the tables that they print differ.
+its own: it has a copy, too, and both run by turns, so that they meet the same machine. CPU is that
+of all processes that were waited for. Ends with 1 where the tables or the pages differ.
 """
 
 import argparse
+import hashlib
 import os
 import resource
 import shutil
@@ -20,12 +22,12 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-GRADE = """
+VERB = """
 import sys
 from pathlib import Path
 from grader.__main__ import main
 from grader.course import Course
-sys.exit(main(['grade'], course=Course(gradebook=Path(sys.argv[1]))))
+sys.exit(main([sys.argv[2]], course=Course(gradebook=Path(sys.argv[1]))))
 """
 OF_THIS_GRADER = """
 import sys
@@ -54,11 +56,11 @@ for path in sorted(course.gradebook.glob('autograded/*/*/*.ipynb')):
 """
 
 
-def main(source: Path, against: Path | None, rounds: int) -> int:
+def main(verb: str, source: Path, against: Path | None, rounds: int) -> int:
     """Print a row for each working copy; return 1 where their tables differ."""
     taken: dict[Path, list[tuple[float, float]]] = {}
     said: set[str] = set()
-    with tempfile.TemporaryDirectory(prefix='nothing_new-') as folder:
+    with tempfile.TemporaryDirectory(prefix='graded_class-') as folder:
         roots = [ROOT, *([against] if against else [])]
         gradebooks = {root: Path(folder, f'{n}', 'gradebook') for n, root in enumerate(roots)}
         for root, gradebook in gradebooks.items():
@@ -66,13 +68,15 @@ def main(source: Path, against: Path | None, rounds: int) -> int:
             _run(root, OF_THIS_GRADER, gradebook)
         for _ in range(rounds):
             for root, gradebook in gradebooks.items():
+                shutil.rmtree(gradebook / 'feedback', ignore_errors=True)
                 before, began = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
-                table = _run(root, GRADE, gradebook)
+                table = _run(root, VERB, gradebook, verb)
                 wall = time.perf_counter() - began
                 after = resource.getrusage(resource.RUSAGE_CHILDREN)
                 cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
                 taken.setdefault(root, []).append((wall, cpu))
-                said.add(table.partition('Report:')[0])
+                table = table.replace(str(gradebook), '').partition('Report:')[0]
+                said.add(table + _digest(gradebook / 'feedback'))
     print(f'{"median, in seconds":24} {"wall":>7} {"CPU":>7}')
     for root, each in taken.items():
         wall, cpu = (statistics.median(column) for column in zip(*each, strict=True))
@@ -81,10 +85,17 @@ def main(source: Path, against: Path | None, rounds: int) -> int:
     return 0 if len(said) == 1 else 1
 
 
-def _run(root: Path, code: str, gradebook: Path) -> str:
+def _digest(pages: Path) -> str:
+    whole = hashlib.sha256()
+    for path in sorted(pages.glob('*/*/*')):
+        whole.update(f'{path.relative_to(pages)}'.encode() + path.read_bytes())
+    return whole.hexdigest()
+
+
+def _run(root: Path, code: str, gradebook: Path, *arguments: str) -> str:
     """Run code by a working copy's grader; return what it prints."""
     return subprocess.run(
-        [f'{root}/.venv/bin/python', '-P', '-c', code, str(gradebook)],
+        [f'{root}/.venv/bin/python', '-P', '-c', code, str(gradebook), *arguments],
         cwd=root,
         env=os.environ | {'PATH': f'{root}/.venv/bin:{os.environ["PATH"]}'},
         stdin=subprocess.DEVNULL,
@@ -96,9 +107,10 @@ def _run(root: Path, code: str, gradebook: Path) -> str:
 
 if __name__ == '__main__':
     parser = argparse.ArgumentParser(description=__doc__.partition('\n')[0])
+    parser.add_argument('verb', choices=('grade', 'feedback'))
     parser.add_argument('source', type=Path, metavar='GRADEBOOK')
     parser.add_argument('--against', type=Path, metavar='FOLDER')
     parser.add_argument('--rounds', type=int, default=3)
     args = parser.parse_args()
     there = args.against and args.against.resolve()
-    sys.exit(main(args.source.resolve(), there, args.rounds))
+    sys.exit(main(args.verb, args.source.resolve(), there, args.rounds))
