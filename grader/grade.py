@@ -39,6 +39,8 @@ def grade_all(
     """
     with backend or Workers() as backend:
         isolated = backend.require_isolation(trust_students=trust_students)
+        if force or any(_is_new(course, each) for each in submissions):
+            backend.begin()  # it gets ready while lessons and submissions are read
         grading = Grading(course, backend, isolated, seed, trust_students, force)
         assignments = _prepare(grading, submissions)
 
@@ -50,6 +52,12 @@ def grade_all(
         with one_engine(course.db_url):
             for found, work in run_ahead(submissions, start, at_most=AHEAD * backend.capacity):
                 yield grading.store(found, work)
+
+
+def _is_new(course: Course, found: SubmissionFolder) -> bool:
+    """Whether a submission has no result that could still hold."""
+    graded = course.folder('autograded', found.student_id, found.assignment)
+    return not found.problem and not (graded / f'{found.assignment}.ipynb').exists()
 
 
 def _prepare(

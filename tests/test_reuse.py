@@ -17,6 +17,7 @@ from grader.__main__ import main
 from grader.common import versions
 from grader.course import ROOT
 from grader.grade import grade_all
+from grader.grading import Grading
 from grader.judging.execute import Execution
 from grader.notebook import submission
 from grader.notebook.restore import KEY
@@ -101,6 +102,26 @@ def test_what_was_read_once_is_not_read_again(course, looked, monkeypatch):
     assert not rows_of(course)['ada'].reused
     assert read == ['eve', 'ada', 'eve']
     assert len(looked) == 2
+
+
+def test_a_worker_begins_before_lessons_are_read_where_there_is_work_for_it(
+    course, looked, monkeypatch
+):
+    done = []
+    does = Grading.prepare
+    monkeypatch.setattr(
+        Grading, 'prepare', lambda self, name: done.append('prepared') or does(self, name)
+    )
+    monkeypatch.setattr(Here, 'begin', lambda self: done.append('begun'))
+    submit(course, 'ada', answered(course, RIGHT))
+    rows_of(course)
+    assert done[:2] == ['begun', 'prepared']
+    done.clear()
+    rows_of(course)
+    assert done == ['prepared']
+    done.clear()
+    rows_of(course, force=True)
+    assert done[:2] == ['begun', 'prepared']
 
 
 @pytest.mark.parametrize(
