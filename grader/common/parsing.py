@@ -62,6 +62,7 @@ class _Server:
 
     def __init__(self) -> None:
         self._process: subprocess.Popen | None = None
+        self.is_called_off = False
 
     def ask(self, function: str, arguments: Sequence[object], limits: Limits) -> Any:
         question = json.dumps([function, arguments, asdict(limits)]).encode('ascii') + b'\n'
@@ -78,7 +79,8 @@ class _Server:
         raise ParsingFailed(answer['why'])
 
     def kill(self) -> None:
-        """End it with whatever it has forked, while another thread waits for it."""
+        """End it with whatever it has forked, while another thread starts it or waits for it."""
+        self.is_called_off = True
         if process := self._process:
             with contextlib.suppress(ProcessLookupError):  # that thread has ended it itself
                 os.killpg(process.pid, signal.SIGKILL)
@@ -95,6 +97,8 @@ class _Server:
             self._process = subprocess.Popen(
                 COMMAND, stdin=subprocess.PIPE, stdout=subprocess.PIPE, start_new_session=True
             )  # the process that asks handles Ctrl-C
+        if self.is_called_off:  # before there was a process to end
+            raise CourseError('nobody waits for the answer any more: run this again')
         assert self._process.stdin is not None
         assert self._process.stdout is not None
         late = threading.Timer(limits.wall_sec + END_GRACE_SEC, self._process.kill)
@@ -130,7 +134,8 @@ class _Servers:
                 return server.ask(function, arguments, limits)
             finally:
                 self._busy.remove(server)
-                self._idle.append(server)
+                if not server.is_called_off:
+                    self._idle.append(server)
 
     def call_off(self) -> None:
         for each in [*self._busy]:
