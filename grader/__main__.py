@@ -1,6 +1,7 @@
 """The command line: `python -m grader VERB`, which is what `./course VERB` runs."""
 
 import contextlib
+import io
 import sys
 from typing import TYPE_CHECKING
 
@@ -19,6 +20,9 @@ def main(arguments: list[str] | None = None, *, course: 'Course | None' = None) 
     It is 143 on SIGTERM and 129 on SIGHUP, which end a run in the same way.
     """
     asked = make_parser().parse_args(arguments)
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        # through a pipe, to `tee` perhaps, each line has to come when it is printed
+        sys.stdout.reconfigure(line_buffering=True)
     with stoppable() as stop:
         try:
             # arguments are known to be right: only now what takes long to import

@@ -135,6 +135,8 @@ def pytest_configure(config: pytest.Config) -> None:
     signal.signal(signal.SIGINT, signal.default_int_handler)
     # and one below nohup the end of its terminal
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
+    # what a student's terminal has not: programs here would print sooner than theirs
+    os.environ.pop('PYTHONUNBUFFERED', None)
     # colcon's builds warn where somebody has set it
     os.environ.pop('PYTHONDONTWRITEBYTECODE', None)
     sys.dont_write_bytecode = False  # else each xdist worker would compile every test, every time

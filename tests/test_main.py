@@ -102,6 +102,24 @@ def test_a_database_in_use_is_waited_for_with_a_word(tmp_path, capsys, monkeypat
             assert 'run the same command again' in said.err
 
 
+def test_a_pipe_gets_each_line_as_it_is_printed(tmp_path):
+    make_course(tmp_path)
+    code = """
+import sys
+from pathlib import Path
+from grader.__main__ import main
+from grader.course import Course
+main(['feedback'], course=Course.at(Path(sys.argv[1])))
+sys.stdin.read()
+"""
+    command = [sys.executable, '-c', code, str(tmp_path)]
+    with subprocess.Popen(
+        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    ) as process:
+        assert process.stdout.readline().startswith('0 pages in ')
+        process.communicate('')
+
+
 def test_a_second_writer_waits_for_the_first_and_says_so(tmp_path):
     hold = (
         'import sys, time\n'
@@ -116,10 +134,12 @@ def test_a_second_writer_waits_for_the_first_and_says_so(tmp_path):
     with subprocess.Popen(command, **pipes) as first:
         assert first.stdout.readline() == 'mine\n'
         with subprocess.Popen(command, **pipes) as second:
-            assert second.stdout.readline() == (
-                f'waiting: process {first.pid} is grading into {tmp_path}\n'
-            )
-            first.send_signal(signal.SIGKILL)  # a lock ends with its holder
+            try:
+                assert second.stdout.readline() == (
+                    f'waiting: process {first.pid} is grading into {tmp_path}\n'
+                )
+            finally:
+                first.send_signal(signal.SIGKILL)  # a lock ends with its holder
             assert second.stdout.readline() == 'mine\n'
             second.communicate('')
 

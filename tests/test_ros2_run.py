@@ -43,7 +43,7 @@ def make_package(prefix, name, executables):
     folder.mkdir(parents=True)
     for executable, code in executables.items():
         path = folder / executable
-        head = f'#!{sys.executable}\nimport os, signal, sys, time\n'
+        head = f'#!{sys.executable} -u\nimport os, signal, sys, time\n'  # prints before it ends
         path.write_text(head + textwrap.dedent(code))
         path.chmod(path.stat().st_mode | stat.S_IXUSR)
     (folder / 'notes.txt').touch()

@@ -39,3 +39,8 @@ def log_visibly() -> None:
     handler = logging.StreamHandler()
     handler.addFilter(VisibleFilter())
     logging.basicConfig(handlers=[handler])
+
+
+def tell(line: str) -> None:
+    """Print a line at once, be it into a pipe: who waits has to know for what."""
+    print(line, flush=True)

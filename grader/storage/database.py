@@ -14,6 +14,7 @@ from nbgrader.dbutil import ALEMBIC_DIR
 from sqlalchemy import create_engine
 
 from grader.common.db_url import is_in_postgresql
+from grader.common.logs import tell
 from grader.course import Course
 from grader.storage import failures, postgresql
 from grader.storage.failures import BUSY
@@ -79,7 +80,7 @@ def _make_tables(db_url: str) -> None:
     Gradebook(db_url).close()  # adds its course
 
 
-def wait_until_free(course: Course, say: Callable[[str], None] = print) -> None:
+def wait_until_free(course: Course, say: Callable[[str], None] = tell) -> None:
     """Wait while another program holds the database, and say so. Raises GradebookError at last.
 
     PostgreSQL serves several programs; there, wait for the server.

@@ -7,9 +7,11 @@ from pathlib import Path
 
 from filelock import FileLock, Timeout
 
+from grader.common.logs import tell
+
 
 @contextmanager
-def gradebook_lock(gradebook: Path, say: Callable[[str], None] = print) -> Iterator[None]:
+def gradebook_lock(gradebook: Path, say: Callable[[str], None] = tell) -> Iterator[None]:
     """Hold the right to write into a gradebook for the block; wait for it first, and say so.
 
     A process that holds it may take it again: the lock is free once the outermost block ends, or
