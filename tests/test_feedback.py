@@ -5,7 +5,6 @@ from html import unescape
 
 import pytest
 from course_maker import PIXEL, TOY, answered, executed, released_course, submit
-from nbformat.reader import NotJSONError
 from nbformat.v4 import new_code_cell, new_output
 
 from grader.common import parsing
@@ -253,11 +252,26 @@ def test_of_many_pages_each_is_there_and_told_in_order(course, tmp_path):
     assert not told
     assert whole == {page: page.read_bytes() for page in pages}
     pages[1].unlink()
-    (course.folder('autograded', students[2], TOY) / f'{TOY}.ipynb').write_text('damaged')
-    with pytest.raises(NotJSONError) as raised:
+    damaged = course.folder('autograded', students[2], TOY) / f'{TOY}.ipynb'
+    damaged.write_text('damaged')
+    assert write_feedback(course, say=told.append) == pages[:2] + pages[3:]
+    assert told == [
+        str(pages[1]),
+        f'{TOY} of {students[2]} has no page of feedback, for the graded notebook {damaged} is '
+        f'damaged: run ./course grade --student {students[2]}, which grades it again',
+    ]
+    assert pages[2].read_bytes() == whole[pages[2]]  # that of before
+
+
+def test_what_fails_on_a_page_says_which(course, tmp_path, monkeypatch):
+    course = Course(root=course.root, gradebook=tmp_path / 'gradebook')
+    register(course, TOY)
+    submission = handed_in(course, 'ada')
+    store(course, submission, executed(prepared_template(course, TOY).notebook, {}))
+    monkeypatch.setattr(module, 'graded_notebook', lambda *_: 1 / 0)
+    with pytest.raises(ZeroDivisionError) as raised:
         write_feedback(course)
-    assert students[2] in ''.join(raised.value.__notes__)
-    assert pages[1].read_bytes() == whole[pages[1]]  # all before it are there
+    assert raised.value.__notes__ == [f'This was the page of ada for {TOY}.']
 
 
 def test_who_is_told_to_stop_waits_for_no_page():

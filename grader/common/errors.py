@@ -12,6 +12,10 @@ class UnreadableSubmission(CourseError):
     """The submitted file can't be graded: it gets zero, and this text as the reason."""
 
 
+class DamagedResult(CourseError):
+    """A graded notebook is no longer one: grading makes it anew."""
+
+
 class TaskFailed(CourseError):
     """A submission came to no result: it is not graded, and the next one may be."""
 

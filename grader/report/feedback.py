@@ -5,12 +5,12 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
 
-import nbformat
 from nbconvert.exporters import Exporter
 from nbformat import NotebookNode
 from nbgrader.preprocessors import ClearHiddenTests, GetGrades
 from traitlets.config import Config
 
+from grader.common.errors import DamagedResult
 from grader.common.files import write_whole
 from grader.common.futures import run_ahead
 from grader.common.parsing import AT_ONCE, Limits, ParsingFailed, call_off, parse
@@ -21,6 +21,7 @@ from grader.storage.database import connected, one_engine
 from grader.storage.gradebook import recover
 from grader.storage.held_scores import held_score
 from grader.storage.pipeline import resources_of
+from grader.storage.records import graded_notebook
 from grader.storage.submission_rows import SubmissionRows
 
 ABOUT = ('student', 'assignment', 'score', 'max_score', 'late_penalty')
@@ -125,7 +126,7 @@ def write_feedback(
         for (student, assignment, _), work in run_ahead(whose, start, at_most=2 * AT_ONCE):
             try:
                 place, is_new = _put(course, student, assignment, work.result())
-            except ParsingFailed as why:
+            except (DamagedResult, ParsingFailed) as why:
                 say(f'{assignment} of {student} has no page of feedback, for {why}')
                 continue
             except Exception as error:
@@ -175,8 +176,7 @@ def write_page(
 def _gathered(
     course: Course, student: str, assignment: str, exporter: FeedbackPage
 ) -> tuple[NotebookNode, dict]:
-    graded = course.folder('autograded', student, assignment) / f'{assignment}.ipynb'
-    notebook = nbformat.read(graded, as_version=4)
+    notebook = graded_notebook(course, student, assignment)
     shown, at = exporter.gathered(notebook, resources_of(course, assignment, student))
     return shown, at['nbgrader']
 

@@ -20,6 +20,7 @@ from nbgrader.api import (
 from sqlalchemy import select
 from sqlalchemy.orm import selectinload
 
+from grader.common.errors import DamagedResult
 from grader.course import Course
 from grader.notebook.own_files import parsed
 from grader.notebook.restore import KEY, grade_id
@@ -98,9 +99,18 @@ def verdicts_in(graded: NotebookNode) -> dict[str, dict]:
 
 
 def graded_notebook(course: Course, student_id: str, assignment: str) -> NotebookNode:
-    """Return the executed notebook of a submission; one without cells where there is none."""
+    """Return the executed notebook of a submission; one without cells where there is none.
+
+    Raises DamagedResult where the file is no notebook any more.
+    """
     path = course.folder('autograded', student_id, assignment) / f'{assignment}.ipynb'
-    return parsed(path.read_text('utf-8')) if path.exists() else nbformat.v4.new_notebook()
+    if not path.exists():
+        return nbformat.v4.new_notebook()
+    try:
+        return parsed(path.read_text('utf-8'))
+    except ValueError:
+        again = f'run ./course grade --student {student_id}, which grades it again'
+        raise DamagedResult(f'the graded notebook {path} is damaged: {again}') from None
 
 
 def _graded(
