@@ -8,7 +8,7 @@ from pathlib import Path
 try:
     from grader.authoring.release_passes import CODE_STUB, PASSES
     from grader.autograde.locking import lock_while_grading
-    from grader.autograde.submitted_files import read_timestamps_as_we_do
+    from grader.autograde.submitted_files import files_of_solved_packages, read_timestamps_as_we_do
     from grader.common.errors import CourseError
     from grader.common.logs import NBGRADER_LOGGING
     from grader.course import Course
@@ -21,6 +21,7 @@ try:
     try:
         db_url = course.db_url  # in SQLite, or what gradebook/database.toml says
         make_ready(course)
+        solved_packages = files_of_solved_packages(course)
     except CourseError as problem:
         raise SystemExit(f'course: {problem}') from None
     read_timestamps_as_we_do()
@@ -51,6 +52,7 @@ c.ClearMarkScheme.enforce_metadata = False
 c.Autograde.exporter_class = 'grader.autograde.submitted_files.AutogradeExporter'
 c.Autograde.sanitize_preprocessors = list(SANITIZE_PASSES)
 c.Autograde.autograde_preprocessors = list(AUTOGRADE_PASSES)
+c.Autograde.exclude_overwriting = solved_packages
 c.Autograde.pre_convert_hook = 'grader.storage.gradebook.register_before_autograde'
 c.GenerateFeedback.preprocessors = list(FEEDBACK_PASSES)
 c.GenerateFeedback.exporter_class = 'grader.report.feedback.FeedbackPage'

@@ -115,10 +115,12 @@ def tasks(monkeypatch):
 
 @pytest.mark.parametrize('in_a_loop', [False, True], ids=['command', 'formgrader'])
 def test_running_takes_the_students_seed_and_the_students_files(course, tasks, in_a_loop):
-    folder = course.folder('autograded', 'ada', TOY)
-    folder.mkdir(parents=True, exist_ok=True)
+    folder = submit(course, 'ada', answered(course, ANSWER)).parent
     (folder / 'helper.py').write_text('')
     (folder / 'data.csv').write_text('')
+    masters = course.folder('autograded', 'ada', TOY)  # what nbgrader puts there does not count
+    masters.mkdir(parents=True, exist_ok=True)
+    (masters / 'helper.py').write_text('of the instructor')
     notebook = nbformat.v4.new_notebook(cells=[new_code_cell('x')])
 
     async def formgrader():

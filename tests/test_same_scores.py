@@ -18,8 +18,9 @@ BY_COMMAND = (
     '03_publisher-pass-deleted_grade_cells',
     '03_publisher-zero-another_assignment',
     '03_publisher-zero-not_json',
+    '12_package-fail-no_setup_py',
 )
-"""One of each outcome, of one assignment; `./course test --slow` takes all of them."""
+"""One of each outcome, and a package; `./course test --slow` takes all of them."""
 FORMGRADER = """
 import asyncio, sys
 from nbgrader.apps import NbGrader
@@ -48,7 +49,7 @@ def course(tmp_path):
 
 
 @pytest.mark.slow  # test_nbgrader_commands.py does so with a small lesson
-@pytest.mark.timeout(1800)
+@pytest.mark.timeout(3600)  # one answer after the other
 @pytest.mark.parametrize('names', [BY_COMMAND, tuple(PATHS)], ids=['some', 'all'])
 def test_nbgrader_autograde_gives_the_same_scores(course, names):
     hand_in(course, names)
@@ -59,7 +60,7 @@ def test_nbgrader_autograde_gives_the_same_scores(course, names):
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(1800)
+@pytest.mark.timeout(3600)  # one answer after the other
 def test_the_formgraders_call_gives_the_same_scores(course):
     hand_in(course, PATHS)
     for assignment, students in by_assignment(PATHS).items():

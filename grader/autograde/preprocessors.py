@@ -2,7 +2,6 @@
 
 import atexit
 from functools import cache
-from pathlib import Path
 
 import nbformat
 from nbconvert.preprocessors import Preprocessor
@@ -19,13 +18,16 @@ from grader.workers.workers import Workers
 
 
 def submission_of(resources: dict) -> Submission:
-    """Return what nbgrader is about to grade, read anew from the folder that it names."""
-    at = resources['nbgrader']
+    """Return what nbgrader is about to grade, read anew from what was handed in.
+
+    Not from autograded/: nbgrader puts the instructor's files, a solved package, over those there.
+    """
+    course, at = Course.of_nbgrader(resources), resources['nbgrader']
     return read_submission(
-        Path(resources['metadata']['path']),
+        course.folder('submitted', at['student'], at['assignment']),
         student_id=at['student'],
         assignment=at['assignment'],
-        packages=Course.of_nbgrader(resources).packages(at['assignment']),
+        packages=course.packages(at['assignment']),
     )
 
 

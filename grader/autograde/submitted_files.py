@@ -15,6 +15,7 @@ from nbgrader.coursedir import CourseDirectory
 
 from grader.autograde.preprocessors import RestoreSubmission
 from grader.common.dates import date_of
+from grader.course import Course
 from grader.notebook.submission import TIMESTAMP
 
 
@@ -39,3 +40,20 @@ def existing_timestamp(course: CourseDirectory, dest_path: str) -> datetime | No
 def read_timestamps_as_we_do() -> None:
     """Let nbgrader's commands read timestamps so; none of its options does it."""
     CourseDirectory.get_existing_timestamp = existing_timestamp
+
+
+def files_of_solved_packages(course: Course) -> dict[str, list[str]]:
+    """Return the files of packages in solutions/, by assignment, relative to its folder.
+
+    They are no master versions: autograded/ is to hold the students' own packages.
+    """
+    found = {}
+    for assignment in course.assignments():
+        folder = course.source_path(assignment).parent
+        files = [
+            path for name in course.packages(assignment) for path in (folder / name).rglob('*')
+        ]
+        found[assignment] = sorted(
+            str(path.relative_to(folder)) for path in files if path.is_file()
+        )
+    return found
