@@ -100,6 +100,21 @@ _COROUTINE = (
     ('words = [self.visit', 'words = [await self.visit'),
     ('        player.play()\n', '        rclpy.get_global_executor().create_task(player.play)\n'),
 )
+_FOUR_THREADS = (
+    (
+        'from rclpy.executors import ExternalShutdownException\n',
+        'from rclpy.callback_groups import ReentrantCallbackGroup\n'
+        'from rclpy.duration import Duration\n'
+        'from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor\n',
+    ),
+    (
+        'self.execute, **callbacks)',
+        'self.execute, callback_group=ReentrantCallbackGroup(), **callbacks)',
+    ),
+    ('async def execute', 'def execute'),
+    ('await self.sleep(0.05)', 'self.get_clock().sleep_for(Duration(seconds=0.05))'),
+    ('rclpy.spin(ArmDriver())', 'rclpy.spin(ArmDriver(), MultiThreadedExecutor(4))'),
+)
 
 RIGHT = (
     Change('usual', lambda files: None),
@@ -117,6 +132,7 @@ RIGHT = (
             ('rclpy.spin(ArmDriver())', 'rclpy.spin(ArmDriver(), MultiThreadedExecutor(2))'),
         ),
     ),
+    Change('blocks_one_of_four_threads', swap(DRIVER, *_FOUR_THREADS)),
     Change(
         'commas_and_a_log',
         swap(

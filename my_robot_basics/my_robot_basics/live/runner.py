@@ -18,6 +18,7 @@ from my_robot_basics.live import (
     node_file,
     notebook,
     spinning,
+    thread_pools,
 )
 from my_robot_basics.live.background import Background
 from my_robot_basics.live.destroying import destroy
@@ -182,6 +183,7 @@ def set_up() -> int:
             if not classroom.in_grading_room():
                 spinning.help_in_cells()
         harmless_errors.hide()
+        thread_pools.let_threads_begin()
         atexit.register(_leave_nothing, os.getpid())
     return domain_id
 
