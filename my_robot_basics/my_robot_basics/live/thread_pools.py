@@ -25,14 +25,14 @@ class PromptPool(ThreadPoolExecutor):
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future:
         """Hand in a callback, and wait until a thread has begun it, or for BEGIN_SEC."""
-        begun = threading.Event()
+        started = threading.Event()
 
         def begin() -> Any:
-            begun.set()
+            started.set()
             return fn(*args, **kwargs)
 
         future = super().submit(begin)
-        begun.wait(BEGIN_SEC)
+        started.wait(BEGIN_SEC)
         return future
 
 
