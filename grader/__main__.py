@@ -26,9 +26,12 @@ def main(arguments: list[str] | None = None, *, course: 'Course | None' = None) 
     with stoppable() as stop:
         try:
             # arguments are known to be right: only now what takes long to import
-            from grader.common.lean_imports import leave_out_servers
+            if begin := getattr(asked, 'begin', None):
+                begin(asked)
+            from grader.common.lean_imports import leave_out_formats, leave_out_servers
 
             leave_out_servers()
+            leave_out_formats()
             from grader.common.logs import log_visibly
             from grader.course import Course
             from grader.storage.failures import in_sentences

@@ -12,7 +12,7 @@ from grader.storage.database import one_engine
 from grader.storage.deadlines import deadlines
 from grader.storage.failures import in_sentences
 from grader.storage.lock import gradebook_lock
-from grader.storage.submitted import SubmissionFolder
+from grader.storage.submitted import SubmissionFolder, is_new
 from grader.workers.backend import Backend
 from grader.workers.workers import Workers
 
@@ -39,7 +39,7 @@ def grade_all(
     """
     with backend or Workers() as backend:
         isolated = backend.require_isolation(trust_students=trust_students)
-        if force or any(_is_new(course, each) for each in submissions):
+        if force or any(is_new(course, each) for each in submissions):
             backend.begin()  # it gets ready while lessons and submissions are read
         grading = Grading(course, backend, isolated, seed, trust_students, force)
         assignments = _prepare(grading, submissions)
@@ -52,12 +52,6 @@ def grade_all(
         with one_engine(course.db_url):
             for found, work in run_ahead(submissions, start, at_most=AHEAD * backend.capacity):
                 yield grading.store(found, work)
-
-
-def _is_new(course: Course, found: SubmissionFolder) -> bool:
-    """Whether a submission has no result that could still hold."""
-    graded = course.folder('autograded', found.student_id, found.assignment)
-    return not found.problem and not (graded / f'{found.assignment}.ipynb').exists()
 
 
 def _prepare(

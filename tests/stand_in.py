@@ -7,6 +7,7 @@ import pytest
 from nbformat import NotebookNode
 
 from grader import grade, replay
+from grader.cli import begin_grade
 from grader.common.pool import Pool
 from grader.judging import task
 from grader.judging.execute import Execution
@@ -19,12 +20,15 @@ class Here:
 
     capacity = 4
 
+    def __init__(self, number=None):
+        self._pools = []
+
     def __enter__(self):
-        self._pool = Pool(self.capacity).__enter__()
+        self._pools.append(Pool(self.capacity).__enter__())
         return self
 
     def __exit__(self, *exception):
-        self._pool.__exit__(*exception)
+        self._pools.pop().__exit__(*exception)
 
     def begin(self):
         pass
@@ -33,7 +37,7 @@ class Here:
         return require_isolation(trust_students=trust_students)
 
     def submit(self, work):
-        return self._pool.submit(self._graded, work)
+        return self._pools[-1].submit(self._graded, work)
 
     async def _graded(self, work):
         return task.unpack(await task.run_packed(task.pack(work)), work)
@@ -49,5 +53,5 @@ def stand_in(look: Callable[..., Awaitable[Execution]], patch: pytest.MonkeyPatc
         return execution
 
     patch.setattr(task, 'execute_exercises', looked)
-    patch.setattr(grade, 'Workers', Here)
-    patch.setattr(replay, 'Workers', Here)
+    for module in (begin_grade, grade, replay):
+        patch.setattr(module, 'Workers', Here)

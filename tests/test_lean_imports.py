@@ -29,6 +29,15 @@ assert not hasattr(nbgrader, 'nonsense')
 assert nbgrader._jupyter_server_extension_points() == [{'module': 'nbgrader'}]
 print(nbgrader.__version__)
 """
+FORMATS = """
+import sys
+from grader.common.lean_imports import FORMATS, leave_out_formats
+leave_out_formats()
+import nbformat, jsonschema
+assert not {*FORMATS} & {*sys.modules}
+import isoduration
+print(isoduration.parse_duration('PT3S').time.seconds)
+"""
 CACHES = """
 import json, sys
 from grader.sandbox.font_cache import font_cache
@@ -49,6 +58,10 @@ def said_by(program, **variables):
 
 def test_what_was_left_out_is_made_when_it_is_asked_for():
     assert said_by(LEAN).strip() == version('nbgrader')
+
+
+def test_formats_that_no_schema_names_are_not_imported_and_can_be_later():
+    assert said_by(FORMATS).strip() == '3'
 
 
 @pytest.mark.parametrize('name', ['MPLCONFIGDIR', 'XDG_CACHE_HOME', 'HOME'])

@@ -59,7 +59,7 @@ def test_a_stopped_run_says_how_to_go_on(tmp_path, capsys, monkeypatch):
     def interrupted(*_, **__):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr('grader.cli.grade_verb.find_submissions', interrupted)
+    monkeypatch.setattr('grader.cli.begin_grade.find_submissions', interrupted)
     assert main(['grade'], course=Course.at(tmp_path)) == 130
     assert 'run it again to go on' in capsys.readouterr().err
 

@@ -25,7 +25,8 @@ def told(monkeypatch, tmp_path):
 
     def run(number):
         monkeypatch.setattr(
-            'grader.cli.grade_verb.find_submissions', lambda *_, **__: signal.raise_signal(number)
+            'grader.cli.begin_grade.find_submissions',
+            lambda *_, **__: signal.raise_signal(number),
         )
         return main(['grade'], course=Course.at(tmp_path))
 

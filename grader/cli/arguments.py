@@ -100,7 +100,7 @@ def make_parser() -> argparse.ArgumentParser:
     )
     text, known = 'of the page that reports the run', [ENGLISH, *languages(LOCALE)]
     verb.add_argument('--language', choices=known, default=ENGLISH, help=text)
-    verb.set_defaults(run=verbs.run_grade)
+    verb.set_defaults(run=verbs.run_grade, begin=verbs.begin_grade)
 
     verb = subparsers.add_parser('serve', help='grade what is handed in, as soon as it is')
     verb.add_argument(

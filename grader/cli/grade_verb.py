@@ -1,6 +1,7 @@
 """What `./course grade` does and prints: it grades, or grades once more and compares."""
 
 import argparse
+from collections.abc import Sequence
 from datetime import datetime
 
 from grader.common.asked import RECORDED
@@ -16,20 +17,31 @@ from grader.report.progress_table import changes, print_rows
 from grader.report.report import Run, write_report
 from grader.storage.database import one_engine
 from grader.storage.deadlines import extended_for_nobody
-from grader.storage.submitted import SubmissionFolder, find_submissions
+from grader.storage.submitted import SubmissionFolder
 from grader.workers.backend import Backend
 from grader.workers.workers import Workers
 
 
-def run_grade(course: Course, asked: argparse.Namespace) -> int:
-    """Grade, a row for each submission, and write the report. 1 where one could not be graded."""
+def run_grade(
+    course: Course,
+    asked: argparse.Namespace,
+    submissions: Sequence[SubmissionFolder],
+    workers: Workers | None = None,
+) -> int:
+    """Grade, a row for each submission, and write the report. 1 where one could not be graded.
+
+    The `workers` are this machine's; without them, a cluster is asked for.
+    """
     with one_engine(course.db_url):
-        return _run_grade(course, asked)
+        return _run_grade(course, asked, submissions, _backend(asked, workers))
 
 
-def _run_grade(course: Course, asked: argparse.Namespace) -> int:
-    backend = _backend(asked)
-    submissions = find_submissions(course, assignment=asked.assignment, student_id=asked.student)
+def _run_grade(
+    course: Course,
+    asked: argparse.Namespace,
+    submissions: Sequence[SubmissionFolder],
+    backend: Backend,
+) -> int:
     if asked.store and asked.seed == RECORDED:
         raise CourseError('--store needs --seed HEX: what is recorded is stored already')
     if asked.seed and not asked.store:
@@ -69,14 +81,14 @@ def _run_grade(course: Course, asked: argparse.Namespace) -> int:
     return 1 if failed else 0
 
 
-def _backend(asked: argparse.Namespace) -> Backend | None:
+def _backend(asked: argparse.Namespace, workers: Workers | None) -> Backend:
     from grader.workers.dask_client import Certificates
 
     certificates = Certificates(asked.tls_ca_file, asked.tls_cert, asked.tls_key)
-    if not asked.dask:
+    if workers:
         if certificates != Certificates():
             raise CourseError('--tls-ca-file, --tls-cert and --tls-key go with --dask tls://…')
-        return Workers(asked.workers) if asked.workers else None
+        return workers
     if asked.trust_students:
         raise CourseError(
             '--trust-students and --dask do not go together: a worker without a sandbox would '
@@ -89,9 +101,9 @@ def _backend(asked: argparse.Namespace) -> Backend | None:
 
 def _replay(
     course: Course,
-    submissions: list[SubmissionFolder],
+    submissions: Sequence[SubmissionFolder],
     asked: argparse.Namespace,
-    backend: Backend | None,
+    backend: Backend,
 ) -> int:
     same = True
     for line, as_stored in replay(

@@ -85,17 +85,19 @@ def run_due(course: 'Course', asked: argparse.Namespace) -> int:
     return 0
 
 
-def run_grade(course: 'Course', asked: argparse.Namespace) -> int:
-    """Grade, a row for each submission, or grade once more and compare."""
-    from grader.common.lean_imports import uncollected
+def begin_grade(asked: argparse.Namespace) -> None:
+    """Begin to try the sandbox: programs are waited for, and so much can be imported meanwhile."""
     from grader.kernels.isolation import look_ahead
 
     if not asked.dask:
-        look_ahead()  # what it starts is waited for while the rest is imported
-    with uncollected():
-        from grader.cli import grade_verb
+        look_ahead()
 
-    return grade_verb.run_grade(course, asked)
+
+def run_grade(course: 'Course', asked: argparse.Namespace) -> int:
+    """Grade, a row for each submission, or grade once more and compare."""
+    from grader.cli import begin_grade
+
+    return begin_grade.run_grade(course, asked)
 
 
 def run_serve(course: 'Course', asked: argparse.Namespace) -> int:

@@ -9,7 +9,7 @@ from typing import Any
 from my_robot_basics.validate.cells import KEY
 from nbformat import NotebookNode
 
-from grader.course import ROOT
+from grader.common.checkout import ROOT
 
 EVERYBODYS = ('/', '/usr', '/usr/local')
 """Folders that tell nothing of anybody."""

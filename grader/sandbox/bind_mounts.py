@@ -7,7 +7,7 @@ from functools import cache
 from pathlib import Path
 
 import my_robot_basics
-from grader.course import ROOT
+from grader.common.checkout import ROOT
 from grader.sandbox.font_cache import font_cache
 
 _SYSTEM = ('/usr', '/bin', '/sbin', '/lib', '/lib32', '/lib64', '/libx32')

@@ -53,6 +53,12 @@ def find_submissions(
     return found
 
 
+def is_new(course: Course, found: SubmissionFolder) -> bool:
+    """Whether a submission has no result that could still hold."""
+    graded = course.folder('autograded', found.student_id, found.assignment)
+    return not found.problem and not (graded / f'{found.assignment}.ipynb').exists()
+
+
 def _of_student(student: Path, known: list[str]) -> Iterator[SubmissionFolder]:
     where = f'expected {student.parent.name}/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb'
     name = student.name

@@ -51,15 +51,20 @@ class Workers:
         self._command = command or scoped(COMMAND)
         self._processes: list[WorkerProcess] = []
         self._pool = Pool(self.capacity)
+        self._entered = 0
 
     def __enter__(self) -> Self:
-        """Begin to take tasks."""
-        self._pool.__enter__()
+        """Begin to take tasks; inside a `with` of the same, nothing changes."""
+        if not self._entered:
+            self._pool.__enter__()
+        self._entered += 1
         return self
 
     def __exit__(self, *exception: object) -> None:
-        """End what still runs."""
-        self._pool.__exit__(*exception)
+        """End what still runs, at the end of the outermost `with`."""
+        self._entered -= 1
+        if not self._entered:
+            self._pool.__exit__(*exception)
 
     def begin(self) -> None:
         """Start the first process: it imports while this one does other things."""

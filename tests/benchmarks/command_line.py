@@ -33,13 +33,16 @@ FIXED = {
 """Commands that read and write nothing of a gradebook."""
 NOTHING_NEW, FIRST = 'grade, nothing new', 'grade, one, cold'
 ELSEWHERE = """
-import sys
+import dataclasses, sys
 from pathlib import Path
-from grader.__main__ import main
-from grader.course import Course
-sys.exit(main(['grade'], course=Course(gradebook=Path(sys.argv[1]))))
+from grader import __main__
+from grader.cli import verbs
+def grade(course, asked):
+    return run(dataclasses.replace(course, gradebook=Path(sys.argv[1])), asked)
+run, verbs.run_grade = verbs.run_grade, grade
+sys.exit(__main__.main(['grade']))
 """
-"""What the launcher starts for `./course grade`, with another gradebook."""
+"""What the launcher starts for `./course grade`, with another gradebook, in the same order."""
 
 
 @dataclass
