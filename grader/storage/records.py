@@ -131,7 +131,8 @@ def _graded(
     found: dict[str, SubmittedNotebook] = {}
     for first in range(0, len(students), MOST_ASKED):
         some = SubmittedAssignment.student_id.in_(students[first : first + MOST_ASKED])
-        found |= dict(book.db.execute(asked.where(some)).tuples().all())
+        for student, notebook in book.db.execute(asked.where(some)):
+            found[student] = notebook
     return found
 
 
