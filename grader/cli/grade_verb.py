@@ -19,21 +19,17 @@ from grader.storage.database import one_engine
 from grader.storage.deadlines import extended_for_nobody
 from grader.storage.submitted import SubmissionFolder
 from grader.workers.backend import Backend
-from grader.workers.workers import Workers
 
 
 def run_grade(
     course: Course,
     asked: argparse.Namespace,
     submissions: Sequence[SubmissionFolder],
-    workers: Workers | None = None,
+    backend: Backend,
 ) -> int:
-    """Grade, a row for each submission, and write the report. 1 where one could not be graded.
-
-    The `workers` are this machine's; without them, a cluster is asked for.
-    """
+    """Grade, a row for each submission, and write the report. 1 where one could not be graded."""
     with one_engine(course.db_url):
-        return _run_grade(course, asked, submissions, _backend(asked, workers))
+        return _run_grade(course, asked, submissions, backend)
 
 
 def _run_grade(
@@ -79,24 +75,6 @@ def _run_grade(
         f'Report: {report}\nNext: ./course feedback, ./course scores'
     )
     return 1 if failed else 0
-
-
-def _backend(asked: argparse.Namespace, workers: Workers | None) -> Backend:
-    from grader.workers.dask_client import Certificates
-
-    certificates = Certificates(asked.tls_ca_file, asked.tls_cert, asked.tls_key)
-    if workers:
-        if certificates != Certificates():
-            raise CourseError('--tls-ca-file, --tls-cert and --tls-key go with --dask tls://…')
-        return workers
-    if asked.trust_students:
-        raise CourseError(
-            '--trust-students and --dask do not go together: a worker without a sandbox would '
-            'run what students wrote with the rights of all the cluster'
-        )
-    from grader.workers.dask_backend import Cluster
-
-    return Cluster(asked.dask, certificates)
 
 
 def _replay(
