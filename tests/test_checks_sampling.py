@@ -337,12 +337,16 @@ def test_a_machine_is_blamed_only_for_what_it_can_do(monkeypatch, gaps_sec, late
         ([*STARVED_GAPS, *[0.2] * 12], True, Starved),
         ([*STARVED_GAPS, *[0.2] * 12], False, CheckFailed),
         ([0.22] * 16, True, CheckFailed),
+        ([0.206, 0.2065] * 10, True, Starved),
+        ([0.206, 0.2065] * 10, False, CheckFailed),
+        ([0.194, 0.1945] * 10, True, CheckFailed),
         ([*[0.2] * 9, 0.4, *[0.2] * 9], True, Starved),
         ([*[0.2] * 9, 0.4, *[0.2] * 9], False, CheckFailed),
         ([*[0.21] * 9, 0.42, *[0.21] * 9], True, CheckFailed),
     ],
     ids=[
         *('0.7 of the rate', 'nearly right', 'idle', '4.5 Hz'),
+        *('late each time', 'late each time, idle', 'early each time'),
         *('one pause', 'one pause, idle', 'one pause of another rate'),
     ],
 )
