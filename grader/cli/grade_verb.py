@@ -58,7 +58,7 @@ def _run_grade(
         for row in print_rows(graded, submissions):
             rows.append(row)
     except KeyboardInterrupt:
-        graded.close()  # ends all that runs, before anybody reads that
+        graded.close()  # nothing more is started; what runs is ended before anybody reads that
         summary = f'{len(rows)} of {len(submissions)} submissions are graded and stored'
         raise KeyboardInterrupt(summary) from None
     report = write_report(course, run, rows, language=asked.language)
