@@ -40,6 +40,7 @@ def executor():
     node.destroy_node()
 
 
+@pytest.mark.starts
 def test_a_callback_is_handed_to_the_pool_once(executor, monkeypatch):
     handed_in = []
     submit = executor._executor.submit

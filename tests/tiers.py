@@ -22,7 +22,7 @@ HARMLESS = re.compile(
     r'(?:\S*/)?(?:git|ruff|shellcheck|ldd|readelf|true|false|sleep|tar|unzip|alembic) .*'
     r'|(?:\S*/)?(?:sh|bash|dash|busybox|unshare)\b.*|.*/(?:course|\.ci/run)\b.*|/nowhere/.*'
     r'|bwrap --version |bwrap .* true '
-    r'|\S*/python\S* (?:-P )?-m (?:grader[.\w]*parsing|nbgrader generate_assignment)\b.*',
+    r'|\S*/python\S* (?:-P )?-m (?:grader[.\w]*parsing_process|nbgrader generate_assignment)\b.*',
     re.DOTALL,
 )
 """Commands that any test may run: none of them starts a kernel, and each ends by itself."""
