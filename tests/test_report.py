@@ -272,6 +272,7 @@ def test_two_runs_of_one_second_keep_their_reports(course):
     ]
 
 
+@pytest.mark.starts
 def test_a_demo_leaves_a_report_too(released, tmp_path, capsys, monkeypatch):
     monkeypatch.setattr('tempfile.tempdir', str(tmp_path))
     samples = tmp_path / 'samples'
