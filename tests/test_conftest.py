@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import pytest
 import rclpy.context
 
+from grader.common.parsing import COMMAND
 from tests import ordinary, tiers
 from tests.conftest import GUARD, LONG
 
@@ -81,4 +82,15 @@ def test_a_quick_test_starts_nothing(start, monkeypatch, request):
     with pytest.raises(RuntimeError, match='is not marked as a test that starts'):
         start()
     with pytest.raises(pytest.fail.Exception, match='and has no mark that says so'):
+        guard.end()
+
+
+def test_a_test_without_the_mark_fails_in_an_ordinary_run_too(monkeypatch, request):
+    guard = request.config.stash[GUARD]
+    monkeypatch.setattr(guard, 'refuses', False)
+    subprocess.run(COMMAND, stdin=subprocess.DEVNULL)  # reads what students wrote: any test may
+    guard.end()
+    guard.begin(request.node)
+    subprocess.run(['bwrap', '--help'], capture_output=True)
+    with pytest.raises(pytest.fail.Exception, match='starts the process bwrap --help'):
         guard.end()

@@ -2,14 +2,15 @@
 
 `./course test --quick` takes no test that starts a kernel, a node, a browser or a sandbox. Such a
 test has the mark `starts`. It gets it here where another mark or a fixture says so, and otherwise
-has it by hand: a name in STARTING_FILES, a decorator, or `@starts` below `@pytest.fixture`. In
-that tier, any other test that starts one fails.
+has it by hand: a name in STARTING_FILES, a decorator, or `@starts` below `@pytest.fixture`. Any
+other test that starts one fails, in each tier.
 """
 
 import multiprocessing.util
 import os
 import re
 import sys
+import threading
 from collections.abc import Callable
 from pathlib import Path
 
@@ -98,10 +99,13 @@ def is_starting(item: pytest.Item) -> bool:
 
 
 class Guard:
-    """Refuses to start anything in the tier that starts nothing; counts ROS contexts in all."""
+    """Fails a test that starts something and has no mark that says so; counts ROS contexts.
+
+    In the tier that starts nothing it refuses to start it, too.
+    """
 
     def __init__(self, *, refuses: bool) -> None:
-        """Guard this process; without `refuses`, only count."""
+        """Guard this process; without `refuses`, what a test's own thread starts is noted."""
         self.refuses = refuses
         self.running: str | None = None
         self.refused: list[str] = []
@@ -113,7 +117,8 @@ class Guard:
         spawn = multiprocessing.util.spawnv_passfds  # it starts a process without an audit event
 
         def spawn_guarded(path: str, arguments: list, descriptors: list) -> int:
-            self.refuse(f'a process of multiprocessing, {os.fsdecode(path)}')
+            if self.refuses:  # other tiers have one of their own: preloaded.py
+                self.refuse(f'a process of multiprocessing, {os.fsdecode(path)}')
             return spawn(path, arguments, descriptors)
 
         multiprocessing.util.spawnv_passfds = spawn_guarded
@@ -127,8 +132,10 @@ class Guard:
         Context.init = init_guarded
 
     def begin(self, item: pytest.Item) -> None:
-        """Guard a test from its setup on."""
-        self.running = item.nodeid
+        """Guard a test from its setup on, unless it may start something."""
+        may_start = is_starting(item) or item.get_closest_marker('slow')
+        is_lesson = item.path.suffix == '.ipynb'
+        self.running = None if may_start or is_lesson else item.nodeid
         self.refused.clear()
 
     def end(self) -> None:
@@ -144,10 +151,14 @@ class Guard:
             )
 
     def refuse(self, what: str) -> None:
-        """Refuse to start something for the test that runs."""
-        if self.running and self.refuses:
+        """Refuse to start something for the test that runs, or note it."""
+        if not self.running:
+            return
+        if self.refuses:
             self.refused.append(what)
             raise RuntimeError(f'{self.running} is not marked as a test that starts {what}')
+        if threading.current_thread() is threading.main_thread():  # others may be of tests before
+            self.refused.append(what)
 
     def _see(self, event: str, arguments: tuple) -> None:
         if not self.running:
