@@ -1,12 +1,14 @@
 """A backend without rooms: what a function says of a notebook stands in for running it."""
 
 from collections.abc import Awaitable, Callable
+from concurrent.futures import Future
 from typing import Any
 
 import pytest
 from nbformat import NotebookNode
 
 from grader import grade, replay
+from grader.autograde import preprocessors
 from grader.cli import begin_grade
 from grader.common.pool import Pool
 from grader.judging import task
@@ -55,3 +57,18 @@ def stand_in(look: Callable[..., Awaitable[Execution]], patch: pytest.MonkeyPatc
     patch.setattr(task, 'execute_exercises', looked)
     for module in (begin_grade, grade, replay):
         patch.setattr(module, 'Workers', Here)
+
+
+def note_tasks(patch: pytest.MonkeyPatch, judge: Callable[[NotebookNode], NotebookNode]) -> list:
+    """Return what nbgrader's passes will hand to their worker; `judge` gives what comes back."""
+    seen: list[task.GradingTask] = []
+
+    class Noting:
+        def submit(self, work: task.GradingTask) -> Future:
+            seen.append(work)
+            done: Future = Future()
+            done.set_result(task.Result(judge(work.notebook), 1.0))
+            return done
+
+    patch.setattr(preprocessors, '_workers', Noting)
+    return seen

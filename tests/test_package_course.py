@@ -4,23 +4,20 @@ import os
 import shutil
 import subprocess
 import sys
-from concurrent.futures import Future
 
 import pytest
 from given_verdicts import executed
 from nbgrader.converters import Autograde
 from nbgrader.coursedir import CourseDirectory
 from package_maker import LESSON, PACKAGE, make_package, write_lesson
-from stand_in import stand_in
+from stand_in import note_tasks, stand_in
 from traitlets.config.loader import PyFileConfigLoader
 
 from grader.authoring import bundle as bundling
 from grader.authoring.release import release, stale_or_leaking
-from grader.autograde import preprocessors
 from grader.course import ROOT, Course
 from grader.grade import grade_all
 from grader.judging.execute import Execution
-from grader.judging.task import Result
 from grader.report.feedback import write_feedback
 from grader.storage.submitted import find_submissions
 
@@ -125,43 +122,27 @@ def test_its_files_reach_the_worker_and_a_change_is_noticed(course, seen):
     assert 'log (made by a build, which is done again at grading)' in text
 
 
-@pytest.fixture
-def tasks(monkeypatch):
-    """What nbgrader's passes hand to the worker."""
-    seen = []
-
-    class Stub:
-        def submit(self, task):
-            seen.append(task)
-            done = Future()
-            done.set_result(Result(executed(task.notebook, {'builds': '', 'runs': 'no'}), 1.0))
-            return done
-
-    monkeypatch.setattr(preprocessors, '_workers', Stub)
-    return seen
+def contents(folder):
+    """The files of the package in a folder, by their path there."""
+    found = (path for path in (folder / PACKAGE).rglob('*') if path.is_file())
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in found}
 
 
 def test_nbgrader_autograde_takes_the_students_package_and_not_the_solved_one(
-    released, tasks, monkeypatch
+    released, monkeypatch
 ):
+    tasks = note_tasks(
+        monkeypatch, lambda notebook: executed(notebook, {'builds': '', 'runs': ''})
+    )
     monkeypatch.chdir(released.root)
     place = released.folder('submitted', 'ada', LESSON)
     folder = make_package(place, node='# mine')
     (folder / 'setup.py').unlink()
     shutil.copy(released.release_path(LESSON), place)
-    handed_in = {
-        path.relative_to(place).as_posix(): path.read_bytes()
-        for path in folder.rglob('*')
-        if path.is_file()
-    }
+    handed_in = contents(place)
     config = PyFileConfigLoader('nbgrader_config.py', path=str(released.root)).load_config()
     course = CourseDirectory(config=config, assignment_id=LESSON, student_id='ada')
     Autograde(coursedir=course, config=config).start()
     [task] = tasks
     assert task.files == handed_in
-    kept = released.folder('autograded', 'ada', LESSON)
-    assert {
-        path.relative_to(kept).as_posix(): path.read_bytes()
-        for path in (kept / PACKAGE).rglob('*')
-        if path.is_file()
-    } == handed_in
+    assert contents(released.folder('autograded', 'ada', LESSON)) == handed_in

@@ -1,16 +1,15 @@
 """Our two preprocessors, as nbgrader calls them."""
 
 import asyncio
-from concurrent.futures import Future
 
 import nbformat
 import pytest
 from course_maker import TOY, answered, released_course, submit
 from nbformat.v4 import new_code_cell
+from stand_in import note_tasks
 
-from grader.autograde import preprocessors
 from grader.autograde.preprocessors import ExecuteRooms, RestoreSubmission
-from grader.judging.task import GradingTask, Result
+from grader.judging.task import GradingTask
 from grader.notebook.restore import KEY, grade_id
 
 ANSWER = 'def double(x): return 2 * x'
@@ -100,17 +99,7 @@ def test_the_unreadable_is_healed_to_nothing_with_its_problem(course, content):
 @pytest.fixture
 def tasks(monkeypatch):
     """What the second pass hands to the worker."""
-    seen = []
-
-    class Stub:
-        def submit(self, task):
-            seen.append(task)
-            done = Future()
-            done.set_result(Result(task.notebook, 1.0))
-            return done
-
-    monkeypatch.setattr(preprocessors, '_workers', Stub)
-    return seen
+    return note_tasks(monkeypatch, lambda notebook: notebook)
 
 
 @pytest.mark.parametrize('in_a_loop', [False, True], ids=['command', 'formgrader'])
