@@ -38,6 +38,13 @@ assert not {*FORMATS} & {*sys.modules}
 import isoduration
 print(isoduration.parse_duration('PT3S').time.seconds)
 """
+EARLY = """
+import sys
+import grader.kernels.isolation
+print('nbformat' in sys.modules)
+import grader.cli.begin_grade
+print('sqlalchemy' in sys.modules)
+"""
 CACHES = """
 import json, sys
 from grader.sandbox.font_cache import font_cache
@@ -62,6 +69,10 @@ def test_what_was_left_out_is_made_when_it_is_asked_for():
 
 def test_formats_that_no_schema_names_are_not_imported_and_can_be_later():
     assert said_by(FORMATS).strip() == '3'
+
+
+def test_the_sandbox_is_tried_and_a_worker_starts_before_what_takes_long_to_import():
+    assert said_by(EARLY).split() == ['False', 'False']
 
 
 @pytest.mark.parametrize('name', ['MPLCONFIGDIR', 'XDG_CACHE_HOME', 'HOME'])
