@@ -1,9 +1,12 @@
 """What strangers wrote is read in a process with limits."""
 
+import io
+import json
 import os
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import asdict
 
 import pytest
 from my_robot_basics.language.catalogues import LOCALE, languages
@@ -53,6 +56,17 @@ def test_who_waits_for_ever_is_ended_by_the_clock():
 def test_an_answer_that_is_too_long_is_none(monkeypatch):
     with pytest.raises(ParsingFailed, match='too long an answer'):
         parse('operator:mul', 'a', parsing.MAX_ANSWER_BYTES + 1)
+
+
+@pytest.mark.starts
+def test_an_answer_that_is_too_long_is_none_of_a_process_that_has_ended(monkeypatch):
+    """Where the rest of it fits into the pipe, the process needs no signal to end."""
+    monkeypatch.setattr(parsing_process, 'MAX_ANSWER_BYTES', 10)
+    monkeypatch.setattr(os, 'kill', lambda *_: None)
+    answers = io.BytesIO()
+    question = json.dumps(['operator:mul', ['a', 100], asdict(Limits())]).encode() + b'\n'
+    parsing_process.serve(io.BytesIO(question), answers)
+    assert 'too long an answer' in json.loads(answers.getvalue())['why']
 
 
 def test_a_full_disk_is_not_the_text_s_fault():

@@ -41,12 +41,14 @@ def _forked(call: Callable[..., object], arguments: list, limits: Limits) -> byt
     os.close(theirs)
     with open(ours, 'rb') as pipe:
         answer = pipe.read(MAX_ANSWER_BYTES)
-        if pipe.read(1):
+        is_too_long = bool(pipe.read(1))
+        if is_too_long:
             os.kill(process, signal.SIGKILL)
     _, status = os.waitpid(process, 0)
-    if os.waitstatus_to_exitcode(status) == 0:
-        return answer
-    return _packed({'why': _why(-os.waitstatus_to_exitcode(status), limits)})
+    number = os.waitstatus_to_exitcode(status)
+    if is_too_long:  # it may have ended before the signal came
+        number = -signal.SIGKILL
+    return answer if number == 0 else _packed({'why': _why(-number, limits)})
 
 
 def _answer_and_exit(
