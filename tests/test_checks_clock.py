@@ -1,12 +1,21 @@
 """Plain timers: exact on the clock that a check drives, and back on wall time after it."""
 
+import collections
 import contextlib
 import threading
 import time
 import types
 
 import pytest
-from my_robot_basics.checks import CheckFailed, barriers, clock, clock_budget, sampling, topic
+from my_robot_basics.checks import (
+    CheckFailed,
+    barriers,
+    clock,
+    clock_budget,
+    driven_topic,
+    sampling,
+    topic,
+)
 from my_robot_basics.exchange import student
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session import pressure
@@ -199,6 +208,68 @@ def test_a_busy_machine_does_not_use_up_the_time_for_driving_the_clock(
     assert budget.is_used(1.0) != is_left
 
 
+class Tired(Node):
+    """Publishes five times a second, and from some message on works for longer after it."""
+
+    def __init__(self, *, rests, **kwargs):
+        super().__init__('tired', **kwargs)
+        self.publisher = self.create_publisher(Empty, '/tired', 10)
+        self.rests = rests
+        self.create_timer(0.2, self.publish)
+
+    def publish(self):
+        self.publisher.publish(Empty())
+        self.rests -= 1
+        if self.rests < 0:
+            time.sleep(0.25)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize('rests', [0, 15])
+def test_a_callback_that_takes_longer_than_its_period_is_seen_whenever_that_begins(rests):
+    def make(context):
+        return Tired(rests=rests, context=context)
+
+    with spinning(make), Watcher() as watcher:
+        recorder = topic('/tired').listen(watcher)
+        found = sampling.simulated(watcher, recorder, seconds=10.0, step_sec=0.1)
+    assert str(found) == driven_topic.OVERRUNS
+
+
+@pytest.mark.parametrize('nodes', [1, 2])
+def test_what_is_due_saves_a_sole_node_the_questions(monkeypatch, nodes):
+    calls = collections.Counter()
+
+    def count(cls, name):
+        method = getattr(cls, name)
+
+        def counted(*args, **options):
+            calls[name] += 1
+            return method(*args, **options)
+
+        monkeypatch.setattr(cls, name, counted)
+
+    count(clock.SimulatedClock, 'tick')
+    count(clock.SimulatedClock, 'acknowledge')
+    with contextlib.ExitStack() as stack:
+        if nodes > 1:
+            stack.enter_context(spinning(lambda context: Node('other', context=context)))
+        stack.enter_context(running('five_hz'))
+        recording = topic(TOPIC).record(seconds=10.0)
+    assert (recording.clock, len(recording.messages)) == ('simulated', 50)
+    # nearly each of the 50 messages was due
+    assert (calls['tick'] - calls['acknowledge'] > 40) == (nodes == 1)
+
+
+def test_a_tick_is_asked_about_where_what_is_due_does_not_come():
+    with running('five_hz'), Watcher() as watcher:
+        with clock.SimulatedClock(watcher, needed={'/kinematics_publisher'}) as simulated:
+            told = []
+            for _ in range(3):
+                simulated.tick(10**8, until=lambda: told.append(1))
+        assert len(told) >= 3
+
+
 class Counter(Node):
     """Publishes twice a second, with every so manieth call of a timer that steps skip calls of."""
 
@@ -243,9 +314,9 @@ def test_coarse_steps_prove_a_slow_period_in_little_time(monkeypatch):
     steps_ns = set()
 
     class Ticks(clock.SimulatedClock):
-        def tick(self, step_ns):
+        def tick(self, step_ns, **options):
             steps_ns.add(step_ns)
-            super().tick(step_ns)
+            super().tick(step_ns, **options)
 
     monkeypatch.setattr(sampling, 'SimulatedClock', Ticks)
     with running('fifth_hz'):

@@ -2,7 +2,7 @@
 
 import statistics
 import time
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 from rcl_interfaces.srv import GetParameters
 from rclpy.client import Client
@@ -15,6 +15,7 @@ from my_robot_basics.session.pressure import Stopwatch
 
 NOTHING = GetParameters.Request()
 """A question about no parameter: the answer is all that counts."""
+PROMPT_SEC = 0.01
 SLOWEST_BARRIER_SEC = 0.5
 SLOWEST_MEDIAN_SEC = 0.02
 MEDIAN_EVERY = 40
@@ -53,6 +54,10 @@ class Barriers:
         request = GetParameters.Request(names=['use_sim_time'])
         asked = self._clients if names is None else names
         return {name: self._clients[name].call_async(request) for name in asked}
+
+    def are_passed(self, until: Callable[[], bool]) -> bool:
+        """Whether `until()` is true soon: of a sole node, that tells what an answer would."""
+        return len(self) == 1 and self._watcher.spin_until(until, timeout_sec=PROMPT_SEC)
 
     def acknowledge(self, questions: int) -> None:
         """Wait until every node has answered so many questions. Raises TooSlow.

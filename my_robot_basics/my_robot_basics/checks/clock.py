@@ -6,7 +6,7 @@ loaded the machine is. A node that doesn't follow raises Inconclusive, and wall 
 
 import bisect
 import time
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Self
 
 from rcl_interfaces.srv import SetParameters
@@ -91,14 +91,16 @@ class SimulatedClock:
             self._publish()
             self._watcher.spin_for(min(left, HELD_EVERY_SEC))
 
-    def tick(self, step_ns: int) -> None:
+    def tick(self, step_ns: int, *, until: Callable[[], bool] | None = None) -> None:
         """Move the clock and wait until every node has dealt with it. Raises Inconclusive.
 
         A node's executor takes the tick in one pass and fires its timers in the next, and it
-        answers one question a pass: the second answer tells that both are over.
+        answers one question a pass: the second answer tells that both are over. So does, of a
+        sole node, what its timer brings: where `until()` is true soon, nobody is asked.
         """
         self.show(self.now_ns + step_ns)
-        self.acknowledge()
+        if until is None or not self._barriers.are_passed(until):
+            self.acknowledge()
         self._expect_time_left()
 
     def show(self, time_ns: int) -> None:
@@ -149,7 +151,7 @@ class SimulatedClock:
             free_sec=FIRST_ANSWER_SEC,
         )
         asked = self._barriers.ask()
-        self._answered(asked.values(), FIRST_ANSWER_SEC)
+        self._watcher.spin_until_free(_all_done(asked.values()), free_sec=FIRST_ANSWER_SEC)
         answered = {name: future.result() for name, future in asked.items() if future.done()}
         self._barriers.keep(answered)
         if not self._needed <= set(answered):
@@ -161,7 +163,8 @@ class SimulatedClock:
             for name, reply in answered.items()
         }
         self.now_ns = max(time.time_ns(), _latest_ns)
-        self._answered(self._set_all(dict.fromkeys(self._former, True)), FIRST_ANSWER_SEC)
+        switched = self._set_all(dict.fromkeys(self._former, True))
+        self._watcher.spin_until_free(_all_done(switched), free_sec=FIRST_ANSWER_SEC)
         self._watcher.spin_until_free(self._is_subscribed_to, free_sec=FIRST_ANSWER_SEC)
         self._publish()
         self.acknowledge(questions=1)
@@ -178,9 +181,10 @@ class SimulatedClock:
         # in the future of wall time it would be silent until that has come
         self.now_ns = time.time_ns()
         self._publish()
-        self._wait(self._barriers.ask(former).values(), SLOWEST_BARRIER_SEC)
+        asked = _all_done(self._barriers.ask(former).values())
+        self._watcher.spin_until(asked, timeout_sec=SLOWEST_BARRIER_SEC)
         # a busy node gets its time: left on a clock that nobody drives, it would be frozen
-        self._wait(self._set_all(former), RESTORE_SEC)
+        self._watcher.spin_until(_all_done(self._set_all(former)), timeout_sec=RESTORE_SEC)
         self._watcher.node.destroy_publisher(self._publisher)
 
     def _set_all(self, values: dict[str, bool]) -> list[Future]:
@@ -189,12 +193,7 @@ class SimulatedClock:
             for name, value in values.items()
         ]
 
-    def _wait(self, asked: Iterable[Future], timeout_sec: float) -> bool:
-        return self._watcher.spin_until(
-            lambda: all(future.done() for future in asked), timeout_sec=timeout_sec
-        )
 
-    def _answered(self, asked: Iterable[Future], free_sec: float) -> bool:
-        return self._watcher.spin_until_free(
-            lambda: all(future.done() for future in asked), free_sec=free_sec
-        )
+def _all_done(asked: Iterable[Future]) -> Callable[[], bool]:
+    futures = [*asked]
+    return lambda: all(future.done() for future in futures)

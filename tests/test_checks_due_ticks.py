@@ -1,0 +1,55 @@
+"""When the next message of a timer is due, as ticks tell."""
+
+import pytest
+from my_robot_basics.checks.due_ticks import DueTicks
+
+STEP_NS = 10**8
+
+
+def learned(gaps, *, messages=1, took_sec=0.001, step_ns=STEP_NS):
+    """Ticks, of which one each so many brings messages; how many of them were due."""
+    due, was_due = DueTicks(), []
+    for gap in gaps:
+        for tick in range(1, gap + 1):
+            is_last = tick == gap
+            was_due.append(due.is_next(step_ns))
+            due.note(step_ns, messages=messages * is_last, took_sec=took_sec)
+    return due, was_due
+
+
+def test_a_message_is_due_once_three_have_come_equally_far_apart():
+    _, was_due = learned([2, 2, 2, 2, 2])
+    assert was_due == [*[False] * 7, True, False, True]
+
+
+@pytest.mark.parametrize(
+    ('gaps', 'options'),
+    [
+        ([2, 2], {}),
+        ([2, 3, 2, 3, 2, 3], {}),
+        # with no tick between them, nothing else would come to light
+        ([1, 1, 1, 1, 1, 1], {}),
+        ([2, 2, 2, 2], {'messages': 2}),
+        # it may still be at work when the next tick comes
+        ([2, 2, 2, 2], {'took_sec': 0.1}),
+    ],
+)
+def test_nothing_is_due_where_ticks_do_not_tell_it(gaps, options):
+    due, was_due = learned(gaps, **options)
+    assert not any(was_due)
+    due.note(STEP_NS, messages=0, took_sec=0.001)
+    assert not due.is_next(STEP_NS)
+
+
+def test_what_was_learned_is_worth_nothing_with_other_steps_or_once_one_is_missing():
+    due, _ = learned([2, 2, 2, 1])
+    assert not due.is_next(STEP_NS)
+    due, _ = learned([2, 2, 2])
+    due.note(STEP_NS, messages=0, took_sec=0.001)
+    assert due.is_next(STEP_NS)
+    assert not due.is_next(2 * STEP_NS)
+    due.note(STEP_NS, messages=0, took_sec=0.001)
+    assert not due.is_next(STEP_NS)
+    due.note(2 * STEP_NS, messages=1, took_sec=0.001)
+    due.note(2 * STEP_NS, messages=0, took_sec=0.001)
+    assert not due.is_next(2 * STEP_NS)
