@@ -1,7 +1,11 @@
 """The graph without the course's own nodes, and the reasons for silence it gives."""
 
+import time
+import types
+
 import pytest
 from my_robot_basics.checks import graph
+from my_robot_basics.graph import graphs
 from my_robot_basics.graph.snapshot import GraphSnapshot
 from rclpy.node import Node
 from std_msgs.msg import String
@@ -23,6 +27,26 @@ def test_the_graph_lists_every_endpoint_and_no_hidden_node():
     assert seen.subscriptions('/talk') == ('/listener',)
     assert seen.publishers('/nowhere') == ()
     assert graph().nodes() == ()
+
+
+@pytest.mark.parametrize(
+    ('nodes', 'was', 'ago_sec', 'is_waited_for'),
+    [
+        (('/a',), ('/a',), 0.5, False),
+        (('/a',), ('/a',), 0.1, True),
+        (('/a', '/b'), ('/a',), 0.5, True),
+        (('/a', f'/{graphs.UNKNOWN}'), ('/a', f'/{graphs.UNKNOWN}'), 0.5, True),
+    ],
+)
+def test_a_graph_that_is_what_it_was_a_while_ago_has_settled(
+    monkeypatch, nodes, was, ago_sec, is_waited_for
+):
+    now, waited = picture(nodes, publishers={'/t': nodes}), []
+    monkeypatch.setattr(graphs, '_look', lambda node: now)
+    earlier = time.monotonic() - ago_sec, picture(was, publishers={'/t': was})
+    watcher = types.SimpleNamespace(node=None, earlier_look=earlier, spin_for=waited.append)
+    assert graphs.take(watcher) == now
+    assert bool(waited) == is_waited_for
 
 
 def picture(nodes=('/a',), publishers=None, subscriptions=None):

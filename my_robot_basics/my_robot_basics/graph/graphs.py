@@ -41,6 +41,9 @@ def graph(*, after_publisher_on: str = '') -> GraphSnapshot:
 def take(watcher: Watcher) -> GraphSnapshot:
     """The graph as a watcher sees it, once no change came for a while and all names are known."""
     last = _look(watcher.node)
+    since, earlier = watcher.earlier_look
+    if last == earlier and not _has_unknown(last) and time.monotonic() - since >= SETTLE_SEC:
+        return last
     steady = 0.0
     waited = 0.0
     deadline = time.monotonic() + MOST_TAKE_SEC
@@ -106,9 +109,11 @@ def is_settled(watcher: Watcher, node_name: str = '') -> bool:
     names = student.settled_nodes()
     if names is None or node_name in names:
         return False
-    return watcher.spin_until(
+    are_seen = watcher.spin_until(
         lambda: {*names} <= {*node_names(watcher.node)}, timeout_sec=SEEN_SEC
     )
+    watcher.earlier_look = time.monotonic(), _look(watcher.node)
+    return are_seen
 
 
 def none_in(seconds: float) -> str:

@@ -13,6 +13,7 @@ from my_robot_basics.feedback.errors import fail
 from my_robot_basics.feedback.hidden import is_in_test_room
 from my_robot_basics.graph.cell_context import context_of_cell, new_context
 from my_robot_basics.graph.lean_executor import LeanExecutor
+from my_robot_basics.graph.snapshot import GraphSnapshot
 from my_robot_basics.graph.unheeded import Unheeded
 from my_robot_basics.session import classroom, interactions
 from my_robot_basics.session.pressure import Stopwatch
@@ -69,6 +70,8 @@ class Watcher:
         self.late_sec = 0.0
         """How long the machine has kept this waiting at most, against its intention."""
         self._next_count = 0.0
+        self.earlier_look: tuple[float, GraphSnapshot | None] = 0.0, None
+        """The graph as it was at a moment of the monotonic clock."""
 
     def __enter__(self) -> Self:
         """Join the domain."""
