@@ -1,9 +1,10 @@
 """The command line: `python -m grader VERB`, which is what `./course VERB` runs."""
 
 import contextlib
+import gc
 import io
 import sys
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 from grader.cli.arguments import make_parser
 from grader.cli.stopping import stoppable
@@ -53,5 +54,12 @@ def main(arguments: list[str] | None = None, *, course: 'Course | None' = None) 
             return stop.status
 
 
+def run() -> NoReturn:
+    """Run the command that this process was started for, and end it."""
+    status = main()
+    gc.freeze()  # or Python looks through all of it for garbage before it ends
+    sys.exit(status)
+
+
 if __name__ == '__main__':
-    sys.exit(main())
+    run()

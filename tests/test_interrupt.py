@@ -127,7 +127,7 @@ def test_a_run_that_is_killed_takes_its_kernels_with_it_and_is_done_again(course
 def killed(found):
     """Kill the workers that are at something, with all that they have begun."""
     for process in found.below:
-        if 'grader.workers.worker' in ' '.join(_command(process)):
+        if 'grader.workers.begin_worker' in ' '.join(_command(process)):
             process.kill()
     return found
 

@@ -45,6 +45,11 @@ print('nbformat' in sys.modules)
 import grader.cli.begin_grade
 print('sqlalchemy' in sys.modules)
 """
+SERVERS = """
+import sys
+import grader.workers.begin_worker
+print({'asyncio', 'nbformat'} & {*sys.modules})
+"""
 CACHES = """
 import json, sys
 from grader.sandbox.font_cache import font_cache
@@ -73,6 +78,10 @@ def test_formats_that_no_schema_names_are_not_imported_and_can_be_later():
 
 def test_the_sandbox_is_tried_and_a_worker_starts_before_what_takes_long_to_import():
     assert said_by(EARLY).split() == ['False', 'False']
+
+
+def test_a_worker_s_servers_start_before_what_takes_it_long_to_import():
+    assert said_by(SERVERS).strip() == 'set()'
 
 
 @pytest.mark.parametrize('name', ['MPLCONFIGDIR', 'XDG_CACHE_HOME', 'HOME'])

@@ -1,6 +1,6 @@
 """A process that grades: tasks come in over a socket, results go back, until it is closed.
 
-`python -m grader.workers.worker HANDLE` is started by grader.workers, and is of no use otherwise.
+`grader.workers.begin_worker` is what runs in it.
 """
 
 import asyncio
@@ -8,11 +8,9 @@ import importlib
 import os
 import socket
 import struct
-import sys
 
 from grader.common.logs import log_visibly
 from grader.judging.task import run_packed
-from grader.kernels.fork_servers import start_servers
 from grader.kernels.isolation import look_ahead
 from grader.sandbox.limits import MAX_TASK_BYTES
 
@@ -80,12 +78,6 @@ def main(handle: str) -> None:
 
 
 def prepare() -> None:
-    """Have at hand what the first task needs; processes import and try it side by side."""
-    start_servers()
+    """Have at hand what the first task needs; processes try it side by side."""
     look_ahead()
     importlib.import_module('grader.judging.execute')
-
-
-if __name__ == '__main__':
-    prepare()
-    main(sys.argv[1])

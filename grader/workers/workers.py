@@ -20,7 +20,7 @@ from grader.sandbox.limits import (
 from grader.workers.adaptive_semaphore import AdaptiveSemaphore
 from grader.workers.worker_process import WorkerProcess
 
-COMMAND = (sys.executable, '-P', '-m', 'grader.workers.worker')
+COMMAND = (sys.executable, '-P', '-m', 'grader.workers.begin_worker')
 TRIES = 3
 
 

@@ -35,12 +35,13 @@ NOTHING_NEW, FIRST = 'grade, nothing new', 'grade, one, cold'
 ELSEWHERE = """
 import dataclasses, sys
 from pathlib import Path
+sys.argv, gradebook = ['grade', 'grade'], Path(sys.argv[1])
 from grader import __main__
 from grader.cli import verbs
 def grade(course, asked):
-    return run(dataclasses.replace(course, gradebook=Path(sys.argv[1])), asked)
+    return run(dataclasses.replace(course, gradebook=gradebook), asked)
 run, verbs.run_grade = verbs.run_grade, grade
-sys.exit(__main__.main(['grade']))
+getattr(__main__, 'run', lambda: sys.exit(__main__.main()))()
 """
 """What the launcher starts for `./course grade`, with another gradebook, in the same order."""
 

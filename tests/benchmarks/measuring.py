@@ -114,7 +114,7 @@ def watch(
 
 def kill_a_worker(run: psutil.Process) -> None:
     """End one of a run's worker processes as Linux does where memory runs out."""
-    workers = [each for each in run.children() if 'grader.workers.worker' in each.cmdline()]
+    workers = [each for each in run.children() if 'grader.workers.begin_worker' in each.cmdline()]
     workers[0].kill()
 
 
