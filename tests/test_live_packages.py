@@ -4,11 +4,13 @@ import os
 import signal
 import sys
 import time
+import types
 from pathlib import Path
 
 import pytest
 from my_robot_basics.checks import CheckFailed
 from my_robot_basics.checks import package as package_of
+from my_robot_basics.exchange.endings import RACE
 from my_robot_basics.live import executables, package_build, packages
 from my_robot_basics.live.install_faults import fault_in_install
 from my_robot_basics.live.package_faults import fault_in_words
@@ -34,6 +36,18 @@ def folder(tmp_path, monkeypatch):
 
 def printed(capsys):
     return ' '.join(capsys.readouterr().out.split())
+
+
+def ended(code, *lines):
+    process = types.SimpleNamespace(
+        code=code, lines=['Traceback (most recent call last):', *lines]
+    )
+    return executables.how_it_ended(types.SimpleNamespace(process=process), signal.SIGINT)
+
+
+def test_a_race_of_rclpy_is_told_as_the_clean_end_that_it_is():
+    assert ended(1, f'rclpy._rclpy_pybind11.RCLError: {RACE}') == ended(0)
+    assert 'not cleanly (exit code 1, with KeyboardInterrupt)' in ended(1, 'KeyboardInterrupt')
 
 
 def until(done):
@@ -148,7 +162,7 @@ def test_a_package_is_built_run_and_ended(folder, capsys):
     assert live.run_executable(PACKAGE, 'greet')
     until(lambda: executables._started and [*executables._started.values()][-1].process.lines)
     live.stop()
-    assert 'greet: ended cleanly after SIGINT (exit code' in printed(capsys)
+    assert 'greet: ended cleanly after SIGINT' in printed(capsys)
 
 
 UNCLEAN = """

@@ -30,6 +30,8 @@ class Barriers:
         self._clients: dict[str, Client] = {}
         self._unheeded: dict[str, Client] = {}
         self._took_sec: list[float] = []
+        self._watch = Stopwatch()
+        self._next_median = MEDIAN_EVERY
 
     def __len__(self) -> int:
         """How many nodes there are."""
@@ -57,15 +59,17 @@ class Barriers:
 
     def are_passed(self, until: Callable[[], bool]) -> bool:
         """Whether `until()` is true soon: of a sole node, that tells what an answer would."""
-        return len(self) == 1 and self._watcher.spin_until(until, timeout_sec=PROMPT_SEC)
+        start = time.monotonic()
+        is_true = len(self) == 1 and self._watcher.spin_until(until, timeout_sec=PROMPT_SEC)
+        if is_true:
+            self._took_sec.append(time.monotonic() - start)
+        return is_true
 
     def acknowledge(self, questions: int) -> None:
         """Wait until every node has answered so many questions. Raises TooSlow.
 
         They are answered one after the other, so that the last answer tells of all.
         """
-        if not self._took_sec:
-            self._since_first = Stopwatch()
         start = time.monotonic()
         for _ in range(questions - 1):
             for client in self._unheeded.values():
@@ -79,11 +83,12 @@ class Barriers:
             raise TooSlow('a node did not answer in time')
         self._took_sec.append(time.monotonic() - start)
         # over all of them: on a busy machine everybody is slow for a moment
-        is_time = len(self._took_sec) % MEDIAN_EVERY == 0
-        if is_time and self._usual_sec() > SLOWEST_MEDIAN_SEC:
-            raise TooSlow('a node answers too slowly')
+        if len(self._took_sec) >= self._next_median:
+            self._next_median = len(self._took_sec) + MEDIAN_EVERY
+            if self._usual_sec() > SLOWEST_MEDIAN_SEC:
+                raise TooSlow('a node answers too slowly')
 
     def _usual_sec(self) -> float:
         """What a node usually takes to answer, of time that was free."""
-        free_share = self._since_first.free_sec() / self._since_first.wall_sec()
+        free_share = self._watch.free_sec() / self._watch.wall_sec()
         return statistics.median(self._took_sec) * free_share
