@@ -163,10 +163,10 @@ class Guard:
     def _see(self, event: str, arguments: tuple) -> None:
         if not self.running:
             return
-        if event == 'subprocess.Popen':
+        if event in ('subprocess.Popen', 'os.posix_spawn'):  # from 3.13 on, both for one process
             command = arguments[1] if isinstance(arguments[1], list | tuple) else [arguments[1]]
             line = ' '.join(map(os.fsdecode, command)) + ' '
             if not HARMLESS.fullmatch(line) or STARTING.search(line):
                 self.refuse(f'the process {line:.200}')
-        elif event in ('os.posix_spawn', 'os.system', 'os.forkpty', 'os.fork'):
+        elif event in ('os.system', 'os.forkpty', 'os.fork'):
             self.refuse(f'a process, by {event}')
