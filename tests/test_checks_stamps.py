@@ -5,6 +5,7 @@ from my_robot_basics.checks import CheckFailed, stamps, topic
 from my_robot_basics.checks.clock import Inconclusive
 from my_robot_basics.checks.recording import Recording, Sample
 from nodes.running import imported, running
+from rclpy.time import Time
 from sensor_msgs.msg import JointState
 
 from my_robot_basics import live
@@ -121,4 +122,23 @@ def test_a_stamp_that_comes_twice_at_once_is_told_from_one_that_stays(apart_sec,
         start_sec=0.0,
     )
     with pytest.raises(CheckFailed, match=told):
+        recording.assert_stamps()
+
+
+def test_the_computers_clock_is_told_where_a_busy_machine_sends_one_message_late():
+    samples = []
+    for number in range(1, 21):
+        at_sec = 100.0 + 0.01 * number  # of wall time; the robot's goes twenty times as fast
+        message = JointState()
+        message.header.stamp = Time(seconds=at_sec).to_msg()
+        samples.append(Sample(message, 0.2 * number, at_sec + 0.3 * (number == 20)))
+    recording = Recording(
+        topic_name=TOPIC,
+        messages=tuple(samples),
+        clock='simulated',
+        publishers=('/a',),
+        seconds=4.0,
+        start_sec=100.0,
+    )
+    with pytest.raises(CheckFailed, match=COMPUTER):
         recording.assert_stamps()
