@@ -98,6 +98,13 @@ def test_only_stamps_that_stay_behind_are_held_against_a_node(monkeypatch, looks
     assert left == []
 
 
+def recorded(samples, **options):
+    """What was recorded in four seconds."""
+    return Recording(
+        topic_name=TOPIC, messages=tuple(samples), publishers=('/a',), seconds=4.0, **options
+    )
+
+
 @pytest.mark.parametrize(
     ('apart_sec', 'told'),
     [
@@ -113,16 +120,8 @@ def test_a_stamp_that_comes_twice_at_once_is_told_from_one_that_stays(apart_sec,
         message.header.stamp.sec = 1 + number
         samples += [Sample(message, number, number)]
         samples += [Sample(message, number + between_sec, number + between_sec)]
-    recording = Recording(
-        topic_name=TOPIC,
-        messages=tuple(samples),
-        clock='wall',
-        publishers=('/a',),
-        seconds=4.0,
-        start_sec=0.0,
-    )
     with pytest.raises(CheckFailed, match=told):
-        recording.assert_stamps()
+        recorded(samples, clock='wall', start_sec=0.0).assert_stamps()
 
 
 def test_the_computers_clock_is_told_where_a_busy_machine_sends_one_message_late():
@@ -132,13 +131,5 @@ def test_the_computers_clock_is_told_where_a_busy_machine_sends_one_message_late
         message = JointState()
         message.header.stamp = Time(seconds=at_sec).to_msg()
         samples.append(Sample(message, 0.2 * number, at_sec + 0.3 * (number == 20)))
-    recording = Recording(
-        topic_name=TOPIC,
-        messages=tuple(samples),
-        clock='simulated',
-        publishers=('/a',),
-        seconds=4.0,
-        start_sec=100.0,
-    )
     with pytest.raises(CheckFailed, match=COMPUTER):
-        recording.assert_stamps()
+        recorded(samples, clock='simulated', start_sec=100.0).assert_stamps()

@@ -16,6 +16,7 @@ from my_robot_basics.session.pressure import Stopwatch
 NOTHING = GetParameters.Request()
 """A question about no parameter: the answer is all that counts."""
 PROMPT_SEC = 0.01
+"""How long a message may take that is due: then a question is asked."""
 SLOWEST_BARRIER_SEC = 0.5
 SLOWEST_MEDIAN_SEC = 0.02
 MEDIAN_EVERY = 40
@@ -57,8 +58,8 @@ class Barriers:
         asked = self._clients if names is None else names
         return {name: self._clients[name].call_async(request) for name in asked}
 
-    def are_passed(self, until: Callable[[], bool]) -> bool:
-        """Whether `until()` is true soon: of a sole node, that tells what an answer would."""
+    def wait_for(self, until: Callable[[], bool]) -> bool:
+        """Whether `until()` is true soon, which tells of a sole node what an answer would."""
         start = time.monotonic()
         is_true = len(self) == 1 and self._watcher.spin_until(until, timeout_sec=PROMPT_SEC)
         if is_true:

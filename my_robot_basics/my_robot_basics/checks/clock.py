@@ -99,7 +99,7 @@ class SimulatedClock:
         sole node, what its timer brings: where `until()` is true soon, nobody is asked.
         """
         self.show(self.now_ns + step_ns)
-        if until is None or not self._barriers.are_passed(until):
+        if until is None or not self._barriers.wait_for(until):
             self.acknowledge()
         self._expect_time_left()
 

@@ -2,6 +2,7 @@
 
 import statistics
 import time
+from typing import NamedTuple
 
 from my_robot_basics.checks.clock import SimulatedClock
 from my_robot_basics.checks.due_ticks import QUICK_PART, DueTicks
@@ -18,6 +19,16 @@ SUSPICIOUS_TICKS = 30
 PATIENT_SEC = 0.002
 """What a thread that sleeps on the clock takes to wake up and to publish."""
 OVERRUNS = 'its callback takes longer than its period'
+
+
+class _Tick(NamedTuple):
+    """One tick, as it went."""
+
+    took_sec: float
+    """Of wall time."""
+    messages: int
+    was_due: bool
+    """Whether a message was: what its callback does after it is in the time of the next tick."""
 
 
 class DrivenTopic:
@@ -37,9 +48,7 @@ class DrivenTopic:
         self._patient_sec = 0.0
         self._due: DueTicks | None = DueTicks()
         """None where each tick asks: its callbacks take long, or threads publish."""
-        self._ticks: list[tuple[float, int, bool]] = []
-        """How long each took, in s of wall time, how many messages came in it, whether one was
-        due."""
+        self._ticks: list[_Tick] = []
         self._hold(SETTLE_SEC)
 
     def expect_follows(self) -> None:
@@ -63,7 +72,7 @@ class DrivenTopic:
         if self._patient_sec:
             self._watcher.spin_for(self._patient_sec)
         messages = len(received) - before
-        self._ticks.append((took_sec, messages, is_due))
+        self._ticks.append(_Tick(took_sec, messages, is_due))
         if self._due is not None:
             self._due.note(step_ns, messages=messages, took_sec=took_sec)
 
@@ -73,16 +82,15 @@ class DrivenTopic:
         How busy the machine is makes all ticks slow: only what a message adds to one counts.
         """
         last = self._ticks[-ticks:]
-        if any(is_due for _, _, is_due in last):
-            # what a callback does after its message is in the time of the next tick
-            if sum(took_sec for took_sec, _, _ in last) > QUICK_PART * ticks * step_ns / 1e9:
-                self._due = None
+        if any(tick.was_due for tick in last):
+            if sum(tick.took_sec for tick in last) > QUICK_PART * ticks * step_ns / 1e9:
+                self._due = None  # the next ones tell
             return
-        with_one = [took_sec for took_sec, messages, _ in last if messages]
-        without = [took_sec for took_sec, messages, _ in last if not messages]
+        with_one = [tick.took_sec for tick in last if tick.messages]
+        without = [tick.took_sec for tick in last if not tick.messages]
         if with_one and without:
             works_sec = statistics.median(with_one) - statistics.median(without)
-            if works_sec > len(last) * step_ns / 1e9 / sum(messages for _, messages, _ in last):
+            if works_sec > len(last) * step_ns / 1e9 / sum(tick.messages for tick in last):
                 raise Inconclusive(OVERRUNS)
 
     def tick_to_message(self, step_ns: int) -> int:
