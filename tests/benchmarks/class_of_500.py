@@ -4,15 +4,17 @@
     .venv/bin/python tests/benchmarks/class_of_500.py --lessons 00 01 02 03 04 05 06 07
     .venv/bin/python tests/benchmarks/class_of_500.py --kill run worker
     .venv/bin/python tests/benchmarks/class_of_500.py --steady 200 [--at GRADEBOOK]
-    .venv/bin/python tests/benchmarks/class_of_500.py --steady 20 --lesson 08_services
+    .venv/bin/python tests/benchmarks/class_of_500.py --steady 20 --lessons 08
+    .venv/bin/python tests/benchmarks/class_of_500.py --steady 2 --lessons 0 1 --beside memory disk
 
 `--kill run` grades the class once more, ends the run in mid-class with SIGKILL, twice, goes on
 each time, and compares all that is in the gradebook with that of the run which nobody ended.
 `--kill worker` does so to a worker process, twice, while the run goes on. `--steady` grades an
 honest class, one right answer of each lesson, so many times instead, beside two busy loops, and
-counts the scores that differ; `--at` goes on with one that was ended. With `--lesson` it grades
-all samples of that lesson instead, right and wrong, and looks at the reasons, too. Ends with 1
-where a score is wrong.
+counts the scores that differ; `--at` goes on with one that was ended. With `--lessons` it grades
+all samples of those lessons instead, right and wrong, and looks at the reasons, too. `--beside`
+names other loads: nearly no memory left, a disk that others write to. Ends with 1 where a score
+is wrong.
 """
 
 import argparse
@@ -22,6 +24,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from killing import MOST_SHOWN, killed
+from loads import KINDS
 from measuring import ROW, Course, Watched, course_command, new_course, table, watch
 from sample_class import PATHS, assignment_of
 from steady import steady
@@ -33,20 +36,23 @@ def main() -> int:
     parser = argparse.ArgumentParser()
     parser.add_argument('--students', type=int, default=500)
     parser.add_argument('--seed', type=int, default=0)
-    about = 'for a class: these alone, by how their names begin; default: all'
-    parser.add_argument('--lessons', nargs='+', default=[''], help=about)
+    about = 'these alone, by how their names begin; default: all, and with --steady right ones'
+    parser.add_argument('--lessons', nargs='+', default=[], help=about)
     parser.add_argument('--workers', help='for ./course grade; default: its own')
     parser.add_argument('--kill', nargs='+', choices=('run', 'worker'), default=())
     parser.add_argument('--steady', type=int, metavar='TIMES')
     parser.add_argument('--at', type=Path, metavar='GRADEBOOK')
-    parser.add_argument('--lesson', default='', help='for --steady; default: all')
+    about = 'for --steady; default: busy loops alone'
+    parser.add_argument('--beside', nargs='+', choices=tuple(KINDS), default=['busy'], help=about)
     asked = parser.parse_args()
     options = ['--workers', asked.workers] if asked.workers else []
-    if asked.steady:
-        return steady(asked.steady, options, asked.at, asked.lesson)
     all_lessons = sorted({assignment_of(path) for path in PATHS.values()})
     lessons = [name for name in all_lessons if name.startswith(tuple(asked.lessons))]
-    papers = synthetic_class(asked.students, seed=asked.seed, assignments=lessons)
+    if asked.steady:
+        return steady(asked.steady, options, asked.at, lessons=lessons, loads=asked.beside)
+    papers = synthetic_class(
+        asked.students, seed=asked.seed, assignments=lessons if asked.lessons else all_lessons
+    )
     course, status = _whole_class(papers, options)
     differs = [killed(what, course, papers, options) for what in asked.kill]
     return status or int(any(differs))

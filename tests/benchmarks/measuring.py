@@ -118,19 +118,6 @@ def kill_a_worker(run: psutil.Process) -> None:
     workers[0].kill()
 
 
-@contextmanager
-def busy(loops: int) -> Iterator[None]:
-    """Keep so many cores busy, no longer than this process lives."""
-    loop = f'import os\nwhile os.getppid() == {os.getpid()}: pass'
-    started = [subprocess.Popen([sys.executable, '-c', loop]) for _ in range(loops)]
-    try:
-        yield
-    finally:
-        for process in started:
-            process.kill()
-            process.wait()
-
-
 def table(heads: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
     """Print a table; numbers are put below each other."""
     texts = [list(heads), *([_text(field) for field in row] for row in rows)]

@@ -1,11 +1,11 @@
-"""The honest class, graded again and again beside two busy loops: does every score stay the same?
+"""The honest class, graded again and again on a busy machine: does every score stay the same?
 
 A round is one right answer of each lesson; from round to round a lesson's right answers come in
 turn, so that every `-pass-` sample is graded, most of them several times. Each line tells of all
 rounds so far: a run that was cut short has said what it found.
 
-For one lesson a round is all of its samples, the wrong ones, too: these have to fail for the
-reasons that they should.
+For lessons that are named a round is all of their samples, the wrong ones, too: these have to fail
+for the reasons that they should.
 """
 
 import os
@@ -13,12 +13,14 @@ import statistics
 import time
 from collections import Counter
 from collections.abc import Sequence
+from contextlib import ExitStack
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 import psutil
-from measuring import ROW, Course, busy, course_command, minutes, new_course, watch
+from loads import beside, telling_pressure
+from measuring import ROW, Course, course_command, minutes, new_course, watch
 from sample_class import EXPECTED, PATHS, assignment_of
 from synthetic_class import Paper, synthetic_class, wrong_scores, zip_up
 
@@ -27,7 +29,6 @@ from grader.storage.records import verdicts
 
 RIGHT = tuple(name for name in PATHS if '-pass-' in name)
 LESSONS = len({assignment_of(PATHS[name]) for name in RIGHT})
-BUSY_LOOPS = 2
 
 
 def honest_rounds(rounds: int) -> list[Paper]:
@@ -35,9 +36,9 @@ def honest_rounds(rounds: int) -> list[Paper]:
     return synthetic_class(LESSONS * rounds, samples=RIGHT)
 
 
-def lesson_rounds(rounds: int, lesson: str) -> list[Paper]:
-    """Return the papers of so many rounds of all samples of one lesson, in the same way."""
-    samples = [name for name in PATHS if assignment_of(PATHS[name]) == lesson]
+def lesson_rounds(rounds: int, lessons: Sequence[str]) -> list[Paper]:
+    """Return the papers of so many rounds of all samples of these lessons, in the same way."""
+    samples = [name for name in PATHS if assignment_of(PATHS[name]) in lessons]
     by_sample = [synthetic_class(rounds, samples=[name]) for name in samples]
     in_turn = [paper for one_of_each in zip(*by_sample, strict=True) for paper in one_of_each]
     return [
@@ -46,12 +47,19 @@ def lesson_rounds(rounds: int, lesson: str) -> list[Paper]:
     ]
 
 
-def steady(rounds: int, options: Sequence[str], folder: Path | None, lesson: str = '') -> int:
-    """Grade so many rounds under load; return 1 where a score differs or is missing.
+def steady(
+    rounds: int,
+    options: Sequence[str],
+    folder: Path | None,
+    *,
+    lessons: Sequence[str] = (),
+    loads: Sequence[str] = ('busy',),
+) -> int:
+    """Grade so many rounds under these loads; return 1 where a score differs or is missing.
 
     In a `folder` of a run that was ended, only what is missing there is graded.
     """
-    papers = lesson_rounds(rounds, lesson) if lesson else honest_rounds(rounds)
+    papers = lesson_rounds(rounds, lessons) if lessons else honest_rounds(rounds)
     size = len(papers) // rounds
     course = Course(gradebook=folder.resolve()) if folder else new_course('steady')
     print(
@@ -64,11 +72,15 @@ def steady(rounds: int, options: Sequence[str], folder: Path | None, lesson: str
     list(collect(course, archive))
     progress = _Progress(course, papers, size)
     ends = range(size, len(papers) + 1, size)
-    with busy(BUSY_LOOPS):
+    with ExitStack() as occupied:
+        begin = [lambda _: occupied.enter_context(beside(loads, course.gradebook))]
+        tell = [partial(progress.tell, end) for end in ends]
+        occupied.enter_context(telling_pressure())
         watched = watch(
             course_command(course, 'grade', *options),
             done=ROW,
-            meanwhile={end: partial(progress.tell, end) for end in ends},
+            # memory is gone only when the run has counted it
+            meanwhile=dict(zip([1, *ends], begin + tell, strict=True)),
         )
     return progress.conclude(len(watched.done_at), watched.said.count('(unchanged)'))
 
