@@ -133,3 +133,13 @@ def test_the_computers_clock_is_told_where_a_busy_machine_sends_one_message_late
         samples.append(Sample(message, 0.2 * number, at_sec + 0.3 * (number == 20)))
     with pytest.raises(CheckFailed, match=COMPUTER):
         recorded(samples, clock='simulated', start_sec=100.0).assert_stamps()
+
+
+def test_stamps_advance_that_are_less_apart_than_seconds_since_the_epoch_can_tell():
+    samples = []
+    for number in range(1, 5):
+        message = JointState()
+        message.header.stamp.sec, message.header.stamp.nanosec = 1_800_000_000, number
+        samples.append(Sample(message, 0.2 * number, 1_800_000_000.0 + 0.2 * number))
+    with pytest.raises(CheckFailed, match=r'a stamp 0.6 s behind it'):
+        recorded(samples, clock='simulated', start_sec=1_800_000_000.0).assert_stamps()

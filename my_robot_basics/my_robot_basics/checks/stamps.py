@@ -55,20 +55,20 @@ def check_stamps(recording: 'Recording', messages: Sequence) -> None:
 
     Where the recording was made by a look (one that can look again), it is the node's own clock.
     """
-    stamps = [_seconds(message.header.stamp) for message in messages]
-    if 0.0 in stamps:
+    stamps_ns = [_nanoseconds(message.header.stamp) for message in messages]
+    if 0 in stamps_ns:
         _fail('a stamp of 0')
-    if _come_in_pairs(recording, stamps):
+    if _come_in_pairs(recording, stamps_ns):
         fail(expected=EXPECTED, seen='two messages with one stamp at once', hint=ONCE)
-    if any(later <= earlier for earlier, later in itertools.pairwise(stamps)):
+    if any(later <= earlier for earlier, later in itertools.pairwise(stamps_ns)):
         _fail('a stamp that does not advance')
-    offs = _offs(recording, stamps)
+    offs = _offs(recording, stamps_ns)
     most, usual = MOST_OFF_SEC[recording.clock], statistics.median_low(offs)
     # a late message does not count, one period behind in all of them does
     late = [off for off in offs if abs(off) > most]
     wrong = [usual] if abs(usual) > USUAL_OFF_SEC else late
     sent = [sample.source_time_sec for sample in recording.messages]
-    from_wall = [abs(stamp - at) for stamp, at in zip(stamps, sent, strict=True)]
+    from_wall = [abs(ns / 1e9 - at) for ns, at in zip(stamps_ns, sent, strict=True)]
     is_wall = statistics.median(from_wall) <= USUAL_OFF_SEC
     # where all are wrong, one may also have been sent late
     is_told = is_wall if wrong == [usual] else max(from_wall) <= USUAL_OFF_SEC
@@ -154,41 +154,42 @@ def _receive_stamps(
     watcher: Watcher, topic_name: str, type_: type
 ) -> Callable[[int], list[float]]:
     """Listen; what is returned tells how far each stamp since a wall time is ahead of that."""
-    received: list[tuple[float, int]] = []
+    received: list[tuple[int, int]] = []
 
     def receive(message: Any, info: dict) -> None:
-        received.append((_seconds(message.header.stamp), info['source_timestamp']))
+        received.append((_nanoseconds(message.header.stamp), info['source_timestamp']))
 
     asked = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT)
     watcher.node.create_subscription(type_, topic_name, with_info(receive), asked)
     return lambda since_ns: [
-        sec - sent_ns / 1e9 for sec, sent_ns in received if sent_ns > since_ns
+        (stamp_ns - sent_ns) / 1e9 for stamp_ns, sent_ns in received if sent_ns > since_ns
     ]
 
 
-def _come_in_pairs(recording: 'Recording', stamps: Sequence[float]) -> bool:
+def _come_in_pairs(recording: 'Recording', stamps_ns: Sequence[int]) -> bool:
     sent = [sample.time_sec for sample in recording.messages]
     apart = [
         later - earlier
         for (earlier, later), (stamp, after) in zip(
-            itertools.pairwise(sent), itertools.pairwise(stamps), strict=True
+            itertools.pairwise(sent), itertools.pairwise(stamps_ns), strict=True
         )
         if stamp == after
     ]
     return bool(apart) and statistics.median(apart) < AT_ONCE_SEC  # a busy machine parts some
 
 
-def _offs(recording: 'Recording', stamps: Sequence[float]) -> list[float]:
+def _offs(recording: 'Recording', stamps_ns: Sequence[int]) -> list[float]:
     on_wall = recording.clock == 'wall'
     sent = [
         sample.source_time_sec if on_wall else recording.start_sec + sample.time_sec
         for sample in recording.messages
     ]
-    return [stamp - at for stamp, at in zip(stamps, sent, strict=True)]
+    return [stamp_ns / 1e9 - at for stamp_ns, at in zip(stamps_ns, sent, strict=True)]
 
 
-def _seconds(stamp: TimeMessage) -> float:
-    return stamp.sec + stamp.nanosec * 1e-9
+def _nanoseconds(stamp: TimeMessage) -> int:
+    """Exactly: as seconds since the epoch, stamps less than 240 ns apart would be one."""
+    return stamp.sec * 10**9 + stamp.nanosec
 
 
 def _fail_computer() -> NoReturn:
