@@ -1,8 +1,9 @@
+import os
 import shutil
 import sqlite3
+from contextlib import nullcontext
 from pathlib import Path
 from types import SimpleNamespace
-from typing import NamedTuple
 
 import nbformat
 import pytest
@@ -392,13 +393,6 @@ def test_only_scores_that_changed_are_listed(course):
     assert changes(rows_of(course).values()) == ['bob  00_toy  1 → 3 (+2)']
 
 
-class Installed(NamedTuple):
-    """What importlib.metadata tells of a package."""
-
-    name: str
-    version: str
-
-
 @pytest.fixture
 def machine(tmp_path, monkeypatch):
     """A machine whose code and packages can be changed; says what its hash is now."""
@@ -407,10 +401,12 @@ def machine(tmp_path, monkeypatch):
         folder.mkdir(parents=True)
         (folder / 'code.py').write_text('1')
     shutil.copy(limits.__file__, grader)
-    packages = [Installed('numpy', '2.3.0'), Installed('ros-jazzy-rclpy', '7.1.0')]
+    packages = tmp_path / 'site-packages'
+    for name in ('numpy-2.3.0.dist-info', 'rclpy-7.1.5-py3.11.egg-info', 'numpy'):
+        (packages / name).mkdir(parents=True)
     monkeypatch.setattr(versions, '__file__', str(grader / 'common' / 'versions.py'))
     monkeypatch.setattr(versions.my_robot_basics, '__file__', str(robot / '__init__.py'))
-    monkeypatch.setattr(versions, 'distributions', lambda path: packages)
+    monkeypatch.setattr(versions.sysconfig, 'get_path', {'purelib': str(packages)}.get)
 
     def now():
         versions.machinery.cache_clear()
@@ -447,15 +443,16 @@ def another_name_of_a_module(machine):
 
 
 def another_version(machine):
-    machine.packages[0] = Installed('numpy', '2.3.1')
+    numpy = machine.packages / 'numpy-2.3.0.dist-info'
+    numpy.rename(numpy.with_name('numpy-2.3.1.dist-info'))
 
 
 def one_package_more(machine):
-    machine.packages.append(Installed('new', '1'))
+    (machine.packages / 'new-1.dist-info').mkdir()
 
 
 def one_package_less(machine):
-    machine.packages.pop()
+    (machine.packages / 'rclpy-7.1.5-py3.11.egg-info').rmdir()
 
 
 def another_python(machine):
@@ -488,15 +485,23 @@ def test_the_hash_of_the_machinery_is_another_one_after(machine, change):
     assert machine.now() != before
 
 
-def test_what_python_writes_beside_code_and_the_order_of_packages_change_no_hash(machine):
+def test_what_python_writes_beside_code_and_what_leads_nowhere_change_no_hash(machine):
     before = machine.now()
     (machine.robot / '__pycache__').mkdir()
     (machine.robot / '__pycache__' / 'code.pyc').write_text('1')
-    machine.packages.reverse()
+    (machine.robot / '.#code.py').symlink_to('who@a-machine.1')  # Emacs locks what it edits
+    assert machine.now() == before
+
+
+def test_the_order_in_which_a_folder_tells_what_is_in_it_changes_no_hash(machine, monkeypatch):
+    before, scandir = machine.now(), os.scandir
+    monkeypatch.setattr(
+        versions.os, 'scandir', lambda folder: nullcontext([*scandir(folder)][::-1])
+    )
     assert machine.now() == before
 
 
 def test_the_hash_holds_this_very_grader_and_robot():
     folders = {Path(versions.__file__).parents[1], Path(versions.my_robot_basics.__file__).parent}
     assert folders == {ROOT / 'grader', ROOT / 'my_robot_basics' / 'my_robot_basics'}
-    assert Path(limits.__file__) in versions._code(ROOT / 'grader')
+    assert limits.__file__ in versions._code(str(ROOT / 'grader'))
