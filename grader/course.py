@@ -5,20 +5,18 @@ import hashlib
 import hmac
 import json
 import os
-import pickle
 import secrets
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
 from pathlib import Path
 
-import nbformat
 from my_robot_basics.validate.packages import BUILD, packages_of
 from nbformat import NotebookNode
 
 from grader.common.checkout import ROOT as ROOT  # asked for here, as all of a course
 from grader.common.db_url import configured_db_url, gradebook_of
 from grader.common.errors import CourseError
+from grader.notebook.lesson_text import read_lesson
 from grader.notebook.restore import AssignmentTemplate, make_template
 
 
@@ -80,12 +78,14 @@ class Course:
 
     def source(self, assignment: str) -> NotebookNode:
         """Read the instructor's notebook. Raises CourseError when there is none."""
-        return _read(self.source_path(assignment), otherwise=self._unknown(assignment))
+        path = self.source_path(assignment)
+        return _read(path, self.gradebook, otherwise=self._unknown(assignment))
 
     def release(self, assignment: str) -> NotebookNode:
         """Read the students' notebook. Raises CourseError when it was not released yet."""
         return _read(
             self.release_path(assignment),
+            self.gradebook,
             otherwise=f'{assignment} is not released yet: run ./course release {assignment}',
         )
 
@@ -156,16 +156,10 @@ class Course:
         return f'there is no assignment {assignment!r} in solutions/; there are: {known}'
 
 
-@lru_cache(maxsize=64)
-def _parsed(text: str) -> bytes:
-    """Parse and validate a lesson, which is read a dozen times in a run; return a copy, packed."""
-    return pickle.dumps(nbformat.reads(text, as_version=4), pickle.HIGHEST_PROTOCOL)
-
-
-def _read(path: Path, *, otherwise: str) -> NotebookNode:
+def _read(path: Path, gradebook: Path, *, otherwise: str) -> NotebookNode:
     try:
-        return pickle.loads(_parsed(path.read_text(encoding='utf-8')))
+        return read_lesson(path.read_text(encoding='utf-8'), gradebook)
     except FileNotFoundError:
         raise CourseError(otherwise) from None
-    except (nbformat.reader.NotJSONError, nbformat.ValidationError) as error:
-        raise CourseError(f'{path} is not a notebook: {str(error).splitlines()[0]}') from None
+    except ValueError as error:
+        raise CourseError(f'{path} is not a notebook: {error}') from None

@@ -1,0 +1,66 @@
+"""Read lessons: a run reads each a dozen times, and few of them are new since the last run."""
+
+import contextlib
+import hashlib
+import json
+import pickle
+from functools import lru_cache
+from pathlib import Path
+
+import nbformat
+import nbformat.reader
+from my_robot_basics.feedback.errors import shorten
+from nbformat import NotebookNode
+
+from grader.common.files import write_whole
+
+KEPT = 'valid_lessons.json'
+"""In the gradebook: of which texts it is known that they are notebooks. To check one takes longer
+than to read it ten times. What is removed there is made again."""
+MOST_KEPT = 200
+MOST_SAID = 100
+"""Characters of what is wrong: it may hold all of a cell."""
+
+
+def read_lesson(text: str, gradebook: Path) -> NotebookNode:
+    """Return the notebook that a text holds. Raises ValueError, which says why, where it is none.
+
+    What was valid once is not checked again; the gradebook's folder remembers it, where it is.
+    """
+    return pickle.loads(_packed(text, gradebook))
+
+
+@lru_cache(maxsize=64)
+def _packed(text: str, gradebook: Path) -> bytes:
+    digest = hashlib.sha256(f'{nbformat.__version__}\n{text}'.encode()).hexdigest()
+    known = _known(gradebook / KEPT)
+    try:
+        notebook = nbformat.reader.reads(text)
+        if digest not in known:
+            checked = nbformat.convert(notebook, nbformat.current_nbformat)
+            nbformat.validate(checked)  # it adds what is missing, such as IDs
+            if checked == nbformat.reader.reads(text):
+                _remember([*known, digest], gradebook)
+            notebook = checked
+    except nbformat.ValidationError as error:
+        place = '.'.join(map(str, getattr(error, 'absolute_path', ())))
+        where = f' (at {place})' if place else ''
+        raise ValueError(f'{shorten(str(error).splitlines()[0], MOST_SAID)}{where}') from None
+    except (AttributeError, TypeError) as error:
+        said = f'its parts are of other types than those of one ({shorten(error, MOST_SAID)})'
+        raise ValueError(said) from None
+    return pickle.dumps(notebook, pickle.HIGHEST_PROTOCOL)
+
+
+def _known(path: Path) -> list[str]:
+    try:
+        known = json.loads(path.read_text(encoding='utf-8'))
+    except (OSError, ValueError):
+        return []  # none yet, or damaged
+    return [each for each in known if isinstance(each, str)] if isinstance(known, list) else []
+
+
+def _remember(digests: list[str], gradebook: Path) -> None:
+    # without a gradebook, or without a place in it, the next run takes longer
+    with contextlib.suppress(OSError):
+        write_whole(gradebook / KEPT, json.dumps(digests[-MOST_KEPT:]))
