@@ -9,10 +9,10 @@ from pathlib import Path
 
 import nbformat
 import nbformat.reader
-from my_robot_basics.feedback.errors import shorten
 from nbformat import NotebookNode
 
 from grader.common.files import write_whole
+from grader.common.text import printable, shorten
 
 KEPT = 'valid_lessons.json'
 """In the gradebook: of which texts it is known that they are notebooks. To check one takes longer
@@ -45,11 +45,15 @@ def _packed(text: str, gradebook: Path) -> bytes:
     except nbformat.ValidationError as error:
         place = '.'.join(map(str, getattr(error, 'absolute_path', ())))
         where = f' (at {place})' if place else ''
-        raise ValueError(f'{shorten(str(error).splitlines()[0], MOST_SAID)}{where}') from None
+        raise ValueError(f'{_line(error)}{where}') from None
     except (AttributeError, TypeError) as error:
-        said = f'its parts are of other types than those of one ({shorten(error, MOST_SAID)})'
+        said = f'its parts are of other types than those of one ({_line(error)})'
         raise ValueError(said) from None
     return pickle.dumps(notebook, pickle.HIGHEST_PROTOCOL)
+
+
+def _line(error: Exception) -> str:
+    return shorten(printable(str(error).splitlines()[0]), MOST_SAID)
 
 
 def _known(path: Path) -> list[str]:
