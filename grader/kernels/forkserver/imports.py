@@ -23,10 +23,9 @@ _BOTH = (
     'IPython.extensions.storemagic',
     'IPython.display',
     'IPython.utils.wildcard',
-    'ipywidgets',
     'matplotlib.backends.backend_agg',
+    'matplotlib.figure',
     'matplotlib.font_manager',
-    'matplotlib.pyplot',
     'numpy.random',  # each kernel makes other numbers, see `_forget`
     'pygments.formatters.terminal256',
     'rclpy',
