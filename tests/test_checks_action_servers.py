@@ -177,6 +177,28 @@ def test_who_sends_right_passes_in_whatever_way(run, node_class):
     check_cancels()
 
 
+def test_an_obstacle_from_before_is_dealt_with_before_the_next_goal(run, monkeypatch):
+    """Two topics know no order: the goal may be accepted before the obstacle comes."""
+    happened = []
+
+    def note(owner, name):
+        function = getattr(owner, name)
+
+        def noted(*arguments, **options):
+            happened.append(name)
+            return function(*arguments, **options)
+
+        monkeypatch.setattr(owner, name, noted)
+
+    note(served_action.ServedAction, 'say_obstacle')
+    note(served_action.ServedAction, 'publish')
+    note(served_action, 'answers_parameters')
+    run(MoveArmClient)
+    with action_server('/move_arm', MoveArm, **ENDS) as server:
+        replies.expect_no_cancel(server, (-0.3, 0.9))
+    assert happened[:3] == ['say_obstacle', 'answers_parameters', 'publish']
+
+
 @pytest.mark.slow
 def test_a_program_of_its_own_passes():
     with running('move_arm_client'):

@@ -247,6 +247,30 @@ def test_a_robot_minute_is_driven(run, ticks, node_class, least, most):
     assert least < len(ticks) < most
 
 
+@pytest.fixture
+def loses_its_first_time(monkeypatch):
+    """A node that was switched gets none of `/clock` before the first tick, the second time."""
+    publish, clocks = SimulatedClock._publish, []
+
+    def lose(clock):
+        if clock not in clocks:
+            clocks.append(clock)
+        if clocks.index(clock) != 1 or clock._tick_ns:
+            publish(clock)
+
+    monkeypatch.setattr(SimulatedClock, '_publish', lose)
+    return clocks
+
+
+def test_a_node_that_gets_its_clock_late_does_not_seem_to_jump(run, loses_its_first_time):
+    """What it computes from the time at which it has accepted a goal would be off by decades."""
+    run(MoveArmServer)
+    move_arm = action('/move_arm', MoveArm)
+    moves.expect_reaches(move_arm, (1.2, -0.6), speed=0.1)
+    assert move_arm.known.clocks == {'/move_arm_server': FollowedClock.DRIVEN}
+    assert len(loses_its_first_time) == 3
+
+
 # --- right ones, on the wall clock ---------------------------------------------------------------
 
 

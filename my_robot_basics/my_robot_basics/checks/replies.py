@@ -84,6 +84,7 @@ def expect_no_cancel(server: ServedAction, position: Pose) -> None:
     Raises CheckFailed.
     """
     server.say_obstacle(is_there=True)
+    server.let_client_know()  # two topics know no order: or the goal may come first
     goal = ask(server, position)
     server.say_obstacle(is_there=False)
     server.expect_no_cancel_of(goal)

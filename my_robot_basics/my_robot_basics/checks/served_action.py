@@ -69,7 +69,7 @@ class ServedAction(ScriptedActionServer):
         for _ in range(round(REPLY_SEC / AGAIN_SEC)):
             if self._watcher.spin_until_free(lambda: bool(found()), free_sec=AGAIN_SEC):
                 self._known_starts = self.starts
-                self._let_client_know()
+                self.let_client_know()
                 return found()[0]
             if self._known_starts < self.starts and len(self.goals) == before:
                 self.publish(message)
@@ -152,7 +152,7 @@ class ServedAction(ScriptedActionServer):
     def expect_no_outcome(self, while_: str) -> None:
         """Nothing comes there for a while, as `while_`, a clause, is so. Raises CheckFailed."""
         before = self._before
-        self._let_client_know()
+        self.let_client_know()
         self._watcher.spin_for(SOON_SEC)
         others = [message.data for message in self._outcomes.messages()[before:]]
         expect(
@@ -184,7 +184,7 @@ class ServedAction(ScriptedActionServer):
             self._watcher.spin_until(lambda: node.count_clients(name) > 0, timeout_sec=MEET_SEC)
             self._watcher.spin_for(MET_SEC)
 
-    def _let_client_know(self) -> None:
+    def let_client_know(self) -> None:
         """Wait until it has had turns enough to receive the answer to what it asked."""
         names = {*self._outcomes.publishers()} - self._mute
         self._mute |= {name for name in names if not answers_parameters(self._watcher, name)}

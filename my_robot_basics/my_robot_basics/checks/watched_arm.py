@@ -63,8 +63,12 @@ class WatchedArm:
         return goal(position, speed=max(speed, far_rad(self.start, position) / longest_sec))
 
     def send(self, wanted: MoveArm.Goal) -> SentGoal:
-        """Send a goal that has to be accepted. Raises CheckFailed."""
-        return accepted(self.server, wanted)
+        """Send a goal that has to be accepted. Raises CheckFailed, and Inconclusive."""
+        sent = accepted(self.server, wanted)
+        if isinstance(self.time, DrivenTime):
+            stamp = sent.answer.result().stamp
+            self.time.expect_shown(stamp.sec * 10**9 + stamp.nanosec)
+        return sent
 
     def move(self, position: Pose) -> None:
         """Bring the arm there in haste, whatever becomes of the goal."""
