@@ -50,6 +50,33 @@ def every(period_sec, count=50):
     return [period_sec * i for i in range(1, count + 1)]
 
 
+FAST = every(0.1, 40)
+LATE_FIRST = [*every(0.01, 21), *(0.2 * number for number in range(2, 21))]
+
+
+@pytest.mark.parametrize(
+    ('times', 'was_busy', 'looks'),
+    [
+        (FAST, False, 0),
+        (FAST, True, 1),  # whatever made it so, it is looked at once more
+        (every(0.18, 22), False, 1),  # a tenth too many may be a timer's that is late no more
+        (LATE_FIRST, False, 1),  # what was late came at once
+        (FAST[:30], False, 1),
+    ],
+)
+def test_far_too_many_messages_need_no_second_look(times, was_busy, looks):
+    looked = []
+
+    def look_again(seconds):
+        looked.append(seconds)
+        return recording(FAST, clock='wall')
+
+    made = recording(times, clock='wall', seconds=4.0, was_busy=was_busy, look_again=look_again)
+    with pytest.raises(CheckFailed, match=r'expected 5\.0 Hz, saw'):
+        made.assert_rate(hz=5.0)
+    assert len(looked) == looks
+
+
 def test_a_period_of_0_is_named():
     made = recording(every(0.003, 1400), clock='wall', seconds=4.0)
     with pytest.raises(CheckFailed, match=r'333.*Hz .*: the timer period is 0, or nearly'):

@@ -126,6 +126,23 @@ def test_who_may_ignore_the_clock_has_to_show_once_that_it_does(held):
     assert held == [once, once, once, 1.0, once, once]
 
 
+@pytest.mark.usefixtures('patient')
+def test_all_messages_of_a_callback_are_taken_in_its_tick(monkeypatch):
+    """Those that come one tick later would ask for ever finer steps."""
+    tick, steps_sec = DrivenTopic.tick, []
+
+    def note_and_tick(driven, step_ns):
+        steps_sec.append(step_ns / 1e9)
+        tick(driven, step_ns)
+
+    monkeypatch.setattr(DrivenTopic, 'tick', note_and_tick)
+    with running('bursts'), Watcher() as watcher:
+        recorder = topic(TOPIC).listen(watcher)
+        found = sampling.simulated(watcher, recorder, seconds=10.0, step_sec=0.1)
+    assert str(found) == sampling.UNEVEN
+    assert {*steps_sec} == {0.1}
+
+
 def test_who_works_for_longer_than_a_period_has_no_rate_on_the_robots_clock(monkeypatch):
     reasons, on_wall = [], wall_recording.wall
 

@@ -23,6 +23,8 @@ SHUFFLES = 50
 """So many other orders of the same gaps are tried: each is more even."""
 FEWEST_LEFT_OUT = 3
 """Messages that are missing, each as many behind the one before: no thread is late so evenly."""
+TOO_MANY_TIMES, PARTS = 1.25, 4
+"""So many times as many messages as there should be, in each of so many parts of a recording."""
 SHORTEST_ROUND = 3
 """Gaps from one missing message to the next: a long and a short one by turns may be anything."""
 
@@ -85,6 +87,15 @@ def _apart_by_turns(gaps: np.ndarray, count: int) -> float:
     """How much longer most of the longest of `count` turns are than most of the shortest."""
     turns = sorted((gaps[first::count] for first in range(count)), key=np.median)
     return float(np.quantile(turns[-1], 0.25) - np.quantile(turns[0], 0.75))
+
+
+def come_too_often(times_sec: np.ndarray, hz: float, *, seconds: float) -> bool:
+    """Whether more messages came than `hz` times a second, and all through `seconds`.
+
+    Who was kept waiting may send late ones at once, and none goes on to send more.
+    """
+    counts, _ = np.histogram(times_sec[1:], bins=PARTS, range=(0.0, seconds))
+    return bool(np.min(counts) > TOO_MANY_TIMES * hz * seconds / PARTS + 1)
 
 
 def left_out(times_sec: np.ndarray, slack_sec: float) -> int:

@@ -6,7 +6,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from my_robot_basics.checks import callbacks, pictures, positions, rates, stamps
+import numpy as np
+
+from my_robot_basics.checks import callbacks, periods, pictures, positions, rates, stamps
 from my_robot_basics.feedback.errors import CheckFailed, expect, shorten, show
 
 SECOND_LOOK_SEC = 4.0
@@ -87,8 +89,9 @@ class Recording:
         """The one publisher sends `hz` messages a second, evenly, within ±2 %.
 
         Before it fails it looks a second time, on the wall clock, unless the robot's clock has
-        shown a plain timer of another period; and some times more where the machine is too busy
-        for a node to keep its rate. Where the wall clock leaves a doubt it looks for longer.
+        shown a plain timer of another period, or the wall clock far too many messages; and some
+        times more where the machine is too busy for a node to keep its rate. Where the wall clock
+        leaves a doubt it looks for longer.
         A callback that has raised fails, too: `rclpy.spin` would have ended there.
         """
         self._expect_one_publisher()
@@ -146,12 +149,19 @@ class Recording:
 
     def _look_again(self, hz: float, *, seconds: float) -> 'Recording | None':
         """Another recording, where that can be had and may help."""
-        if self.look_again is None or rates.is_certain(self):
+        if self.look_again is None or rates.is_certain(self) or self._is_too_fast(hz):
             return None
         try:
             return self.look_again(min(max(seconds, 3.0 / hz), LONGEST_LOOK_SEC))
         except CheckFailed:  # the node is gone, or no time is left: what was seen of it stands
             return None
+
+    def _is_too_fast(self, hz: float) -> bool:
+        """Whether the wall clock has shown a faster rate beyond doubt: a machine only delays."""
+        if self.clock != 'wall' or self.was_busy:
+            return False
+        times_sec = np.array([0.0, *(sample.time_sec for sample in self.messages)])
+        return periods.come_too_often(times_sec, hz, seconds=self.seconds)
 
     def _expect_one_publisher(self) -> None:
         names = set(self.publishers)
