@@ -1,5 +1,6 @@
 """Rates of nodes that are no plain 5 Hz timers. One process a node, as at grading."""
 
+import time
 from dataclasses import replace
 
 import pytest
@@ -141,6 +142,16 @@ def test_all_messages_of_a_callback_are_taken_in_its_tick(monkeypatch):
         found = sampling.simulated(watcher, recorder, seconds=10.0, step_sec=0.1)
     assert str(found) == sampling.UNEVEN
     assert {*steps_sec} == {0.1}
+
+
+def test_what_nobody_had_time_to_take_has_come_all_the_same(monkeypatch):
+    """A busy machine leaves the check none, or a publisher with a period of 0 sends too many."""
+    with running('fifty_hz'), Watcher() as watcher:
+        recorder = topic(TOPIC).listen(watcher)
+        monkeypatch.setattr(watcher, 'spin_for', time.sleep)
+        recording = wall_recording.wall(watcher, recorder, seconds=2.0)
+    assert len(recording.messages) > 20
+    assert not recording.has_ended
 
 
 def test_who_works_for_longer_than_a_period_has_no_rate_on_the_robots_clock(monkeypatch):

@@ -70,7 +70,7 @@ class DrivenTopic:
         self.clock.tick(step_ns, until=(lambda: len(received) > before) if is_due else None)
         took_sec = time.monotonic() - start
         if not is_due:
-            self._take_all(before)
+            self.recorder.take_all()
         if self._patient_sec:
             self._watcher.spin_for(self._patient_sec)
         messages = len(received) - before
@@ -105,13 +105,6 @@ class DrivenTopic:
             if ticks == SUSPICIOUS_TICKS:
                 self.expect_follows()
         raise NoMessage(f"no message arrived in {FIRST_MESSAGE_SEC:g} s of the robot's time")
-
-    def _take_all(self, known: int) -> None:
-        """Take what more has come: a look takes one message, and a callback may send several."""
-        received = self.recorder.received
-        while len(received) > known:
-            known = len(received)
-            self._watcher.look()
 
     def _hold(self, seconds: float) -> None:
         since_ns = time.time_ns()

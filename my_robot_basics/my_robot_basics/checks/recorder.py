@@ -1,5 +1,6 @@
 """What is received on a topic, and when it was sent."""
 
+import itertools
 from typing import Any
 
 from rclpy.event_handler import SubscriptionEventCallbacks
@@ -9,6 +10,8 @@ from my_robot_basics.graph import graphs
 from my_robot_basics.graph.message_info import with_info
 from my_robot_basics.graph.watcher import Watcher
 
+MOST_AT_ONCE = 10_000
+"""Who publishes on and on may be quicker than we are."""
 _NO_EVENTS = SubscriptionEventCallbacks(use_default_callbacks=False)
 """Each look of an executor costs more for every event; nobody waits for these."""
 
@@ -56,8 +59,19 @@ class Recorder:
         return [message for message, _ in self.received]
 
     def count_since(self, wall_ns: int) -> int:
-        """How many messages were sent after that wall time."""
-        return sum(sent_ns > wall_ns for _, sent_ns in self.received)
+        """How many messages were sent after that wall time: quick to tell, there may be many."""
+        newest_first = reversed(self.received)
+        return sum(1 for _ in itertools.takewhile(lambda each: each[1] > wall_ns, newest_first))
+
+    def take_all(self) -> None:
+        """Take all that has come by now: a look of the executor takes one message."""
+        handle = self._subscription.handle
+        with handle:
+            for _ in range(MOST_AT_ONCE):
+                taken = handle.take_message(self.type, False)
+                if taken is None:
+                    break
+                self._receive(*taken)
 
     def close(self) -> None:
         """Receive no more."""

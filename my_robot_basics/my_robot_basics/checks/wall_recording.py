@@ -44,6 +44,7 @@ def wall(
     first_sec = timeout_sec + remembers_sec(why)
     if not recorder.received and what_raised(recorder.publishers()):
         seconds = timeout_sec = first_sec = RAISED_SEC
+    recorder.take_all()
     since_ns, watch = time.time_ns(), Stopwatch()
     if watcher.spin_until(lambda: recorder.count_since(since_ns) > 0, timeout_sec=first_sec):
         watcher.late_sec, watch = 0.0, Stopwatch()
@@ -51,6 +52,7 @@ def wall(
         watcher.spin_until(
             lambda: recorder.count_since(since_ns) > 1, timeout_sec=timeout_sec - seconds
         )
+        recorder.take_all()  # far too many may lie there still, and would seem to have ended
     sent = [(message, sent_ns) for message, sent_ns in recorder.received if sent_ns > since_ns]
     start_ns = sent[0][1] if sent else since_ns
     samples = [

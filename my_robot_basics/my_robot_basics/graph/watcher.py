@@ -140,11 +140,6 @@ class Watcher:
             self._executor.spin_once(timeout_sec=pause)
             self.late_sec = max(self.late_sec, time.monotonic() - start - pause)
 
-    def look(self) -> None:
-        """Deal with what has come, a message or two of each topic, and wait for nothing."""
-        for _ in range(2):  # once may be for what is left of an answer
-            self._executor.spin_once(timeout_sec=0.0)
-
     def spin_for(self, seconds: float) -> None:
         """Spin for a while of steady wall time."""
         self.spin_until(lambda: False, timeout_sec=seconds)
