@@ -4,6 +4,7 @@ import pytest
 from my_robot_basics.checks import CheckFailed, stamps, topic
 from my_robot_basics.checks.clock import Inconclusive
 from my_robot_basics.checks.recording import Recording, Sample
+from my_robot_basics.feedback.errors import Starved
 from nodes.running import imported, running
 from rclpy.time import Time
 from sensor_msgs.msg import JointState
@@ -143,3 +144,24 @@ def test_stamps_advance_that_are_less_apart_than_seconds_since_the_epoch_can_tel
         samples.append(Sample(message, 0.2 * number, 1_800_000_000.0 + 0.2 * number))
     with pytest.raises(CheckFailed, match=r'a stamp 0.6 s behind it'):
         recorded(samples, clock='simulated', start_sec=1_800_000_000.0).assert_stamps()
+
+
+@pytest.mark.parametrize(
+    ('off_sec', 'was_busy', 'raised'),
+    [
+        ([2.0] * 20, True, CheckFailed),
+        ([0.0] * 19 + [2.0], True, Starved),
+        ([0.0] * 19 + [2.0], False, CheckFailed),
+    ],
+)
+def test_one_stamp_that_a_busy_machine_made_late_costs_nobody_points(off_sec, was_busy, raised):
+    samples = []
+    for number, off in enumerate(off_sec, start=1):
+        at_sec = 1_000.0 + 0.2 * number + off
+        message = JointState()
+        message.header.stamp = Time(seconds=at_sec - off).to_msg()
+        samples.append(Sample(message, at_sec - 1_000.0, at_sec))
+    made = recorded(samples, clock='wall', start_sec=1_000.0, was_busy=was_busy)
+    with pytest.raises(CheckFailed, match=r'a stamp 2\.0 s behind it') as failed:
+        made.assert_stamps()
+    assert failed.type is raised

@@ -19,8 +19,9 @@ from rosgraph_msgs.msg import Clock
 from my_robot_basics.checks.clock import SimulatedClock
 from my_robot_basics.checks.clock_use import are_left_alone
 from my_robot_basics.checks.inconclusive import Inconclusive
+from my_robot_basics.checks.rates import AT_ONCE_SEC, ONCE
 from my_robot_basics.exchange import student
-from my_robot_basics.feedback.errors import fail
+from my_robot_basics.feedback.errors import CheckFailed, Starved, fail
 from my_robot_basics.graph.message_info import with_info
 from my_robot_basics.graph.watcher import Watcher
 
@@ -43,9 +44,7 @@ SETTLE_SEC = 0.5
 ATTEMPTS = 3
 """How often to try where the clock could not be driven: a busy machine may be slow just now."""
 EXPECTED = "stamps of the node's clock at publication"
-AT_ONCE_SEC = 0.02
 COMPUTERS = "they are the time of the computer's clock"
-ONCE = 'publish one message each time the timer fires'
 HOW = 'set message.header.stamp = self.get_clock().now().to_msg() before each publish'
 WHY = "it differs from the computer's clock when a simulation, or this check, drives it"
 
@@ -74,8 +73,9 @@ def check_stamps(recording: 'Recording', messages: Sequence) -> None:
     is_told = is_wall if wrong == [usual] else max(from_wall) <= USUAL_OFF_SEC
     if wrong and recording.clock == 'simulated' and is_told:
         _fail_computer()
+    doubt = Starved if wrong == late and recording.was_busy else CheckFailed
     for off in wrong:
-        _fail(f'a stamp {abs(off):.1f} s {"ahead of" if off > 0.0 else "behind"} it')
+        _fail(f'a stamp {abs(off):.1f} s {"ahead of" if off > 0.0 else "behind"} it', doubt)
     # on a busy machine, the driven clock may happen to show the computer's time as well
     if recording.look_again is not None and is_wall:
         expect_to_follow(recording.topic_name, type(messages[0]), recording.publishers)
@@ -196,5 +196,5 @@ def _fail_computer() -> NoReturn:
     fail(expected=EXPECTED, seen="the computer's clock", hint=f'{HOW}; {WHY}', cause=COMPUTERS)
 
 
-def _fail(seen: str) -> NoReturn:
-    fail(expected=EXPECTED, seen=seen, hint=HOW, cause=f'they have {seen}')
+def _fail(seen: str, doubt: type[CheckFailed] = CheckFailed) -> NoReturn:
+    fail(expected=EXPECTED, seen=seen, hint=HOW, cause=f'they have {seen}', doubt=doubt)
