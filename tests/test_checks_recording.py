@@ -59,7 +59,7 @@ LATE_FIRST = [*every(0.01, 21), *(0.2 * number for number in range(2, 21))]
     [
         (FAST, False, 0),
         (FAST, True, 1),  # whatever made it so, it is looked at once more
-        (every(0.18, 22), False, 1),  # a tenth too many may be a timer's that is late no more
+        (every(0.14, 28), False, 1),  # 7.1 Hz: near enough to be looked at once more
         (LATE_FIRST, False, 1),  # what was late came at once
         (FAST[:30], False, 1),
     ],

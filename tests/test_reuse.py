@@ -490,6 +490,7 @@ def test_what_python_writes_beside_code_and_what_leads_nowhere_change_no_hash(ma
     (machine.robot / '__pycache__').mkdir()
     (machine.robot / '__pycache__' / 'code.pyc').write_text('1')
     (machine.robot / '.#code.py').symlink_to('who@a-machine.1')  # Emacs locks what it edits
+    (machine.robot / 'itself').symlink_to(machine.robot)
     assert machine.now() == before
 
 

@@ -55,5 +55,5 @@ def _code(folder: str) -> Iterator[str]:
         for each in sorted(entries, key=lambda entry: entry.name):
             if each.is_file():
                 yield each.path
-            elif each.is_dir() and each.name != '__pycache__':
+            elif each.is_dir(follow_symlinks=False) and each.name != '__pycache__':
                 yield from _code(each.path)

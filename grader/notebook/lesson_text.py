@@ -46,14 +46,15 @@ def _packed(text: str, gradebook: Path) -> bytes:
         place = '.'.join(map(str, getattr(error, 'absolute_path', ())))
         where = f' (at {place})' if place else ''
         raise ValueError(f'{_line(error)}{where}') from None
-    except (AttributeError, TypeError) as error:
+    except (AssertionError, AttributeError, RecursionError, TypeError) as error:
         said = f'its parts are of other types than those of one ({_line(error)})'
         raise ValueError(said) from None
     return pickle.dumps(notebook, pickle.HIGHEST_PROTOCOL)
 
 
 def _line(error: Exception) -> str:
-    return shorten(printable(str(error).splitlines()[0]), MOST_SAID)
+    said = str(error) or type(error).__name__
+    return shorten(printable(said.splitlines()[0]), MOST_SAID)
 
 
 def _known(path: Path) -> list[str]:

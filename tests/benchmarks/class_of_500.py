@@ -47,12 +47,12 @@ def main() -> int:
     asked = parser.parse_args()
     options = ['--workers', asked.workers] if asked.workers else []
     all_lessons = sorted({assignment_of(path) for path in PATHS.values()})
-    lessons = [name for name in all_lessons if name.startswith(tuple(asked.lessons))]
+    named = [name for name in all_lessons if name.startswith(tuple(asked.lessons))]
+    if asked.lessons and not named:
+        parser.error(f'no lesson begins with {" or ".join(asked.lessons)}')
     if asked.steady:
-        return steady(asked.steady, options, asked.at, lessons=lessons, loads=asked.beside)
-    papers = synthetic_class(
-        asked.students, seed=asked.seed, assignments=lessons if asked.lessons else all_lessons
-    )
+        return steady(asked.steady, options, asked.at, lessons=named, loads=asked.beside)
+    papers = synthetic_class(asked.students, seed=asked.seed, assignments=named or all_lessons)
     course, status = _whole_class(papers, options)
     differs = [killed(what, course, papers, options) for what in asked.kill]
     return status or int(any(differs))

@@ -73,14 +73,16 @@ def steady(
     progress = _Progress(course, papers, size)
     ends = range(size, len(papers) + 1, size)
     with ExitStack() as occupied:
-        begin = [lambda _: occupied.enter_context(beside(loads, course.gradebook))]
-        tell = [partial(progress.tell, end) for end in ends]
         occupied.enter_context(telling_pressure())
+
+        def occupy(_: psutil.Process) -> None:
+            occupied.enter_context(beside(loads, course.gradebook))
+
         watched = watch(
             course_command(course, 'grade', *options),
             done=ROW,
             # memory is gone only when the run has counted it
-            meanwhile=dict(zip([1, *ends], begin + tell, strict=True)),
+            meanwhile={1: occupy} | {end: partial(progress.tell, end) for end in ends},
         )
     return progress.conclude(len(watched.done_at), watched.said.count('(unchanged)'))
 

@@ -185,7 +185,7 @@ class ServedAction(ScriptedActionServer):
             self._watcher.spin_for(MET_SEC)
 
     def let_client_know(self) -> None:
-        """Wait until it has had turns enough to receive the answer to what it asked."""
+        """Wait until it has had turns enough to deal with what was sent to it before."""
         names = {*self._outcomes.publishers()} - self._mute
         self._mute |= {name for name in names if not answers_parameters(self._watcher, name)}
 
