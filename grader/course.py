@@ -78,15 +78,21 @@ class Course:
 
     def source(self, assignment: str) -> NotebookNode:
         """Read the instructor's notebook. Raises CourseError when there is none."""
-        path = self.source_path(assignment)
-        return _read(path, self.gradebook, otherwise=self._unknown(assignment))
+        return _read(
+            self.source_path(assignment),
+            self.gradebook,
+            otherwise=self._unknown(assignment),
+            way_out='undo the last change to it',
+        )
 
     def release(self, assignment: str) -> NotebookNode:
         """Read the students' notebook. Raises CourseError when it was not released yet."""
+        way_out = f'run ./course release {assignment}'
         return _read(
             self.release_path(assignment),
             self.gradebook,
-            otherwise=f'{assignment} is not released yet: run ./course release {assignment}',
+            otherwise=f'{assignment} is not released yet: {way_out}',
+            way_out=way_out,
         )
 
     def template(self, assignment: str) -> AssignmentTemplate:
@@ -156,10 +162,10 @@ class Course:
         return f'there is no assignment {assignment!r} in solutions/; there are: {known}'
 
 
-def _read(path: Path, gradebook: Path, *, otherwise: str) -> NotebookNode:
+def _read(path: Path, gradebook: Path, *, otherwise: str, way_out: str) -> NotebookNode:
     try:
         return read_lesson(path.read_text(encoding='utf-8'), gradebook)
     except FileNotFoundError:
         raise CourseError(otherwise) from None
     except ValueError as error:
-        raise CourseError(f'{path} is not a notebook: {error}') from None
+        raise CourseError(f'{path} is not a notebook: {error}; {way_out}') from None

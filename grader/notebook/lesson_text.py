@@ -12,14 +12,14 @@ import nbformat.reader
 from nbformat import NotebookNode
 
 from grader.common.files import write_whole
-from grader.common.text import printable, shorten
+from grader.common.text import printable
 
 KEPT = 'valid_lessons.json'
 """In the gradebook: of which texts it is known that they are notebooks. To check one takes longer
 than to read it ten times. What is removed there is made again."""
 MOST_KEPT = 200
 MOST_SAID = 100
-"""Characters of what is wrong: it may hold all of a cell."""
+"""Characters of what is wrong: it may begin with all of a cell."""
 
 
 def read_lesson(text: str, gradebook: Path) -> NotebookNode:
@@ -53,8 +53,8 @@ def _packed(text: str, gradebook: Path) -> bytes:
 
 
 def _line(error: Exception) -> str:
-    said = str(error) or type(error).__name__
-    return shorten(printable(said.splitlines()[0]), MOST_SAID)
+    said = printable((str(error) or type(error).__name__).splitlines()[0])
+    return said if len(said) <= MOST_SAID else f'…{said[-MOST_SAID:]}'
 
 
 def _known(path: Path) -> list[str]:
