@@ -151,10 +151,9 @@ class ServedAction(ScriptedActionServer):
 
     def expect_no_outcome(self, while_: str) -> None:
         """Nothing comes there for a while, as `while_`, a clause, is so. Raises CheckFailed."""
-        before = self._before
         self.let_client_know()
         self._watcher.spin_for(SOON_SEC)
-        others = [message.data for message in self._outcomes.messages()[before:]]
+        others = [message.data for message in self._outcomes.messages()[self._before :]]
         expect(
             not others,
             expected=f'no outcome while {while_}',
@@ -188,6 +187,7 @@ class ServedAction(ScriptedActionServer):
         """Wait until it has had turns enough to deal with what was sent to it before."""
         names = {*self._outcomes.publishers()} - self._mute
         self._mute |= {name for name in names if not answers_parameters(self._watcher, name)}
+        self._watcher.spin_for(SOON_SEC if self._mute else 0.0)
 
     def _why_no_goal(self) -> str:
         who = self._who()
