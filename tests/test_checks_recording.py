@@ -233,7 +233,7 @@ def test_a_busy_machine_hides_no_period_and_makes_none(is_loop, seconds):
         for period_sec, passes in (0.2, True), (0.195, False), (0.205, False):
             times = on_a_busy_machine(period_sec, seconds=seconds, is_loop=is_loop, seed=seed)
             made = recording(times, clock='wall', seconds=seconds)
-            assert abs(periods.meant(rates._times(made)) / period_sec - 1.0) < 0.01
+            assert abs(periods.meant(rates.times_of(made)) / period_sec - 1.0) < 0.01
             assert rates.has_rate(made, 5.0) is passes
 
 
@@ -283,6 +283,50 @@ def test_a_message_that_is_left_out_again_and_again_leaves_no_doubt(nth):
 def test_what_a_thread_misses_now_and_then_is_not_left_out(missing):
     times = [time for i, time in enumerate(every(0.2, 300)) if i not in missing]
     assert not rates.leaves_out(recording(times, seconds=60.0))
+
+
+def in_bursts(apart_sec, size, *, step_sec, seconds=6.0, **changes):
+    times = [time for time in every(apart_sec, round(seconds / apart_sec)) for _ in range(size)]
+    return recording(times, step_sec=step_sec, seconds=seconds, **changes)
+
+
+def test_messages_that_come_at_once_each_time_leave_no_doubt():
+    finer = in_bursts(1.0, 5, step_sec=0.04)
+    made = in_bursts(1.0, 5, step_sec=0.1, proof=finer, look_again=lambda _: pytest.fail('looked'))
+    with pytest.raises(CheckFailed, match=r'saw 5 messages at once, every 1 s, over 6 s \(30'):
+        made.assert_rate(hz=5.0)
+
+
+@pytest.mark.parametrize(
+    'proof',
+    [
+        None,
+        in_bursts(0.8, 4, step_sec=0.04),  # a thread that is late by so many steps
+        in_bursts(0.7, 5, step_sec=0.04),
+        recording(every(0.2, 30), step_sec=0.04, seconds=6.0),
+    ],
+)
+def test_bursts_that_finer_steps_do_not_show_are_none(proof):
+    assert rates.burst_of(in_bursts(1.0, 5, step_sec=0.1, proof=proof)) is None
+
+
+@pytest.mark.parametrize(
+    ('times', 'is_one'),
+    [
+        ([1, 1, 2, 2, 3, 3, 4, 4], True),
+        ([1, 1, 2, 2, 3, 3], False),  # few
+        ([1, 1, 2, 2, 3, 4, 4, 5, 5], False),  # one alone
+        ([1, 1, 2, 2, 2, 3, 3, 4, 4], False),
+        ([1, 1, 2, 2, 3.5, 3.5, 4.5, 4.5], False),  # late
+        ([0, 0, 1, 1, 2, 2, 3, 3, 4, 4], False),  # with the message to begin at
+        ([0.5, 0.5, 1, 1, 1.5, 1.5, 2, 2], False),  # none in the last two seconds
+        ([1, 2, 3, 4], False),
+        ([], False),
+    ],
+)
+def test_a_burst_is_as_large_each_time_and_as_far_from_the_last_one(times, is_one):
+    made = recording([float(time) for time in times], seconds=4.0)
+    assert (rates.burst_in(made) is not None) is is_one
 
 
 def test_pairs_and_plain_rates_are_not_taken_for_turns():

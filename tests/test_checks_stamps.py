@@ -1,7 +1,7 @@
 """Stamps of the node's clock and of the computer's are told apart, whichever look was made."""
 
 import pytest
-from my_robot_basics.checks import CheckFailed, stamps, topic
+from my_robot_basics.checks import CheckFailed, own_clock, topic
 from my_robot_basics.checks.clock import Inconclusive
 from my_robot_basics.checks.recording import Recording, Sample
 from my_robot_basics.feedback.errors import Starved
@@ -90,12 +90,12 @@ def test_only_stamps_that_stay_behind_are_held_against_a_node(monkeypatch, looks
             raise Inconclusive('a node did not answer in time')
         return ahead
 
-    monkeypatch.setattr(stamps, '_while_ahead', look)
+    monkeypatch.setattr(own_clock, '_while_ahead', look)
     if passes:
-        stamps.expect_to_follow(TOPIC, JointState, ['/a'])
+        own_clock.expect_to_follow(TOPIC, JointState, ['/a'])
     else:
         with pytest.raises(CheckFailed, match=COMPUTER):
-            stamps.expect_to_follow(TOPIC, JointState, ['/a'])
+            own_clock.expect_to_follow(TOPIC, JointState, ['/a'])
     assert left == []
 
 
@@ -123,6 +123,32 @@ def test_a_stamp_that_comes_twice_at_once_is_told_from_one_that_stays(apart_sec,
         samples += [Sample(message, number + between_sec, number + between_sec)]
     with pytest.raises(CheckFailed, match=told):
         recorded(samples, clock='wall', start_sec=0.0).assert_stamps()
+
+
+@pytest.mark.parametrize('is_another', [True, False])
+def test_messages_of_one_tick_share_a_stamp_but_none_comes_twice(is_another):
+    samples = []
+    for number in range(1, 5):
+        for position in (0.1, 0.2) if is_another else (0.1, 0.1):
+            message = JointState(position=[position])
+            message.header.stamp.sec = 100 + number
+            samples.append(Sample(message, float(number), 1.7e9 + number))
+    made = recorded(samples, clock='simulated', start_sec=100.0)
+    if is_another:
+        made.assert_stamps()
+    else:
+        with pytest.raises(CheckFailed, match='two messages with one stamp at once'):
+            made.assert_stamps()
+
+
+def test_a_stamp_of_an_earlier_tick_does_not_advance():
+    samples = []
+    for number in range(1, 5):
+        message = JointState(position=[0.1 * number])
+        message.header.stamp.sec = 101
+        samples.append(Sample(message, 1.0 + number / 10, 1.7e9 + number))
+    with pytest.raises(CheckFailed, match='a stamp that does not advance'):
+        recorded(samples, clock='simulated', start_sec=100.0).assert_stamps()
 
 
 def test_the_computers_clock_is_told_where_a_busy_machine_sends_one_message_late():

@@ -7,6 +7,7 @@ from typing import NamedTuple
 from my_robot_basics.checks.clock import SimulatedClock
 from my_robot_basics.checks.due_ticks import QUICK_PART, DueTicks
 from my_robot_basics.checks.inconclusive import Inconclusive, NoMessage
+from my_robot_basics.checks.rates import AT_ONCE_SEC
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.wall_recording import IGNORES
 from my_robot_basics.graph.watcher import Watcher
@@ -107,9 +108,10 @@ class DrivenTopic:
         raise NoMessage(f"no message arrived in {FIRST_MESSAGE_SEC:g} s of the robot's time")
 
     def _hold(self, seconds: float) -> None:
+        """Let the clock stand still. Raises Inconclusive where a second callback publishes."""
         since_ns = time.time_ns()
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             self.clock.hold(min(seconds, 0.05))
-            if self.recorder.count_since(since_ns) >= 2:
+            if self.recorder.seconds_since(since_ns) > AT_ONCE_SEC:
                 raise Inconclusive(IGNORES)

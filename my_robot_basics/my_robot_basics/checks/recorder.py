@@ -63,6 +63,11 @@ class Recorder:
         newest_first = reversed(self.received)
         return sum(1 for _ in itertools.takewhile(lambda each: each[1] > wall_ns, newest_first))
 
+    def seconds_since(self, wall_ns: int) -> float:
+        """How long after the first message that was sent after that wall time the last one was."""
+        sent_ns = [sent_ns for _, sent_ns in self.received if sent_ns > wall_ns]
+        return (sent_ns[-1] - sent_ns[0]) / 1e9 if sent_ns else 0.0
+
     def take_all(self) -> None:
         """Take all that has come by now: a look of the executor takes one message."""
         handle = self._subscription.handle

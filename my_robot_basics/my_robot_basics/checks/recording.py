@@ -8,7 +8,15 @@ from typing import Any, Literal
 
 import numpy as np
 
-from my_robot_basics.checks import callbacks, periods, pictures, positions, rates, stamps
+from my_robot_basics.checks import (
+    callbacks,
+    periods,
+    pictures,
+    positions,
+    rate_failure,
+    rates,
+    stamps,
+)
 from my_robot_basics.feedback.errors import CheckFailed, expect, shorten, show
 
 SECOND_LOOK_SEC = 4.0
@@ -104,7 +112,7 @@ class Recording:
             if self.note:
                 print(self.note)
         elif second is None:
-            rates.fail_rate(self, hz)
+            rate_failure.fail_rate(self, hz)
         else:
             second.assert_rate(hz)
 

@@ -1,0 +1,133 @@
+"""Whether stamps are the time of the node's own clock, or of the computer's, which shows the same.
+
+The node's clock is moved ahead, and its stamps must follow.
+"""
+
+import time
+from collections.abc import Callable, Collection
+from typing import Any, NoReturn
+
+from builtin_interfaces.msg import Time as TimeMessage
+from rclpy.publisher import Publisher
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.time import Time
+from rosgraph_msgs.msg import Clock
+
+from my_robot_basics.checks.clock import SimulatedClock
+from my_robot_basics.checks.clock_use import are_left_alone
+from my_robot_basics.checks.inconclusive import Inconclusive
+from my_robot_basics.exchange import student
+from my_robot_basics.feedback.errors import fail
+from my_robot_basics.graph.message_info import with_info
+from my_robot_basics.graph.watcher import Watcher
+
+AHEAD_SEC = 5.0
+"""How far the node's clock is moved: no honest stamp is so late."""
+PROOFS = 3
+"""Messages that show whose clock it is."""
+PROOF_SEC = 2.0
+"""How long to wait for them at most; a timer of the node's clock gets as much of its time."""
+PROOF_STEP_SEC = 0.05
+SETTLE_SEC = 0.5
+"""How long a node may take to follow where nothing tells that it has."""
+ATTEMPTS = 3
+"""How often to try where the clock could not be driven: a busy machine may be slow just now."""
+EXPECTED = "stamps of the node's clock at publication"
+COMPUTERS = "they are the time of the computer's clock"
+HOW = 'set message.header.stamp = self.get_clock().now().to_msg() before each publish'
+WHY = "it differs from the computer's clock when a simulation, or this check, drives it"
+
+
+def expect_to_follow(topic_name: str, type_: type, publishers: Collection[str]) -> None:
+    """Move the nodes' clock ahead: stamps that stay behind fail.
+
+    Nothing follows where the nodes do not let it be moved, or publish nothing meanwhile.
+    """
+    for _ in range(0 if are_left_alone() else ATTEMPTS):
+        try:
+            seen: list[float] | None = _while_ahead(topic_name, type_, publishers)
+        except Inconclusive:
+            seen = _while_ahead_inside(topic_name, type_, publishers)
+            if seen is None:
+                continue
+        # each is off the computer's clock by as much as the node's is, or by nothing
+        if seen and all(abs(ahead) < AHEAD_SEC / 2 for ahead in seen):
+            fail_computer()
+        return
+
+
+def _while_ahead(topic_name: str, type_: type, publishers: Collection[str]) -> list[float]:
+    """How far stamps are ahead of the computer's clock, in seconds, while the nodes' clock is."""
+    with Watcher(listens=True) as watcher:
+        proofs = _receive_stamps(watcher, topic_name, type_)
+        with SimulatedClock(watcher, needed=set(publishers)) as clock:
+            clock.tick(round(AHEAD_SEC * 1e9))
+            since_ns = time.time_ns()
+            for _ in range(round(PROOF_SEC / PROOF_STEP_SEC)):
+                clock.tick(round(PROOF_STEP_SEC * 1e9))
+                watcher.spin_for(PROOF_STEP_SEC)
+                if len(proofs(since_ns)) >= PROOFS:
+                    break
+            return proofs(since_ns)
+
+
+def _while_ahead_inside(
+    topic_name: str, type_: type, publishers: Collection[str]
+) -> list[float] | None:
+    """The same for nodes without parameter services, which their own process can switch.
+
+    None where it does not. Nothing tells when a node has dealt with a tick: it gets wall time.
+    """
+    with Watcher(listens=True) as watcher:
+        if watcher.node.get_publishers_info_by_topic('/clock'):
+            return None
+        proofs = _receive_stamps(watcher, topic_name, type_)
+        clock = watcher.node.create_publisher(Clock, '/clock', 1)
+        former = {name: student.set_use_sim_time(name, value=True) for name in publishers}
+        try:
+            if None in former.values():
+                return None
+            _tick_ahead(watcher, clock, seconds=SETTLE_SEC)
+            since_ns = time.time_ns()
+            _tick_ahead(watcher, clock, seconds=PROOF_SEC)
+            return proofs(since_ns)
+        finally:
+            # on wall time, or a timer would wait until that has come
+            clock.publish(Clock(clock=Time(nanoseconds=time.time_ns()).to_msg()))
+            watcher.spin_for(SETTLE_SEC)
+            for name, value in former.items():
+                if value is not None:
+                    student.set_use_sim_time(name, value=value)
+
+
+def _tick_ahead(watcher: Watcher, clock: Publisher, *, seconds: float) -> None:
+    for _ in range(round(seconds / PROOF_STEP_SEC)):
+        ahead_ns = time.time_ns() + round(AHEAD_SEC * 1e9)
+        clock.publish(Clock(clock=Time(nanoseconds=ahead_ns).to_msg()))
+        watcher.spin_for(PROOF_STEP_SEC)
+
+
+def _receive_stamps(
+    watcher: Watcher, topic_name: str, type_: type
+) -> Callable[[int], list[float]]:
+    """Listen; what is returned tells how far each stamp since a wall time is ahead of that."""
+    received: list[tuple[int, int]] = []
+
+    def receive(message: Any, info: dict) -> None:
+        received.append((nanoseconds(message.header.stamp), info['source_timestamp']))
+
+    asked = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT)
+    watcher.node.create_subscription(type_, topic_name, with_info(receive), asked)
+    return lambda since_ns: [
+        (stamp_ns - sent_ns) / 1e9 for stamp_ns, sent_ns in received if sent_ns > since_ns
+    ]
+
+
+def nanoseconds(stamp: TimeMessage) -> int:
+    """A stamp exactly: as seconds since the epoch, two less than 240 ns apart would be one."""
+    return stamp.sec * 10**9 + stamp.nanosec
+
+
+def fail_computer() -> NoReturn:
+    """Raise CheckFailed: the stamps are the time of the computer's clock."""
+    fail(expected=EXPECTED, seen="the computer's clock", hint=f'{HOW}; {WHY}', cause=COMPUTERS)

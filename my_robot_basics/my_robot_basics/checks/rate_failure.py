@@ -1,0 +1,74 @@
+"""What to say of a recording that shows another rate than was asked for."""
+
+from typing import TYPE_CHECKING, NoReturn
+
+import numpy as np
+
+from my_robot_basics.checks import periods, pictures, rates, starved
+from my_robot_basics.feedback.errors import CheckFailed, Starved, fail
+
+if TYPE_CHECKING:
+    from my_robot_basics.checks.recording import Recording
+
+MOSTLY_PART = 0.1
+"""So near to the period are most messages of a node that only pauses now and then."""
+TOO_FAST_TIMES = 20.0
+"""So many times too fast is no wrong number of seconds: a timer's period of 0."""
+AT_ONCE = 'several messages arrive at once'
+
+
+def fail_rate(recording: 'Recording', hz: float) -> NoReturn:
+    """Raise CheckFailed with the rate that was seen, and a picture of the arrivals."""
+    n = len(recording.messages)
+    over = f'over {recording.seconds:.3g} s ({n} message{"" if n == 1 else "s"})'
+    near = recording.rate_hz >= 0.9 * hz
+    if every := rates.leaves_out(recording):
+        seen, cause = f'one message of {every} missing each time {over}', 'messages are left out'
+        hint = 'publish in every call of the timer'
+    elif burst := rates.burst_of(recording):
+        seen = f'{burst.size} messages at once, every {burst.apart_sec:.3g} s, {over}'
+        cause, hint = AT_ONCE, rates.ONCE
+    elif recording.is_over and (near or n == 0):
+        seen, cause = f'none in the last {recording.silent_sec:.1f} s {over}', 'the messages end'
+        hint = 'publish as long as the node runs, in each call of a timer'
+    elif recording.rate_hz > TOO_FAST_TIMES * hz:
+        seen, cause = f'{_hz(recording.rate_hz)} {over}', 'far too many messages'
+        hint = 'the timer period is 0, or nearly: period = 1 / rate, and 1 // rate is 0'
+    elif (near or _is_mostly(recording, hz)) and (
+        recording.largest_gap_sec > rates.LARGEST_GAP_PERIODS / hz
+    ):
+        seen, cause = f'pauses of {recording.largest_gap_sec:.1f} s {over}', 'there are pauses'
+        hint = rates.ONCE
+    elif near and recording.clock == 'wall' and rates.is_uneven(recording, recording.rate_hz):
+        gaps = np.diff(rates.times_of(recording))
+        seen = f'{np.min(gaps):.2f} to {np.max(gaps):.2f} s between messages {over}'
+        cause = 'messages alternate between too early and too late'
+        hint = 'the messages are unevenly spaced, so use one timer, and do not change its period'
+        if np.min(gaps) < rates.AT_ONCE_SEC:
+            cause, hint = AT_ONCE, rates.ONCE
+    else:
+        seen = f'{_hz(_measured_hz(recording, hz))} {over}'
+        hint, cause = 'the timer period is in seconds, and period = 1 / rate', 'another rate'
+    picture = pictures.arrivals(recording, hz=hz)
+    doubt = Starved if starved.may_be(recording, hz) else CheckFailed
+    fail(expected=_hz(hz), seen=seen, hint=hint, cause=cause, picture=picture, doubt=doubt)
+
+
+def _is_mostly(recording: 'Recording', hz: float) -> bool:
+    """Whether most messages came one period behind the one before."""
+    gaps = np.diff(rates.times_of(recording))
+    return bool(len(gaps)) and bool(abs(np.median(gaps) * hz - 1.0) <= MOSTLY_PART)
+
+
+def _measured_hz(recording: 'Recording', hz: float) -> float:
+    low, high = rates.certain_range(recording)
+    if low <= high:
+        return 2.0 / (low + high)
+    if recording.clock == 'wall' and abs(rates.off_meant(recording, hz)) > rates.TOLERANCE:
+        return 1.0 / periods.meant(rates.times_of(recording))
+    return recording.rate_hz
+
+
+def _hz(rate_hz: float) -> str:
+    rounded = round(rate_hz, 2)
+    return f'{rounded:.1f} Hz' if rounded == round(rounded, 1) else f'{rounded:.2f} Hz'
