@@ -302,31 +302,65 @@ def test_messages_that_come_at_once_each_time_leave_no_doubt():
     [
         None,
         in_bursts(0.8, 4, step_sec=0.04),  # a thread that is late by so many steps
-        in_bursts(0.7, 5, step_sec=0.04),
+        in_bursts(0.6, 5, step_sec=0.04),
         recording(every(0.2, 30), step_sec=0.04, seconds=6.0),
     ],
 )
-def test_bursts_that_finer_steps_do_not_show_are_none(proof):
-    assert rates.burst_of(in_bursts(1.0, 5, step_sec=0.1, proof=proof)) is None
+def test_a_pattern_that_finer_steps_do_not_show_is_none(proof):
+    assert rates.pattern_of(in_bursts(1.0, 5, step_sec=0.1)) is None
+    assert rates.pattern_of(in_bursts(1.0, 5, step_sec=0.1, proof=proof)) is None
+
+
+def at(gaps, *, step_sec, seconds=6.0, **changes):
+    """Messages of a node that publishes at these gaps by turns: each in the next tick."""
+    times = itertools.takewhile(
+        lambda time: time < seconds + 1e-6, itertools.accumulate(itertools.cycle(gaps))
+    )
+    ticked = [math.ceil(time / step_sec - 1e-6) * step_sec for time in times]
+    return recording(ticked, step_sec=step_sec, seconds=seconds, **changes)
 
 
 @pytest.mark.parametrize(
-    ('times', 'is_one'),
+    ('gaps', 'is_one'),
     [
-        ([1, 1, 2, 2, 3, 3, 4, 4], True),
-        ([1, 1, 2, 2, 3, 3], False),  # few
-        ([1, 1, 2, 2, 3, 4, 4, 5, 5], False),  # one alone
-        ([1, 1, 2, 2, 2, 3, 3, 4, 4], False),
-        ([1, 1, 2, 2, 3.5, 3.5, 4.5, 4.5], False),  # late
-        ([0, 0, 1, 1, 2, 2, 3, 3, 4, 4], False),  # with the message to begin at
-        ([0.5, 0.5, 1, 1, 1.5, 1.5, 2, 2], False),  # none in the last two seconds
-        ([1, 2, 3, 4], False),
-        ([], False),
+        ([0.1, 0.3], True),
+        ([0.04, 0.36], True),
+        ([0.1, 0.1, 0.4], True),
+        ([0.0, 0.1, 0.1], True),  # two timers, of 0.2 s and of 0.1 s
+        ([0.18, 0.22], False),  # the wall clock looks more closely
+        ([*[0.21] * 6, 0.14], False),  # who looks each 0.07 s whether 0.2 s are over
+        ([0.2], False),
     ],
 )
-def test_a_burst_is_as_large_each_time_and_as_far_from_the_last_one(times, is_one):
+def test_a_pattern_is_one_that_no_timer_makes_by_whatever_steps(gaps, is_one):
+    made = at(gaps, step_sec=0.1, proof=at(gaps, step_sec=0.04))
+    assert (rates.pattern_of(made) is not None) is is_one
+
+
+def test_messages_by_turns_leave_no_doubt_where_the_robots_clock_shows_them():
+    finer = at([0.1, 0.3], step_sec=0.04)
+    made = at([0.1, 0.3], step_sec=0.1, proof=finer, look_again=lambda _: pytest.fail('looked'))
+    with pytest.raises(CheckFailed, match=r'saw 0\.10 to 0\.30 s between messages over 6 s'):
+        made.assert_rate(hz=5.0)
+
+
+@pytest.mark.parametrize(
+    ('times', 'pattern'),
+    [
+        ([1, 1, 2, 2, 3, 3, 4, 4], (2, 1.0, True)),
+        ([0.5, 1, 1, 1.5, 2, 2, 2.5, 3, 3, 3.5, 4, 4], (3, 1.0, False)),
+        ([2, 2, 4, 4], None),  # few
+        ([1, 1, 2, 2, 3, 4, 4], None),  # one alone
+        ([1, 1, 2, 2, 3.5, 3.5], None),  # late
+        ([0.5, 0.5, 1, 1, 1.5, 1.5, 2, 2], None),  # none in the last two seconds
+        ([1, 2, 3, 4], None),
+        ([], None),
+    ],
+)
+def test_a_pattern_comes_again_in_the_same_ticks(times, pattern):
     made = recording([float(time) for time in times], seconds=4.0)
-    assert (rates.burst_in(made) is not None) is is_one
+    found = rates.pattern_in(made)
+    assert found == (pattern and pytest.approx(pattern))
 
 
 def test_pairs_and_plain_rates_are_not_taken_for_turns():

@@ -142,7 +142,7 @@ def test_all_messages_of_a_callback_are_taken_in_its_tick(monkeypatch):
     with running('bursts'), Watcher() as watcher:
         recorder = topic(TOPIC).listen(watcher)
         found = sampling.simulated(watcher, recorder, seconds=10.0, step_sec=0.1)
-    assert rates.burst_of(found).size == 5
+    assert rates.pattern_of(found).size == 5
     assert {*steps_sec} == {0.1, 0.1 / sampling.FINE_PARTS}
 
 

@@ -29,8 +29,6 @@ TOO_MANY_TIMES, PARTS = 1.25, 4
 """So many times as many messages as there should be, in each of so many parts of a recording."""
 SHORTEST_ROUND = 3
 """Gaps from one missing message to the next: a long and a short one by turns may be anything."""
-FEWEST_BURSTS, SILENT_TIMES = 4, 2.0
-"""So many bursts, and no end that is so many times as long as from one burst to the next."""
 
 
 def spanned(times_sec: np.ndarray, slack_sec: float) -> tuple[float, float]:
@@ -126,28 +124,27 @@ def left_out(times_sec: np.ndarray, slack_sec: float) -> int:
     return rounds.pop() + 1 if is_one else 0
 
 
-class Burst(NamedTuple):
-    """Messages that come at once, again and again."""
+class Pattern(NamedTuple):
+    """Messages that come in the same ticks of the robot's clock again and again."""
 
     size: int
     """How many of them."""
-    apart_sec: float
-    """From one burst to the next."""
+    cycle_sec: float
+    """After so long they come again."""
+    is_burst: bool
+    """Whether they come in one tick."""
 
 
-def burst_of(times_sec: np.ndarray, step_sec: float, *, seconds: float) -> Burst | None:
-    """The burst that came each time the clock was moved by `step_sec` often enough.
+def pattern_of(times_sec: np.ndarray, step_sec: float, *, seconds: float) -> Pattern | None:
+    """The shortest pattern of two messages or more that all of `seconds` are made of, or None.
 
-    None where a message came alone, or bursts differ in size, or, by more than a step, in how far
-    they are apart; or where they had ended before `seconds` were over.
+    `step_sec`: how far a tick moved the clock.
     """
-    firsts = np.flatnonzero(np.diff(times_sec) > 0.5 * step_sec) + 1
-    sizes = {*np.diff(firsts, append=len(times_sec)).tolist()}
-    if len(firsts) < FEWEST_BURSTS or firsts[0] != 1 or len(sizes) > 1 or 1 in sizes:
-        return None
-    starts_sec = np.array([0.0, *times_sec[firsts]])
-    apart_sec = float(np.mean(np.diff(starts_sec)))
-    has_ended = seconds - starts_sec[-1] > SILENT_TIMES * apart_sec
-    if has_ended or np.ptp(np.diff(starts_sec)) > 1.001 * step_sec:
-        return None
-    return Burst(sizes.pop(), apart_sec)
+    ticks = np.rint(times_sec[1:] / step_sec).astype(int)
+    counts = np.bincount(ticks, minlength=round(seconds / step_sec) + 1)[1:]
+    for cycle in range(1, len(counts) // FEWEST_ROUNDS + 1):
+        if np.array_equal(counts[cycle:], counts[:-cycle]):
+            size = int(np.sum(counts[:cycle]))
+            is_burst = np.count_nonzero(counts[:cycle]) == 1
+            return Pattern(size, cycle * step_sec, bool(is_burst)) if size > 1 else None
+    return None

@@ -21,12 +21,12 @@ def fail_rate(recording: 'Recording', hz: float) -> NoReturn:
     """Raise CheckFailed with the rate that was seen, and a picture of the arrivals."""
     n = len(recording.messages)
     over = f'over {recording.seconds:.3g} s ({n} message{"" if n == 1 else "s"})'
-    near = recording.rate_hz >= 0.9 * hz
+    near, pattern = recording.rate_hz >= 0.9 * hz, rates.pattern_of(recording)
     if every := rates.leaves_out(recording):
         seen, cause = f'one message of {every} missing each time {over}', 'messages are left out'
         hint = 'publish in every call of the timer'
-    elif burst := rates.burst_of(recording):
-        seen = f'{burst.size} messages at once, every {burst.apart_sec:.3g} s, {over}'
+    elif pattern and pattern.is_burst:
+        seen = f'{pattern.size} messages at once, every {pattern.cycle_sec:.3g} s, {over}'
         cause, hint = AT_ONCE, rates.ONCE
     elif recording.is_over and (near or n == 0):
         seen, cause = f'none in the last {recording.silent_sec:.1f} s {over}', 'the messages end'
@@ -39,7 +39,7 @@ def fail_rate(recording: 'Recording', hz: float) -> NoReturn:
     ):
         seen, cause = f'pauses of {recording.largest_gap_sec:.1f} s {over}', 'there are pauses'
         hint = rates.ONCE
-    elif near and recording.clock == 'wall' and rates.is_uneven(recording, recording.rate_hz):
+    elif near and (pattern or _is_uneven(recording)):
         gaps = np.diff(rates.times_of(recording))
         seen = f'{np.min(gaps):.2f} to {np.max(gaps):.2f} s between messages {over}'
         cause = 'messages alternate between too early and too late'
@@ -52,6 +52,10 @@ def fail_rate(recording: 'Recording', hz: float) -> NoReturn:
     picture = pictures.arrivals(recording, hz=hz)
     doubt = Starved if starved.may_be(recording, hz) else CheckFailed
     fail(expected=_hz(hz), seen=seen, hint=hint, cause=cause, picture=picture, doubt=doubt)
+
+
+def _is_uneven(recording: 'Recording') -> bool:
+    return recording.clock == 'wall' and rates.is_uneven(recording, recording.rate_hz)
 
 
 def _is_mostly(recording: 'Recording', hz: float) -> bool:

@@ -1,5 +1,6 @@
 """When a recording shows a rate."""
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -52,37 +53,44 @@ def leaves_out(recording: 'Recording') -> int:
     return periods.left_out(times_of(recording), _slack_sec(recording))
 
 
-def burst_of(recording: 'Recording') -> periods.Burst | None:
-    """The messages that come at once, each time, by the robot's clock.
+def pattern_of(recording: 'Recording') -> periods.Pattern | None:
+    """The pattern of messages on the robot's clock that no timer makes, whatever its period.
 
-    None unless the proof shows the same: a thread that is late sends fewer with finer steps.
+    They come at once, or far from evenly. The proof has to show the same: a thread that is late is
+    less so with finer steps.
     """
-    if recording.clock != 'simulated' or recording.proof is None:
+    proof = recording.proof
+    if recording.clock != 'simulated' or proof is None:
         return None
-    seen, proved = burst_in(recording), burst_in(recording.proof)
-    if seen is None or proved is None or seen.size != proved.size:
+    seen, proved = pattern_in(recording), pattern_in(proof)
+    if seen is None or proved is None or seen.is_burst != proved.is_burst:
         return None
-    return seen if abs(seen.apart_sec - proved.apart_sec) <= recording.step_sec else None
+    times = round(proved.cycle_sec / seen.cycle_sec)
+    is_same = proved.size == times * seen.size and math.isclose(
+        proved.cycle_sec, times * seen.cycle_sec
+    )
+    is_no_timers = seen.is_burst or is_uneven(proof, proof.rate_hz, _slack_sec(proof))
+    return seen if is_same and is_no_timers else None
 
 
-def burst_in(recording: 'Recording') -> periods.Burst | None:
-    """The messages that come at once, each time, by these steps of the robot's clock alone."""
+def pattern_in(recording: 'Recording') -> periods.Pattern | None:
+    """The pattern that these steps of the robot's clock show, be it what they have made."""
     times_sec, seconds = times_of(recording), recording.seconds
-    return periods.burst_of(times_sec, recording.step_sec, seconds=seconds)
+    return periods.pattern_of(times_sec, recording.step_sec, seconds=seconds)
 
 
 def is_certain(recording: 'Recording') -> bool:
     """Whether the robot's clock has shown a timer, and its period, beyond doubt.
 
-    All messages are equally far apart, or every so many of them is left out, or so many come at
-    once each time, or one period explains them and those of the proof, which took other steps: a
-    thread that is late now and then is later with coarse steps.
+    All messages are equally far apart, or every so many of them is left out, or they come in a
+    pattern that no timer makes, or one period explains them and those of the proof, which took
+    other steps: a thread that is late now and then is later with coarse steps.
     """
     if recording.clock != 'simulated':
         return False
     if np.ptp(np.diff(times_of(recording))) < 0.5 * recording.step_sec:
         return True
-    if leaves_out(recording) or burst_of(recording):
+    if leaves_out(recording) or pattern_of(recording):
         return True
     low, high = certain_range(recording)
     return low <= high
@@ -101,7 +109,7 @@ def has_rate(recording: 'Recording', hz: float) -> bool:
         shortest, longest = (1.0 / (hz * (1.0 + sign * TOLERANCE)) for sign in (1, -1))
         # the mean alone is off by as much as a step
         is_right = off <= TOLERANCE and (low > high or (low <= longest and shortest <= high))
-        return is_right and not leaves_out(recording) and not burst_of(recording)
+        return is_right and not leaves_out(recording) and not pattern_of(recording)
     least, most = MEAN_TOLERANCE
     is_meant = abs(off_meant(recording, hz)) <= TOLERANCE
     return is_meant and least <= recording.rate_hz / hz - 1.0 <= most and is_steady(recording, hz)
@@ -138,15 +146,15 @@ def certain_range(recording: 'Recording') -> tuple[float, float]:
     return max(low for low, _ in ranges), min(high for _, high in ranges)
 
 
-def is_uneven(recording: 'Recording', hz: float) -> bool:
+def is_uneven(recording: 'Recording', hz: float, slack_sec: float = 0.0) -> bool:
     """Whether half of the messages, or more, are far from one period behind the one before.
 
     Or whether they come by turns. On a busy machine one or the other is late, and the next one
-    is early.
+    is early. `slack_sec`: how far off a message may be for no fault of its node.
     """
     times = times_of(recording)
-    is_far = np.median(np.abs(np.diff(times) * hz - 1.0)) > UNEVEN_PART
-    return bool(is_far) or periods.come_by_turns(times)
+    is_far = np.median(np.abs(np.diff(times) * hz - 1.0)) > UNEVEN_PART + slack_sec * hz
+    return bool(is_far) or periods.come_by_turns(times, slack_sec)
 
 
 def times_of(recording: 'Recording') -> np.ndarray:

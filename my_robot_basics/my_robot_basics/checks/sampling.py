@@ -21,8 +21,8 @@ SECONDS_LEAST = 2.0
 who remembers when it published last is silent on the wall clock until that has come as far."""
 SECONDS_ENOUGH = 10.0
 """Where that takes long, so much is a recording, too."""
-SECONDS_OF_BURSTS = 6.0
-"""Bursts that are a second apart come often enough in so much."""
+PATTERN_SEC = 6.0
+"""Messages that come by turns, or several at once each second, have shown it by then."""
 FINER = (1.0, 0.5, 0.1, 0.05, 0.01)
 """Steps of the clock, as parts of the one asked for, tried until messages skip a tick.
 
@@ -71,7 +71,7 @@ def simulated(
                 found = _sampled(topic, seconds=SECONDS_LEAST, step_sec=step_sec)
                 if not isinstance(found, Inconclusive) and seconds > SECONDS_LEAST:
                     found = _sampled(topic, seconds=seconds, step_sec=step_sec)
-            return (_bursts(topic, step_sec=step_sec) or found) if str(found) == UNEVEN else found
+            return (_pattern(topic, step_sec=step_sec) or found) if str(found) == UNEVEN else found
     except TooSlow as why:
         return why if watch.is_busy() else Inconclusive(str(why))
     except Inconclusive as why:
@@ -97,14 +97,17 @@ def _sampled(topic: DrivenTopic, *, seconds: float, step_sec: float) -> Recordin
     return Inconclusive(COUNTS)
 
 
-def _bursts(topic: DrivenTopic, *, step_sec: float) -> Recording | None:
-    """A recording of messages that come at once each time, by these steps and by finer ones."""
-    recording = _drive(topic, seconds=SECONDS_OF_BURSTS, step_sec=step_sec)
-    if rates.burst_in(recording) is None:
+def _pattern(topic: DrivenTopic, *, step_sec: float) -> Recording | None:
+    """A recording of messages in a pattern that no timer makes: by these steps, and by finer ones.
+
+    None where the steps have to be so fine that the wall clock is as quick.
+    """
+    recording = _drive(topic, seconds=PATTERN_SEC, step_sec=step_sec)
+    if recording.step_sec < FINER_BELOW_SEC or rates.pattern_in(recording) is None:
         return None
-    finer = _drive(topic, seconds=SECONDS_OF_BURSTS, step_sec=step_sec / FINE_PARTS)
+    finer = _drive(topic, seconds=PATTERN_SEC, step_sec=step_sec / FINE_PARTS)
     shown = replace(recording, proof=finer)
-    return shown if rates.burst_of(shown) else None
+    return shown if rates.pattern_of(shown) else None
 
 
 def _drive(topic: DrivenTopic, *, seconds: float, step_sec: float) -> Recording:
