@@ -1,5 +1,7 @@
 """In a grade cell, what a check has waited for once is not waited for again."""
 
+from types import SimpleNamespace
+
 import pytest
 from grade_cell import grade_cell
 from my_robot_basics.checks import service
@@ -87,3 +89,20 @@ def test_a_relay_is_looked_at_after_a_pause_once_in_a_cell(run, end_cell, monkey
     run(monitor.JointStateMonitor)
     check_delivery()
     assert len(looks) == 2
+
+
+@pytest.mark.parametrize(('most', 'is_there'), [(1, False), (graphs.MANY_NEWCOMERS, True)])
+def test_where_newcomers_turn_up_all_the_time_somebody_publishes(monkeypatch, most, is_there):
+    """A node that makes a publisher for each message never has the last one."""
+    infos = []
+
+    def newcomers(node, topic_name):
+        if len(infos) < most:
+            gid = (len(infos),)
+            infos.append(SimpleNamespace(node_name='talker', topic_type='T', endpoint_gid=gid))
+        return infos
+
+    monkeypatch.setattr(graphs, 'publisher_infos', newcomers)
+    monkeypatch.setattr(graphs, 'NEWCOMER_SEC', NEVER_SEC)
+    with Watcher() as watcher:
+        assert graphs.wait_for_publisher(watcher, '/talk', timeout_sec=0.5) is is_there

@@ -21,7 +21,11 @@ from my_robot_basics.checks.barriers import SLOWEST_BARRIER_SEC, Barriers
 from my_robot_basics.checks.clock_budget import ClockBudget
 from my_robot_basics.checks.clock_use import ANOTHERS, why_not_driven
 from my_robot_basics.checks.inconclusive import Inconclusive, TooSlow
-from my_robot_basics.checks.parameter_services import nodes_with_services, use_sim_time
+from my_robot_basics.checks.parameter_services import (
+    is_refused,
+    nodes_with_services,
+    set_use_sim_time,
+)
 from my_robot_basics.graph.watcher import Watcher
 
 FIRST_ANSWER_SEC = 1.0
@@ -163,8 +167,10 @@ class SimulatedClock:
             for name, reply in answered.items()
         }
         self.now_ns = max(time.time_ns(), _latest_ns)
-        switched = self._set_all(dict.fromkeys(self._former, True))
-        self._watcher.spin_until_free(_all_done(switched), free_sec=FIRST_ANSWER_SEC)
+        switched = set_use_sim_time(self._setters, dict.fromkeys(self._former, True))
+        self._watcher.spin_until_free(_all_done(switched.values()), free_sec=FIRST_ANSWER_SEC)
+        if any(is_refused(switched[name]) for name in self._needed):
+            raise Inconclusive('it refuses use_sim_time')
         self._watcher.spin_until_free(self._is_subscribed_to, free_sec=FIRST_ANSWER_SEC)
         self._publish()
         self.acknowledge(questions=1)
@@ -184,14 +190,9 @@ class SimulatedClock:
         asked = _all_done(self._barriers.ask(former).values())
         self._watcher.spin_until(asked, timeout_sec=SLOWEST_BARRIER_SEC)
         # a busy node gets its time: left on a clock that nobody drives, it would be frozen
-        self._watcher.spin_until(_all_done(self._set_all(former)), timeout_sec=RESTORE_SEC)
+        restored = set_use_sim_time(self._setters, former)
+        self._watcher.spin_until(_all_done(restored.values()), timeout_sec=RESTORE_SEC)
         self._watcher.node.destroy_publisher(self._publisher)
-
-    def _set_all(self, values: dict[str, bool]) -> list[Future]:
-        return [
-            self._setters[name].call_async(SetParameters.Request(parameters=[use_sim_time(value)]))
-            for name, value in values.items()
-        ]
 
 
 def _all_done(asked: Iterable[Future]) -> Callable[[], bool]:

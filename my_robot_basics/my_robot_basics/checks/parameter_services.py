@@ -1,7 +1,12 @@
 """Nodes that can be asked for their parameters, and `use_sim_time` among these."""
 
+from collections.abc import Mapping
+
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from rcl_interfaces.srv import SetParameters
+from rclpy.client import Client
 from rclpy.node import Node
+from rclpy.task import Future
 
 from my_robot_basics.graph.watcher import HIDDEN
 
@@ -10,6 +15,21 @@ def use_sim_time(value: bool) -> Parameter:
     """The parameter with that value."""
     kind = ParameterType.PARAMETER_BOOL
     return Parameter(name='use_sim_time', value=ParameterValue(type=kind, bool_value=value))
+
+
+def set_use_sim_time(
+    setters: Mapping[str, Client], values: Mapping[str, bool]
+) -> dict[str, Future]:
+    """Ask each of these nodes to take its value; the answers that are to come, by their names."""
+    return {
+        name: setters[name].call_async(SetParameters.Request(parameters=[use_sim_time(value)]))
+        for name, value in values.items()
+    }
+
+
+def is_refused(asked: Future) -> bool:
+    """Whether a node has answered that it does not take a value."""
+    return asked.done() and not all(result.successful for result in asked.result().results)
 
 
 def nodes_with_services(node: Node) -> set[str]:

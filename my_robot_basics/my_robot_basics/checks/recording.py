@@ -176,7 +176,7 @@ class Recording:
         expect(
             len(self.publishers) == 1,
             expected=f'one publisher on {self.topic_name}',
-            seen=f'{len(self.publishers)} ({shorten(", ".join(self.publishers))})',
+            seen=f'{len(self.publishers)} ({shorten(", ".join(sorted(names)))})',
             hint='stop the other node: two publishers on a topic add up'
             if len(names) > 1
             else 'call create_publisher for this topic once, and start the node once',

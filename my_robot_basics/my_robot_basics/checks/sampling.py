@@ -5,9 +5,16 @@ from dataclasses import replace
 from my_robot_basics.checks import rates
 from my_robot_basics.checks.clock import SimulatedClock
 from my_robot_basics.checks.driven_topic import DrivenTopic
-from my_robot_basics.checks.inconclusive import Inconclusive, NoMessage, TooSlow
+from my_robot_basics.checks.drives import (
+    FINE_PARTS,
+    FINER_BELOW_SEC,
+    SECONDS_ENOUGH,
+    drive,
+    prove,
+)
+from my_robot_basics.checks.inconclusive import Inconclusive, TooSlow
 from my_robot_basics.checks.recorder import Recorder
-from my_robot_basics.checks.recording import Recording, Sample
+from my_robot_basics.checks.recording import Recording
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
 
@@ -19,28 +26,8 @@ CLOSER = (1.0, 0.1)
 SECONDS_LEAST = 2.0
 """… It records no less. A drive that waits for threads has to prove something in so much first:
 who remembers when it published last is silent on the wall clock until that has come as far."""
-SECONDS_ENOUGH = 10.0
-"""Where that takes long, so much is a recording, too."""
 PATTERN_SEC = 6.0
 """Messages that come by turns, or several at once each second, have shown it by then."""
-FINER = (1.0, 0.5, 0.1, 0.05, 0.01)
-"""Steps of the clock, as parts of the one asked for, tried until messages skip a tick.
-
-Each is a multiple of all finer ones: of a node that looks at the clock every 10 ms, steps of 20 ms
-and their proof of 4 ms would make 60 ms of 50."""
-FINE_PARTS, FINER_PARTS, COARSE_TIMES = 2.5, 5, 5
-"""The proof takes steps so many times as fine as the recording's, or as coarse …"""
-TWO_STEPS_PARTS = 2.75
-"""… Two of the recording's are no multiple of these: who looks whether 0.17 s have passed
-publishes each 0.2 s by steps of 0.1 s, and of 0.04 s …"""
-FINER_BELOW_SEC = 0.05
-"""… and finer ones below this, or 10 ms would be no multiple of them, either."""
-PROOF_STEPS = 30
-"""… for at least so many of the recording's steps, or of the coarse ones. …"""
-COARSE_STEPS = 4
-"""… Coarse ones take a slow timer less time; so many of them fit in its period at least."""
-KEEPS_UP_EVERY = 20
-"""Ticks that tell whether a callback takes longer than its period."""
 
 
 def simulated(
@@ -67,132 +54,68 @@ def simulated(
             if isinstance(found, Inconclusive) or rates.leaves_out(found):
                 topic.expect_follows()
             if isinstance(found, Inconclusive):
-                topic.wait_for_threads()
-                found = _sampled(topic, seconds=SECONDS_LEAST, step_sec=step_sec)
-                if not isinstance(found, Inconclusive) and seconds > SECONDS_LEAST:
-                    found = _sampled(topic, seconds=seconds, step_sec=step_sec)
-            return (_pattern(topic, step_sec=step_sec) or found) if str(found) == UNEVEN else found
+                return _patient(topic, found, seconds=seconds, step_sec=step_sec)
+            return found
     except TooSlow as why:
         return why if watch.is_busy() else Inconclusive(str(why))
     except Inconclusive as why:
         return why
 
 
+class Uneven(Inconclusive):
+    """Messages that are not evenly spaced."""
+
+    def __init__(self, recording: Recording) -> None:
+        """`recording`: the messages."""
+        super().__init__(UNEVEN)
+        self.recording = recording
+
+
+def _patient(
+    topic: DrivenTopic, first: Inconclusive, *, seconds: float, step_sec: float
+) -> Recording | Inconclusive:
+    """A recording that leaves threads their time, after one that has proven nothing.
+
+    A short one, unless that goes well: so far ahead of the wall clock may a thread have to wait.
+    """
+    topic.wait_for_threads()
+    if isinstance(first, Uneven) and (shown := _pattern(topic, first, step_sec=step_sec)):
+        return shown
+    found = _sampled(topic, seconds=SECONDS_LEAST, step_sec=step_sec)
+    if isinstance(found, Inconclusive) or seconds <= SECONDS_LEAST:
+        return found
+    return _sampled(topic, seconds=min(seconds, SECONDS_ENOUGH), step_sec=step_sec)
+
+
 def _sampled(topic: DrivenTopic, *, seconds: float, step_sec: float) -> Recording | Inconclusive:
     for part in CLOSER:
-        recording = _drive(
+        recording = drive(
             topic, seconds=max(seconds * part, SECONDS_LEAST), step_sec=step_sec * part
         )
         if rates.leaves_out(recording):
             return recording
         if not rates.is_even(recording):
-            return Inconclusive(UNEVEN)
-        proof = _prove(topic, recording)
+            return Uneven(recording)
+        proof = prove(topic, recording)
         if proof is None:
             topic.expect_follows()  # a thread may publish on the wall clock beside a timer
             continue
         if not rates.is_nearly_even(proof):
-            return Inconclusive(UNEVEN)
+            return Uneven(recording)
         return replace(recording, proof=proof)
     return Inconclusive(COUNTS)
 
 
-def _pattern(topic: DrivenTopic, *, step_sec: float) -> Recording | None:
+def _pattern(topic: DrivenTopic, first: Uneven, *, step_sec: float) -> Recording | None:
     """A recording of messages in a pattern that no timer makes: by these steps, and by finer ones.
 
-    None where the steps have to be so fine that the wall clock is as quick.
+    None where the first drive has shown none, or by steps so fine that the wall clock is as quick.
     """
-    recording = _drive(topic, seconds=PATTERN_SEC, step_sec=step_sec)
-    if recording.step_sec < FINER_BELOW_SEC or rates.pattern_in(recording) is None:
+    seen = first.recording
+    if seen.step_sec < FINER_BELOW_SEC or rates.pattern_in(seen) is None:
         return None
-    finer = _drive(topic, seconds=PATTERN_SEC, step_sec=step_sec / FINE_PARTS)
+    recording, finer = (
+        drive(topic, seconds=PATTERN_SEC, step_sec=step_sec / parts) for parts in (1, FINE_PARTS)
+    )
     shown = replace(recording, proof=finer)
     return shown if rates.pattern_of(shown) else None
-
-
-def _drive(topic: DrivenTopic, *, seconds: float, step_sec: float) -> Recording:
-    """Record `seconds`, or until there are FEWEST messages. Raises Inconclusive.
-
-    Where that takes long, it leaves the proof its time and records less.
-    """
-    step_ns, start_ns = _find_step(topic, step_sec=step_sec)
-    received, clock = topic.recorder.received, topic.clock
-    before = len(received)
-    for done in range(1, round(seconds * 1e9 / step_ns) + 1):
-        topic.tick(step_ns)
-        if done % KEEPS_UP_EVERY == 0:
-            topic.expect_keeps_up(KEEPS_UP_EVERY, step_ns)
-            if clock.takes_long() and done * step_ns >= SECONDS_ENOUGH * 1e9:
-                break
-    while len(received) < before + rates.FEWEST:
-        topic.tick_to_message(step_ns)
-    return _recorded(topic, start_ns=start_ns, step_ns=step_ns)
-
-
-def _recorded(topic: DrivenTopic, *, start_ns: int, step_ns: int) -> Recording:
-    """What was received on the robot's clock since a message."""
-    recorder, clock = topic.recorder, topic.clock
-    samples = [
-        Sample(message, (clock.time_ns(sent_ns) - start_ns) / 1e9, sent_ns / 1e9)
-        for message, sent_ns in recorder.received
-        if clock.time_ns(sent_ns) > start_ns
-    ]
-    return Recording(
-        topic_name=recorder.topic_name,
-        messages=tuple(samples),
-        clock='simulated',
-        publishers=recorder.publishers(),
-        seconds=(clock.now_ns - start_ns) / 1e9,
-        start_sec=start_ns / 1e9,
-        step_sec=step_ns / 1e9,
-    )
-
-
-def _find_step(topic: DrivenTopic, *, step_sec: float) -> tuple[int, int]:
-    """A step that skips no period of the timer, and the time of the message to begin at.
-
-    A timer fires once a tick at most, so messages in two ticks running ask for a finer step.
-    """
-    for part in FINER:
-        step_ns = round(step_sec * part * 1e9)
-        topic.tick_to_message(step_ns)
-        if topic.tick_to_message(step_ns) > 1:
-            break
-    return step_ns, topic.clock.now_ns
-
-
-def _prove(topic: DrivenTopic, recording: Recording) -> Recording | None:
-    """A recording with other steps that shows the same period, or None. Raises Inconclusive.
-
-    A timer fires once a tick at most. One that is faster than the ticks, and publishes every so
-    many calls, shows a period that the steps have made.
-    """
-    step_ns = round(recording.step_sec * 1e9)
-    parts: float = FINER_PARTS
-    if recording.step_sec >= FINER_BELOW_SEC:
-        is_two = abs(1.0 / (recording.rate_hz * recording.step_sec) - 2.0) < 0.1
-        parts = TWO_STEPS_PARTS if is_two else FINE_PARTS
-    coarse_ns, fine_ns = step_ns * COARSE_TIMES, round(step_ns / parts)
-    is_slow = recording.rate_hz * COARSE_STEPS * coarse_ns <= 1e9
-    coarse = is_slow and _same_period(topic, recording, coarse_ns, ticks_least=PROOF_STEPS)
-    ticks_least = round(PROOF_STEPS * parts)
-    return coarse or _same_period(topic, recording, fine_ns, ticks_least=ticks_least)
-
-
-def _same_period(
-    topic: DrivenTopic, recording: Recording, step_ns: int, *, ticks_least: int
-) -> Recording | None:
-    ticks = messages = 0
-    try:
-        topic.tick_to_message(step_ns)
-        start_ns = topic.clock.now_ns
-        while ticks < ticks_least:
-            ticks += topic.tick_to_message(step_ns)
-            messages += 1
-    except NoMessage:
-        return None
-    recorded_ns = messages * 1e9 / recording.rate_hz
-    unsure_ns = step_ns + messages * recording.step_sec * 1e9 / len(recording.messages)
-    if abs(ticks * step_ns - recorded_ns) > 1.5 * unsure_ns:
-        return None
-    return _recorded(topic, start_ns=start_ns, step_ns=step_ns)

@@ -41,7 +41,8 @@ def wall(
     one was; and as long for the next one, should that be longer: then it ends there. `why`: what
     spoke against the robot's clock.
     """
-    first_sec = timeout_sec + remembers_sec(why)
+    # who seemed to ignore the robot's clock may have been a thread that was late
+    first_sec = timeout_sec + (0.0 if isinstance(why, NoMessage) else ahead_sec())
     if not recorder.received and what_raised(recorder.publishers()):
         seconds = timeout_sec = first_sec = RAISED_SEC
     recorder.take_all()

@@ -82,9 +82,10 @@ def _times_raised(node_name: str) -> int:
 
 
 def _set_use_sim_time(node_name: str, value: bool) -> bool | None:
-    """Give a node of this process its clock; its former `use_sim_time`, None where there is none.
+    """Give a node of this process its clock; its former `use_sim_time`.
 
-    For one without parameter services: nobody else can.
+    None where there is no such node, or it refuses. For one without parameter services: nobody
+    else can.
     """
     if 'rclpy' not in sys.modules:
         return None
@@ -95,8 +96,8 @@ def _set_use_sim_time(node_name: str, value: bool) -> bool | None:
     for node in nodes_here():
         if node.get_fully_qualified_name() == node_name:
             former = node.get_parameter('use_sim_time').value
-            node.set_parameters([Parameter('use_sim_time', value=bool(value))])
-            return former
+            [result] = node.set_parameters([Parameter('use_sim_time', value=bool(value))])
+            return former if result.successful else None
     return None
 
 

@@ -128,8 +128,8 @@ def times_raised(node_name: str) -> int:
 def set_use_sim_time(node_name: str, value: bool) -> bool | None:
     """Give a node of the notebook's process its clock; its former `use_sim_time`.
 
-    None where that process has no such node, or does not answer. It drives a node that nothing
-    else can drive; the verdict stays with what the node publishes.
+    None where that process has no such node, or does not answer, or the node refuses. It drives a
+    node that nothing else can drive; the verdict stays with what the node publishes.
     """
     body = _told(wire.request(op='clock', name=node_name, args=(value,)))
     return body if isinstance(body, bool) else None

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from rclpy.node import Node
 
 from my_robot_basics.feedback.hidden import theirs
-from my_robot_basics.graph.snapshot import similar
+from my_robot_basics.graph.snapshot import NOT_RUNNING, similar
 from my_robot_basics.graph.watcher import HIDDEN
 
 OF_EVERY_NODE = frozenset(
@@ -37,7 +37,7 @@ class ServiceGraph:
         is_served = maker in ('create_service', 'ActionServer')
         ends = self.servers if is_served else self.clients
         if not self.node_names:
-            return 'the node is not running, so run the cell that starts it and read its output'
+            return NOT_RUNNING
         if near := similar(name, [each for each in ends if each != name]):
             uses = theirs(f'{", ".join(ends[near])} uses {near}')
             if any(near == f'{node.rpartition("/")[0]}{name}' for node in ends[near]):

@@ -7,6 +7,10 @@ from dataclasses import dataclass
 from my_robot_basics.feedback.hidden import theirs
 from my_robot_basics.graph.raised import what_raised
 
+NOT_RUNNING = (
+    'the node is not running, so run the cell that starts it and read its output; a node whose'
+    ' __init__ raises, loops or spins never runs'
+)
 _PLUMBING = ('/clock', '/parameter_events', '/rosout')
 
 
@@ -52,7 +56,7 @@ class GraphSnapshot:
     def why_no_message(self, topic_name: str) -> str:
         """What to try when nothing arrives on a topic: one clause."""
         if senders := self.publishers(topic_name):
-            who = theirs(', '.join(senders))
+            who = theirs(', '.join(dict.fromkeys(senders)))
             if raised := what_raised(senders):
                 return f'{who} has a publisher there and sends nothing, because {raised}'
             return (
@@ -85,7 +89,7 @@ class GraphSnapshot:
                 f' name in {maker}(…); if another node is missing, run the cell that starts it'
             )
         if not runs:
-            return 'the node is not running, so run the cell that starts it and read its output'
+            return NOT_RUNNING
         if near:
             uses = theirs(f'{", ".join(names[near])} uses {near}')
             if near in {name.rpartition('/')[0] + topic_name for name in names[near]}:

@@ -1,0 +1,115 @@
+"""Drive the robot's clock while a topic is recorded: by steps that skip nothing, and by others."""
+
+from my_robot_basics.checks import rates
+from my_robot_basics.checks.driven_topic import DrivenTopic
+from my_robot_basics.checks.inconclusive import NoMessage
+from my_robot_basics.checks.recording import Recording, Sample
+
+SECONDS_ENOUGH = 10.0
+"""Where that takes long, so much is a recording, too."""
+FINER = (1.0, 0.5, 0.1, 0.05, 0.01)
+"""Steps of the clock, as parts of the one asked for, tried until messages skip a tick.
+
+Each is a multiple of all finer ones: of a node that looks at the clock every 10 ms, steps of 20 ms
+and their proof of 4 ms would make 60 ms of 50."""
+FINE_PARTS, FINER_PARTS, COARSE_TIMES = 2.5, 5, 5
+"""The proof takes steps so many times as fine as the recording's, or as coarse …"""
+TWO_STEPS_PARTS = 2.75
+"""… Two of the recording's are no multiple of these: who looks whether 0.17 s have passed
+publishes each 0.2 s by steps of 0.1 s, and of 0.04 s …"""
+FINER_BELOW_SEC = 0.05
+"""… and finer ones below this, or 10 ms would be no multiple of them, either."""
+PROOF_STEPS = 30
+"""… for at least so many of the recording's steps, or of the coarse ones. …"""
+COARSE_STEPS = 4
+"""… Coarse ones take a slow timer less time; so many of them fit in its period at least."""
+KEEPS_UP_EVERY = 20
+"""Ticks that tell whether a callback takes longer than its period."""
+
+
+def drive(topic: DrivenTopic, *, seconds: float, step_sec: float) -> Recording:
+    """Record `seconds`, or until there are FEWEST messages. Raises Inconclusive.
+
+    Where that takes long, it leaves the proof its time and records less.
+    """
+    step_ns, start_ns = _find_step(topic, step_sec=step_sec)
+    received, clock = topic.recorder.received, topic.clock
+    before = len(received)
+    for done in range(1, round(seconds * 1e9 / step_ns) + 1):
+        topic.tick(step_ns)
+        if done % KEEPS_UP_EVERY == 0:
+            topic.expect_keeps_up(KEEPS_UP_EVERY, step_ns)
+            if done * step_ns >= SECONDS_ENOUGH * 1e9 and clock.takes_long():
+                break
+    while len(received) < before + rates.FEWEST:
+        topic.tick_to_message(step_ns)
+    return _recorded(topic, start_ns=start_ns, step_ns=step_ns)
+
+
+def _recorded(topic: DrivenTopic, *, start_ns: int, step_ns: int) -> Recording:
+    """What was received on the robot's clock since a message."""
+    recorder, clock = topic.recorder, topic.clock
+    samples = [
+        Sample(message, (clock.time_ns(sent_ns) - start_ns) / 1e9, sent_ns / 1e9)
+        for message, sent_ns in recorder.received
+        if clock.time_ns(sent_ns) > start_ns
+    ]
+    return Recording(
+        topic_name=recorder.topic_name,
+        messages=tuple(samples),
+        clock='simulated',
+        publishers=recorder.publishers(),
+        seconds=(clock.now_ns - start_ns) / 1e9,
+        start_sec=start_ns / 1e9,
+        step_sec=step_ns / 1e9,
+    )
+
+
+def _find_step(topic: DrivenTopic, *, step_sec: float) -> tuple[int, int]:
+    """A step that skips no period of the timer, and the time of the message to begin at.
+
+    A timer fires once a tick at most, so messages in two ticks running ask for a finer step.
+    """
+    for part in FINER:
+        step_ns = round(step_sec * part * 1e9)
+        topic.tick_to_message(step_ns)
+        if topic.tick_to_message(step_ns) > 1:
+            break
+    return step_ns, topic.clock.now_ns
+
+
+def prove(topic: DrivenTopic, recording: Recording) -> Recording | None:
+    """A recording with other steps that shows the same period, or None. Raises Inconclusive.
+
+    A timer fires once a tick at most. One that is faster than the ticks, and publishes every so
+    many calls, shows a period that the steps have made.
+    """
+    step_ns = round(recording.step_sec * 1e9)
+    parts: float = FINER_PARTS
+    if recording.step_sec >= FINER_BELOW_SEC:
+        is_two = abs(1.0 / (recording.rate_hz * recording.step_sec) - 2.0) < 0.1
+        parts = TWO_STEPS_PARTS if is_two else FINE_PARTS
+    coarse_ns, fine_ns = step_ns * COARSE_TIMES, round(step_ns / parts)
+    is_slow = recording.rate_hz * COARSE_STEPS * coarse_ns <= 1e9
+    coarse = is_slow and _same_period(topic, recording, coarse_ns, ticks_least=PROOF_STEPS)
+    ticks_least = round(PROOF_STEPS * parts)
+    return coarse or _same_period(topic, recording, fine_ns, ticks_least=ticks_least)
+
+
+def _same_period(
+    topic: DrivenTopic, recording: Recording, step_ns: int, *, ticks_least: int
+) -> Recording | None:
+    ticks = messages = 0
+    try:
+        topic.tick_to_message(step_ns)
+        start_ns = topic.clock.now_ns
+        while ticks < ticks_least:
+            ticks += topic.tick_to_message(step_ns)
+            messages += 1
+    except NoMessage:
+        return None
+    recorded_ns = messages * 1e9 / recording.rate_hz
+    unsure_ns = step_ns + messages * recording.step_sec * 1e9 / len(recording.messages)
+    if abs(ticks * step_ns - recorded_ns) > 1.5 * unsure_ns:
+        return None
+    return _recorded(topic, start_ns=start_ns, step_ns=step_ns)

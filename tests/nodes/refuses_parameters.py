@@ -1,0 +1,15 @@
+"""Publishes at 5 Hz, and takes no change of any parameter: not even another clock."""
+
+from five_hz import FiveHz, spin
+from rcl_interfaces.msg import SetParametersResult
+
+
+class RefusesParameters(FiveHz):
+    def __init__(self, **kwargs):
+        super().__init__(**kwargs)
+        refused = SetParametersResult(successful=False, reason='this node has no parameters')
+        self.add_on_set_parameters_callback(lambda parameters: refused)
+
+
+if __name__ == '__main__':
+    spin(RefusesParameters)
