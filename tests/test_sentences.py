@@ -151,7 +151,7 @@ WITH_COLONS = {
     'expected a message from /a to be republished on /b, unchanged, saw none in 1 s: its callback '
     "raised AttributeError: no 'send' (line 1, in f: self.send(m)), so fix that first": {
         'expected': '来自 /a 的消息原样转发到 /b',
-        'seen': '1 s 内一个也没有',
+        'seen': '1 s 内没有',
         'hint': "它的回调抛出了 AttributeError: no 'send' (line 1, in f: self.send(m))，"
         '所以先改正它',
     },
