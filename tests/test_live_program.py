@@ -100,6 +100,22 @@ def test_names_of_other_cells_are_told_with_what_to_add(notebook):
     ]
 
 
+def test_they_are_told_in_the_language_of_the_notebook_and_keep_their_indent(
+    notebook, monkeypatch
+):
+    monkeypatch.setenv('JPY_SESSION_NAME', 'zh_CN/03_publisher/03_publisher.ipynb')
+    notebook('import numpy as np\nLIMIT = 90\n')
+    notebook(ANSWER.replace('np.pi', 'LIMIT, display, nowhere, np'))
+    first, *lines = refusal()
+    assert first.startswith('NotAProgram: 程序不会认识这些名称')
+    assert lines[-4:] == [
+        '  LIMIT：把它的定义抄到类上面的一行',
+        '  display：只有 notebook 里才有；请去掉，! 和 % 也一样',
+        '  nowhere：没有单元格定义它；请改正名称',
+        '  np：加上这一行   import numpy as np',
+    ]
+
+
 @pytest.mark.parametrize(
     'line',
     [

@@ -77,6 +77,7 @@ TEMPLATES = {
     '{one} {other}': '{one}，{other}',
     '{sentence} {other}': '{sentence}{other}',
     '{name} is {value}': '{name} 为 {value}',
+    '{len} wrong': '{len} 个错误',
 }
 SAID = {
     'expected 5.0 Hz, saw no message in 10 s: the period is in seconds': (
@@ -95,6 +96,9 @@ SAID = {
     'your cell it ended': '你的单元格它结束了',
     'what the student is told and what is not': 'what the student is told and what is not',
     'nobody knows this sentence': 'nobody knows this sentence',
+    '12 wrong': '12 个错误',
+    '… wrong': '… 个错误',
+    'all that I typed, 2 wrong': 'all that I typed, 2 wrong',
     '': '',
 }
 
@@ -151,7 +155,7 @@ WITH_COLONS = {
     'expected a message from /a to be republished on /b, unchanged, saw none in 1 s: its callback '
     "raised AttributeError: no 'send' (line 1, in f: self.send(m)), so fix that first": {
         'expected': '来自 /a 的消息原样转发到 /b',
-        'seen': '1 s 内一个也没有',
+        'seen': '1 s 内没有',
         'hint': "它的回调抛出了 AttributeError: no 'send' (line 1, in f: self.send(m))，"
         '所以先改正它',
     },
@@ -196,6 +200,37 @@ OF_THE_DOCTOR_AND_LIVE = {
         '没有，而 /a 发布的是 /b（命名空间不同）：在 /a 里，'
         '不以 / 开头的名称前面会加上节点的命名空间'
     ),
+    'Something is wrong on /t: /arm publishes, nobody subscribes, 1 message in 3.0 s.': (
+        '/t 有问题：/arm 发布，没有节点订阅，3.0 s 内 1 条消息。'
+    ),
+    'a stamp 5.0 s ahead of it: tf2, RViz2 and message filters drop such messages': (
+        '时间戳比发送时的时钟晚 5.0 s：tf2、RViz2 和 message filters 会丢弃这样的消息'
+    ),
+    'a stamp 0.2 s behind it: tf2, RViz2 and message filters drop such messages': (
+        '时间戳比发送时的时钟早 0.2 s：tf2、RViz2 和 message filters 会丢弃这样的消息'
+    ),
+    'it has been running for at least 6 s, and is in line 4: time.sleep(9); until it returns, the '
+    "response of /ik can't be taken": (
+        '它已经运行了至少 6 s，正停在第 4 行：time.sleep(9)；在它返回之前，/ik 的响应取不走'
+    ),
+    'it has been running for at least 6 s, and is in a line that is not known': (
+        '它已经运行了至少 6 s，正停在某一行（不知道是哪一行）'
+    ),
+    'the callback ask of /waver to return, so that /arm can go on': (
+        '/waver 的回调 ask 返回，这样 /arm 才能继续'
+    ),
+    'not written: there is no class Arm yet: run the cell in which you write it, then this one': (
+        '没有写入：还没有类 Arm：先运行写有它的单元格，再运行这个'
+    ),
+    'not written: Waver does nothing yet: answer the exercise, run its cells, then this one '
+    '(waver.py stays as it was)': (
+        '没有写入：Waver 还什么都不做：先完成练习，运行它的单元格，再运行这个（waver.py 保持原样）'
+    ),
+    "greet: ended after SIGINT, but not cleanly (exit code 1, with KeyError: 'a'): catch "
+    'KeyboardInterrupt and ExternalShutdownException in main': (
+        "greet：在 SIGINT 之后结束，但不正常（退出码 1，最后是 KeyError: 'a'）：在 main 里捕获 "
+        'KeyboardInterrupt 和 ExternalShutdownException'
+    ),
     'the callback ask of /waver to return, so that its response is sent': (
         '/waver 的回调 ask 返回，这样它的响应才能发出'
     ),
@@ -222,6 +257,32 @@ OF_THE_DOCTOR_AND_LIVE = {
 
 @pytest.mark.parametrize(('english', 'chinese'), OF_THE_DOCTOR_AND_LIVE.items())
 def test_the_doctor_and_live_speak_chinese(english, chinese):
+    assert in_language('zh_CN', english) == chinese
+
+
+OF_CHECKS = {
+    'a stamp 5.0 s ahead of it': '时间戳比发送时的时钟晚 5.0 s',
+    'a stamp 0.2 s behind it': '时间戳比发送时的时钟早 0.2 s',
+    '1 message in 2.0 s': '2.0 s 内有 1 条消息',
+    '12 messages in 2.0 s': '2.0 s 内有 12 条消息',
+    "it has ended: exit code 1, ModuleNotFoundError: No module named 'x'": (
+        "它已经结束：退出码 1，ModuleNotFoundError: No module named 'x'"
+    ),
+    'it has ended: ended by signal 9': '它已经结束：被信号 9 结束',
+    'it succeeded too soon': '太早就变为 succeeded',
+    'it aborted in the end': '最后变为 aborted',
+    'it accepted in 10 s': '10 s 之后状态为 accepted',
+    '1 of the 2 that this part runs wrong': '这一部分实际运行的 2 个预测里有 1 个错误',
+    '1 wrong, which leaves 1 of 2 points': '1 个错误，还剩 2 分中的 1 分',
+    'numpy object in it': '其中有 numpy object',
+    'a point just beyond the outer border, l1 + l2, is not reached': (
+        '紧靠外边界（l1 + l2）外侧的点够不着'
+    ),
+}
+
+
+@pytest.mark.parametrize(('english', 'chinese'), OF_CHECKS.items())
+def test_what_checks_have_seen_is_said_in_chinese(english, chinese):
     assert in_language('zh_CN', english) == chinese
 
 

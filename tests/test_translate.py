@@ -5,6 +5,7 @@ import re
 import pytest
 from course_maker import TOY, make_course, toy_lesson, write_source
 from my_robot_basics.language.catalogues import catalogue_path, languages, read_translations
+from my_robot_basics.language.speaking import PARTS
 
 from grader.authoring.blocks import (
     split_blocks,
@@ -283,6 +284,14 @@ def test_translations_keep_what_has_to_be_kept(language, part):
         for english, text in read_translations(ROOT / 'locale', language, part).items()
         if (faults := list(faults_of(english, text)))
     } == {}
+
+
+@pytest.mark.parametrize(('language', 'part'), TRANSLATED)
+def test_no_two_places_of_a_sentence_touch(language, part):
+    """Nothing tells where the text in the first ends: a whole sentence for each case is sure."""
+    if part in PARTS:
+        known = read_translations(ROOT / 'locale', language, part)
+        assert [english for english in known if '}{' in english] == []
 
 
 @pytest.mark.parametrize(('language', 'part'), TRANSLATED)

@@ -80,7 +80,11 @@ class Action:
                 server.watcher.spin_for(cancel_after_sec)
                 server.answer_to(server.ends.cancel(sent), what='the request to cancel')
             if not server.watcher.spin_until_free(sent.has_result, free_sec=RESULT_SEC):
-                server.fail_without_end(sent, f'in {RESULT_SEC:g} s')
+                server.fail_without_end(
+                    sent,
+                    it=f'it {sent.status} in {RESULT_SEC:g} s',
+                    none=f'none in {RESULT_SEC:g} s',
+                )
             feedback = tuple(message for _, message in sent.feedback())
             return Outcome(sent.status, sent.result, feedback)
 

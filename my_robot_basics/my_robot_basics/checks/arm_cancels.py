@@ -106,7 +106,11 @@ def _cancel(arm: WatchedArm, sent: SentGoal, *, wanted_sec: float) -> None:
     if arm.time.wait(sent.is_over, seconds=STOP_SEC + slack_sec):
         return
     if not arm.time.wait(sent.is_over, seconds=MOST_TIMES * wanted_sec):
-        arm.server.fail_without_end(sent, 'after the request to cancel was accepted')
+        arm.server.fail_without_end(
+            sent,
+            it=f'it {sent.status} after the request to cancel was accepted',
+            none='none after the request to cancel was accepted',
+        )
     over_sec = (arm.time.at_ns(sent.over_ns()) - began_ns) / 1e9
     hint = 'look at goal_handle.is_cancel_requested in each step, and take steps more often'
     if sent.status != 'canceled':
@@ -165,7 +169,7 @@ def _expect_moves_on(
     expect(
         sent.is_over() and sent.status != 'canceled' and not is_early,
         expected='the next goal to be reached',
-        seen=f'it {sent.status} {"too soon" if is_early else "in the end"}',
+        seen=f'it {sent.status} too soon' if is_early else f'it {sent.status} in the end',
         hint='a request to cancel is for one goal: forget it when the next one begins',
         cause='the next goal is stopped, too',
     )

@@ -61,7 +61,11 @@ def expect_serves_on(action: Action, position: Pose, *, start: Pose = (0.0, 0.0)
         if not arm.time.wait(
             lambda: not arm.server.has_active(), seconds=MOST_TIMES * wanted_sec + MORE_SEC
         ):
-            arm.server.fail_without_end(sent, 'after its client has left')
+            arm.server.fail_without_end(
+                sent,
+                it=f'it {sent.status} after its client has left',
+                none='none after its client has left',
+            )
         back = arm.start
         arm.start = tuple(position)
         _arrive(arm, back, speed=LEAVES_SPEED)
@@ -75,7 +79,11 @@ def _arrive(arm: WatchedArm, position: Pose, *, speed: float) -> SentGoal:
     wanted_sec = far_rad(arm.start, position) / sent.goal.speed
     most_sec = MOST_TIMES * wanted_sec + MORE_SEC
     if not wait_for_end(arm, sent, position, seconds=most_sec):
-        arm.server.fail_without_end(sent, f'in {most_sec:.0f} s of a move that takes a third')
+        arm.server.fail_without_end(
+            sent,
+            it=f'it {sent.status} in {most_sec:.0f} s of a move that takes a third',
+            none=f'none in {most_sec:.0f} s of a move that takes a third',
+        )
     _expect_succeeded(arm, sent)
     _expect_arrived(sent, position, start=arm.start)
     return sent

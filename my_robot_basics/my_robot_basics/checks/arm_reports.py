@@ -73,9 +73,10 @@ class MoveReport:
             )
         seconds = self.arm.seconds(self.sent)
         if count < FEWEST or self._rate_hz(seconds) < LEAST_HZ:
+            one, many = f'1 message in {seconds:.1f} s', f'{count} messages in {seconds:.1f} s'
             fail(
                 expected=f'feedback at {WANTED_HZ:g} Hz or more',
-                seen=f'{count} message{"" if count == 1 else "s"} in {seconds:.1f} s',
+                seen=one if count == 1 else many,
                 hint='publish feedback in each step of the move, and take at least ten a second',
                 cause='there is too little feedback',
                 doubt=self.arm.doubt(self.sent, self.end),
@@ -182,10 +183,9 @@ class MoveReport:
         return np.asarray(np.abs(positions - (begin + parts[:, None] * ways)).max(axis=1))
 
     def _fail_position(self, seen: Sequence[float], hint: str, expected: str) -> None:
-        shown = [round(float(each), 3) for each in seen]
         fail(
             expected=f'{expected} in the feedback',
-            seen=f'{shown}',
+            seen=[round(float(each), 3) for each in seen],
             hint=hint,
             cause='feedback.position is wrong',
         )

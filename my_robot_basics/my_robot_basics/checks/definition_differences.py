@@ -37,8 +37,9 @@ def _missing(
     asked = {each for names in wanted for each in names}
     others = [each for each in _all(found) if each not in asked]
     similar = difflib.get_close_matches(name, others, n=1)
-    instead = f'; is it called {shorten(similar[0], 40)}?' if similar else ''
-    return f'{part} has no {name}{instead}'
+    if similar:
+        return f'{part} has no {name}; is it called {shorten(similar[0], 40)}?'
+    return f'{part} has no {name}'
 
 
 def _all(found: Definition, but: object = None) -> list[str]:

@@ -109,11 +109,14 @@ class OpenAction:
             )
         return asked.result()
 
-    def fail_without_end(self, sent: SentGoal, when: str) -> NoReturn:
-        """A goal has not ended. Raises CheckFailed with the reason."""
+    def fail_without_end(self, sent: SentGoal, *, it: str, none: str) -> NoReturn:
+        """A goal has not ended: `it` says so with its status, `none` where it has none.
+
+        Raises CheckFailed with the reason.
+        """
         fail(
             expected='the goal to end',
-            seen=f'none {when}' if not sent.status else f'it {sent.status} {when}',
+            seen=it if sent.status else none,
             hint=self.why_no_end(sent),
             cause='a goal does not end',
         )

@@ -11,7 +11,7 @@ from typing import Any, NoReturn, Self
 from rcl_interfaces.srv import GetParameters
 
 from my_robot_basics.checks import polite_end
-from my_robot_basics.checks.package_words import how, last_words, text_in
+from my_robot_basics.checks.package_words import has_ended, how, last_words, text_in
 from my_robot_basics.exchange import student
 from my_robot_basics.exchange.endings import is_clean
 from my_robot_basics.feedback.errors import CheckFailed, Starved, expect, fail, shorten
@@ -145,7 +145,8 @@ class RunningExecutable:
     def _expect_code(self, wanted: int, *, hint: str) -> None:
         code, said = self._state()
         wanted_end = f'{self.executable} to end with exit code {wanted}'
-        seen, cause = f'{how(code)}{last_words(said)}', f'{self.executable} does not end cleanly'
+        seen = ', '.join(filter(None, (how(code), last_words(said))))
+        cause = f'{self.executable} does not end cleanly'
         expect(code == wanted, expected=wanted_end, seen=seen, hint=hint, cause=cause)
 
     def _expect_gone(self) -> None:
@@ -162,10 +163,9 @@ class RunningExecutable:
             )
 
     def _fail_ended(self, expected: str) -> NoReturn:
-        code, said = self._state()
         fail(
             expected=expected,
-            seen=f'it has ended: {how(code)}{last_words(said)}',
+            seen=has_ended(*self._state()),
             hint=f"run it with run_executable('{self.package}', '{self.executable}') and read why",
             cause=f'{self.executable} ends by itself',
         )

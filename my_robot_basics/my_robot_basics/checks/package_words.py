@@ -21,8 +21,14 @@ def how(code: int | None) -> str:
     return f'exit code {code}' if code >= 0 else f'ended by signal {-code}'
 
 
+def has_ended(code: int | None, said: str) -> str:
+    """That a program has ended, how, and its last words."""
+    last = last_words(said)
+    return f'it has ended: {how(code)}, {last}' if last else f'it has ended: {how(code)}'
+
+
 def last_words(said: str) -> str:
-    """The error in what was printed, or its last line."""
+    """The error in what was printed, or its last line; '' where nothing was."""
     lines = [line for line in said.splitlines() if line.strip()]
     last = error_in(lines) or next(reversed(lines), '')
-    return f', {theirs(shorten(last))}' if last else ''
+    return theirs(shorten(last)) if last else ''

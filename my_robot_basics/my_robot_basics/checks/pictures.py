@@ -40,8 +40,10 @@ def arrivals(recording: 'Recording', *, hz: float | None = None) -> bytes:
     axes.set_xlim(0.0, until)
     clock = "robot's clock" if recording.clock == 'simulated' else 'wall clock'
     axes.set_xlabel(f'seconds on the {clock}')
-    part = f', the first {until:g} s' if until < recording.seconds else ''
-    axes.set_title(f'messages on {recording.topic_name}{part}')
+    title = f'messages on {recording.topic_name}'
+    if until < recording.seconds:
+        title = f'messages on {recording.topic_name}, the first {until:g} s'
+    axes.set_title(title)
     return _png(figure)
 
 

@@ -76,16 +76,21 @@ class Predictions:
             f'`{each.__name__}` {"arrives" if arrived else "does not arrive"} ({each.__doc__})'
             for each, arrived in self._wrong
         ]
-        rest = '' if has_all else f' of the {self._ran} that this part runs'
-        leaves = f', which leaves {earned:g} of {max(points.values()):g} points' if earned else ''
         # it tells what happens on the check's own stage, and the student's own yes and no
         with said_in_full():
             fail(
                 expected='each prediction to match what happens when the check runs it',
-                seen=f'{len(self._wrong)}{rest} wrong{leaves}',
+                seen=self._how_many_wrong(earned, max(points.values())),
                 hint='; '.join(reasons),
                 earned=earned,
             )
+
+    def _how_many_wrong(self, earned: float, most: float) -> str:
+        if self._ran < len(self._keys):
+            return f'{len(self._wrong)} of the {self._ran} that this part runs wrong'
+        if earned:
+            return f'{len(self._wrong)} wrong, which leaves {earned:g} of {most:g} points'
+        return f'{len(self._wrong)} wrong'
 
     def _instead_of(self, key: str, keys: Sequence[str]) -> str:
         others = [other for other in self._values if isinstance(other, str) and other not in keys]

@@ -167,10 +167,10 @@ class Relay:
             if times % TIMES_RAISED == 0 and raised.hint():
                 break
         others = recorder.messages()[before:]
-        has_others = bool(others)
+        has_others, seconds = bool(others), times * AGAIN_SEC
         fail(
             expected=f'a message from {self.source} to be republished on {self.to}, unchanged',
-            seen=f'{"only others" if has_others else "none"} in {times * AGAIN_SEC:g} s',
+            seen=f'only others in {seconds:g} s' if has_others else f'none in {seconds:g} s',
             hint=RelayEndpoints(self.source, self.to).why_lost(
                 watcher, is_latched=again is None, has_others=has_others
             )

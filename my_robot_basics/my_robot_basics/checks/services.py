@@ -111,10 +111,13 @@ class Service:
     def _fail_unanswered(
         self, watcher: Watcher, server: str, raised: CallbackErrors, answered: int, asked: int
     ) -> NoReturn:
-        seen = 'none' if not answered else f'{answered} of {asked}'
+        seen = f'{answered} of {asked}' if answered else 'none'
+        if not raised.hint():
+            late = f'{answered} of {asked} in {ANSWER_SEC:g} s'
+            seen = late if answered else f'none in {ANSWER_SEC:g} s'
         fail(
             expected='an answer to each request' if asked > 1 else 'an answer',
-            seen=seen if raised.hint() else f'{seen} in {ANSWER_SEC:g} s',
+            seen=seen,
             hint=self._why_unanswered(watcher, server, raised),
             cause=f'{self.name} does not answer',
         )

@@ -74,7 +74,11 @@ class WatchedArm:
         """Bring the arm there in haste, whatever becomes of the goal."""
         sent = self.send(goal(position, speed=HASTE))
         if not self.time.wait(sent.is_over, seconds=HASTE_SEC):
-            self.server.fail_without_end(sent, f'in {HASTE_SEC:g} s at {HASTE:g} rad/s')
+            self.server.fail_without_end(
+                sent,
+                it=f'it {sent.status} in {HASTE_SEC:g} s at {HASTE:g} rad/s',
+                none=f'none in {HASTE_SEC:g} s at {HASTE:g} rad/s',
+            )
         self.settle()
         self.start = tuple(position)
 

@@ -52,7 +52,9 @@ def encode(value: object, depth: int = 0) -> Any:
         raise UnsupportedValue(f'values nested more than {MOST_DEPTH} deep')
     if isinstance(value, np.generic | np.ndarray):
         if value.dtype.kind not in 'biufU':
-            raise UnsupportedValue(f'numpy {value.dtype}{_within(depth)}')
+            raise UnsupportedValue(
+                f'numpy {value.dtype} in it' if depth else f'numpy {value.dtype}'
+            )
         value = value.tolist()
     if value is None or isinstance(value, bool | str):
         return value
@@ -110,11 +112,6 @@ def type_name(message_type: type) -> str:
     return f'{message_type.__module__.partition(".")[0]}/msg/{message_type.__name__}'
 
 
-def _within(depth: int) -> str:
-    """Words for a value that stands in the one that was asked for."""
-    return ' in it' if depth else ''
-
-
 def _encode_message(value: object, depth: int) -> dict:
     name = type_name(type(value))
     try:
@@ -122,7 +119,8 @@ def _encode_message(value: object, depth: int) -> dict:
     except WireError:
         known = False
     if not known:
-        raise UnsupportedValue(f'{type(value).__name__}{_within(depth)}')
+        own_name = type(value).__name__
+        raise UnsupportedValue(f'{own_name} in it' if depth else own_name)
     from rclpy.serialization import serialize_message
 
     try:

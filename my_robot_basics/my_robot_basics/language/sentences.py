@@ -38,6 +38,9 @@ MOST_DROPPED = 5
 MOST_SPLITS = 10
 """In how many ways one template may fit one text."""
 
+_HOW_MANY = re.compile(r'(len|count|code)\d*')
+"""The places of numbers, so that `{len} wrong` fits nothing but these; hidden ones are `…`."""
+_NUMBER = re.compile(r'[\d,]+|…')
 _OPENED = re.compile(r'(?<!\w)[\'"](?=\w)')
 """A quote that is not closed."""
 
@@ -145,6 +148,8 @@ class Sentences:
     def _cuts(self, template: Template, found: Mapping[str, str]) -> bool:
         """Whether a template would cut a sentence in two, or take one for what the code names."""
         for place, text in found.items():
+            if _HOW_MANY.fullmatch(place) and not _NUMBER.fullmatch(text):
+                return True
             known = text in self.translations or text.strip() in self.translations
             if (place.isupper() and ' ' in text.strip() and not known) or (
                 place.endswith('name') and ': ' in text

@@ -93,13 +93,19 @@ def how_it_ended(each: Executable, took: signal.Signals | None) -> str:
     if took is None:
         if code == 0:
             return 'had ended by itself (exit code 0)'
-        return f'had ended by itself ({_code(code)})' + (f': {last}' if last else '')
+        if last:
+            return f'had ended by itself ({_how(code)}): {last}'
+        return f'had ended by itself ({_how(code)})'
     if took is signal.SIGINT and is_clean(code, [*each.process.lines]):
         return 'ended cleanly after SIGINT'  # not its code: see RACE in endings.py
     if took is signal.SIGINT:
-        said = f', with {last}' if last else ''
+        if last:
+            return (
+                f'ended after SIGINT, but not cleanly ({_how(code)}, with {last}): catch '
+                'KeyboardInterrupt and ExternalShutdownException in main'
+            )
         return (
-            f'ended after SIGINT, but not cleanly ({_code(code)}{said}): catch KeyboardInterrupt '
+            f'ended after SIGINT, but not cleanly ({_how(code)}): catch KeyboardInterrupt '
             'and ExternalShutdownException in main'
         )
     return (
@@ -146,7 +152,7 @@ def _first(name: str, folder: Path) -> str:
     return os.pathsep.join(filter(None, [str(folder), os.environ.get(name, '')]))
 
 
-def _code(code: int | None) -> str:
+def _how(code: int | None) -> str:
     if code is not None and code < 0:
         return f'by {signal.Signals(-code).name}'
     return f'exit code {code}'

@@ -38,8 +38,10 @@ def write_node(line: str, cell: str) -> None:
     try:
         text = program.fill_in(cell)
     except program.NotAnswered as error:  # not an error: *Run All* goes on
-        stays = f' ({name} stays as it was)' if target.exists() else ''
-        tell(f'not written: {error}{stays}', in_one=False)
+        if target.exists():
+            tell(f'not written: {error} ({name} stays as it was)', in_one=False)
+        else:
+            tell(f'not written: {error}', in_one=False)
         return
     if target.exists() and target.read_text(encoding='utf-8') != text:
         tell(f'moved    {workspace.shown(_kept(target))}: the file as it was')

@@ -15,6 +15,8 @@ from my_robot_basics.session.errors import LiveError, in_lines
 
 ONLY_IN_NOTEBOOKS = {'display', 'get_ipython'}
 """IPython puts them among the builtins; a `!` or `%` line needs the second one."""
+INDENT = '  '
+"""Before what to do about a name."""
 _EVERYWHERE = (vars(builtins).keys() - ONLY_IN_NOTEBOOKS) | {'__file__', '__name__', '__doc__'}
 
 
@@ -22,9 +24,12 @@ class NotAProgram(LiveError):
     """A cell cannot become a program as it is; the message may have several lines."""
 
     def _render_traceback_(self) -> list[str]:
-        first, *others = map(in_language_here, str(self).splitlines())
-        parts = [f'{type(self).__name__}: {first}', *others]
-        return [line for part in parts for line in in_lines(part)]
+        first, *others = str(self).splitlines()
+        lines = in_lines(f'{type(self).__name__}: {in_language_here(first)}')
+        for other in others:
+            said = other.removeprefix(INDENT)
+            lines += in_lines(in_language_here(said), first=INDENT if said != other else '')
+        return lines
 
 
 class NotAnswered(NotAProgram):
@@ -133,20 +138,21 @@ def _does_nothing(node: ast.ClassDef) -> bool:
 
 def _how_to_add(names: list[str]) -> str:
     notebook = vars(sys.modules['__main__'])
-    lines = [
-        'the program would not know these names, because a file sees only what is in it. '
-        'Change this cell as follows, then run it again:'
-    ]
+    lines = []
     for name in names:
         if name in ONLY_IN_NOTEBOOKS:
-            lines.append(f'  {name}: only a notebook has it; leave it out, as well as ! and %')
+            lines.append(f'{name}: only a notebook has it; leave it out, as well as ! and %')
         elif name not in notebook:
-            lines.append(f'  {name}: no cell defines it; correct the name')
+            lines.append(f'{name}: no cell defines it; correct the name')
         elif line := import_line(name, notebook[name]):
-            lines.append(f'  {name}: add the line   {line}')
+            lines.append(f'{name}: add the line   {line}')
         else:
-            lines.append(f'  {name}: copy its definition to a line above the class')
-    return '\n'.join(lines)
+            lines.append(f'{name}: copy its definition to a line above the class')
+    first = (
+        'the program would not know these names, because a file sees only what is in it. '
+        'Change this cell as follows, then run it again:'
+    )
+    return '\n'.join([first, *(f'{INDENT}{line}' for line in lines)])
 
 
 def import_line(name: str, thing: Any) -> str:

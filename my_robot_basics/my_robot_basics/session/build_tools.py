@@ -28,13 +28,13 @@ def why_not(package: str) -> str:
         return ''
     *most, last = lacking
     names = f'{", ".join(most)} and {last} are' if most else f'{last} is'
-    instead = ''
-    if Path(sys.prefix, 'share', package, 'package.xml').is_file():
-        instead = f'; until then, the {package} that the course has installed goes on working'
-    return (
+    why = (
         f'{package} cannot be built on this machine: {names} missing; to get what is missing on '
-        f'Debian and Ubuntu: sudo apt install {" ".join(dict.fromkeys(lacking.values()))}{instead}'
+        f'Debian and Ubuntu: sudo apt install {" ".join(dict.fromkeys(lacking.values()))}'
     )
+    if Path(sys.prefix, 'share', package, 'package.xml').is_file():
+        return f'{why}; until then, the {package} that the course has installed goes on working'
+    return why
 
 
 def _is_here(variable: str, *programs: str) -> bool:

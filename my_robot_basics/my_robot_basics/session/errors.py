@@ -7,9 +7,9 @@ COLUMNS = 90
 """What fits beside a file browser; JupyterLab breaks words, and Validate cuts long lines off."""
 
 
-def in_lines(text: str) -> list[str]:
-    """`text` in lines that end between words."""
-    return lines.in_lines(text, COLUMNS)
+def in_lines(text: str, *, first: str = '') -> list[str]:
+    """`text` in lines that end between words; `first` is put before the first one."""
+    return lines.in_lines(text, COLUMNS, first=first)
 
 
 def tell(text: str, *, in_one: bool = True) -> None:

@@ -84,7 +84,9 @@ def too_much(sizes: Mapping[str, int]) -> str:
         what = f'it has {size:.1f} MB, and at most {MAX_BYTES / 1e6:.0f} MB are taken'
     else:
         return ''
-    return f'{what}: remove what is no part of the package{_most_of(sizes)}'
+    if top := _holds_most(sizes):
+        return f'{what}: remove what is no part of the package (most lie in {top}/)'
+    return f'{what}: remove what is no part of the package'
 
 
 def told(path: str, reason: str) -> str:
@@ -150,12 +152,12 @@ def _is_plain(name: str) -> bool:
     )
 
 
-def _most_of(sizes: Mapping[str, int]) -> str:
-    """Where most of the files lie, if that is a folder in the package's."""
+def _holds_most(sizes: Mapping[str, int]) -> str:
+    """The folder in the package's in which most of the files lie; '' where none has so many."""
     counts: dict[str, int] = {}
     for name in sizes:
         top, slash, _ = name.partition('/')
         if slash:
             counts[top] = counts.get(top, 0) + 1
     top = max(counts, key=lambda name: counts[name], default='')
-    return f' (most lie in {top}/)' if counts and counts[top] > MAX_FILES // 2 else ''
+    return top if counts and counts[top] > MAX_FILES // 2 else ''

@@ -22,8 +22,7 @@ def examine(evidence: Seen) -> Iterator[Finding]:
         yield Finding(
             title='a callback has not returned',
             expected=f'the callback {each.name} of {each.node_name} to return, so that {job}',
-            seen=f'it has been running for at least {int(each.seconds)} s, and is in'
-            f' {each.line or "a line that is not known"}{_meanwhile(each)}',
+            seen=_seen(each),
             fix=LATER
             if each.asks
             else 'if it waits for something that does not come, end that; if it only takes long,'
@@ -33,7 +32,11 @@ def examine(evidence: Seen) -> Iterator[Finding]:
         )
 
 
-def _meanwhile(callback: Callback) -> str:
-    if not callback.asks:
-        return ''
-    return f"; until it returns, the response of {callback.asks} can't be taken"
+def _seen(callback: Callback) -> str:
+    where = callback.line or 'a line that is not known'
+    if callback.asks:
+        return (
+            f'it has been running for at least {int(callback.seconds)} s, and is in {where}; '
+            f"until it returns, the response of {callback.asks} can't be taken"
+        )
+    return f'it has been running for at least {int(callback.seconds)} s, and is in {where}'
