@@ -14,6 +14,7 @@ from course_maker import TOY, make_course, submit
 from grader.__main__ import main
 from grader.common.errors import CourseError
 from grader.course import Course
+from grader.kernels import isolation
 from grader.storage import failures
 from grader.storage.database import make_database
 from grader.storage.lock import gradebook_lock
@@ -46,6 +47,28 @@ def test_wrong_arguments_end_with_status_2(arguments):
     assert end.value.code == 2
 
 
+VERBS_WITH_FEW_ARGUMENTS = {
+    **{verb: [verb, 'b'] for verb in ('translate', 'feedback', 'demo', 'doctor')},
+    **{verb: [verb, 'a', 'b'] for verb in ('release', 'solutions', 'grade', 'bundle', 'collect')},
+}
+
+
+@pytest.mark.parametrize('verb', VERBS_WITH_FEW_ARGUMENTS)
+def test_a_surplus_argument_is_told_with_the_usage_of_its_verb(verb, capsys):
+    with pytest.raises(SystemExit) as end:
+        main(VERBS_WITH_FEW_ARGUMENTS[verb])
+    said = capsys.readouterr().err
+    assert said.startswith(f'usage: ./course {verb} [-h]')
+    assert said.endswith(f'./course {verb}: error: unrecognized arguments: b\n')
+    assert end.value.code == 2
+
+
+def test_a_student_s_page_says_that_there_was_no_sandbox(monkeypatch):
+    monkeypatch.setattr(isolation, 'missing', lambda: 'there is none')
+    with pytest.raises(CourseError, match=r'--trust-students\. Each feedback page will say so\.'):
+        isolation.require_isolation()
+
+
 def test_an_error_of_ours_is_one_sentence_without_escapes_and_status_1(tmp_path, capsys):
     (tmp_path / 'solutions').mkdir()
     assert main(['grade', '\x1b[31mred'], course=Course.at(tmp_path)) == 1
@@ -72,7 +95,9 @@ def test_all_verbs_in_a_row(tmp_path, capsys):
     assert capsys.readouterr().out == f'{moved}{released}2 files changed.\n'
     for verb in ('scores', 'feedback'):
         assert main([verb], course=course) == 0
-        assert capsys.readouterr().out.endswith('Nothing is graded yet. Next: ./course grade\n')
+        said = capsys.readouterr()
+        assert said.err == 'Nothing is graded yet. Next: ./course grade\n'
+        assert said.out.startswith(str(course.gradebook)) == (verb == 'scores')
     assert main(['grade'], course=course) == 1
     assert 'where ./course collect FOLDER puts' in capsys.readouterr().err
     submit(course, 'ada', b'')
