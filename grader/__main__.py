@@ -3,6 +3,7 @@
 import contextlib
 import gc
 import io
+import os.path
 import sys
 from typing import TYPE_CHECKING, NoReturn
 
@@ -40,6 +41,7 @@ def main(arguments: list[str] | None = None, *, course: 'Course | None' = None) 
             log_visibly()
             course = course or Course()
             refuse_another_place(course.root / 'nbgrader_config.py')
+            _refuse_no_folder(course)
             with in_sentences(course):
                 return asked.run(course, asked)
         except CourseError as error:
@@ -52,6 +54,17 @@ def main(arguments: list[str] | None = None, *, course: 'Course | None' = None) 
             with contextlib.suppress(OSError):  # SIGHUP: the terminal is gone
                 print(f'\ncourse: stopped. {kept}; run it again to go on.', file=sys.stderr)
             return stop.status
+
+
+def _refuse_no_folder(course: 'Course') -> None:
+    """Raise CourseError where something else lies in the gradebook's place."""
+    gradebook = course.gradebook
+    if os.path.lexists(gradebook) and not gradebook.is_dir():
+        what = 'a file' if gradebook.exists() else 'a link that leads nowhere'
+        raise CourseError(
+            f'{gradebook} is {what}; a folder was expected: move it away, then run the same '
+            'command again. Where there was a gradebook, put its folder back first.'
+        )
 
 
 def run() -> NoReturn:

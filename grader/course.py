@@ -119,7 +119,8 @@ class Course:
         """Return the hexadecimal seed of the inputs that an assignment's hidden tests choose.
 
         It is a student's own, the same at each hand-in and each re-grading, and another one once
-        the lesson's text changes; nobody without the course's secret can tell it.
+        the lesson's text changes; nobody without the course's secret can tell it. Raises
+        CourseError where that secret is damaged.
         """
         return self.seeds(assignment)(student_id)
 
@@ -155,7 +156,17 @@ class Course:
                     os.link(fresh, path)
             finally:
                 fresh.unlink(missing_ok=True)
-        return bytes.fromhex(path.read_text(encoding='ascii'))
+        try:
+            secret = bytes.fromhex(path.read_text(encoding='ascii'))
+        except ValueError:
+            secret = b''
+        if not secret:  # with an empty one, anybody could tell the seeds
+            raise CourseError(
+                f'{path} is damaged: expected hexadecimal digits. Restore it from a backup; a '
+                'new secret, which is made where there is no such file, gives hidden tests other '
+                'inputs.'
+            )
+        return secret
 
     def _unknown(self, assignment: str) -> str:
         known = ', '.join(self.assignments()) or 'none'

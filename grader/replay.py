@@ -15,6 +15,9 @@ from grader.storage.submitted import SubmissionFolder
 from grader.workers.backend import Backend, submit_for_grading
 from grader.workers.workers import Workers
 
+_CHANGED = 'grading now uses another seed: the lesson was changed since'
+_OTHER = 'this seed is not the one that grading uses'
+
 
 def replay(
     course: Course,
@@ -54,7 +57,7 @@ def replay(
         for each, its, result in zip(found, seeds, work, strict=True):
             yield f'{printable(each.student_id)}  {each.assignment}  seed {its}', True
             if its != _own_seed(course, each):
-                yield '  (grading now uses another seed: the lesson was changed since)', True
+                yield f'  ({_CHANGED if seed == RECORDED else _OTHER})', True
             stored = verdicts(course, each.student_id, each.assignment)
             for cell in result.result().notebook.cells:
                 if role(cell) == 'grade' and cell.cell_type == 'code':

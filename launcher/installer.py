@@ -15,6 +15,7 @@ from launcher.words import marked, put
 
 STEPS = ('Resolved ', 'Collecting ', 'Downloading ', 'Prepared ', 'Installed ')
 """How the lines of an installer begin that tell how far it is."""
+FULL = (errno.ENOSPC, errno.EDQUOT)
 NO_DISK = ('No space left on device', 'os error 28', 'Disk quota exceeded', 'os error 122')
 NO_NETWORK: tuple[str, ...] = (
     'error sending request',
@@ -153,7 +154,7 @@ def writing() -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        full = error.errno in (errno.ENOSPC, errno.EDQUOT)
+        full = error.errno in FULL
         raise LauncherError(DISK_IS_FULL if full else f'{error}\n{put(FAILED)}') from error
 
 

@@ -39,6 +39,8 @@ NBVAL = (
     *('-p', 'tests.conftest', '--nbval', '--nbval-cell-timeout', '60'),
     *('-o', f'cache_dir={LESSONS_CACHE}'),
 )
+USAGE_ERROR = 4
+"""How pytest ends that does not understand an argument."""
 RECORD = 'unstable_tests.txt'
 """In the course's root; one line for each test that failed beside others and passed alone."""
 
@@ -167,6 +169,10 @@ def run(environment: Environment, variables: dict[str, str], arguments: list[str
                 command = [*OWN_NETWORK, *checks.lessons(shard)]
                 in_lessons = beside.enter_context(checks.beside('lessons', *command))
             status = checks.call(*checks.tests(tests))
+            if status == USAGE_ERROR:  # it is said already, and nothing was tested
+                for other in filter(None, (types, in_lessons)):
+                    other.terminate()
+                return status
         statuses.append(types.returncode)
         statuses.append(checks.again('tests', status, lambda: checks.failed_tests(tests)))
         if has_lessons:

@@ -9,7 +9,7 @@ import tempfile
 from pathlib import Path
 
 from launcher.environment import Environment
-from launcher.installer import Installer, writing
+from launcher.installer import FULL, Installer, writing
 from launcher.made import PINS
 from launcher.messages import LauncherError, say
 from launcher.offline import (
@@ -83,8 +83,20 @@ def fill(environment: Environment, lock: int, folder: Path, versions: list[str])
 
 
 def what_is_there(folder: Path) -> Wheels:
-    """Return what an earlier call put there; make the folder where there is none."""
-    folder.mkdir(parents=True, exist_ok=True)
+    """Return what an earlier call put there; make the folder where there is none.
+
+    Raises LauncherError where it cannot be made, or holds something else.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        if error.errno in FULL:
+            raise
+        raise LauncherError(
+            '{folder} cannot be made ({reason}): name another folder, a new or an empty one.',
+            folder=folder,
+            reason=error.strerror,
+        ) from None
     if (folder / CONTENTS).exists():
         return read_wheels(folder)
     if any(

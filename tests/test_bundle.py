@@ -82,6 +82,33 @@ def test_a_course_that_was_never_released_is_told_in_one_sentence(course, tmp_pa
     assert not (tmp_path / 'students.zip').exists()
 
 
+@pytest.mark.parametrize('target', ['a folder', '/proc/x.zip', 'a file/x.zip'])
+def test_where_nothing_can_be_written_it_says_so_at_once(course, tmp_path, monkeypatch, target):
+    late = 'grader.authoring.bundle.stale_or_leaking'
+    monkeypatch.setattr(late, lambda course: pytest.fail('it was checked first'))
+    (tmp_path / 'a folder').mkdir()
+    (tmp_path / 'a file').write_text('kept')
+    path = tmp_path / target
+    said = 'is a folder; expected the file to write' if target == 'a folder' else 'Name another'
+    with pytest.raises(CourseError, match=f'^no bundle was made: {path} .*{said}'):
+        bundle(course, path)
+    assert sorted(each.name for each in tmp_path.iterdir()) == ['a file', 'a folder', 'course']
+
+
+def test_a_folder_that_appears_meanwhile_is_left(course, monkeypatch):
+    shutil.rmtree(course.gradebook, ignore_errors=True)
+    monkeypatch.setattr(
+        'grader.authoring.bundle.stale_or_leaking', lambda course: course.gradebook.mkdir() or []
+    )
+    with pytest.raises(CourseError, match=f'^no bundle was made: {course.gradebook} is a folder'):
+        bundle(course, course.gradebook)
+
+
+def test_a_folder_that_is_not_there_yet_is_made(course, fresh_lessons, tmp_path):
+    bundle(course, tmp_path / 'new' / 'folder' / 'students.zip')
+    assert [each.name for each in (tmp_path / 'new/folder').iterdir()] == ['students.zip']
+
+
 # --- what is in it -------------------------------------------------------------------------------
 
 

@@ -503,7 +503,22 @@ def test_nothing_that_is_there_to_collect_is_said(course, tmp_path, capsys):
     assert 'nowhere is not there: expected a folder' in capsys.readouterr().err
     (tmp_path / 'empty').mkdir()
     assert main(['collect', str(tmp_path / 'empty')], course=course) == 1
-    assert 'Nothing was taken, for there is no file in it' in capsys.readouterr().out
+    assert capsys.readouterr().out == (
+        f'Nothing was taken: there is no file in {tmp_path / "empty"}\n'
+    )
+
+
+def test_the_report_begins_with_a_line_whatever_it_tells(course, tmp_path, capsys):
+    (tmp_path / 'litter').mkdir()
+    (tmp_path / 'litter' / '.DS_Store').write_text('')
+    assert main(['collect', str(tmp_path / 'litter')], course=course) == 1
+    assert capsys.readouterr().out.splitlines() == [
+        'Not used for grading:',
+        'file       reason',
+        '.DS_Store  hidden, or left behind by a program',
+        '',
+        'Nothing was taken; 0 not taken.',
+    ]
 
 
 def test_nbgrader_reads_the_time(course, source):

@@ -74,6 +74,7 @@ def test_the_rest_of_the_file_stays_as_it_was_written(course):
     [
         (['99_other', '2026-11-30'], f"no assignment '99_other'; there are: {TOY}"),
         ([TOY], f'say until when: ./course due {TOY} 2026-11-30'),
+        (['--student', 'ada'], './course due ASSIGNMENT DATE --student ada'),
         ([TOY, '2026-11-29', '--student', 'ada'], 'gives nobody more time'),
         ([TOY, 'none'], 'it is extended for ada. Remove these extensions first'),
     ],
@@ -104,7 +105,9 @@ def test_a_broken_file_is_not_written_over(course, capsys):
 def test_a_date_that_is_none_is_refused(course, capsys):
     with pytest.raises(SystemExit):
         due(course, TOY, 'tomorrow')
-    assert 'invalid date value' in capsys.readouterr().err
+    said = capsys.readouterr().err
+    assert said.startswith('usage: ./course due ')
+    assert said.endswith(": 'tomorrow' is not a date: write 2026-11-30, or none\n")
 
 
 def test_without_a_date_all_of_them_are_listed(course, capsys):

@@ -5,6 +5,7 @@ import re
 import shutil
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -322,6 +323,18 @@ def test_every_package_without_a_wheel_is_built_with_tools_that_are_pinned():
     pins = build_tools(ROOT / 'environment.txt')
     assert [line.split('==')[0] for line in pins.splitlines()[::2]] == list(BUILD_TOOLS)
     assert pins.count('--hash=sha256:') >= len(BUILD_TOOLS)
+
+
+@pytest.mark.starts
+def test_a_mistake_in_an_argument_of_pytest_ends_all_of_it_at_once(tmp_path, monkeypatch):
+    for name, does in {'ruff': 'exit 0', 'mypy': 'exec sleep 60', 'python': 'exit 4'}.items():
+        program = tmp_path / '.venv/bin' / name
+        program.parent.mkdir(parents=True, exist_ok=True)
+        program.write_text(f'#!/bin/sh\n{does}\n')
+        program.chmod(0o755)
+    begun = time.monotonic()
+    assert testing.run(Environment(tmp_path), {'PATH': os.environ['PATH']}, ['--bogus']) == 4
+    assert time.monotonic() - begun < 30
 
 
 @pytest.mark.starts

@@ -14,7 +14,9 @@ from course_maker import TOY, make_course, submit
 from grader.__main__ import main
 from grader.common.errors import CourseError
 from grader.course import Course
+from grader.kernels import isolation
 from grader.storage import failures
+from grader.storage.backups import back_up
 from grader.storage.database import make_database
 from grader.storage.lock import gradebook_lock
 
@@ -46,6 +48,99 @@ def test_wrong_arguments_end_with_status_2(arguments):
     assert end.value.code == 2
 
 
+VERBS_WITH_FEW_ARGUMENTS = {
+    **{verb: [verb, 'b'] for verb in ('translate', 'feedback', 'demo', 'doctor')},
+    **{verb: [verb, 'a', 'b'] for verb in ('release', 'solutions', 'grade', 'bundle', 'collect')},
+}
+
+
+@pytest.mark.parametrize('verb', VERBS_WITH_FEW_ARGUMENTS)
+def test_a_surplus_argument_is_told_with_the_usage_of_its_verb(verb, capsys):
+    with pytest.raises(SystemExit) as end:
+        main(VERBS_WITH_FEW_ARGUMENTS[verb])
+    said = capsys.readouterr().err
+    assert said.startswith(f'usage: ./course {verb} [-h]')
+    assert said.endswith(f'./course {verb}: error: unrecognized arguments: b\n')
+    assert end.value.code == 2
+
+
+@pytest.mark.parametrize('verb', ['grade', 'scores', 'feedback', 'due', 'collect', 'serve'])
+@pytest.mark.parametrize('is_link', [False, True], ids=['a file', 'a link'])
+def test_something_else_in_the_place_of_the_gradebook_is_named(tmp_path, capsys, verb, is_link):
+    course = make_course(tmp_path)
+    if is_link:
+        course.gradebook.symlink_to(tmp_path / 'nowhere')
+    else:
+        course.gradebook.write_text('kept')
+    where = [str(tmp_path)] if verb in ('collect', 'serve') else []
+    assert main([verb, *where], course=course) == 1
+    said = capsys.readouterr()
+    what = 'a link that leads nowhere' if is_link else 'a file'
+    assert said.err.startswith(f'course: {course.gradebook} is {what}; a folder was expected: ')
+    assert said.out == ''
+    assert is_link or course.gradebook.read_text() == 'kept'
+
+
+def test_an_emptied_database_is_damaged_where_something_was_graded(tmp_path, capsys):
+    course = make_course(tmp_path)
+    assert main(['release'], course=course) == 0
+    submit(course, 'ada', b'')
+    assert main(['grade'], course=course) == 0
+    assert main(['scores'], course=course) == 0
+    table = (course.gradebook / 'scores.csv').read_bytes()
+    backup = back_up(course)
+    course.database.write_bytes(b'')
+    capsys.readouterr()
+    for verb in ('scores', 'feedback', 'grade'):
+        assert main([verb], course=course) == 1
+        said = capsys.readouterr().err
+        assert f'course: {course.database} is damaged (the file is empty). ' in said
+        assert f"cp '{backup}' '{course.database}'" in said
+    assert back_up(Course.at(tmp_path / 'other')) is None
+    assert (course.gradebook / 'scores.csv').read_bytes() == table
+    assert course.database.read_bytes() == b''
+    for each in (course.gradebook / 'backups').iterdir():
+        each.unlink()
+    assert main(['scores'], course=course) == 1
+    said = capsys.readouterr().err
+    assert 'There is no backup in' in said
+    assert 'move the file away and run ./course grade' in said
+    course.database.rename(tmp_path / 'away')
+    assert main(['grade'], course=course) == 0
+    assert main(['scores'], course=course) == 0
+    assert (course.gradebook / 'scores.csv').read_bytes() == table
+
+
+def test_an_empty_database_before_anything_is_graded_is_made_anew(tmp_path, capsys):
+    course = make_course(tmp_path)
+    course.gradebook.mkdir()
+    course.database.write_bytes(b'')
+    assert main(['scores'], course=course) == 0
+    assert capsys.readouterr().err == 'Nothing is graded yet. Next: ./course grade\n'
+    assert course.database.stat().st_size
+
+
+@pytest.mark.parametrize('kept', ['no hex', '', '\N{SNOWMAN}'])
+def test_a_damaged_secret_is_named(tmp_path, capsys, kept):
+    course = make_course(tmp_path)
+    assert main(['release'], course=course) == 0
+    submit(course, 'ada', b'')
+    secret = course.gradebook / 'course_secret'
+    secret.write_text(kept, encoding='utf-8')
+    capsys.readouterr()
+    assert main(['grade'], course=course) == 1
+    said = capsys.readouterr().err
+    assert said.startswith(f'course: {secret} is damaged: expected hexadecimal digits. Restore it')
+    assert said.count('\n') == 1
+    assert secret.read_text(encoding='utf-8') == kept
+
+
+def test_a_student_s_page_says_that_there_was_no_sandbox(monkeypatch):
+    monkeypatch.setattr(isolation, 'missing', lambda: 'there is none')
+    with pytest.raises(CourseError, match=r'--trust-students\. Each feedback page will say so\.'):
+        isolation.require_isolation()
+
+
 def test_an_error_of_ours_is_one_sentence_without_escapes_and_status_1(tmp_path, capsys):
     (tmp_path / 'solutions').mkdir()
     assert main(['grade', '\x1b[31mred'], course=Course.at(tmp_path)) == 1
@@ -72,7 +167,9 @@ def test_all_verbs_in_a_row(tmp_path, capsys):
     assert capsys.readouterr().out == f'{moved}{released}2 files changed.\n'
     for verb in ('scores', 'feedback'):
         assert main([verb], course=course) == 0
-        assert capsys.readouterr().out.endswith('Nothing is graded yet. Next: ./course grade\n')
+        said = capsys.readouterr()
+        assert said.err == 'Nothing is graded yet. Next: ./course grade\n'
+        assert said.out.startswith(str(course.gradebook)) == (verb == 'scores')
     assert main(['grade'], course=course) == 1
     assert 'where ./course collect FOLDER puts' in capsys.readouterr().err
     submit(course, 'ada', b'')

@@ -86,6 +86,18 @@ def test_a_folder_of_another_version_of_the_course_is_refused(folder, pins):
     assert 'another version of the course' in said
 
 
+@pytest.mark.parametrize('above', ['a file', '/proc'])
+def test_a_folder_that_cannot_be_made_is_refused(above, tmp_path):
+    folder = Path('/proc/wheels')
+    if above == 'a file':
+        folder = tmp_path / 'README.md'
+        folder.write_text('kept')
+    with pytest.raises(LauncherError) as refused:
+        what_is_there(folder)
+    assert str(refused.value).startswith(f'{folder} cannot be made (')
+    assert str(refused.value).endswith('): name another folder, a new or an empty one.')
+
+
 @pytest.mark.parametrize('content', [None, '{'])
 def test_a_folder_that_wheels_has_not_finished_is_refused(content, tmp_path, pins):
     if content:

@@ -94,7 +94,10 @@ def test_moodles_worksheet_needs_no_roster_where_the_numbers_came_with_the_submi
     ]
     said = capsys.readouterr().out
     assert '03_publisher: Cleo waits for a person' in said
-    assert "03_publisher: Bob has no number of Moodle's" in said
+    assert (
+        '03_publisher: Bob has no Moodle number: only work collected from '
+        '*Download all submissions* has one. Enter this score by hand, or use --roster FILE.\n'
+    ) in said
     assert 'Dan' not in said
 
 
@@ -145,7 +148,10 @@ def test_canvas_without_a_roster_is_told_numbers(course, capsys):
         ['Ada Lovelace', '18151', '', '3.5'],
         ['王 小明', '18153', '', '5.0'],
     ]
-    assert "03_publisher: Bob has no number of Canvas's" in capsys.readouterr().out
+    assert (
+        '03_publisher: Bob has no Canvas number: only work collected from '
+        '*Download submissions* has one. Enter this score by hand, or use --roster FILE.\n'
+    ) in capsys.readouterr().out
 
 
 def test_two_rows_of_one_name_or_two_students_of_one_row_are_left_to_a_person(
@@ -224,7 +230,10 @@ def test_feedback_goes_back_under_the_names_that_moodle_gave_out(course, capsys)
         page.write_text(f'<p>{student}</p>')
     assert main(['feedback', '--zip', 'moodle'], course=course) == 0
     said = capsys.readouterr().out
-    assert "03_publisher: Bob has no number of Moodle's" in said
+    assert (
+        '03_publisher: Bob has no Moodle number, so no archive has that page: only work '
+        'collected from *Download all submissions* has one.\n'
+    ) in said
     with zipfile.ZipFile(course.gradebook / 'moodle' / '03_publisher-feedback.zip') as archive:
         names = archive.namelist()
         assert archive.read(names[0]).decode() == '<p>Ada Lovelace</p>'
@@ -235,6 +244,18 @@ def test_feedback_goes_back_under_the_names_that_moodle_gave_out(course, capsys)
     ]
     # as Moodle takes a name apart
     assert names[0].split('_', 4)[1:4] == ['8001', 'assignsubmission', 'file']
+
+
+@pytest.mark.parametrize('asked', [['scores', '--format'], ['feedback', '--zip']])
+def test_that_no_file_was_written_is_said(tmp_path, capsys, asked):
+    course = released_course(tmp_path)
+    assert main([*asked, 'moodle'], course=course) == 0
+    said = capsys.readouterr()
+    assert '\n\n' not in f'\n{said.out}'
+    assert said.err.splitlines() == [
+        'No file was written: there is nothing to put into one.',
+        'Nothing is graded yet. Next: ./course grade',
+    ]
 
 
 def test_an_underscore_in_a_name_does_not_shift_the_number():

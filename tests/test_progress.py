@@ -290,6 +290,15 @@ def test_the_terminal_shows_the_same(page, file, capsys):
     assert said.endswith('This is kept on this computer alone. You get your points at grading.\n')
 
 
+def test_the_usage_names_what_is_typed(page, file, capsys):
+    with pytest.raises(SystemExit):
+        main([str(page), 'xx'])
+    assert capsys.readouterr().err == (
+        'usage: ./course progress [-h] [--language LANGUAGE]\n'
+        './course progress: error: unrecognized arguments: xx\n'
+    )
+
+
 def test_the_terminal_says_in_a_sentence_what_is_wrong(tmp_path, file, capsys):
     assert main([str(tmp_path / 'index.ipynb')]) == 2
     assert 'cannot be read: No such file' in capsys.readouterr().err

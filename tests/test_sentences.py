@@ -48,6 +48,25 @@ def check(seen, n):
 '''
 
 
+NOT_READ = """
+import argparse
+
+parser = argparse.ArgumentParser('./course lab', prog='./course so', usage='run [one two] and end')
+HERE = '__import__("a.b", fromlist=["one"])'
+
+def check(seen, kind, name):
+    if seen.endswith('is not callable') or seen.startswith('Traceback (most recent call'):
+        raise AssertionError('it always has an end')
+    Finding(code='a = [one for one in two]', fix='this is read')
+    print(f'a: {in_language_here(kind)}', 'import a' + f' as {name}')
+    return ('true' if seen else 'false'), ('code' if kind else 'markdown')
+"""
+
+
+def test_what_nobody_reads_is_no_sentence():
+    assert messages_in(NOT_READ) == ['this is read', 'code']
+
+
 def test_the_sentences_of_code_are_templates_with_a_name_for_each_place():
     assert messages_in(CODE, title=True) == [
         'over {n} s ({len} message{value})',

@@ -187,6 +187,16 @@ def test_what_is_nobodys_is_listed_for_a_person(course, inbound, capsys):
     assert '<script' not in page
 
 
+def test_without_a_folder_it_says_which_one_to_name(course, inbound, capsys):
+    assert main(['serve'], course=course) == 1
+    said = capsys.readouterr().err
+    assert said.startswith('course: name the folder into which submissions are put, ')
+    assert ': ./course serve FOLDER. ' in said
+    assert said.endswith('./course serve --status\n')
+    assert main(['serve', str(inbound / 'nowhere')], course=course) == 1
+    assert f'{inbound / "nowhere"} is no folder: expected the one' in capsys.readouterr().err
+
+
 def test_a_platforms_folder_is_served_as_it_is_collected(course, tmp_path):
     folder = tmp_path / 'uploads'
     (folder / 'bob' / TOY).mkdir(parents=True)

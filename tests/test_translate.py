@@ -1,6 +1,7 @@
 """The catalogues follow the English texts, and a translation keeps what has to be kept."""
 
 import re
+import shutil
 
 import pytest
 from course_maker import TOY, make_course, toy_lesson, write_source
@@ -275,6 +276,22 @@ def test_a_term_that_is_not_the_glossarys_is_found():
 TRANSLATED = [
     (file.parts[-3], file.stem) for file in sorted((ROOT / 'locale').glob('*/LC_MESSAGES/*.po'))
 ]
+
+
+@pytest.mark.timeout(120)
+def test_the_catalogues_are_those_of_the_english(tmp_path):
+    """Each edit of an English text is followed by `./course translate`."""
+    for each in ROOT.iterdir():
+        if each.name not in ('locale', 'gradebook'):
+            (tmp_path / each.name).symlink_to(each)
+    shutil.copytree(ROOT / 'locale', tmp_path / 'locale')
+    update(Course.at(tmp_path))
+    differ = [
+        str(path.relative_to(tmp_path))
+        for path in sorted(tmp_path.glob('locale/**/*.po'))
+        if path.read_bytes() != (ROOT / path.relative_to(tmp_path)).read_bytes()
+    ]
+    assert differ == [], 'run ./course translate, and look at what has changed'
 
 
 @pytest.mark.parametrize(('language', 'part'), TRANSLATED)

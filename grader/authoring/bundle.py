@@ -1,6 +1,7 @@
 """Make the students' zip: what is on a list, nothing else, and nothing of it stale or telling."""
 
 import io
+import tempfile
 import zipfile
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -71,9 +72,10 @@ class Bundle:
 def bundle(course: Course, target: Path) -> Bundle:
     """Write the zip; the same files give the same bytes.
 
-    Raises CourseError, and writes nothing, where something is missing or stale, is not on the
-    list, or holds an answer or a hidden test.
+    Raises CourseError, and writes nothing, where the target can't be written, or something is
+    missing or stale, is not on the list, or holds an answer or a hidden test.
     """
+    _check_target(target)
     if not (course.root / 'notebooks').is_dir():
         raise CourseError(
             'no bundle was made: there is no folder notebooks/: run ./course release'
@@ -84,11 +86,30 @@ def bundle(course: Course, target: Path) -> Bundle:
     if faults:
         raise CourseError('no bundle was made: ' + '; '.join(faults))
     packed = _zipped(files)
+    _check_target(target)  # what was read has made gradebook/, where there was none
     target.parent.mkdir(parents=True, exist_ok=True)
     write_whole(target, packed)
     released = {f'notebooks/{path}' for path in files_in(course.root / 'notebooks')}
     left_out = sorted(released - {name.partition('/')[2] for name in files})
     return Bundle(tuple(files), len(packed), tuple(left_out))
+
+
+def _check_target(target: Path) -> None:
+    """See that a file can be written there, before what takes long. Raises CourseError."""
+    if target.is_dir():
+        raise CourseError(
+            f'no bundle was made: {target} is a folder; expected the file to write: '
+            f'./course bundle {target / "students.zip"}'
+        )
+    above = next(each for each in target.absolute().parents if each.exists())
+    try:
+        with tempfile.TemporaryFile(dir=above):
+            pass
+    except OSError as error:
+        raise CourseError(
+            f'no bundle was made: {target} cannot be written, for nothing can be in {above}: '
+            f'{error.strerror}. Name another file: ./course bundle FILE'
+        ) from None
 
 
 def _contents(course: Course, faults: list[str]) -> Iterator[tuple[str, bytes]]:

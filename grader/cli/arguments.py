@@ -4,19 +4,19 @@ Reading them needs nothing that grades: `tests/test_command_line.py` says what i
 """
 
 import argparse
-from datetime import datetime
 from pathlib import Path
 
 from my_robot_basics.language.catalogues import ENGLISH, LOCALE, languages
 
 from grader.cli import verbs
-from grader.common.asked import PLATFORMS, RECORDED, local_time
+from grader.cli.argument_types import VerbParser, at_least_one, date, hexadecimal
+from grader.common.asked import PLATFORMS, RECORDED
 
 
 def make_parser() -> argparse.ArgumentParser:
     """Return the parser; what it makes of arguments has the function that does it as `run`."""
     parser = argparse.ArgumentParser(prog='./course', description='Release, grade, tell.')
-    subparsers = parser.add_subparsers(required=True, metavar='VERB')
+    subparsers = parser.add_subparsers(required=True, metavar='VERB', parser_class=VerbParser)
 
     verb = subparsers.add_parser('release', help="make the students' notebooks/ from solutions/")
     verb.add_argument('assignment', nargs='?', metavar='ASSIGNMENT', help='only this one')
@@ -175,22 +175,3 @@ def make_parser() -> argparse.ArgumentParser:
     ):
         subparsers.add_parser(name, help=text).set_defaults(run=run)
     return parser
-
-
-def hexadecimal(text: str) -> str:
-    """Check an argument; argparse names this function when it is wrong."""
-    if text != RECORDED:
-        int(text, 16)
-    return text
-
-
-def date(text: str) -> datetime | str:
-    """Check an argument; argparse names this function when it is wrong."""
-    return text if text == verbs.NO_DATE else local_time(text)
-
-
-def at_least_one(text: str) -> int:
-    """Check an argument; argparse shows what this raises."""
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f'{text!r} is not a number from 1 on')
-    return int(text)

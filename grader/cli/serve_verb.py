@@ -11,6 +11,10 @@ from grader.serving.serve import serve
 from grader.serving.status import status_lines, write_status_page
 from grader.workers.workers import Workers
 
+_INBOUND = (
+    "into which submissions are put, nbgrader's /srv/nbgrader/exchange/COURSE/inbound for instance"
+)
+
 
 def run_serve(course: Course, asked: argparse.Namespace) -> int:
     """Serve a folder until SIGINT or SIGTERM, or say what the process that does it is at."""
@@ -19,11 +23,13 @@ def run_serve(course: Course, asked: argparse.Namespace) -> int:
             for line in status_lines(course, queue):
                 print(line)
         return 0
-    if asked.folder is None or not asked.folder.is_dir():
+    if asked.folder is None:
         raise CourseError(
-            f'{asked.folder or "nothing"} is no folder: expected the one into which submissions '
-            "are put, nbgrader's /srv/nbgrader/exchange/COURSE/inbound for instance"
+            f'name the folder {_INBOUND}: ./course serve FOLDER. What waits there, and what is '
+            'done: ./course serve --status'
         )
+    if not asked.folder.is_dir():
+        raise CourseError(f'{asked.folder} is no folder: expected the one {_INBOUND}')
     feedback = feedback_folder(asked.folder)
     _say(f'serving {asked.folder}' + (f', feedback goes to {feedback}' if feedback else ''))
     try:

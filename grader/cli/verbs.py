@@ -60,7 +60,7 @@ def run_collect(course: 'Course', asked: argparse.Namespace) -> int:
     from grader.collect.collect_table import lines
 
     rows = list(collect(course, asked.source, file_times=asked.file_times))
-    for line in lines(rows):
+    for line in lines(rows, asked.source):
         print(line)
     taken = any(row.student_id for row in rows)
     if taken:
@@ -73,6 +73,11 @@ def run_due(course: 'Course', asked: argparse.Namespace) -> int:
     from grader.storage.deadlines import extended_for_nobody
     from grader.storage.due_dates import describe_deadlines, set_due
 
+    if asked.student and not asked.assignment:
+        raise CourseError(
+            '--student extends the date of one assignment: ./course due ASSIGNMENT DATE '
+            f'--student {asked.student}. ./course due, alone, lists all dates and extensions'
+        )
     if asked.assignment:
         if asked.when is None:
             raise CourseError(
@@ -109,39 +114,9 @@ def run_serve(course: 'Course', asked: argparse.Namespace) -> int:
 
 def run_scores(course: 'Course', asked: argparse.Namespace) -> int:
     """Write a table of scores, and say where it lies."""
-    from grader.export.scores import write_scores
-    from grader.export.totals import write_totals
-    from grader.passback.write import write_platform_scores
+    from grader.cli import hand_back
 
-    to_platform = asked.format or (asked.send and not asked.roster)
-    if (asked.assignment or asked.roster) and not to_platform:
-        raise CourseError(
-            'an assignment and --roster are for what a platform imports: say which one, as in '
-            './course scores --format moodle'
-        )
-    _wait_for_database(course)
-    if asked.send:
-        return _send_scores(course, asked.assignment)
-    if asked.format:
-        paths = write_platform_scores(
-            course, asked.format, asked.assignment, asked.roster, _say_line
-        )
-        print(*paths, sep='\n')
-    else:
-        print(write_totals(course) if asked.totals else write_scores(course))
-    _say_what_comes_first(course)
-    return 0
-
-
-def _send_scores(course: 'Course', assignment: str) -> int:
-    """Send what has changed. 1 where the platform has not taken all of it."""
-    from grader.passback.lti import send_scores  # an extra, and half a second to import
-
-    done = send_scores(course, assignment, _say_line)
-    print(f'{done.sent} scores sent, {done.waiting} waiting')
-    if done.waiting:
-        print('Nothing is lost. To send them: ./course scores --send lti')
-    return 1 if done.waiting else 0
+    return hand_back.run_scores(course, asked)
 
 
 def run_solutions(course: 'Course', asked: argparse.Namespace) -> int:
@@ -156,34 +131,9 @@ def run_solutions(course: 'Course', asked: argparse.Namespace) -> int:
 
 def run_feedback(course: 'Course', asked: argparse.Namespace) -> int:
     """Write the pages of feedback, and say where they lie."""
-    from grader.passback.write import write_feedback_archives
-    from grader.report.feedback import write_feedback
+    from grader.cli import hand_back
 
-    _wait_for_database(course)
-    pages = write_feedback(course, say=_say_line)
-    print(f'{len(pages)} pages in {course.folder("feedback", "", "")}')
-    if asked.zip:
-        print(*write_feedback_archives(course, _say_line), sep='\n')
-    _say_what_comes_first(course)
-    return 0
-
-
-def _say_line(line: str) -> None:
-    from grader.common.text import printable
-
-    print(printable(line))
-
-
-def _wait_for_database(course: 'Course') -> None:
-    from grader.storage.database import has_database, wait_until_free
-
-    if has_database(course):
-        wait_until_free(course)
-
-
-def _say_what_comes_first(course: 'Course') -> None:
-    if not any(course.folder('autograded', '', '').glob('*/*/*.ipynb')):
-        print('Nothing is graded yet. Next: ./course grade')
+    return hand_back.run_feedback(course, asked)
 
 
 def run_demo(course: 'Course', asked: argparse.Namespace) -> int:

@@ -2,6 +2,7 @@
 
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator
+from pathlib import Path
 
 from grader.collect.collect import AGAIN, EARLIER, KNOWN, LEFT, NEW, UNUSED, FileOutcome
 from grader.collect.name_forms import shared_folders
@@ -16,22 +17,26 @@ MAX_COLUMNS = 120
 """Of a path: it may be 5,000 characters long, and all lines of a table are as wide as one."""
 
 
-def lines(rows: Iterable[FileOutcome]) -> Iterator[str]:
+def lines(rows: Iterable[FileOutcome], source: Path) -> Iterator[str]:
     """Yield the lines of the report: what was taken, what was not and why, and how many."""
     rows = list(rows)
+    if not rows:
+        yield f'Nothing was taken: there is no file in {printable(str(source))}'
+        return
     taken = [row for row in rows if row.student_id and row.outcome != LEFT]
-    yield from _table(('student', 'assignment', 'handed in (UTC)', ''), map(_taken, taken))
+    parts = [[*_table(('student', 'assignment', 'handed in (UTC)', ''), map(_taken, taken))]]
     left = [(row.path, row.reason) for row in rows if row.outcome == LEFT]
     if left:
-        yield from ('', 'Not taken; they stay where they are:')
-        yield from _table(('file', 'reason'), _few_alike(left))
+        table = _table(('file', 'reason'), _few_alike(left))
+        parts.append(['Not taken; they stay where they are:', *table])
     if unused := list(_gathered([row for row in rows if row.outcome == UNUSED])):
-        yield from ('', 'Not used for grading:')
-        yield from _table(('file', 'reason'), unused)
+        parts.append(['Not used for grading:', *_table(('file', 'reason'), unused)])
     count = Counter(row.outcome for row in rows)
-    parts = [f'{count[outcome]} {words}' for outcome, words in WORDS.items() if count[outcome]]
-    nothing = 'Nothing was taken' if rows else 'Nothing was taken, for there is no file in it'
-    yield from ('', f'{", ".join(parts) or nothing}; {len(left)} not taken.')
+    said = [f'{count[outcome]} {words}' for outcome, words in WORDS.items() if count[outcome]]
+    parts.append([f'{", ".join(said) or "Nothing was taken"}; {len(left)} not taken.'])
+    for number, part in enumerate(filter(None, parts)):
+        yield from ([''] if number else [])
+        yield from part
 
 
 def _taken(row: FileOutcome) -> tuple[str, ...]:

@@ -107,7 +107,7 @@ def require_isolation(*, trust_students: bool = False) -> bool:
     if problem and not (trust_students or os.environ.get(TRUST) == '1'):
         raise CourseError(
             f'nothing was run: {problem}. Or, if you would give everyone in the class your own '
-            'account: ./course grade --trust-students. It will stand in each feedback.'
+            'account: ./course grade --trust-students. Each feedback page will say so.'
         )
     return not problem
 

@@ -30,8 +30,8 @@ def table_by_number(
         number = numbers.of(each.student_id, scores.assignment).get(platform.lower())
         if number is None:
             unclear.append(
-                f"{each.student_id} has no number of {platform}'s, as what came from {download} "
-                'has: give this score by hand, or use --roster'
+                f'{each.student_id} has no {platform} number: only work collected from '
+                f'*{download}* has one. Enter this score by hand, or use --roster FILE.'
             )
         else:
             rows.append(row_of(each, number))

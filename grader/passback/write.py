@@ -63,7 +63,10 @@ def write_feedback_archives(course: Course, say: Callable[[str], None]) -> list[
         student, assignment = page.parts[-3:-1]
         number = numbers.of(student, assignment).get('moodle')
         if number is None:
-            say(f"{assignment}: {student} has no number of Moodle's, so no archive has that page")
+            say(
+                f'{assignment}: {student} has no Moodle number, so no archive has that page: only '
+                'work collected from *Download all submissions* has one.'
+            )
         elif page.stem == assignment:
             name = moodle.name_feedback_file(student, number, assignment)
             pages.setdefault(assignment, {})[name] = page

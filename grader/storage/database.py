@@ -14,6 +14,7 @@ from nbgrader.dbutil import ALEMBIC_DIR
 from sqlalchemy import create_engine
 
 from grader.common.db_url import is_in_postgresql
+from grader.common.errors import GradebookError
 from grader.common.logs import tell
 from grader.course import Course
 from grader.storage import failures, postgresql
@@ -50,11 +51,15 @@ def has_database(course: Course) -> bool:
 
 
 def make_database(course: Course) -> None:
-    """Make the database where there is none: aside, for nbgrader would not repair half of one."""
+    """Make the database where there is none: aside, for nbgrader would not repair half of one.
+
+    Raises GradebookError where there was one, and its file is empty.
+    """
     course.gradebook.mkdir(parents=True, exist_ok=True)
     if is_in_postgresql(course.db_url):
         postgresql.make_tables(course.db_url)
         return
+    _refuse_emptied(course)
     if course.database.exists() and course.database.stat().st_size:
         return
     aside = course.database.with_name('.gradebook.db.new')
@@ -62,6 +67,16 @@ def make_database(course: Course) -> None:
         left.unlink()
     _make_tables(f'sqlite:///{aside}')
     os.replace(aside, course.database)
+
+
+def _refuse_emptied(course: Course) -> None:
+    """Raise GradebookError where the file has lost what it held: a new one has no scores."""
+    if not course.database.exists() or course.database.stat().st_size:
+        return
+    backups = (course.gradebook / 'backups').glob('*.db')
+    graded = course.folder('autograded', '', '').glob('*/*/*.ipynb')
+    if any(backups) or any(graded):
+        raise GradebookError(failures.damaged(course, 'the file is empty'))
 
 
 def _make_tables(db_url: str) -> None:
@@ -88,6 +103,7 @@ def wait_until_free(course: Course, say: Callable[[str], None] = tell) -> None:
     if is_in_postgresql(course.db_url):
         postgresql.wait_until_there(course.db_url, failures.TIMEOUT_SEC, say)
         return
+    _refuse_emptied(course)
     deadline, said = time.monotonic() + failures.TIMEOUT_SEC, False
     with closing(sqlite3.connect(course.database, timeout=0, isolation_level=None)) as database:
         while True:

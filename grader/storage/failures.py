@@ -15,7 +15,25 @@ BUSY = {sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED}
 """What SQLite says of a database that another program keeps."""
 
 _FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
+_REFUSED = {errno.EACCES, errno.EPERM}
+_NOT_WRITTEN = {sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_PERM}
 _DAMAGED = {sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB}
+
+
+def damaged(course: Course, why: str) -> str:
+    """Return what to tell of a database that has lost what it held, and how to get it back."""
+    found = f'{course.database} is damaged ({why}).'
+    backups = course.gradebook / 'backups'
+    newest = max(backups.glob('*.db'), default=None)
+    if newest is None:
+        return (
+            f'{found} There is no backup in {backups}: put a copy of yours in its place. Without '
+            'one, move the file away and run ./course grade: what was scored by hand is lost then.'
+        )
+    return (
+        f"{found} Put a backup in its place with cp '{newest}' '{course.database}', remove "
+        f'{course.database.name}-journal if there is one, then run ./course grade again.'
+    )
 
 
 @contextmanager
@@ -52,11 +70,19 @@ def _sentence(error: BaseException | None, course: Course) -> str | None:
             'formgrader that hangs), then run the same command again: it goes on.'
         )
     if code in _DAMAGED:
-        backups = course.gradebook / 'backups'
-        newest = max(backups.glob('*.db'), default=backups / 'NAME')
-        return (
-            f'{course.database} is damaged ({error}). Put a backup in its place with '
-            f"cp '{newest}' '{course.database}', remove {course.database.name}-journal if there "
-            'is one, then run ./course grade again.'
-        )
+        return damaged(course, str(error))
+    if code in _NOT_WRITTEN:
+        return _refused(course.gradebook, 'written', str(error), 'write')
+    if isinstance(error, OSError) and error.filename is not None:
+        if error.errno == errno.EROFS:
+            return _refused(error.filename, 'written', error.strerror, 'write')
+        if error.errno in _REFUSED:
+            return _refused(error.filename, 'used', error.strerror, 'read and write')
     return _sentence(error.__cause__ or error.__context__, course)
+
+
+def _refused(path: object, done: str, why: str | None, right: str) -> str:
+    return (
+        f'{path} cannot be {done}: {why}. What was stored before is kept. Give this user the '
+        f'right to {right} there (or remount it), then run the same command again.'
+    )

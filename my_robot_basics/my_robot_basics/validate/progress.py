@@ -161,10 +161,10 @@ def main(arguments: list[str] | None = None) -> int:
     """Print the progress; return 0, or 2 where there is no contents page."""
     parser = argparse.ArgumentParser(
         prog='./course progress',
+        usage='./course progress [-h] [--language LANGUAGE]',
         description=in_language_here('Show which exercises Validate has seen pass.'),
     )
-    about = in_language_here('the contents page, index.ipynb')
-    parser.add_argument('page', type=Path, help=about)
+    parser.add_argument('page', type=Path, help=argparse.SUPPRESS)  # the launcher gives it
     try:
         progress = progress_on(parser.parse_args(arguments).page, default_path())
     except CourseError as error:

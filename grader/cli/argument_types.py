@@ -1,0 +1,47 @@
+"""What an argument of `./course` may be, and the words for what it may not be."""
+
+import argparse
+from collections.abc import Sequence
+from datetime import datetime
+
+from grader.cli.verbs import NO_DATE
+from grader.common.asked import RECORDED, local_time
+
+
+class VerbParser(argparse.ArgumentParser):
+    """Refuses what a verb does not take itself: its own usage is shown, not that of all verbs."""
+
+    def parse_known_args(  # type: ignore[override]  # argparse gives it no other namespace
+        self,
+        args: Sequence[str] | None = None,
+        namespace: argparse.Namespace | None = None,
+    ) -> tuple[argparse.Namespace, list[str]]:
+        """Read the arguments; end with status 2 where some are left."""
+        found, left = super().parse_known_args(args, namespace)
+        if left:
+            self.error(f'unrecognized arguments: {" ".join(left)}')
+        return found, left
+
+
+def hexadecimal(text: str) -> str:
+    """Check an argument; argparse names this function when it is wrong."""
+    if text != RECORDED:
+        int(text, 16)
+    return text
+
+
+def date(text: str) -> datetime | str:
+    """Check an argument; argparse shows what this raises."""
+    try:
+        return text if text == NO_DATE else local_time(text)
+    except (ValueError, OverflowError):
+        raise argparse.ArgumentTypeError(
+            f'{text!r} is not a date: write 2026-11-30, or none'
+        ) from None
+
+
+def at_least_one(text: str) -> int:
+    """Check an argument; argparse shows what this raises."""
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f'{text!r} is not a number from 1 on')
+    return int(text)

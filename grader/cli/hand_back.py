@@ -1,0 +1,81 @@
+"""What `./course scores` and `./course feedback` do and print: what a class is given."""
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from grader.common.errors import CourseError
+from grader.common.text import printable
+from grader.course import Course
+from grader.export.scores import write_scores
+from grader.export.totals import write_totals
+from grader.passback.write import write_feedback_archives, write_platform_scores
+from grader.storage.database import has_database, wait_until_free
+
+
+def run_scores(course: Course, asked: argparse.Namespace) -> int:
+    """Write a table of scores, and say where it lies."""
+    to_platform = asked.format or (asked.send and not asked.roster)
+    if (asked.assignment or asked.roster) and not to_platform:
+        raise CourseError(
+            'an assignment and --roster are for what a platform imports: say which one, as in '
+            './course scores --format moodle'
+        )
+    _wait_for_database(course)
+    if asked.send:
+        return _send_scores(course, asked.assignment)
+    if asked.format:
+        paths = write_platform_scores(
+            course, asked.format, asked.assignment, asked.roster, _say_line
+        )
+        _print_paths(paths)
+    else:
+        print(write_totals(course) if asked.totals else write_scores(course))
+    _say_what_comes_first(course)
+    return 0
+
+
+def _send_scores(course: Course, assignment: str) -> int:
+    """Send what has changed. 1 where the platform has not taken all of it."""
+    from grader.passback.lti import send_scores  # an extra, and half a second to import
+
+    done = send_scores(course, assignment, _say_line)
+    print(f'{done.sent} scores sent, {done.waiting} waiting')
+    if done.waiting:
+        print('Nothing is lost. To send them: ./course scores --send lti')
+    return 1 if done.waiting else 0
+
+
+def run_feedback(course: Course, asked: argparse.Namespace) -> int:
+    """Write the pages of feedback, and say where they lie."""
+    from grader.report.feedback import write_feedback  # nbconvert, which scores do without
+
+    _wait_for_database(course)
+    pages = write_feedback(course, say=_say_line)
+    print(f'{len(pages)} pages in {course.folder("feedback", "", "")}')
+    if asked.zip:
+        _print_paths(write_feedback_archives(course, _say_line))
+    _say_what_comes_first(course)
+    return 0
+
+
+def _print_paths(paths: Sequence[Path]) -> None:
+    for path in paths:
+        print(path)
+    if not paths:
+        print('No file was written: there is nothing to put into one.', file=sys.stderr)
+
+
+def _say_line(line: str) -> None:
+    print(printable(line))
+
+
+def _wait_for_database(course: Course) -> None:
+    if has_database(course):
+        wait_until_free(course)
+
+
+def _say_what_comes_first(course: Course) -> None:
+    if not any(course.folder('autograded', '', '').glob('*/*/*.ipynb')):
+        print('Nothing is graded yet. Next: ./course grade', file=sys.stderr)
