@@ -9,7 +9,8 @@ import zipfile
 import pytest
 
 from grader.collect import archive_entries, archives
-from grader.collect.archives import UnpackLimits, unpack
+from grader.collect.archives import unpack
+from grader.collect.unpack_limits import UnpackLimits
 
 A_ZIP, A_TAR = 'x.zip', 'x.tar.gz'
 

@@ -165,7 +165,14 @@ def test_a_command_line_is_read_as_rcl_reads_it(options, found):
     assert started.has_file == ('--params-file' in options)
 
 
-@pytest.mark.parametrize('options', ['-r __ns:=a', '-r __node:=a/b', '-r c', '-p seed:={'])
+@pytest.mark.parametrize(
+    'options',
+    [
+        *('-r __ns:=a', '-r __node:=a/b', '-r c', '-p seed:={', '-p use_sim_time:=3'),
+        f'-r {TOPIC}:=' + 'a' * 300,
+    ],
+    ids=range(6),
+)
 def test_what_rcl_refuses_starts_nothing(options):
     assert read(options) is None
 

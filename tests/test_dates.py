@@ -1,7 +1,7 @@
 import pytest
 from dateutil.parser import parse
 
-from grader.common.dates import date_in, date_of
+from grader.common.dates import date_in, date_of, utc_of
 
 
 @pytest.mark.parametrize(
@@ -68,3 +68,8 @@ def test_a_file_is_read_as_far_as_a_time_goes(tmp_path):
     link = tmp_path / 'link'
     link.symlink_to(path)
     assert date_of(link) is None
+
+
+def test_a_time_that_no_calendar_has_is_none():
+    assert utc_of(1_700_000_000).isoformat() == '2023-11-14T22:13:20+00:00'
+    assert utc_of(1e12) is utc_of(-1e12) is utc_of(float('nan')) is None

@@ -20,6 +20,7 @@ from grader.judging import execute as module
 from grader.judging.execute import execute
 from grader.kernels import rooms as rooms_module
 from grader.notebook.restore import KEY, grade_id, make_template, restore
+from grader.sandbox.limits import MAX_RESULT_PARTS
 
 CANARY = 'hidden canary'
 CHECK = f"""
@@ -479,3 +480,10 @@ def test_of_many_small_outputs_few_are_kept():
     space, cell = module._OutputSpace(), [new_output('stream', text='x')] * 1_000
     kept = sum(len(space.fit(cell)) == 1_000 for _ in range(40))
     assert kept * len(cell) <= 8_000
+
+
+def test_of_outputs_in_many_parts_no_more_are_kept_than_a_result_may_have():
+    space = module._OutputSpace()
+    parts = new_output('display_data', {}, metadata={f'{n}': {} for n in range(10_000)})
+    kept = sum(space.fit([parts]) == [parts] for _ in range(40))
+    assert 0 < kept * 10_000 < MAX_RESULT_PARTS / 2

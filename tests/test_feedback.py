@@ -207,7 +207,7 @@ def test_text_that_takes_for_ever_is_shown_as_it_was_typed(course, monkeypatch):
 def test_a_page_that_can_t_be_made_at_all_costs_no_other(course, monkeypatch):
     def too_hard(function, notebook, about, *more, limits):
         if about['student'] == 'eve':
-            raise ParsingFailed('it takes too much memory')
+            raise ParsingFailed('it takes too much\x1b[2J memory')
         return parse(function, notebook, about, *more, limits=limits)
 
     for student in ('eve', 'zoe'):
@@ -215,7 +215,7 @@ def test_a_page_that_can_t_be_made_at_all_costs_no_other(course, monkeypatch):
     monkeypatch.setattr(module, 'parse', too_hard)
     said = []
     pages = write_feedback(course, say=said.append)
-    assert f'{TOY} of eve has no page of feedback, for it takes too much memory' in said
+    assert f'{TOY} of eve has no page of feedback, for it takes too much\\x1b[2J memory' in said
     assert {page.parts[-3] for page in pages} >= {'zoe'}
     assert 'eve' not in {page.parts[-3] for page in pages}
 

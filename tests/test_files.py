@@ -28,3 +28,10 @@ def test_a_full_disk_leaves_what_was_there(tmp_path, monkeypatch, step):
         write_whole(path, 'after')
     assert path.read_text() == 'before'
     assert os.listdir(tmp_path) == ['a.txt']
+
+
+def test_a_name_that_leaves_no_room_for_ours_is_refused_by_what_is_wrong_with_it(tmp_path):
+    with pytest.raises(OSError, match='File name too long') as refused:
+        write_whole(tmp_path / ('x' * 255), '')
+    assert not isinstance(refused.value.__context__, OSError)
+    assert os.listdir(tmp_path) == []

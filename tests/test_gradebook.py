@@ -4,6 +4,7 @@ import os
 import shutil
 import sqlite3
 import threading
+from dataclasses import replace
 from pathlib import Path
 
 import nbformat
@@ -43,11 +44,17 @@ def course(released, tmp_path):
 
 def grade(course, student, reasons, *, notebook=None, **answer):
     submit(course, student, notebook or answered(course, RIGHT, **answer))
+    return store(course, *graded_with(course, student, reasons))
+
+
+def graded_with(course, student, reasons=None):
     folder = course.folder('submitted', student, TOY)
+    if not folder.exists():
+        submit(course, student, answered(course, RIGHT))
     submission = read_submission(folder, student_id=student, assignment=TOY)
     register(course, TOY)
     restored = restore(submission.notebook, course.template(TOY)).notebook
-    return store(course, submission, executed(prepare(course, TOY, restored), reasons))
+    return submission, executed(prepare(course, TOY, restored), reasons or {})
 
 
 def by_cell(course, student):
@@ -356,3 +363,31 @@ def test_what_stands_for_an_unreadable_submission_is_a_notebook_with_its_reason(
     nbformat.validate(kept)
     assert kept.metadata[KEY].problem == submission.problem
     assert all(r.score == 0.0 for r in by_cell(course, 'ada').values())
+
+
+def stored(course, student):
+    """Return the names of what lies in autograded/ of a student."""
+    kept = course.folder('autograded', student, TOY)
+    return sorted(path.name for path in kept.iterdir()) if kept.exists() else []
+
+
+@pytest.mark.parametrize('name', ['x' * 252 + '.py', 'gone.py'])
+def test_what_can_not_be_kept_beside_a_notebook_stores_no_scores(course, name):
+    """Points were in the database, and neither the notebook nor a page was there."""
+    submission, graded = graded_with(course, 'ada')
+    file = submission.path.with_name(name)
+    if name != 'gone.py':
+        file.touch()
+    with pytest.raises(OSError, match=r'too long|No such file'):
+        store(course, replace(submission, extra_files=(file,)), graded)
+    assert not by_cell(course, 'ada')
+    assert stored(course, 'ada') == []
+
+
+def test_what_no_file_can_hold_stores_no_scores(course):
+    submission, graded = graded_with(course, 'ada')
+    graded.metadata[KEY].notes = ['the file `x\udcff.py` of 3.0 MB was left out']
+    with pytest.raises(UnicodeEncodeError):
+        store(course, submission, graded)
+    assert not by_cell(course, 'ada')
+    assert stored(course, 'ada') == []

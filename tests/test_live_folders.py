@@ -201,3 +201,30 @@ def test_a_student_with_a_million_files_costs_only_themselves(inbound, tmp_path,
     whose, reasons = collected(inbound, tmp_path)
     assert whose["bob's"] == 'bob'
     assert reasons == ['too many files: this one and more were not read']
+
+
+@pytest.fixture
+def no_calendar(monkeypatch):
+    """Files have a time that no calendar has, as those on a tmpfs may."""
+    fstat = os.fstat
+
+    def far(descriptor):
+        status = fstat(descriptor)
+        return os.stat_result(
+            status,
+            {'st_mtime': 1e12, 'st_ctime': 1e12}
+            | {name: getattr(status, name) for name in ('st_mtime_ns', 'st_ctime_ns')},
+        )
+
+    monkeypatch.setattr(os, 'fstat', far)
+
+
+@pytest.mark.parametrize('owner', [pytest.param(ALICE, marks=needs_root), os.geteuid()])
+def test_a_time_that_no_calendar_has_costs_nothing(owner, inbound, tmp_path, no_calendar):
+    folder = submit(inbound, 'alice', owner)
+    (folder / 'timestamp.txt').unlink()
+    found = [each for each in look_into(inbound, tmp_path) if each.parts[-1].endswith('.ipynb')]
+    assert [(each.problem, each.modified) for each in found] == [('', None)]
+    before = datetime.now(UTC)
+    assert all(each.changed <= before for each in found if owner == ALICE)
+    assert (found[0].changed is None) == (owner != ALICE)

@@ -111,6 +111,13 @@ def test_of_a_pictures_metadata_only_its_size_is_kept():
     assert run_of(display({'image/png': 'AA'}, metadata=7)).outputs[0].metadata == {}
 
 
+def test_of_what_is_no_picture_no_metadata_is_kept():
+    """Each kind that a student made up was an object of its own: with many, it got no zero."""
+    about = {f'kind{n}': {} for n in range(1_000)} | {'image/png': {'width': 80}}
+    run = run_of(display({'text/plain': 'x', 'kind1': 'y'}, metadata=about))
+    assert run.outputs[0].metadata == {}
+
+
 FLOODS = {
     'one long text': [stream('x' * 10_000_000)],
     'many long texts': [stream('x' * 10_000)] * 1_000,

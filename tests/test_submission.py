@@ -2,6 +2,7 @@
 
 import contextlib
 import json
+import os
 import resource
 import time
 
@@ -331,3 +332,40 @@ def test_many_or_large_modules_are_left_out_and_it_is_said(tmp_path):
     assert 'large.py' not in names
     assert len(submission.notes) == 3
     assert submission.notes[0].startswith('the file `large.py` of 2.0 MB was left out: at most 50')
+
+
+STRANGE = {
+    b'x' * 252 + b'.py': 'x' * 59 + '…',
+    b'x\xff.py': 'x\\udcff.py',
+    b'.py': '.py',
+    'a\u202eb.py'.encode(): 'a\\u202eb.py',
+}
+
+
+@pytest.mark.parametrize('name', STRANGE)
+@pytest.mark.parametrize('size', [5, MAX_PYTHON_BYTES + 1])
+def test_a_module_whose_name_can_not_be_kept_is_left_out_and_it_is_said(tmp_path, name, size):
+    (tmp_path / 'a.py').touch()
+    (tmp_path / os.fsdecode(name)).write_bytes(b'#' * size)
+    submission = read_submission(tmp_path, student_id='ada', assignment='02_joint_state')
+    assert [path.name for path in submission.extra_files] == ['a.py']
+    (note,) = submission.notes
+    assert note.startswith(
+        f'the file `{STRANGE[name]}` was left out: its name begins with a dot, '
+    )
+    note.encode()
+
+
+def test_a_module_that_is_a_link_is_left_out_and_it_is_said(tmp_path):
+    (tmp_path / 'a.py').touch()
+    (tmp_path / 'b.py').symlink_to('a.py')
+    submission = read_submission(tmp_path, student_id='ada', assignment='02_joint_state')
+    assert submission.notes == ('the file `b.py` was left out: it is a link',)
+
+
+def test_of_many_modules_that_are_left_out_some_are_named(tmp_path):
+    for number in range(30):
+        (tmp_path / f'{number}\u202e.py').touch()
+    submission = read_submission(tmp_path, student_id='ada', assignment='02_joint_state')
+    assert len(submission.notes) == 11
+    assert submission.notes[-1] == '20 more Python files were left out'

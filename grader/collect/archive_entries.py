@@ -17,6 +17,9 @@ from functools import partial
 from pathlib import Path
 from typing import IO, Any, cast
 
+from grader.collect.unpack_limits import UnpackLimits
+from grader.common.dates import utc_of
+
 MAX_PARTS, MAX_NAME_BYTES = 20, 255
 """Folders within folders, and what a file system takes as a name."""
 MAX_READ_BYTES = 8_000_000
@@ -47,16 +50,18 @@ class Refused(Exception):
     """Says in a sentence why there is no going on."""
 
 
-def entries(archive: Path, *, name: str, aside: Path, most: int) -> Iterator[ArchiveEntry]:
+def entries(
+    archive: Path, *, name: str, aside: Path, left: UnpackLimits
+) -> Iterator[ArchiveEntry]:
     """Yield the files that an archive names; folders are left out.
 
-    `name` tells its kind. A tar is unpacked into `aside` first, `most` bytes of it. Raises
-    Refused, and whatever Python's readers of archives raise at a broken one.
+    `name` tells its kind. A tar is unpacked into `aside` first, and taken off what is `left`.
+    Raises Refused, and whatever Python's readers of archives raise at a broken one.
     """
     if name.lower().endswith('.zip'):
         yield from _zipped(archive)
     else:
-        yield from _tarred(archive, name=name, aside=aside, most=most)
+        yield from _tarred(archive, name=name, aside=aside, left=left)
 
 
 def copy(source: IO[bytes], target: IO[bytes], *, most: int) -> bool:
@@ -113,13 +118,12 @@ def _local(date: tuple[int, int, int, int, int, int]) -> datetime | None:
         return None
 
 
-def _tarred(archive: Path, *, name: str, aside: Path, most: int) -> Iterator[ArchiveEntry]:
-    reader = TAR_READERS[Path(name.lower()).suffix]
+def _tarred(
+    archive: Path, *, name: str, aside: Path, left: UnpackLimits
+) -> Iterator[ArchiveEntry]:
     with tempfile.TemporaryDirectory(dir=aside) as folder:
         plain = Path(folder, 'plain.tar')
-        with reader(archive, 'rb') as packed, plain.open('wb') as unpacked:
-            if not copy(packed, unpacked, most=most):
-                raise Refused(f'over {most / 1e6:.0f} MB once unpacked: a bomb?')
+        _lay_bare(archive, plain, name=name, left=left)
         with _Careful(plain) as raw, tarfile.open(fileobj=raw, mode='r:') as box:
             while (info := box.next()) is not None:
                 box.members.clear()  # type: ignore[attr-defined]  # typeshed has no such attribute; a million headers need no memory
@@ -132,18 +136,27 @@ def _tarred(archive: Path, *, name: str, aside: Path, most: int) -> Iterator[Arc
                     problem = 'a device or the like: only files are taken'
                 # it returns None for what is no file, which has a problem
                 content = cast('partial[IO[bytes]]', partial(box.extractfile, info))
-                yield ArchiveEntry(parts, _utc(info.mtime), problem, content)
+                yield ArchiveEntry(parts, utc_of(info.mtime), problem, content)
             raw.seek(box.offset)
             end = raw.read(tarfile.BLOCKSIZE)
             if len(end) < tarfile.BLOCKSIZE or any(end):
                 raise Refused('broken: it ends too early, or is no tar any more')
 
 
-def _utc(seconds: float) -> datetime | None:
-    try:
-        return datetime.fromtimestamp(seconds, UTC)
-    except (ValueError, OverflowError, OSError):
-        return None
+def _lay_bare(archive: Path, plain: Path, *, name: str, left: UnpackLimits) -> None:
+    """Unpack a tar, which counts whatever comes of it: it may lie beside a thousand like it."""
+    most = min(left.bytes, left.tar_bytes)
+    if most <= 0:
+        raise Refused('not unpacked, for what came before it was too large together: a bomb?')
+    reader, is_whole = TAR_READERS[Path(name.lower()).suffix], False
+    with reader(archive, 'rb') as packed, plain.open('wb') as unpacked:
+        try:
+            is_whole = copy(packed, unpacked, most=most)
+        finally:
+            read = unpacked.tell() + (0 if is_whole else CHUNK)
+            left.tar_bytes -= min(left.tar_bytes, read)
+    if not is_whole:
+        raise Refused(f'over {most / 1e6:.0f} MB once unpacked: a bomb?')
 
 
 def _parts(path: str) -> tuple[tuple[str, ...], str]:

@@ -17,6 +17,7 @@ from datetime import datetime
 from pathlib import Path
 
 from grader.collect.archive_entries import ArchiveEntry, Refused, copy, entries
+from grader.collect.unpack_limits import UnpackLimits
 from grader.common.text import shorten
 
 MAX_FILE_BYTES = 50_000_000
@@ -32,23 +33,6 @@ _BROKEN: tuple[type[Exception], ...] = (
 )
 _BROKEN += (ValueError, OverflowError, RuntimeError, struct.error, KeyError, IndexError)
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EMFILE)
-
-
-@dataclass
-class UnpackLimits:
-    """What may still be unpacked."""
-
-    files: int
-    bytes: int
-
-    def part(self, *, files: int, bytes: int) -> 'UnpackLimits':
-        """Return an allowance of its own for one archive, within this one."""
-        return UnpackLimits(min(files, self.files), min(bytes, self.bytes))
-
-    def less(self, part: 'UnpackLimits', left: 'UnpackLimits') -> None:
-        """Take off what was used of a part."""
-        self.files -= part.files - left.files
-        self.bytes -= part.bytes - left.bytes
 
 
 @dataclass(frozen=True)
@@ -78,7 +62,7 @@ def unpack(
     whatever is wrong with the archive is the problem of a member.
     """
     try:
-        for entry in entries(archive, name=name, aside=aside, most=left.bytes):
+        for entry in entries(archive, name=name, aside=aside, left=left):
             left.files -= 1
             if left.files < 0:
                 raise Refused('more files in it than are unpacked')

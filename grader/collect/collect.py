@@ -26,7 +26,7 @@ from grader.collect.submission_folders import (
 )
 from grader.collect.uploads import look_into
 from grader.common.dates import date_of
-from grader.common.errors import CourseError
+from grader.common.errors import CourseError, TaskFailed
 from grader.common.files import write_whole
 from grader.course import Course
 from grader.export.scores import as_csv
@@ -105,6 +105,8 @@ def _row(
         if error.errno in FULL:
             raise
         outcome, reason = LEFT, f'{error.strerror}: {error.filename}'
+    except TaskFailed as why:  # what lies in its place already is too much
+        outcome, reason = LEFT, str(why)
     whose = (each.student_id, each.assignment)
     return FileOutcome(each.notebook.path, outcome, reason, *whose, each.handed_in)
 

@@ -17,8 +17,10 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from grader.collect.archive_entries import ARCHIVE, MAX_PARTS
-from grader.collect.archives import MAX_FILE_BYTES, UnpackLimits
+from grader.collect.archives import MAX_FILE_BYTES
 from grader.collect.incoming import Incoming
+from grader.collect.unpack_limits import UnpackLimits
+from grader.common.dates import utc_of
 
 LINK = 'a link: only files are taken'
 DEVICE = 'a device or the like: only files are taken'
@@ -119,10 +121,10 @@ class LiveFolder:
             yield Incoming(
                 parts,
                 file,
-                datetime.fromtimestamp(status.st_mtime, UTC),
+                utc_of(status.st_mtime),
                 problem,
                 login=_login(status.st_uid) if foreign else '',
-                changed=datetime.fromtimestamp(changed, UTC) if foreign else None,
+                changed=(utc_of(changed) or datetime.now(UTC)) if foreign else None,
             )
         elif len(parts) > MAX_PARTS:
             yield Incoming(parts, problem=f'it lies more than {MAX_PARTS} folders deep')

@@ -1,22 +1,57 @@
 """Folders of one submission each: written whole, compared, and kept beside earlier ones."""
 
 import hashlib
+import os
 import shutil
+import stat
 import tempfile
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from datetime import datetime
 from pathlib import Path
 
 from my_robot_basics.session import package_files
 
+from grader.collect.archive_entries import MAX_PARTS
+from grader.common.errors import TaskFailed
 from grader.notebook.submission import LEFT_OUT, SECRET, TIMESTAMP
+
+MAX_FILES, MAX_BYTES, MAX_DEPTH = 20_000, 2_000_000_000, MAX_PARTS
+"""Far more than is ever collected of one student: somebody has put it there by hand."""
 
 
 def contents(folder: Path) -> dict[str, bytes]:
-    """Return the digests of a submission's files, without what the exchange put beside them."""
+    """Return the digests of a submission's files, without what the exchange put beside them.
+
+    No link is followed. Raises TaskFailed where there is more than a submission can have.
+    """
     ours = {folder / name for name in (TIMESTAMP, SECRET, LEFT_OUT)}
-    files = (path for path in folder.rglob('*') if path.is_file() and path not in ours)
-    return digests({path.relative_to(folder).as_posix(): path for path in files})
+    files: dict[str, Path] = {}
+    size = 0
+    for path in _files_in(folder):
+        try:
+            status = path.lstat()
+        except FileNotFoundError:
+            continue  # it is being replaced: before its result is stored, it is read again
+        if stat.S_ISREG(status.st_mode) and path not in ours:
+            files[path.relative_to(folder).as_posix()] = path
+            size += status.st_size
+        if len(files) > MAX_FILES or size > MAX_BYTES:
+            raise TaskFailed(
+                f'{folder} holds more than {MAX_FILES:,} files or {MAX_BYTES / 1e9:g} GB: '
+                'remove what is no part of the submission'
+            )
+    return digests(dict(sorted(files.items())))
+
+
+def _files_in(folder: Path) -> Iterator[Path]:
+    for above, folders, names in os.walk(folder):
+        here = Path(above)
+        if folders and len(here.relative_to(folder).parts) >= MAX_DEPTH:
+            raise TaskFailed(
+                f'{folder} holds more than {MAX_DEPTH} folders in each other: remove what is no '
+                'part of the submission'
+            )
+        yield from (here / name for name in names)
 
 
 def digests(files: Mapping[str, Path]) -> dict[str, bytes]:

@@ -8,10 +8,11 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 from grader.collect.archive_entries import ARCHIVE
-from grader.collect.archives import UnpackLimits, unpack
+from grader.collect.archives import unpack
 from grader.collect.incoming import Incoming, as_json, from_json
 from grader.collect.live_folders import ONE, LiveFolder
 from grader.collect.platforms import label_in
+from grader.collect.unpack_limits import UnpackLimits
 from grader.common.errors import CourseError
 from grader.common.parsing import Limits, ParsingFailed, parse
 from grader.notebook.submission import SECRET, TIMESTAMP

@@ -43,6 +43,14 @@ def date_of(path: Path) -> datetime | None:
         return None
 
 
+def utc_of(seconds: float) -> datetime | None:
+    """Return a time in seconds since 1970 in UTC; None where a calendar has no such day."""
+    try:
+        return datetime.fromtimestamp(seconds, UTC)
+    except (ValueError, OverflowError, OSError):
+        return None
+
+
 def _zone(offset: str, name: str) -> tzinfo:
     """Raises ValueError, ZoneInfoNotFoundError or OSError where there is no such zone."""
     if offset:

@@ -1,5 +1,6 @@
 """Files that are there whole or not at all, whatever happens while they are written."""
 
+import contextlib
 import os
 from datetime import datetime
 from pathlib import Path
@@ -19,7 +20,8 @@ def write_whole(path: Path, content: str | bytes) -> None:
             os.fsync(file.fileno())
         os.replace(aside, path)
     except OSError:
-        aside.unlink(missing_ok=True)
+        with contextlib.suppress(OSError):  # its name may be too long to begin with
+            aside.unlink()
         raise
 
 

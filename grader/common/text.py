@@ -11,6 +11,18 @@ from my_robot_basics.validate.text import shorten as shorten
 from my_robot_basics.validate.text import visible as visible
 
 BYTE_ORDER_MARK = '\ufeff'
+_SURROGATE = re.compile('[\ud800-\udfff]')
+"""Stands for a byte of a name that is no UTF-8, and can be written nowhere."""
+
+
+def storable(text: str) -> str:
+    """Return text that a database takes: of a name that is no UTF-8, the strange bytes spelled."""
+    return _SURROGATE.sub(_spelled_byte, text)
+
+
+def _spelled_byte(found: re.Match) -> str:
+    byte = ord(found[0]) - 0xDC00  # as os.fsdecode puts it
+    return f'\\x{byte:02x}' if 0x80 <= byte <= 0xFF else f'\\u{ord(found[0]):x}'
 
 
 def pad(text: str, width: int) -> str:

@@ -28,6 +28,8 @@ they work. With several notebooks, these are what runs side by side."""
 _under_way = 0
 OUTPUT_CHARACTERS = 400
 """What an output counts for besides its own: of small ones, some 8,000 are kept of a notebook."""
+PART_CHARACTERS = 40
+"""What each object and list in them counts for: the result that is sent may have 200,000."""
 
 
 @dataclass(frozen=True)
@@ -50,12 +52,20 @@ class _OutputSpace:
     def fit(self, outputs: list[NotebookNode]) -> list[NotebookNode]:
         """Return a cell's outputs while there is room for them, or a word that there is none."""
         size = len(str(outputs)) + OUTPUT_CHARACTERS * len(outputs)
+        size += PART_CHARACTERS * _parts(outputs)
         if size <= self.characters:
             self.characters -= size
             return outputs
         most = f'{MAX_NOTEBOOK_OUTPUT_CHARACTERS:,}'
         text = f'[not kept: all cells together printed more than {most} characters]\n'
         return [nbformat.v4.new_output('stream', name='stdout', text=text)]
+
+
+def _parts(found: object) -> int:
+    """Count objects and lists, one in the other as deep as outputs have them."""
+    if not isinstance(found, dict | list):
+        return 0
+    return 1 + sum(map(_parts, found.values() if isinstance(found, dict) else found))
 
 
 @dataclass(frozen=True)

@@ -6,16 +6,18 @@ from datetime import datetime
 from pathlib import Path
 
 from my_robot_basics.session import package_files
-from my_robot_basics.validate.text import printable
+from my_robot_basics.validate.text import printable, shorten
 from nbformat import NotebookNode
 
 from grader.common.dates import date_of
 from grader.common.errors import UnreadableSubmission
+from grader.common.student_names import MAX_ID_BYTES, MAX_ID_CHARACTERS, problem_of_id
 from grader.notebook.reading import read_notebook
 
 MAX_PYTHON_FILES, MAX_PYTHON_BYTES = 50, 2_000_000
 """Of the student's own modules together: twenty times what the whole course has."""
-_MOST_NOTES = 10
+_MOST_NOTES, _MOST_COLUMNS = 10, 60
+"""Of files that are left out: so many are named, each by the beginning of its name."""
 TIMESTAMP = 'timestamp.txt'
 """Beside a notebook: when it was handed in, as nbgrader writes it."""
 SECRET = 'submission_secret.txt'
@@ -138,17 +140,27 @@ def _python_files(folder: Path) -> tuple[list[Path], list[str]]:
     taken: list[Path] = []
     notes: list[str] = []
     left = MAX_PYTHON_BYTES
-    for path in sorted(p for p in folder.glob('*.py') if p.is_file() and not p.is_symlink()):
-        size = path.stat().st_size
-        if size <= left and len(taken) < MAX_PYTHON_FILES:
+    for path in sorted(p for p in folder.glob('*.py') if p.is_symlink() or p.is_file()):
+        name, size = shorten(printable(path.name), _MOST_COLUMNS), path.lstat().st_size
+        if path.is_symlink():
+            notes.append(f'the file `{name}` was left out: it is a link')
+        elif problem_of_id(path.name):  # what is said there is said of names of students
+            notes.append(
+                f'the file `{name}` was left out: its name begins with a dot, is longer than '
+                f'{MAX_ID_CHARACTERS} characters or {MAX_ID_BYTES} bytes, or holds some that can '
+                'not be shown, or one of < > "'
+            )
+        elif size <= left and len(taken) < MAX_PYTHON_FILES:
             taken.append(path)
             left -= size
-        elif len(notes) < _MOST_NOTES:
+        else:
             notes.append(
-                f'the file `{path.name}` of {size / 1e6:.1f} MB was left out: at most '
+                f'the file `{name}` of {size / 1e6:.1f} MB was left out: at most '
                 f'{MAX_PYTHON_FILES} Python files of {MAX_PYTHON_BYTES / 1e6:.0f} MB together '
                 'are taken'
             )
+    if more := len(notes[_MOST_NOTES:]):
+        notes[_MOST_NOTES:] = [f'{more} more Python files were left out']
     return taken, notes
 
 

@@ -14,6 +14,7 @@ from grader.common.errors import DamagedResult
 from grader.common.files import write_whole
 from grader.common.futures import run_ahead
 from grader.common.parsing import AT_ONCE, Limits, ParsingFailed, call_off, parse
+from grader.common.text import printable
 from grader.course import Course
 from grader.notebook.restore import KEY, grade_id
 from grader.notebook.submission import SECRET, TIMESTAMP
@@ -127,7 +128,7 @@ def write_feedback(
             try:
                 place, is_new = _put(course, student, assignment, work.result())
             except (DamagedResult, ParsingFailed) as why:
-                say(f'{assignment} of {student} has no page of feedback, for {why}')
+                say(printable(f'{assignment} of {student} has no page of feedback, for {why}'))
                 continue
             except Exception as error:
                 error.add_note(f'This was the page of {student} for {assignment}.')

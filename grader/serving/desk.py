@@ -1,4 +1,4 @@
-"""The steps of the resident process: take in, give turns, have graded, store and release."""
+"""The steps of the resident process: give turns, have graded, store and release."""
 
 import time
 from collections.abc import Callable
@@ -7,15 +7,13 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from grader.collect.collect import EARLIER
-from grader.common.errors import CourseError
 from grader.common.parsing import ParsingFailed
 from grader.common.text import printable
 from grader.course import Course
 from grader.grading import GradedSubmission, Grading, PreparedAssignment
 from grader.report.feedback import FeedbackPage, page_exporter, write_page
 from grader.serving.exchange import release_page
-from grader.serving.inbound import new_entries
-from grader.serving.intake import discard, put_in_place, secret_of, take_in
+from grader.serving.intake import discard, put_in_place, secret_of
 from grader.serving.queue import (
     FAILED,
     GRADED,
@@ -26,8 +24,10 @@ from grader.serving.queue import (
     Arrival,
     Queue,
 )
+from grader.serving.trouble import meets_all, noted
 from grader.serving.turns import next_turn, replaced_by
 from grader.storage.deadlines import FILE, Deadlines, deadlines
+from grader.storage.failures import in_sentences
 from grader.storage.submitted import SubmissionFolder
 
 
@@ -43,22 +43,11 @@ class Desk:
     """The exchange's folder for pages, if there is one."""
     say: Callable[[str], None]
     seen: dict[str, str] = field(default_factory=dict)
+    last_taken: dict[str, float] = field(default_factory=dict)
+    """When something of each owner in the inbound folder was taken in, in seconds since 1970."""
     running: dict['Future[GradedSubmission]', Arrival] = field(default_factory=dict)
     prepared: dict[str, tuple[object, PreparedAssignment]] = field(default_factory=dict)
     exporter: FeedbackPage = field(default_factory=page_exporter)
-
-
-def look(desk: Desk) -> bool:
-    """Take in what is new in the inbound folder; return whether there was anything."""
-    entries = list(new_entries(desk.inbound, desk.seen))
-    for entry in entries:
-        for arrival in take_in(desk.course, desk.queue, desk.inbound, entry):
-            if arrival.state == REFUSED:
-                desk.say(printable(f'not taken, look at it: {arrival.entry}: {arrival.reason}'))
-            else:
-                desk.say(f'taken in: {_shown(arrival)}')
-        desk.seen[entry.name] = entry.fingerprint
-    return bool(entries)
 
 
 def begin_turns(desk: Desk) -> bool:
@@ -80,13 +69,18 @@ def begin_turns(desk: Desk) -> bool:
 
 def begin(desk: Desk, arrival: Arrival, earlier: list[Arrival]) -> None:
     """Put a submission in its place, keep those that it replaces, and have it graded."""
-    outcome, reason = put_in_place(desk.course, arrival)
+    outcome, reason = _put(desk, arrival)
+    ended = []
     for each in earlier:
-        put_in_place(desk.course, each)
-    reason_of_earlier = 'a later one was graded in its place; it is in submitted_before/'
-    ended = [replace(each, state=REPLACED, reason=reason_of_earlier) for each in earlier]
-    if outcome == EARLIER:
-        ended.append(replace(arrival, state=REPLACED, reason=reason, started=0.0))
+        its_outcome, its_reason = _put(desk, each)
+        if its_outcome == REFUSED:
+            ended.append(replace(each, state=REFUSED, reason=its_reason))
+        else:
+            in_place = 'a later one was graded in its place; it is in submitted_before/'
+            ended.append(replace(each, state=REPLACED, reason=in_place))
+    if outcome in (EARLIER, REFUSED):
+        state = REFUSED if outcome == REFUSED else REPLACED
+        ended.append(replace(arrival, state=state, reason=reason, started=0.0))
     else:
         desk.queue.update(arrival)
         found = SubmissionFolder(
@@ -98,7 +92,8 @@ def begin(desk: Desk, arrival: Arrival, earlier: list[Arrival]) -> None:
     desk.queue.update(*ended)
     discard(desk.course, ended)
     for each in ended:
-        desk.say(f'replaced: {_shown(each)}: {each.reason}')
+        what = 'not taken, look at it' if each.state == REFUSED else 'replaced'
+        desk.say(printable(f'{what}: {shown(each)}: {each.reason}'))
 
 
 def finish_done(desk: Desk) -> bool:
@@ -117,7 +112,7 @@ def finish(desk: Desk, arrival: Arrival, work: 'Future[GradedSubmission]') -> No
     now = time.time()
     if outcome.stored is None:
         ended = replace(arrival, state=FAILED, reason=outcome.reason, ended=now)
-        desk.say(f'not graded: {_shown(ended)}: {printable(ended.reason)}')
+        desk.say(f'not graded: {shown(ended)}: {printable(ended.reason)}')
     else:
         reason = _release(desk, arrival)
         score, most = outcome.stored.score, outcome.stored.max_score
@@ -125,9 +120,9 @@ def finish(desk: Desk, arrival: Arrival, work: 'Future[GradedSubmission]') -> No
             arrival, state=GRADED, reason=reason, ended=time.time(), score=score, max_score=most
         )
         seconds = ended.ended - ended.arrived
-        desk.say(f'graded: {_shown(ended)}: {score:g} of {most:g}, {seconds:.1f} s after it came')
+        desk.say(f'graded: {shown(ended)}: {score:g} of {most:g}, {seconds:.1f} s after it came')
         if reason:
-            desk.say(f'no feedback: {_shown(ended)}: {reason}')
+            desk.say(printable(f'no feedback: {shown(ended)}: {reason}'))
     desk.queue.update(ended)
     discard(desk.course, [ended])
 
@@ -135,21 +130,33 @@ def finish(desk: Desk, arrival: Arrival, work: 'Future[GradedSubmission]') -> No
 def _release(desk: Desk, arrival: Arrival) -> str:
     """Write a page, and put it into the exchange; return why there is none, if that is so."""
     try:
-        page, _ = write_page(desk.course, *arrival.whose, desk.exporter)
+        with in_sentences(desk.course):
+            page, _ = write_page(desk.course, *arrival.whose, desk.exporter)
+        if desk.feedback and (secret := secret_of(desk.course, arrival)):
+            release_page(page, desk.feedback, secret=secret, notebook=arrival.assignment)
     except ParsingFailed as why:
         return f'no page can be made, for {why}'
-    if desk.feedback and (secret := secret_of(desk.course, arrival)):
-        release_page(page, desk.feedback, secret=secret, notebook=arrival.assignment)
+    except Exception as error:
+        if meets_all(error):
+            raise
+        return f'no page can be made, for {noted(shown(arrival), error)}'
     return ''
+
+
+def _put(desk: Desk, arrival: Arrival) -> tuple[str, str]:
+    """Put an arrival where it is graded; return what it was, REFUSED where that can't be done."""
+    try:
+        return put_in_place(desk.course, arrival)
+    except Exception as error:
+        if meets_all(error):
+            raise
+        return REFUSED, noted(shown(arrival), error)
 
 
 def _start(desk: Desk, found: SubmissionFolder) -> 'Future[GradedSubmission]':
     try:
         return desk.grading.start(found, _prepared(desk, found.assignment))
-    except (
-        OSError,
-        CourseError,
-    ) as error:  # its result says so, and the next one is not concerned
+    except Exception as error:  # its result says so, and the next one is not concerned
         failed: Future[GradedSubmission] = Future()
         failed.set_exception(error)
         return failed
@@ -167,5 +174,6 @@ def _prepared(desk: Desk, assignment: str) -> PreparedAssignment:
     return prepared
 
 
-def _shown(arrival: Arrival) -> str:
+def shown(arrival: Arrival) -> str:
+    """Return what a line says of a submission."""
     return printable(f'{arrival.assignment} of {arrival.student_id}')

@@ -1,15 +1,20 @@
 """Look at a folder into which others put files: what is new there, and is written to its end."""
 
+import contextlib
 import hashlib
 import os
 import stat
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
+from grader.collect.archive_entries import MAX_PARTS
+from grader.common.dates import utc_of
+from grader.common.text import storable
 from grader.notebook.submission import SECRET
+from grader.serving.trouble import noted
 
 QUIET_SEC = 1.0
 """What nobody has changed for so long is taken to be whole."""
@@ -30,35 +35,58 @@ class Entry:
     changed: datetime
     """When Linux last saw it change, in UTC: nobody can set that."""
     is_whole: bool
+    owner: str = ''
+    """Whose it may be: entries of one are taken in by turns with those of others."""
+    problem: str = ''
+    """Why it can't be looked at."""
+
+    @property
+    def key(self) -> str:
+        """Return its name as the database keeps it: no two names have one."""
+        return key_of(self.name)
+
+
+def key_of(name: str) -> str:
+    """Return what stands for a name that may be no UTF-8."""
+    return storable(name.replace('\\', r'\\'))
 
 
 def new_entries(folder: Path, seen: Mapping[str, str]) -> Iterator[Entry]:
     """Yield what is not `seen`, by its fingerprint, and was written to its end; oldest first.
 
-    Raises OSError where the folder itself can't be read.
+    Raises OSError where the folder itself can't be read; whatever goes wrong with an entry is its
+    `problem`.
     """
     with os.scandir(folder) as listed:
         names = sorted(each.name for each in listed if not each.name.startswith('.'))
-    found = [each for name in names if (each := _look(folder, name, seen.get(name)))]
+    trusted = {0, os.geteuid(), os.stat(folder).st_uid}
+    found = []
+    for name in names:
+        before = seen.get(key_of(name))
+        try:
+            found.append(_look(folder, name, before, trusted))
+        except (FileNotFoundError, NotADirectoryError):
+            continue  # gone meanwhile: what is left of it is looked at again
+        except Exception as error:
+            found.append(_with_problem(folder, name, before, error))
     yield from sorted(
-        (each for each in found if each.is_whole), key=lambda each: (each.changed, each.name)
+        (each for each in found if each and each.is_whole),
+        key=lambda each: (each.changed, each.name),
     )
 
 
-def _look(folder: Path, name: str, seen: str | None) -> Entry | None:
-    """Return an entry; None where it is as it was seen, or is gone."""
-    try:
-        status = os.lstat(folder / name)
-        # nbgrader makes another folder for each submission: what one holds is handed in
-        if seen is not None and '+' in name and seen.startswith(f'{_place(status)} '):
-            return None
-        digest, newest, names = hashlib.sha256(), status.st_ctime, set()
-        for path, each in _tree(folder, name, status):
-            newest = max(newest, each.st_ctime)
-            names.add(path.rpartition('/')[2])
-            digest.update(f'{path}\0{each.st_ino} {each.st_size} {each.st_ctime_ns}\0'.encode())
-    except OSError:
-        return None  # gone meanwhile: what is left of it is looked at again
+def _look(folder: Path, name: str, seen: str | None, trusted: Collection[int]) -> Entry | None:
+    """Return an entry; None where it is as it was seen. Raises OSError where it is gone."""
+    status = os.lstat(folder / name)
+    # nbgrader makes another folder for each submission: what one holds is handed in
+    if seen is not None and '+' in name and seen.startswith(f'{_place(status)} '):
+        return None
+    digest, newest, names = hashlib.sha256(), status.st_ctime, set()
+    for path, each in _tree(folder, name, status):
+        newest = max(newest, each.st_ctime)
+        names.add(path.rpartition('/')[2])
+        digest.update(os.fsencode(path))
+        digest.update(f'\0{each.st_ino} {each.st_size} {each.st_ctime_ns}\0'.encode())
     fingerprint = f'{_place(status)} {digest.hexdigest()}'
     if fingerprint == seen:
         return None
@@ -69,11 +97,36 @@ def _look(folder: Path, name: str, seen: str | None) -> Entry | None:
         fingerprint,
         datetime.fromtimestamp(min(newest, now), UTC),
         is_whole=is_submitted or newest <= now - QUIET_SEC,
+        owner=_named(name) if status.st_uid in trusted else f'user {status.st_uid}',
     )
+
+
+def _with_problem(folder: Path, name: str, seen: str | None, error: Exception) -> Entry | None:
+    """Return an entry that can't be looked at; None where that was seen."""
+    changed, now = 0.0, time.time()
+    with contextlib.suppress(OSError):
+        changed = os.lstat(folder / name).st_ctime
+    fingerprint = storable(f'{type(error).__name__} {error} {changed}')
+    if fingerprint == seen:
+        return None
+    if isinstance(error, PermissionError):
+        problem = 'it must not be read: see its permissions'
+    elif isinstance(error, OSError):
+        problem = f'it can not be looked at: {error.strerror}'
+    else:
+        problem = f'it can not be looked at, for {noted(name, error)}'
+    when = (utc_of(changed) if 0 < changed <= now else None) or datetime.now(UTC)
+    is_whole = changed <= now - QUIET_SEC
+    return Entry(name, fingerprint, when, is_whole, owner=_named(name), problem=problem)
 
 
 def _place(status: os.stat_result) -> str:
     return f'{status.st_dev}:{status.st_ino}:{status.st_uid}'
+
+
+def _named(name: str) -> str:
+    """Return whose an entry may be by its name, whatever form that has."""
+    return name.partition('+' if '+' in name else '_')[0]
 
 
 def _tree(folder: Path, name: str, status: os.stat_result) -> Iterator[tuple[str, os.stat_result]]:
@@ -90,5 +143,7 @@ def _tree(folder: Path, name: str, status: os.stat_result) -> Iterator[tuple[str
                 if left < 0:
                     return
                 yield f'{path}/{each}', os.lstat(each, dir_fd=inside)
+            if path.count('/') >= MAX_PARTS - 1:  # what lies deeper is not taken
+                folders.clear()
     finally:
         os.close(descriptor)

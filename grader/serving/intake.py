@@ -14,7 +14,7 @@ from grader.collect.matching import MatchedFile, match
 from grader.collect.platform_ids import StudentNumbers
 from grader.collect.submission_folders import writer
 from grader.collect.uploads import look_into_entry
-from grader.common.text import shorten
+from grader.common.text import shorten, storable
 from grader.course import Course
 from grader.notebook.submission import LEFT_OUT, SECRET
 from grader.serving.inbound import Entry
@@ -60,9 +60,15 @@ def take_in(course: Course, queue: Queue, inbound: Path, entry: Entry) -> list[A
                 rows.append(_arrival(entry, WAITING, *whose, folder=folder))
         if reasons:
             more = f' (and {len(reasons) - 1} more)' if len(reasons) > 1 else ''
-            reason = shorten(reasons[0], MAX_REASON) + more
+            reason = shorten(storable(reasons[0]), MAX_REASON) + more
             rows.append(_arrival(entry, REFUSED, reason=reason))
-        return queue.add(entry.name, entry.fingerprint, rows)
+        return queue.add(entry.key, entry.fingerprint, rows)
+
+
+def refuse(queue: Queue, entry: Entry, reason: str) -> list[Arrival]:
+    """Note that an entry is left to a person, and why; return that."""
+    row = _arrival(entry, REFUSED, reason=shorten(storable(reason), MAX_REASON))
+    return queue.add(entry.key, entry.fingerprint, [row])
 
 
 def put_in_place(course: Course, arrival: Arrival) -> tuple[str, str]:
@@ -138,7 +144,7 @@ def _arrival(
     reason: str = '',
 ) -> Arrival:
     at = entry.changed.timestamp()
-    return Arrival(0, entry.name, at, state, student_id, assignment, folder, reason)
+    return Arrival(0, entry.key, at, state, student_id, assignment, folder, reason)
 
 
 def _is_work(incoming: Incoming) -> bool:

@@ -6,6 +6,8 @@ from contextlib import closing, contextmanager
 from dataclasses import astuple, dataclass, fields, replace
 from pathlib import Path
 
+from grader.common.text import storable
+
 FILE = 'serve.db'
 WAITING, GRADING, GRADED = 'waiting', 'grading', 'graded'
 REPLACED, REFUSED, FAILED = 'replaced', 'refused', 'failed'
@@ -18,7 +20,7 @@ class Arrival:
 
     number: int
     entry: str
-    """Its name in the inbound folder."""
+    """Its name in the inbound folder, strange bytes in it spelled out."""
     arrived: float
     """In seconds since 1970; no claim of whoever handed it in."""
     state: str
@@ -67,7 +69,7 @@ class Queue:
                 marks = ', '.join('?' * (len(_COLUMNS) - 1))
                 cursor = self._database.execute(
                     f'INSERT INTO arrivals ({", ".join(_COLUMNS[1:])}) VALUES ({marks})',
-                    astuple(each)[1:],
+                    _values(each),
                 )
                 added.append(replace(each, number=cursor.lastrowid or 0))
             self._database.execute('REPLACE INTO seen VALUES (?, ?)', (entry, fingerprint))
@@ -79,7 +81,7 @@ class Queue:
         with self._database:
             self._database.executemany(
                 f'UPDATE arrivals SET {assigned} WHERE number = ?',
-                [(*astuple(each)[1:], each.number) for each in arrivals],
+                [(*_values(each), each.number) for each in arrivals],
             )
 
     def resume(self) -> None:
@@ -114,6 +116,11 @@ class Queue:
         for student, assignment, started in rows:
             found.setdefault((student, assignment), []).append(started)
         return found
+
+
+def _values(arrival: Arrival) -> list[object]:
+    """Return what a row holds: text of strangers, in names and reasons, is made storable."""
+    return [storable(each) if isinstance(each, str) else each for each in astuple(arrival)[1:]]
 
 
 @contextmanager

@@ -11,9 +11,10 @@ from filelock import FileLock, Timeout
 from grader.common.errors import CourseError
 from grader.course import Course
 from grader.grading import Grading
-from grader.serving.desk import Desk, begin_turns, finish_done, look
+from grader.serving.desk import Desk, begin_turns, finish_done
 from grader.serving.intake import tidy
 from grader.serving.queue import Queue, opened_queue
+from grader.serving.reception import look
 from grader.storage.backups import bring_in_order
 from grader.storage.database import one_engine
 from grader.workers.backend import Backend

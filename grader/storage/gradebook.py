@@ -68,8 +68,9 @@ def store(course: Course, submission: Submission, graded: NotebookNode) -> Store
             wait_until_free(course)
             with connected(course.db_url) as book:  # once for all that follows
                 former = held_score(book, *whose)
-                journal.parent.mkdir(parents=True, exist_ok=True)
-                write_whole(journal, json.dumps(graded))
+                _keep_files(course, submission)
+                # in characters that a notebook has, too: what no file can hold is found before
+                write_whole(journal, json.dumps(graded, ensure_ascii=False))
                 saved = _finish(course, submission, graded)
                 now = held_score(book, *whose)
     except (GradebookError, OSError):
@@ -124,16 +125,26 @@ def _finish(course: Course, submission: Submission, graded: NotebookNode) -> Not
     graded.metadata.setdefault(KEY, nbformat.from_dict({'notes': []})).notes += notes
     folder = course.folder('autograded', student, assignment)
     saved = finish(graded, at)
-    for extra in (*submission.extra_files, *from_exchange(submission)):
-        write_whole(folder / extra.name, extra.read_bytes())
-    for name in course.packages(assignment):
-        shutil.rmtree(folder / name, ignore_errors=True)  # files of an earlier hand-in
-    for name, file in submission.package_files.items():
-        (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        write_whole(folder / name, package_files.content(file))
     write_whole(folder / f'{assignment}.ipynb', nbformat.v4.writes(saved))
     _journal(course, submission).unlink()
     return saved
+
+
+def _keep_files(course: Course, submission: Submission) -> None:
+    """Put what was handed in beside a notebook where that is going to lie, before it has a score.
+
+    Raises OSError where that can't be done: then nothing is stored.
+    """
+    folder = course.folder('autograded', submission.student_id, submission.assignment)
+    beside = (*submission.extra_files, *from_exchange(submission))
+    files = {each.name: each.read_bytes() for each in beside}
+    files |= {name: package_files.content(f) for name, f in submission.package_files.items()}
+    folder.mkdir(parents=True, exist_ok=True)
+    for name in course.packages(submission.assignment):
+        shutil.rmtree(folder / name, ignore_errors=True)  # files of an earlier hand-in
+    for name, content in files.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        write_whole(folder / name, content)
 
 
 def _journal(course: Course, submission: Submission) -> Path:

@@ -9,6 +9,7 @@ from typing import Any
 import rclpy
 from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.context import Context
+from rclpy.exceptions import ParameterException
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
@@ -22,6 +23,8 @@ from my_robot_basics.ros2.command_line import (
 from my_robot_basics.session import classroom
 
 _RANGE = 'ROS_AUTOMATIC_DISCOVERY_RANGE'
+_REFUSED = (RuntimeError, ValueError, ParameterException)
+"""What rclpy raises for names, rules and parameters that are none."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +63,7 @@ def started_node(
                 start_parameter_services=False,
                 parameter_overrides=[Parameter('start_type_description_service', value=False)],
             )
-    except (RuntimeError, ValueError):  # what rclpy raises for names and rules that are none
+    except _REFUSED:
         context.try_shutdown()
         return None
     try:
@@ -72,6 +75,8 @@ def started_node(
             parameter,
             has_file=bool(line.options(*OPTIONS_OF_FILES)),
         )
+    except _REFUSED:
+        return None
     finally:
         node.destroy_node()
         context.shutdown()

@@ -19,8 +19,8 @@ def safe_output(kind: str, content: dict) -> NotebookNode | None:
         case 'display_data' | 'execute_result', {'data': dict(data)}:
             texts = {mime: text for mime, text in data.items() if isinstance(text, str)}
             data = {_clean(m): _clean(text) for m, text in texts.items() if m != WIDGET_VIEW}
+            about = _about_pictures(content.get('metadata'), data)
             _leave_large_pictures_out(data)
-            about = _about_pictures(content.get('metadata'))
             return nbformat.v4.new_output(kind, data=data, metadata=about)
         case 'error', {'ename': str(name), 'evalue': str(value), 'traceback': list(lines)}:
             return nbformat.v4.new_output(
@@ -39,15 +39,18 @@ def _leave_large_pictures_out(data: dict[str, str]) -> None:
             data['text/plain'] = f'[{why} was left out]'
 
 
-def _about_pictures(metadata: object) -> dict[str, dict[str, int | str]]:
-    """Keep the width and height (pixels) of pictures and their text alternative, by MIME type."""
+def _about_pictures(metadata: object, data: dict[str, str]) -> dict[str, dict[str, int | str]]:
+    """Keep the width and height (pixels) of pictures and their text alternative, by MIME type.
+
+    Of nothing else: a million kinds that somebody made up would be a million objects.
+    """
     kept = {}
-    for mime, about in metadata.items() if isinstance(metadata, dict) else ():
-        if isinstance(about, dict):
-            mime = _clean(mime)
-            kept[mime] = {k: about[k] for k in ('width', 'height') if type(about.get(k)) is int}
+    for kind in KINDS:
+        about = metadata.get(kind) if isinstance(metadata, dict) else None
+        if kind in data and isinstance(about, dict):
+            kept[kind] = {k: about[k] for k in ('width', 'height') if type(about.get(k)) is int}
             if isinstance(about.get('alt'), str):
-                kept[mime]['alt'] = _clean(about['alt'])[:MAX_ALT_CHARACTERS]
+                kept[kind]['alt'] = _clean(about['alt'])[:MAX_ALT_CHARACTERS]
     return kept
 
 

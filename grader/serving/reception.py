@@ -1,0 +1,60 @@
+"""Take in what is new, a little at a time, by turns of whoever handed it in."""
+
+import time
+from collections.abc import Mapping, Sequence
+
+from grader.common.text import printable
+from grader.serving.desk import Desk, shown
+from grader.serving.inbound import Entry, new_entries
+from grader.serving.intake import refuse, take_in
+from grader.serving.queue import REFUSED, Arrival
+from grader.serving.trouble import meets_all, noted
+
+BUDGET_SEC = 0.5
+"""So long entries are taken in before what is graded is started and stored; one takes longer."""
+
+
+def look(desk: Desk) -> bool:
+    """Take in some of what is new in the inbound folder; return whether there was anything."""
+    waiting = list(new_entries(desk.inbound, desk.seen))
+    end, found = time.monotonic() + BUDGET_SEC, bool(waiting)
+    while waiting:
+        entry = next_entry(waiting, desk.last_taken)
+        waiting.remove(entry)
+        for arrival in _arrivals(desk, entry):
+            if arrival.state == REFUSED:
+                desk.say(printable(f'not taken, look at it: {arrival.entry}: {arrival.reason}'))
+            else:
+                desk.say(f'taken in: {shown(arrival)}')
+        desk.seen[entry.key] = entry.fingerprint
+        desk.last_taken[entry.owner] = time.time()
+        if time.monotonic() >= end:
+            break
+    return found
+
+
+def next_entry(waiting: Sequence[Entry], last: Mapping[str, float]) -> Entry:
+    """Return which one is taken in next: the oldest, but for owners of whom one was since.
+
+    So nobody overtakes with a second one, or under a second name, what came before it.
+    """
+    return min(
+        waiting,
+        key=lambda each: (
+            max(each.changed.timestamp(), last.get(each.owner, 0.0)),
+            each.changed,
+            each.name,
+        ),
+    )
+
+
+def _arrivals(desk: Desk, entry: Entry) -> list[Arrival]:
+    """Note what an entry holds; whatever goes wrong with it alone is why it is refused."""
+    if entry.problem:
+        return refuse(desk.queue, entry, entry.problem)
+    try:
+        return take_in(desk.course, desk.queue, desk.inbound, entry)
+    except Exception as error:
+        if meets_all(error):
+            raise
+        return refuse(desk.queue, entry, noted(entry.name, error))

@@ -1,0 +1,29 @@
+"""What went wrong with one submission and costs only that one, and what would meet all."""
+
+import errno
+import logging
+import sqlite3
+
+from grader.common.errors import (
+    CourseError,
+    DamagedResult,
+    TaskFailed,
+    UnreadableSubmission,
+)
+from grader.common.text import printable
+
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EMFILE, errno.ENFILE)
+_OF_ONE = (UnreadableSubmission, DamagedResult, TaskFailed)
+
+
+def meets_all(error: Exception) -> bool:
+    """Whether the next one would meet it, too: of the disk, the gradebook or the course."""
+    if isinstance(error, OSError):
+        return error.errno in FULL
+    return isinstance(error, CourseError | sqlite3.Error) and not isinstance(error, _OF_ONE)
+
+
+def noted(which: str, error: Exception) -> str:
+    """Log what nobody has expected, and return it for a line and the list of submissions."""
+    logging.error('%s', printable(which), exc_info=error)
+    return f'the grader failed: {type(error).__name__}: {error}'

@@ -1,0 +1,395 @@
+"""No entry of the inbound folder keeps the next one from being taken in, whatever is in it."""
+
+import os
+import shutil
+import tarfile
+import time
+from contextlib import contextmanager
+from datetime import UTC, datetime
+from types import SimpleNamespace
+
+import nbformat
+import pytest
+import serving_desk
+from course_maker import TOY, answered, released_course
+from serving_desk import serve_here
+
+from grader.collect.archive_entries import MAX_PARTS
+from grader.common.errors import GradebookError
+from grader.common.text import printable
+from grader.course import Course
+from grader.serving import desk as desk_module
+from grader.serving import inbound as inbound_module
+from grader.serving import reception
+from grader.serving.desk import Desk
+from grader.serving.inbound import Entry, new_entries
+from grader.serving.queue import (
+    FAILED,
+    GRADED,
+    REFUSED,
+    WAITING,
+    Arrival,
+    opened_queue,
+    queue_to_read,
+)
+from grader.serving.reception import look
+from grader.serving.status import write_status_page
+
+RIGHT = 'def double(x):\n    return 2 * x'
+
+
+@pytest.fixture(scope='module')
+def released(tmp_path_factory):
+    return released_course(tmp_path_factory.mktemp('reception'))
+
+
+@pytest.fixture
+def course(released, tmp_path):
+    gradebook = tmp_path / 'gradebook'
+    gradebook.mkdir()
+    (gradebook / 'gradebook.db').write_bytes((released.gradebook / 'gradebook.db').read_bytes())
+    return Course(root=released.root, gradebook=gradebook)
+
+
+@pytest.fixture
+def inbound(tmp_path):
+    folder = tmp_path / 'uploads'
+    folder.mkdir()
+    return folder
+
+
+@pytest.fixture
+def at_once(monkeypatch):
+    """Whatever lies there is whole."""
+    monkeypatch.setattr(inbound_module, 'QUIET_SEC', -1.0)
+
+
+def hand_in(course, inbound, student):
+    """Put a submission there as a person does; return its folder."""
+    folder = inbound / student / TOY
+    folder.mkdir(parents=True)
+    (folder / f'{TOY}.ipynb').write_text(nbformat.writes(answered(course, RIGHT)))
+    return folder
+
+
+def arrivals(course):
+    with queue_to_read(course.gradebook) as queue:
+        return queue.find(WAITING, GRADED, REFUSED, FAILED)
+
+
+def refused(course):
+    """Return why entries were refused, and that the others were graded."""
+    found = arrivals(course)
+    assert [each.student_id for each in found if each.state == GRADED] == ['zoe']
+    return {each.entry: each.reason for each in found if each.state == REFUSED}
+
+
+@contextmanager
+def deep(folder, levels):
+    """Let folders lie in each other, so many that no path names the deepest."""
+    folder.mkdir()
+    here = os.open('.', os.O_RDONLY)
+    try:
+        os.chdir(folder)
+        for _ in range(levels):
+            os.mkdir('d')
+            os.chdir('d')
+        os.fchdir(here)
+        yield
+    finally:
+        os.chdir(folder)
+        for _ in range(levels):
+            os.chdir('d')
+        for _ in range(levels):
+            os.chdir('..')
+            shutil.rmtree('d')
+        os.fchdir(here)
+        os.close(here)
+
+
+def test_a_file_beside_a_notebook_has_any_name(course, inbound, at_once):
+    folder = hand_in(course, inbound, 'zoe')
+    for name in (b'x\xff.txt', b'x\xff.py'):
+        (folder / os.fsdecode(name)).touch()
+    serve_here(course, inbound)
+    assert refused(course) == {}
+
+
+@pytest.mark.parametrize('name', [b'mallory\xff.zip', b'mallory\xff.ipynb', b'mallory\xff'])
+def test_an_entry_has_any_name(course, inbound, at_once, name):
+    hand_in(course, inbound, 'zoe')
+    path = inbound / os.fsdecode(name)
+    if path.suffix:
+        path.write_text('{}')
+    else:
+        hand_in(course, inbound, path.name)
+    said = serve_here(course, inbound)
+    stored = name.decode('utf-8', 'backslashreplace')
+    ((entry, reason),) = refused(course).items()
+    assert entry == stored
+    assert reason
+    assert any(line.startswith(f'not taken, look at it: {stored}: ') for line in said)
+    assert stored in (course.gradebook / 'serve_status.html').read_text()
+    assert serve_here(course, inbound) == []
+
+
+def test_names_that_look_alike_are_two_entries(course, inbound, at_once):
+    """Else each would be taken for another content of the other, for ever."""
+    for name in (b'a\xff.ipynb', b'a\\xff.ipynb'):
+        (inbound / os.fsdecode(name)).write_text('{}')
+    assert len(serve_here(course, inbound)) == 2
+    assert serve_here(course, inbound) == []
+    assert len({each.entry for each in arrivals(course)}) == 2
+
+
+def test_a_name_in_an_archive_is_told_as_it_can_be_stored(course, inbound, at_once):
+    hand_in(course, inbound, 'zoe')
+    member = tarfile.TarInfo(os.fsdecode(b'bob\xff_00_toy.ipynb'))
+    with tarfile.open(inbound / f'mallory_{TOY}.tar', 'w') as box:
+        box.addfile(member)
+    serve_here(course, inbound)
+    (reason,) = refused(course).values()
+    assert reason.startswith('it is named after bob\\xff, and in the archive of mallory')
+
+
+def test_a_folder_of_a_thousand_levels_is_looked_at_as_deep_as_any_is_taken(
+    course, inbound, at_once
+):
+    hand_in(course, inbound, 'zoe')
+    with deep(inbound / 'mallory', 1_100):
+        serve_here(course, inbound)
+    assert refused(course) == {'mallory': f'it lies more than {MAX_PARTS} folders deep'}
+
+
+def test_all_that_can_be_taken_is_part_of_what_is_looked_at(inbound, at_once):
+    with deep(inbound / 'ada', MAX_PARTS - 1):
+        deepest = inbound.joinpath('ada', *['d'] * (MAX_PARTS - 1))
+        (deepest / 'a.ipynb').write_text('1')
+        (before,) = new_entries(inbound, {})
+        (deepest / 'a.ipynb').write_text('one more')
+        (after,) = new_entries(inbound, {'ada': before.fingerprint})
+    assert before.fingerprint != after.fingerprint
+
+
+def test_what_can_not_be_looked_at_is_told_once_and_taken_once_it_can_be(
+    course, inbound, at_once, monkeypatch
+):
+    hand_in(course, inbound, 'zoe')
+    for name in ('mallory+1', 'eve'):
+        hand_in(course, inbound, name)
+    walk = inbound_module._tree
+
+    def hard(folder, name, status):
+        if name == 'mallory+1':
+            raise OSError(24, 'Too many open files')
+        if name == 'eve':
+            raise RecursionError('maximum recursion depth exceeded')
+        return walk(folder, name, status)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(inbound_module, '_tree', hard)
+        assert len(serve_here(course, inbound)) == 4
+        assert refused(course) == {
+            'mallory+1': 'it can not be looked at: Too many open files',
+            'eve': 'it can not be looked at, for the grader failed: RecursionError: maximum '
+            'recursion depth exceeded',
+        }
+        assert serve_here(course, inbound) == []
+    serve_here(course, inbound)
+    assert sorted(each.student_id for each in arrivals(course) if each.state == GRADED) == [
+        'eve',
+        'mallory+1',
+        'zoe',
+    ]
+    assert len(arrivals(course)) == 5
+
+
+def test_what_is_gone_meanwhile_is_not_told(course, inbound, at_once, monkeypatch):
+    hand_in(course, inbound, 'eve')
+
+    def gone(folder, name, status):
+        raise FileNotFoundError(2, 'No such file or directory')
+
+    monkeypatch.setattr(inbound_module, '_tree', gone)
+    assert list(new_entries(inbound, {})) == []
+
+
+def test_whatever_goes_wrong_with_an_entry_costs_only_itself(
+    course, inbound, at_once, monkeypatch, caplog
+):
+    hand_in(course, inbound, 'zoe')
+    hand_in(course, inbound, 'mallory')
+    take = reception.take_in
+
+    def fails(course, queue, inbound, entry):
+        if entry.name == 'mallory':
+            raise UnicodeEncodeError('utf-8', '\udcff', 0, 1, 'surrogates not allowed')
+        return take(course, queue, inbound, entry)
+
+    monkeypatch.setattr(reception, 'take_in', fails)
+    said = serve_here(course, inbound)
+    (reason,) = refused(course).values()
+    assert reason.startswith('the grader failed: UnicodeEncodeError: ')
+    assert any(line.startswith('not taken, look at it: mallory: the grader') for line in said)
+    assert 'Traceback' in caplog.text
+    assert serve_here(course, inbound) == []
+
+
+@pytest.mark.parametrize(
+    'error', [GradebookError('it is locked'), OSError(28, 'No space left on device')]
+)
+def test_what_would_meet_the_next_one_too_ends_it(course, inbound, at_once, monkeypatch, error):
+    hand_in(course, inbound, 'zoe')
+
+    def fails(*_):
+        raise error
+
+    with monkeypatch.context() as patch:
+        patch.setattr(reception, 'take_in', fails)
+        with pytest.raises(type(error)):
+            serve_here(course, inbound)
+    assert serve_here(course, inbound)  # by the next process
+    assert refused(course) == {}
+
+
+STEPS = {
+    '_prepared': (KeyError('double'), FAILED, 'not graded, the grader failed: KeyError: '),
+    'put_in_place': (KeyError('\x1b'), REFUSED, 'the grader failed: KeyError: '),
+    'write_page': (KeyError('\x1b'), GRADED, 'no page can be made, for the grader failed: Key'),
+    'release_page': (OSError(5, 'I/O'), GRADED, 'no page can be made, for the grader failed: OSE'),
+}
+
+
+@pytest.mark.parametrize('step', STEPS)
+def test_whatever_goes_wrong_later_costs_only_one(
+    course, inbound, at_once, monkeypatch, caplog, step
+):
+    error, state, reason = STEPS[step]
+    for student in ('mallory', 'zoe'):
+        hand_in(course, inbound, student).joinpath('submission_secret.txt').write_text('aa')
+    does, failed = getattr(desk_module, step), []
+
+    def fails_once(*given, **named):
+        if failed:
+            return does(*given, **named)
+        failed.append(given)
+        raise error
+
+    monkeypatch.setattr(desk_module, step, fails_once)
+    monkeypatch.setattr(serving_desk, 'feedback_folder', lambda inbound: inbound.parent / 'pages')
+    said = serve_here(course, inbound)
+    found = {each.student_id: (each.state, each.reason) for each in arrivals(course)}
+    assert found.pop('zoe') == (GRADED, '')
+    ((its_state, its_reason),) = found.values()
+    assert its_state == state
+    assert its_reason.startswith(reason)
+    assert any(printable(its_reason) in line for line in said)
+    assert all(line == printable(line) for line in said)
+    assert 'Traceback' in caplog.text
+    assert serve_here(course, inbound) == []
+
+
+@pytest.mark.parametrize('step', ['put_in_place', 'write_page'])
+def test_a_full_disk_ends_it_and_the_next_one_goes_on(course, inbound, at_once, monkeypatch, step):
+    hand_in(course, inbound, 'zoe')
+
+    def full(*_):
+        raise OSError(28, 'No space left on device')
+
+    with monkeypatch.context() as patch:
+        patch.setattr(desk_module, step, full)
+        with pytest.raises((OSError, GradebookError)):
+            serve_here(course, inbound)
+    assert serve_here(course, inbound)
+    assert refused(course) == {}
+    assert course.folder('feedback', 'zoe', TOY).exists()
+
+
+def entry(name, owner, changed=0):
+    at = datetime.fromtimestamp(changed, UTC)
+    return Entry(name, f'{name} as it is', at, is_whole=True, owner=owner)
+
+
+@pytest.fixture
+def desk(course, inbound):
+    with opened_queue(course.gradebook) as queue:
+        grading = SimpleNamespace(backend=SimpleNamespace(capacity=1))
+        yield Desk(course, queue, grading, inbound, None, lambda line: None, exporter=None)
+
+
+@pytest.fixture
+def taken(monkeypatch):
+    """Let entries be there, and taking one in be a wait; return what was taken, in its order."""
+    there, names = [], []
+
+    def new(folder, seen):
+        return (each for each in there if each.key not in seen)
+
+    def take(course, queue, inbound, entry):
+        names.append(entry.name)
+        time.sleep(0.01)
+        return []
+
+    monkeypatch.setattr(reception, 'new_entries', new)
+    monkeypatch.setattr(reception, 'take_in', take)
+    return there, names
+
+
+def test_between_two_long_ones_others_things_are_done(desk, taken, monkeypatch):
+    there, names = taken
+    there += [entry('1', 'mallory'), entry('2', 'mallory')]
+    monkeypatch.setattr(reception, 'BUDGET_SEC', 0.0)
+    assert [look(desk), len(names)] == [True, 1]
+    assert [look(desk), len(names)] == [True, 2]
+    assert not look(desk)
+
+
+def test_many_short_ones_are_taken_in_at_once(desk, taken, monkeypatch):
+    there, names = taken
+    there += [entry('1', 'ada'), entry('2', 'bob'), entry('3', 'zoe')]
+    monkeypatch.setattr(reception, 'BUDGET_SEC', 60.0)
+    assert look(desk)
+    assert names == ['1', '2', '3']
+
+
+def test_who_hands_in_much_waits_for_who_hands_in_something(desk, taken, monkeypatch):
+    there, names = taken
+    monkeypatch.setattr(reception, 'BUDGET_SEC', 0.0)
+    there += [entry(f'mallory {number}', 'mallory', number) for number in range(1, 5)]
+    there += [entry('ada', 'ada', 10), entry('bob', 'bob', 11)]
+    while look(desk):
+        pass
+    assert names[:3] == ['mallory 1', 'ada', 'bob']
+    assert names[3:] == ['mallory 2', 'mallory 3', 'mallory 4']
+
+
+def test_new_owners_keep_nobody_waiting_who_came_before_them(desk, taken, monkeypatch):
+    """Where names alone tell whose an entry is, anybody can have many."""
+    there, names = taken
+    monkeypatch.setattr(reception, 'BUDGET_SEC', 0.0)
+    there.append(entry('ada 1', 'ada', 1))
+    look(desk)
+    there.append(entry('ada 2', 'ada', time.time()))
+    there += [entry(f'{n}', f'mallory{n}', time.time() + 1) for n in range(3)]
+    look(desk)
+    assert names == ['ada 1', 'ada 2']
+
+
+def test_whose_an_entry_is_the_user_tells_and_else_its_name(inbound, at_once):
+    for name in ('ada+00_toy+2026+x1', 'ada_00_toy.ipynb', 'bob', 'Zoe Z_8001_assignsubmission'):
+        (inbound / name).touch()
+    if os.geteuid() == 0:
+        (inbound / 'eve+00_toy').touch()
+        os.chown(inbound / 'eve+00_toy', 4_001, 4_001)
+    owners = {each.name: each.owner for each in new_entries(inbound, {})}
+    assert owners['ada+00_toy+2026+x1'] == owners['ada_00_toy.ipynb'] == 'ada'
+    assert (owners['bob'], owners['Zoe Z_8001_assignsubmission']) == ('bob', 'Zoe Z')
+    assert os.geteuid() or owners['eve+00_toy'] == 'user 4001'
+
+
+def test_a_status_page_is_written_of_any_reason(course):
+    with opened_queue(course.gradebook) as queue:
+        stored = queue.add('a', 'b', [Arrival(0, 'a', 0.0, REFUSED, reason='x\udcff \ud800')])
+        write_status_page(course, queue)
+        queue.update(*stored)
+        assert [each.reason for each in queue.find(REFUSED)] == ['x\\xff \\ud800']

@@ -1,0 +1,64 @@
+"""What tells submissions apart is read of plain files alone, and of so many."""
+
+import os
+
+import pytest
+
+from grader.collect import submission_folders
+from grader.collect.submission_folders import contents
+from grader.common.errors import TaskFailed
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / 'package/src').mkdir(parents=True)
+    for name in ('a.ipynb', 'timestamp.txt', 'package/src/b.py'):
+        (tmp_path / name).write_text(name)
+    return tmp_path
+
+
+def test_a_file_counts_by_what_it_holds(folder):
+    before = contents(folder)
+    assert list(before) == ['a.ipynb', 'package/src/b.py']
+    (folder / 'package/src/b.py').write_text('another')
+    assert contents(folder) != before
+
+
+def test_nothing_is_followed_or_waited_for(folder):
+    """A link to /proc/self/mem was read, and could not be: no grade for all the rest."""
+    before = contents(folder)
+    (folder / 'memory.py').symlink_to('/proc/self/mem')
+    (folder / 'elsewhere').symlink_to('/proc/self')
+    (folder / 'loop').symlink_to(folder)
+    os.mkfifo(folder / 'pipe.py')
+    assert contents(folder) == before
+
+
+@pytest.mark.parametrize('limit', ['MAX_FILES', 'MAX_BYTES', 'MAX_DEPTH'])
+def test_of_what_is_too_much_nothing_is_read(folder, monkeypatch, limit):
+    monkeypatch.setattr(submission_folders, limit, 20 if limit == 'MAX_BYTES' else 1)
+    monkeypatch.setattr(submission_folders, 'digests', None)
+    with pytest.raises(TaskFailed, match='remove what is no part of the submission') as refused:
+        contents(folder)
+    assert str(folder) in str(refused.value)
+
+
+def test_a_thousand_folders_in_each_other_are_too_much(tmp_path):
+    here = os.open('.', os.O_RDONLY)
+    try:
+        os.chdir(tmp_path)
+        for _ in range(1_100):
+            os.mkdir('d')
+            os.chdir('d')
+        os.fchdir(here)
+        with pytest.raises(TaskFailed, match='folders in each other'):
+            contents(tmp_path)
+    finally:
+        os.chdir(tmp_path)
+        for _ in range(1_100):
+            os.chdir('d')
+        for _ in range(1_100):
+            os.chdir('..')
+            os.rmdir('d')
+        os.fchdir(here)
+        os.close(here)
