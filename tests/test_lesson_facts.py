@@ -1,22 +1,30 @@
 """What a lesson states in passing and does not show: each fact is seen here."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
+import time
 from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
+import rclpy
 from action_msgs.msg import GoalStatus, GoalStatusArray
+from answered import read
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.ros2.verbs.topic_hz import Rate
+from rcl_interfaces.msg import SetParametersResult
 from rclpy.action import ActionClient, ActionServer, CancelResponse, GoalResponse
 from rclpy.action.client import ClientGoalHandle
 from rclpy.action.server import ServerGoalHandle
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile, ReliabilityPolicy, qos_profile_action_status_default
 from rclpy.task import Future
 from std_msgs.msg import Int32, String
@@ -239,6 +247,93 @@ def test_a_rejected_goal_never_has_a_state():
         answer(watcher, accepted.get_result_async())
         assert watcher.spin_until(lambda: is_told(accepted), timeout_sec=10.0)
     assert not is_told(rejected)
+
+
+@pytest.mark.starts
+@pytest.mark.parametrize('waits', ['execute', 'a timer'])
+def test_an_execute_callback_belongs_to_no_group(waits):
+    """Lesson 9: while it awaits, others run; none does while a coroutine of lesson 8 awaits."""
+    started, ticks = [], []
+
+    async def wait(handle=None):
+        once.cancel()
+        started.append(time.monotonic())
+        await Future()  # for ever
+        return handle
+
+    with spun() as (node, spin_until):
+        once = node.create_timer(0.01, wait if waits == 'a timer' else lambda: once.cancel())
+        server = ActionServer(node, MoveArm, '/_waits', wait)
+        client = ActionClient(node, MoveArm, '/_waits')
+        if waits == 'execute':
+            assert spin_until(client.server_is_ready)
+            client.send_goal_async(MoveArm.Goal())
+        assert spin_until(lambda: started)
+        node.create_timer(0.01, lambda: ticks.append(time.monotonic()))
+        assert spin_until(lambda: len(ticks) > 3, 10.0 if waits == 'execute' else 0.5) == (
+            waits == 'execute'
+        )
+        client.destroy()
+        server.destroy()
+
+
+@pytest.mark.starts
+def test_a_callback_that_decides_does_not_know_whether_another_one_refuses():
+    """Lesson 11: one says yes, another one no; the value stays, and nobody acts."""
+    called = []
+
+    def judge(name, successful):
+        called.append(name)
+        return SetParametersResult(successful=successful, reason='the other one says no')
+
+    with spun() as (node, _):
+        node.declare_parameter('level', 40)
+        for name, successful in ('no', False), ('yes', True):  # the last one is called first
+            node.add_on_set_parameters_callback(
+                lambda _, name=name, successful=successful: judge(name, successful)
+            )
+        node.add_post_set_parameters_callback(lambda _: called.append('act'))
+        (result,) = node.set_parameters([Parameter('level', value=70)])
+        assert (result.successful, result.reason) == (False, 'the other one says no')
+        assert called == ['yes', 'no']
+        assert node.get_parameter('level').value == 40
+
+
+def test_to_a_robot_go_the_packages_of_the_course_that_the_player_needs():
+    """Lesson 12: rosdep knows none of them."""
+    (robot,) = (
+        cell.source for cell in read('solutions', '12_package').cells if cell.id == 'robot'
+    )
+    course = {path.parent.name for path in ROOT.glob('*/package.xml')}
+    xml = (ROOT / 'solutions/12_package/arm_player/package.xml').read_text(encoding='utf-8')
+    needed = course & set(re.findall(r'depend>([^<]+)</', xml))
+    assert needed == course == {'arm_interfaces', 'my_robot_basics'}
+    assert all(f'`{package}`' in robot for package in needed)
+    for package in course:  # and these need nothing more of the course
+        xml = (ROOT / package / 'package.xml').read_text(encoding='utf-8')
+        assert not course & set(re.findall(r'depend>([^<]+)</', xml))
+
+
+@contextmanager
+def spun():
+    """A node and rclpy's own executor, which spins it until something is true, or time is over."""
+    context = rclpy.Context()
+    rclpy.init(context=context)
+    node, executor = Node('spun', context=context), SingleThreadedExecutor(context=context)
+    executor.add_node(node)
+
+    def spin_until(is_true, timeout_sec=10.0):
+        end = time.monotonic() + timeout_sec
+        while not is_true() and time.monotonic() < end:
+            executor.spin_once(timeout_sec=0.05)
+        return bool(is_true())
+
+    try:
+        yield node, spin_until
+    finally:
+        executor.shutdown()
+        node.destroy_node()
+        rclpy.shutdown(context=context)
 
 
 @contextmanager

@@ -5,6 +5,9 @@ import re
 import nbformat
 import pytest
 from answered import answered, read
+from colcon_terminal import bash
+from my_robot_basics.live.entry_points import add_entry_point
+from my_robot_basics.live.workspace import make_workspace
 from nbclient import NotebookClient
 
 LESSON = '03_publisher'
@@ -94,6 +97,20 @@ def test_where_nothing_is_answered_each_cell_says_in_a_sentence_what_is_missing(
     assert printed(cells['own_file']).startswith('not written: KinematicsPublisher does nothing')
     assert printed(cells['own_entry_point']).startswith('not added: there is no $ROS_WS/')
     assert printed(cells['own_run']) == 'no program yet: answer the exercise first\n'
+
+
+@pytest.mark.slow
+def test_a_greeter_that_fails_ends_with_its_own_exit_status(modules):
+    """The cell stops at an error before it, and says how the program itself ended."""
+    make_workspace()
+    (modules / 'greeter.py').write_text('def main():\n    raise SystemExit(3)\n')
+    add_entry_point('greeter = my_robot_basics.greeter:main')
+    cell = next(c.source for c in read('notebooks', LESSON).cells if c.id == 'colcon')
+    said = bash(modules.parents[2], cell.partition('\n')[2]).stdout
+    assert said.endswith('the greeter ended with exit status 3\n')
+    (modules.parent / 'setup.py').write_text('no Python')
+    said = bash(modules.parents[2], cell.partition('\n')[2]).stdout
+    assert 'the greeter ended' not in said
 
 
 def test_a_name_of_another_cell_is_told_before_anything_is_written(tmp_path, modules):
