@@ -1,7 +1,16 @@
 """A parameter that sets a node's rate: every honest way passes, and each mistake is named."""
 
+import math
+
 import pytest
-from my_robot_basics.checks import CheckFailed, node_parameters, rate_parameter, sampling, topic
+from my_robot_basics.checks import (
+    CheckFailed,
+    node_parameters,
+    rate_parameter,
+    rate_parameters,
+    sampling,
+    topic,
+)
 from my_robot_basics.checks.inconclusive import Inconclusive
 from nodes.running import imported
 
@@ -27,7 +36,7 @@ def look_at_the_rate():
 def look_at_refusals():
     rate = rate_parameter('/adjustable_publisher', 'rate_hz', topic_name=TOPIC)
     rate.expect_takes(1.0, 50.0, 10.0)
-    rate.expect_refuses(60.0, 0.0, 0.5)
+    rate.expect_refuses(60.0, 0.0, 0.5, math.nan)
 
 
 HONEST = [
@@ -54,7 +63,7 @@ def test_an_honest_way_passes_at_each_rate_that_may_be_asked_for(run, NodeClass)
     run(NodeClass)
     # 20 Hz: who looks at the clock every 10 ms needs steps that 10 ms are a multiple of
     rate = rate_parameter('/adjustable_publisher', 'rate_hz', topic_name=TOPIC)
-    rate.expect_follows(2.0, 2.5, 4.0, 20.0)
+    rate.expect_follows(12.5, 25.0, 4.0, 20.0)
 
 
 def test_who_remembers_the_robots_time_is_waited_for_on_the_wall_clock(run, monkeypatch):
@@ -85,6 +94,7 @@ OF_REFUSALS = [
     (adjustable.Corrects, r'saw it was taken, and rate_hz is [\d.]+: do not correct the value'),
     (adjustable.RefusesTheLimits, 'the limits themselves are allowed'),
     (adjustable.DividesFirst, 'ZeroDivisionError'),
+    (adjustable.LetsNaNThrough, 'expected rate_hz = nan to be refused, saw it was taken: NaN is'),
 ]
 OF_BOTH = [
     (adjustable.NotDeclared, "expected the parameter rate_hz of /adjustable_publisher, saw rate: "
@@ -108,6 +118,26 @@ def test_a_mistake_with_refusals_fails_that_check_alone(run, NodeClass, words):
     run(NodeClass)
     look_at_the_rate()
     with pytest.raises(CheckFailed, match=words):
+        look_at_refusals()
+
+
+def test_timers_that_run_on_are_no_mistake_with_refusals(run, monkeypatch):
+    measured, measure = [], rate_parameters.RateParameter._measure
+
+    def measured_once_more(rate, rate_hz):
+        measured.append(measure(rate, rate_hz))
+        return measured[-1]
+
+    monkeypatch.setattr(rate_parameters.RateParameter, '_measure', measured_once_more)
+    run(adjustable.KeepsTheOldTimer)
+    look_at_refusals()
+    assert len(measured) == 2
+
+
+@pytest.mark.slow
+def test_a_timer_of_a_refused_value_is_one_beside_those_that_run_on(run):
+    run(adjustable.KeepsEachTimer)
+    with pytest.raises(CheckFailed, match='change the timer only if none is refused'):
         look_at_refusals()
 
 
