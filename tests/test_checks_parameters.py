@@ -7,12 +7,13 @@ from my_robot_basics.checks import (
     CheckFailed,
     node_parameters,
     rate_parameter,
-    rate_parameters,
     sampling,
     topic,
 )
 from my_robot_basics.checks.inconclusive import Inconclusive
+from my_robot_basics.checks.rate_parameters import RateParameter
 from nodes.running import imported
+from rcl_interfaces.msg import SetParametersResult
 
 from my_robot_basics import live
 
@@ -121,24 +122,43 @@ def test_a_mistake_with_refusals_fails_that_check_alone(run, NodeClass, words):
         look_at_refusals()
 
 
-def test_timers_that_run_on_are_no_mistake_with_refusals(run, monkeypatch):
-    measured, measure = [], rate_parameters.RateParameter._measure
+class OldTimers:
+    """The parameters of a node that ends no timer, and may make one of a refused value, too."""
 
-    def measured_once_more(rate, rate_hz):
-        measured.append(measure(rate, rate_hz))
-        return measured[-1]
+    def __init__(self, monkeypatch, *, of_any):
+        self.timers_hz, self.of_any, self.measured = [5.0, 1.0, 50.0, 10.0], of_any, 0
+        monkeypatch.setattr(RateParameter, '_measure', lambda *_: self.measure())
 
-    monkeypatch.setattr(rate_parameters.RateParameter, '_measure', measured_once_more)
-    run(adjustable.KeepsTheOldTimer)
-    look_at_refusals()
-    assert len(measured) == 2
+    def measure(self):
+        self.measured += 1
+        return sum(self.timers_hz), CheckFailed
+
+    def get(self, name):
+        return 10.0
+
+    get_number = get
+
+    def set(self, name, *values):
+        results = []
+        for value in values:
+            is_taken = name != 'rate_hz' or 1.0 <= value <= 50.0
+            results.append(SetParametersResult(successful=is_taken, reason='no' * (not is_taken)))
+            if name == 'rate_hz' and value > 0.0 and (is_taken or self.of_any):
+                self.timers_hz.append(value)
+        return results
 
 
-@pytest.mark.slow
-def test_a_timer_of_a_refused_value_is_one_beside_those_that_run_on(run):
-    run(adjustable.KeepsEachTimer)
+def test_timers_that_run_on_are_no_mistake_with_refusals(monkeypatch):
+    timers = OldTimers(monkeypatch, of_any=False)
+    RateParameter(timers, 'rate_hz', TOPIC).expect_refuses(0.0, -3.0, 0.5, 51.0, 70.0)
+    assert timers.measured == 2
+
+
+@pytest.mark.parametrize('rates_hz', [(0.5, 60.0), (0.0, -3.0, 0.5, 51.0, 70.0)])
+def test_a_timer_of_a_refused_value_is_one_beside_those_that_run_on(monkeypatch, rates_hz):
+    timers = OldTimers(monkeypatch, of_any=True)
     with pytest.raises(CheckFailed, match='change the timer only if none is refused'):
-        look_at_refusals()
+        RateParameter(timers, 'rate_hz', TOPIC).expect_refuses(*rates_hz)
 
 
 @pytest.mark.slow

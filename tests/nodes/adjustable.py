@@ -196,19 +196,6 @@ class LetsNaNThrough(ReadsInEachTick):
         return SetParametersResult(successful=True)
 
 
-class KeepsEachTimer(Adjustable):
-    """Of values that it refuses, too."""
-
-    def change(self, rate_hz):
-        pass
-
-    def judge(self, parameters):
-        for parameter in parameters:
-            if parameter.name == 'rate_hz' and parameter.value > 0.0:
-                self.create_timer(1.0 / parameter.value, self.publish)
-        return super().judge(parameters)
-
-
 class RefusesTheLimits(Adjustable):
     def judge(self, parameters):
         for parameter in parameters:
