@@ -345,6 +345,26 @@ WRONG = (
         {'arm_player_plays': 'go on with the next target'},
     ),
     Change(
+        'does_not_wait_for_the_arm',
+        swap(PLAYER, ('        self.arm.wait_for_server()\n', '')),
+        (1, 2, 0),
+        {'arm_player_plays': 'wait for both servers first'},
+    ),
+    Change(
+        'gives_up_after_a_second',
+        swap(
+            PLAYER,
+            (
+                'return ENDS[self.wait_for(goal_handle.get_result_async()).status]',
+                'future = goal_handle.get_result_async()\n'
+                '        rclpy.spin_until_future_complete(self, future, timeout_sec=1.0)\n'
+                "        return ENDS[future.result().status] if future.result() else 'aborted'",
+            ),
+        ),
+        (1, 2, 0),
+        {'arm_player_plays': 'when the result of the one before is there'},
+    ),
+    Change(
         'all_goals_at_once',
         swap(
             PLAYER,
@@ -496,6 +516,26 @@ WRONG = (
         ),
         (1, 0, 4),
         {'package_runs': 'it still runs after'},
+    ),
+)
+
+
+def _scripts_for_entry_points(files: Files) -> None:
+    """Programs of setuptools' other kind, which colcon's build leaves as for a wheel."""
+    head, rest = files[SETUP].split('    entry_points={')
+    names = 'arm_driver', 'arm_player'
+    scripts = [f'scripts/{name}' for name in names]
+    files[SETUP] = f'{head}    scripts={scripts},\n' + rest.split('    },\n', maxsplit=1)[1]
+    for name, script in zip(names, scripts, strict=True):
+        files[script] = f'#!/usr/bin/env python3\nfrom arm_player.{name} import main\n\nmain()\n'
+
+
+WRONG += (
+    Change(
+        'scripts_for_entry_points',
+        _scripts_for_entry_points,
+        NOTHING,
+        {'package_builds': 'name a function in entry_points of setup.py'},
     ),
 )
 

@@ -1,9 +1,19 @@
 """A parameter that sets a node's rate: every honest way passes, and each mistake is named."""
 
+import math
+
 import pytest
-from my_robot_basics.checks import CheckFailed, node_parameters, rate_parameter, sampling, topic
+from my_robot_basics.checks import (
+    CheckFailed,
+    node_parameters,
+    rate_parameter,
+    sampling,
+    topic,
+)
 from my_robot_basics.checks.inconclusive import Inconclusive
+from my_robot_basics.checks.rate_parameters import RateParameter
 from nodes.running import imported
+from rcl_interfaces.msg import SetParametersResult
 
 from my_robot_basics import live
 
@@ -27,7 +37,7 @@ def look_at_the_rate():
 def look_at_refusals():
     rate = rate_parameter('/adjustable_publisher', 'rate_hz', topic_name=TOPIC)
     rate.expect_takes(1.0, 50.0, 10.0)
-    rate.expect_refuses(60.0, 0.0, 0.5)
+    rate.expect_refuses(60.0, 0.0, 0.5, math.nan)
 
 
 HONEST = [
@@ -54,7 +64,7 @@ def test_an_honest_way_passes_at_each_rate_that_may_be_asked_for(run, NodeClass)
     run(NodeClass)
     # 20 Hz: who looks at the clock every 10 ms needs steps that 10 ms are a multiple of
     rate = rate_parameter('/adjustable_publisher', 'rate_hz', topic_name=TOPIC)
-    rate.expect_follows(2.0, 2.5, 4.0, 20.0)
+    rate.expect_follows(12.5, 25.0, 4.0, 20.0)
 
 
 def test_who_remembers_the_robots_time_is_waited_for_on_the_wall_clock(run, monkeypatch):
@@ -85,6 +95,7 @@ OF_REFUSALS = [
     (adjustable.Corrects, r'saw it was taken, and rate_hz is [\d.]+: do not correct the value'),
     (adjustable.RefusesTheLimits, 'the limits themselves are allowed'),
     (adjustable.DividesFirst, 'ZeroDivisionError'),
+    (adjustable.LetsNaNThrough, 'expected rate_hz = nan to be refused, saw it was taken: NaN is'),
 ]
 OF_BOTH = [
     (adjustable.NotDeclared, "expected the parameter rate_hz of /adjustable_publisher, saw rate: "
@@ -109,6 +120,45 @@ def test_a_mistake_with_refusals_fails_that_check_alone(run, NodeClass, words):
     look_at_the_rate()
     with pytest.raises(CheckFailed, match=words):
         look_at_refusals()
+
+
+class OldTimers:
+    """The parameters of a node that ends no timer, and may make one of a refused value, too."""
+
+    def __init__(self, monkeypatch, *, of_any):
+        self.timers_hz, self.of_any, self.measured = [5.0, 1.0, 50.0, 10.0], of_any, 0
+        monkeypatch.setattr(RateParameter, '_measure', lambda *_: self.measure())
+
+    def measure(self):
+        self.measured += 1
+        return sum(self.timers_hz), CheckFailed
+
+    def get(self, name):
+        return 10.0
+
+    get_number = get
+
+    def set(self, name, *values):
+        results = []
+        for value in values:
+            is_taken = name != 'rate_hz' or 1.0 <= value <= 50.0
+            results.append(SetParametersResult(successful=is_taken, reason='no' * (not is_taken)))
+            if name == 'rate_hz' and value > 0.0 and (is_taken or self.of_any):
+                self.timers_hz.append(value)
+        return results
+
+
+def test_timers_that_run_on_are_no_mistake_with_refusals(monkeypatch):
+    timers = OldTimers(monkeypatch, of_any=False)
+    RateParameter(timers, 'rate_hz', TOPIC).expect_refuses(0.0, -3.0, 0.5, 51.0, 70.0)
+    assert timers.measured == 2
+
+
+@pytest.mark.parametrize('rates_hz', [(0.5, 60.0), (0.0, -3.0, 0.5, 51.0, 70.0)])
+def test_a_timer_of_a_refused_value_is_one_beside_those_that_run_on(monkeypatch, rates_hz):
+    timers = OldTimers(monkeypatch, of_any=True)
+    with pytest.raises(CheckFailed, match='change the timer only if none is refused'):
+        RateParameter(timers, 'rate_hz', TOPIC).expect_refuses(*rates_hz)
 
 
 @pytest.mark.slow

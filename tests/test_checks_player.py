@@ -52,7 +52,7 @@ def play(monkeypatch):
     monkeypatch.setattr(drawing, 'REPLY_SEC', 1.5)
     monkeypatch.setattr(player_report, 'LATE_SEC', 1.5)
 
-    def play(variant, targets):
+    def play(variant, targets, **options):
         @contextlib.contextmanager
         def run(name, *, parameters):
             assert name == 'arm_player'
@@ -64,7 +64,7 @@ def play(monkeypatch):
 
         package = type('Package', (), {'run': staticmethod(run)})
         monkeypatch.setattr(drawing, 'package', lambda _: package)
-        player.expect_plays(*targets)
+        player.expect_plays(*targets, **options)
 
     return play
 
@@ -77,7 +77,7 @@ RIGHT = (
 
 @pytest.mark.parametrize('variant', RIGHT)
 def test_who_plays_right_passes_in_whatever_way(play, variant):
-    play(variant, VISIBLE)
+    play(variant, VISIBLE, first_goal_sec=1.5)
     play(variant, player.choose(random.Random(5)))
 
 
@@ -90,6 +90,7 @@ WRONG = {
     'ReportsEachTarget': 'publish one report, when the result of the last goal is there',
     'CallsInACallback': 'inside a callback and waited there',
     'NeverWaitsForTheServer': 'wait until there is a server',
+    'NeverWaitsForTheArm': 'no request to /solve_ik while there is no /move_arm yet, saw one',
     'ElbowDown': 'this is elbow_down',
     'SolvesItself': 'not a solution of your own',
     'OtherSpeed': 'the speed that the task names',
@@ -108,6 +109,18 @@ def test_what_is_wrong_is_named(play, variant):
     targets = [('succeeded', 0.9, -0.7), *VISIBLE[1:]] if variant == 'FixedTargets' else VISIBLE
     with pytest.raises(CheckFailed, match=WRONG[variant]):
         play(variant, targets)
+
+
+@pytest.mark.parametrize(
+    ('targets', 'words'),
+    [
+        (VISIBLE, 'send the next goal when the result of the one before is there'),
+        (VISIBLE[1:3], 'publish one report, when the result of the last goal is there'),
+    ],
+)
+def test_who_gives_up_a_goal_that_takes_three_seconds_is_told(play, targets, words):
+    with pytest.raises(CheckFailed, match=words):
+        play('GivesUpAfterASecond', targets, first_goal_sec=3.0)
 
 
 def test_who_waits_for_the_result_of_a_rejected_goal_is_told(play):

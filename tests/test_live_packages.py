@@ -355,6 +355,27 @@ def test_an_entry_point_that_leads_nowhere_is_named(folder, entry, module, words
     assert (words in said) if words else (said == '')
 
 
+@pytest.mark.parametrize(
+    ('line', 'words'),
+    [
+        ('#!python', "greet begins with '#!python', and there is no such program"),
+        ('#!/nowhere/python3 -I', 'cannot start it: name a function in entry_points of setup.py'),
+        ('#! /usr/bin/env python3', ''),
+        (f'#!{sys.executable}', ''),
+        ('#!', ''),
+        ('x', ''),
+    ],
+)
+def test_a_script_that_linux_cannot_start_is_named(folder, line, words):
+    files = package_files.read(make_package(folder))
+    prefix, site = installed(folder, 'greet = greeter.greet:main')
+    (site / 'greeter/greet.py').write_text(NODE)
+    (prefix / 'lib/greeter/a_folder').mkdir()
+    (prefix / 'lib/greeter/greet').write_text(f'{line}\nmain()\n')
+    said = fault_in_install(PACKAGE, prefix, files)
+    assert (words in said) if words else (said == '')
+
+
 @pytest.mark.starts
 def test_an_interrupt_ends_the_build_with_all_that_it_started(folder, monkeypatch):
     sleeper = 'import os, time\nopen("{}", "w").write(str(os.getpid()))\ntime.sleep(600)\n'

@@ -186,6 +186,16 @@ class Corrects(Adjustable):
         ]
 
 
+class LetsNaNThrough(ReadsInEachTick):
+    descriptor = ParameterDescriptor()
+
+    def judge(self, parameters):
+        for parameter in parameters:
+            if parameter.name == 'rate_hz' and (parameter.value < 1.0 or parameter.value > 50.0):
+                return SetParametersResult(**REFUSED)
+        return SetParametersResult(successful=True)
+
+
 class RefusesTheLimits(Adjustable):
     def judge(self, parameters):
         for parameter in parameters:

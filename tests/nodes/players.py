@@ -266,6 +266,25 @@ class NeverWaitsForTheServer(Program):
         self.report([self.visit(x, y) for x, y in self.targets()])
 
 
+class NeverWaitsForTheArm(Program):
+    def play(self):
+        self.solver.wait_for_service()
+        self.report([self.visit(x, y) for x, y in self.targets()])
+
+
+class GivesUpAfterASecond(Program):
+    def visit(self, x, y):
+        answer = self.wait_for(self.ask(x, y))
+        if not answer.reachable:
+            return 'unreachable'
+        handle = self.wait_for(self.arm.send_goal_async(self.goal(answer)))
+        if not handle.accepted:
+            return 'rejected'
+        result = handle.get_result_async()
+        rclpy.spin_until_future_complete(self, result, timeout_sec=1.0)
+        return ENDS[result.result().status] if result.done() else 'aborted'
+
+
 class ElbowDown(Program):
     def visit(self, x, y):
         answer = self.wait_for(self.ask(x, y))

@@ -6,6 +6,7 @@ from typing import NoReturn, Self
 
 from my_robot_basics.checks import drawing_hints
 from my_robot_basics.checks.packages import RunningExecutable, package
+from my_robot_basics.checks.player_meeting import NAME, PlayerMeeting
 from my_robot_basics.checks.player_report import PlayerReport
 from my_robot_basics.checks.player_servers import (
     MOVE_ARM,
@@ -15,18 +16,12 @@ from my_robot_basics.checks.player_servers import (
     is_near,
 )
 from my_robot_basics.checks.scripted_action import ReceivedGoal
-from my_robot_basics.checks.sole_server import expect_no_other
 from my_robot_basics.feedback.errors import expect, fail, shorten
 from my_robot_basics.graph.watcher import Watcher
 
-NAME = 'arm_player'  # of the package, of the executable and of the node
 SPEED = 0.5
 """What each goal is to ask for, in rad/s."""
 SPEED_NEAR = 1e-6
-MEET_SEC = 8.0
-"""How long the clients of a program that was just started may take, of time that was free. …"""
-SECOND_SEC = 1.0
-"""… A client that is made only when it is needed is not waited for longer."""
 REPLY_SEC = 4.0
 """How long to wait for a request or a goal, of time that was free."""
 QUIET_SEC = 0.2
@@ -41,6 +36,7 @@ class Drawing:
     ) -> None:
         self._watcher, self._process, self._targets = watcher, process, targets
         self._servers = PlayerServers(watcher, targets)
+        self._meeting = PlayerMeeting(watcher, process)
         self._report = PlayerReport(watcher)
         self._comes = watcher.spin_until_free
         self._goals = 0
@@ -58,26 +54,19 @@ class Drawing:
             finally:
                 drawing._servers.stop()
 
-    def meet(self) -> None:
-        """Wait for its clients, then serve: so none of them asks before both have met.
-
-        Raises CheckFailed where none comes, or somebody else serves.
-        """
-        count = self._watcher.node.count_clients
-        self._expect_alone(own=0)
-        if not self._comes(lambda: count(SOLVE_IK) > 0, free_sec=MEET_SEC):
-            self._fail_silent(
-                expected=f'a client of {SOLVE_IK}',
-                hint=drawing_hints.why_no_client(self._watcher),
-                cause=f'{NAME} has no client of {SOLVE_IK}',
-            )
-        self._comes(lambda: count(f'{MOVE_ARM}/_action/send_goal') > 0, free_sec=SECOND_SEC)
-        self._servers.start()
-
-    def expect_visit(self, number: int) -> None:
-        """The player asks for a target, and sends its goal; that ends as its word says.
+    def expect_waits_for_both(self) -> None:
+        """It asks `/solve_ik` for nothing while there is no `/move_arm`; then serve that, too.
 
         Raises CheckFailed.
+        """
+        self._meeting.wait_for_clients()
+        self._meeting.expect_not_asked_yet(self._servers.solver)
+        self._servers.start()
+
+    def expect_visit(self, number: int, *, goal_sec: float) -> None:
+        """The player asks for a target, and sends its goal; that ends as its word says.
+
+        It ends after so long, of time that was free, and nothing comes before. Raises CheckFailed.
         """
         word = self._targets[number][0]
         self._expect_asked(number)
@@ -86,7 +75,8 @@ class Drawing:
         goal = self._expect_goal(number)
         if word == 'rejected':
             return
-        self._watcher.spin_for(QUIET_SEC)
+        goals, report = self._servers.goals, self._report
+        self._comes(lambda: len(goals) > self._goals or report.has_come(), free_sec=goal_sec)
         self._expect_one_at_a_time()
         self._report.expect_none_yet()
         if word == 'canceled':
@@ -101,7 +91,7 @@ class Drawing:
         """
         words = [word for word, _, _ in self._targets]
         if not self._comes(self._report.is_there, free_sec=REPLY_SEC):
-            self._fail_silent(
+            self._meeting.fail_silent(
                 expected=f'the report on {self._report.topic_name}',
                 hint=self._report.why_none() or drawing_hints.why_no_report(self._watcher),
                 cause='there is no report',
@@ -109,7 +99,7 @@ class Drawing:
         self._report.expect_words(words)
         self._expect_one_at_a_time()
         self._report.expect_kept(self._process)
-        self._expect_alone(own=1)
+        self._meeting.expect_alone(own=1)
 
     def expect_clean_end(self) -> None:
         """It asks for its first target, gets no answer yet, and ends cleanly on SIGINT.
@@ -118,7 +108,8 @@ class Drawing:
         """
         self._process.expect_node(f'/{NAME}')
         self._servers.solver.hold()
-        self.meet()
+        self._meeting.wait_for_clients()
+        self._servers.start()
         self._expect_asked(0)
         self._process.expect_clean_end()
 
@@ -140,13 +131,13 @@ class Drawing:
             before, skipped = self._before(number), servers.was_skipped(number)
             hint = drawing_hints.why_not_asked(self._watcher, before, was_skipped=skipped)
             cause = 'a target is skipped' if skipped else drawing_hints.stops(before)
-            self._fail_silent(expected=wanted, hint=hint, cause=cause)
+            self._meeting.fail_silent(expected=wanted, hint=hint, cause=cause)
 
     def _expect_goal(self, number: int) -> ReceivedGoal:
         goals, place = self._servers.goals, self._goals
         _, x, y = self._targets[number]
         if not self._comes(lambda: len(goals) > place, free_sec=REPLY_SEC):
-            self._fail_silent(
+            self._meeting.fail_silent(
                 expected=f'a goal for {MOVE_ARM} for ({x:g}, {y:g})',
                 hint=drawing_hints.why_no_goal(self._watcher),
                 cause=f'{MOVE_ARM} is sent no goal',
@@ -184,14 +175,6 @@ class Drawing:
 
     def _before(self, number: int) -> str:
         return self._targets[number - 1][0] if number else ''
-
-    def _fail_silent(self, *, expected: str, hint: str, cause: str) -> NoReturn:
-        self._process.expect_running()  # whoever has ended says why
-        fail(expected=expected, seen='none', hint=hint, cause=cause)
-
-    def _expect_alone(self, *, own: int) -> None:
-        expect_no_other(self._watcher, SOLVE_IK, own=own)
-        expect_no_other(self._watcher, f'{MOVE_ARM}/_action/send_goal', own=own)
 
 
 def _rounded(position: Sequence[float]) -> list[float]:

@@ -15,7 +15,7 @@ from my_robot_basics.feedback.hidden import theirs
 from my_robot_basics.graph import graphs
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.ros2 import command_line
-from my_robot_basics.ros2.command_line import CommandLine
+from my_robot_basics.ros2.command_line import OPTIONS_OF_FILES, CommandLine
 
 NODE_SEC = 4.0
 """How long the node of a command may take to appear, of time that was free: the cell that starts
@@ -140,7 +140,9 @@ class NodeCommand:
             seen == value,
             expected=f'{name} = {value} of {self.node_name}',
             seen=theirs(shorten(repr(seen))),
-            hint=_in_the_line(name, value),
+            hint=_in_the_file(name, self.node_name)
+            if self.line.options(*OPTIONS_OF_FILES)
+            else _in_the_line(name, value),
             cause=f'{name} has another value',
         )
         started = self._started(parameter_name=name)
@@ -170,3 +172,10 @@ class NodeCommand:
 
 def _in_the_line(name: str, value: Any) -> str:
     return f'give it with -p {name}:={value} after --ros-args, or in a YAML file'
+
+
+def _in_the_file(name: str, node_name: str) -> str:
+    return (
+        f'in the YAML file the node has its full name, {node_name}: and under it are '
+        f'ros__parameters: and {name}'
+    )

@@ -1,9 +1,12 @@
 """What a node answers where somebody sets a parameter: taken, or refused for a reason."""
 
+import math
+from collections.abc import Sequence
 from typing import NoReturn
 
 from rcl_interfaces.msg import SetParametersResult
 
+from my_robot_basics.checks.parameters import NodeParameters
 from my_robot_basics.feedback.errors import expect, fail, shorten
 from my_robot_basics.feedback.hidden import theirs
 
@@ -13,7 +16,46 @@ _OF_ANOTHER_TYPE = 'Wrong parameter type'
 """How rclpy's reason begins, where a parameter is declared with another type."""
 
 
-def expect_refused(
+def expect_all_refused(
+    parameters: NodeParameters, name: str, kept_hz: float, tried: Sequence[float]
+) -> None:
+    """Each of these values is refused, with a reason, and the parameter keeps its value.
+
+    Raises CheckFailed.
+    """
+    results = parameters.set(name, *tried)
+    value = parameters.get(name)
+    is_one_of_them = any(value == each or _are_nan(value, each) for each in (kept_hz, *tried))
+    corrected = None if is_one_of_them else value
+    for each, result in zip(tried, results, strict=True):
+        _expect_refused(name, each, result, corrected=corrected)
+    expect(
+        value == kept_hz,
+        expected=f'{name} = {kept_hz:g}, as before',
+        seen=theirs(shorten(repr(value))),
+        hint='change nothing where you refuse a value',
+        cause=f'{name} is changed by a value that was refused',
+    )
+
+
+def expect_leaves_others_alone(parameters: NodeParameters, name: str) -> None:
+    """A callback gets each parameter that is set: also the one that says which clock.
+
+    Raises CheckFailed where that cannot be set.
+    """
+    [result] = parameters.set('use_sim_time', parameters.get('use_sim_time'))
+    if not result.successful:
+        expect_a_result(result)
+        fail(
+            expected='use_sim_time, another parameter, to be set',
+            seen=f'it refused: {theirs(shorten(result.reason))}',
+            hint='your callback gets each parameter that is set: judge those whose name is '
+            f"'{name}'",
+            cause='your callback refuses other parameters',
+        )
+
+
+def _expect_refused(
     name: str, value: float, result: SetParametersResult, *, corrected: float | None
 ) -> None:
     """A value was refused, with a reason. Raises CheckFailed.
@@ -21,14 +63,21 @@ def expect_refused(
     `corrected` is what the parameter has now, if that is neither a value that was set nor the one
     before.
     """
-    is_corrected = corrected is not None
+    is_corrected, is_nan = corrected is not None, math.isnan(value)
     how = "return SetParametersResult(successful=False, reason='…') for it"
+    if is_corrected:
+        how = f'do not correct the value, {how}'
+    if is_nan:
+        how = (
+            'NaN is no number, and < and > are never true of it: ask whether a value is within '
+            'the limits, and refuse what is not'
+        )
     expect(
         not result.successful,
         expected=f'{name} = {value:g} to be refused',
         seen=f'it was taken, and {name} is {corrected:g}' if is_corrected else 'it was taken',
-        hint=f'do not correct the value, {how}' if is_corrected else how,
-        cause='a value outside the limits is taken',
+        hint=how,
+        cause='NaN is taken' if is_nan else 'a value outside the limits is taken',
     )
     expect(
         bool(result.reason.strip()),
@@ -37,6 +86,10 @@ def expect_refused(
         hint="tell why: SetParametersResult(successful=False, reason='…')",
         cause='a value is refused without a reason',
     )
+
+
+def _are_nan(*values: object) -> bool:
+    return all(isinstance(value, float) and math.isnan(value) for value in values)
 
 
 def fail_refused(name: str, value: float, result: SetParametersResult) -> NoReturn:
@@ -48,7 +101,8 @@ def fail_refused(name: str, value: float, result: SetParametersResult) -> NoRetu
         seen=f'it refused: {theirs(shorten(result.reason))}',
         hint='a parameter has the type of its default value: declare it with 5.0, not 5'
         if is_type
-        else 'refuse only what is outside the limits; the limits themselves are allowed',
+        else 'refuse only what is outside the limits: any value within the limits and the limits '
+        'themselves are allowed',
         cause=f'{name} is no double' if is_type else 'a value within the limits is refused',
     )
 

@@ -44,6 +44,10 @@ class PlayerReport:
             self._kept = _recorder(self._watcher, LATCHED)
         return bool(self._messages())
 
+    def has_come(self) -> bool:
+        """Whether a message has come by now."""
+        return bool(self._messages())
+
     def expect_none_yet(self) -> None:
         """No report has come while a goal has not ended. Raises CheckFailed."""
         said = self._messages()[-1:]

@@ -18,7 +18,8 @@ from my_robot_basics.graph.watcher import Watcher
 SOLVE_IK, MOVE_ARM = '/solve_ik', '/move_arm'
 Target = tuple[str, float, float]
 """How it ends, x and y in metres."""
-WORDS = 'succeeded', 'canceled', 'aborted', 'rejected', 'unreachable'
+ENDS = 'succeeded', 'canceled', 'aborted'
+WORDS = *ENDS, 'rejected', 'unreachable'
 L1_M = 1.3
 """The first link of the check's arm: its angles are known only to who asks."""
 NEAR_M = NEAR_RAD = 1e-6
@@ -41,8 +42,9 @@ class PlayerServers(ScriptedActionServer):
         self._canceller: Client | None = None
 
     def start(self) -> None:
-        """Serve both."""
-        self.solver.start()
+        """Serve both, or `/move_arm` beside the solver that was started alone."""
+        if not self.solver.is_there():
+            self.solver.start()
         super().start()
 
     def stop(self) -> None:

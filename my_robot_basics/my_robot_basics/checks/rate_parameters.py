@@ -1,5 +1,7 @@
 """A parameter that is the rate of a node, in Hz: it sets the rate, and refuses some values."""
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NoReturn
 
@@ -39,7 +41,7 @@ class RateParameter:
 
     def expect_default(self, rate_hz: float) -> None:
         """It is declared as a double of that value, and the node publishes so often."""
-        self._expect_leaves_others_alone()
+        refusals.expect_leaves_others_alone(self.parameters, self.name)
         value = self.parameters.get(self.name)
         expect(
             isinstance(value, int | float) and not isinstance(value, bool) and value == rate_hz,
@@ -72,7 +74,7 @@ class RateParameter:
 
     def expect_follows(self, *rates_hz: float) -> None:
         """The node publishes so often once the parameter is set, to one after the other."""
-        self._expect_leaves_others_alone()
+        refusals.expect_leaves_others_alone(self.parameters, self.name)
         for rate_hz in rates_hz:
             before_hz = self.parameters.get_number(self.name)
             self.expect_takes(rate_hz)
@@ -83,14 +85,30 @@ class RateParameter:
                 self._explain(failed, recording, before_hz, rate_hz)
 
     def expect_refuses(self, *rates_hz: float) -> None:
-        """Each of these is refused, with a reason, and value and rate stay what they were."""
-        self._expect_leaves_others_alone()
+        """Each of these is refused, with a reason, and value and rate stay what they were.
+
+        NaN may be among them: it is tried last, and no rate is measured after it.
+        """
+        refusals.expect_leaves_others_alone(self.parameters, self.name)
         kept_hz = self.parameters.get_number(self.name)
+        numbers = sorted((hz for hz in rates_hz if not math.isnan(hz)), reverse=True)
+        if numbers:
+            self._expect_stays(kept_hz, numbers)
+        if len(numbers) < len(rates_hz):
+            self._expect_refused(kept_hz, [math.nan])
+
+    def _expect_stays(self, kept_hz: float, rates_hz: Sequence[float]) -> None:
+        """These are refused, the highest first, and the rate stays what it was.
+
+        So a node that takes a refused rate over has the lowest of them in the end.
+        """
         self._expect_refused(kept_hz, rates_hz)
         seen_hz, _ = self._measure(kept_hz)
         if _are_near(seen_hz, kept_hz, part=UNCHANGED_PART):
             return
         # it may have had another rate before: does a value that is refused make a difference?
+        if seen_hz > kept_hz and self._stays_at(seen_hz, kept_hz, rates_hz[0]):
+            return
         self.parameters.set(self.name, kept_hz)
         before_hz, _ = self._measure(kept_hz)
         self._expect_refused(kept_hz, rates_hz)
@@ -104,33 +122,15 @@ class RateParameter:
             doubt=doubt,
         )
 
-    def _expect_refused(self, kept_hz: float, rates_hz: tuple[float, ...]) -> None:
-        tried = self._in_its_type(rates_hz)
-        results = self.parameters.set(self.name, *tried)
-        value = self.parameters.get(self.name)
-        corrected = None if value in (kept_hz, *tried) else value
-        for rate_hz, result in zip(tried, results, strict=True):
-            refusals.expect_refused(self.name, rate_hz, result, corrected=corrected)
-        expect(
-            value == kept_hz,
-            expected=f'{self.name} = {kept_hz:g}, as before',
-            seen=theirs(shorten(repr(value))),
-            hint='change nothing where you refuse a value',
-            cause=f'{self.name} is changed by a value that was refused',
-        )
+    def _stays_at(self, seen_hz: float, kept_hz: float, highest_hz: float) -> bool:
+        """Whether timers from before run on: the highest rate that is refused adds nothing."""
+        self._expect_refused(kept_hz, [highest_hz])
+        again_hz, _ = self._measure(kept_hz)
+        return _are_near(again_hz, seen_hz, part=UNCHANGED_PART)
 
-    def _expect_leaves_others_alone(self) -> None:
-        """The callback gets each parameter that is set: also the one that says which clock."""
-        [result] = self.parameters.set('use_sim_time', self.parameters.get('use_sim_time'))
-        if not result.successful:
-            refusals.expect_a_result(result)
-            fail(
-                expected='use_sim_time, another parameter, to be set',
-                seen=f'it refused: {theirs(shorten(result.reason))}',
-                hint='your callback gets each parameter that is set: judge those whose name is '
-                f"'{self.name}'",
-                cause='your callback refuses other parameters',
-            )
+    def _expect_refused(self, kept_hz: float, rates_hz: Sequence[float]) -> None:
+        tried = self._in_its_type(rates_hz)
+        refusals.expect_all_refused(self.parameters, self.name, kept_hz, tried)
 
     def _explain(
         self, failed: CheckFailed, recording: Recording, before_hz: float, now_hz: float
@@ -175,10 +175,10 @@ class RateParameter:
         seen_hz, _ = self._measure(now_hz)
         return _are_near(seen_hz, now_hz)
 
-    def _in_its_type(self, rates_hz: tuple[float, ...]) -> list[float]:
+    def _in_its_type(self, rates_hz: Sequence[float]) -> list[float]:
         """As integers, where the parameter is one: rclpy refuses any other type by itself."""
         if isinstance(self.parameters.get(self.name), int):
-            return [int(rate_hz) for rate_hz in rates_hz]
+            return [int(rate_hz) for rate_hz in rates_hz if not math.isnan(rate_hz)]
         return [*rates_hz]
 
     def _record(self, rate_hz: float) -> Recording:

@@ -1,6 +1,7 @@
 """Why `ros2 run` cannot use what a build has installed, in a sentence that says what to do."""
 
 import ast
+import os
 import sys
 from collections.abc import Iterator
 from importlib.metadata import Distribution, EntryPoint
@@ -8,6 +9,9 @@ from pathlib import Path
 
 from my_robot_basics.live.package_faults import NO_PYTHON, short
 from my_robot_basics.session.package_files import PackageFiles
+
+_MOST_OF_A_LINE = 200
+"""Bytes of an executable that are looked at."""
 
 
 def fault_in_install(package: str, prefix: Path, files: PackageFiles) -> str:
@@ -32,7 +36,35 @@ def fault_in_install(package: str, prefix: Path, files: PackageFiles) -> str:
         )
     site = prefix / 'lib/python{}.{}/site-packages'.format(*sys.version_info)
     faults = (_fault_of_entry(entry, site, files) for entry in entries)
-    return next(filter(None, faults), '')
+    return next(filter(None, faults), '') or _fault_of_scripts(scripts)
+
+
+def _fault_of_scripts(scripts: Path) -> str:
+    """Why Linux cannot start an executable; '' where it can.
+
+    setuptools writes `#!python` into what `scripts=` names, and means a wheel's installer with it.
+    """
+    for path in sorted(scripts.iterdir()):
+        line = _first_line(path)
+        words = line.removeprefix('#!').split()
+        if line.startswith('#!') and words and not Path(words[0]).is_file():
+            return (
+                f'{short(path.name)} begins with {short(line)!r}, and there is no such program, '
+                'so `ros2 run` cannot start it: name a function in entry_points of setup.py, and '
+                'leave scripts= out'
+            )
+    return ''
+
+
+def _first_line(path: Path) -> str:
+    """The begin of an executable; '' where it is no file that can be read."""
+    if not path.is_file():
+        return ''
+    try:
+        with path.open('rb') as file:
+            return os.fsdecode(file.readline(_MOST_OF_A_LINE))
+    except OSError:
+        return ''
 
 
 def _entry_points(package: str, prefix: Path) -> Iterator[EntryPoint]:
