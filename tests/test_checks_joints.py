@@ -51,6 +51,15 @@ def test_joints_agree_in_any_order():
             '4 positions with 4 names',
             'give each message two',
         ),
+        (
+            message(0.1, 0.2, 0.5236, -1.5708),
+            '4 positions with 2 names',
+            'it adds to the positions',
+        ),
+        (message(0.0, 0.0, 0.5236, -1.5708), '4 positions with 2 names', 'give each message two'),
+        (message(30.0, -90.0, 0.5236, -1.5708), '4 positions with 2 names', 'give each message'),
+        (message(0.1, 0.2, 0.3, 0.4), '4 positions with 2 names', 'give each message two'),
+        (message(0.1, 0.5236, -1.5708), '3 positions with 2 names', 'give each message two'),
         (message(name=[]), '0 positions with 0 names', 'give each message two'),
     ],
 )

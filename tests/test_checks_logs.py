@@ -190,12 +190,13 @@ def run():
 
 
 class SaysMore(IKSolver):
-    """Logs where each target is, reachable or not, in three ways."""
+    """Logs where each target is, reachable or not, in several ways."""
 
     def solve(self, point):
         bearing_deg = degrees(atan2(point.y, point.x))
         self.get_logger().info(f'target at {hypot(point.x, point.y):.3f} m, {bearing_deg:.2f}°')
         self.get_logger().info(f'{bearing_deg:.2f}')
+        self.get_logger().info(f'target: bearing={bearing_deg:.2f}°, z={point.z:.2f} m')
         super().solve(point)
 
 

@@ -94,6 +94,61 @@ def test_other_nodes_on_the_topics_are_no_hindrance(run):
     check_late_joiner()
 
 
+class Looks(monitor.JointStateMonitor):
+    """Subscribes once there is a publisher, and asks for what that offers."""
+
+    def asked(self, offered):
+        return QoSProfile(depth=10, reliability=offered.reliability, durability=offered.durability)
+
+    def pass_on(self, type_, source, to, asked, offered):
+        publisher = self.create_publisher(type_, to, offered)
+
+        def look():
+            for offer in self.get_publishers_info_by_topic(source):
+                profile = self.asked(offer.qos_profile)
+                self.create_subscription(type_, source, publisher.publish, profile)
+                timer.cancel()
+                break
+
+        timer = self.create_timer(0.05, look)
+
+
+class LooksAtHalf(Looks):
+    def asked(self, offered):
+        return QoSProfile(depth=10, reliability=offered.reliability)
+
+
+def test_who_looks_for_publishers_first_may_ask_for_what_they_offer(run):
+    run(Looks)
+    check_delivery()
+    check_late_joiner()
+
+
+@pytest.mark.slow
+def test_who_looks_for_publishers_and_does_not_ask_for_what_was_said_is_named(run):
+    run(LooksAtHalf)
+    for _ in range(3):
+        with pytest.raises(CheckFailed, match='TRANSIENT_LOCAL, saw VOLATILE: request'):
+            check_late_joiner()
+
+
+@pytest.mark.slow
+def test_a_publisher_that_waits_for_a_message_is_too_late(run, impatient):
+    class Lazy(monitor.JointStateMonitor):
+        def pass_on(self, type_, source, to, asked, offered):
+            def receive(message):
+                self.create_publisher(type_, to, offered).publish(message)
+
+            self.create_subscription(type_, source, receive, asked)
+
+    run(Lazy)
+    for check in check_delivery, check_late_joiner:
+        with pytest.raises(
+            CheckFailed, match=r'saw none: /joint_state_monitor subscribes to .*yet'
+        ):
+            check()
+
+
 class Changes(monitor.JointStateMonitor):
     """Publishes another message in place of a JointState."""
 

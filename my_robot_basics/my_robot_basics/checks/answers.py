@@ -1,40 +1,61 @@
-"""What the lines of a log say about IK: the numbers in them, and which belong together."""
+"""What the lines of a log say about IK: the numbers in them, and which lines hold angles."""
 
 import itertools
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 
 from my_robot_basics.checks import angles
 
 MOST_NUMBERS = 1_000
 """Different numbers that one target may bring: with many thousands, some are always right."""
-_NUMBER = re.compile(r'(±?)([-−+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?)')
+_NUMBER = re.compile(r'([±∓]|\+/[-−]|[-−]/\+)?([-−+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?)')
 _ELBOWS_DEG = (0.0, 180.0)
 """Elbow angles of an arm that is stretched, or folded, towards a target out of reach."""
 
-Solutions = Sequence[tuple[float, float]]
-"""θ1 and θ2 of each branch, in degrees."""
+
+class Forms:
+    """What the texts for targets in reach look like: those that hold angles, and the others."""
+
+    def __init__(self) -> None:
+        """No text was seen yet."""
+        self._answers: set[str] = set()
+        self._others: set[str] = set()
+
+    def learn(self, wanted: Iterable[float], texts: Iterable[str]) -> None:
+        """See all texts for one target; a form of both kinds tells nothing."""
+        wanted, texts = list(wanted), {*texts}
+        held = {text for text in texts if holds_any(wanted, text)}
+        answers, others = ({form_of(text) for text in each} for each in (held, texts - held))
+        self._answers |= answers - others
+        self._others |= others - answers
+
+    def is_answer(self, text: str) -> bool:
+        """Whether a text with other numbers held angles."""
+        return form_of(text) in self._answers
+
+    def is_other(self, text: str) -> bool:
+        """Whether a text with other numbers came beside the angles, and held none."""
+        return form_of(text) in self._others
 
 
 def numbers_of(text: str) -> list[float]:
-    """All numbers in a text, in order; ±1.5 stands for two."""
+    """All numbers in a text, in order; ±1.5 stands for two, and so do +/-1.5 and ∓1.5."""
+    return [number for number, _, _ in places_of(text)]
+
+
+def places_of(text: str) -> list[tuple[float, int, int]]:
+    """All numbers in a text, each with where it begins and ends."""
     found = []
-    for sign, digits in _NUMBER.findall(text):
-        number = float(digits.replace('−', '-'))
-        found += [number, -number] if sign else [number]
+    for match in _NUMBER.finditer(text):
+        number = float(match[2].replace('−', '-'))
+        signs = {'±': (1, -1), '+': (1, -1)}.get(match[1][0], (-1, 1)) if match[1] else (1,)
+        found += [(sign * number, match.start(), match.end()) for sign in signs]
     return found
 
 
 def form_of(text: str) -> str:
     """A text without what differs from target to target: its numbers."""
     return _NUMBER.sub('#', text)
-
-
-def forms_with(wanted: Iterable[float], texts: Iterable[str]) -> set[str]:
-    """The forms of texts that hold one of the wanted angles, and that no other text has."""
-    wanted, texts = list(wanted), list(texts)
-    held = {text for text in texts if holds_any(wanted, text)}
-    return {form_of(text) for text in held} - {form_of(text) for text in {*texts} - held}
 
 
 def holds_any(wanted: Iterable[float], text: str) -> bool:
@@ -56,46 +77,3 @@ def has_stretched(bearings_deg: Iterable[float], text: str) -> bool:
         for bearing in bearings_deg
         for theta1_deg, theta2_deg in beside
     )
-
-
-def are_mixed_up(solutions: Solutions, texts: Iterable[str]) -> bool:
-    """Whether θ1 of one branch plainly stands with θ2 of the other one.
-
-    So it does on two lines that hold one angle of each joint; and by turns, where one line holds
-    all four angles, or each line one. Another number that happens to be one of the angles accuses
-    nobody.
-    """
-    lines = [line for text in texts if (line := _labels(solutions, text))]
-    pairs = [_is_wrong_pair(line) for line in lines if len(set(line)) == 2]
-    if pairs.count(True) > 1 and all(pairs):
-        return True
-    if all(len(set(line)) == 1 for line in lines):
-        lines = [[label for line in lines for label in line]]
-    return any(
-        _are_wrong_pairs(list(dict.fromkeys(line)))
-        and _are_wrong_pairs(list(dict.fromkeys(reversed(line))))
-        for line in lines
-    )
-
-
-def _labels(solutions: Solutions, text: str) -> list[tuple[int, int]]:
-    """Branch and joint of each number that is one angle, and no other, of the solutions."""
-    found = []
-    for number in numbers_of(text):
-        labels = [
-            (branch, joint)
-            for branch, pair in enumerate(solutions)
-            for joint, angle in enumerate(pair)
-            if angles.near(angle, number)
-        ]
-        found += labels if len(labels) == 1 else []
-    return found
-
-
-def _is_wrong_pair(labels: list[tuple[int, int]]) -> bool:
-    (branch, joint), (other_branch, other_joint) = dict.fromkeys(labels)
-    return branch != other_branch and joint != other_joint
-
-
-def _are_wrong_pairs(labels: list[tuple[int, int]]) -> bool:
-    return len(labels) == 4 and _is_wrong_pair(labels[:2]) and _is_wrong_pair(labels[2:])

@@ -70,6 +70,8 @@ def expect_radians(position: Sequence[float], pose_deg: Sequence[float]) -> None
 def why_wrong(message: JointState, pose_deg: Sequence[float]) -> str:
     """Advice for a message that is not that pose; it names the cause, and none of the angles."""
     seen, right = pose(message), in_radians(pose_deg)
+    if len(message.name) == len(right) and _adds_to_others(list(message.position), pose_deg):
+        return why_off(list(message.position), pose_deg)
     if seen.keys() != right.keys():
         return f'give each message two positions, and the names {" and ".join(right)}'
     return why_off([seen[name] for name in right], pose_deg)
@@ -79,7 +81,7 @@ def why_off(seen: Sequence[float], pose_deg: Sequence[float]) -> str:
     """Advice for positions in radians that are not this pose, by what they are instead."""
     right = [math.radians(angle) for angle in pose_deg]
     if len(seen) > len(right) and len(seen) % len(right) == 0:
-        return 'it adds to the positions of the call before: make a new message in each call'
+        return 'it adds to the positions of the call before: make a new message and list each time'
     if len(seen) != len(right):
         return 'put one position for each joint into the list'
     if not all(map(math.isfinite, seen)):
@@ -105,6 +107,19 @@ def why_off(seen: Sequence[float], pose_deg: Sequence[float]) -> str:
     if not found and (_are_near(seen, right, CLOSE_RAD) or _are_near(seen, to_one_decimal)):
         return 'close: use radians() itself, and do not round'
     return next(iter(found), 'convert both angles with radians(), θ1 for joint1, θ2 for joint2')
+
+
+def _adds_to_others(position: Sequence[float], pose_deg: Sequence[float]) -> bool:
+    """Whether this pose stands behind others: neither zeros nor its own angles, in any unit."""
+    right = [math.radians(angle) for angle in pose_deg]
+    others, last = position[: -len(right)], position[-len(right) :]
+    own = 0.0, *right, *pose_deg
+    return (
+        0 < len(others) <= MOST_JOINTS
+        and len(others) % len(right) == 0
+        and _are_near(last, right)
+        and not any(_are_near([other], [angle]) for other in others for angle in own)
+    )
 
 
 def _are_near(

@@ -4,7 +4,7 @@ import re
 from collections.abc import Callable, Iterable, Sequence
 from typing import Self
 
-from my_robot_basics.checks import angles, answers
+from my_robot_basics.checks import angles, answers, pairing
 from my_robot_basics.checks.node_log import NodeLog
 from my_robot_basics.feedback.errors import fail
 from my_robot_basics.graph.raised import what_raised
@@ -40,14 +40,13 @@ class Log(NodeLog):
     def __init__(self, node_name: str) -> None:
         """Use `with rosout(node_name) as log`; listening begins with the `with` statement."""
         super().__init__(node_name)
-        self._forms: set[str] = set()
-        """Texts without their numbers that held angles, of targets in reach."""
+        self._forms = answers.Forms()
         self._answer: list[float] = []
         """The angles of the last target in reach."""
 
     def expect_solutions(
         self,
-        solutions: answers.Solutions,
+        solutions: pairing.Solutions,
         *,
         target: Sequence[float] = (),
         may_lag: bool = False,
@@ -58,7 +57,7 @@ class Log(NodeLog):
         """
         angles_deg = [angle for pair in solutions for angle in pair]
         had_warning = self.expect_angles(angles_deg, target=target, may_lag=may_lag)
-        if answers.are_mixed_up(list(solutions), self.texts('INFO')):
+        if pairing.are_mixed_up(list(solutions), self.texts('INFO')):
             fail(
                 expected=f'θ1 and θ2 of one solution together in the log of {self.node_name}',
                 seen=self.shown('INFO'),
@@ -109,7 +108,7 @@ class Log(NodeLog):
                 cause='there is a warning for a target in reach',
             )
         self._raised.expect_none()
-        self._forms |= answers.forms_with(wanted, self.texts('INFO'))
+        self._forms.learn(wanted, self.texts('INFO'))
         self._answer = wanted
         return before > 0
 
@@ -118,7 +117,8 @@ class Log(NodeLog):
 
         That is one that looks like those which held the angles of a target in reach, and has
         other numbers; once the warning is there, these very angles, too; and one of `no_angles`
-        beside the θ2 of a stretched or folded arm. Raises CheckFailed after `timeout_sec`.
+        beside the θ2 of a stretched or folded arm, unless a target in reach had the same beside
+        its angles. Raises CheckFailed after `timeout_sec`.
         """
         bearings = list(no_angles)
         if not self.wait_for(lambda log: log.has('WARN'), timeout_sec=timeout_sec):
@@ -134,12 +134,9 @@ class Log(NodeLog):
         def has_angles(log: Self) -> bool:
             texts = log.texts('INFO')
             return any(
-                answers.has_stretched(bearings, text)
+                (answers.has_stretched(bearings, text) and not self._forms.is_other(text))
                 or (number >= count and answers.holds_any(self._answer, text))
-                or (
-                    answers.form_of(text) in self._forms
-                    and not answers.holds_any(self._answer, text)
-                )
+                or (self._forms.is_answer(text) and not answers.holds_any(self._answer, text))
                 for number, text in enumerate(texts)
             )
 

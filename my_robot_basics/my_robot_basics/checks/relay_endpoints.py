@@ -14,9 +14,11 @@ from rclpy.qos import (
 )
 
 from my_robot_basics.checks.recorder import Recorder
+from my_robot_basics.checks.topic_endpoints import ABSENT_SEC
 from my_robot_basics.checks.topics import Topic
 from my_robot_basics.exchange import values
 from my_robot_basics.feedback.errors import expect, fail
+from my_robot_basics.feedback.hidden import theirs
 from my_robot_basics.graph import graphs
 from my_robot_basics.graph.qos_compatibility import brief, incompatible, leave_out
 from my_robot_basics.graph.raised import what_raised
@@ -39,7 +41,7 @@ class RelayEndpoints:
 
     def listen(self, watcher: Watcher, type_: type) -> Recorder:
         """Listen on `to`; a VOLATILE publisher is waited for until it knows of the listener."""
-        recorder = Topic(self.to).listen(watcher, take=self._graph)
+        recorder = Topic(self.to).listen(watcher, take=self._graph_without_publisher)
         expect(
             recorder.type is type_,
             expected=f'{type_.__name__} messages on {self.to}',
@@ -64,9 +66,7 @@ class RelayEndpoints:
         def is_there() -> bool:
             return publisher.get_subscription_count() > 0
 
-        timeout_sec = Topic(self.source).timeout_for(
-            watcher, TIMEOUT_SEC, end='subscriptions', type_=type_
-        )
+        timeout_sec = self._timeout_sec(watcher, type_)
         watcher.spin_until(lambda: is_there() or bool(refused), timeout_sec=timeout_sec)
         if watcher.spin_until(is_there, timeout_sec=REFUSED_SEC if refused else 0.0):
             return publisher
@@ -86,12 +86,15 @@ class RelayEndpoints:
         )
 
     def expect_transient_local(self, watcher: Watcher) -> None:
-        """A subscription to `source` asks for what was published before."""
+        """A subscription to `source` asks for what was published before.
+
+        Who asks for what is offered subscribes only when there is a publisher.
+        """
 
         def asked() -> set[str]:
             return {asked.durability.name for asked in _requests(watcher.node, self.source)}
 
-        timeout_sec = Topic(self.source).timeout_for(watcher, TIMEOUT_SEC, end='subscriptions')
+        timeout_sec = self._timeout_sec(watcher)
         if not watcher.spin_until(lambda: bool(asked()), timeout_sec=timeout_sec):
             self._fail_absent(watcher, timeout_sec=timeout_sec)
         # a second subscription may be a moment behind the first
@@ -151,12 +154,35 @@ class RelayEndpoints:
             hint='compare the message type in create_subscription(…)',
         )
 
+    def _timeout_sec(self, watcher: Watcher, type_: type | None = None) -> float:
+        """How long to wait for a subscription, once there is a publisher.
+
+        A timer that looks for one is a reason to wait even where nothing else can come.
+        """
+        topic = Topic(self.source)
+        timeout_sec = topic.timeout_for(watcher, TIMEOUT_SEC, end='subscriptions', type_=type_)
+        return min(TIMEOUT_SEC, max(timeout_sec, ABSENT_SEC))
+
     def _fail_absent(self, watcher: Watcher, *, timeout_sec: float) -> NoReturn:
         fail(
             expected=f'a subscription on {self.source}',
             seen=graphs.none_in(timeout_sec),
             hint=self._graph(watcher).why_no_subscription(self.source),
         )
+
+    def _graph_without_publisher(self, watcher: Watcher) -> GraphSnapshot:
+        """The graph where nobody publishes on `to`. Raises CheckFailed where that says why."""
+        graph = self._graph(watcher)
+        listeners = sorted({*graph.subscriptions(self.source)})
+        if listeners and graph.publishes_nothing(listeners) and not what_raised(listeners):
+            fail(
+                expected=f'a publisher on {self.to}',
+                seen='none',
+                hint=f'{theirs(", ".join(listeners))} subscribes to {self.source} and has no'
+                ' publisher yet, so create it in __init__: it has to be there before the first'
+                ' message comes',
+            )
+        return graph
 
     def _graph(self, watcher: Watcher) -> GraphSnapshot:
         """The graph without other publishers on `source`: it is not they who are at fault."""

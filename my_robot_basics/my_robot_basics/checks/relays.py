@@ -81,15 +81,16 @@ class Relay:
         make_message = filled(make_message)
         with Watcher(shared=True) as watcher:
             endpoints = RelayEndpoints(self.source, self.to)
-            message_type = type(make_message())
-            recorder = endpoints.listen(watcher, message_type)
+            recorder = endpoints.listen(watcher, type(make_message()))
             raised = CallbackErrors(recorder.publishers())
-            endpoints.expect_transient_local(watcher)
-            endpoints.expect_type(watcher, message_type)
-            endpoints.expect_one_profile(watcher)
             for number in range(times):
+                before = len(recorder.received)
                 with published_before_discovery(self.source, make_message) as (message, publisher):
-                    self._expect_out(watcher, recorder, message, raised)
+                    if number == 0:
+                        endpoints.expect_transient_local(watcher)
+                        endpoints.expect_type(watcher, recorder.type)
+                        endpoints.expect_one_profile(watcher)
+                    self._expect_out(watcher, recorder, message, raised, before=before)
                     # one behind the other, should there be two
                     watcher.spin_for(QUIET_SEC)
                     count = sum(self._is_same(each, message) for each in recorder.messages())
@@ -152,10 +153,10 @@ class Relay:
         message: Any,
         raised: CallbackErrors,
         *,
+        before: int = 0,
         again: Publisher | None = None,
     ) -> None:
-        """Wait for the message on `to`; publish it `again` and again meanwhile."""
-        before = len(recorder.messages())
+        """Wait for the message on `to`, behind so many; publish it `again` and again meanwhile."""
         for times in range(1, round(relay_endpoints.TIMEOUT_SEC / AGAIN_SEC) + 1):
             if again is not None:
                 again.publish(message)

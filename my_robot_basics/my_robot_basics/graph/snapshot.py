@@ -37,6 +37,14 @@ class GraphSnapshot:
         """Full names of the nodes that subscribe to the topic, one for each subscription."""
         return self.subscription_names.get(topic_name, ())
 
+    def publishes_nothing(self, node_names: Collection[str]) -> bool:
+        """Whether none of those nodes has a publisher, but for what each node has."""
+        return not any(
+            {*nodes} & {*node_names}
+            for topic_name, nodes in self.publisher_names.items()
+            if topic_name not in _PLUMBING
+        )
+
     def without(self, node_names: Collection[str]) -> 'GraphSnapshot':
         """The same graph, had those nodes not been there."""
 
