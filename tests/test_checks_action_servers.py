@@ -358,6 +358,19 @@ class CancelsByTheClock(MoveArmClient):
         pass
 
 
+class RemembersTheObstacle(MoveArmClient):
+    is_there = False
+
+    def answered(self, future):
+        super().answered(future)
+        if future.result().accepted and self.is_there:
+            future.result().cancel_goal_async()
+
+    def obstacle(self, message):
+        self.is_there = message.data
+        super().obstacle(message)
+
+
 class NeverCancels(MoveArmClient):
     def obstacle(self, message):
         pass
@@ -398,7 +411,8 @@ WRONG_CANCELS = [
         CancelsForFalse,
         'no request to cancel the goal for False .*: look at message.data: only Tru',
     ),
-    (CancelsByTheClock, 'no request to cancel the goal for False .*, saw one'),
+    (CancelsByTheClock, 'no request to cancel .*, saw one'),
+    (RemembersTheObstacle, 'after True .*: an obstacle cancels the goal that moves then, and no'),
     (
         NeverCancels,
         r'expected a request to cancel .*saw none.*: call cancel_goal_async\(\) of the',

@@ -333,6 +333,23 @@ class TakesTwo(MoveArmServer):
         return GoalResponse.ACCEPT if self.is_possible(goal) else GoalResponse.REJECT
 
 
+class DividesByTheWay(MoveArmServer):
+    """Its way may be none: it raises then, and has forgotten nothing else."""
+
+    def step(self, handle):
+        if self.seconds == 0.0:
+            self.is_moving = False
+            raise ZeroDivisionError
+        super().step(handle)
+
+
+class AbortsWhereItIs(MoveArmServer):
+    def finish(self, handle):
+        result = super().finish(handle) if self.seconds else MoveArm.Result(position=self.position)
+        self.is_moving = False
+        return result
+
+
 # --- time -------------------------------------------------------------------------------------
 
 
@@ -363,6 +380,8 @@ WRONG = [
     ),
     (EmptyResult, 'reaches', r'saw \[\]: fill in the position: MoveArm.Result\(position=…\)'),
     (ResultOfTheStart, 'reaches', 'this is where the arm was: put in where it is in the end'),
+    (DividesByTheWay, 'reaches', 'the arm is there already, and so is at the goal: the execute'),
+    (AbortsWhereItIs, 'reaches', 'the arm is there already, and so is at the goal: call goal_'),
     (TooFast, 'reaches', 'expected .* s for 1.20 rad .*: in each step, move by speed'),
     (TooSlow, 'reaches', 'expected .* s for 1.20 rad .*: in each step, move by speed'),
     (SpeedOfBoth, 'reaches', 'the speed is that of the faster joint, not of both together'),
@@ -450,6 +469,11 @@ class NeverEnds(MoveArmServer):
         self.part = 0.5
 
 
+class WaitsForItsOwnTimer(MoveArmServer):
+    def execute(self, handle):
+        self.create_rate(20).sleep()
+
+
 NOWHERE = [
     (
         ReturnsTrue,
@@ -459,6 +483,7 @@ NOWHERE = [
     (ReturnsNothing, r'end the execute callback with `return MoveArm.Result\(position=…\)`'),
     (RaisesInExecute, 'the execute callback raised an exception .*joint3.*so fix that first'),
     (NeverExecutes, r'a handle_accepted_callback calls goal_handle.execute\(\)'),
+    (WaitsForItsOwnTimer, "the execute callback keeps the node's only thread: wait with"),
     (NeverEnds, 'end the loop of the execute callback when the arm is there'),
 ]
 
@@ -468,3 +493,10 @@ def test_who_gets_nowhere_is_told_why(run, node_class, message):
     run(node_class)
     with pytest.raises(CheckFailed, match=message):
         reaches(action('/move_arm', MoveArm))
+
+
+def test_a_later_check_is_told_of_an_exception_before_it(run):
+    run(RaisesInExecute)
+    for check in CHECKS[:2]:
+        with pytest.raises(CheckFailed, match=r'the execute callback raised .*joint3'):
+            check(action('/move_arm', MoveArm))

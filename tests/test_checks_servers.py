@@ -299,6 +299,49 @@ def test_who_counts_ahead_has_to_go_on_all_the_same(run):
 # --- who is wrong otherwise ----------------------------------------------------------------------
 
 
+class DropsMeanwhile(IKClient):
+    is_busy = False
+
+    def ask(self, target):
+        if not self.is_busy:
+            self.is_busy = True
+            super().ask(target)
+
+    def answer(self, response):
+        self.is_busy = False
+        super().answer(response)
+
+
+class RemembersOneFuture(IKClient):
+    future = None
+
+    def __init__(self):
+        super().__init__()
+        self.create_timer(0.05, self.look)
+
+    def ask(self, target):
+        self.future = self.client.call_async(SolveIK.Request(target=target))
+
+    def look(self):
+        if self.future and self.future.done():
+            future, self.future = self.future, None
+            self.answer(future.result())
+
+
+@pytest.mark.parametrize(
+    ('node_class', 'message'),
+    [
+        (DropsMeanwhile, 'ask for each target, also for one that comes while the answer to'),
+        (RemembersOneFuture, 'publish for each answer, though two requests are under way'),
+    ],
+)
+@pytest.mark.usefixtures('impatient')
+def test_who_loses_a_target_while_the_server_takes_its_time_is_told(run, node_class, message):
+    run(node_class)
+    with pytest.raises(CheckFailed, match=message):
+        check_never_blocks()
+
+
 class ForwardsNothing(IKClient):
     def answer(self, response):
         pass

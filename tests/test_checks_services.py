@@ -87,7 +87,13 @@ class Filler:
     fill = IKService.fill
 
 
-RIGHT = [IKService, Coroutine, MakesItsOwnResponse, Reentrant]
+class WholeTurnsOff(IKService):
+    def fill(self, response, branches_deg):
+        super().fill(response, branches_deg)
+        response.elbow_up = [angle + math.tau for angle in response.elbow_up]
+
+
+RIGHT = [IKService, Coroutine, MakesItsOwnResponse, Reentrant, WholeTurnsOff]
 
 
 @pytest.mark.parametrize('node_class', RIGHT)
@@ -160,6 +166,11 @@ class JointsSwapped(IKService):
         response.elbow_up = response.elbow_up[::-1]
 
 
+class InThePlaneAlone(IKService):
+    def solve(self, request, response):
+        return response if request.target.z else super().solve(request, response)
+
+
 class NotReachable(IKService):
     def fill(self, response, branches_deg):
         super().fill(response, branches_deg)
@@ -171,6 +182,7 @@ WRONG = [
     (OneBranch, r'elbow_down .*saw \[\]: fill in both branches: response.elbow_down is empty'),
     (Swapped, 'this is elbow_down: the two branches are swapped'),
     (JointsSwapped, 'the joints are swapped'),
+    (InThePlaneAlone, 'with z = 0.7, saw False: z does not matter: look at x and y'),
     (NotReachable, r'expected reachable to be True .*saw False: set response.reachable = True'),
 ]
 

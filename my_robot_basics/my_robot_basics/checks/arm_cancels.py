@@ -8,6 +8,7 @@ from my_robot_basics.checks.actions import Action
 from my_robot_basics.checks.arm_looks import look
 from my_robot_basics.checks.arm_moves import expect_result
 from my_robot_basics.checks.arm_stops import expect_begins_at, expect_canceled, expect_on_the_way
+from my_robot_basics.checks.open_action import BLOCKED
 from my_robot_basics.checks.watched_arm import Pose, WatchedArm, accepted, far_rad, goal
 from my_robot_basics.feedback.errors import CheckFailed, expect, fail
 
@@ -22,10 +23,6 @@ ANSWER_SEC = 5.0
 """How long the answer may take of a server that gives it at the end of the move alone."""
 TENTHS, TENTH_NS = 8, 100_000_000
 """A node that has published feedback in so many tenths of a second had turns to answer, too."""
-BLOCKED = (
-    "the execute callback keeps the node's only thread: wait with `await sleep(self, …)` in place "
-    'of time.sleep(…), or use a MultiThreadedExecutor'
-)
 
 
 def expect_cancels(

@@ -8,8 +8,8 @@ from my_robot_basics.checks.action_ends import ActionEnds, SentGoal
 from my_robot_basics.checks.actions import Action
 from my_robot_basics.checks.arm_looks import look
 from my_robot_basics.checks.arm_pace import wait_for_end
-from my_robot_basics.checks.arm_speed import expect_speed
-from my_robot_basics.checks.watched_arm import Pose, WatchedArm, far_rad
+from my_robot_basics.checks.arm_speed import FROM_HERE, expect_speed
+from my_robot_basics.checks.watched_arm import HASTE_SEC, Pose, WatchedArm, far_rad, goal
 from my_robot_basics.feedback.errors import expect, fail, shorten
 
 WITHIN_RAD = 0.005
@@ -29,7 +29,8 @@ def expect_reaches(
 ) -> None:
     """The arm goes from `start` to a position (rad) at that speed (rad/s), and the goal succeeds.
 
-    The result holds the position. Raises CheckFailed.
+    The result holds the position. So does that of a goal to where the arm is then. Raises
+    CheckFailed.
     """
 
     def arrives(arm: WatchedArm) -> None:
@@ -42,6 +43,9 @@ def expect_reaches(
             hint='take the time that has passed from self.get_clock().now(), and not from time',
             cause='the time that has passed is that of another clock',
         )
+        arm.start = tuple(position)
+        for _ in range(2):  # the first one may have a way to go that is due to rounding
+            _expect_stays(arm, speed=speed)
 
     look(action, arrives, start=start)
 
@@ -87,6 +91,28 @@ def _arrive(arm: WatchedArm, position: Pose, *, speed: float) -> SentGoal:
     _expect_succeeded(arm, sent)
     _expect_arrived(sent, position, start=arm.start)
     return sent
+
+
+def _expect_stays(arm: WatchedArm, *, speed: float) -> None:
+    """A goal to where the arm is already succeeds. Raises CheckFailed."""
+    sent = arm.send(goal(arm.start, speed=speed))
+    if not arm.time.wait(sent.is_over, seconds=HASTE_SEC):
+        moves = any(not is_near(message.position, arm.start) for _, message in sent.feedback())
+        fail(
+            expected='a goal to where the arm is already to end at once',
+            seen=f'none in {HASTE_SEC:g} s',
+            hint=FROM_HERE if moves else arm.server.why_no_end(sent),
+            cause='a goal to where the arm is already does not end',
+        )
+    expect_result(arm, sent)
+    if sent.status != 'succeeded':
+        fail(
+            expected='a goal to where the arm is already to be succeeded',
+            seen=f'it {sent.status}',
+            hint=f'the arm is there already, and so is at the goal: {_why_not(arm, sent)}',
+            cause=f'a goal to where the arm is already is {sent.status}',
+        )
+    _expect_arrived(sent, arm.start, start=arm.start)
 
 
 def _expect_succeeded(arm: WatchedArm, sent: SentGoal) -> None:

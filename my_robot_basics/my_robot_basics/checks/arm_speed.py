@@ -28,6 +28,7 @@ JUMP_SEC = 0.3
 """Who needs no longer does not move at a speed."""
 ALIKE = 0.03
 """So near is a wrong speed to the one that a mistake makes."""
+FROM_HERE = 'start from where the arm is, at each goal'
 
 
 def expect_speed(arm: WatchedArm, sent: SentGoal, position: Pose) -> None:
@@ -129,7 +130,7 @@ def _why_speed(arm: WatchedArm, position: Pose, product: float, *, seconds: floa
         math.hypot(*ways): 'the speed is that of the faster joint, not of both together',
         sum(ways): 'both joints move at once: start and arrive together',
         min(ways): 'the speed is that of the joint that has farther to go',
-        max(map(abs, position)): 'start from where the arm is, at each goal',
+        max(map(abs, position)): FROM_HERE,
     }
     wrong = {rad: why for rad, why in causes.items() if abs(rad - max(ways)) > ALIKE * rad}
     found = [why for rad, why in wrong.items() if abs(product - rad) <= ALIKE * rad]

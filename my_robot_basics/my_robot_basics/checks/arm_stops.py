@@ -38,7 +38,7 @@ def expect_on_the_way(sent: SentGoal, position: Pose, *, start: Pose) -> None:
     elif len(seen) != len(ways) or not all(map(math.isfinite, seen)):
         hint = 'put one position for each joint into the result'
     elif is_near(seen, position):
-        hint = 'put in where the arm is, not where it was to go'
+        hint = _why_at_the_goal(sent, position)
     else:
         parts = [(each - a) / way for each, a, way in zip(seen, start, ways, strict=True) if way]
         part = (seen[joint] - start[joint]) / ways[joint]
@@ -51,6 +51,16 @@ def expect_on_the_way(sent: SentGoal, position: Pose, *, start: Pose) -> None:
             hint=hint,
             cause='the result of a cancelled goal is wrong',
         )
+
+
+def _why_at_the_goal(sent: SentGoal, position: Pose) -> str:
+    told = [list(message.position) for _, message in sent.feedback()]
+    if told and is_near(told[-1], position):
+        return (
+            'the arm was there long before its time: compute each position from where the move '
+            'began, and keep that in a list of its own, list(self.position)'
+        )
+    return 'put in where the arm is, not where it was to go'
 
 
 def expect_begins_at(stopped: Pose, moved: SentGoal, *, former: SentGoal) -> None:

@@ -4,34 +4,64 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+from arm_interfaces.srv import SolveIK
 from my_robot_basics.checks import joints
 from my_robot_basics.checks.servers import Server
-from my_robot_basics.checks.solutions import request, solve
+from my_robot_basics.checks.solutions import is_for, request, solve
+
+EACH_TARGET = (
+    'ask for each target, also for one that comes while the answer to another is not there yet'
+)
+EACH_ANSWER = (
+    'publish for each answer, though two requests are under way at once: add_done_callback for '
+    'each future, or a list that keeps all of them'
+)
 
 
 def expect_elbow_up(server: Server, x: float, y: float) -> None:
     """The client publishes the elbow-up pose that the server answers for a target."""
-    response = server.answer(request(x, y))
-    up_deg, down_deg = (
-        [math.degrees(angle) for angle in branch]
-        for branch in (response.elbow_up, response.elbow_down)
-    )
-    right = joints.in_radians(up_deg)
+    expect_each_elbow_up(server, (x, y))
+
+
+def expect_each_elbow_up(server: Server, *targets: tuple[float, float]) -> None:
+    """The client publishes the elbow-up pose of each target, (x, y) in metres, in any order.
+
+    Raises CheckFailed.
+    """
+    for target in targets:
+        _expect_pose(server, *target, beside=[each for each in targets if each != target])
+    expect_no_others(server)
+
+
+def _expect_pose(
+    server: Server, x: float, y: float, *, beside: Sequence[tuple[float, float]]
+) -> None:
+    """The pose of one target comes, and perhaps before it those of the targets `beside` it."""
+    right = joints.in_radians(_degrees(server.answer(request(x, y)).elbow_up))
 
     def why_wrong(message: Any) -> str:
-        if joints.agree(joints.pose(message), joints.in_radians(down_deg)):
-            return 'this is elbow_down: publish the angles of response.elbow_up'
-        own_deg = [math.degrees(angle) for angle in solve(request(x, y)).elbow_up]
-        if own_deg and joints.agree(joints.pose(message), joints.in_radians(own_deg)):
-            return 'publish the angles of the response, not a solution of your own'
-        return joints.why_wrong(message, up_deg)
+        if any(is_elbow_up(message, server.answer(request(*other))) for other in beside):
+            was_asked = any(is_for(asked, x, y) for asked in server.requests)
+            return EACH_ANSWER if was_asked else EACH_TARGET
+        # nobody knows of which target it was made
+        reasons = [_why_wrong(server, message, request(*each)) for each in [(x, y), *beside]]
+        return next((each for each in reasons if each != joints.CONVERT), joints.CONVERT)
 
     server.expect(
         lambda message: joints.agree(joints.pose(message), right),
         expected=f'the elbow-up pose {right}',
         hint=why_wrong,
+        cause='a target is left without its pose' if beside else '',
     )
-    expect_no_others(server)
+
+
+def _why_wrong(server: Server, message: Any, asked: SolveIK.Request) -> str:
+    response, seen = server.answer(asked), joints.pose(message)
+    if _agree(seen, response.elbow_down):
+        return 'this is elbow_down: publish the angles of response.elbow_up'
+    if _agree(seen, solve(asked).elbow_up):
+        return 'publish the angles of the response, not a solution of your own'
+    return joints.why_wrong(message, _degrees(response.elbow_up))
 
 
 def expect_no_others(server: Server) -> None:
@@ -57,5 +87,9 @@ def is_elbow_up(message: Any, response: Any) -> bool:
 
 
 def _agree(seen: dict[str, float], position: Sequence[float]) -> bool:
-    right = joints.in_radians([math.degrees(angle) for angle in position])
+    right = joints.in_radians(_degrees(position))
     return bool(right) and joints.agree(seen, right)
+
+
+def _degrees(position: Sequence[float]) -> list[float]:
+    return [math.degrees(angle) for angle in position]

@@ -7,10 +7,15 @@ from typing import Any
 from geometry_msgs.msg import Point
 
 from my_robot_basics.checks import joints
-from my_robot_basics.checks.elbow_up import expect_elbow_up, expect_no_others, is_elbow_up
+from my_robot_basics.checks.elbow_up import (
+    expect_each_elbow_up,
+    expect_elbow_up,
+    expect_no_others,
+    is_elbow_up,
+)
 from my_robot_basics.checks.servers import Server
 from my_robot_basics.checks.services import Service
-from my_robot_basics.checks.solutions import request, solve
+from my_robot_basics.checks.solutions import is_for, request, solve
 from my_robot_basics.feedback.errors import expect, fail, shorten
 from my_robot_basics.two_link_kinematics import inverse_kinematics
 
@@ -19,35 +24,47 @@ __all__ = ['expect_elbow_up', 'request', 'solve']
 UP, DOWN = 'elbow_up', 'elbow_down'
 MOST_ANGLES = 20
 """What is looked at of a branch, which has two: a response may have millions."""
-NEAR_M = 1e-6
-"""A request for a target is no further off."""
+HIGH_M = 0.7
+"""The z of some targets: the arm moves in a plane."""
 
 
 def expect_solutions(service: Service, *targets: tuple[float, float]) -> None:
     """Each target, asked for at once with the others, is answered with both branches in radians.
 
-    Targets are (x, y) in metres and within reach. Raises CheckFailed.
+    Targets are (x, y) in metres and within reach; each second one is asked for with a z, which
+    does not matter. Raises CheckFailed.
     """
-    responses = service.call_all(*(request(x, y) for x, y in targets))
-    for (x, y), response in zip(targets, responses, strict=True):
-        where = f'the target ({x:g}, {y:g})'
-        expect(
-            response.reachable,
-            expected=f'reachable to be True for {where}',
-            seen='False',
-            hint='set response.reachable = True where inverse_kinematics finds solutions',
-            cause='a target within reach is called unreachable',
-        )
-        branches_deg = inverse_kinematics(x, y)
-        for branch, other in ((UP, DOWN), (DOWN, UP)):
-            position = list(getattr(response, branch)[:MOST_ANGLES])
-            if not _is_pose(position, branches_deg[branch]):
-                fail(
-                    expected=f'{branch} of {_rad(branches_deg[branch])} rad for {where}',
-                    seen=shorten([round(angle, 4) for angle in position]),
-                    hint=_why_wrong(position, branches_deg, branch, other),
-                    cause=f'{branch} is wrong',
-                )
+    asked = [request(x, y, z=HIGH_M * (i % 2)) for i, (x, y) in enumerate(targets)]
+    for each, response in zip(asked, service.call_all(*asked), strict=True):
+        if why := _why_wrong(response, each.target):
+            at_zero = request(each.target.x, each.target.y)
+            if each.target.z and not _why_wrong(service.call(at_zero), at_zero.target):
+                why['hint'] = 'z does not matter: look at x and y of the target alone'
+            fail(**why)
+
+
+def _why_wrong(response: Any, target: Point) -> dict[str, Any]:
+    """What is wrong with the response to a target within reach, as `fail` takes it; or nothing."""
+    height = f', with z = {target.z:g}' if target.z else ''
+    where = f'the target ({target.x:g}, {target.y:g}){height}'
+    if not response.reachable:
+        return {
+            'expected': f'reachable to be True for {where}',
+            'seen': 'False',
+            'hint': 'set response.reachable = True where inverse_kinematics finds solutions',
+            'cause': 'a target within reach is called unreachable',
+        }
+    branches_deg = inverse_kinematics(target.x, target.y)
+    for branch, other in ((UP, DOWN), (DOWN, UP)):
+        position = list(getattr(response, branch)[:MOST_ANGLES])
+        if not _is_pose(position, branches_deg[branch]):
+            return {
+                'expected': f'{branch} of {_rad(branches_deg[branch])} rad for {where}',
+                'seen': shorten([round(angle, 4) for angle in position]),
+                'hint': _why_off(position, branches_deg, branch, other),
+                'cause': f'{branch} is wrong',
+            }
+    return {}
 
 
 def expect_refusals(service: Service, *targets: tuple[float, float]) -> None:
@@ -91,23 +108,26 @@ def expect_answer(server: Server, x: float, y: float) -> None:
 def expect_never_blocks(server: Server, *targets: tuple[float, float]) -> None:
     """The client goes on while the server takes its time, and while there is none.
 
-    It answers each of three targets, within reach, that it is asked for while there is a server.
-    Raises CheckFailed.
+    It answers each of three targets, within reach, that it is asked for while there is a server:
+    two while the first answer is not there, and the third when the server has come back. Raises
+    CheckFailed.
     """
     first, second, third = targets
     server.hold()
     ask(server, *first)
+    # no request is expected yet: who keeps targets asks for one after the other
+    server.publish(Point(x=second[0], y=second[1]))
     server.expect_alive('the server takes its time')
     expect_no_others(server)
     server.release()
-    expect_elbow_up(server, *first)
+    expect_each_elbow_up(server, first, second)
     _let_all_be_answered(server)
     server.stop()
-    server.publish(Point(x=second[0], y=second[1]))
+    server.publish(Point(x=first[0], y=first[1]))
     server.expect_alive('there is no server')
     server.start()
     expect_answer(server, *third)
-    _let_all_be_answered(server)  # the second one, too, where it was kept
+    _let_all_be_answered(server)  # that of before, too, where it was kept
     expect_no_others(server)
 
 
@@ -119,12 +139,10 @@ def _let_all_be_answered(server: Server) -> None:
 
 def ask(server: Server, x: float, y: float) -> None:
     """The client asks for a target."""
-
-    def is_it(asked: Any) -> bool:
-        return math.hypot(asked.target.x - x, asked.target.y - y) < NEAR_M
-
     server.ask(
-        Point(x=x, y=y), is_it=is_it, hint='put the point that arrived into request.target, as is'
+        Point(x=x, y=y),
+        is_it=lambda asked: is_for(asked, x, y),
+        hint='put the point that arrived into request.target, as is',
     )
 
 
@@ -138,13 +156,19 @@ def expect_no_answer(server: Server, x: float, y: float) -> None:
 
 
 def _is_pose(position: Sequence[float], pose_deg: Sequence[float]) -> bool:
+    """Whether each joint is there, whole turns aside, as in lesson 4's log."""
     right = [math.radians(angle) for angle in pose_deg]
-    return len(position) == len(right) and all(
-        abs(a - b) < joints.EXACT_RAD for a, b in zip(position, right, strict=True)
+    return (
+        len(position) == len(right)
+        and all(map(math.isfinite, position))
+        and all(
+            abs(math.remainder(a - b, math.tau)) < joints.EXACT_RAD
+            for a, b in zip(position, right, strict=True)
+        )
     )
 
 
-def _why_wrong(
+def _why_off(
     position: Sequence[float], branches_deg: dict[str, tuple], branch: str, other: str
 ) -> str:
     if not position:

@@ -13,6 +13,8 @@ MOST_JOINTS = 100
 """What has more is no pose of an arm, and is not looked at."""
 CLOSE_RAD = 0.02
 """Who rounds to two decimals is no further off."""
+CONVERT = 'convert both angles with radians(), θ1 for joint1, θ2 for joint2'
+"""What to try where nobody knows what a pose is instead."""
 
 
 def make(numbers: random.Random, *names: str) -> JointState:
@@ -106,7 +108,7 @@ def why_off(seen: Sequence[float], pose_deg: Sequence[float]) -> str:
     to_one_decimal = [round(angle, 1) for angle in right]
     if not found and (_are_near(seen, right, CLOSE_RAD) or _are_near(seen, to_one_decimal)):
         return 'close: use radians() itself, and do not round'
-    return next(iter(found), 'convert both angles with radians(), θ1 for joint1, θ2 for joint2')
+    return next(iter(found), CONVERT)
 
 
 def _adds_to_others(position: Sequence[float], pose_deg: Sequence[float]) -> bool:

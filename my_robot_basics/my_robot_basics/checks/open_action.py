@@ -6,6 +6,7 @@ from rclpy.task import Future
 
 from my_robot_basics.checks.action_ends import TERMINAL, ActionEnds, SentGoal
 from my_robot_basics.checks.callbacks import CallbackErrors
+from my_robot_basics.checks.parameter_services import nodes_with_services
 from my_robot_basics.checks.server_log import ServerLog
 from my_robot_basics.checks.services import SERVER_SEC, answers_parameters, wait_for_all
 from my_robot_basics.feedback.errors import expect, fail
@@ -19,8 +20,13 @@ SERVED_SEC, NEW_SEC = 2.0, 0.1
 """How long the status of earlier goals may take to come, and where nobody knows of any."""
 RETURN_SEC = 0.2
 """How long an execute callback may take to return when it has told how the goal ends."""
-_served: set[tuple[tuple[int, ...], ...]] = set()
-"""The servers that have accepted a goal of a check's, in this grade cell or an earlier one."""
+BLOCKED = (
+    "the execute callback keeps the node's only thread: wait with `await sleep(self, …)` in place "
+    'of time.sleep(…) or rate.sleep(), or use a MultiThreadedExecutor'
+)
+_served: dict[tuple[tuple[int, ...], ...], int] = {}
+"""The servers that have accepted a goal of a check's, in this grade cell or an earlier one, and
+when the last one was sent: wall time in ns."""
 
 
 class OpenAction:
@@ -32,8 +38,8 @@ class OpenAction:
         self.ends = ActionEnds(watcher, name, type_)
         self.node_name = ''
         """The full name of the server's node."""
-        self.has_served = False
-        """Whether it has accepted a goal of an earlier check's."""
+        self.served_ns = 0
+        """When the last goal was sent that it has accepted, be it an earlier check's; 0: none."""
         self.accepted: list[SentGoal] = []
         """The goals that it has accepted, the last one last."""
 
@@ -43,10 +49,10 @@ class OpenAction:
         self.raised = CallbackErrors([self.node_name])
         self.log = ServerLog(self.watcher, self.node_name)
         self.watcher.spin_until(self.ends.is_connected, timeout_sec=SERVER_SEC)
-        self.has_served = self.identity() in _served
+        self.served_ns = _served.get(self.identity(), 0)
         self.watcher.spin_until_free(
             lambda: bool(self.ends.statuses.received),
-            free_sec=SERVED_SEC if self.has_served else NEW_SEC,
+            free_sec=SERVED_SEC if self.served_ns else NEW_SEC,
         )
         if self.has_active():
             self._wait_for_rest()
@@ -95,7 +101,7 @@ class OpenAction:
         if sent.is_accepted:
             sent.ask_for_result()
             self.accepted.append(sent)
-            _served.add(self.identity())
+            self.served_ns = _served[self.identity()] = sent.sent_ns
         return sent
 
     def answer_to(self, asked: Future, *, what: str) -> Any:
@@ -132,6 +138,8 @@ class OpenAction:
                 'the goal was accepted, and is not executed: a handle_accepted_callback calls '
                 'goal_handle.execute()'
             )
+        if self._is_blocked():
+            return BLOCKED
         return 'end the loop of the execute callback when the arm is there'
 
     def _wait_for_rest(self) -> None:
@@ -165,7 +173,15 @@ class OpenAction:
         self.expect_alone()
         return next(iter(found))
 
+    def _is_blocked(self) -> bool:
+        """Whether the node answers no question while a goal moves, and could answer."""
+        name = self.node_name
+        can_answer = name in nodes_with_services(self.watcher.node)
+        return self.has_active() and can_answer and not answers_parameters(self.watcher, name)
+
     def _why_unanswered(self) -> str:
+        if self._is_blocked():
+            return BLOCKED
         if answers_parameters(self.watcher, self.node_name):
             return (
                 f'{theirs(self.node_name)} runs, and a callback of the action has not returned: '

@@ -10,6 +10,7 @@ from arm_interfaces.action import MoveArm
 from my_robot_basics.checks import joints
 from my_robot_basics.checks.scripted_action import Ending, ReceivedGoal
 from my_robot_basics.checks.served_action import ServedAction
+from my_robot_basics.checks.unasked_cancels import expect_none_for_earlier, expect_none_for_false
 from my_robot_basics.checks.watched_arm import Pose
 
 SPEED = 0.5
@@ -86,8 +87,9 @@ def expect_no_cancel(server: ServedAction, position: Pose) -> None:
     server.say_obstacle(is_there=True)
     server.let_client_know()  # two topics know no order: or the goal may come first
     goal = ask(server, position)
+    expect_none_for_earlier(server, goal)
     server.say_obstacle(is_there=False)
-    server.expect_no_cancel_of(goal)
+    expect_none_for_false(server, goal)
     goal.finish('succeeded')
     _expect(server, 'succeeded')
 

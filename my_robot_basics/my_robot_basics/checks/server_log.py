@@ -1,5 +1,6 @@
 """What rclpy's action server logs of the callbacks that it calls, as everybody can read it."""
 
+from collections import deque
 from typing import Any
 
 from rcl_interfaces.msg import Log
@@ -12,11 +13,15 @@ from my_robot_basics.graph.message_info import with_info
 from my_robot_basics.graph.watcher import Watcher
 
 DEPTH = 100
-LOG_SEC = 0.2
-"""How long a line may come behind what it explains."""
+MOST_LINES = 1000
+LOG_SEC = 0.5
+"""How long a line may come behind what it explains, of time that was free."""
 _RAISED = 'Error raised in execute callback: '
 _NOT_SET = 'Goal state not set'
 _NO_RESPONSE = 'did not return a GoalResponse'
+_lines: dict[str, deque[tuple[int, str]]] = {}
+"""What each logger has said, and when: a grade cell may find what one before it has caused, when
+`/rosout` has dropped that."""
 
 
 class ServerLog:
@@ -26,7 +31,7 @@ class ServerLog:
         """Listen from now on; what was logged shortly before comes, too."""
         self._watcher = watcher
         self._logger = node_name.strip('/').replace('/', '.')
-        self._lines: list[tuple[int, str]] = []
+        self._lines = _lines.setdefault(self._logger, deque(maxlen=MOST_LINES))
         latched = QoSProfile(depth=DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         watcher.node.create_subscription(Log, '/rosout', with_info(self._receive), latched)
 
@@ -50,9 +55,10 @@ class ServerLog:
         def found() -> list[str]:
             return [line for at, line in self._lines if at >= since_ns and part in line]
 
-        self._watcher.spin_until(lambda: bool(found()), timeout_sec=LOG_SEC)
+        self._watcher.spin_until_free(lambda: bool(found()), free_sec=LOG_SEC)
         return next(iter(found()), '')
 
     def _receive(self, message: Any, info: dict) -> None:
-        if message.name == self._logger or message.name.startswith(f'{self._logger}.'):
+        is_ours = message.name == self._logger or message.name.startswith(f'{self._logger}.')
+        if is_ours and any(part in message.msg for part in (_RAISED, _NOT_SET, _NO_RESPONSE)):
             self._lines.append((info['source_timestamp'], message.msg))

@@ -29,6 +29,7 @@ QUIET_SEC = 0.5
 AGAIN_SEC = 0.5
 """Who has only just met the server may lose a request: until one has arrived, the message that
 leads to it is published again so often."""
+Hint = Callable[[Any], str]
 
 
 @contextmanager
@@ -123,12 +124,12 @@ class Server(HoldingServer):
         )
 
     def expect(
-        self, is_right: Callable[[Any], bool], *, expected: str, hint: Callable[[Any], str]
+        self, is_right: Callable[[Any], bool], *, expected: str, hint: Hint, cause: str = ''
     ) -> Any:
         """The message on `to`, since the last one was asked for, for which `is_right` holds.
 
-        `hint(message)` says what is wrong with another one. Raises CheckFailed where none comes in
-        TIMEOUT_SEC of time that was free.
+        `hint(message)` says what is wrong with another one, and `cause` in a few words. Raises
+        CheckFailed where none comes in TIMEOUT_SEC of time that was free.
         """
 
         def received() -> list[Any]:
@@ -141,7 +142,7 @@ class Server(HoldingServer):
             self._raised.expect_none()
             return next(filter(is_right, received()))
         others = received()
-        wrong = f'a wrong message on {self._answers.topic_name}'
+        wrong = cause or f'a wrong message on {self._answers.topic_name}'
         fail(
             expected=f'{expected} on {self._answers.topic_name}',
             seen=shorten(others[-1]) if others else f'none in {TIMEOUT_SEC:g} s',

@@ -7,10 +7,18 @@ from geometry_msgs.msg import Point
 from arm_interfaces.srv import SolveIK
 from my_robot_basics.two_link_kinematics import L1, L2, inverse_kinematics
 
+NEAR_M = 1e-6
+"""A request for a target is no further off."""
 
-def request(x: float, y: float) -> SolveIK.Request:
+
+def request(x: float, y: float, *, z: float = 0.0) -> SolveIK.Request:
     """A request for a target, in metres."""
-    return SolveIK.Request(target=Point(x=x, y=y))
+    return SolveIK.Request(target=Point(x=x, y=y, z=z))
+
+
+def is_for(asked: SolveIK.Request, x: float, y: float) -> bool:
+    """Whether a request is for that target, in metres."""
+    return math.hypot(asked.target.x - x, asked.target.y - y) < NEAR_M
 
 
 def solve(asked: SolveIK.Request, *, l1: float = L1, l2: float = L2) -> SolveIK.Response:

@@ -150,14 +150,14 @@ def accepted(server: OpenAction, wanted: MoveArm.Goal) -> SentGoal:
 def _why_rejected(server: OpenAction, sent: SentGoal, former: SentGoal | None) -> str:
     if server.log.had_no_response(since_ns=sent.sent_ns):
         return 'end the goal callback with `return GoalResponse.ACCEPT` or `GoalResponse.REJECT`'
-    if former is not None and (raised := server.log.raised(since_ns=former.sent_ns)):
+    if server.served_ns and (raised := server.log.raised(since_ns=server.served_ns)):
         return raised
     if former is None and server.ends.has_active():
         return (
             'an earlier goal was accepted, and has not ended: its execute callback has to return, '
             'and a handle_accepted_callback calls goal_handle.execute()'
         )
-    if former is not None or server.has_served:
+    if server.served_ns:
         return (
             'the goal before it was accepted, and has ended: see that the node knows that the arm '
             'moves no longer, and that positions are compared in rad'

@@ -1,0 +1,29 @@
+"""Requests to cancel a goal that no obstacle has asked for, and why a client sends them."""
+
+from my_robot_basics.checks.scripted_action import ReceivedGoal
+from my_robot_basics.checks.served_action import ServedAction
+from my_robot_basics.feedback.errors import expect
+
+CAUSE = 'a goal is cancelled without an obstacle'
+
+
+def expect_none_for_earlier(server: ServedAction, goal: ReceivedGoal) -> None:
+    """No request comes to cancel a goal because of an obstacle before it. Raises CheckFailed."""
+    expect(
+        not server.is_cancelled(goal, soon=True),
+        expected=f'no request to cancel a goal that came after True on {server.cancelled_on}',
+        seen='one',
+        hint='an obstacle cancels the goal that moves then, and no later one',
+        cause=CAUSE,
+    )
+
+
+def expect_none_for_false(server: ServedAction, goal: ReceivedGoal) -> None:
+    """No request comes to cancel the goal now that False was said. Raises CheckFailed."""
+    expect(
+        not server.is_cancelled(goal, soon=False),
+        expected=f'no request to cancel the goal for False on {server.cancelled_on}',
+        seen='one',
+        hint='look at message.data: only True asks to cancel',
+        cause=CAUSE,
+    )
