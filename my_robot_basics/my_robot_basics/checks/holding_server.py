@@ -6,6 +6,7 @@ from typing import Any
 from rclpy.node import Node
 from rclpy.service import Service
 
+from my_robot_basics.checks.sending import send_until_met
 from my_robot_basics.feedback.errors import expect
 
 MOST_REQUESTS = 500
@@ -75,7 +76,7 @@ class HoldingServer:
 
     def _send(self, send: Callable[[Any, Any], None], response: Any, header: Any) -> None:
         self.sent.append(response)
-        send(response, header)
+        send_until_met(lambda: send(response, header))
 
     def _take(self, request: Any, _: Any) -> Any:
         self.requests.append(request)
