@@ -320,6 +320,11 @@ def at(gaps, *, step_sec, seconds=6.0, **changes):
     return recording(ticked, step_sec=step_sec, seconds=seconds, **changes)
 
 
+def test_two_timers_that_finer_steps_tell_apart_are_no_burst():
+    finer = at([0.04, 0.16], step_sec=0.04)
+    assert rates.pattern_of(in_bursts(0.2, 2, step_sec=0.1, proof=finer)) is None
+
+
 @pytest.mark.parametrize(
     ('gaps', 'is_one'),
     [
