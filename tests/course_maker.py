@@ -48,6 +48,14 @@ def released_course(root: Path) -> Course:
     return Course.at(root)
 
 
+def with_own_database(released: Course, folder: Path) -> Course:
+    """Return a released course with a gradebook in `folder` in which nothing was handed in."""
+    gradebook = folder / 'gradebook'
+    gradebook.mkdir()
+    shutil.copyfile(released.database, gradebook / released.database.name)
+    return Course(root=released.root, gradebook=gradebook)
+
+
 def write_source(course: Course, lesson: NotebookNode) -> None:
     path = course.source_path(TOY)
     path.parent.mkdir(parents=True, exist_ok=True)

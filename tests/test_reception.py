@@ -11,13 +11,12 @@ from types import SimpleNamespace
 import nbformat
 import pytest
 import serving_desk
-from course_maker import TOY, answered, released_course
+from course_maker import TOY, answered, released_course, with_own_database
 from serving_desk import serve_here
 
 from grader.collect.archive_entries import MAX_PARTS
 from grader.common.errors import GradebookError
 from grader.common.text import printable
-from grader.course import Course
 from grader.serving import desk as desk_module
 from grader.serving import inbound as inbound_module
 from grader.serving import reception
@@ -45,10 +44,7 @@ def released(tmp_path_factory):
 
 @pytest.fixture
 def course(released, tmp_path):
-    gradebook = tmp_path / 'gradebook'
-    gradebook.mkdir()
-    (gradebook / 'gradebook.db').write_bytes((released.gradebook / 'gradebook.db').read_bytes())
-    return Course(root=released.root, gradebook=gradebook)
+    return with_own_database(released, tmp_path)
 
 
 @pytest.fixture

@@ -14,7 +14,7 @@ from types import SimpleNamespace
 import nbformat
 import pytest
 import serving_desk
-from course_maker import TOY, answered, released_course
+from course_maker import TOY, answered, released_course, with_own_database
 from nbgrader.auth import Authenticator
 from nbgrader.coursedir import CourseDirectory
 from nbgrader.exchange.default import ExchangeFetchFeedback, ExchangeSubmit
@@ -24,7 +24,6 @@ from traitlets.config import Config
 
 from grader.__main__ import main
 from grader.common.errors import CourseError
-from grader.course import Course
 from grader.grading import REPLACED as REPLACED_MEANWHILE
 from grader.notebook.restore import KEY
 from grader.serving import desk as desk_module
@@ -55,10 +54,7 @@ def released(tmp_path_factory):
 
 @pytest.fixture
 def course(released, tmp_path):
-    gradebook = tmp_path / 'gradebook'
-    gradebook.mkdir()
-    (gradebook / 'gradebook.db').write_bytes((released.gradebook / 'gradebook.db').read_bytes())
-    return Course(root=released.root, gradebook=gradebook)
+    return with_own_database(released, tmp_path)
 
 
 @pytest.fixture
