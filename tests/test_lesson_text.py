@@ -109,7 +109,7 @@ def test_what_is_no_notebook_is_refused_each_time(text, told, checked, tmp_path)
             read_anew(text, tmp_path)
 
 
-@pytest.mark.parametrize('verb', ['release', pytest.param('grade', marks=pytest.mark.starts)])
+@pytest.mark.parametrize('verb', [pytest.param('grade', marks=pytest.mark.starts), 'release'])
 def test_a_lesson_that_is_no_notebook_is_named(verb, tmp_path, capsys):
     course = released_course(tmp_path)
     folder = course.folder('submitted', 'ada', TOY)
