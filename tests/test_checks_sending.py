@@ -4,7 +4,12 @@ import warnings
 
 import pytest
 from my_robot_basics.checks import sending
-from my_robot_basics.checks.sending import ATTEMPTS, send_until_met
+from my_robot_basics.checks.sending import ATTEMPTS, send_until_met, wait_for_readers
+from my_robot_basics.graph.watcher import Watcher
+from rclpy.node import Node
+from std_srvs.srv import Trigger
+
+from my_robot_basics import live
 
 LOST = 'failed to send response (timeout)'
 
@@ -33,3 +38,31 @@ def test_another_warning_is_shown(monkeypatch):
     )
     send_until_met(lambda: warnings.warn('something else', stacklevel=1))
     assert shown == ['something else']
+
+
+@pytest.fixture
+def client():
+    yield live.run(Node, 'asker', key='asker').create_client(Trigger, '/ask')
+    live.stop()
+
+
+def count_looks(node, service, *, unknown_times):
+    """How often it looks for a reader that is unknown so many times."""
+    looks, look_up = [], node.get_subscriptions_info_by_topic
+
+    def look_up_late(name, **options):
+        looks.append(name)
+        return look_up(name, **options) if len(looks) > unknown_times else []
+
+    node.get_subscriptions_info_by_topic = look_up_late
+    wait_for_readers(node, [service])
+    return len(looks)
+
+
+@pytest.mark.starts
+@pytest.mark.usefixtures('client')
+def test_a_response_waits_until_dds_knows_who_reads_it():
+    with Watcher() as here:
+        assert here.spin_until(lambda: here.node.count_clients('/ask') > 0, timeout_sec=20.0)
+        assert count_looks(here.node, '/ask', unknown_times=2) == 3
+        assert count_looks(here.node, '/nobody_asks', unknown_times=2) == 1

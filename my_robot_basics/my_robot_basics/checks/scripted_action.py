@@ -10,7 +10,11 @@ from rclpy.action.server import ServerGoalHandle
 from rclpy.node import Node
 from rclpy.task import Future
 
+from my_robot_basics.checks.sending import wait_for_readers
+
 Ending = Literal['succeeded', 'aborted', 'canceled']
+SERVICES = 'send_goal', 'get_result', 'cancel_goal'
+"""What an action's server answers to."""
 
 
 @dataclass
@@ -53,6 +57,7 @@ class ScriptedActionServer:
         """How often it was started."""
         self._node = node
         self._server: ActionServer | None = None
+        self._services = [f'{name}/_action/{end}' for end in SERVICES]
         self._executed: list[ReceivedGoal] = []
 
     def start(self) -> None:
@@ -84,6 +89,7 @@ class ScriptedActionServer:
             received.finish('succeeded')
         if accepts:
             self._executed.append(received)
+        wait_for_readers(self._node, self._services)
         return GoalResponse.ACCEPT if accepts else GoalResponse.REJECT
 
     def _accepts(self, request: Any) -> bool:
@@ -96,6 +102,7 @@ class ScriptedActionServer:
     async def _execute(self, handle: ServerGoalHandle) -> Any:
         received = self._handles[bytes(handle.goal_id.uuid)]
         ending = await received.end
+        wait_for_readers(self._node, self._services)
         if ending == 'succeeded':
             handle.succeed()
         elif ending == 'aborted':
@@ -106,4 +113,5 @@ class ScriptedActionServer:
 
     def _cancel(self, handle: ServerGoalHandle) -> CancelResponse:
         self._handles[bytes(handle.goal_id.uuid)].cancels.append(time.time_ns())
+        wait_for_readers(self._node, self._services)
         return CancelResponse.ACCEPT if self.cancels else CancelResponse.REJECT
