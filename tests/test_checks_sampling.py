@@ -163,6 +163,36 @@ def test_bursts_leave_no_doubt_on_the_robots_clock(monkeypatch, node, seen):
 
 
 @pytest.mark.parametrize(
+    ('step_sec', 'rate_hz', 'is_driven'),
+    [
+        (0.1, 10, True),
+        (0.05, 40, True),
+        # an old timer of 5 Hz beside one of 10 Hz, 13 ms later
+        (0.01, 15, True),
+        (0.01, 76, False),
+        (0.005, 15, False),
+    ],
+)
+def test_a_pattern_is_driven_where_that_is_sooner_than_the_wall_clock(
+    monkeypatch, step_sec, rate_hz, is_driven
+):
+    driven = []
+
+    def drive(_, *, seconds, step_sec):
+        driven.append(step_sec)
+        return seen
+
+    monkeypatch.setattr(sampling, 'drive', drive)
+    monkeypatch.setattr(sampling.rates, 'pattern_in', lambda _: 'a pattern')
+    monkeypatch.setattr(sampling.rates, 'pattern_of', lambda _: 'a pattern')
+    seen = replace(
+        on_wall([1.0 / rate_hz] * 20, late_sec=0.0), clock='simulated', step_sec=step_sec
+    )
+    found = sampling._pattern(None, sampling.Uneven(seen), step_sec=0.1)
+    assert (found is not None, len(driven)) == (is_driven, 2 * is_driven)
+
+
+@pytest.mark.parametrize(
     ('sent_sec', 'ignores'),
     [
         # a timer that the jump of the clock sets off, and a callback that sends several

@@ -28,6 +28,9 @@ SECONDS_LEAST = 2.0
 who remembers when it published last is silent on the wall clock until that has come as far."""
 PATTERN_SEC = 6.0
 """Messages that come by turns, or several at once each second, have shown it by then."""
+PATTERN_STEP_SEC, STEPS_APART = 0.01, 4
+"""Finer steps take as long as the wall clock, and so do fine ones for many messages: fewer than so
+many steps from one to the next."""
 
 
 def simulated(
@@ -109,13 +112,20 @@ def _sampled(topic: DrivenTopic, *, seconds: float, step_sec: float) -> Recordin
 def _pattern(topic: DrivenTopic, first: Uneven, *, step_sec: float) -> Recording | None:
     """A recording of messages in a pattern that no timer makes: by these steps, and by finer ones.
 
-    None where the first drive has shown none, or by steps so fine that the wall clock is as quick.
+    None where the first drive has shown none, or where the wall clock is as quick.
     """
     seen = first.recording
-    if seen.step_sec < FINER_BELOW_SEC or rates.pattern_in(seen) is None:
+    if not _shows_soon(seen) or rates.pattern_in(seen) is None:
         return None
     recording, finer = (
         drive(topic, seconds=PATTERN_SEC, step_sec=step_sec / parts) for parts in (1, FINE_PARTS)
     )
     shown = replace(recording, proof=finer)
     return shown if rates.pattern_of(shown) else None
+
+
+def _shows_soon(seen: Recording) -> bool:
+    if seen.step_sec >= FINER_BELOW_SEC:
+        return True
+    is_rare = seen.rate_hz * seen.step_sec * STEPS_APART <= 1.0
+    return is_rare and seen.step_sec >= PATTERN_STEP_SEC
