@@ -4,7 +4,14 @@ import itertools
 import time
 
 import pytest
-from my_robot_basics.checks import CheckFailed, passage, relay, relay_endpoints, topic_endpoints
+from my_robot_basics.checks import (
+    CheckFailed,
+    passage,
+    relay,
+    relay_endpoints,
+    relays,
+    topic_endpoints,
+)
 from my_robot_basics.checks.latched import LATCHED
 from nodes.running import imported, running
 from rclpy.duration import Duration
@@ -46,6 +53,7 @@ def run():
 @pytest.fixture
 def impatient(monkeypatch):
     monkeypatch.setattr(relay_endpoints, 'TIMEOUT_SEC', 1.0)
+    monkeypatch.setattr(relays, 'LOST_SEC', 1.0)
     monkeypatch.setattr(topic_endpoints, 'PUBLISHER_SEC', 1.0)
 
 
@@ -457,7 +465,7 @@ def test_a_message_at_which_a_callback_raised_is_not_waited_for(run, monkeypatch
 
             return receive
 
-    monkeypatch.setattr(relay_endpoints, 'TIMEOUT_SEC', 3600.0)
+    monkeypatch.setattr(relays, 'LOST_SEC', 3600.0)
     run(Raises)
     for check in check_delivery, check_late_joiner:
         with pytest.raises(CheckFailed, match='saw none in 1 s: its callback raised ValueError'):

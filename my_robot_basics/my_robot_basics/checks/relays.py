@@ -19,11 +19,14 @@ from my_robot_basics.checks.variety import filled, varied
 from my_robot_basics.feedback.errors import fail
 from my_robot_basics.graph import familiar
 from my_robot_basics.graph.watcher import Watcher
+from my_robot_basics.session.pressure import free_turns
 
 EVERYTHING = QoSProfile(depth=5000, reliability=ReliabilityPolicy.BEST_EFFORT)
 """How to listen to all that is published on the source."""
 AGAIN_SEC = 0.1
 """How long to wait for a message to come out before it is sent once more."""
+LOST_SEC = 4.0
+"""What has not come out in so much time that was free is lost: no relay waits."""
 TIMES_RAISED = 10
 """After so many times, a callback that raised has decided: see `CallbackErrors.expect_none`."""
 
@@ -31,9 +34,8 @@ TIMES_RAISED = 10
 def relay(source: str, *, to: str, fields: Sequence[str] = ()) -> 'Relay':
     """What a node makes of the topic `source` when it publishes again on the topic `to`.
 
-    `relay('/joints', to='/monitor').assert_carries(make_message, qos_profile=offered)`, where
-    `make_message` returns another message at each call. Where the task does not say
-    "unchanged", `fields` names those that have to be the same: a new stamp is then allowed.
+    `relay('/joints', to='/monitor').assert_carries(make_message, qos_profile=offered)`. Where the
+    task does not say "unchanged", `fields` names those that stay: a new stamp is then allowed.
     """
     return Relay(source, to, tuple(fields))
 
@@ -52,12 +54,11 @@ class Relay:
     def assert_carries(self, make_message: Callable[[], Any], *, qos_profile: QoSProfile) -> None:
         """Each message that is offered with that profile on `source` comes out on `to`, once.
 
-        Nothing else does, and its `fields` are the same. `make_message` makes each another
-        one; some are sent twice in a row, or with zeros, negative and large numbers in place of
-        theirs. The first is sent again and again until it comes out. The others are sent one at a
-        time: over a hundred in a row (fewer where that takes long) have to come out before the
-        next one, and once. So have one after a pause, and two right after each other. No callback
-        raises.
+        Nothing else does, and its `fields` are the same. `make_message` makes each another one;
+        some are sent twice, or with zeros, negative and large numbers. The first is sent again and
+        again until it comes out. Then each of a hundred in a row (fewer where that takes long) has
+        to come out before the next one, and once; so have one after a pause, and two right after
+        each other. No callback raises.
         """
         make_message = filled(make_message)
         with Watcher(shared=True) as watcher:
@@ -157,7 +158,7 @@ class Relay:
         again: Publisher | None = None,
     ) -> None:
         """Wait for the message on `to`, behind so many; publish it `again` and again meanwhile."""
-        for times in range(1, round(relay_endpoints.TIMEOUT_SEC / AGAIN_SEC) + 1):
+        for times in free_turns(LOST_SEC):
             if again is not None:
                 again.publish(message)
             if watcher.spin_until(
@@ -168,7 +169,7 @@ class Relay:
             if times % TIMES_RAISED == 0 and raised.hint():
                 break
         others = recorder.messages()[before:]
-        has_others, seconds = bool(others), times * AGAIN_SEC
+        has_others, seconds = bool(others), min(times * AGAIN_SEC, LOST_SEC)
         fail(
             expected=f'a message from {self.source} to be republished on {self.to}, unchanged',
             seen=f'only others in {seconds:g} s' if has_others else f'none in {seconds:g} s',
@@ -182,10 +183,9 @@ class Relay:
 
     def _what(self, message: Any) -> bytes:
         """What of a message has to come out as it is: all of it, or those fields."""
-        kept = message
         if self.fields:
-            kept = type(message)(**{name: getattr(message, name) for name in self.fields})
-        return serialize_message(kept)
+            message = type(message)(**{name: getattr(message, name) for name in self.fields})
+        return serialize_message(message)
 
     def _is_same(self, received: Any, sent: Any) -> bool:
         return self._what(received) == self._what(sent)

@@ -16,7 +16,7 @@ from my_robot_basics.graph.lean_executor import LeanExecutor
 from my_robot_basics.graph.snapshot import GraphSnapshot
 from my_robot_basics.graph.unheeded import Unheeded
 from my_robot_basics.session import classroom, interactions
-from my_robot_basics.session.pressure import Stopwatch
+from my_robot_basics.session.pressure import free_turns
 
 TRANSPORTS = 'FASTDDS_BUILTIN_TRANSPORTS'
 HIDDEN = '_'
@@ -26,8 +26,6 @@ MOST_ENDPOINTS = 1_000
 thousands, no look at the graph comes to an end."""
 COUNT_EVERY_SEC = 0.5
 LOOK_EVERY_SEC = 0.05
-BUSY_TIMES = 5.0
-"""How many times as long an answer may take where processes have to wait for a processor."""
 
 
 @contextmanager
@@ -152,12 +150,8 @@ class Watcher:
         # most is done at once: then Linux need not be asked how busy the machine is
         if self.spin_until(done, timeout_sec=min(LOOK_EVERY_SEC, free_sec)):
             return True
-        watch = Stopwatch()
-        while not self.spin_until(done, timeout_sec=LOOK_EVERY_SEC):
-            waited_sec = watch.wall_sec()
-            if watch.free_sec() >= free_sec or waited_sec >= BUSY_TIMES * free_sec:
-                return False
-        return True
+        turns = free_turns(free_sec)
+        return any(self.spin_until(done, timeout_sec=LOOK_EVERY_SEC) for _ in turns)
 
     def _expect_few_endpoints(self) -> None:
         if time.monotonic() < self._next_count:

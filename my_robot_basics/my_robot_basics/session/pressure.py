@@ -1,12 +1,16 @@
 """How busy the machine is, as Linux tells it: time without a free processor proves nothing."""
 
+import itertools
 import re
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 CPU, UPTIME = Path('/proc/pressure/cpu'), Path('/proc/uptime')
 COARSE_SEC = 0.02
 """Linux counts idle time in hundredths of a second."""
+BUSY_TIMES = 5.0
+"""How many times as long an answer may take where processes have to wait for a processor."""
 
 
 def stalled_sec() -> float:
@@ -56,3 +60,12 @@ class Stopwatch:
     def is_busy(self) -> bool:
         """Whether some process had to wait for a processor for most of it."""
         return self.free_sec() < 0.5 * self.wall_sec()
+
+
+def free_turns(free_sec: float) -> Iterator[int]:
+    """Yield 1, 2, … until so much time has passed in which no process waited for a processor."""
+    watch = Stopwatch()
+    for turn in itertools.count(1):
+        yield turn
+        if watch.free_sec() >= free_sec or watch.wall_sec() >= BUSY_TIMES * free_sec:
+            return
