@@ -59,7 +59,7 @@ def test_another_level_is_named_as_such():
     with running('ik_solver'), rosout('ik_solver_node') as log:
         ask(log, TARGET)
         with pytest.raises(CheckFailed, match=r'saw no WARN record but .* needs the level WARN'):
-            log.expect_warning(timeout_sec=1.0)
+            log.expect_warning(free_sec=1.0)
 
 
 @pytest.mark.parametrize(
@@ -76,7 +76,7 @@ def test_a_near_miss_is_told_what_is_missing(node, reason):
     with running(node), rosout('ik_solver_node') as log:
         ask(log, TARGET)
         with pytest.raises(CheckFailed, match=reason):
-            log.expect_angles(ANGLES, timeout_sec=1.0)
+            log.expect_angles(ANGLES, free_sec=1.0)
 
 
 @pytest.mark.slow
@@ -87,7 +87,7 @@ def test_what_was_logged_at_another_level_is_shown():
             "saw no INFO record but 'WARN the target is 3 m.*: warn only when inverse_kinematics"
         )
         with pytest.raises(CheckFailed, match=words):
-            log.expect_angles(ANGLES, timeout_sec=1.0)
+            log.expect_angles(ANGLES, free_sec=1.0)
 
 
 @pytest.mark.slow
@@ -98,7 +98,7 @@ def test_an_answer_to_an_older_question_does_not_count():
             log.expect_angles(ANGLES)
             log.mark()
             with pytest.raises(CheckFailed):
-                log.expect_angles(ANGLES, timeout_sec=0.5)
+                log.expect_angles(ANGLES, free_sec=0.5)
         with rosout('ik_solver_node') as later:
             # latched: the old records do arrive, and are left out
             assert not later.wait_for(lambda log: bool(log.records), timeout_sec=0.5)
@@ -110,7 +110,7 @@ def test_the_target_is_named():
     with running('ik_one_branch'), rosout('ik_solver_node') as log:
         ask(log, TARGET)
         with pytest.raises(CheckFailed, match=r'° for \(1\.200, 0\.800\) in the INFO log of /ik'):
-            log.expect_angles(ANGLES, target=(1.2, 0.8), timeout_sec=1.0)
+            log.expect_angles(ANGLES, target=(1.2, 0.8), free_sec=1.0)
 
 
 @pytest.mark.slow
@@ -118,7 +118,7 @@ def test_no_warning_is_a_failure():
     with running('ik_solver'), rosout('ik_solver_node') as log:
         ask(log, TARGET)
         with pytest.raises(CheckFailed, match='expected a warning in the log of /ik_solver_node'):
-            log.expect_warning(timeout_sec=0.5)
+            log.expect_warning(free_sec=0.5)
 
 
 def test_a_node_that_does_not_run_is_named(monkeypatch):
@@ -173,7 +173,7 @@ def test_a_warning_behind_the_answer_is_not_about_the_target_before():
     with running('ik_always_warns'), rosout('ik_solver_node') as log:
         ask(log, TARGET)
         with pytest.raises(CheckFailed, match="saw 'careful': warn only when"):
-            log.expect_angles(ANGLES, may_lag=True, timeout_sec=1.0)
+            log.expect_angles(ANGLES, may_lag=True, free_sec=1.0)
 
 
 def test_another_name_is_the_cause_where_a_node_runs(monkeypatch):

@@ -13,8 +13,9 @@ EXTRA_SEC = 0.3
 """How long angles may come behind a warning …"""
 WARNED_SEC = 0.1
 """… And a warning behind the angles: a later one is found with the next target."""
-ONCE_MORE_SEC = 2.0
-"""How long to wait for the answer to a target that is sent a second time."""
+ANSWER_SEC, ONCE_MORE_SEC = 3.0, 1.5
+"""How long to wait for the answer to a target, and to one that is sent a second time, of time that
+was free."""
 ONE_LATE = 'each answer is one target late: use the point that the callback is given, at once'
 EARLIER = 'these are the angles of an earlier target: use the point that the callback is given'
 _NAN = re.compile(r'\bnan\b', re.IGNORECASE)
@@ -72,15 +73,15 @@ class Log(NodeLog):
         *,
         target: Sequence[float] = (),
         within_deg: float = angles.WITHIN_DEG,
-        timeout_sec: float = 5.0,
+        free_sec: float = ANSWER_SEC,
         may_lag: bool = False,
     ) -> bool:
         """INFO records hold every one of these angles, on any number of lines; no WARN is there.
 
         Other numbers don't matter, up to a thousand, nor do whole turns. Raises CheckFailed after
-        `timeout_sec`; it names the `target` (m) that has these angles. With `may_lag`, a WARN
-        before the answer may be about the target before, which a timer has taken up once more;
-        returns whether there was one.
+        `free_sec` of free time; it names the `target` (m) that has these angles. With `may_lag`,
+        a WARN before the answer may be about the target before, which a timer has taken up once
+        more; returns whether there was one.
         """
         wanted = list(angles_deg)
 
@@ -88,7 +89,7 @@ class Log(NodeLog):
             return not angles.missing(wanted, log.numbers(), within_deg)
 
         what = f'({", ".join(f"{metres:.3f}" for metres in target)})' if target else 'a target'
-        is_there = self.wait_for(is_answered, timeout_sec=timeout_sec)
+        is_there = self.wait_for_answer(is_answered, free_sec=free_sec)
         self._expect_no_table()
         if not is_there:
             listed = ', '.join(f'{angle:.2f}°' for angle in wanted)
@@ -112,16 +113,18 @@ class Log(NodeLog):
         self._answer = wanted
         return before > 0
 
-    def expect_warning(self, *, no_angles: Iterable[float] = (), timeout_sec: float = 5.0) -> None:
+    def expect_warning(
+        self, *, no_angles: Iterable[float] = (), free_sec: float = ANSWER_SEC
+    ) -> None:
         """At least one WARN record comes, and no INFO record with angles.
 
         That is one that looks like those which held the angles of a target in reach, and has
         other numbers; once the warning is there, these very angles, too; and one of `no_angles`
         beside the θ2 of a stretched or folded arm, unless a target in reach had the same beside
-        its angles. Raises CheckFailed after `timeout_sec`.
+        its angles. Raises CheckFailed after `free_sec` of free time.
         """
         bearings = list(no_angles)
-        if not self.wait_for(lambda log: log.has('WARN'), timeout_sec=timeout_sec):
+        if not self.wait_for_answer(lambda log: log.has('WARN'), free_sec=free_sec):
             fail(
                 expected=f'a warning in the log of {self.node_name}',
                 seen=self.shown('WARN'),
@@ -158,7 +161,7 @@ class Log(NodeLog):
             return ''
         since_ns = self._since_ns
         self.ask(*self._asked)
-        is_late = self.wait_for(is_answered, timeout_sec=ONCE_MORE_SEC)
+        is_late = self.wait_for_answer(is_answered, free_sec=ONCE_MORE_SEC)
         self._since_ns = since_ns
         return ONE_LATE if is_late else ''
 

@@ -97,6 +97,10 @@ class NodeLog:
         """Listen until `done(log)`, at most `timeout_sec`; whether it came to that."""
         return self._watcher.spin_until(lambda: done(self), timeout_sec=timeout_sec)
 
+    def wait_for_answer(self, done: Callable[[Self], bool], *, free_sec: float) -> bool:
+        """Listen until `done(log)`, at most `free_sec` of time that was free; whether it did."""
+        return self._watcher.spin_until_free(lambda: done(self), free_sec=free_sec)
+
     def _meet(self) -> None:
         node = self._watcher.node
         latched = QoSProfile(depth=DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL)
