@@ -1,3 +1,4 @@
+import errno
 import io
 import random
 import shutil
@@ -238,9 +239,10 @@ def test_an_encrypted_file_is_named(tmp_path):
     assert found['b.py'] == 'y'
 
 
-def test_a_full_disk_is_not_the_archive_s_fault(tmp_path, monkeypatch):
+@pytest.mark.parametrize('number', [errno.ENOSPC, errno.EDQUOT, errno.EMFILE, errno.ENFILE])
+def test_a_machine_that_is_full_is_not_the_archive_s_fault(tmp_path, monkeypatch, number):
     def full(*_, **__):
-        raise OSError(28, 'No space left on device')
+        raise OSError(number, 'No space left on device')
 
     monkeypatch.setattr(archives, 'copy', full)
     archive = zipped(tmp_path, ('a.py', b'x'))

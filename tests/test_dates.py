@@ -1,3 +1,5 @@
+import time
+
 import pytest
 from dateutil.parser import parse
 
@@ -22,6 +24,37 @@ from grader.common.dates import date_in, date_of, utc_of
     ],
 )
 def test_a_time_as_nbgrader_writes_it_is_read(text, utc):
+    assert date_in(text).isoformat() == utc
+
+
+@pytest.fixture
+def clock_in(monkeypatch):
+    """Set this machine's time zone."""
+
+    def set_zone(name):
+        monkeypatch.setenv('TZ', name)
+        time.tzset()
+
+    yield set_zone
+    monkeypatch.undo()
+    time.tzset()
+
+
+@pytest.mark.parametrize(
+    ('zone', 'text', 'utc'),
+    [
+        ('Asia/Shanghai', '2026-01-02 12:00:00 CST', '2026-01-02T04:00:00+00:00'),
+        ('America/Chicago', '2026-01-02 12:00:00 CST', '2026-01-02T18:00:00+00:00'),
+        ('America/Chicago', '2026-07-02 12:00:00 CDT', '2026-07-02T17:00:00+00:00'),
+        ('UTC', '2026-01-02 12:00:00 CST', '2026-01-02T18:00:00+00:00'),
+        ('Asia/Kolkata', '2026-01-02 12:00:00 IST', '2026-01-02T06:30:00+00:00'),
+        ('Asia/Shanghai', '2026-01-02 12:00:00 UTC', '2026-01-02T12:00:00+00:00'),
+        ('Asia/Shanghai', '2026-01-02 12:00:00 +0200', '2026-01-02T10:00:00+00:00'),
+    ],
+)
+def test_a_name_that_several_zones_have_is_that_of_this_machine(clock_in, zone, text, utc):
+    """CST is Chinese, too: an exchange there would be six hours behind UTC, and all too late."""
+    clock_in(zone)
     assert date_in(text).isoformat() == utc
 
 

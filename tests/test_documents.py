@@ -8,10 +8,23 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+from my_robot_basics.session import package_files
+from my_robot_basics.validate import limits as cell_limits
+from my_robot_basics.validate.names import MAX_SOURCE_CHARACTERS
+from my_robot_basics.validate.outputs import MAX_OUTPUT_CHARACTERS
+
+from grader.collect import uploads
+from grader.common import dates
+from grader.notebook import raw_notebook
+from grader.report import feedback, formgrader, similar_answers
+from grader.sandbox import limits
+from grader.sandbox.system_calls import ALLOWED
 
 ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / 'my_robot_basics/my_robot_basics'
-DOCUMENTS = [*sorted(ROOT.glob('*.md')), *sorted(ROOT.glob('docs/*.md'))]
+DOCUMENTS = [
+    path for where in ('*', 'docs/*', 'deploy/*/*') for path in sorted(ROOT.glob(f'{where}.md'))
+]
 FOLDERS = (ROOT, PACKAGE.parent, PACKAGE)
 """A path may begin in the repository's root, or in the package that students import."""
 KNOWN = {path.name for folder in FOLDERS for path in folder.iterdir() if path.is_dir()} - {
@@ -101,6 +114,44 @@ def test_what_is_looked_for_is_found():
     assert is_named('grader.course.Course')
     assert not is_named('grader.course.Nothing')
     assert not is_named('grader.never.Nothing')
+
+
+# --- figures that the code decides ---------------------------------------------------------------
+
+FIGURES = {
+    'SECURITY.md': [
+        f'{uploads.LIMITS_OF_ONE.cpu_sec} s of processor time and '
+        f'{uploads.LIMITS_OF_ONE.memory_bytes // 2**30} GB for each',
+        f'{raw_notebook.MAX_NOTEBOOK_BYTES // 10**6} MB, {raw_notebook.MAX_CELLS:,} cells, '
+        f'{raw_notebook.MAX_CHARACTERS:,} characters, {raw_notebook.MAX_PICTURES} pictures',
+        f'which holds no gradebook; {MAX_SOURCE_CHARACTERS:,} characters',
+        f'{cell_limits.MAX_MESSAGE_BYTES // 10**6} MB, {cell_limits.MAX_MESSAGE_PARTS:,} parts, '
+        f'{MAX_OUTPUT_CHARACTERS:,} characters a cell',
+        f'{formgrader.LIMITS.cpu_sec} or {feedback.LIMITS.cpu_sec} s of processor time',
+        f'{similar_answers.LIMITS.cpu_sec} s for each exercise; answers of up to '
+        f'{similar_answers.MOST_CHARACTERS:,} characters',
+        f'outputs of {cell_limits.MAX_NOTEBOOK_OUTPUT_CHARACTERS:,} characters together',
+        f'one regular expression, {dates.MAX_BYTES} bytes',
+        f'at most {package_files.MAX_FILES} files and {package_files.MAX_BYTES // 10**6} MB',
+    ],
+    'README.md': [
+        f'{limits.SUBMISSION_MEMORY_BYTES // 2**20} MB are reserved for',
+        f'does not return within {cell_limits.VALIDATE_TIMEOUT_SEC} s',
+        f'grading gives it {cell_limits.STUDENT_CELL_TIMEOUT_SEC:.0f} s',
+    ],
+    'docs/architecture.md': [
+        f'{cell_limits.STUDENT_CELL_TIMEOUT_SEC:.0f} s for a cell, '
+        f'{cell_limits.BUILD_TIMEOUT_SEC:.0f} s for one that builds a package',
+        f'{cell_limits.CHECK_TIMEOUT_SEC:.0f} s each at most',
+    ],
+    'docs/decisions.md': [f'A list of {len(ALLOWED)} names and numbers'],
+}
+
+
+@pytest.mark.parametrize('name', FIGURES)
+def test_a_limit_that_a_document_names_is_that_of_the_code(name):
+    text = ' '.join((ROOT / name).read_text(encoding='utf-8').split())
+    assert [figure for figure in FIGURES[name] if figure not in text] == []
 
 
 # --- one version ---------------------------------------------------------------------------------

@@ -93,7 +93,7 @@ def test_moodles_worksheet_needs_no_roster_where_the_numbers_came_with_the_submi
         ['Participant 8003', '王 小明', '5.0', '-'],
     ]
     said = capsys.readouterr().out
-    assert '03_publisher: Cleo waits for a person' in said
+    assert '03_publisher: Cleo waits for a person, in the formgrader' in said
     assert (
         '03_publisher: Bob has no Moodle number: only work collected from '
         '*Download all submissions* has one. Enter this score by hand, or use --roster FILE.\n'
@@ -140,6 +140,17 @@ def test_canvas_gets_the_columns_up_to_the_section_and_one_of_scores(course, ros
         ['小明, 王', '18153', 's3', 'wang', 'B', '5.0'],
     ]
     assert 'Bob' not in capsys.readouterr().out
+
+
+def test_a_row_that_ends_early_has_nothing_in_its_last_columns(course, roster):
+    """As where a roster was edited by hand: a spreadsheet leaves out what is empty."""
+    canvas_rows = canvas(
+        course, '--roster', roster('Student,ID,Section', 'Class of 2026', 'Bob,2')
+    )
+    assert canvas_rows == [['Student', 'ID', 'Section', '03_publisher'], ['Bob', '2', '', '1.0']]
+    head = 'Identifier,Full name,Grade,Last modified (grade)'
+    moodle_rows = moodle(course, '--roster', roster(head, 'A note', 'Participant 8002,Bob'))
+    assert moodle_rows == [head.split(','), ['Participant 8002', 'Bob', '1.0', '']]
 
 
 def test_canvas_without_a_roster_is_told_numbers(course, capsys):

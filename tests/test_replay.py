@@ -96,6 +96,13 @@ def test_only_what_was_graded_has_a_seed(graded, capsys):
     assert 'what is recorded is stored already' in capsys.readouterr().err
 
 
+def test_to_store_needs_a_seed(graded, capsys):
+    before = everything(graded)
+    assert main(['grade', '--store'], course=graded) == 1
+    assert '--store needs --seed HEX: ./course grade alone stores' in capsys.readouterr().err
+    assert everything(graded) == before
+
+
 def test_asked_to_it_stores(graded, capsys):
     other = f'{int(graded.seed(TOY, "ada"), 16) ^ 1:x}'
     before = everything(graded)

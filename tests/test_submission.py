@@ -18,7 +18,6 @@ from grader.notebook.reading import read_notebook
 from grader.notebook.submission import (
     MAX_PYTHON_BYTES,
     MAX_PYTHON_FILES,
-    extra_python_files,
     read_submission,
 )
 
@@ -298,7 +297,8 @@ def test_only_plain_python_files_beside_the_notebook_are_extra(tmp_path):
     (tmp_path / 'deeper').mkdir()
     (tmp_path / 'deeper' / 'c.py').write_text('')
     (tmp_path / 'link.py').symlink_to(tmp_path / 'a.py')
-    assert extra_python_files(tmp_path) == [tmp_path / 'a.py', tmp_path / 'b.py']
+    submission = read_submission(tmp_path, student_id='ada', assignment='03_publisher')
+    assert submission.extra_files == (tmp_path / 'a.py', tmp_path / 'b.py')
 
 
 def test_reading_changes_nothing(tmp_path):

@@ -5,7 +5,7 @@ import re
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-FOLDERS = ('my_robot_basics/my_robot_basics', 'grader', 'launcher')
+FOLDERS = ('my_robot_basics/my_robot_basics', 'grader', 'launcher', 'deploy')
 INSTEAD = {
     'mend': 'fix',
     'mended': 'fixed',

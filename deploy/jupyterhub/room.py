@@ -12,7 +12,7 @@ import subprocess
 import sys
 
 CHUNK_BYTES = 65_536
-PATIENCE_SEC = 10.0
+STOP_GRACE_SEC = 10.0
 """A server that was told to end has so long for its kernels."""
 
 
@@ -81,7 +81,7 @@ async def run(descriptor: int, port: int, command: list[str]) -> int:
     )
     if not ended.done():
         server.terminate()
-        await asyncio.wait([ended], timeout=PATIENCE_SEC)
+        await asyncio.wait([ended], timeout=STOP_GRACE_SEC)
     relaying.close()  # browsers stay connected until they are cut off: nobody waits for them
     return ended.result() if ended.done() else 1
 

@@ -1,4 +1,4 @@
-"""What `./course doctor` prints: what keeps student code in, and who can hear whose nodes."""
+"""What `./course doctor` prints: what keeps student code in, and whose nodes meet whose."""
 
 import argparse
 

@@ -40,6 +40,8 @@ def _run_grade(
 ) -> int:
     if asked.store and asked.seed == RECORDED:
         raise CourseError('--store needs --seed HEX: what is recorded is stored already')
+    if asked.store and not asked.seed:
+        raise CourseError('--store needs --seed HEX: ./course grade alone stores what it finds')
     if asked.seed and not asked.store:
         return _replay(course, submissions, asked, backend)
     run = Run(datetime.now().astimezone(), seed=asked.seed or '')

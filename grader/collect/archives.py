@@ -4,7 +4,6 @@ Each file that is wanted is copied to a fresh name of ours in a folder of ours. 
 archive gives is only ever read as text, so no link, no `..` and no device can lead anywhere.
 """
 
-import errno
 import lzma
 import struct
 import tarfile
@@ -18,6 +17,7 @@ from pathlib import Path
 
 from grader.collect.archive_entries import ArchiveEntry, Refused, copy, entries
 from grader.collect.unpack_limits import UnpackLimits
+from grader.common.errors import MACHINE_FULL
 from grader.common.text import shorten
 
 MAX_FILE_BYTES = 50_000_000
@@ -32,7 +32,6 @@ _BROKEN: tuple[type[Exception], ...] = (
     OSError,
 )
 _BROKEN += (ValueError, OverflowError, RuntimeError, struct.error, KeyError, IndexError)
-_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EMFILE)
 
 
 @dataclass(frozen=True)
@@ -95,8 +94,8 @@ def _copied(entry: ArchiveEntry, aside: Path, left: UnpackLimits) -> tuple[Path 
 
 
 def _broken(error: Exception) -> str:
-    """Put into words what is wrong with an archive; raise it where it is the disk."""
-    if isinstance(error, OSError) and error.errno in _FULL:
+    """Put into words what is wrong with an archive; raise it where the machine is full."""
+    if isinstance(error, OSError) and error.errno in MACHINE_FULL:
         raise error
     why = shorten(' '.join(str(error).split()), 100) or 'it ends too early'
     return f'broken: {why}; get it again, or collect the folder that it was made from'

@@ -4,7 +4,6 @@ The submission that counts lies in gradebook/submitted/STUDENT/ASSIGNMENT/. What
 in gradebook/submitted_before/STUDENT/ASSIGNMENT/NUMBER/, with the grade that it had.
 """
 
-import errno
 import shutil
 import tempfile
 from collections.abc import Callable, Iterator
@@ -26,7 +25,7 @@ from grader.collect.submission_folders import (
 )
 from grader.collect.uploads import look_into
 from grader.common.dates import date_of
-from grader.common.errors import CourseError, TaskFailed
+from grader.common.errors import DISK_FULL, CourseError, TaskFailed
 from grader.common.files import write_whole
 from grader.course import Course
 from grader.export.scores import as_csv
@@ -38,7 +37,6 @@ from grader.storage.submitted import known_students
 
 NEW, AGAIN, EARLIER, KNOWN = 'new', 'again', 'earlier', 'known'
 """What became of a submission: the first one, a later one, an earlier one, one that was there."""
-FULL = (errno.ENOSPC, errno.EDQUOT)
 LEFT, UNUSED = 'left', 'unused'
 """What was not taken: a person should look at it, or nobody would have graded it."""
 
@@ -81,7 +79,7 @@ def collect(course: Course, source: Path, *, file_times: bool = False) -> Iterat
             for each, problem in zip(hand_ins, problems, strict=True):
                 yield _row(course, each, problem, grades)
         except OSError as error:
-            if error.errno not in FULL:
+            if error.errno not in DISK_FULL:
                 raise
             raise CourseError(
                 'the disk is full: what was collected is kept whole; free some space, and collect '
@@ -102,7 +100,7 @@ def _row(
         if not problem and each.remark:
             reason = f'{reason}; {each.remark}' if reason else each.remark
     except OSError as error:
-        if error.errno in FULL:
+        if error.errno in DISK_FULL:
             raise
         outcome, reason = LEFT, f'{error.strerror}: {error.filename}'
     except TaskFailed as why:  # what lies in its place already is too much

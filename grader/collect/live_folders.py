@@ -5,7 +5,6 @@ later. The user whose it is, which nobody can choose, comes with it; so does the
 Linux last saw it changed, which nobody can set.
 """
 
-import errno
 import os
 import pwd
 import stat
@@ -21,6 +20,7 @@ from grader.collect.archives import MAX_FILE_BYTES
 from grader.collect.incoming import Incoming
 from grader.collect.unpack_limits import UnpackLimits
 from grader.common.dates import utc_of
+from grader.common.errors import MACHINE_FULL
 
 LINK = 'a link: only files are taken'
 DEVICE = 'a device or the like: only files are taken'
@@ -31,7 +31,6 @@ ONE = {'files': 5_000, 'bytes': 200_000_000}
 """One student's archive or folder, with all that the course's own bundle holds."""
 _FLAGS = os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_NOCTTY | os.O_CLOEXEC
 _CHUNK = 1 << 20
-_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EMFILE, errno.ENFILE)
 
 
 @dataclass(frozen=True)
@@ -95,7 +94,7 @@ class LiveFolder:
         except PermissionError:
             yield Incoming(parts, problem='it must not be read: see its permissions')
         except OSError as error:  # it is gone or a link meanwhile, or the disk is damaged
-            if error.errno in _FULL:
+            if error.errno in MACHINE_FULL:
                 raise
             yield Incoming(parts, problem=f'it can not be read: {error.strerror}')
 

@@ -89,7 +89,6 @@ def match(
             if name.endswith('.py') and not problem_of_id(name)
         }
         used |= {files[name] for name in extra}
-        used |= {files[name] for name in extra}
         left_out: list[str] = []
         for package in asked_for.get(owner.assignment, ()):
             number = '' if owner.by_folder or notebook.archive else number_of(notebook)

@@ -1,6 +1,7 @@
 """Read a time as nbgrader writes it, and in no other form: strangers wrote the text."""
 
 import re
+import time
 from datetime import UTC, datetime, timedelta, timezone, tzinfo
 from pathlib import Path
 from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
@@ -14,7 +15,8 @@ _FORM = re.compile(
 )
 _HOURS = {'WEST': 1, 'BST': 1, 'CEST': 2, 'EEST': 3, 'JST': 9, 'AEST': 10, 'AEDT': 11, 'NZDT': 13}
 _HOURS |= {'EDT': -4, 'CDT': -5, 'CST': -6, 'MDT': -6, 'PDT': -7, 'PST': -8}
-"""Names that clocks show and the time zone database does not have, with their hours from UTC."""
+"""Names that clocks show and the time zone database does not have, with their hours from UTC; one
+that this machine's clock shows, as CST in China, means what it means there."""
 
 
 def date_in(text: str) -> datetime | None:
@@ -58,6 +60,9 @@ def _zone(offset: str, name: str) -> tzinfo:
         return timezone(timedelta(minutes=-minutes if offset[0] == '-' else minutes))
     if name in ('UTC', 'Z', 'GMT'):
         return UTC
+    for local, west_sec in zip(time.tzname, (time.timezone, time.altzone), strict=True):
+        if name == local:
+            return timezone(timedelta(seconds=-west_sec))
     if name in _HOURS:
         return timezone(timedelta(hours=_HOURS[name]))
     return ZoneInfo(name)

@@ -1,7 +1,14 @@
 """What can go wrong while grading, in sentences for the instructor."""
 
+import errno
+
 from my_robot_basics.validate.errors import CourseError as CourseError
 from my_robot_basics.validate.errors import RoomFailure as RoomFailure
+
+DISK_FULL = (errno.ENOSPC, errno.EDQUOT)
+"""What Linux says of a disk that takes no more …"""
+MACHINE_FULL = (*DISK_FULL, errno.EMFILE, errno.ENFILE)
+"""… and where no more files can be open either: it is not the fault of what was to be read."""
 
 
 class GradebookError(CourseError):

@@ -127,16 +127,11 @@ def _left_out_before(folder: Path) -> Iterator[str]:
         yield printable(line)[:300]
 
 
-def extra_python_files(folder: Path) -> list[Path]:
-    """Return the plain .py files that lie directly in `folder`, sorted; links don't count.
+def _python_files(folder: Path) -> tuple[list[Path], list[str]]:
+    """Return the plain .py files that lie directly in `folder`, sorted, and a note for each other.
 
     Of many, or large ones, those come that fit within MAX_PYTHON_FILES and MAX_PYTHON_BYTES.
     """
-    return _python_files(folder)[0]
-
-
-def _python_files(folder: Path) -> tuple[list[Path], list[str]]:
-    """Return the files that are taken, and a note for each other one."""
     taken: list[Path] = []
     notes: list[str] = []
     left = MAX_PYTHON_BYTES

@@ -45,8 +45,9 @@ def read_roster(path: Path, needed: Iterable[str], how: str) -> Roster:
         raise CourseError(f'{path} has no column {", ".join(map(repr, lacks))}. {how}')
     if len(set(headings)) < len(headings):
         raise CourseError(f'{path} has two columns of one name. {how}')
-    rows = tuple(dict(zip(headings, line, strict=False)) for line in lines[1:] if any(line))
-    return Roster(path, headings, rows)
+    none = dict.fromkeys(headings, '')  # a line may end early: nothing is in its other columns
+    rows = [none | dict(zip(headings, line, strict=False)) for line in lines[1:] if any(line)]
+    return Roster(path, headings, tuple(rows))
 
 
 @dataclass(frozen=True)

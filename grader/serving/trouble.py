@@ -1,10 +1,10 @@
 """What went wrong with one submission and costs only that one, and what would meet all."""
 
-import errno
 import logging
 import sqlite3
 
 from grader.common.errors import (
+    MACHINE_FULL,
     CourseError,
     DamagedResult,
     TaskFailed,
@@ -12,14 +12,13 @@ from grader.common.errors import (
 )
 from grader.common.text import printable
 
-FULL = (errno.ENOSPC, errno.EDQUOT, errno.EMFILE, errno.ENFILE)
 _OF_ONE = (UnreadableSubmission, DamagedResult, TaskFailed)
 
 
 def meets_all(error: Exception) -> bool:
     """Whether the next one would meet it, too: of the disk, the gradebook or the course."""
     if isinstance(error, OSError):
-        return error.errno in FULL
+        return error.errno in MACHINE_FULL
     return isinstance(error, CourseError | sqlite3.Error) and not isinstance(error, _OF_ONE)
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from grader.common.db_url import is_in_postgresql
-from grader.common.errors import CourseError, GradebookError
+from grader.common.errors import DISK_FULL, CourseError, GradebookError
 from grader.course import Course
 
 TIMEOUT_SEC = 60.0
@@ -14,7 +14,7 @@ TIMEOUT_SEC = 60.0
 BUSY = {sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED}
 """What SQLite says of a database that another program keeps."""
 
-_FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
+_FULL = {*DISK_FULL, errno.EFBIG}
 _REFUSED = {errno.EACCES, errno.EPERM}
 _NOT_WRITTEN = {sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_PERM}
 _DAMAGED = {sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB}

@@ -29,7 +29,8 @@ class KinematicsSubscriber(Node):
         self.subscription = self.create_subscription(
             JointState, '/kinematics/joint_states', self.check_pose, 10
         )
-        self.get_logger().info('waiting for poses on /kinematics/joint_states')
+        topic = self.subscription.topic_name  # as it is now: rules may have changed it
+        self.get_logger().info(f'waiting for poses on {topic}')
 
     def check_pose(self, msg: JointState) -> None:
         """Radians → degrees → FK → IK, and compare with both branches."""

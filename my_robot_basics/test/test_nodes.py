@@ -151,6 +151,15 @@ def test_publisher_logs_the_pose_that_it_publishes(stage):
     stage.wait_until(lambda: line in stage.peer.lines(LoggingSeverity.INFO), line)
 
 
+@pytest.mark.parametrize('node_class', [KinematicsPublisher, KinematicsSubscriber])
+def test_the_first_line_names_the_topic_as_rules_have_changed_it(own_domain, node_class, capfd):
+    rclpy.try_shutdown()  # another module's nodes may have left it initialised
+    rclpy.init(args=['--ros-args', '-r', f'{TOPIC}:=/left/joint_states'])
+    node_class().destroy_node()
+    rclpy.shutdown()
+    assert ' on /left/joint_states' in ''.join(capfd.readouterr())
+
+
 def test_the_same_seed_gives_the_same_poses(stage):
     node = stage.run(KinematicsPublisher, seed=7)
     stage.wait_until(lambda: node.publisher.get_subscription_count(), 'a match')
