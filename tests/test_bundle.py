@@ -293,6 +293,7 @@ def test_an_answer_of_two_lines_in_the_package_is_no_accident(course, fresh_less
         'course',
         'environment.txt',
         'launcher/verbs.txt',
+        'launcher/words.sh',
         'LICENSE',
         '.jupyterlab/page_config.json',
         'solutions/students.md',

@@ -147,11 +147,18 @@ def the_one_sentence(run):
 TERMINAL = 'my_robot_basics/my_robot_basics/ros2/terminal.bash'
 
 
-@pytest.mark.parametrize('script', ['course', '.ci/run', TERMINAL])
+@pytest.mark.parametrize('script', ['course', 'launcher/words.sh', '.ci/run', TERMINAL])
 def test_shellcheck_finds_nothing(script):
     shellcheck = Path(sys.prefix, 'bin/shellcheck')
-    run = subprocess.run([shellcheck, ROOT / script], capture_output=True, text=True)
+    run = subprocess.run(
+        [shellcheck, '--external-sources', ROOT / script], cwd=ROOT, capture_output=True, text=True
+    )
     assert (run.returncode, run.stdout) == (0, '')
+
+
+def test_what_runs_before_there_is_a_python_is_short():
+    """What can be Python is tested as such."""
+    assert len((ROOT / 'course').read_text(encoding='utf-8').splitlines()) <= 120
 
 
 @pytest.mark.parametrize('shell', ['dash', 'bash --posix', 'busybox sh'])

@@ -24,9 +24,9 @@ FOLDER = 'my_robot_basics_course'
 """What the zip unpacks to."""
 README = 'students.md'
 """In solutions/, beside the lessons: the bundle's README.md."""
-AS_THEY_ARE = ('course', 'environment.txt', 'LICENSE', 'launcher/verbs.txt')
+AS_THEY_ARE = ('course', 'environment.txt', 'LICENSE', 'launcher/verbs.txt', 'launcher/words.sh')
 LAUNCHER = 'launcher'
-"""What `course` runs; of it, the modules."""
+"""What `course` runs; of it, the modules and what stands above."""
 PINS = 'environment.txt'
 OTHERS = '# --- what only the whole course needs'
 """How the line of environment.txt begins at which a student's ends (.ci/pin.py writes it)."""
