@@ -2,14 +2,12 @@
 
 import time
 from collections.abc import Callable
-from typing import Protocol
 
 from my_robot_basics.checks.clock import SimulatedClock
 from my_robot_basics.checks.inconclusive import Inconclusive
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
 
-WALL_STEP_SEC = 0.01
 DUE_SEC = 0.05
 """How long to wait, of time that was free, for what a thread of the node is to do in a tick."""
 VAIN_TIMES = 5
@@ -22,31 +20,15 @@ MOST_OFF_NS = 1_000_000_000
 """A node on this clock is never so far off it; one that nothing has reached yet shows 0."""
 
 
-class RobotTime(Protocol):
-    """What both have in common."""
-
-    is_driven: bool
-    step_ns: int
-    """How far a tick moves it; 0 where it goes by itself."""
-
-    def now_ns(self) -> int:
-        """The time now."""
-
-    def at_ns(self, wall_ns: int) -> int:
-        """The time at a wall time, such as a message's source timestamp."""
-
-    def wait(self, done: Callable[[], bool], *, seconds: float) -> bool:
-        """Wait until `done()`, at least so many seconds; whether it is done."""
-
-    def let_pass(self, done: Callable[[], bool], *, seconds: float) -> None:
-        """Let so many seconds pass, or fewer if it is done before."""
-
-
 class WallTime:
-    """The wall clock; of a wait, only time counts that was free."""
+    """The wall clock; of a wait, only time counts that was free.
+
+    `DrivenTime` has the same attributes and methods.
+    """
 
     is_driven = False
     step_ns = 0
+    """How far a tick moves it; 0: it goes by itself."""
 
     def __init__(self, watcher: Watcher) -> None:
         self._watcher = watcher
@@ -57,15 +39,15 @@ class WallTime:
         return time.time_ns()
 
     def at_ns(self, wall_ns: int) -> int:
-        """The same."""
+        """The time at a wall time, such as a message's source timestamp; both in ns."""
         return wall_ns
 
     def wait(self, done: Callable[[], bool], *, seconds: float) -> bool:
-        """Spin, for so many seconds that were free."""
+        """Spin until `done()`, for so many seconds that were free; whether it is done."""
         return self._watcher.spin_until_free(done, free_sec=seconds)
 
     def let_pass(self, done: Callable[[], bool], *, seconds: float) -> None:
-        """Spin."""
+        """Spin for so many seconds, or fewer if it is done before."""
         self._watcher.spin_until(done, timeout_sec=seconds)
 
     def wall_sec(self) -> float:
@@ -109,7 +91,10 @@ class DrivenTime:
         return max(self._began_ns, self._clock.time_ns(wall_ns))
 
     def wait(self, done: Callable[[], bool], *, seconds: float) -> bool:
-        """Step. Raises Inconclusive where the node does not follow."""
+        """Step until `done()`, for so many seconds; whether it is done.
+
+        Raises Inconclusive where the node does not follow.
+        """
         end_ns = self.now_ns() + round(seconds * 1e9)
         while not done():
             if self.now_ns() + self.step_ns > end_ns:
@@ -118,7 +103,7 @@ class DrivenTime:
         return True
 
     def let_pass(self, done: Callable[[], bool], *, seconds: float) -> None:
-        """Step."""
+        """Step for so many seconds, or fewer if it is done before."""
         self.wait(done, seconds=seconds)
 
     def expect_shown(self, node_ns: int) -> None:
