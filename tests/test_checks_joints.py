@@ -43,6 +43,7 @@ def test_joints_agree_in_any_order():
         (message(0.5236, -1.0472), {'joint1': 0.5236, 'joint2': -1.0472}, 'joint2 holds θ1 + θ2'),
         (message(0.2618, -0.7854), {'joint1': 0.2618, 'joint2': -0.7854}, '180 degrees are pi'),
         (message(0.0833, -0.25), {'joint1': 0.0833, 'joint2': -0.25}, 'these are parts of a wh'),
+        (message(0.5236, 4.7124), {'joint1': 0.5236, 'joint2': 4.7124}, 'it is a whole turn too'),
         (message(0.7, 0.1), {'joint1': 0.7, 'joint2': 0.1}, 'convert both angles with'),
         (message(0.5236, -1.5708, 0.0), '3 positions with 2 names', 'give each message two'),
         (message(0.5236, name=NAMES[:1]), {'joint1': 0.5236}, 'give each message two'),
@@ -68,6 +69,12 @@ def test_another_pose_is_shown_with_advice(wrong, seen, advice):
     assert not joints.agree(pose, RIGHT)
     assert joints.shown(wrong) == seen
     assert joints.why_wrong(wrong, POSE_DEG).startswith(advice)
+
+
+def test_who_had_another_pose_right_is_not_told_to_convert_at_last():
+    seen = message(0.7, 0.1)
+    assert joints.why_wrong(seen, POSE_DEG, others_right=True) == joints.CONVERT_EACH
+    assert joints.why_wrong(seen, POSE_DEG) == joints.CONVERT
 
 
 @pytest.mark.parametrize(

@@ -83,6 +83,13 @@ def test_a_period_of_0_is_named():
         made.assert_rate(hz=5.0)
 
 
+def test_far_too_many_messages_are_named_though_they_have_ended():
+    made = recording(every(0.002, 1500), clock='wall', seconds=4.0)
+    assert made.is_over
+    with pytest.raises(CheckFailed, match=r'saw 500.0 Hz .* another timer: make one, in __init__'):
+        made.assert_rate(hz=5.0)
+
+
 def test_pauses_are_named_below_nine_tenths_of_the_rate_too():
     times = [0.2 * number for number in range(1, 21) if number % 6]
     made = recording(times, clock='wall', seconds=4.0)
@@ -418,6 +425,20 @@ def test_a_second_publisher_is_named_before_the_rate():
 def test_a_note_is_printed_when_the_rate_is_right(capsys):
     recording(every(0.2), clock='wall', note='note: careful').assert_rate(hz=5.0)
     assert capsys.readouterr().out == 'note: careful\n'
+
+
+@pytest.mark.parametrize(
+    ('angle', 'seen'),
+    [
+        (lambda time_sec: 0.4 * time_sec, 'further out with each message: turn back'),
+        (lambda time_sec: -90.0 + 10 * time_sec, 'further out with each message: turn back'),
+        (lambda time_sec: 90.0 * math.sin(time_sec), 'which looks like degrees'),
+    ],
+)
+def test_an_angle_that_grows_and_grows_is_told_from_degrees(angle, seen):
+    made = recording(message=lambda time_sec: joint_state(time_sec, position=[angle(time_sec), 0]))
+    with pytest.raises(CheckFailed, match=seen):
+        made.assert_positions_rad(low=LOW, high=HIGH)
 
 
 def swapped(time_sec):

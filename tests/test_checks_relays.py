@@ -303,7 +303,7 @@ def test_a_callback_that_publishes_nothing_does_not_pass(run, impatient):
 
     run(Silent)
     for check in check_delivery, check_late_joiner:
-        with pytest.raises(CheckFailed, match='saw none in 1 s: see that your callback publishes'):
+        with pytest.raises(CheckFailed, match='saw none in 1 s: see that your node spins'):
             check()
 
 

@@ -232,3 +232,9 @@ def test_a_stamp_that_is_no_message_is_told_what_makes_one(monkeypatch):
     said = "AttributeError: 'Time' object has no attribute 'sec' (line 3)"
     monkeypatch.setattr(student, 'trouble', lambda name: said)
     assert what_raised(['/any']).endswith('so make a stamp of the time with .to_msg()')
+
+
+def test_a_field_of_another_type_is_told_from_what_rclpy_says_of_it(monkeypatch):
+    said = 'TypeError: bad argument type for built-in operation (line 3)'
+    monkeypatch.setattr(student, 'trouble', lambda name: said)
+    assert what_raised(['/any']).endswith('a field of the message holds a value of another type')

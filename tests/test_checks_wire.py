@@ -120,6 +120,14 @@ def test_a_message_with_a_field_of_a_wrong_type_is_unsupported():
         values.encode(broken)
 
 
+def test_a_set_in_a_message_is_unsupported_for_it_has_no_order():
+    message = JointState(name=dict.fromkeys(['joint2', 'joint1']).keys())
+    assert values.decode(values.encode(message)).name == ['joint2', 'joint1']
+    message.name = {'joint1', 'joint2'}
+    with pytest.raises(values.UnsupportedValue, match='name is a set: no order'):
+        values.encode(message)
+
+
 CDR = base64.b64encode(serialize_message(joint_state())).decode()
 HOSTILE = {
     'not text': 5,

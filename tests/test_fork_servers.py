@@ -66,7 +66,8 @@ def test_a_server_holds_nothing_of_the_grader(forked):
     assert server.cwd() == '/'
     assert set(server.environ()) <= {
         *bubblewrap.ENVIRONMENT,
-        *('MPLBACKEND', 'PYTHONSAFEPATH', 'PYTHONDONTWRITEBYTECODE', 'LD_LIBRARY_PATH'),
+        *('MPLBACKEND', 'PYTHONSAFEPATH', 'PYTHONDONTWRITEBYTECODE', 'PYTHONHASHSEED'),
+        'LD_LIBRARY_PATH',
         *('_ROS_WHEELS_BOOTSTRAP_COMPLETE', 'LANG', 'LC_ALL', 'TZ'),
     }
     maps = Path(f'/proc/{server.pid}/maps').read_text().splitlines()

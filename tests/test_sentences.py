@@ -294,8 +294,8 @@ OF_CHECKS = {
     '1 of the 2 that this part runs wrong': '这一部分实际运行的 2 个预测里有 1 个错误',
     '1 wrong, which leaves 1 of 2 points': '1 个错误，还剩 2 分中的 1 分',
     'numpy object in it': '其中有 numpy object',
-    'a point just beyond the outer border, l1 + l2, is not reached': (
-        '紧靠外边界（l1 + l2）外侧的点够不着'
+    'a point just beyond the outer border, l1 + l2, has to give False': (
+        '紧靠外边界（l1 + l2）外侧的点，应该得到 False'
     ),
 }
 

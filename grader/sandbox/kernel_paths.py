@@ -17,6 +17,8 @@ _ALWAYS = {
     'MPLBACKEND': 'module://matplotlib_inline.backend_inline',
     'PYTHONSAFEPATH': '1',
     'PYTHONDONTWRITEBYTECODE': '1',
+    # a set of texts has one order then, in every grading: {'joint1', 'joint2'} begins with joint2
+    'PYTHONHASHSEED': '3',
 }
 
 

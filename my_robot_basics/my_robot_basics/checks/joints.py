@@ -14,7 +14,12 @@ MOST_JOINTS = 100
 CLOSE_RAD = 0.02
 """Who rounds to two decimals is no further off."""
 CONVERT = 'convert both angles with radians(), θ1 for joint1, θ2 for joint2'
-"""What to try where nobody knows what a pose is instead."""
+"""What to try where nobody knows what a pose is instead. …"""
+CONVERT_EACH = (
+    'other angles came out right: convert each with radians(), whatever its sign or size, and keep'
+    ' nothing of those before'
+)
+"""… And where another pose was right."""
 
 
 def make(numbers: random.Random, *names: str) -> JointState:
@@ -58,28 +63,40 @@ def in_radians(pose_deg: Sequence[float]) -> dict[str, float]:
     }
 
 
-def expect_radians(position: Sequence[float], pose_deg: Sequence[float]) -> None:
-    """The positions are these angles in radians, in this order. Raises CheckFailed."""
+def expect_radians(
+    position: Sequence[float], pose_deg: Sequence[float], *, others_right: bool = False
+) -> None:
+    """The positions are these angles in radians, in this order. Raises CheckFailed.
+
+    `others_right`: whether another pose has come out as it should.
+    """
     seen, right = [round(each, 4) for each in position], list(in_radians(pose_deg).values())
     expect(
         _are_near(seen, right),
         expected=f'{right} rad for {tuple(pose_deg)} degrees',
         seen=f'{seen}',
-        hint=why_off(list(position), pose_deg),
+        hint=why_off(list(position), pose_deg, others_right=others_right),
     )
 
 
-def why_wrong(message: JointState, pose_deg: Sequence[float]) -> str:
-    """Advice for a message that is not that pose; it names the cause, and none of the angles."""
+def why_wrong(
+    message: JointState, pose_deg: Sequence[float], *, others_right: bool = False
+) -> str:
+    """Advice for a message that is not that pose; it names the cause, and none of the angles.
+
+    `others_right`: whether another pose has come out as it should.
+    """
     seen, right = pose(message), in_radians(pose_deg)
     if len(message.name) == len(right) and _adds_to_others(list(message.position), pose_deg):
-        return why_off(list(message.position), pose_deg)
+        return why_off(list(message.position), pose_deg, others_right=others_right)
     if seen.keys() != right.keys():
         return f'give each message two positions, and the names {" and ".join(right)}'
-    return why_off([seen[name] for name in right], pose_deg)
+    return why_off([seen[name] for name in right], pose_deg, others_right=others_right)
 
 
-def why_off(seen: Sequence[float], pose_deg: Sequence[float]) -> str:
+def why_off(
+    seen: Sequence[float], pose_deg: Sequence[float], *, others_right: bool = False
+) -> str:
     """Advice for positions in radians that are not this pose, by what they are instead."""
     right = [math.radians(angle) for angle in pose_deg]
     if len(seen) > len(right) and len(seen) % len(right) == 0:
@@ -108,7 +125,10 @@ def why_off(seen: Sequence[float], pose_deg: Sequence[float]) -> str:
     to_one_decimal = [round(angle, 1) for angle in right]
     if not found and (_are_near(seen, right, CLOSE_RAD) or _are_near(seen, to_one_decimal)):
         return 'close: use radians() itself, and do not round'
-    return next(iter(found), CONVERT)
+    off = [(a - b) % math.tau for a, b in zip(seen, right, strict=True)]
+    if not found and _are_near([min(each, math.tau - each) for each in off], [0.0] * len(off)):
+        return 'it is a whole turn too far: convert the angle as it is given, without % 360'
+    return next(iter(found), CONVERT_EACH if others_right else CONVERT)
 
 
 def _adds_to_others(position: Sequence[float], pose_deg: Sequence[float]) -> bool:

@@ -18,6 +18,7 @@ from my_robot_basics.checks.clock_use import are_left_alone
 from my_robot_basics.checks.inconclusive import Inconclusive
 from my_robot_basics.exchange import student
 from my_robot_basics.feedback.errors import fail
+from my_robot_basics.graph import graphs
 from my_robot_basics.graph.message_info import with_info
 from my_robot_basics.graph.watcher import Watcher
 
@@ -76,16 +77,19 @@ def _while_ahead_inside(
 ) -> list[float] | None:
     """The same for nodes without parameter services, which their own process can switch.
 
-    None where it does not. Nothing tells when a node has dealt with a tick: it gets wall time.
+    With them all others of that process: a publisher may belong to one node, and the stamps come
+    from the clock of another one. None where a publisher's node does not let it. Nothing tells
+    when a node has dealt with a tick: it gets wall time.
     """
     with Watcher(listens=True) as watcher:
         if watcher.node.get_publishers_info_by_topic('/clock'):
             return None
         proofs = _receive_stamps(watcher, topic_name, type_)
         clock = watcher.node.create_publisher(Clock, '/clock', 1)
-        former = {name: student.set_use_sim_time(name, value=True) for name in publishers}
+        names = {*publishers, *graphs.take(watcher).nodes()}
+        former = {name: student.set_use_sim_time(name, value=True) for name in names}
         try:
-            if None in former.values():
+            if any(former[name] is None for name in publishers):
                 return None
             _tick_ahead(watcher, clock, seconds=SETTLE_SEC)
             since_ns = time.time_ns()

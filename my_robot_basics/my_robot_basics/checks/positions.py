@@ -1,5 +1,6 @@
 """Joint positions in radians, each within its range."""
 
+import itertools
 import math
 from collections.abc import Sequence
 from typing import Any
@@ -8,6 +9,8 @@ from my_robot_basics.checks import pictures
 from my_robot_basics.feedback.errors import expect, fail
 
 ANGLE_SLACK_RAD = 1e-6
+FEWEST_STEPS = 8
+"""So many in a row that go the same way are no chance."""
 
 
 def check_positions(
@@ -39,7 +42,13 @@ def _fail_position(
     picture = None
     # half a turn is the most that an angle in radians is likely to be
     largest = max(abs(angle) for each in poses for angle in each)
-    if largest > math.pi and all(_within(each, *degrees) for each in poses):
+    if _grow(poses, low, high):
+        seen = f'({shown}), further out with each message'
+        hint = (
+            'turn back at the end of the range, or use math.sin; and convert with'
+            ' math.radians(…) what is in degrees'
+        )
+    elif largest > math.pi and all(_within(each, *degrees) for each in poses):
         seen, hint = f'({shown}), which looks like degrees', 'convert with math.radians(…)'
         picture = pictures.misread(pose)
     else:
@@ -48,6 +57,18 @@ def _fail_position(
     bounds = ', '.join(f'{a:.4g} to {b:.4g}' for a, b in zip(low, high, strict=True))
     expected = f'positions in radians ({bounds})'
     fail(expected=expected, seen=seen, hint=hint, picture=picture)
+
+
+def _grow(poses: Sequence[Sequence[float]], low: Sequence[float], high: Sequence[float]) -> bool:
+    """Whether a joint that leaves its range goes the same way with every message."""
+    joints = zip(*poses, low, high, strict=True)
+    for *angles, lowest, highest in joints:
+        steps = [after - angle for angle, after in itertools.pairwise(angles)]
+        is_one_way = all(step > 0.0 for step in steps) or all(step < 0.0 for step in steps)
+        is_out = min(angles) < lowest - ANGLE_SLACK_RAD or max(angles) > highest + ANGLE_SLACK_RAD
+        if len(steps) >= FEWEST_STEPS and is_one_way and is_out:
+            return True
+    return False
 
 
 def _within(pose: Sequence[float], low: Sequence[float], high: Sequence[float]) -> bool:

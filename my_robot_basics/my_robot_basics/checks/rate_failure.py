@@ -28,12 +28,16 @@ def fail_rate(recording: 'Recording', hz: float) -> NoReturn:
     elif pattern and pattern.is_burst:
         seen = f'{pattern.size} messages at once, every {pattern.cycle_sec:.3g} s, {over}'
         cause, hint = AT_ONCE, rates.ONCE
+    elif recording.rate_hz > TOO_FAST_TIMES * hz:
+        # some nodes are busy with so many that none comes for a while
+        seen, cause = f'{_hz(recording.rate_hz)} {over}', 'far too many messages'
+        hint = (
+            'the timer period is 0, or nearly (period = 1 / rate, and 1 // rate is 0), or each'
+            ' call of the timer makes another timer: make one, in __init__'
+        )
     elif recording.is_over and (near or n == 0):
         seen, cause = f'none in the last {recording.silent_sec:.1f} s {over}', 'the messages end'
         hint = 'publish as long as the node runs, in each call of a timer'
-    elif recording.rate_hz > TOO_FAST_TIMES * hz:
-        seen, cause = f'{_hz(recording.rate_hz)} {over}', 'far too many messages'
-        hint = 'the timer period is 0, or nearly: period = 1 / rate, and 1 // rate is 0'
     elif (near or _is_mostly(recording, hz)) and (
         recording.largest_gap_sec > rates.LARGEST_GAP_PERIODS / hz
     ):

@@ -140,7 +140,10 @@ class RelayEndpoints:
             return f'{raised}, so fix that first'
         if has_others:
             return 'publish exactly the message that your callback is given'
-        return 'see that your callback publishes each message, and that it raises nothing'
+        return (
+            'see that your node spins (any second one, too), that your callback publishes each'
+            ' message, and that it raises nothing'
+        )
 
     def expect_type(self, watcher: Watcher, type_: type) -> None:
         """Who subscribes to `source` does so with that type: another one never meets it."""

@@ -1,6 +1,6 @@
 """A topic as a check sees it: record what arrives, publish, wait for one message."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from typing import Any
 
 from rclpy.duration import Duration
@@ -11,6 +11,8 @@ from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.recording import Recording
 from my_robot_basics.checks.topic_endpoints import DISCOVERY_SEC, TopicEndpoints
 from my_robot_basics.feedback.errors import expect, fail, shorten
+from my_robot_basics.graph import familiar
+from my_robot_basics.graph.raised import what_raised
 from my_robot_basics.graph.watcher import Watcher
 
 ONCE_MORE_SEC = 2.0
@@ -102,6 +104,14 @@ class Topic(TopicEndpoints):
             if wrong() or not found():
                 if not received and after is not None:
                     self._expect_none_late(watcher, recorder, after)
+                if not received and after and not what_raised(recorder.publishers()):
+                    expect(
+                        not familiar.is_known(watcher.context, *self._answered(recorder)),
+                        expected=f'a message on {self.name} for each that your node receives',
+                        seen='others answered, and this one not',
+                        hint='publish in every call of the callback, whatever the message holds',
+                        cause='a message that is not answered, where others were',
+                    )
                 if not received:
                     self.fail_silent(watcher, seen=f'no message in {timeout_sec:g} s')
                 last = [*received, *wrong()][-1]
@@ -111,6 +121,7 @@ class Topic(TopicEndpoints):
                     seen=shorten(seen(last)) if seen else others,
                     hint=hint(last) if callable(hint) else hint,
                 )
+            familiar.remember(watcher.context, *self._answered(recorder))
             if once and (times := len(found())) > 1:
                 fail(
                     expected='one message for each that your node receives',
@@ -118,6 +129,10 @@ class Topic(TopicEndpoints):
                     hint='publish once in each call of the callback, and in no timer',
                 )
             return found()[0]
+
+    def _answered(self, recorder: Recorder) -> tuple[Hashable, object]:
+        """What is remembered of those that publish here now: that they have answered."""
+        return ('answers', self.name), recorder.endpoint_gids()
 
     def _expect_none_late(
         self, watcher: Watcher, recorder: Recorder, after: Callable[[], None]

@@ -112,7 +112,7 @@ def type_name(message_type: type) -> str:
     return f'{message_type.__module__.partition(".")[0]}/msg/{message_type.__name__}'
 
 
-def _encode_message(value: object, depth: int) -> dict:
+def _encode_message(value: Any, depth: int) -> dict:
     name = type_name(type(value))
     try:
         known = message_type(name) is type(value)
@@ -121,6 +121,9 @@ def _encode_message(value: object, depth: int) -> dict:
     if not known:
         own_name = type(value).__name__
         raise UnsupportedValue(f'{own_name} in it' if depth else own_name)
+    for field in value.get_fields_and_field_types():
+        if isinstance(getattr(value, field), set | frozenset):
+            raise UnsupportedValue(f'{name} with {WRONG_FIELD} ({field} is a set: no order)')
     from rclpy.serialization import serialize_message
 
     try:

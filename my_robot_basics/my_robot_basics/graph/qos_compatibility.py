@@ -43,8 +43,8 @@ def leave_out(policies: Iterable[str]) -> str:
     """What to do about policies that no publisher offers."""
     if 'LIVELINESS' in policies:
         return (
-            'no publisher offers such a liveliness: leave it out; instead of BEST_AVAILABLE, which'
-            ' requests the most while there is no publisher, set reliability and durability'
+            'no publisher offers such a liveliness, which BEST_AVAILABLE requests, too, while'
+            ' there is no publisher: set reliability and durability alone'
         )
     named = ' and '.join(sorted(policies)).lower()
     return f'the publisher offers no {named}, so leave that out of the profile'

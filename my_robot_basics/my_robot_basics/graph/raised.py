@@ -16,4 +16,6 @@ def what_raised(node_names: Iterable[str]) -> str:
         why += ', so give a method by its name, without parentheses'
     if "'Time' object has no attribute 'sec'" in said:
         why += ', so make a stamp of the time with .to_msg()'
+    if 'bad argument type for built-in operation' in said:
+        why += ', so a field of the message holds a value of another type'
     return why
