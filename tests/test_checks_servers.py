@@ -23,7 +23,8 @@ IKClient = imported('ik_client').IKClient
 TARGETS = [(1.2, 0.4), (-0.5, 1.1), (0.9, -1.3)]
 WAITS = (
     "it called `/solve_ik` inside a callback and waited there: the answer can't be delivered "
-    'while the callback runs; use call_async and add_done_callback'
+    'while the callback runs, or while all threads of its executor wait like this; use '
+    'call_async and add_done_callback'
 )
 STOPS = []
 """What ends the threads that nodes have made for themselves."""
