@@ -91,6 +91,7 @@ class Log(NodeLog):
         is_there = self.wait_for(is_answered, timeout_sec=timeout_sec)
         self._expect_no_table()
         if not is_there:
+            self.expect_node()
             listed = ', '.join(f'{angle:.2f}°' for angle in wanted)
             fail(
                 expected=f'{listed} for {what} in the INFO log of {self.node_name}',
@@ -122,6 +123,7 @@ class Log(NodeLog):
         """
         bearings = list(no_angles)
         if not self.wait_for(lambda log: log.has('WARN'), timeout_sec=timeout_sec):
+            self.expect_node()
             fail(
                 expected=f'a warning in the log of {self.node_name}',
                 seen=self.shown('WARN'),
