@@ -23,7 +23,8 @@ IKClient = imported('ik_client').IKClient
 TARGETS = [(1.2, 0.4), (-0.5, 1.1), (0.9, -1.3)]
 WAITS = (
     "it called `/solve_ik` inside a callback and waited there: the answer can't be delivered "
-    'while the callback runs; use call_async and add_done_callback'
+    'while the callback runs, or while all threads of its executor wait like this; use '
+    'call_async and add_done_callback'
 )
 STOPS = []
 """What ends the threads that nodes have made for themselves."""
@@ -481,6 +482,22 @@ def test_who_asks_without_end_is_stopped(run, monkeypatch):
     monkeypatch.setattr(holding_server, 'MOST_REQUESTS', 20)
     run(AsksAgain)
     with pytest.raises(CheckFailed, match=r'for each message, saw 20 of them: ask once in the'):
+        check_never_blocks()
+
+
+class AsksInALoop(IKClient):
+    """Asks for each target more often than its queue can hold answers."""
+
+    def ask(self, target):
+        for _ in range(holding_server.MOST_HELD):
+            self.client.call_async(SolveIK.Request(target=target))
+        super().ask(target)
+
+
+@pytest.mark.slow
+def test_who_asks_for_more_than_its_queue_holds_is_told_so_each_time(run):
+    run(AsksInALoop)
+    with pytest.raises(CheckFailed, match=r'for each message, saw \d+ at once: ask once in the'):
         check_never_blocks()
 
 

@@ -1,12 +1,13 @@
 """The threads of a MultiThreadedExecutor begin what they are handed."""
 
+import os
 import threading
 import time
 
 import pytest
 import rclpy
 from my_robot_basics.live import runner
-from my_robot_basics.live.thread_pools import PromptPool
+from my_robot_basics.live.thread_pools import THREADS, PromptPool
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.node import Node
@@ -81,3 +82,22 @@ def test_while_all_threads_are_busy_who_hands_in_goes_on():
         assert second.result() == 8
     with PromptPool(1) as pool, pytest.raises(ZeroDivisionError):
         pool.submit(divmod, 1, 0).result()
+
+
+@pytest.mark.starts
+@pytest.mark.parametrize('processors', [1, 9])
+def test_there_are_as_many_threads_on_each_machine(monkeypatch, processors):
+    runner.ensure_rclpy()
+    monkeypatch.setattr(os, 'sched_getaffinity', lambda _: {*range(processors)})
+    monkeypatch.setattr(os, 'cpu_count', lambda: processors)
+    executor = MultiThreadedExecutor()
+    assert executor._executor._max_workers == THREADS
+    executor.shutdown()
+
+
+@pytest.mark.starts
+def test_who_says_how_many_threads_has_as_many():
+    runner.ensure_rclpy()
+    executor = MultiThreadedExecutor(2)
+    assert executor._executor._max_workers == 2
+    executor.shutdown()

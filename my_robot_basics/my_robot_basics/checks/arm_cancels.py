@@ -1,7 +1,7 @@
 """Whether a cancelled goal stops the arm behind `/move_arm`, and leaves it ready for the next."""
 
 import time
-from typing import Any
+from typing import Any, NoReturn
 
 from my_robot_basics.checks.action_ends import SentGoal, cancels
 from my_robot_basics.checks.actions import Action
@@ -73,7 +73,9 @@ def expect_late_cancel(action: Action, position: Pose, *, start: Pose = (0.0, 0.
 
     def outlasts(arm: WatchedArm) -> None:
         sent = arm.send(arm.goal(position, speed=2.0))
-        arm.time.wait(sent.is_over, seconds=MOST_TIMES * far_rad(arm.start, position) + MORE_SEC)
+        most_sec = MOST_TIMES * far_rad(arm.start, position) + MORE_SEC
+        if not arm.time.wait(sent.is_over, seconds=most_sec):
+            _fail_without_end(arm, sent, most_sec)
         ended = sent.status
         arm.server.answer_to(arm.server.ends.cancel(sent), what='a request to cancel that is late')
         expect(
@@ -124,6 +126,11 @@ def _cancel(arm: WatchedArm, sent: SentGoal, *, wanted_sec: float) -> None:
     )
 
 
+def _fail_without_end(arm: WatchedArm, sent: SentGoal, most_sec: float) -> NoReturn:
+    it, none = f'it {sent.status} in {most_sec:.0f} s', f'none in {most_sec:.0f} s'
+    arm.server.fail_without_end(sent, it=it, none=none)
+
+
 def _went_on_without_answer(sent: SentGoal, asked_ns: int) -> bool:
     """Whether feedback on the goal came for long after a request, which waited for its end.
 
@@ -158,13 +165,15 @@ def _expect_moves_on(
     far = max(far_rad(arm.start, position), NEXT_LEAST_RAD)
     sent = accepted(arm.server, goal(position, speed=max(NEXT_SPEED, far / 2.0)))
     wanted_sec = far / sent.goal.speed
-    arm.time.wait(sent.is_over, seconds=MOST_TIMES * wanted_sec + MORE_SEC)
+    most_sec = MOST_TIMES * wanted_sec + MORE_SEC
+    if not arm.time.wait(sent.is_over, seconds=most_sec):
+        _fail_without_end(arm, sent, most_sec)
     arm.has_result(sent)
     if former is not None:
         expect_begins_at(list(former.result.position), sent, former=former)
     is_early = arm.seconds(sent) < EARLY_PART * wanted_sec
     expect(
-        sent.is_over() and sent.status != 'canceled' and not is_early,
+        sent.status != 'canceled' and not is_early,
         expected='the next goal to be reached',
         seen=f'it {sent.status} too soon' if is_early else f'it {sent.status} in the end',
         hint='a request to cancel is for one goal: forget it when the next one begins',

@@ -8,6 +8,7 @@ from arm_interfaces.srv import SolveIK
 from my_robot_basics.checks import joints
 from my_robot_basics.checks.servers import Server
 from my_robot_basics.checks.solutions import is_for, request, solve
+from my_robot_basics.feedback.errors import expect
 
 EACH_TARGET = (
     'ask for each target, also for one that comes while the answer to another is not there yet'
@@ -67,7 +68,7 @@ def _why_wrong(server: Server, message: Any, asked: SolveIK.Request) -> str:
 def expect_no_others(server: Server) -> None:
     """What the client has published are the elbow-up poses of responses, each of another one.
 
-    Raises CheckFailed.
+    None comes more often than its target did. Raises CheckFailed.
     """
 
     def why_wrong(message: Any) -> str:
@@ -79,6 +80,18 @@ def expect_no_others(server: Server) -> None:
         return 'publish the angles of response.elbow_up once, and nothing else'
 
     server.made.expect_no_others(is_elbow_up, hint=why_wrong)
+    messages, targets = server.made.messages(), [(each.x, each.y) for each in server.published]
+    for target in set(targets):
+        response = server.answer(request(*target))
+        times = sum(is_elbow_up(message, response) for message in messages)
+        expect(
+            times <= targets.count(target),
+            expected='the pose of each target once',
+            seen=f'one {times} times',
+            hint='ask once for each target, when it arrives, and in no timer; publish each answer '
+            'once',
+            cause='a pose is published again and again',
+        )
 
 
 def is_elbow_up(message: Any, response: Any) -> bool:

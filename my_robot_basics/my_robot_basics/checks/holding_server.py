@@ -9,8 +9,9 @@ from rclpy.service import Service
 from my_robot_basics.checks.sending import send_until_met
 from my_robot_basics.feedback.errors import expect
 
-MOST_REQUESTS = 500
-"""A client that asks once for each message comes to a few."""
+MOST_REQUESTS, MOST_HELD = 500, 10
+"""A client that asks once for each message comes to a few. Of more answers at once than its queue
+has room for, it would lose some, by chance."""
 
 
 class HoldingServer:
@@ -25,6 +26,8 @@ class HoldingServer:
         """All that it was asked, in order; MOST_REQUESTS of them raise CheckFailed."""
         self.sent: list[Any] = []
         """All responses that have left."""
+        self.published: list[Any] = []
+        """All messages that were to lead to a request each."""
         self.starts = 0
         """How often it was started."""
         self._node = node
@@ -64,8 +67,12 @@ class HoldingServer:
         self._holds = True
 
     def release(self, *, reverse: bool = False) -> None:
-        """Send the answers that were kept, with `reverse` the last one first; hold no longer."""
+        """Send the answers that were kept, with `reverse` the last one first; hold no longer.
+
+        Raises CheckFailed where there are more than MOST_HELD.
+        """
         self._holds = False
+        self._expect_few(len(self._held), MOST_HELD + 1, f'{len(self._held)} at once')
         for send, response, header in reversed(self._held) if reverse else self._held:
             self._send(send, response, header)
         self._held = []
@@ -80,11 +87,14 @@ class HoldingServer:
 
     def _take(self, request: Any, _: Any) -> Any:
         self.requests.append(request)
+        self._expect_few(len(self.requests), MOST_REQUESTS, f'{MOST_REQUESTS} of them')
+        return self.answer(request)
+
+    def _expect_few(self, count: int, too_many: int, seen: str) -> None:
         expect(
-            len(self.requests) < MOST_REQUESTS,
+            count < too_many,
             expected=f'a request to {self.name} for each message',
-            seen=f'{MOST_REQUESTS} of them',
+            seen=seen,
             hint='ask once in the callback, in no loop and no timer of its own',
             cause=f'{self.name} is asked again and again',
         )
-        return self.answer(request)

@@ -92,6 +92,7 @@ class Log(NodeLog):
         is_there = self.wait_for_answer(is_answered, free_sec=free_sec)
         self._expect_no_table()
         if not is_there:
+            self.expect_node()
             listed = ', '.join(f'{angle:.2f}°' for angle in wanted)
             fail(
                 expected=f'{listed} for {what} in the INFO log of {self.node_name}',
@@ -125,6 +126,7 @@ class Log(NodeLog):
         """
         bearings = list(no_angles)
         if not self.wait_for_answer(lambda log: log.has('WARN'), free_sec=free_sec):
+            self.expect_node()
             fail(
                 expected=f'a warning in the log of {self.node_name}',
                 seen=self.shown('WARN'),
@@ -143,8 +145,7 @@ class Log(NodeLog):
                 for number, text in enumerate(texts)
             )
 
-        # angles may come just behind the warning, and so may a second one, which is no answer to
-        # the next target
+        # angles may come just behind the warning, and a second one, which answers no later target
         if self.wait_for(has_angles, timeout_sec=EXTRA_SEC):
             fail(
                 expected=f'no angles from {self.node_name} for a target out of reach',

@@ -12,7 +12,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from my_robot_basics.checks import answers
 from my_robot_basics.checks.callbacks import CallbackErrors
 from my_robot_basics.checks.topics import Topic
-from my_robot_basics.feedback.errors import fail, shorten
+from my_robot_basics.feedback.errors import expect, fail, shorten
 from my_robot_basics.graph import graphs
 from my_robot_basics.graph.message_info import with_info
 from my_robot_basics.graph.snapshot import NOT_RUNNING
@@ -21,6 +21,8 @@ from my_robot_basics.graph.watcher import Watcher
 LEVELS = {10: 'DEBUG', 20: 'INFO', 30: 'WARN', 40: 'ERROR', 50: 'FATAL'}
 DEPTH = 1000
 NODE_SEC = 10.0
+GONE_SEC = 1.0
+"""How long a node that is there may be missing on the graph."""
 
 
 @dataclass(frozen=True)
@@ -106,19 +108,29 @@ class NodeLog:
         latched = QoSProfile(depth=DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         node.create_subscription(LogMessage, '/rosout', with_info(self._receive), latched)
 
-        def is_there() -> bool:
-            infos = node.get_publishers_info_by_topic('/rosout')
-            return self.node_name in map(graphs.full_name, infos)
-
         is_settled = graphs.is_settled(self._watcher, self.node_name)
         timeout_sec = graphs.SETTLED_SEC if is_settled else NODE_SEC
-        if not self._watcher.spin_until(is_there, timeout_sec=timeout_sec):
+        if not self._watcher.spin_until(self._is_there, timeout_sec=timeout_sec):
             others = graphs.take(self._watcher).nodes()
             fail(
                 expected=f'a node {self.node_name}',
                 seen=', '.join(others) or 'no node',
                 hint=self._why_absent(others),
             )
+
+    def expect_node(self) -> None:
+        """The node is still there. Raises CheckFailed."""
+        expect(
+            self._watcher.spin_until(self._is_there, timeout_sec=GONE_SEC),
+            expected=f'{self.node_name} to go on after each target',
+            seen='it has ended',
+            hint='leave rclpy.shutdown(), destroy_node() and exit() out of the callback',
+            cause='the node has ended',
+        )
+
+    def _is_there(self) -> bool:
+        infos = self._watcher.node.get_publishers_info_by_topic('/rosout')
+        return self.node_name in map(graphs.full_name, infos)
 
     def _receive(self, message: LogMessage, info: dict) -> None:
         if message.name == self._logger or message.name.startswith(f'{self._logger}.'):

@@ -82,7 +82,9 @@ class OpenAction:
             count <= 1,  # two nodes may have one name
             expected=f'one server of the action {self.name}',
             seen=f'{count} ({theirs(names)})',
-            hint='stop the other node: nobody knows which one moves the arm',
+            hint='stop the other node: nobody knows which one moves the arm'
+            if ',' in names
+            else 'make the ActionServer once, in __init__, and start the node once',
             cause=f'{self.name} has more than one server',
         )
 

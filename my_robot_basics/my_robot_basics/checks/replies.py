@@ -10,7 +10,11 @@ from arm_interfaces.action import MoveArm
 from my_robot_basics.checks import joints
 from my_robot_basics.checks.scripted_action import Ending, ReceivedGoal
 from my_robot_basics.checks.served_action import ServedAction
-from my_robot_basics.checks.unasked_cancels import expect_none_for_earlier, expect_none_for_false
+from my_robot_basics.checks.unasked_cancels import (
+    expect_none_for_another,
+    expect_none_for_earlier,
+    expect_none_for_false,
+)
 from my_robot_basics.checks.watched_arm import Pose
 
 SPEED = 0.5
@@ -117,6 +121,7 @@ def expect_cancel_in_spite_of_a_second_goal(
     """
     goal = ask(server, first)
     _expect_rejected(server, second)
+    expect_none_for_another(server, goal)
     _expect_cancel_of(server, goal)
 
 

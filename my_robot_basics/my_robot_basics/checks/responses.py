@@ -53,6 +53,10 @@ class Made:
         self._look(made_of)
         return self._others
 
+    def messages(self) -> list[Any]:
+        """All of them, in order."""
+        return [message for message, sent_ns in self._recorder.received if self._counts(sent_ns)]
+
     def expect_no_others(self, made_of: MadeOf, *, hint: Callable[[Any], str]) -> None:
         """Each message so far is made of a response that was sent, no two of the same one.
 
@@ -84,8 +88,11 @@ class Made:
         self._taken = len(self._sent)
         new, self._read = self._recorder.received[self._read :], len(self._recorder.received)
         for message, sent_ns in new:
-            if sent_ns >= self._began_ns and not self._use(message, made_of):
+            if self._counts(sent_ns) and not self._use(message, made_of):
                 self._others.append(message)
+
+    def _counts(self, sent_ns: int) -> bool:
+        return sent_ns >= self._began_ns
 
     def _use(self, message: Any, made_of: MadeOf) -> bool:
         for number, response in enumerate(self._left):

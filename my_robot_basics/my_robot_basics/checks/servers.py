@@ -76,7 +76,7 @@ class Server(HoldingServer):
         self.made = Made(watcher, answers, self.sent)
         """The messages on `to`, beside the responses."""
         self._publisher: Publisher | None = None
-        self._seen = self._known_starts = self._published = 0
+        self._seen = self._known_starts = 0
 
     def publish(self, message: Any) -> None:
         """Publish a message that is to lead to a request, without waiting for one."""
@@ -84,12 +84,12 @@ class Server(HoldingServer):
             self._publisher = Topic(self.asked_on).meet(self._watcher, type(message))
         self._seen = len(self._answers.received)
         self.made.begin()
-        self._published += 1
+        self.published.append(message)
         self._publisher.publish(message)
 
     def wait_for_repeated(self) -> None:
         """Wait for requests that are owed: a server that leaves would take the answer with it."""
-        wait_for_owed(self._watcher, self.requests, self._published)
+        wait_for_owed(self._watcher, self.requests, len(self.published))
 
     def stop(self) -> None:
         """Be absent: return when the student's node has had the time to know it."""

@@ -102,7 +102,9 @@ class Service:
             count == 1,
             expected=f'one server of {self.name}',
             seen=f'{count} ({theirs(", ".join(sorted(found)))})',
-            hint='stop the other node: nobody knows whose answer arrives',
+            hint='stop the other node: nobody knows whose answer arrives'
+            if len(found) > 1
+            else 'call create_service once, in __init__, and start the node once',
             cause=f'{self.name} has more than one server',
         )
         familiar.remember(watcher.context, *known)

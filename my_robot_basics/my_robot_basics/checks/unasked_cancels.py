@@ -18,6 +18,17 @@ def expect_none_for_earlier(server: ServedAction, goal: ReceivedGoal) -> None:
     )
 
 
+def expect_none_for_another(server: ServedAction, goal: ReceivedGoal) -> None:
+    """No request comes to cancel the goal now that another was sent. Raises CheckFailed."""
+    expect(
+        not server.is_cancelled(goal, soon=True),
+        expected=f'no request to cancel the goal that moves for a message on {server.asked_on}',
+        seen='one',
+        hint='send the new goal and cancel nothing: only an obstacle cancels the goal that moves',
+        cause=CAUSE,
+    )
+
+
 def expect_none_for_false(server: ServedAction, goal: ReceivedGoal) -> None:
     """No request comes to cancel the goal now that False was said. Raises CheckFailed."""
     expect(

@@ -12,15 +12,17 @@ def waits_for_answer(name: str) -> str:
     """The node has asked, and nothing else of it runs until it has the answer."""
     return (
         f"it called `{name}` inside a callback and waited there: the answer can't be delivered "
-        'while the callback runs; use call_async and add_done_callback'
+        'while the callback runs, or while all threads of its executor wait like this; use '
+        'call_async and add_done_callback'
     )
 
 
 def waits_for_server(name: str) -> str:
     """The node has not asked, and nothing of it runs."""
     return (
-        f'it waits for `{name}` inside a callback, and no other callback runs meanwhile; look at '
-        'service_is_ready(), which returns at once, and ask with call_async and add_done_callback'
+        f'it waits inside a callback, for `{name}` to be there or for the answer to an earlier '
+        'request, and no other callback runs meanwhile; look at service_is_ready(), which returns '
+        'at once, and ask with call_async and add_done_callback'
     )
 
 

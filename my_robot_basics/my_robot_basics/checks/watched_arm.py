@@ -160,6 +160,6 @@ def _why_rejected(server: OpenAction, sent: SentGoal, former: SentGoal | None) -
     if server.served_ns:
         return (
             'the goal before it was accepted, and has ended: see that the node knows that the arm '
-            'moves no longer, and that positions are compared in rad'
+            'moves no longer, and that both positions are compared with their own limits, in rad'
         )
     return 'return GoalResponse.ACCEPT for two angles within the limits (in rad) and a speed > 0'

@@ -1,12 +1,17 @@
-"""Let a MultiThreadedExecutor's threads begin: rclpy of Jazzy keeps them waiting.
+"""Let a MultiThreadedExecutor's threads begin, and have enough of them, on any machine.
 
-From handing a callback to its pool until a thread there begins it, that executor does not wait
-but goes round: it hands the callback over again, and its wait set returns at once, for the
-subscription is left out but not its QoS events, and Fast DDS has one condition for both. Python
-lets another thread in during each of these waits, some 10 µs long. A thread that takes longer to
-wake up comes too late, again and again; and since it was woken, and did not wait in vain, it does
-not make the first one give way. On an idle machine up to each second message came seconds late.
+rclpy of Jazzy keeps them waiting. From handing a callback to its pool until a thread there begins
+it, that executor does not wait but goes round: it hands the callback over again, and its wait set
+returns at once, for the subscription is left out but not its QoS events, and Fast DDS has one
+condition for both. Python lets another thread in during each of these waits, some 10 µs long. A
+thread that takes longer to wake up comes too late, again and again; and since it was woken, and
+did not wait in vain, it does not make the first one give way. On an idle machine up to each second
+message came seconds late.
 See https://github.com/ros2/rclpy/issues/1452, which is fixed in later releases.
+
+By default there are as many threads as processors. Callbacks that wait keep a thread each, so an
+answer would be right on one machine and stand still on a smaller one: here, each machine has the
+same number.
 """
 
 import threading
@@ -16,6 +21,8 @@ from typing import Any
 
 from rclpy.executors import MultiThreadedExecutor
 
+THREADS = 4
+"""Enough for two calls that wait, one whose answer never comes, and a timer."""
 BEGIN_SEC = 0.01
 """How long the executor waits at most: while all threads are busy, others are served so often."""
 
@@ -37,11 +44,16 @@ class PromptPool(ThreadPoolExecutor):
 
 
 def let_threads_begin() -> None:
-    """Give such a pool to each MultiThreadedExecutor that is made from now on."""
+    """Give such a pool to each MultiThreadedExecutor that is made from now on.
+
+    Where its maker names no number of threads, it has THREADS of them.
+    """
     init = MultiThreadedExecutor.__init__
 
-    def prompt_init(executor: MultiThreadedExecutor, *args: Any, **kwargs: Any) -> None:
-        init(executor, *args, **kwargs)
+    def prompt_init(
+        executor: MultiThreadedExecutor, num_threads: int | None = None, **kwargs: Any
+    ) -> None:
+        init(executor, THREADS if num_threads is None else num_threads, **kwargs)
         executor._executor = PromptPool(executor._executor._max_workers)
 
     MultiThreadedExecutor.__init__ = prompt_init  # type: ignore[assignment, method-assign]
