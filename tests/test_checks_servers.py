@@ -497,7 +497,7 @@ class AsksInALoop(IKClient):
 @pytest.mark.slow
 def test_who_asks_for_more_than_its_queue_holds_is_told_so_each_time(run):
     run(AsksInALoop)
-    with pytest.raises(CheckFailed, match=r'for each message, saw \d+ at once: ask once in the'):
+    with pytest.raises(CheckFailed, match='for each message, saw more than 10 at once: ask once'):
         check_never_blocks()
 
 

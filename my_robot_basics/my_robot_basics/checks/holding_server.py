@@ -72,7 +72,7 @@ class HoldingServer:
         Raises CheckFailed where there are more than MOST_HELD.
         """
         self._holds = False
-        self._expect_few(len(self._held), MOST_HELD + 1, f'{len(self._held)} at once')
+        self._expect_few(len(self._held), MOST_HELD + 1, f'more than {MOST_HELD} at once')
         for send, response, header in reversed(self._held) if reverse else self._held:
             self._send(send, response, header)
         self._held = []
