@@ -68,3 +68,49 @@ def test_only_a_silence_that_the_machine_does_not_explain_counts(
     monkeypatch.setattr(heartbeat, 'Stopwatch', fake.stopwatch)
     monkeypatch.setattr(heartbeat.student, 'times_raised', lambda name: 0)
     assert heartbeat.Heartbeat(fake, SimpleNamespace(received=fake.received)).goes_on() is goes_on
+
+
+class Waits(Fake):
+    """Counts ten times a second, but while it waits for a while upon each message."""
+
+    def __init__(self, waits_sec, **options):
+        super().__init__(every(0.1), **options)
+        self.waits_sec, self.sent = list(waits_sec), 0
+
+    def send(self):
+        self.sent += 1
+        if self.waits_sec:
+            end_sec = self.now_sec + self.waits_sec.pop(0)
+            self.beats_sec = [max(each, end_sec) for each in self.beats_sec]
+
+
+@pytest.mark.parametrize(
+    ('waits_sec', 'goes_on', 'sent'),
+    [
+        ([], True, 1),
+        ([1.0] * 3, False, 3),
+        ([0.5] * 3, False, 3),
+        # a machine that was short of time once, or twice
+        ([1.0], True, 2),
+        ([1.0, 0.5], True, 3),
+        # short pauses are no waits
+        ([0.3] * 3, True, 1),
+    ],
+)
+def test_who_waits_upon_each_message_does_not_go_on_however_busy_the_machine_is(
+    monkeypatch, waits_sec, goes_on, sent
+):
+    fake = Waits(waits_sec, free_share=BUSY)
+    monkeypatch.setattr(heartbeat, 'Stopwatch', fake.stopwatch)
+    monkeypatch.setattr(heartbeat.student, 'times_raised', lambda name: 0)
+    beats = heartbeat.Heartbeat(fake, SimpleNamespace(received=fake.received))
+    assert (beats.goes_on(fake.send), fake.sent) == (goes_on, sent)
+
+
+def test_a_machine_that_holds_everything_up_holds_up_no_message(monkeypatch):
+    fake = Waits([1.0] * 3, free_share=BUSY)
+    fake.beats_sec = every(0.7)
+    monkeypatch.setattr(heartbeat, 'Stopwatch', fake.stopwatch)
+    monkeypatch.setattr(heartbeat.student, 'times_raised', lambda name: 0)
+    beats = heartbeat.Heartbeat(fake, SimpleNamespace(received=fake.received))
+    assert beats.goes_on(fake.send)

@@ -4,6 +4,7 @@ A machine that is short of time is no node that waits: where no time is free, on
 that is far longer than those after it. The notebook has to answer questions meanwhile.
 """
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from my_robot_basics.checks.recorder import Recorder
@@ -24,6 +25,12 @@ MOST_TIMES = 4.0
 AGAIN_TIMES = 3
 """… which it has to do in so many times as much of both."""
 LOOK_SEC = 0.1
+ROUND, ROUNDS = 4, 3
+"""A round of beats begins with a message: the first two pauses show what the node makes of it, and
+those behind show the machine. So many rounds, in which …"""
+STALL_SEC, STALL_TIMES = 0.4, 2.0
+"""… each message holds it up for so long, and for so many times as long as any other pause, are
+no chance: it waits a while each time, in a callback."""
 
 
 @dataclass(frozen=True)
@@ -43,17 +50,22 @@ class Heartbeat:
     def __init__(self, watcher: Watcher, recorder: Recorder) -> None:
         self._watcher, self._recorder = watcher, recorder
 
-    def goes_on(self) -> bool:
-        """Whether it counts now, without a silence."""
-        watch, beats = Stopwatch(), 0
-        while beats < BEATS or watch.wall_sec() < SPAN_SEC:
-            pause = self._pause()
-            if pause.was_free:
-                return False
-            if not pause.is_over:
-                return self._is_usual(pause)
-            beats += 1
-        return True
+    def goes_on(self, send: Callable[[], None] = lambda: None) -> bool:
+        """Whether it counts now, without a silence.
+
+        `send()` sends the node a message, behind a beat: again only where that seems to hold it
+        up, for each may keep a thread of the node for good.
+        """
+        watch, pauses, sent = Stopwatch(), [self._pause()], 0
+        while pauses[-1].is_over and (len(pauses) <= BEATS or watch.wall_sec() < SPAN_SEC):
+            if sent < ROUNDS and len(pauses) == 1 + ROUND * sent and _stalls(pauses[1:]):
+                send()
+                sent += 1
+            pauses.append(self._pause())
+        last = pauses[-1]
+        if last.is_over:
+            return not (sent == ROUNDS and _stalls(pauses[1 : 1 + ROUND * ROUNDS]))
+        return not last.was_free and self._is_usual(last)
 
     def _is_usual(self, pause: _Pause) -> bool:
         """Whether a machine that is short of time explains a pause, by those that come later."""
@@ -78,3 +90,11 @@ class Heartbeat:
                 return _Pause(sec, is_over=False, was_free=True)
             if looks >= times * BUSY_LOOKS and sec >= times * BUSY_SEC:
                 return _Pause(sec, is_over=False)
+
+
+def _stalls(pauses: Sequence[_Pause]) -> bool:
+    """Whether the message of each round so far held the node up for a while."""
+    rounds = [pauses[first : first + ROUND] for first in range(0, len(pauses), ROUND)]
+    shortest = min((max(each.sec for each in round_[:2]) for round_ in rounds), default=STALL_SEC)
+    others = max((each.sec for round_ in rounds for each in round_[2:]), default=0.0)
+    return shortest >= STALL_SEC and shortest >= STALL_TIMES * others

@@ -116,15 +116,13 @@ def expect_never_blocks(server: Server, *targets: tuple[float, float]) -> None:
     server.hold()
     ask(server, *first)
     # no request is expected yet: who keeps targets asks for one after the other
-    server.publish(Point(x=second[0], y=second[1]))
-    server.expect_alive('the server takes its time')
+    server.expect_alive('the server takes its time', Point(x=second[0], y=second[1]))
     expect_no_others(server)
     server.release()
     expect_each_elbow_up(server, first, second)
     _let_all_be_answered(server)
     server.stop()
-    server.publish(Point(x=first[0], y=first[1]))
-    server.expect_alive('there is no server')
+    server.expect_alive('there is no server', Point(x=first[0], y=first[1]))
     server.start()
     expect_answer(server, *third)
     _let_all_be_answered(server)  # that of before, too, where it was kept

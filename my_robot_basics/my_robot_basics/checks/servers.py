@@ -47,14 +47,14 @@ def serve(
                    to='/kinematics/joint_states', alive='/ik_client/alive') as server:
             server.hold()
             server.ask(Point(x=1.0), is_it=lambda request: request.target.x == 1.0)
-            server.expect_alive('the server takes its time')
+            server.expect_alive('the server takes its time', Point(x=1.5))
             server.release()
             server.expect(is_right, expected='…', hint=lambda message: '…')
     """
-    served = {'name': name, 'type_': type_, 'answer': answer}
+    served: dict[str, Any] = {'name': name, 'type_': type_, 'answer': answer, 'asked_on': asked_on}
     with Watcher(shared=True) as watcher:
         answers, beats = (Topic(topic_name).listen(watcher) for topic_name in (to, alive))
-        server = Server(watcher, asked_on=asked_on, answers=answers, beats=beats, **served)
+        server = Server(watcher, answers=answers, beats=beats, **served)
         server.expect_alone()
         server.start()
         yield server
@@ -141,8 +141,7 @@ class Server(HoldingServer):
         if found:
             self._raised.expect_none()
             return next(filter(is_right, received()))
-        others = received()
-        wrong = cause or f'a wrong message on {self._answers.topic_name}'
+        others, wrong = received(), cause or f'a wrong message on {self._answers.topic_name}'
         fail(
             expected=f'{expected} on {self._answers.topic_name}',
             seen=shorten(others[-1]) if others else f'none in {TIMEOUT_SEC:g} s',
@@ -166,12 +165,13 @@ class Server(HoldingServer):
         )
         self._raised.expect_none()
 
-    def expect_alive(self, meanwhile: str) -> None:
-        """The node goes on counting on `alive`. `meanwhile`: what happens, as a clause.
+    def expect_alive(self, meanwhile: str, message: Any) -> None:
+        """The node goes on counting on `alive`, though `message` is published.
 
-        Raises CheckFailed where the count stands still (see `Heartbeat`), or another node serves.
+        It is published again where it seems to hold the node up. `meanwhile`: what happens, as a
+        clause. Raises CheckFailed where the count stands still (see `Heartbeat`).
         """
-        if not self._goes_on():
+        if not self._goes_on(lambda: self.publish(message)):
             self._fail_still(meanwhile)
         self.expect_alone()
 
@@ -187,8 +187,8 @@ class Server(HoldingServer):
     def _why_silent(self) -> str:
         return why_not_published(self.name, goes_on=self._goes_on)
 
-    def _goes_on(self) -> bool:
-        return Heartbeat(self._watcher, self._beats).goes_on()
+    def _goes_on(self, send: Callable[[], None] = lambda: None) -> bool:
+        return Heartbeat(self._watcher, self._beats).goes_on(send)
 
     def _fail_still(self, meanwhile: str) -> NoReturn:
         why = waits_for_answer if self.holds_any() else waits_for_server
