@@ -122,7 +122,7 @@ def answer(lesson, cell_id, text):
 
 
 def open_formgrader(page):
-    """Open the formgrader as the README says, in JupyterLab's menu; return its frame."""
+    """Open the formgrader from the menu, as docs/for-instructors.md says; return its frame."""
     page.get_by_role('menuitem', name='Nbgrader').click()
     page.get_by_role('menuitem', name='Formgrader').click()
     return page.frame_locator('iframe[src*="formgrader"]')

@@ -134,8 +134,8 @@ FIGURES = {
         f'one regular expression, {dates.MAX_BYTES} bytes',
         f'at most {package_files.MAX_FILES} files and {package_files.MAX_BYTES // 10**6} MB',
     ],
-    'README.md': [
-        f'{limits.SUBMISSION_MEMORY_BYTES // 2**20} MB are reserved for',
+    'docs/for-instructors.md': [f'{limits.SUBMISSION_MEMORY_BYTES // 2**20} MB are reserved for'],
+    'docs/capacity.md': [
         f'does not return within {cell_limits.VALIDATE_TIMEOUT_SEC} s',
         f'grading gives it {cell_limits.STUDENT_CELL_TIMEOUT_SEC:.0f} s',
     ],

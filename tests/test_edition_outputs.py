@@ -1,10 +1,12 @@
 """What a lesson of an edition shows before it is run: the course's own words are translated."""
 
+import html
 import re
 
 import nbformat
 import pytest
 from my_robot_basics.doctor import as_html
+from my_robot_basics.drawing.described import described
 from my_robot_basics.live import panel
 from nbformat.v4 import new_output
 
@@ -93,11 +95,56 @@ def test_what_the_doctor_found_is_translated_but_for_its_code():
     )
 
 
-def test_a_value_and_a_picture_stay():
+def test_a_value_stays():
     value = new_output('execute_result', {'text/plain': 'no node is running'}, execution_count=1)
     assert shown(value).data['text/plain'] == 'no node is running'
-    picture = {'text/html': '<img alt="no node is running">', 'text/plain': 'no node is running'}
-    assert shown(new_output('display_data', dict(picture))).data == picture
+
+
+PICTURES = {
+    'graph: /a (x_msgs/msg/T): nobody → /b and /c; on no topic: /d': (
+        '计算图：/a (x_msgs/msg/T)：没有节点 → /b 和 /c；不在任何话题上：/d'
+    ),
+    'timeline: one thread, "no" group: 3 times, gaps from 1.0 to 2.0 ms; b: 0 of 4 received': (
+        '时间线：one thread, "no" group：3 次，间隔从 1.0 到 2.0 ms；b：4 条中收到 0 条'
+    ),
+    'Pictures from /camera: all\nRELIABLE: 3 of 4': (
+        'Pictures from /camera: all\nRELIABLE：4 条中收到 3 条'
+    ),
+    'graph of /s: /a serves, nobody asks; 1 goal goes on; broken: no client (it is busy)': (
+        '/s 的计算图：/a 提供，没有节点请求；有 1 个目标正在执行；'
+        '出问题的：没有客户端（it is busy）'
+    ),
+    'a picture of my own: nothing to see': 'a picture of my own: nothing to see',
+}
+
+
+@pytest.mark.parametrize(('english', 'chinese'), PICTURES.items())
+def test_the_words_for_a_picture_are_translated_and_its_labels_and_pixels_stay(english, chinese):
+    data, metadata = described(b'pixels', english)
+    pixels = data.pop('image/png')
+    output = shown(new_output('display_data', data, metadata=metadata))
+    again, about = described(pixels, english, 'zh_CN')  # what a kernel of the edition shows
+    assert output.data == {k: text for k, text in again.items() if k != 'image/png'}
+    assert output.metadata == about
+    assert output.data['text/plain'] == chinese
+    assert about['image/png']['alt'] == chinese.replace('\n', '；')
+    source = 'src="data:image/png;base64,cGl4ZWxz">'
+    escaped = html.escape(about['image/png']['alt'])
+    assert output.data['text/html'] == f'<img alt="{escaped}" {source}'
+
+
+def pictures_of(folder, name):
+    lesson = nbformat.read(ROOT / folder / name / f'{name}.ipynb', as_version=4)
+    outputs = [output for cell in lesson.cells for output in cell.get('outputs', [])]
+    pages = [output.get('data', {}).get('text/html', '') for output in outputs]
+    return [re.fullmatch('<img alt="(.*?)" (.*)>', p, re.DOTALL) for p in pages if '<img' in p]
+
+
+@pytest.mark.parametrize('name', LESSONS)
+def test_each_picture_of_a_released_lesson_has_words_in_chinese(name):
+    english, chinese = (pictures_of(folder, name) for folder in ('notebooks', 'notebooks/zh_CN'))
+    assert [found[2] for found in chinese] == [found[2] for found in english]
+    assert [found[1] for found in chinese if not re.search('[\u3400-\u9fff]', found[1])] == []
 
 
 @pytest.mark.parametrize('name', LESSONS)

@@ -54,7 +54,10 @@ def course(tmp_path, monkeypatch):
 
 @pytest.fixture
 def lab(course, tmp_path):
-    """What the README says: `.venv/bin/jupyter lab` in the course's folder; gives its address."""
+    """What docs/for-instructors.md says: `.venv/bin/jupyter lab` in the course's folder.
+
+    Gives its address.
+    """
     with socket.socket() as free:
         free.bind(('127.0.0.1', 0))
         port = free.getsockname()[1]

@@ -1,4 +1,4 @@
-"""What the README says is so: its commands, lessons, links, examples and quoted words."""
+"""What the README says is so: its commands, lessons, links, figures, examples and quoted words."""
 
 import re
 import subprocess
@@ -12,7 +12,12 @@ from nbclient import NotebookClient
 from nbformat.v4 import new_code_cell, new_notebook
 
 ROOT = Path(__file__).parents[1]
-README = (ROOT / 'README.md').read_text()
+README = (ROOT / 'README.md').read_text(encoding='utf-8')
+CHINESE = (ROOT / 'README.zh-CN.md').read_text(encoding='utf-8')
+FOR_INSTRUCTORS = (ROOT / 'docs/for-instructors.md').read_text(encoding='utf-8')
+CAPACITY = (ROOT / 'docs/capacity.md').read_text(encoding='utf-8')
+MOST_LINES = 140
+"""The README is an entrance, which a newcomer reads to its end."""
 EXAMPLES = re.findall(r'^```python\n(.*?)^```', README, re.MULTILINE | re.DOTALL)
 LESSONS = re.findall(r'^\| \[(\d\d) (.+?)\]\((.+?)\) \| .+? \| (\d+) \|$', README, re.MULTILINE)
 LINKS = re.findall(r'\]\((?!https:)([^)#]+)\)|src="([^"]+)"', README)
@@ -32,13 +37,14 @@ timer = node.create_timer(1.0, lambda: publisher.publish(JointState()))
 def test_every_command_is_a_verb():
     usage = subprocess.run([ROOT / 'course', '--help'], capture_output=True, text=True).stdout
     verbs = set(re.findall(r'^  (\w+)', usage, re.MULTILINE))
-    named = set(re.findall(r'\./course (\w+)', README))
+    named = set(re.findall(r'\./course (\w+)', README + FOR_INSTRUCTORS))
     assert named - verbs == set()
     assert verbs - named == set()  # nothing that is there is kept from the reader
 
 
 def test_every_nbgrader_command_exists():
-    named = re.findall(r'`\.venv/bin/(\w+) (\w+)`(?:, `(\w+)`, `(\w+)`)?', README)
+    named = re.findall(r'`\.venv/bin/(\w+) (\w+)`(?:, `(\w+)`, `(\w+)`)?', FOR_INSTRUCTORS)
+    named += [(program, '') for program in re.findall(r'\.venv/bin/(\w+)', README)]
     assert {program for program, *_ in named} == {'dask', 'jupyter', 'nbgrader'}
     assert all(Path(sys.prefix, 'bin', program).is_file() for program, *_ in named)
     from nbgrader.apps.nbgraderapp import NbGraderApp
@@ -47,7 +53,79 @@ def test_every_nbgrader_command_exists():
     assert set(commands) - set(NbGraderApp.subcommands) == set()
 
 
-CHINESE = (ROOT / 'README.zh-CN.md').read_text(encoding='utf-8')
+def test_the_readme_is_short_enough_to_be_read():
+    assert len(README.splitlines()) <= MOST_LINES
+    assert len(CHINESE.splitlines()) <= MOST_LINES
+
+
+# --- the path of an instructor -------------------------------------------------------------------
+
+
+def commands_of(text):
+    """Return what the terminal's blocks of a text call, without arguments and comments."""
+    blocks = re.findall(r'^```sh\n(.*?)^```', text, re.MULTILINE | re.DOTALL)
+    lines = [line for block in blocks for line in block.splitlines()]
+    return [' '.join(line.split()[:2]) for line in lines]
+
+
+def test_the_instructors_commands_are_the_steps_of_their_page_in_order():
+    path = commands_of(README.partition('## For instructors')[2])
+    table = FOR_INSTRUCTORS.partition('## The steps')[2].partition('\n\n## ')[0]
+    rows = re.findall(r'^\| [\w ]+ \| (.+?) \| .+ \|$', table, re.MULTILINE)
+    cells = [re.findall(r'`((?:\./course|\.venv/bin/jupyter) \w+)', row) for row in rows]
+    steps = iter([command for commands in cells for command in commands])
+    assert len(path) > 6
+    assert [command for command in path if command not in steps] == []  # each behind the last one
+
+
+# --- what was measured ---------------------------------------------------------------------------
+
+FIGURE = r'\d[\d,.]*\d|\d'
+SUMS = re.compile(r'^- \*\*.+(?:\n  .+)*', re.MULTILINE)
+"""The items of the README with figures: each names a script that measures them again."""
+
+
+def without_links(text):
+    return re.sub(r'\]\([^)]*\)', ']', text)
+
+
+def figures_of(text):
+    """Return the figures of a text, without those of the commands that repeat them."""
+    return set(re.findall(FIGURE, re.sub('`.*?`', '', without_links(text))))
+
+
+def test_each_figure_has_a_command_and_is_in_the_log_with_it():
+    items = SUMS.findall(README)
+    assert len(items) == 3
+    sections = re.split(r'^## ', CAPACITY, flags=re.MULTILINE)
+    for item in items:
+        scripts = re.findall(r'tests/benchmarks/(\w+\.py)((?: --[a-z]+ \d+)*)', item)
+        assert scripts
+        told = [s for s in sections if any(f'benchmarks/{name}' in s for name, _ in scripts)]
+        assert [
+            options for _, options in scripts if not any(options.strip() in s for s in told)
+        ] == []
+        known = set(re.findall(FIGURE, ''.join(told)))
+        assert figures_of(item) - known == set()
+
+
+# --- the Chinese README --------------------------------------------------------------------------
+
+
+def test_the_chinese_readme_has_the_same_shape():
+    """The same sections, commands and measured figures, and a link to each document."""
+    assert len(re.findall('^## ', CHINESE, re.MULTILINE)) == len(
+        re.findall('^## ', README, re.MULTILINE)
+    )
+    parts = (text.split('\n## ')[1:] for text in (README, CHINESE))
+    for english, chinese in zip(*parts, strict=True):
+        assert commands_of(chinese) == commands_of(english)
+    english, chinese = (SUMS.findall(text) for text in (README, CHINESE))
+    assert [figures_of(item) for item in chinese] == [figures_of(item) for item in english]
+    command = r'`(tests/benchmarks/.+?)`'
+    assert re.findall(command, CHINESE) == re.findall(command, README)
+    documents = r'\]\((\w+\.md|(?:docs|deploy)/[^)#]+)[^)]*\)'
+    assert set(re.findall(documents, README)) - set(re.findall(documents, CHINESE)) == set()
 
 
 def test_the_chinese_readme_leads_to_each_lesson_that_is_in_chinese():

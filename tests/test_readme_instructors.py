@@ -1,4 +1,4 @@
-"""The README's page for instructors, walked by somebody who does what it says and no more."""
+"""The page for instructors, walked by somebody who does what it says and no more."""
 
 import csv
 import json
@@ -15,8 +15,7 @@ from synthetic_class import synthetic_class
 from grader.authoring.bundle import FOLDER
 from grader.course import ROOT
 
-PAGE = (ROOT / 'README.md').read_text(encoding='utf-8').partition('## For instructors')[2]
-PAGE = PAGE.partition('\n## ')[0]
+PAGE = (ROOT / 'docs/for-instructors.md').read_text(encoding='utf-8')
 TABLE = PAGE[PAGE.index('| step | command |') :].partition('\n\n')[0]
 STEPS = re.findall(r'^\| ([\w ]+) \| (.*?`.+?`.*?) \| (.+) \|$', TABLE, re.MULTILINE)
 COMMANDS = [command for _, cell, _ in STEPS for command in re.findall(r'`(\./course .+?)`', cell)]
@@ -59,7 +58,10 @@ class Walk:
         assert out == 'Nothing has changed.\n'
 
     def after_translate(self, out):
-        assert self.run('git', 'status', '--short', 'locale') == ''
+        """Nothing is left to do, and nothing has changed; a fresh clone has no history to ask."""
+        assert not re.search('missing: |out of date: ', out)
+        for path in (ROOT / 'locale').rglob('*.po'):
+            assert (self.clone / path.relative_to(ROOT)).read_bytes() == path.read_bytes()
 
     def after_bundle(self, out):
         """Students unpack it and work in its notebooks; the system packs what they hand in."""
@@ -141,8 +143,10 @@ def test_a_new_instructor_gets_from_the_bundle_to_the_scores(tmp_path):
         out, verb = walk.course(command)
         getattr(walk, f'after_{verb}')(out)
 
-    # the page's word on totals
-    assert "nbgrader's `export` writes totals" in PAGE
+    # the page's word on nbgrader's own commands
+    said = ' '.join(PAGE.split())
+    assert 'Its own commands (' in said
+    assert '`export`) and its formgrader work in this folder and give the same scores' in said
     walk.run('.venv/bin/nbgrader', 'export')
     with (clone / 'grades.csv').open(encoding='utf-8', newline='') as file:
         totals = {

@@ -20,7 +20,7 @@ from my_robot_basics.validate.cell_names import in_words
 from my_robot_basics.validate.report import CheckFeedback, ExerciseFeedback, Report
 from my_robot_basics.validate.text import columns
 
-from grader.authoring.code_messages import messages_in
+from grader.authoring.code_messages import described_in, messages_in
 from grader.course import Course
 from grader.notebook.restore import restore
 from grader.report.page import page
@@ -79,6 +79,11 @@ def test_the_sentences_of_code_are_templates_with_a_name_for_each_place():
         'below',
     ]
     assert 'Each value is doubled' not in messages_in(CODE)
+
+
+def test_the_words_for_a_picture_are_those_that_are_marked():
+    source = "text = in_words('graph') + f': {a}' + in_words(f'{len(a)} of {b:g} ms')"
+    assert described_in(source) == ['graph', '{len} of {b} ms']
 
 
 TEMPLATES = {

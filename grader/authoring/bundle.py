@@ -9,6 +9,7 @@ from fnmatch import fnmatch
 from pathlib import Path
 
 from my_robot_basics.language.catalogues import catalogue_path
+from my_robot_basics.language.picture_words import PICTURES
 from my_robot_basics.language.speaking import FOR_STUDENTS
 
 from grader.authoring.editions import editions
@@ -150,7 +151,7 @@ def _paths(course: Course, faults: list[str]) -> Iterator[str]:
             paths = (Path(assignment, name) for name in sorted(names))
             yield from (f'{folder}/{path}' for path in paths if not course.is_in_package(path))
     for edition in editions(course):
-        for part in (*FOR_STUDENTS, LAUNCHER):
+        for part in (*FOR_STUDENTS, PICTURES, LAUNCHER):
             catalogue = catalogue_path(Path('locale'), edition.language, part)
             if (course.root / catalogue).is_file():
                 yield str(catalogue)

@@ -50,6 +50,14 @@ def messages_in(source: str, *, title: bool = False) -> list[str]:
     return list(dict.fromkeys([*found, *words]))
 
 
+def described_in(source: str) -> list[str]:
+    """Return the templates of what a module marks by in_words: parts of alternative texts."""
+    calls = (node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Call))
+    marked = [call.args[0] for call in calls if _called(call) == 'in_words']
+    marked.sort(key=lambda text: (text.lineno, text.col_offset))
+    return [_template(text)[0] for text in marked]
+
+
 def marked_in(source: str, callers: Collection[str]) -> list[str]:
     """Return the texts that a module gives to a function of one of these names, in order."""
     calls = (node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Call))

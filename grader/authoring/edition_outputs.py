@@ -1,7 +1,8 @@
 """What a lesson shows before it is run, in an edition's language: the course's own words alone.
 
 The outputs are those of the English release. Run again, a cell of an edition shows the course's
-displays and sentences in its language, and what the lesson's code or `ros2` prints in English.
+displays, sentences and words for pictures in its language, and what the lesson's code or `ros2`
+prints in English.
 """
 
 import html
@@ -13,12 +14,15 @@ from pathlib import Path
 
 from my_robot_basics.language.catalogues import read_translations
 from my_robot_basics.language.english import PHRASE, letters_left
+from my_robot_basics.language.picture_words import in_one_line, picture_in
 from my_robot_basics.language.sentences import Sentences
 from my_robot_basics.language.templates import LETTERS, Template
 from nbformat import NotebookNode
 
 PANEL, DOCTOR = '<pre style="margin:0;padding-left:8px;', '<div style="font-size:13px;line-height'
 """How a node's panel begins, and what the topic doctor says."""
+PICTURE = '<img alt="'
+"""How a picture begins."""
 PARTS = ('live', 'doctor', 'checks')
 """The catalogues of what a cell may print."""
 COLON = '{one}: {other}'
@@ -49,7 +53,9 @@ class OutputWords:
         page = data.get('text/html', '')
         if output.output_type != 'display_data':
             return
-        if page.startswith(DOCTOR):
+        if page.startswith(PICTURE):
+            self._picture(output)
+        elif page.startswith(DOCTOR):
             data['text/html'] = _TEXT.sub(lambda found: found[1] or self._told(found[2]), page)
         elif page.startswith(PANEL):
             data['text/plain'] = self._panel(data['text/plain'])
@@ -83,6 +89,17 @@ class OutputWords:
             colon = self._sentences.translations.get(COLON, COLON)
             shown = colon.format(one=shown, other='').rstrip()
         return text.replace(text.strip(), html.escape(shown))
+
+    def _picture(self, output: NotebookNode) -> None:
+        """Translate a picture's alternative text, in each form in which the output has it."""
+        data = output.data
+        data['text/plain'] = picture_in(self.language, data['text/plain'], self.locale)
+        words = in_one_line(self.language, data['text/plain'], self.locale)
+        _, quote, source = data['text/html'].removeprefix(PICTURE).partition('"')
+        data['text/html'] = f'{PICTURE}{html.escape(words)}{quote}{source}'
+        for about in output.metadata.values():
+            if 'alt' in about:
+                about['alt'] = words
 
     def _panel(self, text: str) -> str:
         """Translate the state of a node, and what follows an exception; a log line stays."""

@@ -5,13 +5,14 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from my_robot_basics.feedback.hidden_source import visible
+from my_robot_basics.language.picture_words import PICTURES
 from my_robot_basics.language.sentences import JOINED
 from my_robot_basics.validate.cells import role
 from nbformat import NotebookNode
 
 from grader.authoring import index
 from grader.authoring.blocks import translatable, translatable_html, without_mark_scheme
-from grader.authoring.code_messages import marked_in, messages_in
+from grader.authoring.code_messages import described_in, marked_in, messages_in
 from grader.authoring.editions import is_translated
 from grader.authoring.quizzes import quizzes
 from grader.course import Course
@@ -58,6 +59,8 @@ MODULES = {
     ],
 }
 """The modules that say something to students, for each part of the software."""
+DRAWN = ('live', 'drawing', 'doctor')
+"""The packages whose pictures have an alternative text."""
 CHARTS = 'grader/report/charts.py'
 PAGES = {'feedback': 'grader/report/page.html.j2', 'report': 'grader/report/report.html.j2'}
 """The templates of pages; what is told there of others' work is translated by its own part."""
@@ -92,6 +95,7 @@ def _software(course: Course) -> dict[str, Texts]:
     parts = {part: _modules(course.root, patterns) for part, patterns in MODULES.items()}
     if parts['checks']:
         parts['checks'] |= dict.fromkeys(JOINED, WHEREVER)
+    parts[PICTURES] = _pictures(course.root)
     parts['report'] = {}
     for path in sorted(course.root.glob(CHARTS)):
         for text in marked_in(path.read_text(encoding='utf-8'), _SAY):
@@ -135,6 +139,16 @@ def _modules(root: Path, patterns: Sequence[str]) -> Texts:
     for path in sorted(path for pattern in patterns for path in root.glob(pattern)):
         for text in messages_in(path.read_text(encoding='utf-8')):
             texts.setdefault(text, []).append(str(path.relative_to(root)))
+    return texts
+
+
+def _pictures(root: Path) -> Texts:
+    """Return the parts of pictures' alternative texts."""
+    texts: Texts = {}
+    for package in DRAWN:
+        for path in sorted(root.glob(f'my_robot_basics/my_robot_basics/{package}/*.py')):
+            for text in described_in(path.read_text(encoding='utf-8')):
+                texts.setdefault(text, []).append(str(path.relative_to(root)))
     return texts
 
 

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 from my_robot_basics.doctor.evidence import Diagnosis, Endpoint, Evidence, Kind
 from my_robot_basics.doctor.report import summary
+from my_robot_basics.drawing.described import in_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -19,14 +20,13 @@ LEFT, MIDDLE, RIGHT = 0.0, 1.0, 2.0
 
 def describe(diagnosis: Diagnosis) -> str:
     """The picture in words, for those who can't see it."""
+    graph = in_words(f'graph of {diagnosis.evidence.name}') + f': {summary(diagnosis.evidence)}'
     if not diagnosis.findings:
-        return f'graph of {diagnosis.evidence.name}: {summary(diagnosis.evidence)}'
+        return graph
     first = diagnosis.findings[0]
-    where = ', '.join(sorted({end.node_name for end in first.broken})) or f'no {first.missing}'
-    return (
-        f'graph of {diagnosis.evidence.name}: {summary(diagnosis.evidence)};'
-        f' broken: {where} ({first.title})'
-    )
+    names = sorted({end.node_name for end in first.broken})
+    where = ', '.join(names) or in_words(f'no {first.missing}')
+    return f'{graph}; ' + in_words(f'broken: {where} ({first.title})')
 
 
 def draw(diagnosis: Diagnosis) -> bytes:

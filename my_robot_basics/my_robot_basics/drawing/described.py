@@ -4,16 +4,26 @@ import base64
 import html
 from typing import Any
 
+from my_robot_basics.language.catalogues import ENGLISH
+from my_robot_basics.language.picture_words import in_one_line, picture_in
+
 Bundle = dict[str, Any]
 """MIME types and their data."""
 
 
-def described(png: bytes, text: str) -> tuple[Bundle, dict[str, Any]]:
+def in_words(text: str) -> str:
+    """Return a part of an alternative text as it is: a mark that it is one to translate."""
+    return text
+
+
+def described(png: bytes, text: str, language: str = ENGLISH) -> tuple[Bundle, dict[str, Any]]:
     """A picture and its alternative text as a notebook's output: the data, and its metadata.
 
+    The text is put into the language, so far as it is translated.
     JupyterLab shows the HTML, since it leaves the words out of a plain PNG; others take the PNG.
     """
-    words = text.replace('\n', '; ')
+    text = picture_in(language, text)
+    words = in_one_line(language, text)
     source = base64.b64encode(png).decode('ascii')
     image = f'<img alt="{html.escape(words)}" src="data:image/png;base64,{source}">'
     bundle = {'image/png': png, 'text/html': image, 'text/plain': text}

@@ -5,6 +5,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from my_robot_basics.doctor.picture import png
+from my_robot_basics.drawing.described import in_words
 from my_robot_basics.kinematics_subscriber import same_pose
 from my_robot_basics.live import notebook
 from my_robot_basics.two_link_kinematics import L1, L2, forward_kinematics, inverse_kinematics
@@ -55,7 +56,10 @@ def show_branches(
         aspect='equal',
     )
     figure.legend(loc='outside lower center', ncols=2, frameon=False)
-    counts = ' and '.join(f'{len(members)} in {branch}' for branch, members in poses.items())
-    text = f'poses by branch: {counts}; elbow_up has θ2 below 0, elbow_down above'
+    counts = ' and '.join(
+        in_words(f'{len(members)} in {branch}') for branch, members in poses.items()
+    )
+    text = in_words('poses by branch') + f': {counts}; '
+    text += in_words('elbow_up has θ2 below 0, elbow_down above')
     display = notebook.Display()
     display.show({'image/png': png(figure), 'text/plain': text})

@@ -9,6 +9,7 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
 
 from my_robot_basics.drawing.arm import ArmPicture
+from my_robot_basics.drawing.described import in_words
 from my_robot_basics.live import notebook, runner
 from my_robot_basics.live.troubles import where_and_what
 from my_robot_basics.two_link_kinematics import L1, L2
@@ -55,20 +56,23 @@ class ArmFollower(Node):
 class ArmView:
     """Takes a panel's place: what this node has to show is a picture."""
 
-    _what = 'two-link arm that follows'
     _make_picture = ArmPicture
 
     def __init__(self, topic_name: str, *, l1: float, l2: float) -> None:
         """Draw the axes of the picture."""
         self.received = threading.Event()
         self._topic_name = topic_name
-        self._text = f'{self._what} {topic_name}'
+        self._text = self._about(topic_name)
         self._picture = self._make_picture(l1=l1, l2=l2)
         self._pose: tuple[float, float] | None = None
         self._ignored = 0
         self._trouble = f'waiting for messages on {topic_name}'
         self._display = notebook.Display()
         self._drawing = threading.Lock()
+
+    def _about(self, topic_name: str) -> str:
+        """Return what the picture is, in words."""
+        return in_words(f'two-link arm that follows {topic_name}')
 
     def receive(self, message: JointState) -> None:
         """Take the pose from a message, or say what is wrong with it."""

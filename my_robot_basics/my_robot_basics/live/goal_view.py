@@ -7,6 +7,7 @@ from action_msgs.msg import GoalStatus, GoalStatusArray
 from rclpy.node import Node
 from rclpy.qos import qos_profile_action_status_default
 
+from my_robot_basics.drawing.described import in_words
 from my_robot_basics.drawing.goal import PLACES, GoalPicture
 from my_robot_basics.live import runner
 from my_robot_basics.live.follow import ArmView
@@ -61,14 +62,13 @@ class GoalFollower(Node):
 class GoalView(ArmView):
     """What is known of one goal, and its picture."""
 
-    _what = 'goal of'
     _make_picture = GoalPicture
     _picture: GoalPicture
 
     def __init__(self, action_name: str, *, l1: float, l2: float) -> None:
         """Begin with no goal."""
         super().__init__(action_name, l1=l1, l2=l2)
-        self._trouble = 'waiting for a goal'
+        self._trouble = in_words('waiting for a goal')
         self._goal_id = b''
         self._states: list[str] = []
         self._feedback_count, self._way, self._left = 0, 0.0, 0.0
@@ -106,9 +106,12 @@ class GoalView(ArmView):
         self._states = []
         self._feedback_count, self._way, self._left = 0, 0.0, 0.0
 
+    def _about(self, topic_name: str) -> str:
+        return in_words(f'goal of {topic_name}')
+
     def _bundle(self) -> dict:
         count = self._feedback_count
-        words = f'feedback {count}: {self._left:.2f} rad remain' if count else ''
+        words = in_words(f'feedback {count}: {self._left:.2f} rad remain') if count else ''
         self._picture.states(self._states)
         self._picture.remaining(self._left / self._way if self._way else 0.0, words)
         bundle = super()._bundle()

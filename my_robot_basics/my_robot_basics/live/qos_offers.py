@@ -4,6 +4,7 @@ from itertools import product
 from typing import TYPE_CHECKING
 
 from my_robot_basics.doctor import picture
+from my_robot_basics.drawing.described import in_words
 from my_robot_basics.live import notebook
 
 if TYPE_CHECKING:
@@ -25,11 +26,13 @@ CROSS = 0.25
 def show_offers() -> None:
     """Show which offered values of reliability and durability match which requested ones."""
     said = [
-        f'{offered} → {requested} {"yes" if matches(values, offered, requested) else "no"}'
+        in_words(f'{offered} → {requested} yes')
+        if matches(values, offered, requested)
+        else in_words(f'{offered} → {requested} no')
         for values in POLICIES.values()
         for offered, requested in product(values, repeat=2)
     ]
-    text = 'offered → requested, does it match: ' + ', '.join(said)
+    text = in_words('offered → requested, does it match') + ': ' + ', '.join(said)
     notebook.Display().show({'image/png': draw(), 'text/plain': text})
 
 

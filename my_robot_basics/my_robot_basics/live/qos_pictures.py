@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from my_robot_basics.doctor.picture import png
+from my_robot_basics.drawing.described import in_words
 from my_robot_basics.live import notebook
 
 if TYPE_CHECKING:
@@ -28,8 +29,7 @@ def show_qos_matrix(outcomes: Mapping[tuple[str, str], str], *, title: str = '')
     if holes:
         raise ValueError(f'expected an outcome for every pair, saw none for {holes[0]}')
     lines = [
-        f'{offer} → '
-        + ', '.join(f'{request} {_verdict(outcomes[offer, request])}' for request in requests)
+        f'{offer} → ' + ', '.join(_told(request, outcomes[offer, request]) for request in requests)
         for offer in offers
     ]
     figure = _draw_matrix(outcomes, offers=offers, requests=requests, title=title)
@@ -41,14 +41,17 @@ def show_lost_messages(
 ) -> None:
     """Show, for each subscription, which of the messages 1 to `sent` it received."""
     counts = [
-        f'{name}: {len(_known(numbers, sent))} of {sent}' for name, numbers in received.items()
+        f'{name}: ' + in_words(f'{len(_known(numbers, sent))} of {sent}')
+        for name, numbers in received.items()
     ]
     figure = _draw_lost(received, sent=sent, title=title)
     _show(figure, '\n'.join(filter(None, [title, *counts])))
 
 
-def _verdict(outcome: str) -> str:
-    return outcome if outcome == 'yes' else f'no ({outcome})'
+def _told(request: str, outcome: str) -> str:
+    if outcome == 'yes':
+        return in_words(f'{request} yes')
+    return in_words(f'{request} no ({outcome})')
 
 
 def _known(numbers: Sequence[int], sent: int) -> list[int]:

@@ -7,6 +7,7 @@ from geometry_msgs.msg import Point
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 
+from my_robot_basics.drawing.described import in_words
 from my_robot_basics.live import notebook, runner
 from my_robot_basics.live.follow import FIRST_MESSAGE_SEC, ArmView
 from my_robot_basics.live.sliders import TARGET_WITHOUT_WIDGETS, show_widgets
@@ -52,8 +53,6 @@ class TargetNode(Node):
 class TargetView(ArmView):
     """The sliders, and the picture that takes a panel's place."""
 
-    _what = 'two-link arm that reaches for the target on'
-
     def __init__(self, topic_name: str, *, x: float, y: float, l1: float, l2: float) -> None:
         """Make the sliders and the axes of the picture."""
         super().__init__(topic_name, l1=l1, l2=l2)
@@ -63,6 +62,9 @@ class TargetView(ArmView):
         self.publisher: Publisher | None = None
         reach = 1.1 * (l1 + l2)
         self.x, self.y = (_slider(name, at, reach) for name, at in (('x', x), ('y', y)))
+
+    def _about(self, topic_name: str) -> str:
+        return in_words(f'two-link arm that reaches for the target on {topic_name}')
 
     def publish(self) -> None:
         """Show sliders and picture for the first time."""

@@ -1,11 +1,12 @@
 """Pictures of when messages arrive: how evenly, how late, and which of them never do."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from my_robot_basics.doctor.picture import png
+from my_robot_basics.drawing.described import in_words
 from my_robot_basics.live import notebook
 
 if TYPE_CHECKING:
@@ -50,8 +51,7 @@ def show_arrivals(
             gaps.set_ylabel('gap (ms)')
             gaps.ticklabel_format(useOffset=False)
     figure.axes[-1].set_xlabel('time since the first one (s)')
-    text = 'timeline: ' + '; '.join(_gaps(label, times) for label, times in rows.items())
-    _show(figure, text)
+    _show(figure, _told(_gaps(label, times) for label, times in rows.items()))
 
 
 def show_deliveries(
@@ -75,8 +75,7 @@ def show_deliveries(
         axes.set_title('× = never received', fontsize=9, loc='right', color=LOST)
         axes.set(yticks=[1, 0], yticklabels=['sent', 'received'], ylim=(-0.3, 1.3))
     figure.axes[-1].set_xlabel('time since the first message was sent (s)')
-    text = 'timeline: ' + '; '.join(_delays(label, each, sent) for label, each in rows.items())
-    _show(figure, text)
+    _show(figure, _told(_delays(label, each, sent) for label, each in rows.items()))
 
 
 def delays_sec(arrived: Mapping[int, float], *, sent: Mapping[int, float]) -> list[float]:
@@ -86,15 +85,19 @@ def delays_sec(arrived: Mapping[int, float], *, sent: Mapping[int, float]) -> li
 
 def _gaps(label: str, times_sec: Sequence[float]) -> str:
     gaps_ms = 1e3 * np.diff(times_sec)
-    return (
-        f'{label}: {len(times_sec)} times, gaps from {gaps_ms.min():.1f} to {gaps_ms.max():.1f} ms'
+    return f'{label}: ' + in_words(
+        f'{len(times_sec)} times, gaps from {gaps_ms.min():.1f} to {gaps_ms.max():.1f} ms'
     )
 
 
 def _delays(label: str, arrived: Mapping[int, float], sent: Mapping[int, float]) -> str:
     delays = delays_sec(arrived, sent=sent)
-    last = f', the last one after {1e3 * delays[-1]:.0f} ms' if delays else ''
-    return f'{label}: {len(delays)} of {len(sent)} received{last}'
+    if not delays:
+        return f'{label}: ' + in_words(f'0 of {len(sent)} received')
+    last_ms = 1e3 * delays[-1]
+    return f'{label}: ' + in_words(
+        f'{len(delays)} of {len(sent)} received, the last one after {last_ms:.0f} ms'
+    )
 
 
 def _panels(heights_inches: Sequence[float], *, title: str) -> tuple:
@@ -108,6 +111,10 @@ def _panels(heights_inches: Sequence[float], *, title: str) -> tuple:
     count = len(heights_inches)
     panels = figure.subplots(count, 1, sharex=True, squeeze=False, height_ratios=heights_inches)
     return figure, iter(panels[:, 0])
+
+
+def _told(rows: Iterable[str]) -> str:
+    return in_words('timeline') + ': ' + '; '.join(rows)
 
 
 def _show(figure: 'Figure', text: str) -> None:

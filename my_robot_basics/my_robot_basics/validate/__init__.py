@@ -7,6 +7,7 @@
 - *Validate* itself: `lesson` reads a student's notebook, `rooms`, `kernel`, `forks` and
   `forkserver` start what its cells run in, `short_budget` says how long each may take and
   `overdue` what was given up, `cell_names` names cells as students find them, `run` does all of
-  it, `report` tells it, `as_text` in a terminal, and `server` with `labextension/` in JupyterLab.
+  it, `report` tells it, `check_feedback` of each cell, `as_text` in a terminal, and `server` with
+  `labextension/` in JupyterLab.
 - For all of them: `errors`, `limits`, `text`, `titles`, `together`.
 """

@@ -1,18 +1,12 @@
 """What *Validate* says of each exercise and check: data that any front end can show."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from typing import Literal
 
-from nbformat import NotebookNode
-
 from my_robot_basics.language.catalogues import ENGLISH
 from my_robot_basics.language.speaking import in_language
-from my_robot_basics.validate.cells import KEY, graded_id
-from my_robot_basics.validate.lesson import Lesson
 from my_robot_basics.validate.report_words import words_around
-from my_robot_basics.validate.titles import title_of_check
-from my_robot_basics.validate.verdict import TROUBLE, UNGRADED, Verdict
 
 Outcome = Literal['passed', 'partial', 'failed', 'at grading', 'by hand', 'not checked']
 MARKS = {'passed': '✓', 'partial': '✗', 'failed': '✗'}
@@ -102,9 +96,10 @@ class Report:
         total = _number(sum(check.points for check in self.checks))
         waiting = [check for check in self.checks if _waits(check)]
         at_grading = sum(check.earned or check.points for check in waiting)
-        if at_grading:
-            verb = 'is' if at_grading == 1 else 'are'
-            said.append(f'{_number(at_grading)} of {total} points {verb} decided at grading.')
+        if at_grading == 1:
+            said.append(f'{_number(at_grading)} of {total} points is decided at grading.')
+        elif at_grading:
+            said.append(f'{_number(at_grading)} of {total} points are decided at grading.')
         by_hand = sum(check.points for check in self.checks if check.outcome == 'by hand')
         if by_hand:
             said.append(f'A person gives {_points(by_hand)} for what you have written.')
@@ -125,66 +120,16 @@ class Report:
             return 'All visible checks pass.'
         said = []
         if failed:
-            verb = 'fails' if len(failed) == 1 else 'fail'
             lost = _points(sum(check.points - check.earned for check in failed))
-            said.append(f'{len(failed)} of {len(visible)} visible checks {verb}: {lost} missing.')
+            if len(failed) == 1:
+                said.append(f'1 of {len(visible)} visible checks fails: {lost} missing.')
+            else:
+                said.append(
+                    f'{len(failed)} of {len(visible)} visible checks fail: {lost} missing.'
+                )
         if unknown:
             said.append(f'{len(unknown)} of {len(visible)} could not be checked.')
         return ' '.join(said)
-
-
-def make_check(
-    lesson: Lesson, cell: NotebookNode, verdict: Verdict | None, outputs: Iterable[NotebookNode]
-) -> CheckFeedback:
-    """Tell of one graded cell; `verdict` is None where it was not run."""
-    name = graded_id(cell)
-    hidden = lesson.hidden.get(name)
-    by_hand = cell.metadata[KEY].role == 'answer'
-    return CheckFeedback(
-        name=name,
-        title='Your written answer' if by_hand else title_of_check(cell.source) or name,
-        points=float(cell.metadata.nbgrader.get('points', 0)),
-        outcome=_outcome(verdict, by_hand=by_hand, hidden=hidden, altered=name in lesson.altered),
-        is_partly_hidden=hidden == 'part',
-        earned=(verdict.score or 0.0) if verdict else 0.0,
-        message=_message(verdict) if verdict else '',
-        notes=tuple(n for n in verdict.notes if not n.startswith(TROUBLE)) if verdict else (),
-        pictures=tuple(_pictures(outputs)),
-        source='' if by_hand else cell.source.strip(),
-    )
-
-
-def troubles_of(verdicts: Iterable[Verdict]) -> tuple[str, ...]:
-    """Return what went wrong in the student's own cells of an exercise, each once."""
-    notes = [note for verdict in verdicts for note in verdict.notes]
-    return tuple(dict.fromkeys(note for note in notes if note.startswith(TROUBLE)))
-
-
-def _message(verdict: Verdict) -> str:
-    if not verdict.reason.startswith(UNGRADED):
-        return verdict.reason
-    why = verdict.reason.removeprefix(UNGRADED)
-    return f'Validate itself failed here, and your answer was not checked: {why}'
-
-
-def _outcome(
-    verdict: Verdict | None, *, by_hand: bool, hidden: str | None, altered: bool
-) -> Outcome:
-    if by_hand:
-        return 'by hand'
-    if altered:
-        return 'not checked'
-    if hidden == 'all':
-        return 'at grading'
-    if verdict is None or verdict.outcome == 'ungraded' or verdict.outcome == 'manual':
-        return 'not checked'
-    return verdict.outcome
-
-
-def _pictures(outputs: Iterable[NotebookNode]) -> Iterable[dict[str, str]]:
-    for output in outputs:
-        if png := output.get('data', {}).get('image/png'):
-            yield {'png': ''.join(png.split()), 'alt': output.data.get('text/plain', '')}
 
 
 def _waits(check: CheckFeedback) -> bool:

@@ -11,18 +11,13 @@ from nbformat import NotebookNode
 from my_robot_basics.language.speaking import in_language, language_of, put
 from my_robot_basics.validate.cell_names import in_words
 from my_robot_basics.validate.cells import grade_id, graded_id, role
+from my_robot_basics.validate.check_feedback import make_check, troubles_of
 from my_robot_basics.validate.exercises import Exercise, find_exercises
 from my_robot_basics.validate.forks import ForkServer
 from my_robot_basics.validate.judging import JudgedExercise, judge_exercise
 from my_robot_basics.validate.lesson import Lesson, read_lesson
 from my_robot_basics.validate.passed_answers import answer_of
-from my_robot_basics.validate.report import (
-    CheckFeedback,
-    ExerciseFeedback,
-    Report,
-    make_check,
-    troubles_of,
-)
+from my_robot_basics.validate.report import CheckFeedback, ExerciseFeedback, Report
 from my_robot_basics.validate.rooms import LocalRooms, Say
 from my_robot_basics.validate.short_budget import ShortBudget
 from my_robot_basics.validate.together import together

@@ -11,12 +11,14 @@ def examine(evidence: Seen) -> Iterator[Finding]:
     if missing is None or evidence.missing_participants <= 0:
         return
     number = evidence.missing_participants
-    many = number > 1
     yield Finding(
         title='a process that cannot be discovered',
         expected=f'every process of ROS domain {evidence.domain_id} on this machine to be found',
-        seen=f'{number} {"are" if many else "is"} running in it and not on the graph:'
-        f' {"their" if many else "its"} discovery range may be OFF',
+        seen=(
+            f'{number} are running in it and not on the graph: their discovery range may be OFF'
+            if number > 1
+            else '1 is running in it and not on the graph: its discovery range may be OFF'
+        ),
         fix='restart that node in a terminal in which this line was run',
         code='$ export ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST',
         missing=missing,
