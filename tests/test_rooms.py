@@ -133,9 +133,10 @@ def test_own_modules_are_not_there_before_the_probe(loop, student, tmp_path):
 
 
 def test_the_student_room_holds_no_seed(shared, student, check):
-    code = "import os; print([k for k, v in os.environ.items() if 'beef' in v or 'SEED' in k])"
-    assert text_of(student(shared, code)) == '[]\n'
-    assert text_of(check(shared, code)) == "['MY_ROBOT_BASICS_SEED']\n"
+    code = "import os; print(sorted(k for k, v in os.environ.items() if 'beef' in v or 'SEED' in k))"
+    # that of sets is the same in each room, and no secret
+    assert text_of(student(shared, code)) == "['PYTHONHASHSEED']\n"
+    assert text_of(check(shared, code)) == "['MY_ROBOT_BASICS_SEED', 'PYTHONHASHSEED']\n"
 
 
 def test_values_and_functions_cross_by_name(shared, student, check):
