@@ -133,7 +133,9 @@ def test_own_modules_are_not_there_before_the_probe(loop, student, tmp_path):
 
 
 def test_the_student_room_holds_no_seed(shared, student, check):
-    code = "import os; print(sorted(k for k, v in os.environ.items() if 'beef' in v or 'SEED' in k))"
+    code = (
+        "import os; print(sorted(k for k, v in os.environ.items() if 'beef' in v or 'SEED' in k))"
+    )
     # that of sets is the same in each room, and no secret
     assert text_of(student(shared, code)) == "['PYTHONHASHSEED']\n"
     assert text_of(check(shared, code)) == "['MY_ROBOT_BASICS_SEED', 'PYTHONHASHSEED']\n"
