@@ -196,6 +196,5 @@ def test_one_stamp_that_a_busy_machine_made_late_costs_nobody_points(off_sec, wa
 def test_a_node_that_takes_no_other_clock_is_not_said_to_have_the_computers(patient):
     with running('refuses_parameters'):
         recording = topic(TOPIC).record(seconds=10.0)
-        recording.assert_rate(hz=5.0)
         recording.assert_stamps()
     assert recording.clock == 'wall'
