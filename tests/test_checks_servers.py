@@ -8,7 +8,16 @@ from functools import partial
 import pytest
 import rclpy
 from geometry_msgs.msg import Point
-from my_robot_basics.checks import CheckFailed, holding_server, ik, responses, serve, servers
+from my_robot_basics.checks import (
+    CheckFailed,
+    holding_server,
+    ik,
+    responses,
+    serve,
+    servers,
+    topic,
+)
+from my_robot_basics.graph.watcher import Watcher
 from nodes.running import imported, running
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import MultiThreadedExecutor
@@ -207,6 +216,19 @@ class Calls(IKClient):
 class CallsAWhile(IKClient):
     def ask(self, target):
         self.answer(self.client.call(SolveIK.Request(target=target), timeout_sec=3.0))
+
+
+@pytest.mark.slow
+def test_who_waits_and_asks_late_for_what_came_before_is_told_of_the_wait(run):
+    run(CallsAWhile)
+    with Watcher() as here:
+        publisher = topic('/target_point').meet(here, Point)
+        for x in 0.7, 0.8, 0.9:
+            publisher.publish(Point(x=x, y=0.7))
+    with server() as serving:
+        serving.hold()
+        with pytest.raises(CheckFailed, match=r'saw .*x=0\.[789].*: it waits inside a callback'):
+            ik.ask(serving, 1.2, 0.8)
 
 
 class SpinsInside(IKClient):

@@ -50,6 +50,7 @@ check runs, sends one soon. Our Validate and the grader run no such cell."""
 RELAY = 'fix_topic_name-fixed'
 WAITS_ALREADY = {
     '08_services-fail-call_in_the_callback',
+    '08_services-fail-call_with_a_timeout',
     '08_services-fail-lets_the_error_out',
     '08_services-fail-sleeps_in_the_callback',
     '08_services-fail-spins_in_the_callback',

@@ -116,10 +116,12 @@ class Server(HoldingServer):
             if self._known_starts < self.starts:
                 self.publish(message)
         others = self.requests[before:]
+        if not (others and self._goes_on()):  # who waits may only now ask for what came before
+            hint = self._raised.hint() or self._why_not_asked()
         fail(
             expected=f'a request to {self.name} for the message on {self.asked_on}',
             seen=shorten(others[-1]) if others else f'none in {TIMEOUT_SEC:g} s',
-            hint=hint if others else self._raised.hint() or self._why_not_asked(),
+            hint=hint,
             cause=f'{self.name} is {"asked for something else" if others else "not asked"}',
         )
 
@@ -135,10 +137,9 @@ class Server(HoldingServer):
         def received() -> list[Any]:
             return self._answers.messages()[self._seen :]
 
-        found = self._watcher.spin_until_free(
+        if self._watcher.spin_until_free(
             lambda: any(map(is_right, received())), free_sec=TIMEOUT_SEC
-        )
-        if found:
+        ):
             self._raised.expect_none()
             return next(filter(is_right, received()))
         others, wrong = received(), cause or f'a wrong message on {self._answers.topic_name}'
@@ -166,10 +167,9 @@ class Server(HoldingServer):
         self._raised.expect_none()
 
     def expect_alive(self, meanwhile: str, message: Any) -> None:
-        """The node goes on counting on `alive`, though `message` is published.
+        """The node goes on counting on `alive`, though `message` is published: see `Heartbeat`.
 
-        It is published again where it seems to hold the node up. `meanwhile`: what happens, as a
-        clause. Raises CheckFailed where the count stands still (see `Heartbeat`).
+        `meanwhile`: what happens, as a clause. Raises CheckFailed where the count stands still.
         """
         if not self._goes_on(lambda: self.publish(message)):
             self._fail_still(meanwhile)
