@@ -51,9 +51,9 @@ def messages_in(source: str, *, title: bool = False) -> list[str]:
 
 
 def described_in(source: str) -> list[str]:
-    """Return the templates of what a module marks by in_words: parts of alternative texts."""
+    """Return the templates of what a module marks by gettext_noop: parts of alternative texts."""
     calls = (node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Call))
-    marked = [call.args[0] for call in calls if _called(call) == 'in_words']
+    marked = [call.args[0] for call in calls if _called(call) == 'gettext_noop']
     marked.sort(key=lambda text: (text.lineno, text.col_offset))
     return [_template(text)[0] for text in marked]
 

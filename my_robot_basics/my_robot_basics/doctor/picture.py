@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from my_robot_basics.doctor.evidence import Diagnosis, Endpoint, Evidence, Kind
 from my_robot_basics.doctor.report import summary
-from my_robot_basics.drawing.described import in_words
+from my_robot_basics.drawing.described import gettext_noop
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -20,13 +20,15 @@ LEFT, MIDDLE, RIGHT = 0.0, 1.0, 2.0
 
 def describe(diagnosis: Diagnosis) -> str:
     """The picture in words, for those who can't see it."""
-    graph = in_words(f'graph of {diagnosis.evidence.name}') + f': {summary(diagnosis.evidence)}'
+    graph = (
+        gettext_noop(f'graph of {diagnosis.evidence.name}') + f': {summary(diagnosis.evidence)}'
+    )
     if not diagnosis.findings:
         return graph
     first = diagnosis.findings[0]
     names = sorted({end.node_name for end in first.broken})
-    where = ', '.join(names) or in_words(f'no {first.missing}')
-    return f'{graph}; ' + in_words(f'broken: {where} ({first.title})')
+    where = ', '.join(names) or gettext_noop(f'no {first.missing}')
+    return f'{graph}; ' + gettext_noop(f'broken: {where} ({first.title})')
 
 
 def draw(diagnosis: Diagnosis) -> bytes:

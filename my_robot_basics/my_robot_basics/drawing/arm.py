@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from my_robot_basics.drawing.described import in_words
+from my_robot_basics.drawing.described import gettext_noop
 from my_robot_basics.drawing.labels import PictureLabel, place, points_along
 from my_robot_basics.two_link_kinematics import L1, L2, forward_kinematics
 
@@ -20,7 +20,7 @@ BEHIND = 1.5
 def describe(theta1_deg: float, theta2_deg: float, *, l1: float = L1, l2: float = L2) -> str:
     """Return the pose and where the end effector is, in words."""
     x, y = forward_kinematics(theta1_deg, theta2_deg, l1, l2)
-    return in_words(
+    return gettext_noop(
         f'two-link arm at θ1 = {theta1_deg:.1f}°, θ2 = {theta2_deg:.1f}°: '
         f'end effector at x = {x:.3f} m, y = {y:.3f} m'
     )

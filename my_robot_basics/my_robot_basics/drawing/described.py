@@ -11,8 +11,8 @@ Bundle = dict[str, Any]
 """MIME types and their data."""
 
 
-def in_words(text: str) -> str:
-    """Return a part of an alternative text as it is: a mark that it is one to translate."""
+def gettext_noop(text: str) -> str:
+    """Return a part of an alternative text as it is, marked for `./course translate`."""
     return text
 
 

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from my_robot_basics.drawing.arm import ArmPicture, describe
-from my_robot_basics.drawing.described import in_words
+from my_robot_basics.drawing.described import gettext_noop
 from my_robot_basics.live import notebook
 from my_robot_basics.two_link_kinematics import L1, L2
 
@@ -28,10 +28,10 @@ def show_arm(
     picture = ArmPicture(l1=l1, l2=l2)
     if dots is not None:
         picture.dots(*dots)
-        text += '; ' + in_words(f'{np.size(dots[0])} dots')
+        text += '; ' + gettext_noop(f'{np.size(dots[0])} dots')
     if other is not None:
         picture.dashed(*other)
-        text += '; ' + in_words(f'dashed: θ1 = {other[0]:.1f}°, θ2 = {other[1]:.1f}°')
+        text += '; ' + gettext_noop(f'dashed: θ1 = {other[0]:.1f}°, θ2 = {other[1]:.1f}°')
     picture.move(theta1_deg, theta2_deg, title=title)
     display = notebook.Display()
     display.show({'image/png': picture.png(), 'text/plain': text})

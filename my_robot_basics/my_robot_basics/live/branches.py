@@ -5,7 +5,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from my_robot_basics.doctor.picture import png
-from my_robot_basics.drawing.described import in_words
+from my_robot_basics.drawing.described import gettext_noop
 from my_robot_basics.kinematics_subscriber import same_pose
 from my_robot_basics.live import notebook
 from my_robot_basics.two_link_kinematics import L1, L2, forward_kinematics, inverse_kinematics
@@ -57,9 +57,9 @@ def show_branches(
     )
     figure.legend(loc='outside lower center', ncols=2, frameon=False)
     counts = ' and '.join(
-        in_words(f'{len(members)} in {branch}') for branch, members in poses.items()
+        gettext_noop(f'{len(members)} in {branch}') for branch, members in poses.items()
     )
-    text = in_words('poses by branch') + f': {counts}; '
-    text += in_words('elbow_up has θ2 below 0, elbow_down above')
+    text = gettext_noop('poses by branch') + f': {counts}; '
+    text += gettext_noop('elbow_up has θ2 below 0, elbow_down above')
     display = notebook.Display()
     display.show({'image/png': png(figure), 'text/plain': text})

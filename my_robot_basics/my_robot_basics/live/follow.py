@@ -9,7 +9,7 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
 
 from my_robot_basics.drawing.arm import ArmPicture
-from my_robot_basics.drawing.described import in_words
+from my_robot_basics.drawing.described import gettext_noop
 from my_robot_basics.live import notebook, runner
 from my_robot_basics.live.troubles import where_and_what
 from my_robot_basics.two_link_kinematics import L1, L2
@@ -72,7 +72,7 @@ class ArmView:
 
     def _about(self, topic_name: str) -> str:
         """Return what the picture is, in words."""
-        return in_words(f'two-link arm that follows {topic_name}')
+        return gettext_noop(f'two-link arm that follows {topic_name}')
 
     def receive(self, message: JointState) -> None:
         """Take the pose from a message, or say what is wrong with it."""

@@ -7,7 +7,7 @@ from action_msgs.msg import GoalStatus, GoalStatusArray
 from rclpy.node import Node
 from rclpy.qos import qos_profile_action_status_default
 
-from my_robot_basics.drawing.described import in_words
+from my_robot_basics.drawing.described import gettext_noop
 from my_robot_basics.drawing.goal import PLACES, GoalPicture
 from my_robot_basics.live import runner
 from my_robot_basics.live.follow import ArmView
@@ -68,7 +68,7 @@ class GoalView(ArmView):
     def __init__(self, action_name: str, *, l1: float, l2: float) -> None:
         """Begin with no goal."""
         super().__init__(action_name, l1=l1, l2=l2)
-        self._trouble = in_words('waiting for a goal')
+        self._trouble = gettext_noop('waiting for a goal')
         self._goal_id = b''
         self._states: list[str] = []
         self._feedback_count, self._way, self._left = 0, 0.0, 0.0
@@ -107,11 +107,11 @@ class GoalView(ArmView):
         self._feedback_count, self._way, self._left = 0, 0.0, 0.0
 
     def _about(self, topic_name: str) -> str:
-        return in_words(f'goal of {topic_name}')
+        return gettext_noop(f'goal of {topic_name}')
 
     def _bundle(self) -> dict:
         count = self._feedback_count
-        words = in_words(f'feedback {count}: {self._left:.2f} rad remain') if count else ''
+        words = gettext_noop(f'feedback {count}: {self._left:.2f} rad remain') if count else ''
         self._picture.states(self._states)
         self._picture.remaining(self._left / self._way if self._way else 0.0, words)
         bundle = super()._bundle()

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from my_robot_basics.doctor import picture
 from my_robot_basics.doctor.evidence import Endpoint
 from my_robot_basics.doctor.looking import endpoints_of
-from my_robot_basics.drawing.described import in_words
+from my_robot_basics.drawing.described import gettext_noop
 from my_robot_basics.graph import graphs
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.live import notebook
@@ -72,7 +72,7 @@ def describe(arrows: Arrows) -> str:
             senders[other].append(box.name)
     said = [
         f'{topic.name} ({topic.type_name}): '
-        + in_words(
+        + gettext_noop(
             f'{_listed(senders[topic])} → {_listed(listener.name for listener in arrows[topic])}'
         )
         for topic in arrows
@@ -80,8 +80,8 @@ def describe(arrows: Arrows) -> str:
     ]
     alone = [box.name for box in arrows if not (box.type_name or arrows[box] or senders[box])]
     if alone:
-        said.append(in_words(f'on no topic: {_listed(alone)}'))
-    return in_words('graph') + ': ' + ('; '.join(said) or in_words('no node is running'))
+        said.append(gettext_noop(f'on no topic: {_listed(alone)}'))
+    return gettext_noop('graph') + ': ' + ('; '.join(said) or gettext_noop('no node is running'))
 
 
 def draw(arrows: Arrows, *, title: str = '') -> bytes:
@@ -184,4 +184,4 @@ def _without_loops(arrows: Arrows) -> dict[Box, set[Box]]:
 
 
 def _listed(names: Iterable[str]) -> str:
-    return ' and '.join(names) or in_words('nobody')
+    return ' and '.join(names) or gettext_noop('nobody')

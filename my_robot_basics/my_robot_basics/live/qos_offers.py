@@ -4,7 +4,7 @@ from itertools import product
 from typing import TYPE_CHECKING
 
 from my_robot_basics.doctor import picture
-from my_robot_basics.drawing.described import in_words
+from my_robot_basics.drawing.described import gettext_noop
 from my_robot_basics.live import notebook
 
 if TYPE_CHECKING:
@@ -26,13 +26,13 @@ CROSS = 0.25
 def show_offers() -> None:
     """Show which offered values of reliability and durability match which requested ones."""
     said = [
-        in_words(f'{offered} → {requested} yes')
+        gettext_noop(f'{offered} → {requested} yes')
         if matches(values, offered, requested)
-        else in_words(f'{offered} → {requested} no')
+        else gettext_noop(f'{offered} → {requested} no')
         for values in POLICIES.values()
         for offered, requested in product(values, repeat=2)
     ]
-    text = in_words('offered → requested, does it match') + ': ' + ', '.join(said)
+    text = gettext_noop('offered → requested, does it match') + ': ' + ', '.join(said)
     notebook.Display().show({'image/png': draw(), 'text/plain': text})
 
 

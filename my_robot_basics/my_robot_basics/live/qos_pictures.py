@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from my_robot_basics.doctor.picture import png
-from my_robot_basics.drawing.described import in_words
+from my_robot_basics.drawing.described import gettext_noop
 from my_robot_basics.live import notebook
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ def show_lost_messages(
 ) -> None:
     """Show, for each subscription, which of the messages 1 to `sent` it received."""
     counts = [
-        f'{name}: ' + in_words(f'{len(_known(numbers, sent))} of {sent}')
+        f'{name}: ' + gettext_noop(f'{len(_known(numbers, sent))} of {sent}')
         for name, numbers in received.items()
     ]
     figure = _draw_lost(received, sent=sent, title=title)
@@ -50,8 +50,8 @@ def show_lost_messages(
 
 def _told(request: str, outcome: str) -> str:
     if outcome == 'yes':
-        return in_words(f'{request} yes')
-    return in_words(f'{request} no ({outcome})')
+        return gettext_noop(f'{request} yes')
+    return gettext_noop(f'{request} no ({outcome})')
 
 
 def _known(numbers: Sequence[int], sent: int) -> list[int]:

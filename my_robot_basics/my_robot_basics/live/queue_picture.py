@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from my_robot_basics.doctor import picture
-from my_robot_basics.drawing.described import in_words
+from my_robot_basics.drawing.described import gettext_noop
 from my_robot_basics.live import notebook
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ ROUND = 'round4'
 
 def show_queues() -> None:
     """Show where a message waits between `publish` and the callback: in two queues."""
-    text = in_words(
+    text = gettext_noop(
         "path of a message: publisher → the publisher's queue → topic → the subscription's queue "
         '→ the executor takes it → callback'
     )

@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from my_robot_basics.doctor import picture
-from my_robot_basics.drawing.described import in_words
+from my_robot_basics.drawing.described import gettext_noop
 from my_robot_basics.live import notebook
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ REQUEST, RESPONSE = '-', '--'
 
 def show_service() -> None:
     """Show how a server answers two clients: each gets the response to its own request."""
-    text = in_words(
+    text = gettext_noop(
         'two clients and one server, from top to bottom: left sends a request → right sends a '
         'request → the callback for left runs → the response goes to left alone → the callback '
         'for right runs → the response goes to right alone'

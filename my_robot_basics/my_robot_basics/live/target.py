@@ -7,7 +7,7 @@ from geometry_msgs.msg import Point
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 
-from my_robot_basics.drawing.described import in_words
+from my_robot_basics.drawing.described import gettext_noop
 from my_robot_basics.live import notebook, runner
 from my_robot_basics.live.follow import FIRST_MESSAGE_SEC, ArmView
 from my_robot_basics.live.sliders import TARGET_WITHOUT_WIDGETS, show_widgets
@@ -64,7 +64,7 @@ class TargetView(ArmView):
         self.x, self.y = (_slider(name, at, reach) for name, at in (('x', x), ('y', y)))
 
     def _about(self, topic_name: str) -> str:
-        return in_words(f'two-link arm that reaches for the target on {topic_name}')
+        return gettext_noop(f'two-link arm that reaches for the target on {topic_name}')
 
     def publish(self) -> None:
         """Show sliders and picture for the first time."""

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from my_robot_basics.doctor.picture import png
-from my_robot_basics.drawing.described import in_words
+from my_robot_basics.drawing.described import gettext_noop
 from my_robot_basics.live import notebook
 
 if TYPE_CHECKING:
@@ -85,7 +85,7 @@ def delays_sec(arrived: Mapping[int, float], *, sent: Mapping[int, float]) -> li
 
 def _gaps(label: str, times_sec: Sequence[float]) -> str:
     gaps_ms = 1e3 * np.diff(times_sec)
-    return f'{label}: ' + in_words(
+    return f'{label}: ' + gettext_noop(
         f'{len(times_sec)} times, gaps from {gaps_ms.min():.1f} to {gaps_ms.max():.1f} ms'
     )
 
@@ -93,9 +93,9 @@ def _gaps(label: str, times_sec: Sequence[float]) -> str:
 def _delays(label: str, arrived: Mapping[int, float], sent: Mapping[int, float]) -> str:
     delays = delays_sec(arrived, sent=sent)
     if not delays:
-        return f'{label}: ' + in_words(f'0 of {len(sent)} received')
+        return f'{label}: ' + gettext_noop(f'0 of {len(sent)} received')
     last_ms = 1e3 * delays[-1]
-    return f'{label}: ' + in_words(
+    return f'{label}: ' + gettext_noop(
         f'{len(delays)} of {len(sent)} received, the last one after {last_ms:.0f} ms'
     )
 
@@ -114,7 +114,7 @@ def _panels(heights_inches: Sequence[float], *, title: str) -> tuple:
 
 
 def _told(rows: Iterable[str]) -> str:
-    return in_words('timeline') + ': ' + '; '.join(rows)
+    return gettext_noop('timeline') + ': ' + '; '.join(rows)
 
 
 def _show(figure: 'Figure', text: str) -> None:
