@@ -82,8 +82,8 @@ def test_the_sentences_of_code_are_templates_with_a_name_for_each_place():
 
 
 def test_the_words_for_a_picture_are_those_that_are_marked():
-    source = "text = in_words('graph') + f': {a}' + in_words(f'{len(a)} of {b:g} ms')"
-    assert described_in(source) == ['graph', '{len} of {b} ms']
+    marked = "gettext_noop('graph') + f': {a}' + gettext_noop(f'{len(a)} of {b:g} ms')"
+    assert described_in(marked) == ['graph', '{len} of {b} ms']
 
 
 TEMPLATES = {
