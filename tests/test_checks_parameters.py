@@ -92,7 +92,10 @@ OF_REFUSALS = [
     (adjustable.SetsThoughRefusing, 'change the timer only if none is refused'),
     (adjustable.GivesNoReason, 'expected a reason why rate_hz = 60 is refused, saw none: tell'),
     (adjustable.TakesAll, 'expected rate_hz = 60 to be refused, saw it was taken: return Set'),
-    (adjustable.Corrects, r'saw it was taken, and rate_hz is [\d.]+: do not correct the value'),
+    (
+        adjustable.Corrects,
+        r'saw it was taken, and rate_hz is [\d.]+ in the end: do not correct the value',
+    ),
     (adjustable.RefusesTheLimits, 'the limits themselves are allowed'),
     (adjustable.DividesFirst, 'ZeroDivisionError'),
     (adjustable.LetsNaNThrough, 'expected rate_hz = nan to be refused, saw it was taken: NaN is'),

@@ -75,7 +75,9 @@ def _expect_refused(
     expect(
         not result.successful,
         expected=f'{name} = {value:g} to be refused',
-        seen=f'it was taken, and {name} is {corrected:g}' if is_corrected else 'it was taken',
+        seen=f'it was taken, and {name} is {corrected:g} in the end'
+        if is_corrected
+        else 'it was taken',
         hint=how,
         cause='NaN is taken' if is_nan else 'a value outside the limits is taken',
     )
