@@ -46,6 +46,22 @@ def test_no_more_time_was_free_than_processors_were_idle(monkeypatch, idle_share
     assert watch.is_busy() == (free_sec < 2.0)
 
 
+@pytest.mark.parametrize(('share', 'turns'), [(0.0, 4), (0.5, 8), (0.95, 20), (1.0, 20)])
+def test_there_are_turns_until_enough_time_was_free_or_far_more_has_passed(
+    monkeypatch, share, turns
+):
+    now = [100.0]
+    monkeypatch.setattr(pressure, 'time', types.SimpleNamespace(monotonic=lambda: now[0]))
+    monkeypatch.setattr(pressure, 'stalled_sec', lambda: share * now[0])
+    monkeypatch.setattr(pressure, 'idle_sec', lambda: 2 * now[0])
+    count = 0
+    for turn in pressure.free_turns(4.0):
+        count += 1
+        assert turn == count
+        now[0] += 1.0
+    assert count == turns
+
+
 def test_the_idle_time_of_all_processors_is_read(monkeypatch, tmp_path):
     told = tmp_path / 'uptime'
     told.write_text('350735.47 234388.90\n')

@@ -491,6 +491,28 @@ def test_who_publishes_more_is_found_before_the_end(run):
         check_asks()
 
 
+class AsksForTheLastTarget(IKClient):
+    """Twice a second, once there is one."""
+
+    def __init__(self):
+        super().__init__()
+        self.target = None
+        self.create_timer(0.5, lambda: self.target and super(type(self), self).ask(self.target))
+
+    def ask(self, target):
+        self.target = target
+        super().ask(target)
+
+
+@pytest.mark.slow
+def test_who_asks_again_and_publishes_each_answer_is_told(run):
+    run(AsksForTheLastTarget)
+    with pytest.raises(
+        CheckFailed, match=r'expected the pose of each target once, saw one \d tim'
+    ):
+        check_never_blocks()
+
+
 class AsksAgain(IKClient):
     """Asks a hundred times a second, whether anything has arrived or not."""
 
