@@ -26,8 +26,6 @@ class HoldingServer:
         """All that it was asked, in order; MOST_REQUESTS of them raise CheckFailed."""
         self.sent: list[Any] = []
         """All responses that have left."""
-        self.published: list[Any] = []
-        """All messages that were to lead to a request each."""
         self.starts = 0
         """How often it was started."""
         self._node = node

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any, NoReturn
+from typing import Any
 
 from rclpy.publisher import Publisher
 
@@ -75,6 +75,8 @@ class Server(HoldingServer):
         self._raised = CallbackErrors({*answers.publishers(), *beats.publishers()})
         self.made = Made(watcher, answers, self.sent)
         """The messages on `to`, beside the responses."""
+        self.published: list[Any] = []
+        """All messages that were to lead to a request each."""
         self._publisher: Publisher | None = None
         self._seen = self._known_starts = 0
 
@@ -172,7 +174,13 @@ class Server(HoldingServer):
         `meanwhile`: what happens, as a clause. Raises CheckFailed where the count stands still.
         """
         if not self._goes_on(lambda: self.publish(message)):
-            self._fail_still(meanwhile)
+            why = waits_for_answer if self.holds_any() else waits_for_server
+            fail(
+                expected=f'the count on {self._beats.topic_name} to go on while {meanwhile}',
+                seen='it stand still',
+                hint=self._raised.hint() or why(self.name),
+                cause=f'the count on {self._beats.topic_name} stands still',
+            )
         self.expect_alone()
 
     def expect_alone(self) -> None:
@@ -189,12 +197,3 @@ class Server(HoldingServer):
 
     def _goes_on(self, send: Callable[[], None] = lambda: None) -> bool:
         return Heartbeat(self._watcher, self._beats).goes_on(send)
-
-    def _fail_still(self, meanwhile: str) -> NoReturn:
-        why = waits_for_answer if self.holds_any() else waits_for_server
-        fail(
-            expected=f'the count on {self._beats.topic_name} to go on while {meanwhile}',
-            seen='it stand still',
-            hint=self._raised.hint() or why(self.name),
-            cause=f'the count on {self._beats.topic_name} stands still',
-        )
