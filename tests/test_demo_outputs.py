@@ -150,3 +150,9 @@ def test_each_picture_is_in_the_repository_once(name):
     assert all(
         re.match(r'<img alt="[^"]+" src="data:image/png;base64,', each) for each in pictures
     )
+
+
+@pytest.mark.parametrize('name', Course().assignments())
+def test_each_picture_is_there_in_each_edition(name):
+    for path in (ROOT / 'notebooks').glob(f'**/{name}.ipynb'):
+        assert 'src=\\"a picture\\"' not in path.read_text(encoding='utf-8'), path
