@@ -37,7 +37,7 @@ SERVICES = {
     'has to look at `is_cancel_requested` and call `canceled()` (lesson 9).',
     'empty_response': 'A field that nobody fills in has its default value: False, an empty list, '
     'an empty text. A client cannot tell this from an answer (lessons 2 and 10).',
-    'whole_number': 'The default value 20.0 is a double, so the parameter is one for good: the '
+    'whole_number': 'The default value 20.0 is a double, so the parameter stays a double: the '
     'integer 36 is refused, and nothing changes (lesson 11).',
     'read_once': 'The parameter has changed, and the timer has not: its period was computed once, '
     'in the constructor (lesson 11).',
