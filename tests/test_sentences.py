@@ -228,10 +228,10 @@ OF_THE_DOCTOR_AND_LIVE = {
         '/t 有问题：/arm 发布，没有节点订阅，3.0 s 内 1 条消息。'
     ),
     'a stamp 5.0 s ahead of it: tf2, RViz2 and message filters drop such messages': (
-        '时间戳比发送时的时钟晚 5.0 s：tf2、RViz2 和 message filters 会丢弃这样的消息'
+        '时间戳比发送时的时钟超前 5.0 s：tf2、RViz2 和 message filters 会丢弃这样的消息'
     ),
     'a stamp 0.2 s behind it: tf2, RViz2 and message filters drop such messages': (
-        '时间戳比发送时的时钟早 0.2 s：tf2、RViz2 和 message filters 会丢弃这样的消息'
+        '时间戳比发送时的时钟落后 0.2 s：tf2、RViz2 和 message filters 会丢弃这样的消息'
     ),
     'it has been running for at least 6 s, and is in line 4: time.sleep(9); until it returns, the '
     "response of /ik can't be taken": (
@@ -285,8 +285,8 @@ def test_the_doctor_and_live_speak_chinese(english, chinese):
 
 
 OF_CHECKS = {
-    'a stamp 5.0 s ahead of it': '时间戳比发送时的时钟晚 5.0 s',
-    'a stamp 0.2 s behind it': '时间戳比发送时的时钟早 0.2 s',
+    'a stamp 5.0 s ahead of it': '时间戳比发送时的时钟超前 5.0 s',
+    'a stamp 0.2 s behind it': '时间戳比发送时的时钟落后 0.2 s',
     '1 message in 2.0 s': '2.0 s 内有 1 条消息',
     '12 messages in 2.0 s': '2.0 s 内有 12 条消息',
     "it has ended: exit code 1, ModuleNotFoundError: No module named 'x'": (
