@@ -268,7 +268,7 @@ OF_THE_DOCTOR_AND_LIVE = {
     'written  $ROS_WS/src/my_robot_basics/five_hz.py': (
         '已写入   $ROS_WS/src/my_robot_basics/five_hz.py'
     ),
-    'reset: no node is running; IKService is yours to write': (
+    'reset: no node is running; now write IKService': (
         '已重置：没有节点在运行；IKService 由你来写'
     ),
     'NotRunnable: expected a class IKService, saw nothing of that name: run the answer cell, and '

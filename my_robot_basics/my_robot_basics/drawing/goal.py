@@ -17,7 +17,7 @@ PLACES = {
 """Each state of a goal, and where it is drawn."""
 WAYS = (
     *(('ACCEPTED', 'EXECUTING'), ('EXECUTING', 'SUCCEEDED'), ('EXECUTING', 'ABORTED')),
-    *(('EXECUTING', 'CANCELING'), ('CANCELING', 'CANCELED')),
+    *(('EXECUTING', 'CANCELING'), ('CANCELING', 'CANCELED'), ('CANCELING', 'SUCCEEDED')),
 )
 """From which state to which a goal usually goes."""
 WIDTH, HEIGHT = 10.0, 4.3

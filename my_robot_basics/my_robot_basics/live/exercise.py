@@ -23,7 +23,7 @@ def reset(*names: str) -> None:
     for name in names:
         _notebook().pop(name, None)
     if names:
-        tell(f'reset: no node is running; {", ".join(names)} is yours to write')
+        tell(f'reset: no node is running; now write {", ".join(names)}')
     else:
         tell('reset: no node is running')
 
