@@ -2,6 +2,7 @@
 
 import os
 import threading
+import time
 from datetime import UTC, datetime
 
 import pytest
@@ -9,7 +10,7 @@ import pytest
 from grader.collect import live_folders
 from grader.collect.matching import match
 from grader.collect.uploads import look_into, look_into_entry
-from grader.notebook.submission import TIMESTAMP
+from grader.notebook.submission import SECRET, TIMESTAMP
 
 ALICE, BOB = 4_001, 4_002
 STRANGER = 4_003
@@ -48,6 +49,13 @@ def submit(inbound, student, uid, content='{}'):
     os.chown(folder, uid, uid)
     folder.chmod(0o777)
     return folder
+
+
+def put(file, uid):
+    """Write a file of a user's that holds nothing but whose it is."""
+    file.parent.mkdir(exist_ok=True, parents=True)
+    file.write_text(str(uid))
+    os.chown(file, uid, uid)
 
 
 def collected(inbound, tmp_path):
@@ -90,6 +98,54 @@ def test_a_file_of_another_user_in_a_students_folder_is_refused(owner, inbound, 
         {},
         ['it is not of the user whose folder it lies in'],
     )
+
+
+@needs_root
+def test_what_another_user_puts_into_a_folder_of_the_teachers_is_not_the_students(
+    inbound, tmp_path
+):
+    """Nor is bob's own package passed over for one that alice laid before it."""
+    theirs = inbound / 'bob'
+    theirs.mkdir()
+    theirs.chmod(0o1777)
+    put(theirs / f'{LESSON}.ipynb', BOB)
+    put(theirs / 'own.py', BOB)
+    put(theirs / 'helper.py', ALICE)
+    put(theirs / SECRET, ALICE)
+    put(theirs / 'greeter' / 'setup.py', ALICE)
+    put(theirs / 'greeter (1)' / 'setup.py', BOB)
+    put(theirs / 'greeter (1)' / 'evil.py', ALICE)
+    (one,), left = match(
+        list(look_into(inbound, tmp_path, {'greeter'})), [LESSON], packages={LESSON: ['greeter']}
+    )
+    assert [*one.extra] == ['own.py', 'greeter/setup.py']
+    assert one.extra['greeter/setup.py'].read_text() == str(BOB)
+    assert one.secret is None
+    why = {each.incoming.path.removeprefix('bob/'): each.reason for each in left if each.matters}
+    assert {*why} == {'helper.py', SECRET, 'greeter/setup.py', 'greeter (1)/evil.py'}
+    assert why['helper.py'] == (
+        'it lies beside the notebook of bob, and the user alice put it there'
+    )
+
+
+@needs_root
+@pytest.mark.parametrize('late', ['own.py', 'greeter/greeter/node.py'])
+def test_who_goes_on_with_another_file_of_it_hands_in_later(late, inbound, tmp_path):
+    """A stub that is in time does not let its package be finished in its place."""
+    folder = submit(inbound, 'bob', BOB)
+    for name in ('own.py', 'greeter/greeter/node.py'):
+        put(folder / name, BOB)
+    for each in (folder / 'greeter', folder / 'greeter' / 'greeter'):
+        os.chown(each, BOB, BOB)
+    time.sleep(0.05)
+    due = datetime.now(UTC)
+    time.sleep(0.05)
+    (folder / late).write_text('finished')
+    (one,), _ = match(
+        list(look_into(inbound, tmp_path, {'greeter'})), [LESSON], packages={LESSON: ['greeter']}
+    )
+    assert one.extra[late].read_text() == 'finished'
+    assert one.handed_in > due
 
 
 @needs_root

@@ -8,8 +8,16 @@ from hashlib import sha256
 from pathlib import Path
 
 from grader.collect.incoming import Incoming, is_notebook
-from grader.collect.owners import find_owners
-from grader.collect.package_folders import NO_NOTEBOOK, choose, grouped, matters, number_of, split
+from grader.collect.owners import find_owners, why_not_theirs
+from grader.collect.package_folders import (
+    NO_NOTEBOOK,
+    choose,
+    first_of,
+    grouped,
+    matters,
+    number_of,
+    split,
+)
 from grader.collect.platforms import PlatformLabel
 from grader.collect.uploads import wanted
 from grader.common.dates import date_of
@@ -74,33 +82,38 @@ def match(
             rest.append(UntakenFile(each, 'neither a notebook nor Python', matters=False))
     owners, remarks, problems = find_owners(found, assignments, students)
     rest += [UntakenFile(each, problem) for each, problem in problems.items()]
-    hand_ins, used = [], set()
+    hand_ins, used, others = [], set(), dict[Incoming, str]()
     for notebook, owner in owners.items():
         files = beside[notebook.parts[:-1]] if owner.by_folder or notebook.archive else {}
+        foreign = {e: why for e in files.values() if (why := why_not_theirs(e, owner.student_id))}
+        files = {name: each for name, each in files.items() if each not in foreign}
+        others |= foreign
         stamp = files.get(TIMESTAMP) if not (notebook.archive or owner.label) else None
         secret = files.get(SECRET) if not (notebook.archive or owner.label) else None
-        when = owner.handed_in or (date_of(stamp.readable) if stamp else None)
-        when = notebook.changed or when  # whoever wrote the folder could claim any time
-        if when is None and file_times:
-            when = notebook.modified
-        extra = {
-            name: each.readable
+        modules = {
+            name: each
             for name, each in files.items()
             if name.endswith('.py') and not problem_of_id(name)
         }
-        used |= {files[name] for name in extra}
+        changed = [each.changed for each in (notebook, *modules.values()) if each.changed]
+        extra = {name: each.readable for name, each in modules.items()}
         left_out: list[str] = []
         for package in asked_for.get(owner.assignment, ()):
             number = '' if owner.by_folder or notebook.archive else number_of(notebook)
             if not (number or owner.by_folder or notebook.archive):
                 continue
             key = (package, notebook.parts[:-1], number)
-            if there := beside_notebooks.get(key):
-                chosen = choose(there)
+            if there := first_of(owner.student_id, beside_notebooks.get(key, ())):
+                chosen = choose(there, owner.student_id)
                 extra |= chosen.taken
+                changed += chosen.changed
                 left_out += chosen.clauses(package)
                 rest += [UntakenFile(e, why, matters=matters(why)) for e, why in chosen.left]
                 folders = [each for each in folders if each is not there]
+        # whoever wrote the folder could claim any time, and go on with any file of it
+        when = None if notebook.changed else owner.handed_in or _stamped(stamp)
+        claimed = notebook.modified if file_times else None
+        when = max([*changed, *([when] if when else [])], default=claimed)
         hand_ins.append(
             MatchedFile(
                 owner.student_id,
@@ -114,14 +127,20 @@ def match(
                 tuple(left_out),
             )
         )
-        used |= {secret} if secret else set()
+        used |= {*modules.values(), *([secret] if secret else [])}
         used |= {stamp} if stamp and date_of(stamp.readable) else set()
     rest += [UntakenFile(each, NO_NOTEBOOK) for folder in folders for each in folder.members]
+    rest += [UntakenFile(each, why) for each, why in others.items()]
     uploads = {notebook.parts[:-1] for notebook, owner in owners.items() if owner.label}
     for folder, files in beside.items():
-        left = (each for each in files.values() if each not in used)
+        left = (each for each in files.values() if each not in used and each not in others)
         rest += [_not_taken(each, in_upload=folder in uploads) for each in left]
     return _in_order(hand_ins, rest), rest
+
+
+def _stamped(stamp: Incoming | None) -> datetime | None:
+    """Return the time that stands in a file of nbgrader's, which its student did not write."""
+    return date_of(stamp.readable) if stamp and not stamp.login else None
 
 
 def _not_taken(each: Incoming, *, in_upload: bool) -> UntakenFile:

@@ -38,6 +38,16 @@ def find_owners(
     return {e: owner for e, owner in owners.items() if e not in problems}, remarks, problems
 
 
+def why_not_theirs(each: Incoming, student: str) -> str:
+    """Say why a file that lies beside a student's notebook is not taken with it; '' where it is.
+
+    Others may write into a folder of the teacher's, too.
+    """
+    if each.login in ('', student):
+        return ''
+    return f'it lies beside the notebook of {student}, and the user {each.login} put it there'
+
+
 def _checked(each: Incoming, owner: Owner) -> Owner:
     """Return an owner. Raises UnclearOwner where the file is of a user of another name."""
     if each.login in ('', owner.student_id):

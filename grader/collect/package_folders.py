@@ -3,12 +3,14 @@
 from collections import defaultdict
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
+from datetime import datetime
 from pathlib import Path, PurePosixPath
 
 from my_robot_basics.session import package_files
 
 from grader.collect.archive_entries import ARCHIVE
 from grader.collect.incoming import Incoming, is_notebook
+from grader.collect.owners import why_not_theirs
 from grader.collect.platforms import label_in
 from grader.collect.uploads import package_in
 
@@ -42,6 +44,8 @@ class ChosenFiles:
 
     taken: dict[str, Path] = field(default_factory=dict)
     """By path: 'arm_player/setup.py'."""
+    changed: list[datetime] = field(default_factory=list)
+    """When Linux last saw each of them change, where a student wrote it."""
     left: list[tuple[Incoming, str]] = field(default_factory=list)
     problem: str = ''
     """Why none of it is taken."""
@@ -80,13 +84,13 @@ def number_of(notebook: Incoming) -> str:
     return label.number if label else ''
 
 
-def choose(package: IncomingPackage) -> ChosenFiles:
-    """Choose what is taken of a package: the same as its student's own notebook builds."""
+def choose(package: IncomingPackage, student: str) -> ChosenFiles:
+    """Choose what is taken of a student's package: the same as their own notebook builds."""
     chosen = ChosenFiles()
     files: dict[str, Incoming] = {}
     for each in package.members:
         parts = each.parts[len(package.root) :]
-        if reason := _why_not(each, parts, package.root):
+        if reason := _why_not(each, parts, package.root) or why_not_theirs(each, student):
             chosen.left.append((each, reason))
             continue
         if former := files.get('/'.join(parts)):
@@ -101,6 +105,7 @@ def choose(package: IncomingPackage) -> ChosenFiles:
         chosen.left += [(each, chosen.problem) for each in files.values()]
     else:
         chosen.taken = {f'{package.name}/{n}': each.readable for n, each in files.items()}
+        chosen.changed = [each.changed for each in files.values() if each.changed]
     return chosen
 
 
@@ -140,9 +145,15 @@ def _why_not(each: Incoming, parts: tuple[str, ...], root: tuple[str, ...]) -> s
     return package_files.why_not(parts)
 
 
-def grouped(found: Sequence[IncomingPackage]) -> Mapping[tuple, IncomingPackage]:
-    """Return packages by what a notebook has in common with them; of several, the first."""
-    by_key: dict[tuple, IncomingPackage] = {}
+def grouped(found: Sequence[IncomingPackage]) -> Mapping[tuple, list[IncomingPackage]]:
+    """Return packages by what a notebook has in common with them."""
+    by_key: dict[tuple, list[IncomingPackage]] = defaultdict(list)
     for each in found:
-        by_key.setdefault(each.key, each)
+        by_key[each.key].append(each)
     return by_key
+
+
+def first_of(student: str, found: Sequence[IncomingPackage]) -> IncomingPackage | None:
+    """Return the first that holds a file which may be the student's, else the first, if any."""
+    theirs = (p for p in found if not all(why_not_theirs(e, student) for e in p.members))
+    return next(theirs, next(iter(found), None))
