@@ -20,6 +20,7 @@ from grader.common.text import printable
 from grader.serving import desk as desk_module
 from grader.serving import inbound as inbound_module
 from grader.serving import reception
+from grader.serving import rounds as rounds_module
 from grader.serving.desk import Desk
 from grader.serving.inbound import Entry, new_entries
 from grader.serving.queue import (
@@ -32,6 +33,7 @@ from grader.serving.queue import (
     queue_to_read,
 )
 from grader.serving.reception import look
+from grader.serving.rounds import Rounds
 from grader.serving.status import write_status_page
 
 RIGHT = 'def double(x):\n    return 2 * x'
@@ -318,7 +320,7 @@ def taken(monkeypatch):
     """Let entries be there, and taking one in be a wait; return what was taken, in its order."""
     there, names = [], []
 
-    def new(folder, seen):
+    def new(folder, seen, rounds):
         return (each for each in there if each.key not in seen)
 
     def take(course, queue, inbound, entry):
@@ -369,6 +371,48 @@ def test_new_owners_keep_nobody_waiting_who_came_before_them(desk, taken, monkey
     there += [entry(f'{n}', f'mallory{n}', time.time() + 1) for n in range(3)]
     look(desk)
     assert names == ['ada 1', 'ada 2']
+
+
+def test_whose_many_files_take_long_to_look_at_keeps_nobody_from_being_seen(
+    inbound, at_once, monkeypatch
+):
+    """Neither with what is new nor with what was seen, and all of it comes in the end."""
+    monkeypatch.setattr(rounds_module, 'MOST_FILES_AT_ONCE', 30)
+    for number in range(20):
+        folder = inbound / f'eve+00_toy+{number:02}'
+        folder.mkdir()
+        for name in range(20):
+            (folder / f'{name}.py').touch()
+        (inbound / f'eve_{number:02}').mkdir()
+    (inbound / 'zoe+00_toy+1').mkdir()
+    rounds, seen, looked_at = Rounds(), {}, []
+    tree = inbound_module._tree
+
+    def counted(folder, name, status):
+        for each in tree(folder, name, status):
+            looked_at.append(name)
+            yield each
+
+    monkeypatch.setattr(inbound_module, '_tree', counted)
+    found = [each.name for each in new_entries(inbound, seen, rounds)]
+    assert 'zoe+00_toy+1' in found
+    assert rounds.is_under_way
+    for _ in range(60):
+        looked_at.clear()
+        seen |= {each.key: each.fingerprint for each in new_entries(inbound, seen, rounds)}
+        assert len(looked_at) <= 30 + 21
+    assert len(seen) == 41
+    assert not list(new_entries(inbound, seen, rounds))
+    assert not rounds.is_under_way
+
+
+def test_once_ends_when_all_was_looked_at(course, inbound, at_once, monkeypatch):
+    monkeypatch.setattr(rounds_module, 'MOST_FILES_AT_ONCE', 1)
+    for name in ('a', 'b', 'c'):
+        (inbound / name).mkdir()
+    assert serve_here(course, inbound) == []
+    hand_in(course, inbound, 'zoe')
+    assert any('graded: 00_toy of zoe' in line for line in serve_here(course, inbound))
 
 
 def test_whose_an_entry_is_the_user_tells_and_else_its_name(inbound, at_once):

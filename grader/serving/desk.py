@@ -24,6 +24,7 @@ from grader.serving.queue import (
     Arrival,
     Queue,
 )
+from grader.serving.rounds import Rounds
 from grader.serving.trouble import meets_all, noted
 from grader.serving.turns import next_turn, replaced_by
 from grader.storage.deadlines import FILE, Deadlines, deadlines
@@ -45,6 +46,7 @@ class Desk:
     seen: dict[str, str] = field(default_factory=dict)
     last_taken: dict[str, float] = field(default_factory=dict)
     """When something of each owner in the inbound folder was taken in, in seconds since 1970."""
+    rounds: Rounds = field(default_factory=Rounds)
     running: dict['Future[GradedSubmission]', Arrival] = field(default_factory=dict)
     prepared: dict[str, tuple[object, PreparedAssignment]] = field(default_factory=dict)
     exporter: FeedbackPage = field(default_factory=page_exporter)

@@ -14,6 +14,7 @@ from grader.collect.archive_entries import MAX_PARTS
 from grader.common.dates import utc_of
 from grader.common.text import storable
 from grader.notebook.submission import SECRET
+from grader.serving.rounds import Rounds
 from grader.serving.trouble import noted
 
 QUIET_SEC = 1.0
@@ -51,20 +52,22 @@ def key_of(name: str) -> str:
     return storable(name.replace('\\', r'\\'))
 
 
-def new_entries(folder: Path, seen: Mapping[str, str]) -> Iterator[Entry]:
+def new_entries(
+    folder: Path, seen: Mapping[str, str], rounds: Rounds | None = None
+) -> Iterator[Entry]:
     """Yield what is not `seen`, by its fingerprint, and was written to its end; oldest first.
 
-    Raises OSError where the folder itself can't be read; whatever goes wrong with an entry is its
-    `problem`.
+    Where there is much, it is some of it, by turns of the owners: see `rounds`. Raises OSError
+    where the folder itself can't be read; whatever goes wrong with an entry is its `problem`.
     """
     with os.scandir(folder) as listed:
         names = sorted(each.name for each in listed if not each.name.startswith('.'))
     trusted = {0, os.geteuid(), os.stat(folder).st_uid}
-    found = []
-    for name in names:
+    found, rounds = [], rounds or Rounds()
+    for name in rounds.of(_to_look_at(folder, names, seen, trusted)):
         before = seen.get(key_of(name))
         try:
-            found.append(_look(folder, name, before, trusted))
+            found.append(_look(folder, name, before, trusted, rounds))
         except (FileNotFoundError, NotADirectoryError):
             continue  # gone meanwhile: what is left of it is looked at again
         except Exception as error:
@@ -75,14 +78,30 @@ def new_entries(folder: Path, seen: Mapping[str, str]) -> Iterator[Entry]:
     )
 
 
-def _look(folder: Path, name: str, seen: str | None, trusted: Collection[int]) -> Entry | None:
+def _to_look_at(
+    folder: Path, names: Collection[str], seen: Mapping[str, str], trusted: Collection[int]
+) -> Iterator[tuple[str, str]]:
+    """Yield the names of what may be new, and whose it may be."""
+    for name in names:
+        try:
+            status = os.lstat(folder / name)
+        except OSError:
+            yield name, _named(name)  # to look at it tells why
+            continue
+        before = seen.get(key_of(name))
+        # nbgrader makes another folder for each submission: what one holds is handed in
+        if before is None or '+' not in name or not before.startswith(f'{_place(status)} '):
+            yield name, _owner(name, status, trusted)
+
+
+def _look(
+    folder: Path, name: str, seen: str | None, trusted: Collection[int], rounds: Rounds
+) -> Entry | None:
     """Return an entry; None where it is as it was seen. Raises OSError where it is gone."""
     status = os.lstat(folder / name)
-    # nbgrader makes another folder for each submission: what one holds is handed in
-    if seen is not None and '+' in name and seen.startswith(f'{_place(status)} '):
-        return None
     digest, newest, names = hashlib.sha256(), status.st_ctime, set()
     for path, each in _tree(folder, name, status):
+        rounds.counted(1)
         newest = max(newest, each.st_ctime)
         names.add(path.rpartition('/')[2])
         digest.update(os.fsencode(path))
@@ -97,7 +116,7 @@ def _look(folder: Path, name: str, seen: str | None, trusted: Collection[int]) -
         fingerprint,
         datetime.fromtimestamp(min(newest, now), UTC),
         is_whole=is_submitted or newest <= now - QUIET_SEC,
-        owner=_named(name) if status.st_uid in trusted else f'user {status.st_uid}',
+        owner=_owner(name, status, trusted),
     )
 
 
@@ -122,6 +141,10 @@ def _with_problem(folder: Path, name: str, seen: str | None, error: Exception) -
 
 def _place(status: os.stat_result) -> str:
     return f'{status.st_dev}:{status.st_ino}:{status.st_uid}'
+
+
+def _owner(name: str, status: os.stat_result, trusted: Collection[int]) -> str:
+    return _named(name) if status.st_uid in trusted else f'user {status.st_uid}'
 
 
 def _named(name: str) -> str:

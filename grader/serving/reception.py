@@ -16,8 +16,10 @@ BUDGET_SEC = 0.5
 
 def look(desk: Desk) -> bool:
     """Take in some of what is new in the inbound folder; return whether there was anything."""
-    waiting = list(new_entries(desk.inbound, desk.seen))
+    waiting = list(new_entries(desk.inbound, desk.seen, desk.rounds))
     end, found = time.monotonic() + BUDGET_SEC, bool(waiting)
+    if found:
+        desk.rounds.begin()
     while waiting:
         entry = next_entry(waiting, desk.last_taken)
         waiting.remove(entry)

@@ -57,6 +57,8 @@ def serve(
             events = [look(desk), begin_turns(desk), finish_done(desk)]
             if any(events):
                 changed(queue)
+            elif desk.rounds.is_under_way:
+                continue
             elif once and not desk.running:
                 return
             elif desk.running:
