@@ -34,7 +34,7 @@ from grader.serving.queue import (
 )
 from grader.serving.reception import look
 from grader.serving.rounds import Rounds
-from grader.serving.status import write_status_page
+from grader.serving.status import SHOWN, status_lines, write_status_page
 
 RIGHT = 'def double(x):\n    return 2 * x'
 
@@ -199,7 +199,7 @@ def test_what_can_not_be_looked_at_is_told_once_and_taken_once_it_can_be(
         'mallory+1',
         'zoe',
     ]
-    assert len(arrivals(course)) == 5
+    assert len(arrivals(course)) == 3
 
 
 def test_what_is_gone_meanwhile_is_not_told(course, inbound, at_once, monkeypatch):
@@ -433,3 +433,23 @@ def test_a_status_page_is_written_of_any_reason(course):
         write_status_page(course, queue)
         queue.update(*stored)
         assert [each.reason for each in queue.find(REFUSED)] == ['x\\xff \\ud800']
+
+
+def test_the_many_entries_of_one_hide_nobodys_that_waits_for_a_person(course, inbound, at_once):
+    (inbound / 'honest_00_tyo.ipynb').write_text('{}')
+    for number in range(SHOWN + 5):
+        (inbound / f'mallory{number}_nothing.ipynb').write_text('{}')
+    serve_here(course, inbound)
+    (inbound / 'zoe_nothing.ipynb').write_text('{}')
+    serve_here(course, inbound)
+    with queue_to_read(course.gradebook) as queue:
+        assert any('honest_00_tyo' in line for line in status_lines(course, queue))
+        page = write_status_page(course, queue).read_text(encoding='utf-8')
+    assert '7 more before these: ./course serve --status' in page
+
+
+def test_what_is_refused_again_and_again_is_listed_once(course, inbound, at_once):
+    for number in range(3):
+        (inbound / 'mallory_nothing.ipynb').write_text('{}' + ' ' * number)
+        serve_here(course, inbound)
+    assert len(arrivals(course)) == 1

@@ -47,6 +47,7 @@ _SCHEMA = f"""
     CREATE TABLE IF NOT EXISTS arrivals (
         number INTEGER PRIMARY KEY AUTOINCREMENT, {', '.join(_COLUMNS[1:])});
     CREATE INDEX IF NOT EXISTS states ON arrivals (state);
+    CREATE INDEX IF NOT EXISTS entries ON arrivals (entry);
     CREATE INDEX IF NOT EXISTS students ON arrivals (student_id, assignment);
 """
 
@@ -62,9 +63,16 @@ class Queue:
         return dict(self._database.execute('SELECT entry, fingerprint FROM seen'))
 
     def add(self, entry: str, fingerprint: str, arrivals: Iterable[Arrival]) -> list[Arrival]:
-        """Note what an entry held, all of it or nothing; return it with its numbers."""
+        """Note what an entry held, all of it or nothing; return it with its numbers.
+
+        What was said of it as a whole before, when it held something else, is said no more.
+        """
         added = []
         with self._database:
+            self._database.execute(
+                "DELETE FROM arrivals WHERE entry = ? AND state = ? AND student_id = ''",
+                (entry, REFUSED),
+            )
             for each in arrivals:
                 marks = ', '.join('?' * (len(_COLUMNS) - 1))
                 cursor = self._database.execute(

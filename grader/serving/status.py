@@ -1,7 +1,7 @@
 """What the resident process is at: lines for a terminal, and a page that needs nothing else."""
 
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from datetime import datetime
 from html import escape
 from pathlib import Path
@@ -18,7 +18,9 @@ from grader.storage.deadlines import Deadlines, deadlines
 
 PAGE = 'serve_status.html'
 SHOWN = 20
-"""Rows of one kind; the rest is counted."""
+"""Rows of one kind; the rest is counted. …"""
+FOR_A_PERSON = REFUSED, FAILED
+"""… On a terminal, all of these are shown: nobody's many entries hide another's."""
 LAST = 200
 """So many of the last gradings tell how long one takes."""
 _PAGE = """<!doctype html>
@@ -31,12 +33,18 @@ li {{ overflow-wrap: anywhere }}</style></head>
 """
 
 
-def sections(course: Course, queue: Queue, now: float) -> Iterator[tuple[str, list[str]]]:
-    """Yield what there is to tell: a heading, and a line for each submission below it."""
+def sections(
+    course: Course, queue: Queue, now: float, *, shows_all: bool
+) -> Iterator[tuple[str, list[str]]]:
+    """Yield what there is to tell: a heading, and a line for each submission below it.
+
+    `shows_all` that waits for a person; else it says where they are listed.
+    """
     rules = (deadlines(course.gradebook) or Deadlines()).resubmissions
     starts = queue.starts()
     done = queue.find(GRADED, last=LAST)
-    yield _summary(done, queue.counts()), []
+    counts = queue.counts()
+    yield _summary(done, counts), []
     for state, heading in (
         (GRADING, 'Being graded'),
         (WAITING, 'Waiting'),
@@ -44,8 +52,11 @@ def sections(course: Course, queue: Queue, now: float) -> Iterator[tuple[str, li
         (FAILED, 'Not graded: ./course grade tries again'),
         (GRADED, 'Graded last'),
     ):
-        found = queue.find(state, last=SHOWN)
-        lines = []
+        is_whole = shows_all and state in FOR_A_PERSON
+        found = queue.find(state, last=None if is_whole else SHOWN)
+        more, lines = counts.get(state, 0) - len(found), []
+        if more > 0 and state in FOR_A_PERSON:
+            lines.append(f'{more:,} more before these: ./course serve --status')
         for each in found:
             waits = why_it_waits(starts.get(each.whose, ()), rules, now) * (state == WAITING)
             lines.append(_line(each, waits))
@@ -56,7 +67,7 @@ def sections(course: Course, queue: Queue, now: float) -> Iterator[tuple[str, li
 def status_lines(course: Course, queue: Queue | None) -> Iterator[str]:
     """Yield the lines of `./course serve --status`."""
     yield f'./course serve {"runs" if _is_served(course) else "does not run"}.'
-    for heading, lines in sections(course, queue, time.time()) if queue else ():
+    for heading, lines in sections(course, queue, time.time(), shows_all=True) if queue else ():
         yield heading
         yield from (f'  {printable(line)}' for line in lines)
 
@@ -64,7 +75,7 @@ def status_lines(course: Course, queue: Queue | None) -> Iterator[str]:
 def write_status_page(course: Course, queue: Queue) -> Path:
     """Write the page into the gradebook; return its path."""
     parts = [f'<p>As of {_clock(time.time())}</p>']
-    for heading, lines in sections(course, queue, time.time()):
+    for heading, lines in sections(course, queue, time.time(), shows_all=False):
         items = ''.join(f'<li>{escape(visible(line))}</li>' for line in lines)
         parts.append(f'<h2>{escape(heading)}</h2><ul>{items}</ul>' if lines else f'<p>{heading}')
     path = course.gradebook / PAGE
@@ -72,8 +83,7 @@ def write_status_page(course: Course, queue: Queue) -> Path:
     return path
 
 
-def _summary(done: list[Arrival], counts: object) -> str:
-    assert isinstance(counts, dict)
+def _summary(done: list[Arrival], counts: Mapping[str, int]) -> str:
     said = ', '.join(f'{number} {state}' for state, number in sorted(counts.items()))
     if not done:
         return f'{said or "Nothing has come in"}.'
