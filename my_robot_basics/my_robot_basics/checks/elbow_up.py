@@ -70,16 +70,7 @@ def expect_no_others(server: Server) -> None:
 
     None comes more often than its target did. Raises CheckFailed.
     """
-
-    def why_wrong(message: Any) -> str:
-        seen = joints.pose(message)
-        if any(_agree(seen, response.elbow_down) for response in server.sent):
-            return 'this is elbow_down: publish the angles of response.elbow_up alone'
-        if any(_agree(seen, solve(asked).elbow_up) for asked in server.requests):
-            return 'publish the angles of the response, not a solution of your own, and once'
-        return 'publish the angles of response.elbow_up once, and nothing else'
-
-    server.made.expect_no_others(is_elbow_up, hint=why_wrong)
+    server.made.expect_no_others(is_elbow_up, hint=lambda message: why_other(server, message))
     messages, targets = server.made.messages(), [(each.x, each.y) for each in server.published]
     for target in set(targets):
         response = server.answer(request(*target))
@@ -92,6 +83,16 @@ def expect_no_others(server: Server) -> None:
             'once',
             cause='a pose is published again and again',
         )
+
+
+def why_other(server: Server, message: Any) -> str:
+    """What is wrong with a message that is made of no response, or of one that has its message."""
+    seen = joints.pose(message)
+    if any(_agree(seen, response.elbow_down) for response in server.sent):
+        return 'this is elbow_down: publish the angles of response.elbow_up alone'
+    if any(_agree(seen, solve(asked).elbow_up) for asked in server.requests):
+        return 'publish the angles of the response, not a solution of your own, and once'
+    return 'publish the angles of response.elbow_up once, and nothing else'
 
 
 def is_elbow_up(message: Any, response: Any) -> bool:

@@ -1,6 +1,7 @@
 """What `/solve_ik` is to answer, and what is wrong with what it does; in radians."""
 
 import math
+import time
 from collections.abc import Sequence
 from typing import Any
 
@@ -12,6 +13,7 @@ from my_robot_basics.checks.elbow_up import (
     expect_elbow_up,
     expect_no_others,
     is_elbow_up,
+    why_other,
 )
 from my_robot_basics.checks.servers import Server
 from my_robot_basics.checks.services import Service
@@ -51,7 +53,8 @@ def _why_wrong(response: Any, target: Point) -> dict[str, Any]:
         return {
             'expected': f'reachable to be True for {where}',
             'seen': 'False',
-            'hint': 'set response.reachable = True where inverse_kinematics finds solutions',
+            'hint': 'set response.reachable = True where inverse_kinematics finds solutions (a '
+            'bool: 1 and the True of NumPy arrive as False)',
             'cause': 'a target within reach is called unreachable',
         }
     branches_deg = inverse_kinematics(target.x, target.y)
@@ -147,10 +150,15 @@ def ask(server: Server, x: float, y: float) -> None:
 def expect_no_answer(server: Server, x: float, y: float) -> None:
     """The client asks for a target out of reach, and publishes nothing. Raises CheckFailed."""
     expect_no_others(server)
+    asked_ns = time.time_ns()
     ask(server, x, y)
-    server.expect_nothing(
-        made_of=is_elbow_up, hint='publish only where response.reachable is True'
-    )
+
+    def why_wrong(message: Any) -> str:
+        if server.made.was_sent_before(asked_ns, message):
+            return why_other(server, message)
+        return 'publish only where response.reachable is True'
+
+    server.expect_nothing(made_of=is_elbow_up, hint=why_wrong)
 
 
 def _is_pose(position: Sequence[float], pose_deg: Sequence[float]) -> bool:

@@ -57,6 +57,11 @@ class Made:
         """All of them, in order."""
         return [message for message, sent_ns in self._recorder.received if self._counts(sent_ns)]
 
+    def was_sent_before(self, time_ns: int, message: Any) -> bool:
+        """Whether one of the messages left before that time, by the wall clock."""
+        received = self._recorder.received
+        return any(each is message and sent_ns < time_ns for each, sent_ns in received)
+
     def expect_no_others(self, made_of: MadeOf, *, hint: Callable[[Any], str]) -> None:
         """Each message so far is made of a response that was sent, no two of the same one.
 

@@ -13,12 +13,7 @@ from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.responses import Made, MadeOf, of_none, wait_for_owed
 from my_robot_basics.checks.sole_server import expect_no_other, wait_until_known
 from my_robot_basics.checks.topics import Topic
-from my_robot_basics.checks.waiting_clients import (
-    waits_for_answer,
-    waits_for_server,
-    why_not_asked,
-    why_not_published,
-)
+from my_robot_basics.checks.waiting_clients import WaitingClient
 from my_robot_basics.feedback.errors import expect, fail, shorten
 from my_robot_basics.graph.watcher import Watcher
 
@@ -119,7 +114,9 @@ class Server(HoldingServer):
                 self.publish(message)
         others = self.requests[before:]
         if not (others and self._goes_on()):  # who waits may only now ask for what came before
-            hint = self._raised.hint() or self._why_not_asked()
+            hint = self._client().why_not_asked(
+                asked_on=self.asked_on, was_away=1 < self.starts != self._known_starts
+            )
         fail(
             expected=f'a request to {self.name} for the message on {self.asked_on}',
             seen=shorten(others[-1]) if others else f'none in {TIMEOUT_SEC:g} s',
@@ -148,11 +145,11 @@ class Server(HoldingServer):
         fail(
             expected=f'{expected} on {self._answers.topic_name}',
             seen=shorten(others[-1]) if others else f'none in {TIMEOUT_SEC:g} s',
-            hint=hint(others[-1]) if others else self._raised.hint() or self._why_silent(),
+            hint=hint(others[-1]) if others else self._client().why_not_published(),
             cause=wrong if others else f'{self.name} has answered, and nothing is published',
         )
 
-    def expect_nothing(self, *, hint: str, made_of: MadeOf = of_none) -> None:
+    def expect_nothing(self, *, hint: Hint, made_of: MadeOf = of_none) -> None:
         """Nothing comes on `to` in QUIET_SEC, but what is made of a response: see `Made`.
 
         Raises CheckFailed.
@@ -163,7 +160,7 @@ class Server(HoldingServer):
             not others,
             expected=f'no message on {self._answers.topic_name}',
             seen=shorten(others[-1]) if others else '',
-            hint=hint,
+            hint=hint(others[-1]) if others else '',
             cause=f'a message on {self._answers.topic_name} that should not be',
         )
         self._raised.expect_none()
@@ -174,11 +171,10 @@ class Server(HoldingServer):
         `meanwhile`: what happens, as a clause. Raises CheckFailed where the count stands still.
         """
         if not self._goes_on(lambda: self.publish(message)):
-            why = waits_for_answer if self.holds_any() else waits_for_server
             fail(
                 expected=f'the count on {self._beats.topic_name} to go on while {meanwhile}',
                 seen='it stand still',
-                hint=self._raised.hint() or why(self.name),
+                hint=self._client().why_still(has_asked=self.holds_any()),
                 cause=f'the count on {self._beats.topic_name} stands still',
             )
         self.expect_alone()
@@ -187,13 +183,11 @@ class Server(HoldingServer):
         """No other node serves. Raises CheckFailed."""
         expect_no_other(self._watcher, self.name, own=int(self.is_there()))
 
-    def _why_not_asked(self) -> str:
-        return why_not_asked(
-            self._watcher, self.name, self.type, asked_on=self.asked_on, goes_on=self._goes_on
-        )
+    def _client(self) -> WaitingClient:
+        def goes_on() -> bool:
+            return self._goes_on(lambda: self.publish(self.published[-1]))
 
-    def _why_silent(self) -> str:
-        return why_not_published(self.name, goes_on=self._goes_on)
+        return WaitingClient(self._watcher, self.name, self.type, self._raised, goes_on)
 
     def _goes_on(self, send: Callable[[], None] = lambda: None) -> bool:
         return Heartbeat(self._watcher, self._beats).goes_on(send)

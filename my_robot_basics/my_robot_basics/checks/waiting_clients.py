@@ -1,7 +1,9 @@
 """Why a node does not ask a service, or makes nothing of the answer: one clause each."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
+from my_robot_basics.checks.callbacks import CallbackErrors
 from my_robot_basics.checks.services import type_name
 from my_robot_basics.feedback.hidden import theirs
 from my_robot_basics.graph import services
@@ -26,28 +28,63 @@ def waits_for_server(name: str) -> str:
     )
 
 
-def why_not_asked(
-    watcher: Watcher, name: str, type_: type, *, asked_on: str, goes_on: Callable[[], bool]
-) -> str:
-    """What to try where no request comes. `goes_on` tells whether the node is alive."""
-    ends = services.take(watcher.node)
-    clients = ends.clients.get(name, {})
-    types = {each for found in clients.values() for each in found}
-    if not clients:
-        return ends.why_none(name, maker='create_client')
-    if type_name(type_) not in types:
-        asks_for = theirs(' and '.join(sorted(types)))
-        return f'it asks for {asks_for}, so compare the type in create_client(…)'
-    if not goes_on():
-        return waits_for_server(name)
-    return f'call self.client.call_async(request) for each message on {asked_on}'
+@dataclass(frozen=True)
+class WaitingClient:
+    """A node that does not do what it is to do, and what may be the reason."""
+
+    watcher: Watcher
+    name: str
+    """Of the service."""
+    type_: type
+    raised: CallbackErrors
+    goes_on: Callable[[], bool]
+    """Whether nothing holds it up, though it is asked once more."""
+
+    def why_not_asked(self, *, asked_on: str, was_away: bool) -> str:
+        """What to try where no request comes.
+
+        `was_away`: there was no server when it was to ask before.
+        """
+        if raised := self.raised.hint():
+            return raised
+        ends = services.take(self.watcher.node)
+        clients = ends.clients.get(self.name, {})
+        types = {each for found in clients.values() for each in found}
+        if not clients:
+            return ends.why_none(self.name, maker='create_client')
+        if type_name(self.type_) not in types:
+            asks_for = theirs(' and '.join(sorted(types)))
+            return f'it asks for {asks_for}, so compare the type in create_client(…)'
+        if not self.goes_on():
+            return waits_for_server(self.name)
+        if was_away:
+            return (
+                'a request that is sent while there is no server never gets an answer, so let no '
+                'later target wait for it: look at service_is_ready() before you ask'
+            )
+        return f'call self.client.call_async(request) for each message on {asked_on}'
+
+    def why_not_published(self) -> str:
+        """What to try where an answer was sent, and nothing is made of it."""
+        raised = self.raised.hint()
+        if raised and not _is_of_no_answer(raised):
+            return raised
+        if not self.goes_on():
+            return waits_for_answer(self.name)
+        return raised or (
+            'publish when the answer is there, however late it comes, in the function that '
+            'add_done_callback calls (call and spin_until_future_complete get no answer inside a '
+            'callback)'
+        )
+
+    def why_still(self, *, has_asked: bool) -> str:
+        """What to try where nothing of it goes on."""
+        raised = self.raised.hint()
+        if raised and not _is_of_no_answer(raised):
+            return raised
+        return waits_for_answer(self.name) if has_asked else waits_for_server(self.name)
 
 
-def why_not_published(name: str, *, goes_on: Callable[[], bool]) -> str:
-    """What to try where an answer was sent, and nothing is made of it."""
-    if not goes_on():
-        return waits_for_answer(name)
-    return (
-        'publish when the answer is there, in the function that add_done_callback calls (call and '
-        'spin_until_future_complete get no answer inside a callback)'
-    )
+def _is_of_no_answer(raised: str) -> bool:
+    """Whether it is what comes of a wait that was given up: the answer was None."""
+    return 'NoneType' in raised

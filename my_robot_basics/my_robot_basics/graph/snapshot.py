@@ -9,7 +9,7 @@ from my_robot_basics.graph.raised import what_raised
 
 NOT_RUNNING = (
     'the node is not running, so run the cell that starts it and read its output; a node whose'
-    ' __init__ raises, loops or spins never runs'
+    ' __init__ raises, waits, loops or spins never runs'
 )
 _PLUMBING = ('/clock', '/parameter_events', '/rosout')
 
