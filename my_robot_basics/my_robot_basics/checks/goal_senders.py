@@ -23,8 +23,12 @@ def why_no_goal(
     node_names: Collection[str],
     raised: CallbackErrors,
     asked_on: str,
+    was_away: bool,
 ) -> str:
-    """What to try where no goal comes for a message on `asked_on`."""
+    """What to try where no goal comes for a message on `asked_on`.
+
+    `was_away`: there was no server when a message came before.
+    """
     if hint := raised.hint():
         return hint
     ends = actions.take(watcher.node)
@@ -35,7 +39,15 @@ def why_no_goal(
     if type_name(type_) not in types:
         asks_for = theirs(' and '.join(sorted(types)))
         return f'it sends goals of {asks_for}, so compare the type in ActionClient(…)'
-    hint = f'call send_goal_async(goal) for each message on {asked_on}'
+    hint = (
+        f'call send_goal_async(goal) for each message on {asked_on}, when it arrives, also while '
+        'another goal moves'
+    )
+    if was_away:
+        hint = (
+            'a goal that is sent while there is no server never gets an answer, so let no later '
+            'pose wait for it: look at server_is_ready() before you send'
+        )
     return why_silent(watcher, hint, node_names=node_names, raised=raised)
 
 

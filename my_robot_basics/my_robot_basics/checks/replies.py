@@ -69,6 +69,7 @@ def expect_waiting(server: ServedAction, early: Pose, later: Pose) -> None:
     The client sends a goal for the later pose. Raises CheckFailed.
     """
     server.publish(_pose(early))
+    server.let_client_know()  # or the goal for it may be sent when there is a server
     server.start()
     goal = ask(server, later)
     server.forget_outcomes()  # the early pose may have become a goal, which has succeeded

@@ -44,11 +44,13 @@ class ServedAction(ScriptedActionServer):
         self._raised = CallbackErrors(set(outcomes.publishers()))
         self._publishers: dict[str, Publisher] = {}
         self._known_starts = self._before = 0
+        self._was_away = False  # when a message was to lead to a goal that has not come
         self._mute: set[str] = set()  # nodes that tell no parameters are asked once
         self._cancelled_sec = 0.0  # how long a request took that an obstacle asked for, at most
 
     def publish(self, message: Any) -> None:
         """Publish a message that is to lead to a goal, without waiting for one."""
+        self._was_away = self._was_away or self._server is None
         self._publish(self.asked_on, message)
 
     def ask(
@@ -68,7 +70,7 @@ class ServedAction(ScriptedActionServer):
         self.publish(message)
         for _ in range(round(REPLY_SEC / AGAIN_SEC)):
             if self._watcher.spin_until_free(lambda: bool(found()), free_sec=AGAIN_SEC):
-                self._known_starts = self.starts
+                self._known_starts, self._was_away = self.starts, False
                 self.let_client_know()
                 return found()[0]
             if self._known_starts < self.starts and len(self.goals) == before:
@@ -183,8 +185,8 @@ class ServedAction(ScriptedActionServer):
         self._watcher.spin_for(SOON_SEC if self._mute else 0.0)
 
     def _why_no_goal(self) -> str:
-        who = self._who()
-        return why_no_goal(self._watcher, self.name, self.type, asked_on=self.asked_on, **who)
+        how = {'asked_on': self.asked_on, 'was_away': self._was_away, **self._who()}
+        return why_no_goal(self._watcher, self.name, self.type, **how)
 
     def _why_silent(self, hint: str) -> str:
         return why_silent(self._watcher, hint, **self._who())
