@@ -47,7 +47,8 @@ def expect_cancels(
             not sent.is_over(),
             expected=f'a move that takes {wanted_sec:.1f} s',
             seen='it over before it could be cancelled',
-            hint='move the arm a little in each step, by speed × the time of the step',
+            hint=(sent.is_over() and arm.why_too_soon(sent))
+            or 'move the arm a little in each step, by speed × the time of the step',
             cause='the move is over too soon to be cancelled',
         )
         _cancel(arm, sent, wanted_sec=wanted_sec)
@@ -170,7 +171,7 @@ def _expect_moves_on(
         _fail_without_end(arm, sent, most_sec)
     arm.has_result(sent)
     if former is not None:
-        expect_begins_at(list(former.result.position), sent, former=former)
+        expect_begins_at(arm, list(former.result.position), sent, former=former)
     is_early = arm.seconds(sent) < EARLY_PART * wanted_sec
     expect(
         sent.status != 'canceled' and not is_early,

@@ -80,11 +80,13 @@ def expect_one_at_a_time(
             'execute callback when the arm is there',
             cause='a goal does not end',
         )
+        is_early = arm.seconds(moving) < EARLY_PART * wanted_sec
         expect(
-            arm.seconds(moving) >= EARLY_PART * wanted_sec,
+            not is_early,
             expected='the first goal to go on when a second one is rejected',
             seen='it ended early',
-            hint='leave the goal that moves alone: the goal callback alone answers the second',
+            hint=(is_early and arm.why_too_soon(moving))
+            or 'leave the goal that moves alone: the goal callback alone answers the second',
             cause='a second goal disturbs the first',
         )
         arm.settle()

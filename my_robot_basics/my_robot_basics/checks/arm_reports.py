@@ -63,12 +63,11 @@ class MoveReport:
         """There is feedback, at 10 Hz or more, without pauses."""
         count = len(self.messages)
         if not count:
-            server = self.arm.server
-            raised = server.raised.hint() or server.log.raised(since_ns=self.sent.sent_ns)
+            why = self.arm.why_no_feedback(self.sent)
             fail(
                 expected='feedback during the move',
                 seen='none',
-                hint=raised or 'call goal_handle.publish_feedback(…) in each step of the move',
+                hint=why or 'call goal_handle.publish_feedback(…) in each step of the move',
                 cause='there is no feedback',
             )
         seconds = self.arm.seconds(self.sent)

@@ -115,7 +115,8 @@ def _fail_speed(
     fail(
         expected=f'{wanted_sec:.{digits}f} s for {far:.2f} rad at {sent.goal.speed:.3g} rad/s',
         seen=f'{seconds:.{digits}f} s',
-        hint=_why_speed(arm, position, seconds * sent.goal.speed, seconds=seconds),
+        hint=(seconds <= JUMP_SEC and arm.why_too_soon(sent))
+        or _why_speed(arm, position, seconds * sent.goal.speed, seconds=seconds),
         cause='the arm is too slow' if wanted_sec < seconds else 'the arm is too fast',
         doubt=doubt,
     )

@@ -63,7 +63,7 @@ def _why_at_the_goal(sent: SentGoal, position: Pose) -> str:
     return 'put in where the arm is, not where it was to go'
 
 
-def expect_begins_at(stopped: Pose, moved: SentGoal, *, former: SentGoal) -> None:
+def expect_begins_at(arm: WatchedArm, stopped: Pose, moved: SentGoal, *, former: SentGoal) -> None:
     """The feedback of a move begins where the one before was stopped. Raises CheckFailed.
 
     Where the feedback on that one tells something else, this tells nothing.
@@ -73,6 +73,8 @@ def expect_begins_at(stopped: Pose, moved: SentGoal, *, former: SentGoal) -> Non
     near_rad = FIRST_SEC * max(former.goal.speed, moved.goal.speed) + NEAR_RAD
     if not before or not after or not is_near(before[-1], stopped, near_rad):
         return
+    late_sec = arm.seconds_until(moved, moved.feedback()[0][0])  # the arm has moved meanwhile
+    near_rad += max(0.0, late_sec - FIRST_SEC) * moved.goal.speed
     if len(after[0]) == len(stopped) and not is_near(after[0], stopped, near_rad):
         fail(
             expected=f'the next move to begin at {[round(each, 3) for each in stopped]}',

@@ -25,6 +25,8 @@ SHORTER_PART, TURN = 0.35, 7.7
 """Short moves are shorter than the longest by up to that part: which, comes of the position."""
 EARLY_PART = 0.8
 """A move that is over sooner was not made at its speed."""
+FEW, ON_SEC = 3, 1.0
+"""So much feedback within that time after the end of a goal tells of a move that goes on."""
 STALLED_PART = 0.05
 """So much of a look in which processes had to wait for a processor makes it a doubtful one."""
 
@@ -87,6 +89,32 @@ class WatchedArm:
         began_ns = sent.statuses()[0][0] if sent.statuses() else sent.sent_ns
         over_ns = self.time.at_ns(sent.over_ns()) if sent.over_ns() else self.time.now_ns()
         return (over_ns - self.time.at_ns(began_ns)) / 1e9
+
+    def seconds_until(self, sent: SentGoal, wall_ns: int) -> float:
+        """How long after the begin of a goal that wall time was, in seconds of this time."""
+        began_ns = sent.statuses()[0][0] if sent.statuses() else sent.sent_ns
+        return (self.time.at_ns(wall_ns) - self.time.at_ns(began_ns)) / 1e9
+
+    def why_too_soon(self, sent: SentGoal) -> str:
+        """What to try where feedback goes on after the server has told how the goal ended; or ''.
+
+        It waits for that.
+        """
+
+        def goes_on() -> bool:
+            return sum(sent.over_ns() < at_ns for at_ns, _ in sent.feedback()) >= FEW
+
+        if not sent.over_ns() or not self.time.wait(goes_on, seconds=ON_SEC):
+            return ''
+        return (
+            'the arm moves on after the goal has ended: call goal_handle.succeed() when the arm '
+            'is there, behind the loop that moves it'
+        )
+
+    def why_no_feedback(self, sent: SentGoal) -> str:
+        """Why there may be no feedback on a goal that is over, where that is known; or ''."""
+        raised = self.server.raised.hint() or self.server.log.raised(since_ns=sent.sent_ns)
+        return raised or self.why_too_soon(sent)
 
     def has_result(self, sent: SentGoal) -> bool:
         """Whether the result comes, now that the goal is over."""
