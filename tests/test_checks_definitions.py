@@ -81,6 +81,9 @@ RIGHT = {
     'an octal constant': turns('MOTOR2=1', 'MOTOR2=0x01'),
     'char, which is uint8': count('uint8 motor', 'char motor'),
     'the default value that rosidl writes anyway': count('bool success', 'bool success false'),
+    'that of two numbers': turns('int32[2] turns', 'int32[2] turns [0, 0]'),
+    'that of any number': count('each_second', 'each_second []'),
+    'wide characters in a comment': turns('int32[2] turns', 'int32[2] turns # \uff1d\uff03 //'),
 }
 
 
@@ -132,6 +135,43 @@ WRONG = {
     'three defaults for two': (turns('50.0]', '50.0, 1.0]'), 'a list of as many values'),
     'braces': (turns('[100.0, 50.0]', '{100.0, 50.0}'), 'a list of as many values'),
     'as in C': (turns('int32[2] turns', 'int32 turns[2]'), 'brackets belong to the type'),
+    'as in C, at most': (
+        count('int32[<=60] each_second', 'int32 each_second[<=60]'),
+        'brackets belong to the type',
+    ),
+    'a space before the bits': (
+        turns('int32[2]', 'int 32[2]'),
+        'there is no type int: write int32',
+    ),
+    'a bound without brackets': (
+        count('int32[<=60]', 'int32<=60'),
+        'written with brackets: float',
+    ),
+    'name first': (
+        count('bool success', 'success bool'),
+        'the type comes first, then the name: f',
+    ),
+    'name before an array': (turns('int32[2] turns', 'turns int32[2]'), 'the type comes first'),
+    "C's comment": (
+        turns('int32[2] turns', 'int32[2] turns  // of both'),
+        'comment begins with #',
+    ),
+    "a line of C's comment": (
+        turns('int32[2]', '/* of both */\nint32[2]'),
+        'comment begins with #',
+    ),
+    'a constant without a type': (
+        turns('uint8 MOTOR1=0', 'MOTOR1 = 0'),
+        'its type before its name',
+    ),
+    'a wide =': (turns('MOTOR1=0', 'MOTOR1\uff1d0'), "a wide character: write '='"),
+    'a wide #': (turns('turns\n', 'turns \uff03 of both\n'), "a wide character: write '#'"),
+    'a no-break space': (
+        turns('int32[2] turns', 'int32[2]\u00a0turns'),
+        'a no-break space or the',
+    ),
+    'the name of the file': (count('Turns total', 'Turns.msg total'), 'behind its name: Turns'),
+    'std_msgs': (count('bool success', 'std_msgs/Bool success'), 'write the plain type, bool'),
     'space in the type': (turns('int32[2]', 'int32 [2]'), 'no space between a type and its'),
     'bound with <': (count('[<=60]', '[<60]'), 'at most two [<=2]'),
     'bound the wrong way': (count('[<=60]', '[60<=]'), 'at most two [<=2]'),
@@ -155,7 +195,7 @@ WRONG = {
     ),
     'Time': (count('/Duration', '/Time'), 'see in the table what it is'),
     'unbounded': (count('[<=60]', '[]'), 'takes any number of values'),
-    'fixed for bounded': (count('[<=60]', '[60]'), 'takes exactly so many values'),
+    'fixed for bounded': (count('[<=60]', '[60]'), 'takes exactly so many values, [60]'),
     'bounded for fixed': (turns('int32[2]', 'int32[<=2]'), 'takes at most so many'),
     'one value': (turns('int32[2]', 'int32'), 'takes one value'),
     'another length': (turns('int32[2]', 'int32[3]'), 'another number of values'),
@@ -165,6 +205,10 @@ WRONG = {
     'a default that nobody wants': (
         count('success', 'success true'),
         'nobody has asked for a def',
+    ),
+    'a default of one zero for any number': (
+        count('each_second', 'each_second [0]'),
+        'nobody has asked for a default value of each_second',
     ),
     'another constant': (turns('MOTOR2=1', 'MOTOR2=2'), 'the constant MOTOR2 has another value'),
     'missing': (count('Turns total\n', ''), 'the response has no total'),

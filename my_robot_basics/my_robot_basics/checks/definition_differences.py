@@ -73,7 +73,10 @@ def _difference(found: DefinedMember, wanted: DefinedMember) -> str:
         return f'the constant {name} has another value than the table says'
     if wanted.value is None:
         # what rosidl writes into a field without a default value, too
-        return '' if _is_zero(found.value) else f'nobody has asked for a default value of {name}'
+        is_as_ever = _is_zero(found.value) and _is_array(found.type) in ('', 'fixed')
+        if is_as_ever or found.value == []:
+            return ''
+        return f'nobody has asked for a default value of {name}'
     if found.value is None:
         return f'{name} has no default value: write it behind the name, without ='
     return f'{name} has another default value than the table says'
@@ -95,6 +98,8 @@ def _type_difference(found: Any, wanted: Any) -> str:
 
 
 def _about_types(found: str, wanted: str) -> str:
+    if found.startswith('std_msgs/') and found.partition('/')[2].lower() == wanted:
+        return f'that is a message of its own, so write the plain type, {wanted}'
     numbers = [type_ for type_ in (found, wanted) if type_.rstrip('0123456789') in _NUMBERS]
     if len(numbers) == 1:
         return 'see in the table whether it is a number'
@@ -114,9 +119,10 @@ _NUMBERS = {
 
 
 def _about_arrays(found: Any) -> str:
+    size = _size(found)
     kind = {
-        'fixed': 'exactly so many values, [2]',
-        'bounded': 'at most so many values, [<=2]',
+        'fixed': f'exactly so many values, [{size}]',
+        'bounded': f'at most so many values, [<={size}]',
         'unbounded': 'any number of values, []',
         '': 'one value, without brackets',
     }[_is_array(found)]

@@ -4,6 +4,7 @@ import contextlib
 import io
 import keyword
 import re
+import unicodedata
 from typing import Any
 
 from my_robot_basics.feedback.errors import shorten
@@ -22,9 +23,11 @@ _OTHER_NAMES = {
 """Types of other languages, and what ROS has instead."""
 _FORMER = {'time': 'Time', 'duration': 'Duration'}
 """Types of ROS 1 that the parser still reads, and that nothing can be built of."""
+_ASCII = {chr(code) for code in range(33, 127)}
 _CONSTANT_NAME = re.compile('[A-Z](?:_?[A-Z0-9])*')
 """What rosidl takes; its own pattern needs hours for some long names that do not fit."""
 _FIELD_NAME = re.compile('[a-z](?:_?[a-z0-9])*')
+_MESSAGE_TYPE = re.compile('([a-z][a-z0-9_]*/)?[A-Z][A-Za-z0-9]*[a-z][A-Za-z0-9]*')
 
 
 class BadLine(ValueError):
@@ -44,13 +47,14 @@ def parse_line(package: str, line: str) -> Any:
     name, equals, _ = (part.strip() for part in rest.partition('='))
     if line[:1] == ' ':
         raise BadLine('rosidl takes no space before the type')
-    if equals and not _CONSTANT_NAME.fullmatch(name):
-        raise BadLine(_about_constant(type_name, name))
+    is_bound = name.endswith('<')  # of an array: int32[<=60], its brackets in the wrong place
+    if equals and not is_bound and not _CONSTANT_NAME.fullmatch(name):
+        raise BadLine(_about_characters(line) or _about_constant(type_name, name))
     try:
         return _parsed(package, line)
     except Exception as error:
         # rosidl raises whatever its conversions raise: TypeError, NameError, IndexError, …
-        raise BadLine(_why(type_name, rest, error)) from None
+        raise BadLine(_about_characters(line) or _why(type_name, rest, error)) from None
 
 
 def parse_whole(package: str, name: str, text: str, *, kind: str) -> None:
@@ -88,7 +92,22 @@ def _parsed(package: str, line: str) -> Any:
     return member
 
 
+def _about_characters(line: str) -> str:
+    """Which character of another keyboard, or of another language's comments, is in a line."""
+    for character in line:
+        plain = unicodedata.normalize('NFKC', character)
+        if plain == ' ' != character:
+            return 'one of its spaces is a no-break space or the like: type it anew'
+        if plain != character and plain in _ASCII:
+            return f'it has {character!r}, a wide character: write {plain!r}'
+    if re.search(r'(?<!:)//|/\*', line):
+        return 'a comment begins with #'
+    return ''
+
+
 def _about_constant(type_name: str, name: str) -> str:
+    if not name and _CONSTANT_NAME.fullmatch(type_name):
+        return 'a constant has its type before its name, like: uint8 OPEN=1'
     if _CONSTANT_NAME.fullmatch(name.upper()):
         return (
             f'= makes a constant, whose name is in capital letters ({name.upper()}); the default '
@@ -120,7 +139,11 @@ def _about_form(type_name: str, rest: str) -> str:
         return 'no line ends with a semicolon'
     if rest.startswith('['):
         return 'no space between a type and its brackets: float64[2] name'
-    if '[' in rest.partition(' ')[0]:
+    first, second = (words.partition('[')[0] for words in (type_name, rest))
+    is_type = second in _primitives() or _MESSAGE_TYPE.fullmatch(second)
+    if is_type and first not in [*_primitives(), *_OTHER_NAMES] and _FIELD_NAME.fullmatch(first):
+        return 'the type comes first, then the name: float64 speed'
+    if '[' in rest.partition(' ')[0] and type_name not in _OTHER_NAMES:
         return 'brackets belong to the type: float64[2] name'
     return ''
 
@@ -131,6 +154,8 @@ def _about_type(type_name: str) -> str:
         return 'an array is written [], exactly two values [2], at most two [<=2]'
     if plain.startswith(('string<', 'wstring<')):
         return 'a text of at most ten characters is written string<=10'
+    if '<' in plain:
+        return 'at most two values are written with brackets: float64[<=2]'
     if plain in _OTHER_NAMES:
         return f'there is no type {plain}: write {_OTHER_NAMES[plain]}'
     if plain in _primitives():
@@ -138,6 +163,8 @@ def _about_type(type_name: str) -> str:
     if plain.lower() in _primitives() and plain.lower() not in _FORMER:
         return f'types are written in lower case: {plain.lower()}'
     parts = [part for part in re.split(r'::|[./]', plain) if part]
+    if parts[-1:] == ['msg'] and plain.endswith('.msg'):
+        return f'a type has no .msg behind its name: {shorten(plain.removesuffix(".msg"), 40)}'
     if len(parts) == 3 and parts[1] == 'msg':
         return f'in a definition, a type has no msg in its name: {parts[0]}/{parts[2]}'
     if len(parts) == 2 and '/' not in plain:
