@@ -35,7 +35,7 @@ def fault_in_install(package: str, prefix: Path, files: PackageFiles) -> str:
             f'setup.cfg with [install] and install_scripts=$base/lib/{package}'
         )
     site = prefix / 'lib/python{}.{}/site-packages'.format(*sys.version_info)
-    faults = (_fault_of_entry(entry, site, files) for entry in entries)
+    faults = (_fault_of_entry(entry, package, site, files) for entry in entries)
     return next(filter(None, faults), '') or _fault_of_scripts(scripts)
 
 
@@ -75,8 +75,13 @@ def _entry_points(package: str, prefix: Path) -> Iterator[EntryPoint]:
         yield from (entry for entry in scripts if entry.pattern.match(entry.value))
 
 
-def _fault_of_entry(entry: EntryPoint, site: Path, files: PackageFiles) -> str:
+def _fault_of_entry(entry: EntryPoint, package: str, site: Path, files: PackageFiles) -> str:
     line = short(f'{entry.name} = {entry.value}')
+    if not entry.attr:
+        return (
+            f'entry_points of setup.py has {line!r}, which names no function: write a colon and '
+            f'the function behind the module, {package}.MODULE:main'
+        )
     path = entry.module.replace('.', '/')
     names = (f'{path}.py', f'{path}/__init__.py')
     top = entry.module.partition('.')[0]
@@ -101,7 +106,7 @@ def _fault_of_entry(entry: EntryPoint, site: Path, files: PackageFiles) -> str:
         said = f'line {line_number}: {error.msg}' if isinstance(error, SyntaxError) else error
         return f'{names[0]} is not valid Python ({said}): fix that, and build again'
     function = entry.attr.partition('.')[0]
-    if not function or function in set(_bound(tree)):
+    if function in set(_bound(tree)):
         return ''
     return (
         f'entry_points of setup.py has {line!r}, and {names[0]} has no function {function}: write '
