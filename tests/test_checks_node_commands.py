@@ -77,7 +77,10 @@ MISTAKES = [
     ('-r __ns:=/right', 'a name is given by a rule of its own: -r __node:=arm'),
     ('-r __node:=/right/arm -r __ns:=/right', 'a name has no /, the namespace is in the other'),
     ('-r __ns:=/rigth -r __node:=arm', 'saw .*/rigth/arm: compare both names in the rules'),
+    ('-r __ns:=/right/ -r __node:=arm', 'has no / at its end: write -r __ns:=/right'),
     ('-r __ns:=/right -r __node:=arm -p seed:=7.0', 'see whether the node has ended'),
+    ('-r __ns:=/right -r __node:=arm -p seed=7', "written name:=value: 'seed=7' is none"),
+    ('-r __ns:=/right -r __node:=arm -r seed:=7', 'give the parameter with -p seed:=7'),
     ('-r __ns:=/right -r __node:=arm', 'saw it publishes on /kinematics/joint_states: the name of '
      'the topic begins with /, so no namespace moves it'),
     ('-r __ns:=/right -r __node:=arm -r kinematics/joint_states:=joint_states',

@@ -164,6 +164,13 @@ def test_a_timer_of_a_refused_value_is_one_beside_those_that_run_on(monkeypatch,
         RateParameter(timers, 'rate_hz', TOPIC).expect_refuses(*rates_hz)
 
 
+def test_a_node_that_is_as_fast_as_it_can_changes_nothing_by_refusing(monkeypatch):
+    timers = OldTimers(monkeypatch, of_any=False)
+    rates_hz = iter([3_000.0, 1_500.0, 2_000.0, 900.0])
+    monkeypatch.setattr(RateParameter, '_measure', lambda *_: (next(rates_hz), CheckFailed))
+    RateParameter(timers, 'rate_hz', TOPIC).expect_refuses(0.0, 60.0)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(('NodeClass', 'words'), OF_BOTH)
 def test_what_keeps_all_from_working_fails_both(run, NodeClass, words):

@@ -55,6 +55,8 @@ BAD = [
     (START + ' --ros-args && id', 'the word &&: write one command'),
     (START + ' --ros-args $(id)', 'a $: write what you mean in full'),
     (START + ' --ros-args `id`', 'a `: write what you mean in full'),
+    ('{PUBLISHER} -r __ns:=/left', '{PUBLISHER} itself: put an f before the quotation mark'),
+    (START + ' --ros-args -r {TOPIC}:=poses', '{TOPIC} itself: put an f before'),
     (START + ' --ros-args\nid', 'several lines: write one line'),
     (START + " --ros-args -r '__ns", 'no closing quotation: close each quotation mark'),
     (START + ' --ros-args ' + 2_000 * 'x', r'\d+ characters: write one command line'),

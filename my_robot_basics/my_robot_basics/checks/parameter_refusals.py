@@ -12,6 +12,8 @@ from my_robot_basics.feedback.hidden import theirs
 
 _NO_RESULT = 'Callback returned an invalid type'
 """rclpy's words, where a callback returns no SetParametersResult."""
+_READ_ONLY = 'read-only'
+"""What is in it, where one is declared as read-only."""
 _OF_ANOTHER_TYPE = 'Wrong parameter type'
 """How rclpy's reason begins, where a parameter is declared with another type."""
 
@@ -46,6 +48,8 @@ def expect_leaves_others_alone(parameters: NodeParameters, name: str) -> None:
     [result] = parameters.set('use_sim_time', parameters.get('use_sim_time'))
     if not result.successful:
         expect_a_result(result)
+        [same] = parameters.set(name, parameters.get(name))
+        _expect_yes_where_nothing_changes(name, same)
         fail(
             expected='use_sim_time, another parameter, to be set',
             seen=f'it refused: {theirs(shorten(result.reason))}',
@@ -53,6 +57,18 @@ def expect_leaves_others_alone(parameters: NodeParameters, name: str) -> None:
             f"'{name}'",
             cause='your callback refuses other parameters',
         )
+
+
+def _expect_yes_where_nothing_changes(name: str, result: SetParametersResult) -> None:
+    """The value that a parameter has is taken, or refused with a reason. Raises CheckFailed."""
+    expect(
+        result.successful or bool(result.reason.strip()),
+        expected=f'{name} to be set to the value that it has',
+        seen='it refused, without a reason',
+        hint='end your callback with return SetParametersResult(successful=True): `successful` is '
+        'False unless you set it',
+        cause='your callback refuses all values',
+    )
 
 
 def _expect_refused(
@@ -97,14 +113,27 @@ def _are_nan(*values: object) -> bool:
 def fail_refused(name: str, value: float, result: SetParametersResult) -> NoReturn:
     """Raise CheckFailed, for a value that had to be taken."""
     expect_a_result(result)
+    expect(
+        bool(result.reason.strip()),
+        expected=f'{name} = {value!r} to be set',
+        seen='it refused, without a reason',
+        hint='for values within the limits, return SetParametersResult(successful=True): '
+        '`successful` is False unless you set it',
+        cause='a value within the limits is refused',
+    )
     is_type = result.reason.startswith(_OF_ANOTHER_TYPE)
+    hint = (
+        'refuse only what is outside the limits: any value within the limits and the limits '
+        'themselves are allowed'
+    )
+    if is_type:
+        hint = 'a parameter has the type of its default value: declare it with 5.0, not 5'
+    elif _READ_ONLY in result.reason:
+        hint = 'nobody can set a read-only parameter: declare it without read_only=True'
     fail(
         expected=f'{name} = {value!r} to be set',
         seen=f'it refused: {theirs(shorten(result.reason))}',
-        hint='a parameter has the type of its default value: declare it with 5.0, not 5'
-        if is_type
-        else 'refuse only what is outside the limits: any value within the limits and the limits '
-        'themselves are allowed',
+        hint=hint,
         cause=f'{name} is no double' if is_type else 'a value within the limits is refused',
     )
 

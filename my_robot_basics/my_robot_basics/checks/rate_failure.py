@@ -43,7 +43,9 @@ def fail_rate(recording: 'Recording', hz: float) -> NoReturn:
     ):
         seen, cause = f'pauses of {recording.largest_gap_sec:.1f} s {over}', 'there are pauses'
         hint = rates.ONCE
-    elif near and (pattern or _is_uneven(recording)):
+    elif near and (
+        pattern or _is_uneven(recording) or _hz(_measured_hz(recording, hz)) == _hz(hz)
+    ):
         gaps = np.diff(rates.times_of(recording))
         seen = f'{np.min(gaps):.2f} to {np.max(gaps):.2f} s between messages {over}'
         cause = 'messages alternate between too early and too late'

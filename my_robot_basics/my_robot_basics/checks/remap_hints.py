@@ -1,6 +1,7 @@
 """What is wrong with the rules of a command line, judged by what they should have brought."""
 
-from my_robot_basics.ros2.command_line import CommandLine
+from my_robot_basics.feedback.errors import shorten
+from my_robot_basics.ros2.command_line import OPTIONS_OF_PARAMETERS, CommandLine
 
 _NAMES = '__node', '__name'
 _ENDED = (
@@ -18,12 +19,21 @@ def for_a_name(line: CommandLine, node_name: str) -> str:
         return f'a namespace is given by a rule of its own: -r __ns:={namespace}'
     if not rules['__ns'].startswith('/'):
         return f'a namespace begins with /: write -r __ns:={namespace}'
+    if rules['__ns'] == f'{namespace}/':
+        return f'a namespace has no / at its end: write -r __ns:={namespace}'
     if given is None:
         return f'a name is given by a rule of its own: -r __node:={name}'
     if '/' in given:
         return f'a name has no /, the namespace is in the other rule: write -r __node:={name}'
     if (rules['__ns'], given) != (namespace, name):
         return 'compare both names in the rules of the command line'
+    unfit = [word for _, word in line.options(*OPTIONS_OF_PARAMETERS) if ':=' not in word]
+    if unfit:
+        return f'a parameter is written name:=value: {shorten(unfit[0], 40)!r} is none'
+    numbers = [rule for rule in rules.items() if rule[1][:1].isdigit()]
+    if numbers:
+        left, right = numbers[0]
+        return f'-r sets names alone, so give the parameter with -p {left}:={right}'
     return _ENDED
 
 

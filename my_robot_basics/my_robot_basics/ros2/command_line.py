@@ -1,6 +1,7 @@
 """A command line that starts one executable with `ros2 run`, read without a shell."""
 
 import itertools
+import re
 import shlex
 from dataclasses import dataclass
 
@@ -11,6 +12,8 @@ _OF_A_SHELL = set('();<>|&')
 """What stands between commands; `shlex` makes words of their own of them."""
 _EXPANDED = '$`'
 """What a shell puts something else for."""
+_PLACE = re.compile(r'\{\w+\}')
+"""What Python fills in, where a text begins with f."""
 MOST_CHARACTERS = 2_000
 
 
@@ -49,10 +52,13 @@ def parse(text: str, *, package: str, executable: str) -> CommandLine:
     text = text.strip().replace('\\\n', ' ')
     if len(text) > MOST_CHARACTERS:
         raise BadCommandLine(f'{len(text)} characters', 'write one command line')
+    if found := _PLACE.findall(text):
+        hint = 'put an f before the quotation mark: Python then puts the value there'
+        raise BadCommandLine(f'{found[0]} itself', hint)
     if '\n' in text:
         raise BadCommandLine('several lines', 'write one line, or end each but the last with \\')
-    if found := [character for character in text if character in _EXPANDED]:
-        raise BadCommandLine(f'a {found[0]}', 'write what you mean in full: no shell reads it')
+    if expanded := [character for character in text if character in _EXPANDED]:
+        raise BadCommandLine(f'a {expanded[0]}', 'write what you mean in full: no shell reads it')
     words = _words(text)
     if found := [word for word in words if set(word) <= _OF_A_SHELL]:
         hint = 'write one command that starts one node: no shell reads it'
