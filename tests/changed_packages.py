@@ -317,6 +317,12 @@ WRONG = (
         {'package_builds': 'player'},
     ),
     Change(
+        'no_function_in_the_entry_point',
+        swap(SETUP, ('arm_player.arm_player:main', 'arm_player.arm_player')),
+        NOTHING,
+        {'package_builds': 'write a colon and the function behind the module'},
+    ),
+    Change(
         'no_marker_file', without('resource/arm_player'), NOTHING, {'package_builds': 'resource/'}
     ),
     Change('no_setup_cfg', without('setup.cfg'), NOTHING, {'package_builds': 'setup.cfg'}),
@@ -329,6 +335,12 @@ WRONG = (
         ),
         (1, 0, 4),
         {'package_runs': 'catch KeyboardInterrupt'},
+    ),
+    Change(
+        'shuts_down_once_too_often',
+        swap(DRIVER, ('rclpy.try_shutdown()', 'rclpy.shutdown()')),
+        (1, 0, 4),
+        {'package_runs': 'catch KeyboardInterrupt.*try_shutdown'},
     ),
     Change(
         'stops_at_the_first_unreachable',
