@@ -5,8 +5,8 @@ from collections.abc import Sequence
 RACE = 'rcl_shutdown already called'
 """Of rclpy, not of a student: its own handler of SIGINT shuts the context down in a thread, and
 `try_shutdown` in main may come between. Seen in 1 of 44 ends of a plain node."""
-IN_TRY_SHUTDOWN = ', in try_shutdown'
-"""In a traceback's line of the call."""
+TRY_SHUTDOWN = 'try_shutdown'
+"""In a traceback, the name of the call."""
 
 
 def is_clean(code: int | None, lines: Sequence[str], *, is_second: bool = False) -> bool:
@@ -15,7 +15,7 @@ def is_clean(code: int | None, lines: Sequence[str], *, is_second: bool = False)
     `is_second`: it has ended by the race before. Only `try_shutdown` has such bad luck twice, for
     who calls `shutdown` once too often meets the same error each time.
     """
-    is_luck = not is_second or any(IN_TRY_SHUTDOWN in line for line in lines)
+    is_luck = not is_second or any(TRY_SHUTDOWN in line for line in lines)
     return code == 0 or (code == 1 and RACE in error_in(lines) and is_luck)
 
 
