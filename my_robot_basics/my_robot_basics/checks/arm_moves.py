@@ -53,7 +53,7 @@ def expect_reaches(
 def expect_serves_on(action: Action, position: Pose, *, start: Pose = (0.0, 0.0)) -> None:
     """A client sends a goal and vanishes; the next client's goal is served all the same.
 
-    Raises CheckFailed.
+    It is the only move of the exercise that has to be so fast. Raises CheckFailed.
     """
 
     def serves_on(arm: WatchedArm) -> None:
@@ -72,7 +72,7 @@ def expect_serves_on(action: Action, position: Pose, *, start: Pose = (0.0, 0.0)
             )
         back = arm.start
         arm.start = tuple(position)
-        _arrive(arm, back, speed=LEAVES_SPEED)
+        expect_speed(arm, _arrive(arm, back, speed=LEAVES_SPEED), back)
 
     look(action, serves_on, start=start)
 

@@ -106,10 +106,7 @@ class WatchedArm:
 
         if not sent.over_ns() or not self.time.wait(goes_on, seconds=ON_SEC):
             return ''
-        return (
-            'the arm moves on after the goal has ended: call goal_handle.succeed() when the arm '
-            'is there, behind the loop that moves it'
-        )
+        return _ends_too_soon()
 
     def why_no_feedback(self, sent: SentGoal) -> str:
         """Why there may be no feedback on a goal that is over, where that is known; or ''."""
@@ -175,6 +172,13 @@ def accepted(server: OpenAction, wanted: MoveArm.Goal) -> SentGoal:
     return sent
 
 
+def _ends_too_soon() -> str:
+    return (
+        'the arm moves on after the goal has ended: call goal_handle.succeed() when the arm is '
+        'there, behind the loop that moves it'
+    )
+
+
 def _why_rejected(server: OpenAction, sent: SentGoal, former: SentGoal | None) -> str:
     if server.log.had_no_response(since_ns=sent.sent_ns):
         return 'end the goal callback with `return GoalResponse.ACCEPT` or `GoalResponse.REJECT`'
@@ -185,6 +189,8 @@ def _why_rejected(server: OpenAction, sent: SentGoal, former: SentGoal | None) -
             'an earlier goal was accepted, and has not ended: its execute callback has to return, '
             'and a handle_accepted_callback calls goal_handle.execute()'
         )
+    if former is not None and any(0 < former.over_ns() < at_ns for at_ns, _ in former.feedback()):
+        return _ends_too_soon()
     if server.served_ns:
         return (
             'the goal before it was accepted, and has ended: see that the node knows that the arm '
