@@ -89,7 +89,7 @@ WRONG = {
     'ReportsBeforeTheEnd': 'publish one report, when the result of the last goal is there',
     'ReportsEachTarget': 'publish one report, when the result of the last goal is there',
     'CallsInACallback': 'inside a callback and waited there',
-    'NeverWaitsForTheServer': 'wait until there is a server',
+    'NeverWaitsForTheServer': 'wait (until there is a server|for both servers first)',
     'NeverWaitsForTheArm': 'no request to /solve_ik while there is no /move_arm yet, saw one',
     'ElbowDown': 'this is elbow_down',
     'SolvesItself': 'not a solution of your own',
