@@ -3,13 +3,14 @@
 import time
 from typing import Any, NoReturn
 
+from my_robot_basics.checks.accepted_goals import accepted
 from my_robot_basics.checks.action_ends import SentGoal, cancels
 from my_robot_basics.checks.actions import Action
 from my_robot_basics.checks.arm_looks import look
 from my_robot_basics.checks.arm_moves import expect_result
 from my_robot_basics.checks.arm_stops import expect_begins_at, expect_canceled, expect_on_the_way
 from my_robot_basics.checks.open_action import BLOCKED
-from my_robot_basics.checks.watched_arm import Pose, WatchedArm, accepted, far_rad, goal
+from my_robot_basics.checks.watched_arm import Pose, WatchedArm, far_rad, goal
 from my_robot_basics.feedback.errors import CheckFailed, expect, fail
 
 STOP_SEC = 0.2

@@ -3,10 +3,11 @@
 import math
 
 from arm_interfaces.action import MoveArm
+from my_robot_basics.checks.accepted_goals import accepted
 from my_robot_basics.checks.action_ends import ActionEnds
 from my_robot_basics.checks.actions import Action
 from my_robot_basics.checks.arm_looks import look
-from my_robot_basics.checks.watched_arm import Pose, WatchedArm, accepted, far_rad, goal
+from my_robot_basics.checks.watched_arm import Pose, WatchedArm, far_rad, goal
 from my_robot_basics.feedback.errors import expect, fail
 
 LIMITS_RAD = math.radians(90.0), math.radians(120.0)

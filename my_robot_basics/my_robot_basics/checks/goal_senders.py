@@ -3,8 +3,8 @@
 from collections.abc import Collection
 
 from my_robot_basics.checks.callbacks import CallbackErrors
-from my_robot_basics.checks.open_action import type_name
 from my_robot_basics.checks.services import answers_parameters
+from my_robot_basics.exchange.values import type_name
 from my_robot_basics.feedback.hidden import theirs
 from my_robot_basics.graph import actions
 from my_robot_basics.graph.watcher import Watcher

@@ -9,6 +9,7 @@ from my_robot_basics.checks.callbacks import CallbackErrors
 from my_robot_basics.checks.parameter_services import nodes_with_services
 from my_robot_basics.checks.server_log import ServerLog
 from my_robot_basics.checks.services import SERVER_SEC, answers_parameters, wait_for_all
+from my_robot_basics.exchange.values import type_name
 from my_robot_basics.feedback.errors import expect, fail
 from my_robot_basics.feedback.hidden import theirs
 from my_robot_basics.graph import actions, graphs
@@ -25,8 +26,8 @@ BLOCKED = (
     'of time.sleep(…) or rate.sleep(), or use a MultiThreadedExecutor'
 )
 _served: dict[tuple[tuple[int, ...], ...], int] = {}
-"""The servers that have accepted a goal of a check's, in this grade cell or an earlier one, and
-when the last one was sent: wall time in ns."""
+"""The servers that have answered a check's goal, in this grade cell or an earlier one, and when
+the last one was sent that was accepted: wall time in ns; 0: none was."""
 
 
 class OpenAction:
@@ -36,12 +37,10 @@ class OpenAction:
         """Nobody is met yet."""
         self.watcher, self.name, self.type = watcher, name, type_
         self.ends = ActionEnds(watcher, name, type_)
-        self.node_name = ''
-        """The full name of the server's node."""
+        self.node_name = ''  # the full name of the server's node
         self.served_ns = 0
         """When the last goal was sent that it has accepted, be it an earlier check's; 0: none."""
-        self.accepted: list[SentGoal] = []
-        """The goals that it has accepted, the last one last."""
+        self.accepted: list[SentGoal] = []  # the last one last
 
     def meet(self) -> None:
         """Wait for the one server, and for the end of goals of earlier. Raises CheckFailed."""
@@ -74,6 +73,10 @@ class OpenAction:
         # its own client may have left
         return sent.is_over() or any(s in TERMINAL for _, s in self.ends.statuses_of(sent.id))
 
+    def has_rejected_all(self) -> bool:
+        """Whether it has rejected all goals so far, and there were some."""
+        return _served.get(self.identity()) == 0
+
     def expect_alone(self) -> None:
         """No other server of the action is there by now. Raises CheckFailed."""
         count = self.watcher.node.count_services(f'{self.name}/_action/send_goal')
@@ -104,6 +107,8 @@ class OpenAction:
             sent.ask_for_result()
             self.accepted.append(sent)
             self.served_ns = _served[self.identity()] = sent.sent_ns
+        else:
+            _served.setdefault(self.identity(), 0)
         return sent
 
     def answer_to(self, asked: Future, *, what: str) -> Any:
@@ -193,8 +198,3 @@ class OpenAction:
             f'{theirs(self.node_name)} answers nothing at all, so see that it spins, and that no '
             'callback waits'
         )
-
-
-def type_name(type_: type) -> str:
-    """The name of an action's class: 'arm_interfaces/action/MoveArm'."""
-    return f'{type_.__module__.partition(".")[0]}/action/{type_.__name__}'

@@ -10,6 +10,7 @@ from rclpy.task import Future
 
 from my_robot_basics.checks.callbacks import CallbackErrors
 from my_robot_basics.exchange import student
+from my_robot_basics.exchange.values import type_name
 from my_robot_basics.feedback.errors import expect, fail
 from my_robot_basics.feedback.hidden import theirs
 from my_robot_basics.graph import familiar, graphs, services
@@ -165,8 +166,3 @@ def answers_parameters(watcher: Watcher, node_name: str) -> bool:
         told = watcher.spin_until_free(asked.done, free_sec=PARAMETERS_SEC)
     watcher.node.destroy_client(client)
     return told
-
-
-def type_name(type_: type) -> str:
-    """The name of a service's class: 'arm_interfaces/srv/SolveIK'."""
-    return f'{type_.__module__.partition(".")[0]}/srv/{type_.__name__}'

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from my_robot_basics.checks.callbacks import CallbackErrors
-from my_robot_basics.checks.services import type_name
+from my_robot_basics.exchange.values import type_name
 from my_robot_basics.feedback.hidden import theirs
 from my_robot_basics.graph import services
 from my_robot_basics.graph.watcher import Watcher

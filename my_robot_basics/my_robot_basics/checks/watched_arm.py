@@ -5,10 +5,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from arm_interfaces.action import MoveArm
+from my_robot_basics.checks.accepted_goals import accepted, ends_too_soon
 from my_robot_basics.checks.action_ends import SentGoal
 from my_robot_basics.checks.open_action import OpenAction
 from my_robot_basics.checks.robot_time import DrivenTime, WallTime
-from my_robot_basics.feedback.errors import CheckFailed, Starved, fail
+from my_robot_basics.feedback.errors import CheckFailed, Starved
 
 Pose = Sequence[float]
 """Positions of joint1 and joint2, in radians."""
@@ -106,7 +107,7 @@ class WatchedArm:
 
         if not sent.over_ns() or not self.time.wait(goes_on, seconds=ON_SEC):
             return ''
-        return _ends_too_soon()
+        return ends_too_soon()
 
     def why_no_feedback(self, sent: SentGoal) -> str:
         """Why there may be no feedback on a goal that is over, where that is known; or ''."""
@@ -155,45 +156,3 @@ class WatchedArm:
                 watcher.spin_until_free(lambda: not server.has_active(), free_sec=SETTLE_SEC)
             if not server.has_active():
                 return
-
-
-def accepted(server: OpenAction, wanted: MoveArm.Goal) -> SentGoal:
-    """Send a goal that has to be accepted. Raises CheckFailed with the reason."""
-    former = server.accepted[-1] if server.accepted else None
-    sent = server.send(wanted)
-    if not sent.is_accepted:
-        shown = [round(each, 3) for each in wanted.position]
-        fail(
-            expected=f'the goal {shown} at {wanted.speed:.3g} rad/s to be accepted',
-            seen='it rejected',
-            hint=_why_rejected(server, sent, former),
-            cause='a goal within the limits is rejected',
-        )
-    return sent
-
-
-def _ends_too_soon() -> str:
-    return (
-        'the arm moves on after the goal has ended: call goal_handle.succeed() when the arm is '
-        'there, behind the loop that moves it'
-    )
-
-
-def _why_rejected(server: OpenAction, sent: SentGoal, former: SentGoal | None) -> str:
-    if server.log.had_no_response(since_ns=sent.sent_ns):
-        return 'end the goal callback with `return GoalResponse.ACCEPT` or `GoalResponse.REJECT`'
-    if server.served_ns and (raised := server.log.raised(since_ns=server.served_ns)):
-        return raised
-    if former is None and server.ends.has_active():
-        return (
-            'an earlier goal was accepted, and has not ended: its execute callback has to return, '
-            'and a handle_accepted_callback calls goal_handle.execute()'
-        )
-    if former is not None and any(0 < former.over_ns() < at_ns for at_ns, _ in former.feedback()):
-        return _ends_too_soon()
-    if server.served_ns:
-        return (
-            'the goal before it was accepted, and has ended: see that the node knows that the arm '
-            'moves no longer, and that both positions are compared with their own limits, in rad'
-        )
-    return 'return GoalResponse.ACCEPT for two angles within the limits (in rad) and a speed > 0'

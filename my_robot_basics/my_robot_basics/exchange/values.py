@@ -107,9 +107,9 @@ def message_type(name: str) -> type:
     return found
 
 
-def type_name(message_type: type) -> str:
-    """The name of a message class, like 'std_msgs/msg/String'."""
-    return f'{message_type.__module__.partition(".")[0]}/msg/{message_type.__name__}'
+def type_name(type_: type) -> str:
+    """The name of an interface's class: 'std_msgs/msg/String', 'arm_interfaces/action/MoveArm'."""
+    return '/'.join([*type_.__module__.split('.')[:2], type_.__name__])
 
 
 def _encode_message(value: Any, depth: int) -> dict:
