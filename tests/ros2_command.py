@@ -4,6 +4,7 @@ import contextlib
 import os
 import subprocess
 import sys
+import threading
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,6 +14,8 @@ from my_robot_basics.session import domain
 SCRIPT = Path(sys.executable).with_name('ros2')
 NODES = Path(__file__).parent / 'nodes'
 TIMEOUT_SEC = 30
+MOST_SEC = 120
+"""A line that never comes ends a test after so long: what was to print it is killed."""
 OF_A_LESSON = ('ROS_AUTOMATIC_DISCOVERY_RANGE', 'FASTRTPS_DEFAULT_PROFILES_FILE')
 """What nodes outside of the course lack."""
 
@@ -42,9 +45,12 @@ def started(*words: str | Path, **options: object) -> Iterator[subprocess.Popen]
     """Run a command for the duration of a with statement, its output in pipes."""
     pipes = {'stdout': subprocess.PIPE, 'stderr': subprocess.PIPE, 'encoding': 'utf-8'}
     process = subprocess.Popen([str(word) for word in words], **{**pipes, **options})
+    watchdog = threading.Timer(MOST_SEC, process.kill)
+    watchdog.start()
     try:
         yield process
     finally:
+        watchdog.cancel()
         process.terminate()  # in good order: a killed process stays on the graph for a while
         try:
             process.wait(5)

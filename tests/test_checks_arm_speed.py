@@ -25,6 +25,7 @@ def judge(seconds, *, speed=SPEED, reported=(), is_driven=True, stalled_sec=0.0)
         lost_sec=0.0,
         stalled_sec=lambda: stalled_sec,
         doubt=lambda: Starved if stalled_sec else CheckFailed,
+        why_too_soon=lambda sent: '',
     )
     told = [(round(at * 1e9), MoveArm.Feedback(position=[q, -q / 2])) for at, q in reported]
     sent = SimpleNamespace(goal=moves.goal(MINUTE, speed=speed), feedback=lambda: told)

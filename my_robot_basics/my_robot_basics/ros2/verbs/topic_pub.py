@@ -9,7 +9,7 @@ from my_robot_basics.ros2.errors import CommandError
 from my_robot_basics.ros2.graph import Graph
 
 REPORT_SEC = 1.0
-TAKEN_SEC = 2.0
+TAKEN_SEC = 5.0
 """How long subscriptions may take to acknowledge the last message; most need a millisecond."""
 
 
