@@ -170,6 +170,16 @@ def proven(period_sec, proof_period_sec=None, *, late=(), proof_late=()):
     )
 
 
+def begun_late(period_sec=0.2, again_sec=0.2):
+    """Messages of a thread that was a step late for the one at which the recording begins."""
+    return recording(
+        [time - 0.1 for time in ticked(period_sec, 4.0, 0.1)],
+        seconds=4.0,
+        proof=recording(ticked(period_sec, 3.0, 0.02), step_sec=0.02, seconds=3.0),
+        look_again=lambda seconds: recording(every(again_sec), clock='wall'),
+    )
+
+
 @pytest.mark.parametrize('period_sec', [0.195, 0.205, 0.19, 0.21, 0.25, 1.0])
 def test_a_timer_that_two_steps_of_the_clock_agree_on_is_certain(period_sec):
     with pytest.raises(CheckFailed, match=rf'saw {round(1 / period_sec, 2)} Hz over 10 s'):
@@ -184,10 +194,16 @@ def test_a_timer_that_two_steps_of_the_clock_agree_on_is_certain(period_sec):
         # a thread that comes late now and then is later with coarse steps: another look decides
         proven(0.206, 0.201),
         proven(0.21, 0.202),
+        begun_late(),
     ],
 )
 def test_a_period_that_the_steps_have_made_is_not(made):
     made.assert_rate(hz=5.0)
+
+
+def test_another_look_decides_where_the_mean_alone_is_off():
+    with pytest.raises(CheckFailed, match=r'saw 4\.88 Hz over 10'):
+        begun_late(again_sec=0.205).assert_rate(hz=5.0)
 
 
 def test_by_turns_too_early_and_too_late_is_uneven():

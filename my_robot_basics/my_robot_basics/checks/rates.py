@@ -79,12 +79,13 @@ def pattern_in(recording: 'Recording') -> periods.Pattern | None:
     return periods.pattern_of(times_sec, recording.step_sec, seconds=seconds)
 
 
-def is_certain(recording: 'Recording') -> bool:
-    """Whether the robot's clock has shown a timer, and its period, beyond doubt.
+def is_certain(recording: 'Recording', hz: float) -> bool:
+    """Whether the robot's clock has shown beyond doubt whether a timer sends `hz` a second.
 
     All messages are equally far apart, or every so many of them is left out, or they come in a
     pattern that no timer makes, or one period explains them and those of the proof, which took
-    other steps: a thread that is late now and then is later with coarse steps.
+    other steps: a thread that is late now and then is later with coarse steps. Where that may be
+    the period of `hz`, and the mean is off, the first message may have been late, or the last.
     """
     if recording.clock != 'simulated':
         return False
@@ -93,7 +94,7 @@ def is_certain(recording: 'Recording') -> bool:
     if leaves_out(recording) or pattern_of(recording):
         return True
     low, high = certain_range(recording)
-    return low <= high
+    return low <= high and not _holds(low, high, hz)
 
 
 def has_rate(recording: 'Recording', hz: float) -> bool:
@@ -106,13 +107,18 @@ def has_rate(recording: 'Recording', hz: float) -> bool:
         low, high = certain_range(recording)
         if low > high:
             low, high = _period_range(recording)
-        shortest, longest = (1.0 / (hz * (1.0 + sign * TOLERANCE)) for sign in (1, -1))
         # the mean alone is off by as much as a step
-        is_right = off <= TOLERANCE and (low > high or (low <= longest and shortest <= high))
+        is_right = off <= TOLERANCE and (low > high or _holds(low, high, hz))
         return is_right and not leaves_out(recording) and not pattern_of(recording)
     least, most = MEAN_TOLERANCE
     is_meant = abs(off_meant(recording, hz)) <= TOLERANCE
     return is_meant and least <= recording.rate_hz / hz - 1.0 <= most and is_steady(recording, hz)
+
+
+def _holds(low: float, high: float, hz: float) -> bool:
+    """Whether one of these periods, in seconds, is that of `hz`, within ±2 %."""
+    shortest, longest = (1.0 / (hz * (1.0 + sign * TOLERANCE)) for sign in (1, -1))
+    return low <= longest and shortest <= high
 
 
 def is_steady(recording: 'Recording', hz: float) -> bool:

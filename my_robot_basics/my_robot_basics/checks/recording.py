@@ -157,7 +157,7 @@ class Recording:
 
     def _look_again(self, hz: float, *, seconds: float) -> 'Recording | None':
         """Another recording, where that can be had and may help."""
-        if self.look_again is None or rates.is_certain(self) or self._is_too_fast(hz):
+        if self.look_again is None or rates.is_certain(self, hz) or self._is_too_fast(hz):
             return None
         try:
             return self.look_again(min(max(seconds, 3.0 / hz), LONGEST_LOOK_SEC))
