@@ -2,6 +2,7 @@
 
 from arm_interfaces.action import MoveArm
 from my_robot_basics.checks.action_ends import SentGoal
+from my_robot_basics.checks.goal_answers import GoalAnswers
 from my_robot_basics.checks.open_action import OpenAction
 from my_robot_basics.feedback.errors import fail
 
@@ -9,14 +10,14 @@ from my_robot_basics.feedback.errors import fail
 def accepted(server: OpenAction, wanted: MoveArm.Goal) -> SentGoal:
     """Send a goal that has to be accepted. Raises CheckFailed with the reason."""
     former = server.accepted[-1] if server.accepted else None
-    has_rejected_all = server.has_rejected_all()
+    before = server.answers()
     sent = server.send(wanted)
     if not sent.is_accepted:
         shown = [round(each, 3) for each in wanted.position]
         fail(
             expected=f'the goal {shown} at {wanted.speed:.3g} rad/s to be accepted',
             seen='it rejected',
-            hint=_why_rejected(server, sent, former, has_rejected_all=has_rejected_all),
+            hint=_why_rejected(server, sent, former, before),
             cause='a goal within the limits is rejected',
         )
     return sent
@@ -31,11 +32,11 @@ def ends_too_soon() -> str:
 
 
 def _why_rejected(
-    server: OpenAction, sent: SentGoal, former: SentGoal | None, *, has_rejected_all: bool
+    server: OpenAction, sent: SentGoal, former: SentGoal | None, before: GoalAnswers
 ) -> str:
     if server.log.had_no_response(since_ns=sent.sent_ns):
         return 'end the goal callback with `return GoalResponse.ACCEPT` or `GoalResponse.REJECT`'
-    if server.served_ns and (raised := server.log.raised(since_ns=server.served_ns)):
+    if before.accepted_ns and (raised := server.log.raised(since_ns=before.accepted_ns)):
         return raised
     if former is None and server.ends.has_active():
         return (
@@ -44,14 +45,14 @@ def _why_rejected(
         )
     if former is not None and any(0 < former.over_ns() < at_ns for at_ns, _ in former.feedback()):
         return ends_too_soon()
-    if server.served_ns:
-        return (
-            'the goal before it was accepted, and has ended: see that the node knows that the arm '
-            'moves no longer, and that both positions are compared with their own limits, in rad'
-        )
-    if has_rejected_all:
+    if before.has_rejected_last:
         return (
             'return GoalResponse.ACCEPT for two angles within the limits (in rad) and a speed > '
             '0, and let a goal that you reject change nothing in the node'
+        )
+    if before.accepted_ns:
+        return (
+            'the goal before it was accepted, and has ended: see that the node knows that the arm '
+            'moves no longer, and that both positions are compared with their own limits, in rad'
         )
     return 'return GoalResponse.ACCEPT for two angles within the limits (in rad) and a speed > 0'

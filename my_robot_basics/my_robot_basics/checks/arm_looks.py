@@ -13,6 +13,7 @@ from rcl_interfaces.srv import GetParameters
 from arm_interfaces.action import MoveArm
 from my_robot_basics.checks.actions import Action, FollowedClock
 from my_robot_basics.checks.clock import SimulatedClock
+from my_robot_basics.checks.goal_answers import Identity
 from my_robot_basics.checks.inconclusive import Inconclusive
 from my_robot_basics.checks.open_action import OpenAction
 from my_robot_basics.checks.reported_speed import is_of_wall_time
@@ -37,7 +38,7 @@ WALL_SEC = 2.0
 HOLD_SEC, APART_SEC = 0.4, 0.2
 """How long the clock stands still before a server that ignores it is known, or computes with the
 wall clock: then where it says that the arm is differs by more than the second."""
-_clocks: dict[tuple[tuple[int, ...], ...], FollowedClock] = {}
+_clocks: dict[Identity, FollowedClock] = {}
 """The servers that were seen to follow a driven clock: the next grade cell asks the same one."""
 
 

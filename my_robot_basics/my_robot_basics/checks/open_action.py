@@ -6,6 +6,12 @@ from rclpy.task import Future
 
 from my_robot_basics.checks.action_ends import TERMINAL, ActionEnds, SentGoal
 from my_robot_basics.checks.callbacks import CallbackErrors
+from my_robot_basics.checks.goal_answers import (
+    GoalAnswers,
+    Identity,
+    answers_of,
+    note_answer,
+)
 from my_robot_basics.checks.parameter_services import nodes_with_services
 from my_robot_basics.checks.server_log import ServerLog
 from my_robot_basics.checks.services import SERVER_SEC, answers_parameters, wait_for_all
@@ -25,9 +31,6 @@ BLOCKED = (
     "the execute callback keeps the node's only thread: wait with `await sleep(self, …)` in place "
     'of time.sleep(…) or rate.sleep(), or use a MultiThreadedExecutor'
 )
-_served: dict[tuple[tuple[int, ...], ...], int] = {}
-"""The servers that have answered a check's goal, in this grade cell or an earlier one, and when
-the last one was sent that was accepted: wall time in ns; 0: none was."""
 
 
 class OpenAction:
@@ -38,8 +41,6 @@ class OpenAction:
         self.watcher, self.name, self.type = watcher, name, type_
         self.ends = ActionEnds(watcher, name, type_)
         self.node_name = ''  # the full name of the server's node
-        self.served_ns = 0
-        """When the last goal was sent that it has accepted, be it an earlier check's; 0: none."""
         self.accepted: list[SentGoal] = []  # the last one last
 
     def meet(self) -> None:
@@ -48,10 +49,9 @@ class OpenAction:
         self.raised = CallbackErrors([self.node_name])
         self.log = ServerLog(self.watcher, self.node_name)
         self.watcher.spin_until(self.ends.is_connected, timeout_sec=SERVER_SEC)
-        self.served_ns = _served.get(self.identity(), 0)
         self.watcher.spin_until_free(
             lambda: bool(self.ends.statuses.received),
-            free_sec=SERVED_SEC if self.served_ns else NEW_SEC,
+            free_sec=SERVED_SEC if self.answers().accepted_ns else NEW_SEC,
         )
         if self.has_active():
             self._wait_for_rest()
@@ -73,9 +73,9 @@ class OpenAction:
         # its own client may have left
         return sent.is_over() or any(s in TERMINAL for _, s in self.ends.statuses_of(sent.id))
 
-    def has_rejected_all(self) -> bool:
-        """Whether it has rejected all goals so far, and there were some."""
-        return _served.get(self.identity()) == 0
+    def answers(self) -> GoalAnswers:
+        """How it has answered so far, also to earlier checks."""
+        return answers_of(self.identity())
 
     def expect_alone(self) -> None:
         """No other server of the action is there by now. Raises CheckFailed."""
@@ -91,7 +91,7 @@ class OpenAction:
             cause=f'{self.name} has more than one server',
         )
 
-    def identity(self) -> tuple[tuple[int, ...], ...]:
+    def identity(self) -> Identity:
         """What no other server has, whatever its name."""
         infos = self.watcher.node.get_publishers_info_by_topic(f'{self.name}/_action/feedback')
         return tuple(sorted(tuple(info.endpoint_gid) for info in infos))
@@ -106,9 +106,7 @@ class OpenAction:
         if sent.is_accepted:
             sent.ask_for_result()
             self.accepted.append(sent)
-            self.served_ns = _served[self.identity()] = sent.sent_ns
-        else:
-            _served.setdefault(self.identity(), 0)
+        note_answer(self.identity(), sent_ns=sent.sent_ns, is_accepted=sent.is_accepted)
         return sent
 
     def answer_to(self, asked: Future, *, what: str) -> Any:
