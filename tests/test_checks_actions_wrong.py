@@ -328,6 +328,15 @@ class LooksBeforeItCounts(MoveArmServer):
         return abs(first) <= 1.571 and abs(second) <= 2.095 and goal.speed > 0.0
 
 
+class LocksItself(MoveArmServer):
+    """It takes each goal for one that moves the arm."""
+
+    def judge(self, goal):
+        answer = super().judge(goal)
+        self.is_moving = True
+        return answer
+
+
 class TakesTwo(MoveArmServer):
     def judge(self, goal):
         return GoalResponse.ACCEPT if self.is_possible(goal) else GoalResponse.REJECT
@@ -420,6 +429,7 @@ WRONG = [
     (NoLimits, 'rejects', 'reject a goal whose speed is not above 0'),
     (LimitsTheWrongWayRound, 'rejects', 'each comparison with NaN is False, so ask what is right'),
     (LooksBeforeItCounts, 'rejects', 'its callback raised IndexError.*so fix that first'),
+    (LocksItself, 'rejects', 'and let a goal that you reject change nothing in the node'),
     (TakesTwo, 'rejects', 'remember that the arm moves, and return GoalResponse.REJECT'),
 ]
 
