@@ -164,8 +164,9 @@ WRONG = {
         turns('uint8 MOTOR1=0', 'MOTOR1 = 0'),
         'its type before its name',
     ),
-    'a wide =': (turns('MOTOR1=0', 'MOTOR1\uff1d0'), "a wide character: write '='"),
-    'a wide #': (turns('turns\n', 'turns \uff03 of both\n'), "a wide character: write '#'"),
+    'a wide =': (turns('MOTOR1=0', 'MOTOR1\uff1d0'), "a full-width character: write '='"),
+    'a 2 that is raised': (turns('int32[2]', 'int32[\u00b2]'), 'exactly two values [2]'),
+    'a wide #': (turns('turns\n', 'turns \uff03 of both\n'), "a full-width character: write '#'"),
     'a no-break space': (
         turns('int32[2] turns', 'int32[2]\u00a0turns'),
         'a no-break space or the',

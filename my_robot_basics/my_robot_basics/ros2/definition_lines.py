@@ -98,8 +98,8 @@ def _about_characters(line: str) -> str:
         plain = unicodedata.normalize('NFKC', character)
         if plain == ' ' != character:
             return 'one of its spaces is a no-break space or the like: type it anew'
-        if plain != character and plain in _ASCII:
-            return f'it has {character!r}, a wide character: write {plain!r}'
+        if unicodedata.east_asian_width(character) == 'F' and plain in _ASCII:
+            return f'it has {character!r}, a full-width character: write {plain!r}'
     if re.search(r'(?<!:)//|/\*', line):
         return 'a comment begins with #'
     return ''
