@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from my_robot_basics.checks import CheckFailed
 from my_robot_basics.checks import package as package_of
-from my_robot_basics.exchange.endings import RACE
+from my_robot_basics.exchange.endings import RACE, is_clean
 from my_robot_basics.live import executables, package_build, packages
 from my_robot_basics.live.install_faults import fault_in_install
 from my_robot_basics.live.package_faults import fault_in_words
@@ -48,6 +48,13 @@ def ended(code, *lines):
 def test_a_race_of_rclpy_is_told_as_the_clean_end_that_it_is():
     assert ended(1, f'rclpy._rclpy_pybind11.RCLError: {RACE}') == ended(0)
     assert 'not cleanly (exit code 1, with KeyboardInterrupt)' in ended(1, 'KeyboardInterrupt')
+
+
+def test_try_shutdown_alone_may_meet_that_race_twice():
+    first, last = 'Traceback (most recent call last):', f'rclpy._rclpy_pybind11.RCLError: {RACE}'
+    once_too_often = [first, '    rclpy.shutdown()', last]
+    assert is_clean(1, once_too_often) and not is_clean(1, once_too_often, is_second=True)
+    assert is_clean(1, [first, '    rclpy.try_shutdown()', last], is_second=True)
 
 
 def until(done):
