@@ -7,21 +7,14 @@ from datetime import datetime
 from hashlib import sha256
 from pathlib import Path
 
+from grader.collect.companions import Companions, find_companions
 from grader.collect.incoming import Incoming, is_notebook
-from grader.collect.owners import find_owners, why_not_theirs
-from grader.collect.package_folders import (
-    NO_NOTEBOOK,
-    choose,
-    first_of,
-    grouped,
-    matters,
-    number_of,
-    split,
-)
+from grader.collect.naming import Owner
+from grader.collect.owners import find_owners
+from grader.collect.package_folders import NO_NOTEBOOK, grouped, matters, split
 from grader.collect.platforms import PlatformLabel
 from grader.collect.uploads import wanted
 from grader.common.dates import date_of
-from grader.common.student_names import problem_of_id
 from grader.notebook.submission import SECRET, TIMESTAMP
 
 
@@ -82,53 +75,22 @@ def match(
             rest.append(UntakenFile(each, 'neither a notebook nor Python', matters=False))
     owners, remarks, problems = find_owners(found, assignments, students)
     rest += [UntakenFile(each, problem) for each, problem in problems.items()]
-    hand_ins, used, others = [], set(), dict[Incoming, str]()
+    hand_ins, used, others = [], set[Incoming](), dict[Incoming, str]()
     for notebook, owner in owners.items():
-        files = beside[notebook.parts[:-1]] if owner.by_folder or notebook.archive else {}
-        foreign = {e: why for e in files.values() if (why := why_not_theirs(e, owner.student_id))}
-        files = {name: each for name, each in files.items() if each not in foreign}
-        others |= foreign
-        stamp = files.get(TIMESTAMP) if not (notebook.archive or owner.label) else None
-        secret = files.get(SECRET) if not (notebook.archive or owner.label) else None
-        modules = {
-            name: each
-            for name, each in files.items()
-            if name.endswith('.py') and not problem_of_id(name)
-        }
-        changed = [each.changed for each in (notebook, *modules.values()) if each.changed]
-        extra = {name: each.readable for name, each in modules.items()}
-        left_out: list[str] = []
-        for package in asked_for.get(owner.assignment, ()):
-            number = '' if owner.by_folder or notebook.archive else number_of(notebook)
-            if not (number or owner.by_folder or notebook.archive):
-                continue
-            key = (package, notebook.parts[:-1], number)
-            if there := first_of(owner.student_id, beside_notebooks.get(key, ())):
-                chosen = choose(there, owner.student_id)
-                extra |= chosen.taken
-                changed += chosen.changed
-                left_out += chosen.clauses(package)
-                rest += [UntakenFile(e, why, matters=matters(why)) for e, why in chosen.left]
-                folders = [each for each in folders if each is not there]
-        # whoever wrote the folder could claim any time, and go on with any file of it
-        when = None if notebook.changed else owner.handed_in or _stamped(stamp)
-        claimed = notebook.modified if file_times else None
-        when = max([*changed, *([when] if when else [])], default=claimed)
-        hand_ins.append(
-            MatchedFile(
-                owner.student_id,
-                owner.assignment,
-                notebook,
-                extra,
-                when,
-                owner.label,
-                remarks[notebook],
-                secret.readable if secret else None,
-                tuple(left_out),
-            )
+        with_it = find_companions(
+            notebook,
+            owner,
+            beside=beside[notebook.parts[:-1]],
+            asked_for=asked_for.get(owner.assignment, ()),
+            packages=beside_notebooks,
         )
-        used |= {*modules.values(), *([secret] if secret else [])}
-        used |= {stamp} if stamp and date_of(stamp.readable) else set()
+        when = _handed_in(notebook, owner, with_it, file_times=file_times)
+        hand_ins.append(_matched(notebook, owner, with_it, when, remark=remarks[notebook]))
+        used |= with_it.used()
+        others |= with_it.foreign
+        for there, chosen in with_it.packages.values():
+            rest += [UntakenFile(e, why, matters=matters(why)) for e, why in chosen.left]
+            folders = [each for each in folders if each is not there]
     rest += [UntakenFile(each, NO_NOTEBOOK) for folder in folders for each in folder.members]
     rest += [UntakenFile(each, why) for each, why in others.items()]
     uploads = {notebook.parts[:-1] for notebook, owner in owners.items() if owner.label}
@@ -138,9 +100,31 @@ def match(
     return _in_order(hand_ins, rest), rest
 
 
-def _stamped(stamp: Incoming | None) -> datetime | None:
-    """Return the time that stands in a file of nbgrader's, which its student did not write."""
-    return date_of(stamp.readable) if stamp and not stamp.login else None
+def _handed_in(
+    notebook: Incoming, owner: Owner, with_it: Companions, *, file_times: bool
+) -> datetime | None:
+    """Return when it was handed in; None where nothing tells."""
+    if notebook.changed:  # who wrote it could claim any time, and go on with any file of it
+        return max([notebook.changed, *with_it.changed()])
+    told = owner.handed_in or with_it.stamped()
+    claimed = notebook.modified if file_times else None
+    return max([*with_it.changed(), *([told] if told else [])], default=claimed)
+
+
+def _matched(
+    notebook: Incoming, owner: Owner, with_it: Companions, when: datetime | None, *, remark: str
+) -> MatchedFile:
+    return MatchedFile(
+        owner.student_id,
+        owner.assignment,
+        notebook,
+        with_it.extra(),
+        when,
+        owner.label,
+        remark,
+        with_it.secret.readable if with_it.secret else None,
+        with_it.left_out(),
+    )
 
 
 def _not_taken(each: Incoming, *, in_upload: bool) -> UntakenFile:
