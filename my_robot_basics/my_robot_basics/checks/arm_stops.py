@@ -73,7 +73,8 @@ def expect_begins_at(arm: WatchedArm, stopped: Pose, moved: SentGoal, *, former:
     near_rad = FIRST_SEC * max(former.goal.speed, moved.goal.speed) + NEAR_RAD
     if not before or not after or not is_near(before[-1], stopped, near_rad):
         return
-    late_sec = arm.seconds_until(moved, moved.feedback()[0][0])  # the arm has moved meanwhile
+    # the arm has moved meanwhile, since the goal was sent at the earliest
+    late_sec = arm.seconds_since_sent(moved, moved.feedback()[0][0])
     near_rad += max(0.0, late_sec - FIRST_SEC) * moved.goal.speed
     if len(after[0]) == len(stopped) and not is_near(after[0], stopped, near_rad):
         fail(

@@ -91,10 +91,9 @@ class WatchedArm:
         over_ns = self.time.at_ns(sent.over_ns()) if sent.over_ns() else self.time.now_ns()
         return (over_ns - self.time.at_ns(began_ns)) / 1e9
 
-    def seconds_until(self, sent: SentGoal, wall_ns: int) -> float:
-        """How long after the begin of a goal that wall time was, in seconds of this time."""
-        began_ns = sent.statuses()[0][0] if sent.statuses() else sent.sent_ns
-        return (self.time.at_ns(wall_ns) - self.time.at_ns(began_ns)) / 1e9
+    def seconds_since_sent(self, sent: SentGoal, wall_ns: int) -> float:
+        """How long after a goal was sent that wall time was, in seconds of this time."""
+        return (self.time.at_ns(wall_ns) - self.time.at_ns(sent.sent_ns)) / 1e9
 
     def why_too_soon(self, sent: SentGoal) -> str:
         """What to try where feedback goes on after the server has told how the goal ended; or ''.
