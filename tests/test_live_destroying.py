@@ -1,10 +1,15 @@
 """A node that is stopped is gone with its action servers and clients, even while it is kept."""
 
+import gc
+
 import pytest
 from my_robot_basics.checks import action, graph, moves
+from my_robot_basics.graph.watcher import Watcher
 from nodes.running import imported
+from rcl_interfaces.msg import Log
 from rclpy.action import ActionClient
 from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile
 
 from arm_interfaces.action import MoveArm
 from my_robot_basics import live
@@ -51,3 +56,22 @@ def test_the_server_of_a_node_that_is_replaced_answers_no_more(run):
     run(MoveArmServer)
     assert action('/move_arm', MoveArm).send_goal(moves.goal((0.2, 0.1))).status == 'succeeded'
     assert first.position == [0.0, 0.0]
+
+
+class Speaker(Node):
+    def __init__(self):
+        super().__init__('speaker')
+        self.logger = self.get_logger().get_child('voice')
+
+
+def test_the_child_loggers_of_a_successor_go_on_when_the_former_is_garbage(run):
+    heard = []
+    with Watcher(listens=True) as watcher:
+        latched = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        watcher.node.create_subscription(Log, '/rosout', lambda m: heard.append(m.msg), latched)
+        former = run(Speaker)
+        second = run(Speaker)
+        del former.logger
+        gc.collect()
+        second.logger.info('here')
+        assert watcher.spin_until(lambda: 'here' in heard, timeout_sec=5.0)

@@ -14,7 +14,7 @@ from my_robot_basics.graph.watcher import Watcher
 
 DEPTH = 100
 MOST_LINES = 1000
-LOG_SEC = 1.0
+LOG_SEC = 0.5
 """How long a line may come behind what it explains, of time that was free."""
 _RAISED = 'Error raised in execute callback: '
 _NOT_SET = 'Goal state not set'
