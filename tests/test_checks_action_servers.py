@@ -296,6 +296,25 @@ class NeverSends(MoveArmClient):
         pass
 
 
+class WaitsForTheLost(MoveArmClient):
+    """One goal after the other, and the first one was sent to nobody."""
+
+    def __init__(self):
+        super().__init__()
+        self.poses = []
+
+    def send(self, pose):
+        self.poses.append(pose)
+        if len(self.poses) == 1:
+            super().send(pose)
+
+    def tell(self, word):
+        super().tell(word)
+        self.poses.pop(0)
+        if self.poses:
+            super().send(self.poses[0])
+
+
 IN_CALLBACK = 'it waits inside a callback, and no answer is delivered meanwhile: use send_goal_asy'
 WRONG_OUTCOMES = [
     (
@@ -324,6 +343,7 @@ WRONG_OUTCOMES = [
     (Sleeps, IN_CALLBACK),
     (OtherAction, '/move_arm_client uses /move_it, so compare the spelling'),
     (NeverSends, r'expected a goal .*saw none.*: call send_goal_async\(goal\) for each message'),
+    (WaitsForTheLost, 'a goal that is sent while there is no server never gets an answer'),
 ]
 
 
