@@ -5,7 +5,7 @@ import threading
 import time
 
 import pytest
-from my_robot_basics.checks import CheckFailed, ik, service, services
+from my_robot_basics.checks import CheckFailed, awaited_servers, ik, service, services
 from nodes.running import imported, running
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import MultiThreadedExecutor
@@ -40,7 +40,7 @@ def run():
 @pytest.fixture
 def impatient(monkeypatch):
     """Wait for what does not come no longer than it takes to be sure."""
-    monkeypatch.setattr(services, 'SERVER_SEC', 1.0)
+    monkeypatch.setattr(awaited_servers, 'SERVER_SEC', 1.0)
     monkeypatch.setattr(services, 'ANSWER_SEC', 1.0)
 
 

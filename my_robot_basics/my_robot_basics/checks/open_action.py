@@ -5,6 +5,7 @@ from typing import Any, NoReturn
 from rclpy.task import Future
 
 from my_robot_basics.checks.action_ends import TERMINAL, ActionEnds, SentGoal
+from my_robot_basics.checks.awaited_servers import SERVER_SEC, wait_for_server
 from my_robot_basics.checks.callbacks import CallbackErrors
 from my_robot_basics.checks.goal_answers import (
     GoalAnswers,
@@ -14,11 +15,11 @@ from my_robot_basics.checks.goal_answers import (
 )
 from my_robot_basics.checks.parameter_services import nodes_with_services
 from my_robot_basics.checks.server_log import ServerLog
-from my_robot_basics.checks.services import SERVER_SEC, answers_parameters, wait_for_all
+from my_robot_basics.checks.services import answers_parameters, wait_for_all
 from my_robot_basics.exchange.values import type_name
 from my_robot_basics.feedback.errors import expect, fail
 from my_robot_basics.feedback.hidden import theirs
-from my_robot_basics.graph import actions, graphs
+from my_robot_basics.graph import actions
 from my_robot_basics.graph.watcher import Watcher
 
 REST_SEC = 2.5
@@ -120,15 +121,15 @@ class OpenAction:
             )
         return asked.result()
 
-    def fail_without_end(self, sent: SentGoal, *, it: str, none: str) -> NoReturn:
+    def fail_without_end(self, sent: SentGoal, *, it: str, none: str, hint: str = '') -> NoReturn:
         """A goal has not ended: `it` says so with its status, `none` where it has none.
 
-        Raises CheckFailed with the reason.
+        Raises CheckFailed with the reason, and with what to try, if the caller knows.
         """
         fail(
             expected='the goal to end',
             seen=it if sent.status else none,
-            hint=self.why_no_end(sent),
+            hint=hint or self.why_no_end(sent),
             cause='a goal does not end',
         )
 
@@ -158,13 +159,12 @@ class OpenAction:
             found.update(actions.take(self.watcher.node).servers.get(self.name, {}))
             return bool(found)
 
-        is_settled = graphs.is_settled(self.watcher)
-        timeout_sec = graphs.SETTLED_SEC if is_settled else SERVER_SEC
-        if not self.watcher.spin_until(is_there, timeout_sec=timeout_sec):
+        if none := wait_for_server(self.watcher, is_there):
             fail(
                 expected=f'a server of the action {self.name}',
-                seen=graphs.none_in(timeout_sec),
+                seen=none.seen,
                 hint=actions.take(self.watcher.node).why_none(self.name, maker='ActionServer'),
+                doubt=none.doubt,
             )
         wanted = type_name(self.type)
         types = sorted({each for types in found.values() for each in types})

@@ -9,10 +9,11 @@ from functools import partial
 from typing import Any, NoReturn, Self
 
 from my_robot_basics.checks import polite_end, spinning
+from my_robot_basics.checks.doubts import doubt_after
 from my_robot_basics.checks.package_words import has_ended, how, last_words, text_in
 from my_robot_basics.exchange import student
 from my_robot_basics.exchange.endings import is_clean
-from my_robot_basics.feedback.errors import CheckFailed, Starved, expect, fail, shorten
+from my_robot_basics.feedback.errors import expect, fail, shorten
 from my_robot_basics.feedback.hidden import theirs
 from my_robot_basics.graph import graphs
 from my_robot_basics.graph.watcher import Watcher
@@ -77,7 +78,10 @@ class RunningExecutable:
 
         watcher.spin_until_free(lambda: is_there() or self._has_ended(), free_sec=NODE_SEC)
         if not is_there():
-            doubt, wanted = _doubt(watch, NODE_SEC), f'the node {node_name} of {self.executable}'
+            doubt, wanted = (
+                doubt_after(watch, NODE_SEC),
+                f'the node {node_name} of {self.executable}',
+            )
             names = graphs.take(watcher).nodes()
             if self._state()[0] is not None:
                 self._fail_ended(wanted)
@@ -133,7 +137,7 @@ class RunningExecutable:
             seen=f'it still runs after {free_sec:g} s',
             hint=hint,
             cause=f'{self.executable} does not end',
-            doubt=_doubt(watch, free_sec),
+            doubt=doubt_after(watch, free_sec),
         )
 
     def _expect_code(self, wanted: int, *, hint: str) -> None:
@@ -153,7 +157,7 @@ class RunningExecutable:
                 seen='it is still there',
                 hint='let main end all that it has started',
                 cause=f'{name} lives on',
-                doubt=_doubt(watch, GONE_SEC),
+                doubt=doubt_after(watch, GONE_SEC),
             )
 
     def _fail_ended(self, expected: str) -> NoReturn:
@@ -186,8 +190,3 @@ class RunningExecutable:
 
     def _ask(self, verb: str, *args: object) -> Mapping[str, Any]:
         return student.ask_package(self.package, verb, *args)
-
-
-def _doubt(watch: Stopwatch, free_sec: float) -> type[CheckFailed]:
-    """Whether the machine may be to blame: it gave less time than was to be waited."""
-    return CheckFailed if watch.free_sec() >= free_sec else Starved

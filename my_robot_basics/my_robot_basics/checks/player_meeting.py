@@ -4,12 +4,14 @@ from dataclasses import dataclass
 from typing import NoReturn
 
 from my_robot_basics.checks import drawing_hints
+from my_robot_basics.checks.doubts import doubt_after
 from my_robot_basics.checks.holding_server import HoldingServer
 from my_robot_basics.checks.packages import RunningExecutable
 from my_robot_basics.checks.player_servers import MOVE_ARM, SOLVE_IK
 from my_robot_basics.checks.sole_server import expect_no_other
-from my_robot_basics.feedback.errors import expect, fail
+from my_robot_basics.feedback.errors import CheckFailed, expect, fail
 from my_robot_basics.graph.watcher import Watcher
+from my_robot_basics.session.pressure import Stopwatch
 
 NAME = 'arm_player'  # of the package, of the executable and of the node
 MEET_SEC = 8.0
@@ -35,11 +37,14 @@ class PlayerMeeting:
         """
         count = self.watcher.node.count_clients
         self.expect_alone(own=0)
+        watch = Stopwatch()
         if not self.watcher.spin_until_free(lambda: count(SOLVE_IK) > 0, free_sec=MEET_SEC):
+            doubt = doubt_after(watch, MEET_SEC)
             self.fail_silent(
                 expected=f'a client of {SOLVE_IK}',
                 hint=drawing_hints.why_no_client(self.watcher),
                 cause=f'{NAME} has no client of {SOLVE_IK}',
+                doubt=doubt,
             )
         self.watcher.spin_until_free(
             lambda: count(f'{MOVE_ARM}/_action/send_goal') > 0, free_sec=SECOND_SEC
@@ -63,7 +68,9 @@ class PlayerMeeting:
         expect_no_other(self.watcher, SOLVE_IK, own=own)
         expect_no_other(self.watcher, f'{MOVE_ARM}/_action/send_goal', own=own)
 
-    def fail_silent(self, *, expected: str, hint: str, cause: str) -> NoReturn:
+    def fail_silent(
+        self, *, expected: str, hint: str, cause: str, doubt: type[CheckFailed] = CheckFailed
+    ) -> NoReturn:
         """Raise CheckFailed: nothing came. Whoever has ended says why."""
         self.process.expect_running()
-        fail(expected=expected, seen='none', hint=hint, cause=cause)
+        fail(expected=expected, seen='none', hint=hint, cause=cause, doubt=doubt)

@@ -8,6 +8,7 @@ from rcl_interfaces.srv import GetParameters
 from rclpy.qos import QoSProfile
 from rclpy.task import Future
 
+from my_robot_basics.checks.awaited_servers import SERVER_SEC, wait_for_server
 from my_robot_basics.checks.callbacks import CallbackErrors
 from my_robot_basics.exchange import student
 from my_robot_basics.exchange.values import type_name
@@ -16,8 +17,6 @@ from my_robot_basics.feedback.hidden import theirs
 from my_robot_basics.graph import familiar, graphs, services
 from my_robot_basics.graph.watcher import Watcher
 
-SERVER_SEC = 10.0
-"""How long to wait for a server; less where the notebook says that none can come."""
 ANSWER_SEC = 4.0
 """How long to wait for an answer, of time that was free."""
 LOOK_SEC = 0.5
@@ -78,12 +77,12 @@ class Service:
             found.update(services.take(watcher.node).servers.get(self.name, {}))
             return bool(found)
 
-        timeout_sec = graphs.SETTLED_SEC if graphs.is_settled(watcher) else SERVER_SEC
-        if not watcher.spin_until(is_there, timeout_sec=timeout_sec):
+        if none := wait_for_server(watcher, is_there):
             fail(
                 expected=f'a server of {self.name}',
-                seen=graphs.none_in(timeout_sec),
+                seen=none.seen,
                 hint=services.take(watcher.node).why_none(self.name, maker='create_service'),
+                doubt=none.doubt,
             )
         wanted = type_name(self.type)
         types = sorted({each for types in found.values() for each in types})
