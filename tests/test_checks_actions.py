@@ -6,7 +6,7 @@ import threading
 import time
 
 import pytest
-from my_robot_basics.checks import CheckFailed, action, moves, open_action
+from my_robot_basics.checks import CheckFailed, action, awaited_servers, moves
 from my_robot_basics.checks.actions import FollowedClock
 from my_robot_basics.checks.clock import SimulatedClock
 from nodes.running import imported, running
@@ -271,6 +271,23 @@ def test_a_node_that_gets_its_clock_late_does_not_seem_to_jump(run, loses_its_fi
     assert len(loses_its_first_time) == 3
 
 
+class ReportsSeldom(MoveArmServer):
+    """A step of 0.2 s: its moves end up to so much late, and are no slower for that."""
+
+    async def execute(self, handle):
+        self.begin(handle)
+        while self.part < 1.0 and not handle.is_cancel_requested:
+            await self.sleep(0.2)
+            self.step(handle)
+        return self.finish(handle)
+
+
+@pytest.mark.parametrize('seconds', [2.02, 3.0])
+def test_coarse_steps_make_no_slow_arm(run, seconds):
+    run(ReportsSeldom)
+    moves.expect_reaches(action('/move_arm', MoveArm), (1.2, -0.6), speed=1.2 / seconds)
+
+
 # --- right ones, on the wall clock ---------------------------------------------------------------
 
 
@@ -319,7 +336,7 @@ def test_who_ignores_the_clock_passes_with_short_moves(run, node_class):
 @pytest.fixture
 def impatient(monkeypatch):
     """Wait for what does not come no longer than it takes to be sure."""
-    monkeypatch.setattr(open_action, 'SERVER_SEC', 1.0)
+    monkeypatch.setattr(awaited_servers, 'SERVER_SEC', 1.0)
 
 
 class Elsewhere(Node):

@@ -2,22 +2,30 @@
 
 from arm_interfaces.action import MoveArm
 from my_robot_basics.checks.action_ends import SentGoal
-from my_robot_basics.checks.goal_answers import GoalAnswers
+from my_robot_basics.checks.goal_answers import GoalAnswers, note_why_rejected
 from my_robot_basics.checks.open_action import OpenAction
 from my_robot_basics.feedback.errors import fail
 
 
-def accepted(server: OpenAction, wanted: MoveArm.Goal) -> SentGoal:
-    """Send a goal that has to be accepted. Raises CheckFailed with the reason."""
+def accepted(server: OpenAction, wanted: MoveArm.Goal, *others: MoveArm.Goal) -> SentGoal:
+    """Send a goal that has to be accepted, or one of the others, where it is not.
+
+    Raises CheckFailed with the reason why the first one is rejected.
+    """
     former = server.accepted[-1] if server.accepted else None
     before = server.answers()
-    sent = server.send(wanted)
+    first = sent = server.send(wanted)
+    for other in others:
+        if not sent.is_accepted:
+            sent = server.send(other)
     if not sent.is_accepted:
+        hint = before.why_rejected or _why_rejected(server, first, former, before)
+        note_why_rejected(server.identity(), hint)
         shown = [round(each, 3) for each in wanted.position]
         fail(
             expected=f'the goal {shown} at {wanted.speed:.3g} rad/s to be accepted',
             seen='it rejected',
-            hint=_why_rejected(server, sent, former, before),
+            hint=hint,
             cause='a goal within the limits is rejected',
         )
     return sent
@@ -43,6 +51,8 @@ def _why_rejected(
             'an earlier goal was accepted, and has not ended: its execute callback has to return, '
             'and a handle_accepted_callback calls goal_handle.execute()'
         )
+    if former is None and server.ends.feedback.received:  # of a goal that an earlier cell sent
+        return ends_too_soon()
     if former is not None and any(0 < former.over_ns() < at_ns for at_ns, _ in former.feedback()):
         return ends_too_soon()
     if before.has_rejected_last:

@@ -11,7 +11,9 @@ from typing import TypeVar
 from rcl_interfaces.srv import GetParameters
 
 from arm_interfaces.action import MoveArm
+from my_robot_basics.checks.action_ends import SentGoal
 from my_robot_basics.checks.actions import Action, FollowedClock
+from my_robot_basics.checks.arm_progress import bring, is_under_way
 from my_robot_basics.checks.clock import SimulatedClock
 from my_robot_basics.checks.goal_answers import Identity
 from my_robot_basics.checks.inconclusive import Inconclusive
@@ -19,12 +21,10 @@ from my_robot_basics.checks.open_action import OpenAction
 from my_robot_basics.checks.reported_speed import is_of_wall_time
 from my_robot_basics.checks.robot_time import DrivenTime, WallTime
 from my_robot_basics.checks.services import PARAMETERS_SEC
-from my_robot_basics.checks.watched_arm import HASTE_SEC, Pose, WatchedArm, goal
+from my_robot_basics.checks.watched_arm import HASTE_SEC, STEP_NS, Pose, WatchedArm, goal
 
 T = TypeVar('T')
 
-STEP_NS = 50_000_000
-"""Steps of the robot's clock: two of them between feedback at 10 Hz."""
 PROBE_RAD, PROBE_SEC = 0.4, 0.6
 """A move on the wall clock. …"""
 PROBE_ASK_SEC = 0.1
@@ -50,7 +50,7 @@ def look(action: Action, body: Callable[[WatchedArm], T], *, start: Pose) -> T:
     """
     with action.opened() as server:
         on_wall = WatchedArm(server, WallTime(server.watcher), tuple(start), WALL_SEC)
-        on_wall.move(start)
+        bring(on_wall, start)
         clock = _clock(action, on_wall)
         if clock == FollowedClock.DRIVEN:
             for longest_sec in math.inf, BUSY_SEC:
@@ -59,7 +59,7 @@ def look(action: Action, body: Callable[[WatchedArm], T], *, start: Pose) -> T:
                         return _driven(server, body, tuple(start), longest_sec)
                     except Inconclusive:
                         action.known.longest_sec = BUSY_SEC
-                        on_wall.move(start)
+                        bring(on_wall, start)
         on_wall.time = WallTime(server.watcher)
         on_wall.has_two_clocks = clock == FollowedClock.BOTH
         try:
@@ -98,7 +98,7 @@ def _seen_clock(arm: WatchedArm) -> FollowedClock:
     is_free = _answers_while_it_moves(arm)
     arm.settle()
     clock = _waits_on(arm) if is_free else FollowedClock.WALL
-    arm.move(arm.start)
+    bring(arm, arm.start)
     return clock
 
 
@@ -140,10 +140,22 @@ def _waits_on(arm: WatchedArm) -> FollowedClock:
         ends = driven.time.wait(sent.is_over, seconds=CLOCK_PROBE_MOST_SEC)
         if is_of_wall_time(driven, sent, probe.position, apart_sec=APART_SEC):
             return FollowedClock.BOTH
-        return FollowedClock.DRIVEN if ends else FollowedClock.WALL
+        if ends or _moves_with_clock(driven, sent, probe.position):
+            return FollowedClock.DRIVEN
+        return FollowedClock.WALL
 
     try:
-        arm.move(arm.start)
+        bring(arm, arm.start)
         return _driven(arm.server, waits, arm.start)
     except Inconclusive:
         return FollowedClock.WALL
+
+
+def _moves_with_clock(arm: WatchedArm, sent: SentGoal, position: Pose) -> bool:
+    """Whether a slow arm, which moved while the clock did, stands still once it does so again."""
+    if not is_under_way(arm, sent, position):
+        return False
+    count = sent.feedback_count()
+    assert isinstance(arm.time, DrivenTime)
+    arm.time.hold(HOLD_SEC)
+    return sent.feedback_count() - count <= 1

@@ -8,7 +8,7 @@ from my_robot_basics.checks.action_ends import ActionEnds, SentGoal
 from my_robot_basics.checks.actions import Action
 from my_robot_basics.checks.arm_looks import look
 from my_robot_basics.checks.arm_pace import wait_for_end
-from my_robot_basics.checks.arm_speed import FROM_HERE, expect_speed
+from my_robot_basics.checks.arm_speed import FROM_HERE, expect_no_slow_move, expect_speed
 from my_robot_basics.checks.watched_arm import HASTE_SEC, Pose, WatchedArm, far_rad, goal
 from my_robot_basics.feedback.errors import expect, fail, shorten
 
@@ -65,6 +65,7 @@ def expect_serves_on(action: Action, position: Pose, *, start: Pose = (0.0, 0.0)
         if not arm.time.wait(
             lambda: not arm.server.has_active(), seconds=MOST_TIMES * wanted_sec + MORE_SEC
         ):
+            expect_no_slow_move(arm, sent, position)
             arm.server.fail_without_end(
                 sent,
                 it=f'it {sent.status} after its client has left',
@@ -83,6 +84,7 @@ def _arrive(arm: WatchedArm, position: Pose, *, speed: float) -> SentGoal:
     wanted_sec = far_rad(arm.start, position) / sent.goal.speed
     most_sec = MOST_TIMES * wanted_sec + MORE_SEC
     if not wait_for_end(arm, sent, position, seconds=most_sec):
+        expect_no_slow_move(arm, sent, position)
         arm.server.fail_without_end(
             sent,
             it=f'it {sent.status} in {most_sec:.0f} s of a move that takes a third',

@@ -4,7 +4,8 @@ import math
 from typing import NoReturn
 
 from my_robot_basics.checks.action_ends import SentGoal
-from my_robot_basics.checks.reported_speed import ReportedSpeed, reported_speed
+from my_robot_basics.checks.arm_progress import BY_TIME, bring, is_under_way
+from my_robot_basics.checks.reported_speed import FEWEST, ReportedSpeed, reported_speed
 from my_robot_basics.checks.robot_time import DrivenTime
 from my_robot_basics.checks.watched_arm import Pose, WatchedArm, far_rad
 from my_robot_basics.feedback.errors import CheckFailed, fail
@@ -22,7 +23,9 @@ FINEST = 0.0005, 0.45
 """A step of the clock, and for how long the arm moves, in seconds: a server whose sleeps are no
 multiple of the clock's steps sleeps longer than it means to, and less so with finer ones. …"""
 FINER = 0.002, 4.0
-"""… Where no feedback tells the speed, the move has to be longer."""
+"""… Where too little feedback tells the speed in that time, the move has to be longer."""
+SLOW_PART = 0.5
+"""Feedback tells of no machine that is too busy where the speed is so much lower."""
 MOST_TIMES = 3.0
 JUMP_SEC = 0.3
 """Who needs no longer does not move at a speed."""
@@ -58,6 +61,23 @@ def expect_speed(arm: WatchedArm, sent: SentGoal, position: Pose) -> None:
     _fail_speed(arm, sent, position, seconds=seconds, wanted_sec=wanted_sec, doubt=doubt)
 
 
+def expect_no_slow_move(arm: WatchedArm, sent: SentGoal, position: Pose) -> None:
+    """A goal that has not ended in time is not that of a slow arm, by its feedback.
+
+    Raises CheckFailed.
+    """
+    told = reported_speed(arm, sent, position).rad_per_sec
+    if told and told < SLOW_PART * sent.goal.speed and is_under_way(arm, sent, position):
+        far = far_rad(arm.start, position)
+        seconds, wanted_sec = far / told, far / sent.goal.speed
+        fail(
+            expected=f'{wanted_sec:.1f} s for {far:.2f} rad at {sent.goal.speed:.3g} rad/s',
+            seen=f'{seconds:.0f} s, as the feedback tells',
+            hint=_why_speed(arm, position, seconds * sent.goal.speed, seconds=seconds),
+            cause='the arm is too slow',
+        )
+
+
 def _is_proven(told: ReportedSpeed, sent: SentGoal, wanted_sec: float, seconds: float) -> bool:
     """Whether feedback and end agree on another speed, so that no busy machine has made it.
 
@@ -80,8 +100,10 @@ def _is_right(arm: WatchedArm, told: ReportedSpeed, speed: float) -> bool:
 
 def _is_right_in_finer_steps(arm: WatchedArm, sent: SentGoal, position: Pose) -> bool:
     assert isinstance(arm.time, DrivenTime)
-    step_sec, seconds = FINEST if reported_speed(arm, sent, position).rad_per_sec else FINER
-    arm.move(arm.start)
+    rate_hz = len(sent.feedback()) / arm.seconds(sent)
+    tells = reported_speed(arm, sent, position).rad_per_sec and rate_hz * FINEST[1] >= FEWEST
+    step_sec, seconds = FINEST if tells else FINER
+    bring(arm, arm.start)
     former_ns, arm.time.step_ns = arm.time.step_ns, round(step_sec * 1e9)
     try:
         return abs(_slowness(arm, position, seconds=seconds) - 1.0) <= TOLERANCE
@@ -139,4 +161,4 @@ def _why_speed(arm: WatchedArm, position: Pose, product: float, *, seconds: floa
         return found[0]
     if seconds <= JUMP_SEC:
         return 'the arm jumps: move it a little in each step, by speed × the time of the step'
-    return "in each step, move by speed × the time that passed, on the node's own clock"
+    return BY_TIME

@@ -1,6 +1,6 @@
 """How an action server has answered the goals of checks, in this grade cell or an earlier one."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 Identity = tuple[tuple[int, ...], ...]
 """What no other server has, whatever its name: `OpenAction.identity`."""
@@ -15,6 +15,11 @@ class GoalAnswers:
     """When the last goal was sent that it has accepted: wall time in ns; 0: none."""
     has_rejected_last: bool = False
     """Whether it has rejected the last goal of all."""
+    why_rejected: str = ''
+    """What a check has said of a goal that had to be accepted; '' where it has accepted one since.
+
+    A server that locks itself rejects all that come: the first time tells why.
+    """
 
 
 def answers_of(server: Identity) -> GoalAnswers:
@@ -24,5 +29,12 @@ def answers_of(server: Identity) -> GoalAnswers:
 
 def note_answer(server: Identity, *, sent_ns: int, is_accepted: bool) -> None:
     """Note its answer to a goal that was sent at that wall time."""
-    accepted_ns = sent_ns if is_accepted else answers_of(server).accepted_ns
-    _answers[server] = GoalAnswers(accepted_ns, has_rejected_last=not is_accepted)
+    if is_accepted:
+        _answers[server] = GoalAnswers(sent_ns)
+    else:
+        _answers[server] = replace(answers_of(server), has_rejected_last=True)
+
+
+def note_why_rejected(server: Identity, why: str) -> None:
+    """Note what was said of a goal that it has rejected, and had to accept."""
+    _answers[server] = replace(answers_of(server), why_rejected=why)

@@ -14,6 +14,8 @@ from my_robot_basics.feedback.errors import CheckFailed, Starved
 Pose = Sequence[float]
 """Positions of joint1 and joint2, in radians."""
 
+STEP_NS = 50_000_000
+"""Steps of the robot's clock: two of them between feedback at 10 Hz."""
 HASTE = 100.0
 """Speed, in rad/s, of a move that only brings the arm somewhere."""
 HASTE_SEC = 4.0
@@ -65,25 +67,13 @@ class WatchedArm:
         longest_sec = self.longest_sec * (1.0 - SHORTER_PART * (TURN * sum(position) % 1.0))
         return goal(position, speed=max(speed, far_rad(self.start, position) / longest_sec))
 
-    def send(self, wanted: MoveArm.Goal) -> SentGoal:
-        """Send a goal that has to be accepted. Raises CheckFailed, and Inconclusive."""
-        sent = accepted(self.server, wanted)
+    def send(self, wanted: MoveArm.Goal, *others: MoveArm.Goal) -> SentGoal:
+        """Send a goal that has to be accepted, or another. Raises CheckFailed, Inconclusive."""
+        sent = accepted(self.server, wanted, *others)
         if isinstance(self.time, DrivenTime):
             stamp = sent.answer.result().stamp
             self.time.expect_shown(stamp.sec * 10**9 + stamp.nanosec)
         return sent
-
-    def move(self, position: Pose) -> None:
-        """Bring the arm there in haste, whatever becomes of the goal."""
-        sent = self.send(goal(position, speed=HASTE))
-        if not self.time.wait(sent.is_over, seconds=HASTE_SEC):
-            self.server.fail_without_end(
-                sent,
-                it=f'it {sent.status} in {HASTE_SEC:g} s at {HASTE:g} rad/s',
-                none=f'none in {HASTE_SEC:g} s at {HASTE:g} rad/s',
-            )
-        self.settle()
-        self.start = tuple(position)
 
     def seconds(self, sent: SentGoal) -> float:
         """How long a goal that is over has taken, in seconds of this time."""

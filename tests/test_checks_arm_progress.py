@@ -1,0 +1,56 @@
+"""An arm that is slow, and on its way: what tells it from one that never gets there."""
+
+from types import SimpleNamespace
+
+from my_robot_basics.checks.arm_progress import LATEST_SEC, is_under_way
+
+from arm_interfaces.action import MoveArm
+
+GOAL = (1.0, -0.5)
+
+
+def is_slow(parts, *, since_sec=0.0, is_over=False, lengths=2):
+    """Whether ten messages a second with these parts of the way tell of a slow arm."""
+    told = [
+        (number * 10**8, MoveArm.Feedback(position=[part, -part / 2][:lengths]))
+        for number, part in enumerate(parts)
+    ]
+    now_ns = len(parts) * 10**8 + round(since_sec * 1e9)
+    arm = SimpleNamespace(
+        time=SimpleNamespace(now_ns=lambda: now_ns, at_ns=lambda wall_ns: wall_ns)
+    )
+    sent = SimpleNamespace(feedback=lambda: told, is_over=lambda: is_over)
+    return is_under_way(arm, sent, GOAL)
+
+
+def evenly(speed):
+    """What an arm tells in four seconds at that part of its way in each tenth of a second."""
+    return [speed * number for number in range(40)]
+
+
+def test_a_slow_arm_is_under_way():
+    assert is_slow(evenly(0.01))
+    assert not is_slow(evenly(0.01), is_over=True)
+
+
+def test_an_arm_that_is_there_is_not():
+    assert not is_slow([*evenly(0.03), *[1.0] * 10])
+
+
+def test_one_that_comes_nearer_and_nearer_never_gets_there():
+    assert not is_slow([1.0 - 0.9**number for number in range(40)])
+
+
+def test_one_that_stands_still_or_goes_away_never_gets_there():
+    assert not is_slow([0.3] * 40)
+    assert not is_slow([-part for part in evenly(0.01)])
+    assert not is_slow([min(0.2, part) for part in evenly(0.02)])
+
+
+def test_one_that_tells_no_more_may_have_stopped():
+    assert not is_slow(evenly(0.01), since_sec=2 * LATEST_SEC)
+
+
+def test_too_little_feedback_and_none_of_two_joints_tell_nothing():
+    assert not is_slow(evenly(0.01)[:3])
+    assert not is_slow(evenly(0.01), lengths=1)

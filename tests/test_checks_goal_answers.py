@@ -1,0 +1,28 @@
+"""What a check knows of how a server has answered before, in another grade cell, too."""
+
+import pytest
+from my_robot_basics.checks import goal_answers
+from my_robot_basics.checks.goal_answers import GoalAnswers, answers_of, note_answer
+
+SERVER, OTHER = ((1, 2),), ((3, 4),)
+
+
+@pytest.fixture(autouse=True)
+def _nobody_is_known(monkeypatch):
+    monkeypatch.setattr(goal_answers, '_answers', {})
+
+
+def test_a_rejected_goal_does_not_hide_when_one_was_accepted():
+    note_answer(SERVER, sent_ns=5, is_accepted=True)
+    note_answer(SERVER, sent_ns=7, is_accepted=False)
+    assert answers_of(SERVER) == GoalAnswers(5, has_rejected_last=True)
+    assert answers_of(OTHER) == GoalAnswers()
+
+
+def test_why_a_server_is_locked_is_told_until_it_accepts_again():
+    note_answer(SERVER, sent_ns=5, is_accepted=False)
+    goal_answers.note_why_rejected(SERVER, 'the flag')
+    note_answer(SERVER, sent_ns=7, is_accepted=False)
+    assert answers_of(SERVER).why_rejected == 'the flag'
+    note_answer(SERVER, sent_ns=9, is_accepted=True)
+    assert answers_of(SERVER) == GoalAnswers(9)
