@@ -1,16 +1,24 @@
+import re
 import shutil
 from datetime import datetime
+from pathlib import Path
 
 import pytest
 from course_maker import TOY, answered, executed, released_course, submit
 from nbgrader.api import Gradebook
 
 from grader.common.errors import CourseError
-from grader.course import Course
+from grader.course import ROOT, Course
 from grader.grade import grade_all
 from grader.notebook.restore import restore
 from grader.notebook.submission import read_submission
-from grader.storage.deadlines import FILE, Deadlines, deadlines, extended_for_nobody
+from grader.storage.deadlines import (
+    FILE,
+    Deadlines,
+    deadlines,
+    extended_for_nobody,
+    read_deadlines,
+)
 from grader.storage.gradebook import store
 from grader.storage.pipeline import prepare
 from grader.storage.records import records
@@ -141,3 +149,18 @@ def test_an_extension_of_somebody_who_has_handed_in_nothing_is_told(course):
     assert extended_for_nobody(course) == []
     (course.gradebook / FILE).unlink()
     assert extended_for_nobody(course) == []
+
+
+def test_what_lateness_costs_is_told_with_the_score_and_not_logged(course, caplog):
+    (course.gradebook / FILE).write_text(RULES)
+    assert grade(course, 'bob', '2026-01-11 23:59:00 UTC') < 3.0
+    assert caplog.text == ''
+
+
+def test_the_example_of_the_document_is_understood():
+    page = (ROOT / 'docs/for-instructors.md').read_text(encoding='utf-8')
+    (example,) = re.findall(r'```toml\n(\[late\].*?)```', page, re.DOTALL)
+    found = read_deadlines(example.encode(), Path(FILE))
+    assert (found.per_day, found.at_most, found.grace_minutes) == (0.1, 0.5, 15)
+    limits = found.resubmissions
+    assert (limits.per_hour, limits.in_total) == (6, 30)

@@ -1,4 +1,4 @@
-"""What gradebook/deadlines.toml says; `grader/storage/late_penalties.py` has an example."""
+"""What gradebook/deadlines.toml says; docs/for-instructors.md has an example."""
 
 import math
 import tomllib
@@ -60,7 +60,7 @@ def read_deadlines(
         return _understood(tomllib.loads(content.decode()), assignments)
     except (ValueError, _Wrong) as error:
         raise CourseError(
-            f'{path}: {error}: see the example in grader/storage/late_penalties.py'
+            f'{path}: {error}: see the example in docs/for-instructors.md, Due dates'
         ) from None
 
 

@@ -1,32 +1,27 @@
 """Late submissions: due dates, extensions and what lateness costs, all from one file.
 
-gradebook/deadlines.toml is optional, and so is each part of it. `./course due` writes the first
-two, or an editor does:
-
-    [due]
-    03_publisher = 2026-11-30T23:59:00+01:00
-
-    [extended.03_publisher]
-    ada = 2026-12-03T23:59:00+01:00
-
-    [late]
-    per_day = 0.1       # this share of the score for each day that has begun
-    at_most = 0.5
-    grace_minutes = 15
+gradebook/deadlines.toml is optional, and so is each part of it; docs/for-instructors.md has an
+example. `./course due` writes [due] and [extended], or an editor does.
 
 `grader/storage/resubmissions.py` says what [resubmissions] may hold.
 
 A submission was handed in when its timestamp.txt says; without one it was in time.
 """
 
+import logging
+
 from nbformat import NotebookNode
 from nbgrader.plugins import BasePlugin, LateSubmissionPlugin
 from nbgrader.preprocessors import AssignLatePenalties
-from traitlets import Type
+from traitlets import Any, Type
 
 from grader.course import Course
 from grader.storage.deadlines import Deadlines, deadlines
 from grader.storage.lateness import tell_what_is_due
+
+_SILENT = logging.getLogger(__name__)
+"""Whatever lateness takes off is told with the score; nbgrader would log it for each notebook."""
+_SILENT.setLevel(logging.ERROR)
 
 
 class LatePolicy(LateSubmissionPlugin):
@@ -43,6 +38,7 @@ class LatePenalties(AssignLatePenalties):
     """Tell the gradebook what is due when, and let the plugin say what lateness costs."""
 
     plugin_class = Type(LatePolicy, klass=BasePlugin).tag(config=True)
+    log = Any(_SILENT)
 
     def preprocess(self, nb: NotebookNode, resources: dict) -> tuple[NotebookNode, dict]:
         """Give one submission its due date and its penalty; the notebook stays as it is."""
