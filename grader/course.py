@@ -168,6 +168,11 @@ class Course:
             )
         return secret
 
+    def expect_assignment(self, name: str) -> None:
+        """Raise CourseError where there is no assignment of that name."""
+        if name not in self.assignments():
+            raise CourseError(self._unknown(name))
+
     def _unknown(self, assignment: str) -> str:
         known = ', '.join(self.assignments()) or 'none'
         return f'there is no assignment {assignment!r} in solutions/; there are: {known}'

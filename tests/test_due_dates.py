@@ -72,7 +72,7 @@ def test_the_rest_of_the_file_stays_as_it_was_written(course):
 @pytest.mark.parametrize(
     ('arguments', 'said'),
     [
-        (['99_other', '2026-11-30'], f"no assignment '99_other'; there are: {TOY}"),
+        (['99_other', '2026-11-30'], f"no assignment '99_other' in solutions/; there are: {TOY}"),
         ([TOY], f'say until when: ./course due {TOY} 2026-11-30'),
         (['--student', 'ada'], './course due ASSIGNMENT DATE --student ada'),
         ([TOY, '2026-11-29', '--student', 'ada'], 'gives nobody more time'),

@@ -9,7 +9,7 @@ from contextlib import closing
 from pathlib import Path
 
 import pytest
-from course_maker import TOY, make_course, submit
+from course_maker import TOY, answered, make_course, released_course, submit
 
 from grader.__main__ import main
 from grader.common.errors import CourseError
@@ -150,6 +150,20 @@ def test_an_error_of_ours_is_one_sentence_without_escapes_and_status_1(tmp_path,
     assert err.count('\n') == 1
 
 
+def test_a_seed_that_is_none_is_told_what_one_is(capsys):
+    with pytest.raises(SystemExit):
+        main(['grade', '--seed', 'no hex'])
+    said = capsys.readouterr().err
+    assert said.endswith("'no hex' is neither a hexadecimal number nor recorded\n")
+
+
+def test_scores_of_an_assignment_that_is_none_name_those_there_are(tmp_path, capsys):
+    assert main(['scores', '3', '--format', 'canvas'], course=make_course(tmp_path)) == 1
+    said = capsys.readouterr().err
+    assert said.startswith("course: there is no assignment '3'")
+    assert said.endswith(f'there are: {TOY}\n')
+
+
 def test_a_stopped_run_says_how_to_go_on(tmp_path, capsys, monkeypatch):
     def interrupted(*_, **__):
         raise KeyboardInterrupt
@@ -184,6 +198,17 @@ def test_all_verbs_in_a_row(tmp_path, capsys):
     assert 'ada,00_toy,double-check,0.0,1.0' in (course.gradebook / 'scores.csv').read_text()
     assert main(['release'], course=course) == 0
     assert 'Nothing has changed' in capsys.readouterr().out
+
+
+@pytest.mark.starts
+def test_points_by_hand_come_before_what_is_given_back(tmp_path, capsys):
+    course = released_course(tmp_path)
+    right = 'def double(x):\n    return 2 * x'
+    submit(course, 'ada', answered(course, right, explained='Because.'))
+    assert main(['grade'], course=course) == 0
+    first, _, then = capsys.readouterr().out.partition('Next: ')[2].partition('), ')
+    assert first == 'points by hand (.venv/bin/jupyter lab, menu Nbgrader, Formgrader'
+    assert then == './course feedback, ./course scores\n'
 
 
 def test_a_database_in_use_is_waited_for_with_a_word(tmp_path, capsys, monkeypatch):

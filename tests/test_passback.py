@@ -215,7 +215,7 @@ def test_a_roster_that_does_not_fit_is_refused_in_a_sentence(
         (['03_publisher'], 'say which one, as in ./course scores --format moodle'),
         (['--roster', 'x.csv'], 'say which one'),
         (['--format', 'moodle', '--roster', 'x.csv'], 'is of one assignment'),
-        (['04_subscriber', '--format', 'canvas'], 'nothing of 04_subscriber is graded yet'),
+        ([TOY, '--format', 'canvas'], f'nothing of {TOY} is graded yet'),
         (
             ['03_publisher', '--format', 'canvas', '--roster', '/nowhere'],
             'can not be read: No such',

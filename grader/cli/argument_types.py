@@ -24,9 +24,14 @@ class VerbParser(argparse.ArgumentParser):
 
 
 def hexadecimal(text: str) -> str:
-    """Check an argument; argparse names this function when it is wrong."""
-    if text != RECORDED:
-        int(text, 16)
+    """Check an argument; argparse shows what this raises."""
+    try:
+        if text != RECORDED:
+            int(text, 16)
+    except ValueError:
+        raise argparse.ArgumentTypeError(
+            f'{text!r} is neither a hexadecimal number nor {RECORDED}'
+        ) from None
     return text
 
 

@@ -20,6 +20,8 @@ from grader.storage.deadlines import extended_for_nobody
 from grader.storage.submitted import SubmissionFolder
 from grader.workers.backend import Backend
 
+_BY_HAND = 'points by hand (.venv/bin/jupyter lab, menu Nbgrader, Formgrader), '
+
 
 def run_grade(
     course: Course,
@@ -74,7 +76,7 @@ def _run_grade(
     print(
         f'{len(rows) - failed} graded, {waiting} of them wait for a person (…), '
         f'{failed} could not be graded (–).\n'
-        f'Report: {report}\nNext: ./course feedback, ./course scores'
+        f'Report: {report}\nNext: {_BY_HAND * bool(waiting)}./course feedback, ./course scores'
     )
     return 1 if failed else 0
 

@@ -31,6 +31,7 @@ def write_platform_scores(
     """
     found = final_scores(records(course), assignment)
     if assignment and not found:
+        course.expect_assignment(assignment)
         raise CourseError(
             f'nothing of {assignment} is graded yet: first ./course collect, then ./course grade'
         )

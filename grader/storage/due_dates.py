@@ -23,10 +23,7 @@ def set_due(
     path = course.gradebook / FILE
     before = path.read_bytes() if path.exists() else b''
     now = read_deadlines(before, path, course.assignments())
-    if assignment not in course.assignments():
-        raise CourseError(
-            f'there is no assignment {assignment!r}; there are: {", ".join(course.assignments())}'
-        )
+    course.expect_assignment(assignment)
     _refuse_pointless(now, assignment, when, student_id)
     document = tomlkit.parse(before.decode())
     if student_id is None:
@@ -56,7 +53,7 @@ def describe_deadlines(course: Course) -> Iterator[str]:
     else:
         yield (
             f'Lateness costs nothing: [late] in {FILE} can change that '
-            '(see grader/storage/late_penalties.py)'
+            '(docs/for-instructors.md, Due dates)'
         )
 
 

@@ -32,10 +32,9 @@ def find_submissions(
 
     Raises CourseError when nothing fits the assignment and the student asked for.
     """
-    known = course.assignments()
-    if assignment and assignment not in known:
-        raise CourseError(f'there is no assignment {assignment!r}; there are: {", ".join(known)}')
-    submitted = course.folder('submitted', '', '')
+    if assignment:
+        course.expect_assignment(assignment)
+    submitted, known = course.folder('submitted', '', ''), course.assignments()
     found = [
         each
         for student in _visible(submitted)
