@@ -544,3 +544,14 @@ def test_large_files_of_a_submission_fill_no_memory(course, source):
     finally:
         tracemalloc.stop()
     assert most < 10_000_000
+
+
+@pytest.mark.parametrize('place', ['.', '..', 'notebooks', 'notebooks/zh_CN', 'solutions'])
+def test_the_lessons_themselves_are_no_submissions(course, place, monkeypatch, capsys):
+    source = course.root / place
+    source.mkdir(exist_ok=True)
+    monkeypatch.chdir(source)
+    assert main(['collect', '.'], course=course) == 1
+    said = capsys.readouterr().err
+    assert f"{source.resolve()} holds the course's own lessons: expected a folder with" in said
+    assert not course.folder('submitted', '', '').exists()

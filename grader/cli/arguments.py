@@ -45,7 +45,7 @@ def make_parser() -> argparse.ArgumentParser:
     verb.set_defaults(run=verbs.run_translate)
 
     verb = subparsers.add_parser('collect', help='collect a folder or an archive of submissions')
-    text = 'what came in: notebooks named STUDENT_ASSIGNMENT.ipynb, and other names (README.md)'
+    text = 'what came in: notebooks named STUDENT_ASSIGNMENT.ipynb, or as a platform names them'
     verb.add_argument('source', type=Path, metavar='FOLDER|ZIP|TAR', help=text)
     verb.add_argument(
         '--file-times',

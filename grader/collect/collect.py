@@ -61,6 +61,7 @@ def collect(course: Course, source: Path, *, file_times: bool = False) -> Iterat
     nothing. `file_times` takes a file's time for the time it was handed in, where nothing else
     tells. Raises CourseError where `source` is nothing of the kind, and where the disk is full.
     """
+    _refuse_the_course(course, source.resolve())
     grades = cache(lambda: records(course))
     with gradebook_lock(course.gradebook), tempfile.TemporaryDirectory(prefix='collect-') as aside:
         try:
@@ -90,6 +91,17 @@ def collect(course: Course, source: Path, *, file_times: bool = False) -> Iterat
         for incoming in found:
             if incoming.litter:
                 yield FileOutcome(incoming.path, UNUSED, 'hidden, or left behind by a program')
+
+
+def _refuse_the_course(course: Course, source: Path) -> None:
+    """Raise CourseError where the lessons are in it: a language would be a student of each."""
+    root = course.root.resolve()
+    lessons = [root / name for name in ('notebooks', 'solutions')]
+    if root.is_relative_to(source) or any(map(source.is_relative_to, lessons)):
+        raise CourseError(
+            f"{source} holds the course's own lessons: expected a folder with what students "
+            'handed in, and nothing else'
+        )
 
 
 def _row(
