@@ -338,3 +338,11 @@ def test_in_a_cell_all_of_it_works_and_the_kernel_keeps_to_the_installed_package
     said = ''.join(text for text in printed if text not in ('status', 'execute_input'))
     assert 'publishing a random pose' in said
     assert said.endswith(f'{ROOT}/my_robot_basics/my_robot_basics/__init__.py\n')
+
+
+def test_help_is_for_students(capsys):
+    with pytest.raises(SystemExit):
+        workspace.main(['--help'])
+    said = ' '.join(capsys.readouterr().out.split())
+    assert 'Make ros_ws/, a colcon workspace with a copy of the packages' in said
+    assert 'Raises' not in said

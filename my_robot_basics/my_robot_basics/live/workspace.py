@@ -140,7 +140,12 @@ def shown(path: Path) -> str:
 
 def main(argv: list[str] | None = None) -> str | None:
     """Run `./course workspace`, and return what `sys.exit` takes."""
-    parser = argparse.ArgumentParser('./course workspace', description=make_workspace.__doc__)
+    parser = argparse.ArgumentParser(
+        './course workspace',
+        description=in_language_here(
+            'Make ros_ws/, a colcon workspace with a copy of the packages that is yours to edit.'
+        ),
+    )
     parser.add_argument(
         '--refresh',
         nargs='?',
