@@ -555,3 +555,13 @@ def test_the_lessons_themselves_are_no_submissions(course, place, monkeypatch, c
     said = capsys.readouterr().err
     assert f"{source.resolve()} holds the course's own lessons: expected a folder with" in said
     assert not course.folder('submitted', '', '').exists()
+
+
+def test_another_spelling_of_a_student_is_told(course, source):
+    write(course.folder('submitted', 'Ada Lovelace', '99_other') / '99_other.ipynb', '{}')
+    write(source / f'ada_lovelace_{TOY}.ipynb', nbformat.writes(course.release(TOY)))
+    write(source / f'bob_{TOY}.ipynb', nbformat.writes(course.release(TOY)))
+    first, second = collect(course, source)
+    assert first.student_id == 'ada_lovelace'
+    assert first.reason == 'not the same as Ada Lovelace: if it is, rename one'
+    assert second.reason == ''

@@ -35,6 +35,7 @@ def find_owners(
             problem = _of_several(owner)
         if problem:
             problems[each] = problem
+        remarks[each] = remarks[each] or _other_spelling(owner.student_id, known)
     return {e: owner for e, owner in owners.items() if e not in problems}, remarks, problems
 
 
@@ -79,6 +80,12 @@ def _of_several(owner: Owner) -> str:
         f'there are several {owner.student_id} with different numbers, this one is '
         f'{owner.label.number}: rename the folders so that each has a name of its own'
     )
+
+
+def _other_spelling(student: str, known: Mapping[str, set[str]]) -> str:
+    """Say that another student's name may be this one's: their scores would stand apart."""
+    alike = set().union(*(known[spelling] for spelling in spellings(student))) - {student}
+    return f'not the same as {", ".join(sorted(alike))}: if it is, rename one' if alike else ''
 
 
 def _claims(owner: Owner, naming: Naming, known: Mapping[str, set[str]]) -> tuple[str, str]:
