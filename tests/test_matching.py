@@ -1,4 +1,5 @@
 from datetime import UTC, datetime
+from pathlib import Path
 
 import pytest
 
@@ -527,3 +528,10 @@ def test_what_moodle_gives_out_says_which_of_two_names_counts(at):
     taken, [(_, reason)] = owners(at(path))
     assert taken == []
     assert reason.endswith("rename it if it is Mallory's, or else collect it by itself")
+
+
+@pytest.mark.parametrize('name', ['fay_03_Publisher.ipynb', '03_publisher_fay.ipynb'])
+def test_a_name_that_is_nearly_right_is_told_its_assignment_alone(name):
+    _, [left] = match([Incoming((name,), Path(name))], ['02_joint_state', '03_publisher'])
+    assert left.reason.startswith('named after no assignment: expected STUDENT_ASSIGNMENT.ipynb')
+    assert left.reason.endswith('with 03_publisher')

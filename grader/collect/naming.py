@@ -162,7 +162,8 @@ class Naming:
         """Return the assignment that a file is named after. Raises UnclearOwner."""
         named = self._forms.named(stem)
         if stem not in self._known and not named:
-            known = ', '.join(sorted(self._known))
+            near = [name for name in self._known if name.casefold() in stem.casefold()]
+            known = ', '.join(sorted(near or self._known))
             raise UnclearOwner(f'named after no assignment: {EXPECTED}, with {known}')
         assignment = named.what if named else stem
         for folder in reversed(folders):
