@@ -287,6 +287,7 @@ def test_from_the_hidden_part_the_same_is_told(check, monkeypatch):
 HOSTILE = {
     'a name that rosidl reads for hours': 'uint8 ' + 'A' * 60 + 'a=1',
     'the same without an end': 'uint8 ' + 'A_' * 90 + '=1',
+    'the same before a bound': 'int32 ' + 'A' * 60 + '<=5',
     'fields without end': '\n'.join(f'int32 field{n}' for n in range(100_000)),
     'one long line': 'int32 ' + 'a' * 60_000,
     'a number without end': f'float64[{"9" * 250}] turns',

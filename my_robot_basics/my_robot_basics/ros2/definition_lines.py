@@ -47,9 +47,10 @@ def parse_line(package: str, line: str) -> Any:
     name, equals, _ = (part.strip() for part in rest.partition('='))
     if line[:1] == ' ':
         raise BadLine('rosidl takes no space before the type')
-    is_bound = name.endswith('<')  # of an array: int32[<=60], its brackets in the wrong place
-    if equals and not is_bound and not _CONSTANT_NAME.fullmatch(name):
-        raise BadLine(_about_characters(line) or _about_constant(type_name, name))
+    if equals and not _CONSTANT_NAME.fullmatch(name):
+        # a bound of an array, int32[<=60], may have its brackets in the wrong place
+        about_form = _about_form(type_name, rest) if name.endswith('<') else ''
+        raise BadLine(_about_characters(line) or about_form or _about_constant(type_name, name))
     try:
         return _parsed(package, line)
     except Exception as error:
