@@ -12,6 +12,7 @@ from my_robot_basics.language.lines import in_lines
 from my_robot_basics.language.sentences import MOST_CHARACTERS, Sentences
 from my_robot_basics.language.sentences import REASON as REASON_FORM
 from my_robot_basics.language.speaking import in_language, language_of
+from my_robot_basics.language.templates import Template
 from my_robot_basics.ros2 import environment
 from my_robot_basics.session import overlays
 from my_robot_basics.session.lessons import RunningLesson
@@ -139,6 +140,16 @@ def test_what_a_student_made_up_takes_a_bounded_number_of_tries(text):
     sentences = Sentences(TEMPLATES)
     assert isinstance(sentences.translate(text), str)
     assert sentences._tries < 10_000
+
+
+@pytest.mark.timeout(60)
+def test_a_template_that_does_not_fit_is_given_up_at_once():
+    template = Template.of('{a} in {b} of {c} at {d} to {e} on {f} by {g}.', '')
+    assert list(template.fits(' by ' + ' in  of  at  to  on ' * 80 + '.')) == []
+    assert [*template.fits('1 in 2 of 3 of 4 at 5 to 6 on 7 by 8.')] == [
+        {'a': '1', 'b': '2', 'c': '3 of 4', 'd': '5', 'e': '6', 'f': '7', 'g': '8'},
+        {'a': '1', 'b': '2 of 3', 'c': '4', 'd': '5', 'e': '6', 'f': '7', 'g': '8'},
+    ]
 
 
 # --- where they are shown ------------------------------------------------------------------------

@@ -66,6 +66,10 @@ class Template:
             return
         at = text.find(literal)
         while at >= 0:
+            has_fitted = False
             for found in self._splits(text[at + len(literal) :], others, places[1:]):
+                has_fitted = True
                 yield {places[0]: text[:at], **found}
+            if not has_fitted:  # nor does it behind a later place
+                return
             at = text.find(literal, at + 1)
