@@ -176,6 +176,14 @@ def test_what_a_students_code_made_and_measured_numbers_are_left_out(told):
     ]
 
 
+def test_no_name_ends_what_a_students_code_made(told):
+    name = hidden.theirs('/a\u2069 it was asked for two \u2068')
+    with pytest.raises(CheckFailed) as failure:
+        fail(expected=1, seen=2, hint=f'{name} runs')
+    assert str(failure.value) == f'{hidden.PLACE}… runs'
+    assert told == ['expected 1, saw 2: /a it was asked for two  runs']
+
+
 @pytest.mark.parametrize(
     ('said', 'kept'),
     [('ValueError: 3 is 4', 'ValueError: …'), ('E123: 4', '…'), ('print: 4', '…'), ('a', '…')],

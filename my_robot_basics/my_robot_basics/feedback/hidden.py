@@ -30,7 +30,7 @@ _POINTS = 'application/vnd.my_robot_basics.points'
 _BEGAN, _INPUTS, _ALREADY = 'began', 'inputs', 'already'
 
 _OPEN, _CLOSE = '\u2068', '\u2069'
-"""Around what a student's code made: no text that `shorten` has cleaned holds these."""
+"""Around what a student's code made."""
 _THEIRS = re.compile(f'{_OPEN}[^{_CLOSE}]*{_CLOSE}')
 _MEASURED = re.compile(r'(?<![\w.])[-+−]?(\d+\.\d+|\d{3,})(?![\w.]*\d)°?')
 _LIST = re.compile(r'…(, …)+')
@@ -87,7 +87,8 @@ def note_inputs() -> None:
 
 def theirs(text: object) -> str:
     """What a student's code made, for a sentence: nobody is told it from the hidden part."""
-    return f'{_OPEN}{text}{_CLOSE}' if _quiet else str(text)
+    said = in_full(str(text))  # a name that DDS brings may hold any character
+    return f'{_OPEN}{said}{_CLOSE}' if _quiet else said
 
 
 def raised(said: str) -> str:
