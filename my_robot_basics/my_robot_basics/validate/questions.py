@@ -27,7 +27,7 @@ do without. Nothing of ours stays among the names of the notebook."""
 _RESPONDER = (
     "__import__('my_robot_basics.exchange.responder', fromlist=['answer']).answer({request!r})"
 )
-_ESCAPE = r"""\\(?:[\\'"nrt]|[xuU][0-9a-f]+)"""
+_ESCAPE = r"""\\(?:[\\'"nrt]|x[0-9a-f]{2}|u[0-9a-f]{4}|U[0-9a-f]{8})"""
 _STRING = re.compile(rf"""'(?:[^'\\\n]|{_ESCAPE})*'|"(?:[^"\\\n]|{_ESCAPE})*\"""")
 """The literal of one string as Python writes it, and no other Python."""
 
