@@ -1,5 +1,7 @@
 """Which names a cell binds and needs, read from its text."""
 
+import time
+
 import pytest
 from IPython.core import inputtransformer2
 from IPython.core.inputtransformer2 import make_tokens_by_line
@@ -95,6 +97,14 @@ CELLS = {
 def test_names_of_a_cell(source, bound, needed):
     names = names_of(source)
     assert (names.bound, names.needed) == (set(bound.split()), set(needed.split()))
+
+
+@pytest.mark.parametrize('before', [')', 'x = 1'])
+def test_empty_lines_are_not_looked_through_again_and_again(before):
+    names_of.cache_clear()
+    began = time.process_time()
+    names_of(before + '\n' * (MAX_SOURCE_CHARACTERS - len(before)))
+    assert time.process_time() - began < 0.5
 
 
 @pytest.mark.parametrize(

@@ -96,11 +96,11 @@ def _said(node: ast.AST) -> set[str]:
 
 
 _AT_ONCE = ('listcomp', 'setcomp', 'dictcomp')
-_RUN = re.compile(r'^\s*%run\s', re.MULTILINE)
+_RUN = re.compile(r'^[ \t]*%run\s', re.MULTILINE)
 _AROUND_CELL = re.compile(r'\A\s*%%(?:time|capture|prun)\b.*\n')
 _BEFORE_LINE = re.compile(r'^([ \t]*)%(?:time|prun)[ \t]+(?=[^\W\d])', re.MULTILINE)
 """Magics that run the Python behind them as if they were not there."""
-_MAGIC = re.compile(r'^\s*[!%?,;/]|\?\s*$|=\s*[!%]', re.MULTILINE)
+_MAGIC = re.compile(r'^[ \t]*[!%?,;/]|\?\s*$|=\s*[!%]', re.MULTILINE)
 _IPYTHON = {'display', 'get_ipython', 'In', 'Out', '_', '__', '___', '__name__', '__file__'}
 
 
@@ -121,8 +121,9 @@ def _python(source: str) -> tuple[str, ast.Module]:
     try:
         return source, ast.parse(source)
     except SyntaxError:
-        lines = len(_MAGIC.findall(source))
-        if len(source) > MAX_IPYTHON['characters'] or lines > MAX_IPYTHON['lines']:
+        if len(source) > MAX_IPYTHON['characters']:
+            raise
+        if len(_MAGIC.findall(source)) > MAX_IPYTHON['lines']:
             raise
     source = _BEFORE_LINE.sub(r'\1', _AROUND_CELL.sub('', source))
     code = _Transformer().transform_cell(source)
