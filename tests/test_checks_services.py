@@ -6,6 +6,7 @@ import time
 
 import pytest
 from my_robot_basics.checks import CheckFailed, awaited_servers, ik, service, services
+from my_robot_basics.session.errors import NotRunnable
 from nodes.running import imported, running
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import MultiThreadedExecutor
@@ -312,3 +313,11 @@ def test_two_servers_are_one_too_many(run):
 def test_without_a_node_the_cell_that_starts_it_is_named():
     with pytest.raises(CheckFailed, match='the node is not running, so run the cell that starts'):
         check_answers()
+
+
+def test_the_checks_solve_nothing_for_an_answer(monkeypatch):
+    monkeypatch.setenv('MY_ROBOT_BASICS_ROOM', 'test')
+    assert ik.solve(ik.request(1.2, 0.8)).reachable
+    monkeypatch.setenv('MY_ROBOT_BASICS_ROOM', 'student')
+    with pytest.raises(NotRunnable, match='a solution of your own'):
+        ik.solve(ik.request(1.2, 0.8))

@@ -59,6 +59,11 @@ def in_grading_room() -> bool:
     return 'MY_ROBOT_BASICS_ROOM' in os.environ
 
 
+def in_students_room() -> bool:
+    """Whether what runs here is a student's code that is graded or validated."""
+    return os.environ.get('MY_ROBOT_BASICS_ROOM') == 'student'
+
+
 def _checked(given: str) -> int:
     if given.isascii() and given.isdigit() and int(given) <= HIGHEST_DOMAIN:
         return int(given)
