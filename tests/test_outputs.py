@@ -1,5 +1,7 @@
 """Gathering a cell's outputs: bounded, and only what has the shape of an output."""
 
+import time
+
 import nbformat
 import pytest
 from my_robot_basics.validate.outputs import MAX_OUTPUT_CHARACTERS, CellRun, Displays
@@ -243,3 +245,14 @@ def test_updates_in_place_for_ever_leave_room():
         text = str(number) + 'x' * 50_000
         displays.update({'data': {'text/plain': text}, 'transient': {'display_id': 'a'}})
     assert run.outputs[0].data['text/plain'].startswith('99')
+
+
+def test_a_large_update_of_many_displays_of_one_id_takes_no_longer_than_that_of_one():
+    displays, run = Displays(), CellRun()
+    for _ in range(1_000):
+        shown(run, displays, {'text/plain': 'x'}, 'a')
+    big = {'text/plain': 'x' * 10_000_000}
+    began = time.process_time()
+    displays.update({'data': big, 'transient': {'display_id': 'a'}})
+    assert time.process_time() - began < 2.0
+    assert {output.data['text/plain'] for output in run.outputs} == {'x'}

@@ -79,9 +79,9 @@ class CellRun:
         self.outputs.append(output)
         return output
 
-    def replace(self, output: NotebookNode, data: dict) -> None:
-        """Give an output that was kept other data, unless it would grow too large."""
-        growth = _size(data) - _size(output.data)
+    def replace(self, output: NotebookNode, data: dict, *, size: int) -> None:
+        """Give an output that was kept other data of that size, unless it would grow too large."""
+        growth = size - _size(output.data)
         if growth <= self._room:
             self._kept += growth
             output.data = nbformat.from_dict(data)
@@ -140,8 +140,9 @@ class Displays:
         new, display_id = safe_output('display_data', content), _display_id(content)
         if new is None or display_id is None:
             return
+        size = _size(new.data)  # once: thousands of small outputs may have one id
         for run, output in self._outputs.get(display_id, ()):
-            run.replace(output, new.data)
+            run.replace(output, new.data, size=size)
 
 
 def _display_id(content: dict) -> str | None:
