@@ -1,5 +1,7 @@
 """What to run of a lesson before one of its exercises is judged."""
 
+import time
+
 import nbformat
 import pytest
 from my_robot_basics.validate.exercises import find_exercises
@@ -174,6 +176,23 @@ def test_a_helper_that_is_lent_brings_what_it_needs_along():
     first = next(plans(notebook, find_exercises(notebook)[0]))
     assert first.why == LENT
     assert [notebook.cells[i].source for i in first.demonstrations] == ['shown = 1']
+
+
+def test_many_cells_that_each_need_the_next_one_take_no_time():
+    notebook = lesson(area='def area(r): return v0', at_start='# many')
+    [many] = [cell for cell in notebook.cells if cell.source == '# many']
+    at = notebook.cells.index(many)
+    for number in range(700):
+        more = ''.join(f'w{number}x{each}=u{number}x{each}\n' for each in range(20))
+        cell = nbformat.from_dict(many)
+        cell.source = f'v{number} = v{number + 1}\n{more}'
+        notebook.cells.insert(at, cell)
+    found = list(plans(notebook, find_exercises(notebook)[0]))
+    began = time.process_time()  # all texts have been read
+    assert list(plans(notebook, find_exercises(notebook)[0])) == found
+    assert time.process_time() - began < 1.0
+    assert [plan.why for plan in found] == [LENT, WHOLE]
+    assert len(found[0].cells) > 700
 
 
 def sources(notebook, plan):

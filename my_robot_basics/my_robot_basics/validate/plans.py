@@ -77,11 +77,12 @@ def _lending(
     cells: list[NotebookNode], indexes: Iterable[int], names: Iterable[str]
 ) -> tuple[set[int], set[str]]:
     """Which of these cells bind such a name, or one that those need; and all such names."""
+    binders = _binders(cells, indexes)
     lending: set[int] = set()
     met, todo = set[str](), {*names}
     while todo:
         met |= todo
-        binding = {i for i in indexes if _binds(cells[i], todo)} - lending
+        binding = {i for name in todo for i in binders.get(name, ())} - lending
         lending |= binding
         todo = set().union(*(names_of(cells[i].source).needed for i in binding)) - met
     return lending, met
@@ -125,15 +126,17 @@ def _with_what_is_shown(
 ) -> Plan:
     """Plan the chosen cells, and what the lesson shows that binds a name which they need."""
     shown = [i for i, c in enumerate(cells) if is_code(c) and role(c) in ('demo', 'setup')]
+    binders, bound = _binders(cells, shown), _bound(cells, chosen)
     demonstrations: set[int] = set()
     todo = [(exercise.answer, names_of(cells[i].source).needed) for i in chosen]
     while todo:
         place, needed = todo.pop()
-        for name in needed - _bound(cells, chosen | demonstrations):
-            binding = [i for i in shown if name in names_of(cells[i].source).bound]
+        for name in needed - bound:
+            binding = binders.get(name, [])
             # of several, the one that ran last when the lesson was read from top to bottom
             nearest = [i for i in binding if i < place][-1:] or binding[:1]
             demonstrations.update(nearest)
+            bound |= _bound(cells, nearest)
             todo += [(i, names_of(cells[i].source).needed) for i in nearest]
     every = tuple(sorted(chosen | demonstrations))
     return Plan(every, why, tuple(sorted(demonstrations)), _again(cells, exercise, every))
@@ -160,6 +163,15 @@ def _again(
     if any(names_of(cells[i].source).binds_more for i in below):
         lent |= met  # one of them, perhaps
     return exercise.run if met & lent - there else ()
+
+
+def _binders(cells: list[NotebookNode], indexes: Iterable[int]) -> dict[str, list[int]]:
+    """Which of these cells bind each name: there may be 800, each with a name of the next."""
+    binders: dict[str, list[int]] = {}
+    for i in indexes:
+        for name in names_of(cells[i].source).bound:
+            binders.setdefault(name, []).append(i)
+    return binders
 
 
 def _bound(cells: list[NotebookNode], indexes: Iterable[int]) -> set[str]:
