@@ -72,10 +72,11 @@ def _run_grade(
     for line in extended_for_nobody(course):
         print(line)
     failed = sum(row.stored is None for row in rows)
+    reused = sum(row.reused for row in rows)
     waiting = sum(row.stored is not None and row.stored.pending for row in rows)
     print(
-        f'{len(rows) - failed} graded, {waiting} of them wait for a person (…), '
-        f'{failed} could not be graded (–).\n'
+        f'{len(rows) - failed - reused} graded, {reused} unchanged, {failed} could not be graded '
+        f'(–); {waiting} of them all wait for a person (…).\n'
         f'Report: {report}\nNext: {_BY_HAND * bool(waiting)}./course feedback, ./course scores'
     )
     return 1 if failed else 0

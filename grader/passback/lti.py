@@ -27,9 +27,12 @@ def send_scores(course: Course, assignment: str, say: Callable[[str], None]) -> 
     """Send each final score that the platform does not have, of an assignment or of all.
 
     `say` gets a line for each student whose score is not sent, with why. Raises CourseError
-    where gradebook/lti.toml is not right, or nothing of the assignment is graded.
+    where gradebook/lti.toml is not right, where there is no such assignment, and where nothing of
+    it is graded.
     """
     settings = read_settings(course)
+    if assignment:
+        course.expect_assignment(assignment)
     platform = LtiService(settings)
     found = records(course)
     with gradebook_lock(course.gradebook, say), opened_lti_queue(course.gradebook) as queue:
