@@ -331,6 +331,37 @@ OF_STUDENTS = {
     "your cell `a` stopped with SyntaxError: expected ':' (line 15)": (
         "你的单元格 `a` 停止了：SyntaxError: expected ':'（第 15 行）"
     ),
+    'your cell `a` stopped with IndentationError: expected an indented block after function '
+    'definition on line 1 (line 2)': (
+        '你的单元格 `a` 停止了：IndentationError: expected an indented block after function '
+        'definition on line 1（第 2 行）'
+    ),
+    "your cell `a` stopped with SyntaxError: invalid character '，' (U+FF0C) (line 3)": (
+        "你的单元格 `a` 停止了：SyntaxError: invalid character '，' (U+FF0C)（第 3 行）"
+    ),
+    "expected `f(1)` to return, saw TypeError: f() missing 1 required positional argument: 'l2': "
+    'call f(1) in a cell of your own to see where': (
+        '预期：`f(1)` 会返回；实际：TypeError: f() missing 1 required positional argument: '
+        "'l2'。在你自己的单元格里调用 f(1)，看看是在哪里"
+    ),
+    "expected `f(1)` to return, saw TypeError: unsupported operand type(s) for ^: 'float' and "
+    "'float': call f(1) in a cell of your own to see where": (
+        "预期：`f(1)` 会返回；实际：TypeError: unsupported operand type(s) for ^: 'float' and "
+        "'float'。在你自己的单元格里调用 f(1)，看看是在哪里"
+    ),
+    'in the part checked at grading: `f` raises NotImplementedError: call … in a cell of your own '
+    'to see where': (
+        '在评分时检查的部分：`f` 抛出 NotImplementedError：在你自己的单元格里调用 …，看看是在哪里'
+    ),
+    'its callback raised KeyboardInterrupt (line 9, in f: raise KeyboardInterrupt), so fix that '
+    'first': (
+        '它的回调抛出了 KeyboardInterrupt (line 9, in f: raise KeyboardInterrupt)，所以先改正它'
+    ),
+    'your cell `a` stopped with InvalidNodeNameException: Invalid node name: node name must not '
+    "contain characters other than alphanumerics or '_': 'my-node' ^": (
+        '你的单元格 `a` 停止了：InvalidNodeNameException: Invalid node name: node name must not '
+        "contain characters other than alphanumerics or '_': 'my-node' ^"
+    ),
     "expected a warning in the log of /a, saw 'IK: x=1, y=2': keep both keys": (
         "预期：/a 的日志里有一条警告；实际：'IK: x=1, y=2'。两个键都要保留"
     ),

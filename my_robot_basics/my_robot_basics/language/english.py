@@ -9,12 +9,13 @@ PHRASE = 10_000
 
 _TWO_WORDS = re.compile(r'[^\W\d_]{2,} [^\W\d_]{2,}')
 _NAME = re.compile(
-    r'`[^`]*`|\'[^\']*\'|"[^"]*"|/[\w/]+|\w+\(.*?\)|\b[A-Z_]{2,}\b|\w*[\d_]\w*|\w+Error\b|NotRunnable'
+    r'`[^`]*`|\'[^\']*\'|"[^"]*"|/[\w/]+|\w+\(.*?\)|\b[A-Z_]{2,}\b|\w*[\d_]\w*|\w+(Error|Interrupt|Exit)\b|NotRunnable'
     r'|\b(True|False|None|Hz|rad|nan|inf|JointState|Point|String|Int32)\b|\w+(/\w+)+|\b\w\b'
 )
 """What is a name in each language, or quoted."""
 _RAISED = re.compile(
-    r"[\w.]*(Error|Exception|Interrupt)(: .*)?|Wrong parameter type, expected '\S+' got '\S+'",
+    r'[\w.]*(Error|Exception|Interrupt|Exit)(: .*| \(line .*\))?'
+    r"|Wrong parameter type, expected '\S+' got '\S+'",
     re.DOTALL,
 )
 """What Python says of an exception, or rclpy of a parameter: it stays in English."""

@@ -11,9 +11,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import islice
 
+from my_robot_basics.language.cuts import cuts, cuts_raised, is_open
 from my_robot_basics.language.english import PHRASE, is_raised, letters_in_names, letters_left
-from my_robot_basics.language.spaces import QUOTED, close_up
-from my_robot_basics.language.templates import LETTERS, PLACE, Template
+from my_robot_basics.language.spaces import close_up
+from my_robot_basics.language.templates import FEW_LETTERS, LETTERS, PLACE, Template
 
 SENTENCES, SPACED = '{sentence} {other}', '{one} {other}'
 """One sentence behind another one; and what begins as some template does, behind anything."""
@@ -24,25 +25,18 @@ JOINED += ('{one} ({other})',)
 """How sentences are put together of others, anywhere."""
 MOST_CHARACTERS = 2_000
 """No sentence of ours is longer; what a student's code made may be."""
-FEW_LETTERS = 4
-"""Templates with fewer, such as '{name} is {value}', fit anything: none is part of a phrase,
-unless there are quotes in it."""
 MOST_TRIES = 8_000
 """How many places are tried for one sentence."""
 MOST_DEEP = 12
 """How many templates may stand one in the other."""
 MOST_SPACES = 40
 """At how many spaces a text may be two."""
-MOST_DROPPED = 5
-"""Characters that a translation may leave out, such as the s of a plural."""
 MOST_SPLITS = 10
 """In how many ways one template may fit one text."""
 
 _HOW_MANY = re.compile(r'(len|count|code)\d*')
 """The places of numbers, so that `{len} wrong` fits nothing but these; hidden ones are `…`."""
 _NUMBER = re.compile(r'[\d,]+|…')
-_OPENED = re.compile(r'(?<!\w)[\'"](?=\w)')
-"""A quote that is not closed."""
 
 
 @dataclass
@@ -137,7 +131,8 @@ class Sentences:
         for space in islice(re.finditer(' ', text), MOST_SPACES):
             before, after = text[: space.start()], text[space.end() :]
             self._tries += 1
-            for joined in (SENTENCES,) * before.endswith(('.', '!', '?')) + (SPACED,):
+            ended = before.endswith(('.', '!', '?'))
+            for joined in (SENTENCES,) * ended + (SPACED,) * (not is_open(before)):
                 if joined == SENTENCES or after.startswith(self._starts):
                     template = Template.of(joined, self.translations.get(joined, joined))
                     found = dict(zip(template.places, (before, after), strict=True))
@@ -155,7 +150,7 @@ class Sentences:
                 place.endswith('name') and ': ' in text
             ):
                 return True
-        return _cuts(template, found)
+        return cuts(template, found) or cuts_raised(template, found, self._starts)
 
     def _put(self, template: Template, found: Mapping[str, str], deep: int) -> tuple[float, str]:
         """Return a template's translation with that in its places, and how much stays English."""
@@ -166,29 +161,6 @@ class Sentences:
         }
         shown = PLACE.sub(lambda place: best[place[1]][1], template.translation)
         return sum(left for left, _ in best.values()), shown
-
-
-def _cuts(template: Template, found: Mapping[str, str]) -> bool:
-    """Whether a template would cut a sentence or a bracket in two, or leave a place empty."""
-    said = {place: QUOTED.sub('', text) for place, text in found.items()}
-    ended = any('. ' in said[place] for place in template.places[:-1]) and template.letters > 0
-    named = {place for place in template.used if not place.startswith('value')}
-    if any('`' in found[place] for place in template.quoted):
-        return True
-    if '' not in template.literals[1:-1] and any(not found[place] for place in named):
-        return True
-    if any(
-        len(text) > MOST_DROPPED for place, text in found.items() if place not in template.used
-    ):
-        return True
-    return ended or any(
-        '…' not in text
-        and (
-            any(text.count(one) != text.count(other) for one, other in ('()', '[]', '{}'))
-            or _OPENED.search(text)
-        )
-        for text in said.values()
-    )
 
 
 def _with_places(text: str, english: str = '') -> str:

@@ -6,6 +6,9 @@ from dataclasses import dataclass
 
 PLACE = re.compile(r'\{(\w*)\}')
 LETTERS = re.compile(r'[^\W\d_]')
+FEW_LETTERS = 4
+"""Templates with fewer, such as '{name} is {value}', fit anything: none is part of a phrase,
+unless there are quotes in it."""
 _WORD = re.compile(r'[^\s,;(]*')
 _QUOTES = tuple('`\'"')
 """Between “these” stands what the course calls something."""

@@ -1,0 +1,61 @@
+"""Which template would cut a text where nothing ends, so that it does not fit."""
+
+import re
+from collections.abc import Mapping
+
+from my_robot_basics.language.spaces import QUOTED
+from my_robot_basics.language.templates import FEW_LETTERS, LETTERS, Template
+
+MOST_DROPPED = 5
+"""Characters that a translation may leave out, such as the s of a plural."""
+
+_OPENED = re.compile(r'(?<!\w)[\'"](?=\w)')
+"""A quote that is not closed."""
+_RAISES = re.compile(r'(Error|Exception|Interrupt|Exit):( |$)')
+"""Behind it Python's own words follow, with colons, brackets and 'and' of their own."""
+
+
+def cuts(template: Template, found: Mapping[str, str]) -> bool:
+    """Whether a template would cut a sentence or a bracket in two, or leave a place empty."""
+    said = {place: QUOTED.sub('', text) for place, text in found.items()}
+    ended = any('. ' in said[place] for place in template.places[:-1]) and template.letters > 0
+    named = {place for place in template.used if not place.startswith('value')}
+    if any('`' in found[place] for place in template.quoted):
+        return True
+    if '' not in template.literals[1:-1] and any(not found[place] for place in named):
+        return True
+    if any(
+        len(text) > MOST_DROPPED for place, text in found.items() if place not in template.used
+    ):
+        return True
+    return ended or any(
+        '…' not in text
+        and (
+            any(text.count(one) != text.count(other) for one, other in ('()', '[]', '{}'))
+            or _OPENED.search(text)
+        )
+        for text in said.values()
+    )
+
+
+def cuts_raised(template: Template, found: Mapping[str, str], starts: tuple[str, ...]) -> bool:
+    """Whether a template would end what Python says of an exception before its end.
+
+    It ends where words of ours follow: those of the template, or what `starts` so.
+    """
+    pairs = zip(template.places, template.places[1:], template.literals[1:], strict=False)
+    return any(
+        _RAISES.search(found[place])
+        and (found[place].endswith(':') or not _is_ours(literal, found[other], starts))
+        for place, other, literal in pairs
+    )
+
+
+def is_open(text: str) -> bool:
+    """Whether a space does not end a text: a colon belongs there, or it says what was raised."""
+    return text.endswith(':') or bool(_RAISES.search(text))
+
+
+def _is_ours(literal: str, after: str, starts: tuple[str, ...]) -> bool:
+    letters = len(LETTERS.findall(literal))
+    return letters >= FEW_LETTERS or (not letters and after.startswith(('`', *starts)))
