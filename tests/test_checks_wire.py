@@ -3,8 +3,10 @@
 import base64
 import contextlib
 import enum
+import functools
 import json
 import math
+import re
 
 import numpy as np
 import pytest
@@ -113,11 +115,42 @@ def test_messages_come_back_equal():
     assert values.decode(json.loads(wire.dumps(values.encode(sent)))) == sent
 
 
-def test_a_message_with_a_field_of_a_wrong_type_is_unsupported():
-    broken = JointState()
-    broken.header.frame_id = None
-    with pytest.raises(values.UnsupportedValue, match='JointState with a field of a wrong type'):
+WRONG = {
+    'header.frame_id = None is no string': {'header.frame_id': None},
+    'header.stamp = 12.5 is no builtin_interfaces/Time': {'header.stamp': 12.5},
+    'header.stamp.sec = 1.5 is no int32': {'header.stamp.sec': 1.5},
+    'header = builtin_interfaces.msg.Time(sec=5, nanosec=0) is no std_msgs/Header': {
+        'header': Time(sec=5)
+    },
+    "name = ['joint1', 2] is no sequence<string>": {'name': ['joint1', 2]},
+    'name = <generator object <genexpr>> is no sequence<string>': {
+        'name': (name for name in ['joint1'])
+    },
+}
+
+
+@pytest.mark.parametrize(('says', 'fields'), WRONG.items())
+def test_a_message_with_a_field_of_a_wrong_type_is_unsupported_and_the_field_named(says, fields):
+    broken = joint_state()
+    for path, value in fields.items():
+        *parents, last = path.split('.')
+        setattr(functools.reduce(getattr, parents, broken), last, value)
+    wanted = f'sensor_msgs/msg/JointState with a field of a wrong type ({says})'
+    with pytest.raises(values.UnsupportedValue, match=re.escape(wanted)):
         values.encode(broken)
+
+
+def test_a_message_of_a_class_of_the_students_own_travels_as_the_one_it_derives_from():
+    class ArmState(JointState):
+        def __init__(self, frame_id):
+            super().__init__(name=['joint1'])
+            self.header.frame_id = frame_id
+
+    arrived = values.decode(values.encode(ArmState('base_link')))
+    wanted = JointState(name=['joint1'], header=Header(frame_id='base_link'))
+    assert (type(arrived), arrived) == (JointState, wanted)
+    with pytest.raises(values.UnsupportedValue, match=r'frame_id = 5 is no string'):
+        values.encode(ArmState(5))
 
 
 def test_a_set_in_a_message_is_unsupported_for_it_has_no_order():

@@ -1,7 +1,7 @@
 """The student's side of `student`: look a name or an endpoint up, answer in JSON.
 
-This module, settled.py, wire.py and values.py are all of `checks` that a student's kernel runs at
-grading.
+This module, settled.py, wire.py, values.py and wrong_fields.py are all of `checks` that a
+student's kernel runs at grading.
 """
 
 import contextlib

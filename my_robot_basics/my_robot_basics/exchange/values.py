@@ -17,6 +17,8 @@ from typing import Any
 
 import numpy as np
 
+from my_robot_basics.exchange.wrong_fields import wrong_field
+
 MOST_DEPTH = 32
 MESSAGE_PACKAGES = (
     'builtin_interfaces',
@@ -113,14 +115,11 @@ def type_name(type_: type) -> str:
 
 
 def _encode_message(value: Any, depth: int) -> dict:
-    name = type_name(type(value))
-    try:
-        known = message_type(name) is type(value)
-    except WireError:
-        known = False
-    if not known:
+    type_ = next(filter(_is_known, type(value).__mro__), None)
+    if type_ is None:
         own_name = type(value).__name__
         raise UnsupportedValue(f'{own_name} in it' if depth else own_name)
+    name = type_name(type_)
     for field in value.get_fields_and_field_types():
         if isinstance(getattr(value, field), set | frozenset):
             raise UnsupportedValue(f'{name} with {WRONG_FIELD} ({field} is a set: no order)')
@@ -130,8 +129,18 @@ def _encode_message(value: Any, depth: int) -> dict:
         cdr = serialize_message(value)
     except Exception as error:
         # rclpy raises whatever the field's conversion raised: TypeError, AttributeError, …
-        raise UnsupportedValue(f'{name} with {WRONG_FIELD} ({error})') from error
+        path, held, wanted = wrong_field(value, type_)
+        what = f'{path} = {held} is no {wanted}' if path else error
+        raise UnsupportedValue(f'{name} with {WRONG_FIELD} ({what})') from error
     return {'ros': name, 'cdr': base64.b64encode(cdr).decode('ascii')}
+
+
+def _is_known(type_: type) -> bool:
+    """Whether a class is that of a message which travels; one derived from it travels as it."""
+    try:
+        return message_type(type_name(type_)) is type_
+    except WireError:
+        return False
 
 
 def _decode_message(name: str, cdr: str) -> object:

@@ -1,0 +1,39 @@
+"""Which field of a ROS message holds a value that its type does not take."""
+
+import re
+from reprlib import Repr
+from typing import Any
+
+_ADDRESS = re.compile(r' at 0x[0-9a-f]+')
+_FIELDS = 'get_fields_and_field_types'
+_BRIEF = Repr()
+_BRIEF.fillvalue = '…'
+_BRIEF.maxstring = _BRIEF.maxother = 60
+
+
+def wrong_field(message: Any, type_: type) -> tuple[str, str, str]:
+    """Return a field, its value and its type: ('header.frame_id', '5', 'string'); or texts of ''.
+
+    It is the first one that does not travel in a message in which all others are as new.
+    """
+    for field, wanted in message.get_fields_and_field_types().items():
+        value = getattr(message, field)
+        if _travels(type_(), field, value):
+            continue
+        if type(value) is type(getattr(type_(), field)) and hasattr(value, _FIELDS):
+            inner, held, type_name = wrong_field(value, type(value))
+            if inner:
+                return f'{field}.{inner}', held, type_name
+        return field, _ADDRESS.sub('', _BRIEF.repr(value)), wanted
+    return '', '', ''
+
+
+def _travels(message: object, field: str, value: object) -> bool:
+    from rclpy.serialization import serialize_message
+
+    try:
+        setattr(message, field, value)
+        serialize_message(message)
+    except Exception:
+        return False
+    return True
