@@ -154,6 +154,10 @@ def test_a_failure_tells_what_happened_in_the_students_own_cells(cell):
     ('error', 'told'),
     [
         (('SyntaxError', "expected ':' (63915088.py, line 15)"), "expected ':' (line 15)"),
+        (
+            ('IndentationError', 'unindent does not match (<tokenize>, line 5)'),
+            'unindent does not match (line 5)',
+        ),
         (('NotImplementedError', ''), 'stopped with NotImplementedError'),
         (('OSError', 'no data.py: (x.py)'), 'stopped with OSError: no data.py: (x.py)'),
     ],

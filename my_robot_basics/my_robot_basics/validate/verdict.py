@@ -28,7 +28,7 @@ UNGRADED = 'not graded, a person has to look at it: '
 """How the reason begins where the grader itself failed."""
 _FAILURES = ('CheckFailed', 'PartlyRight', STARVED, DISTURBED, 'AssertionError')
 _SHOWN = ('display_data', 'stream')
-_TEMPORARY_FILE = re.compile(r'\((<ipython-input-[^>]*>|\d+\.py), (?=line \d+\))')
+_TEMPORARY_FILE = re.compile(r'\((<(ipython-input|tokenize|string)[^>]*>|\d+\.py), (?=line \d+\))')
 """How a SyntaxError names a cell of a notebook, which nobody would recognise."""
 
 
