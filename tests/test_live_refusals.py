@@ -5,6 +5,7 @@ import math
 import pytest
 from my_robot_basics.live import run, stop
 from my_robot_basics.session.errors import NotRunnable
+from my_robot_basics.session.neighbours import nodes_here
 from rclpy.node import Node
 from std_msgs.msg import String
 
@@ -26,6 +27,13 @@ class OwnMistake(Node):
         self.publisher = self.create_publsher(String, '/late', 10)
 
 
+class Returns(Node):
+    def __init__(self):
+        super().__init__('returns')
+        self.publisher = self.create_publisher(String, '/late', 10)
+        return self
+
+
 @pytest.mark.parametrize('NodeClass', [Late, Never])
 def test_a_node_that_was_never_made_is_told_how_to_begin(NodeClass):
     with pytest.raises(NotRunnable, match=rf'of {NodeClass.__name__} to begin with super\(\)\._'):
@@ -35,6 +43,13 @@ def test_a_node_that_was_never_made_is_told_how_to_begin(NodeClass):
 def test_a_mistake_of_another_kind_is_shown_as_it_is():
     with pytest.raises(AttributeError, match='create_publsher'):
         run(OwnMistake)
+    stop()
+
+
+def test_a_constructor_that_returns_something_raises_as_it_does_in_a_program():
+    with pytest.raises(TypeError, match=r"__init__\(\) should return None, not 'Returns'"):
+        run(Returns)
+    assert not any(isinstance(node, Returns) for node in nodes_here())
     stop()
 
 

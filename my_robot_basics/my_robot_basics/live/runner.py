@@ -81,7 +81,9 @@ def launch(
     node = NodeClass.__new__(NodeClass, *args, **kwargs)
     try:
         with announce_name(node, on_name):
-            type(node).__init__(node, *args, **kwargs)
+            returned = type(node).__init__(node, *args, **kwargs)
+        if returned is not None:  # Python asks for that where it makes the object itself
+            raise TypeError(f"__init__() should return None, not '{type(returned).__name__}'")
         if not is_made(node):
             raise NotRunnable(no_node_yet(NodeClass))
     except _LivesElsewhere as found:
