@@ -669,6 +669,17 @@ def test_reset_and_run_answer(lesson):
     assert lesson.run('rclpy.init(); rclpy.shutdown()').error is None
 
 
+def test_an_answer_that_makes_its_node_and_does_not_spin_it_is_told_so(lesson):
+    lesson.run("reset('Answer')")
+    lesson.run('class Answer(Talker): pass\nrclpy.init()\nmine = Answer()')
+    error = lesson.run("run_answer('Answer')").error
+    assert 'saw a node of it that nothing spins: leave out the' in ' '.join(error.split())
+    assert len(error.splitlines()) <= 2
+    lesson.run('mine.destroy_node()')
+    assert lesson.run("answer = run_answer('Answer')").error is None
+    lesson.run('reset()')
+
+
 IMPORTED = 'from my_robot_basics import kinematics_publisher as course\n'
 TAKEN = {
     'derives': f'{IMPORTED}class Answer(course.KinematicsPublisher): pass',

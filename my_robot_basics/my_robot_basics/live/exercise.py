@@ -8,6 +8,7 @@ from rclpy.node import Node
 from my_robot_basics.live import course_nodes, runner, troubles
 from my_robot_basics.session import classroom
 from my_robot_basics.session.errors import NotRunnable, tell
+from my_robot_basics.session.neighbours import nodes_here
 
 
 def reset(*names: str) -> None:
@@ -31,8 +32,9 @@ def reset(*names: str) -> None:
 def run_answer(name: str, *args: Any, **kwargs: Any) -> Node | None:
     """Run the node class `name` that the answer cell defines; see `run` for the rest.
 
-    Raises NotRunnable where the notebook has no class of that name that derives from Node, and
-    where it was imported or taken from the course's own nodes.
+    Raises NotRunnable where the notebook has no class of that name that derives from Node, where
+    it was imported or taken from the course's own nodes, and where the answer has made its node
+    already, but does not spin it.
     """
     answer = _notebook().get(name)
     where = 'write it in the answer cell: only the notebook is submitted'
@@ -49,7 +51,17 @@ def run_answer(name: str, *args: Any, **kwargs: Any) -> Node | None:
     if taken := course_nodes.taken_from(answer):
         raise NotRunnable(f'expected {name} to be your own, saw {taken}: {course_nodes.HOW}')
     with course_nodes.none_made():
-        return runner.run(answer, *args, **kwargs)
+        node = runner.run(answer, *args, **kwargs)
+    if node is None and any(_is_idle(answer, other) for other in nodes_here()):
+        raise NotRunnable(
+            f'expected the class {name} alone, saw a node of it that nothing spins: leave out the '
+            'line that makes it, for this cell makes one, and spins it'
+        )
+    return node
+
+
+def _is_idle(NodeClass: type[Node], node: Node) -> bool:
+    return isinstance(node, NodeClass) and node.executor is None
 
 
 def _notebook() -> dict[str, Any]:
