@@ -73,7 +73,7 @@ FAILURES = {
     'text for a bool': (lambda x: 'True', "saw a str ('True'): a text in quotes is no other"),
     'a generator': (lambda x: iter([]), 'to return a bool, saw a list_iterator: return plain'),
     'a generator within': (lambda x: {'a': iter([])}, 'bool, saw a list_iterator in it'),
-    'a wrong field': (with_a_stamp_for_a_header, "'stamp'): give each field a value of the type"),
+    'a wrong field': (with_a_stamp_for_a_header, 'is no std_msgs/Header): give each field a'),
     'exits silently': (lambda x: sys.exit(), 'expected `f(2)` to return, saw SystemExit: call'),
     'not a function': (5, "saw TypeError: 'int' object is not callable"),
     'too much': (lambda x: 'a' * 70_000, 'saw more than 64 kB of text'),
@@ -185,7 +185,8 @@ def test_answering_loads_no_check():
         "print(*sorted(m for m in sys.modules if m.startswith('my_robot_basics')))"
     )
     done = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True, check=True)
-    names = ['exchange', *(f'exchange.{m}' for m in ('responder', 'settled', 'values', 'wire'))]
+    modules = 'responder', 'settled', 'values', 'wire', 'wrong_fields'
+    names = ['exchange', *(f'exchange.{m}' for m in modules)]
     assert done.stdout.split() == ['my_robot_basics', *(f'my_robot_basics.{n}' for n in names)]
 
 
@@ -238,3 +239,44 @@ def test_a_field_of_another_type_is_told_from_what_rclpy_says_of_it(monkeypatch)
     said = 'TypeError: bad argument type for built-in operation (line 3)'
     monkeypatch.setattr(student, 'trouble', lambda name: said)
     assert what_raised(['/any']).endswith('a field of the message holds a value of another type')
+
+
+@pytest.mark.starts
+def test_the_field_of_another_type_is_named_where_rclpy_was_to_publish_it(monkeypatch):
+    monkeypatch.delenv('MY_ROBOT_BASICS_ROOM', raising=False)
+
+    class Floats(Node):
+        def __init__(self):
+            super().__init__('floats')
+            self.publisher = self.create_publisher(JointState, '/floats', 10)
+            self.create_timer(0.01, self.tick)
+
+        def tick(self):
+            message = JointState()
+            message.header.stamp.sec = 12.5
+            self.publisher.publish(message)
+
+    live.run(Floats)
+    live.wait_until(lambda: student.times_raised('/floats'))
+    assert student.unpublished_field('/floats') == ('header.stamp.sec', 'int32')
+    assert what_raised(['/floats']).endswith('so give header.stamp.sec a value of the type int32')
+    assert student.unpublished_field('/others') == ('', '')
+    live.stop()
+
+
+@pytest.mark.starts
+def test_what_a_library_raised_is_told_with_the_students_line(monkeypatch):
+    monkeypatch.delenv('MY_ROBOT_BASICS_ROOM', raising=False)
+
+    class Texts(Node):
+        def __init__(self):
+            super().__init__('texts')
+            self.create_timer(0.01, self.tick)
+
+        def tick(self):
+            JointState(position=['0.1'])
+
+    live.run(Texts)
+    live.wait_until(lambda: student.times_raised('/texts'))
+    assert "in tick: JointState(position=['0.1'])" in student.trouble('/texts')
+    live.stop()

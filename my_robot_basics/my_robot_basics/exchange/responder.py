@@ -10,7 +10,8 @@ from typing import Any
 
 from my_robot_basics.exchange import settled, values, wire
 
-_PROTOCOL = ('call', 'value', 'endpoint', 'settled', 'trouble', 'raised', 'clock', 'package')
+_PROTOCOL = ('call', 'value', 'endpoint', 'settled', 'clock', 'package')
+_PROTOCOL_OF_TROUBLES = ('trouble', 'raised', 'field')
 
 
 def answer(request_text: str) -> str:
@@ -21,7 +22,7 @@ def answer(request_text: str) -> str:
     request = wire.loads(request_text)
     op, args = request.get('op'), request.get('args', [])
     name: Any = request.get('name')
-    if request.get('protocol') != wire.PROTOCOL or op not in _PROTOCOL:
+    if request.get('protocol') != wire.PROTOCOL or op not in (*_PROTOCOL, *_PROTOCOL_OF_TROUBLES):
         raise values.WireError('a request of another protocol')
     if op == 'endpoint':
         return _reply(_has_endpoint(name, *args))
@@ -31,6 +32,8 @@ def answer(request_text: str) -> str:
         return _reply(_trouble(name))
     if op == 'raised':
         return _reply(_times_raised(name))
+    if op == 'field':
+        return _reply(_unpublished_field(name))
     if op == 'clock':
         return _reply(_set_use_sim_time(name, *args))
     if op == 'package':
@@ -79,6 +82,12 @@ def _times_raised(node_name: str) -> int:
     """How often a callback of a node raised that live spins."""
     troubles = sys.modules.get('my_robot_basics.live.troubles')
     return troubles.times(node_name) if troubles else 0
+
+
+def _unpublished_field(node_name: str) -> tuple[str, str]:
+    """For which field a node could not publish, and its type."""
+    troubles = sys.modules.get('my_robot_basics.live.troubles')
+    return troubles.field(node_name) if troubles else ('', '')
 
 
 def _set_use_sim_time(node_name: str, value: bool) -> bool | None:

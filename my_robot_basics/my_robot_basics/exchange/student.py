@@ -119,6 +119,13 @@ def trouble(node_name: str) -> str:
     return shorten(body) if isinstance(body, str) else ''
 
 
+def unpublished_field(node_name: str) -> tuple[str, str]:
+    """For which field a message of that node did not travel, and its type; or texts of ''."""
+    body = _told(wire.request(op='field', name=node_name))
+    is_told = isinstance(body, tuple) and [type(text) for text in body] == [str, str]
+    return (shorten(body[0], 60), shorten(body[1], 60)) if is_told else ('', '')
+
+
 def times_raised(node_name: str) -> int:
     """How often a callback of that node raised, where the notebook's process knows; or 0."""
     body = _told(wire.request(op='raised', name=node_name))

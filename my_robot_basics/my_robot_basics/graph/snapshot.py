@@ -70,7 +70,8 @@ class GraphSnapshot:
             return (
                 f'{who} has a publisher there and sends nothing, so see that it spins, that its '
                 'timer is created (with a period in seconds, and the name of a method, without '
-                'parentheses), and that no callback raises, or waits and so keeps the node busy'
+                'parentheses), that this method calls publish(…), and that no callback raises, or '
+                'waits and so keeps the node busy'
             )
         others = self.subscriptions(topic_name)
         return self._why_none(topic_name, self.publisher_names, 'create_publisher', others)

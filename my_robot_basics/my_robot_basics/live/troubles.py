@@ -1,48 +1,51 @@
 """What a student needs to know of an exception: the error, and which of their lines led to it."""
 
+import sysconfig
 import traceback
 from pathlib import Path
+from typing import Any
 
 import rclpy
+from rclpy.publisher import Publisher
 from rclpy.service import Service
+
+from my_robot_basics.exchange.wrong_fields import wrong_field
 
 _last: dict[str, str] = {}
 """What a callback of a node raised last, by the node's full name."""
 _times: dict[str, int] = {}
 """How often one has raised."""
+_fields: dict[str, tuple[str, str]] = {}
+"""The field of a message that could not be published, and its type, if that was it."""
 _of_services: dict[tuple[str, str], str] = {}
 """What the callback of a service raised last, by the node's and the service's full names."""
 _NOT_THEIRS = (str(Path(rclpy.__file__).parent), str(Path(__file__).parent))
+_OF_A_LIBRARY = tuple(sysconfig.get_path(kind) for kind in ('stdlib', 'purelib', 'platlib'))
 
 
 def where_and_what(error: BaseException) -> tuple[str, str]:
     """Return where the error happened, outermost call first, and what it says."""
-    frames = [
-        frame
-        for frame in traceback.extract_tb(error.__traceback__)
-        if not frame.filename.startswith(_NOT_THEIRS)
-    ]
-    where = '\n'.join(
-        f'  {_place(frame.filename)}line {frame.lineno}, in {frame.name}: {frame.line}'
-        for frame in frames
-    )
+    where = '\n'.join(f'  {_line(frame)}' for frame in _frames(error))
     return where, ''.join(traceback.format_exception_only(error)).strip()
 
 
 def remember(node_name: str, error: BaseException) -> None:
     """Note what a callback of the node raised, and where."""
-    where, what = where_and_what(error)
-    place = where.rpartition('\n')[2].strip()
+    _, what = where_and_what(error)
+    frames = _frames(error)
+    own = [frame for frame in frames if not frame.filename.startswith(_OF_A_LIBRARY)]
+    place = _line((own or frames)[-1]) if frames else ''
     _last[node_name] = f'{what} ({place})' if place else what
     _times[node_name] = times(node_name) + 1
+    _fields[node_name] = _unpublished(error)
     if service_name := _service(error):
         _of_services[node_name, service_name] = _last[node_name]
 
 
 def forget(node_name: str) -> None:
     """Forget it: a new node of that name begins."""
-    _last.pop(node_name, None)
-    _times.pop(node_name, None)
+    for of_nodes in (_last, _times, _fields):
+        of_nodes.pop(node_name, None)
     for key in [key for key in _of_services if key[0] == node_name]:
         del _of_services[key]
 
@@ -51,12 +54,18 @@ def forget_all() -> None:
     """Forget what the nodes of all names raised: an exercise begins."""
     _last.clear()
     _times.clear()
+    _fields.clear()
     _of_services.clear()
 
 
 def last(node_name: str) -> str:
     """Return what a callback of the node raised last, or ''."""
     return _last.get(node_name, '')
+
+
+def field(node_name: str) -> tuple[str, str]:
+    """Return the field for which it could not publish, and its type, where it raised that last."""
+    return _fields.get(node_name, ('', ''))
 
 
 def times(node_name: str) -> int:
@@ -67,6 +76,30 @@ def times(node_name: str) -> int:
 def of_service(service_name: str) -> dict[str, str]:
     """Return what the callbacks of a service raised last, by their nodes' full names."""
     return {node: what for (node, name), what in _of_services.items() if name == service_name}
+
+
+def _frames(error: BaseException) -> list[traceback.FrameSummary]:
+    return [
+        frame
+        for frame in traceback.extract_tb(error.__traceback__)
+        if not frame.filename.startswith(_NOT_THEIRS)
+    ]
+
+
+def _line(frame: traceback.FrameSummary) -> str:
+    return f'{_place(frame.filename)}line {frame.lineno}, in {frame.name}: {frame.line}'
+
+
+def _unpublished(error: BaseException) -> tuple[str, str]:
+    """The field for which a message did not travel, and its type: rclpy's function has both."""
+    for frame, _ in traceback.walk_tb(error.__traceback__):
+        publisher, message = (frame.f_locals.get(name) for name in ('self', 'msg'))
+        if frame.f_code.co_name == 'publish' and isinstance(publisher, Publisher):
+            type_: Any = publisher.msg_type
+            if isinstance(message, type_):
+                path, _, type_name = wrong_field(message, type_)
+                return path, type_name
+    return '', ''
 
 
 def _service(error: BaseException) -> str:
