@@ -151,6 +151,7 @@ def test_ended_once_it_is_graded_in_fresh_rooms(monkeypatch, when, check, answer
 
 
 OWN_DOING = {
+    'exit': ('exit()', 'it calls exit()'),
     'os._exit': ('import os; os._exit(0)', ''),
     'a code that looks like a signal': ('import os; os._exit(137)', ''),
     'SIGKILL': ('import os; os.kill(os.getpid(), 9)', 'your code sent it SIGKILL'),

@@ -192,6 +192,22 @@ def test_an_error_that_only_the_reply_tells_is_an_error():
     assert len(run.outputs) == 1
 
 
+@pytest.mark.parametrize(
+    ('payload', 'leaves'),
+    [
+        ([{'source': 'ask_exit', 'keepkernel': False}], True),
+        ([{'source': 'ask_exit', 'keepkernel': True}], False),
+        ([{'source': 'page'}, 5], False),
+        ({'source': 'ask_exit'}, False),
+        (None, False),
+    ],
+)
+def test_a_cell_that_asks_its_kernel_to_end_is_told_from_others(payload, leaves):
+    run = CellRun()
+    run.conclude({'status': 'ok', 'payload': payload})
+    assert (run.leaves, run.ending) == (leaves, 'it calls exit()' if leaves else '')
+
+
 def shown(run, displays, data, display_id):
     content = {'data': data, 'transient': {'display_id': display_id}}
     displays.remember(content, run, run.keep('display_data', content))

@@ -102,6 +102,9 @@ class GradingKernel:
                 if not await finished_in_grace(done, self._is_alive):
                     self._ended_by_us = self.alive
                     await self._kill()
+        if result.leaves:
+            self._ended_by_us = True
+            await self._kill()
         result.died = not self.alive
         result.close()
         return result

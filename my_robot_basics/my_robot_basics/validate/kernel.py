@@ -86,6 +86,8 @@ class LocalKernel:
                 self._forked.interrupt()
                 if not await finished_in_grace(done, self._is_alive):
                     await self._kill()
+        if result.leaves:
+            await self._kill()
         result.died = not self.alive
         result.close()
         return result

@@ -19,6 +19,8 @@ CUT_OFF = (
     'kernel, which was ended: nothing that it says could be received any more'
 )
 """What is said of a cell whose kernel was cut off."""
+EXITS = 'it calls exit()'
+"""What is said of a cell that has asked its kernel to end."""
 _OVERHEAD = 100
 """What an output costs besides its text: many small ones are as bad as a large one."""
 
@@ -40,6 +42,8 @@ class CellRun:
     died: bool = False
     cut_off: bool = False
     """Whether its kernel had to be ended, for nothing that it says could be received any more."""
+    leaves: bool = False
+    """Whether its kernel ends right behind it, for it has called `exit()`."""
     ending: str = ''
     """How the student's kernel, or what it had started, was ended, if that was their doing."""
     _kept: int = 0
@@ -96,6 +100,8 @@ class CellRun:
         self.status, self.expressions = reply.get('status'), reply.get('user_expressions')
         if self.status == 'error' and self.error is None:
             self.keep('error', reply)
+        if any(map(_asks_to_exit, _list(reply.get('payload')))):
+            self.leaves, self.ending = True, EXITS
 
     def close(self) -> None:
         """Say at the end what was not kept."""
@@ -143,6 +149,17 @@ class Displays:
         size = _size(new.data)  # once: thousands of small outputs may have one id
         for run, output in self._outputs.get(display_id, ()):
             run.replace(output, new.data, size=size)
+
+
+def _list(value: object) -> list:
+    return value if isinstance(value, list) else []
+
+
+def _asks_to_exit(payload: object) -> bool:
+    match payload:
+        case {'source': 'ask_exit', **how}:
+            return not how.get('keepkernel')
+    return False
 
 
 def _display_id(content: dict) -> str | None:
