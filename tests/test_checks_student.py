@@ -259,7 +259,9 @@ def test_the_field_of_another_type_is_named_where_rclpy_was_to_publish_it(monkey
     live.run(Floats)
     live.wait_until(lambda: student.times_raised('/floats'))
     assert student.unpublished_field('/floats') == ('header.stamp.sec', 'int32')
-    assert what_raised(['/floats']).endswith('so give header.stamp.sec a value of the type int32')
+    assert what_raised(['/floats']).endswith(
+        'so give `header.stamp.sec` a value of the type `int32`'
+    )
     assert student.unpublished_field('/others') == ('', '')
     live.stop()
 

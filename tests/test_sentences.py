@@ -353,6 +353,11 @@ OF_STUDENTS = {
     'to see where': (
         '在评分时检查的部分：`f` 抛出 NotImplementedError：在你自己的单元格里调用 …，看看是在哪里'
     ),
+    "its callback raised AttributeError: 'float' object has no attribute 'sec' (line 4, in f: "
+    'p.publish(m)), so give `header.stamp` a value of the type `builtin_interfaces/Time`': (
+        "它的回调抛出了 AttributeError: 'float' object has no attribute 'sec' (line 4, in f: "
+        'p.publish(m))，所以给 `header.stamp` 一个 `builtin_interfaces/Time` 类型的值'
+    ),
     'its callback raised KeyboardInterrupt (line 9, in f: raise KeyboardInterrupt), so fix that '
     'first': (
         '它的回调抛出了 KeyboardInterrupt (line 9, in f: raise KeyboardInterrupt)，所以先改正它'

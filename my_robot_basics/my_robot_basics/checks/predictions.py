@@ -94,8 +94,9 @@ class Predictions:
 
     def _instead_of(self, key: str, keys: Sequence[str]) -> str:
         others = [other for other in self._values if isinstance(other, str) and other not in keys]
-        similar = difflib.get_close_matches(key, others, n=1)
-        return shorten(repr(*similar)) if similar else 'no such key'
+        by_letters = {other.lower(): other for other in others}
+        similar = difflib.get_close_matches(key, by_letters, n=1)
+        return shorten(repr(by_letters[similar[0]])) if similar else 'no such key'
 
     def _check_bool(self, key: str) -> None:
         found = self._values[key]

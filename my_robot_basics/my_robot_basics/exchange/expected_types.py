@@ -28,11 +28,18 @@ def what_is_unsupported(body: str, wanted: type | tuple[type, ...] | None) -> tu
     elif body.startswith(_CLASS_OF_A_MESSAGE):
         name = body.removeprefix(_CLASS_OF_A_MESSAGE)
         return f'the class {name}', f'make a message of it with parentheses, {name}()'
+    elif isinstance(wanted, type) and body == wanted.__name__:
+        return f'another class {body}', f'make no class {body} of your own: import that of ROS'
     elif isinstance(wanted, type) and hasattr(wanted, 'get_fields_and_field_types'):
         hint = _other_type(None, (wanted,))
     else:
         hint = 'return plain values (numbers, text, lists, dicts) or a ROS message'
-    return with_article(shorten(body)), hint
+    return kind_of(body), hint
+
+
+def kind_of(body: str) -> str:
+    """What it is that cannot travel, in words: the type of a class is `type`."""
+    return 'a class' if body == 'type' else with_article(shorten(body))
 
 
 def _other_type(found: object, wanted: tuple[type, ...]) -> str:

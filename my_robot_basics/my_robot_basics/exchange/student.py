@@ -11,10 +11,10 @@ from my_robot_basics.exchange import responder, values, wire
 from my_robot_basics.exchange.expected_types import (
     brief,
     check_type,
+    kind_of,
     not_always,
     wanted_type,
     what_is_unsupported,
-    with_article,
 )
 from my_robot_basics.feedback import hidden
 from my_robot_basics.feedback.errors import fail, shorten
@@ -70,7 +70,7 @@ def value(name: str, *, type: builtins.type | tuple[builtins.type, ...] | None =
         _fail_missing(name, what='value')
     if kind == 'unsupported':
         hint = 'use plain values (numbers, text, lists, tuples, sets, dicts)'
-        seen = with_article(shorten(body))
+        seen = kind_of(body)
         fail(expected=f'`{name}` to be {wanted_type(type)}', seen=seen, hint=hint)
     if body is None and type is not None:
         hint = f'give `{name}` its value {_ANSWER_CELL}'

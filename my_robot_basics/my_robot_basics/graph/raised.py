@@ -21,7 +21,7 @@ def what_raised(node_names: Iterable[str]) -> str:
         why += ', so make a stamp of the time with .to_msg()'
     elif field:
         where, kind = theirs(field), theirs(type_name)
-        why += f', so give {where} a value of the type {kind}'
+        why += f', so give `{where}` a value of the type `{kind}`'
     elif 'bad argument type for built-in operation' in said:
         why += ', so a field of the message holds a value of another type'
     return why

@@ -119,5 +119,7 @@ def similar(topic_name: str, others: list[str]) -> str | None:
     """The name that was probably meant, among others; or None."""
     last = topic_name.rpartition('/')[2]
     same_end = [name for name in others if name.rpartition('/')[2].lower() == last.lower()]
+    parts = sorted(topic_name.split('/'))
+    turned = [name for name in others if sorted(name.split('/')) == parts]
     close = difflib.get_close_matches(topic_name, others, n=1, cutoff=0.6)
-    return next(iter([*same_end, *close]), None)
+    return next(iter([*same_end, *turned, *close]), None)
