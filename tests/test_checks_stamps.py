@@ -3,6 +3,7 @@
 import pytest
 from my_robot_basics.checks import CheckFailed, own_clock, topic
 from my_robot_basics.checks.clock import Inconclusive
+from my_robot_basics.checks.own_clock import _ahead_sec
 from my_robot_basics.checks.recording import Recording, Sample
 from my_robot_basics.feedback.errors import Starved
 from nodes.running import imported, running
@@ -191,6 +192,13 @@ def test_one_stamp_that_a_busy_machine_made_late_costs_nobody_points(off_sec, wa
     with pytest.raises(CheckFailed, match=r'a stamp 2\.0 s behind it') as failed:
         made.assert_stamps()
     assert failed.type is raised
+
+
+def test_a_clock_that_stands_still_while_a_callback_works_is_no_computers():
+    shown_ns = [100 * 10**9, 105 * 10**9]
+    stood = [(105 * 10**9, sent * 10**8) for sent in (1040, 1048, 1050)]
+    assert _ahead_sec(stood, shown_ns) == []
+    assert _ahead_sec([(104 * 10**9 + 5000, 104 * 10**9)], shown_ns) == [5e-6]
 
 
 def test_a_node_that_takes_no_other_clock_is_not_said_to_have_the_computers(patient):

@@ -4,7 +4,7 @@ The node's clock is moved ahead, and its stamps must follow.
 """
 
 import time
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 from typing import Any, NoReturn
 
 from builtin_interfaces.msg import Time as TimeMessage
@@ -29,6 +29,8 @@ PROOFS = 3
 PROOF_SEC = 2.0
 """How long to wait for them at most; a timer of the node's clock gets as much of its time."""
 PROOF_STEP_SEC = 0.05
+EXACT_NS = 1000
+"""A stamp by way of a float is off by less."""
 SETTLE_SEC = 0.5
 """How long a node may take to follow where nothing tells that it has."""
 ATTEMPTS = 3
@@ -58,18 +60,23 @@ def expect_to_follow(topic_name: str, type_: type, publishers: Collection[str]) 
 
 
 def _while_ahead(topic_name: str, type_: type, publishers: Collection[str]) -> list[float]:
-    """How far stamps are ahead of the computer's clock, in seconds, while the nodes' clock is."""
+    """How far stamps are ahead of the computer's clock, in seconds, while the nodes' clock is.
+
+    Those that this clock has shown are left out.
+    """
     with Watcher(listens=True) as watcher:
         proofs = _receive_stamps(watcher, topic_name, type_)
         with SimulatedClock(watcher, needed=set(publishers)) as clock:
+            shown_ns = [clock.now_ns]
             clock.tick(round(AHEAD_SEC * 1e9))
             since_ns = time.time_ns()
             for _ in range(round(PROOF_SEC / PROOF_STEP_SEC)):
+                shown_ns.append(clock.now_ns)
                 clock.tick(round(PROOF_STEP_SEC * 1e9))
                 watcher.spin_for(PROOF_STEP_SEC)
                 if len(proofs(since_ns)) >= PROOFS:
                     break
-            return proofs(since_ns)
+            return _ahead_sec(proofs(since_ns), [*shown_ns, clock.now_ns])
 
 
 def _while_ahead_inside(
@@ -91,10 +98,10 @@ def _while_ahead_inside(
         try:
             if any(former[name] is None for name in publishers):
                 return None
-            _tick_ahead(watcher, clock, seconds=SETTLE_SEC)
+            shown_ns = _tick_ahead(watcher, clock, seconds=SETTLE_SEC)
             since_ns = time.time_ns()
-            _tick_ahead(watcher, clock, seconds=PROOF_SEC)
-            return proofs(since_ns)
+            shown_ns += _tick_ahead(watcher, clock, seconds=PROOF_SEC)
+            return _ahead_sec(proofs(since_ns), shown_ns)
         finally:
             # on wall time, or a timer would wait until that has come
             clock.publish(Clock(clock=Time(nanoseconds=time.time_ns()).to_msg()))
@@ -104,17 +111,32 @@ def _while_ahead_inside(
                     student.set_use_sim_time(name, value=value)
 
 
-def _tick_ahead(watcher: Watcher, clock: Publisher, *, seconds: float) -> None:
+def _tick_ahead(watcher: Watcher, clock: Publisher, *, seconds: float) -> list[int]:
+    """Move the clock on for so long; return what it has shown, in ns."""
+    shown_ns = []
     for _ in range(round(seconds / PROOF_STEP_SEC)):
-        ahead_ns = time.time_ns() + round(AHEAD_SEC * 1e9)
-        clock.publish(Clock(clock=Time(nanoseconds=ahead_ns).to_msg()))
+        shown_ns.append(time.time_ns() + round(AHEAD_SEC * 1e9))
+        clock.publish(Clock(clock=Time(nanoseconds=shown_ns[-1]).to_msg()))
         watcher.spin_for(PROOF_STEP_SEC)
+    return shown_ns
+
+
+def _ahead_sec(stamps: Sequence[tuple[int, int]], shown_ns: Sequence[int]) -> list[float]:
+    """How far stamps are ahead of when they were sent, but for those that `/clock` has shown.
+
+    While a callback works, its node's clock stands still, and the computer's comes after it.
+    """
+    return [
+        (stamp_ns - sent_ns) / 1e9
+        for stamp_ns, sent_ns in stamps
+        if all(abs(stamp_ns - shown) > EXACT_NS for shown in shown_ns)
+    ]
 
 
 def _receive_stamps(
     watcher: Watcher, topic_name: str, type_: type
-) -> Callable[[int], list[float]]:
-    """Listen; what is returned tells how far each stamp since a wall time is ahead of that."""
+) -> Callable[[int], list[tuple[int, int]]]:
+    """Listen; what is returned gives each stamp since a wall time, and when it was sent, in ns."""
     received: list[tuple[int, int]] = []
 
     def receive(message: Any, info: dict) -> None:
@@ -122,9 +144,7 @@ def _receive_stamps(
 
     asked = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT)
     watcher.node.create_subscription(type_, topic_name, with_info(receive), asked)
-    return lambda since_ns: [
-        (stamp_ns - sent_ns) / 1e9 for stamp_ns, sent_ns in received if sent_ns > since_ns
-    ]
+    return lambda since_ns: [each for each in received if each[1] > since_ns]
 
 
 def nanoseconds(stamp: TimeMessage) -> int:
