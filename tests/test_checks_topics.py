@@ -311,6 +311,25 @@ def test_an_answer_that_is_wanted_once_comes_once(run, questions):
         topic('/answer').wait_for(lambda message: message.position[0] == 0.5, once=True, after=ask)
 
 
+class AnswersInParts(Echo):
+    """Publishes a first half of each answer, too"""
+
+    def answer(self, point):
+        self.publisher.publish(JointState(position=[point.x]))
+        super().answer(point)
+
+
+@pytest.mark.slow
+def test_half_an_answer_beside_the_whole_one_is_one_too_many(run):
+    run(AnswersInParts, 10)
+    with pytest.raises(CheckFailed, match='saw 2 messages: publish once in each call'):
+        topic('/answer').wait_for(
+            lambda message: len(message.position) == 2,
+            once=True,
+            after=lambda: topic('/question').publish(Point(x=0.5)),
+        )
+
+
 @pytest.mark.slow
 def test_an_answer_that_is_repeated_by_a_timer_is_told(run):
     run(Repeats, 10)

@@ -81,8 +81,8 @@ class Topic(TopicEndpoints):
         others, it speaks of what was `expected`, of the last one, as `seen` puts it in words, and
         gives the `hint` (on that one, if it is a function); so it does where one comes for which
         `never` holds, alone or beside the right one: nothing that comes later changes that. With
-        `once`, a second one for which the predicate holds fails, too, in words for a node that
-        publishes once for each message: so publish one message in `after`.
+        `once`, any second message fails, too, in words for a node that publishes once for each
+        message: so publish one message in `after`.
         """
         with Watcher(shared=True) as watcher:
             recorder = self.listen(watcher)
@@ -122,7 +122,7 @@ class Topic(TopicEndpoints):
                     hint=hint(last) if callable(hint) else hint,
                 )
             familiar.remember(watcher.context, *self._answered(recorder))
-            if once and (times := len(found())) > 1:
+            if once and (times := len(recorder.messages())) > 1:
                 fail(
                     expected='one message for each that your node receives',
                     seen=f'{times} messages',
