@@ -455,6 +455,27 @@ def test_a_callback_that_raised_is_named(run, node_class, reason):
             check()
 
 
+class LeavesOutTheFirstHundred(monitor.JointStateMonitor):
+    def changed(self, publish):
+        heard = []
+
+        def receive(message):
+            heard.append(message)
+            if len(heard) > 100:
+                publish(message)
+
+        return receive
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(120)
+def test_no_first_hundred_may_be_left_out_however_long_that_takes(run, monkeypatch):
+    monkeypatch.setattr(relays, 'LOST_SEC', 15.0)
+    run(LeavesOutTheFirstHundred)
+    with pytest.raises(CheckFailed, match='to be republished on /monitor/joint_states, unchanged'):
+        check_delivery()
+
+
 @pytest.mark.slow
 @pytest.mark.timeout(120)
 def test_a_message_at_which_a_callback_raised_is_not_waited_for(run, monkeypatch):
