@@ -30,6 +30,8 @@ def test_an_angle_is_what_it_is_whole_turns_aside(number, is_near):
         (WANTED[:3], '1 of 4 angles missing or wrong'),
         # what atan(y / x) makes of the left half plane, and of a wrong sign of y
         ([WANTED[0] - 180, WANTED[1], WANTED[2] + 180, WANTED[3]], 'half a turn off: atan2(y, x)'),
+        # what π minus the angle at the elbow makes of θ2
+        ([WANTED[0], 180 - WANTED[1], WANTED[2], 180 - WANTED[3]], 'θ2 is half a turn off'),
         ([-23.4, -67.8, 35.92, 67.8], 'all angles are mirrored, so look at the sign of y'),
         ([-angle / 2 for angle in WANTED], 'compare with what inverse_kinematics(x, y) returns'),
         # of the target (y, x), and of its other branch

@@ -7,6 +7,7 @@ from geometry_msgs.msg import Point
 from my_robot_basics.checks import CheckFailed, rosout
 from my_robot_basics.two_link_kinematics import inverse_kinematics
 from nodes.running import imported, running
+from rclpy.node import Node
 
 from my_robot_basics import live
 
@@ -50,6 +51,22 @@ def test_a_callback_that_warns_and_raises_does_not_go_on():
         with rosout('ik_solver_node') as log:  # what it raised before is no answer's fault
             ask(log, TARGET)
             log.expect_angles(ANGLES)
+    finally:
+        live.stop()
+
+
+class HasNoLog(Node):
+    def __init__(self):
+        super().__init__('ik_solver_node', enable_rosout=False)
+
+
+@pytest.mark.slow
+def test_a_node_whose_log_is_turned_off_is_told_so():
+    live.run(HasNoLog)
+    reason = 'expected the log of /ik_solver_node on /rosout, saw none: leave enable_rosout=False'
+    try:
+        with pytest.raises(CheckFailed, match=reason), rosout('ik_solver_node'):
+            pass
     finally:
         live.stop()
 

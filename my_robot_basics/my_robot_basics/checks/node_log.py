@@ -112,6 +112,12 @@ class NodeLog:
         timeout_sec = graphs.SETTLED_SEC if is_settled else NODE_SEC
         if not self._watcher.spin_until(self._is_there, timeout_sec=timeout_sec):
             others = graphs.take(self._watcher).nodes()
+            expect(
+                self.node_name not in others,
+                expected=f'the log of {self.node_name} on /rosout',
+                seen='none',
+                hint='leave enable_rosout=False out of super().__init__(…): it turns the log off',
+            )
             fail(
                 expected=f'a node {self.node_name}',
                 seen=', '.join(others) or 'no node',
