@@ -21,6 +21,24 @@ def test_numbers_are_read_as_people_write_them(text, numbers):
 
 
 @pytest.mark.parametrize(
+    ('text', 'advice'),
+    [
+        ('θ1=nan', 'nan'),
+        ('{branch}: {a:.2f} {b:.2f}', 'put an f before'),
+        ('elbow_up: 65,92 / -74,04', 'decimals with a point'),
+        ('(65,92) / -74,0', ''),
+        ("{'elbow_up': (6.5, -7.4)}", ''),
+        ('{"elbow_up": [6.5, -7.4]}', ''),
+        ('', ''),
+    ],
+)
+def test_what_stands_for_a_number_is_told(text, advice):
+    found = answers.why_unreadable([65.92, -74.04], [text])
+    assert advice in found
+    assert bool(found) == bool(advice)
+
+
+@pytest.mark.parametrize(
     ('text', 'is_stretched'),
     [
         ('θ1=61.15°, θ2=0.00°', True),

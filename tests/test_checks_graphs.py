@@ -79,6 +79,10 @@ def picture(nodes=('/a',), publishers=None, subscriptions=None):
             '/n/a uses /n/t/joint_states: a name without a leading / is relative to',
         ),
         (picture(publishers={'/n/t/joint_states': ('/a',)}), '/a uses /n/t/joint_states, so'),
+        (
+            picture(publishers={'/a/t/joint_states': ('/a',)}),
+            "/a uses /a/t/joint_states: a name with ~ begins with its node's own name",
+        ),
         (picture(publishers={'/rosout': ('/a',)}), '/a runs, so look at the topic name'),
         (picture(publishers={'/Joint_States': ('/a',)}), '/a uses /Joint_States, so compare'),
     ],

@@ -455,6 +455,42 @@ def test_a_callback_that_raised_is_named(run, node_class, reason):
             check()
 
 
+class DestroysItself(monitor.JointStateMonitor):
+    def changed(self, publish):
+        heard = []
+
+        def receive(message):
+            publish(message)
+            heard.append(message)
+            if len(heard) == 3:
+                self.destroy_node()
+
+        return receive
+
+
+class StandsStill(monitor.JointStateMonitor):
+    def changed(self, publish):
+        def receive(message):
+            publish(message)
+            time.sleep(15.0)
+
+        return receive
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ('node_class', 'reason'),
+    [
+        (DestroysItself, r'the node has ended: leave .* destroy_node\(\)'),
+        (StandsStill, r'its callback has not returned \(line \d+: time\.sleep'),
+    ],
+)
+def test_a_node_that_stops_between_two_messages_is_told_why(run, node_class, reason):
+    run(node_class)
+    with pytest.raises(CheckFailed, match=reason):
+        check_delivery()
+
+
 class LeavesOutTheFirstHundred(monitor.JointStateMonitor):
     def changed(self, publish):
         heard = []
@@ -470,7 +506,8 @@ class LeavesOutTheFirstHundred(monitor.JointStateMonitor):
 @pytest.mark.slow
 @pytest.mark.timeout(120)
 def test_no_first_hundred_may_be_left_out_however_long_that_takes(run, monkeypatch):
-    monkeypatch.setattr(relays, 'LOST_SEC', 15.0)
+    turns = range(1, 201)  # of a machine that is busy all the time
+    monkeypatch.setattr(relays, 'free_turns', lambda free_sec: iter(turns))
     run(LeavesOutTheFirstHundred)
     with pytest.raises(CheckFailed, match='to be republished on /monitor/joint_states, unchanged'):
         check_delivery()

@@ -4,13 +4,14 @@ import json
 import re
 import subprocess
 import sys
+import threading
 
 import numpy as np
 import pytest
 from builtin_interfaces.msg import Time
 from my_robot_basics.checks import CheckFailed, student
 from my_robot_basics.exchange import responder, values
-from my_robot_basics.graph.raised import what_raised
+from my_robot_basics.graph.raised import what_raised, what_stopped
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 
@@ -227,6 +228,39 @@ def test_how_often_a_callback_raised_is_told_until_its_node_ends(monkeypatch, en
     live.wait_until(lambda: student.times_raised('/raises') > 2)
     end()
     assert (student.trouble('/raises'), student.times_raised('/raises')) == ('', 0)
+
+
+class Waits(Node):
+    def __init__(self):
+        super().__init__('waits')
+        self.end = threading.Event()
+        self.create_timer(0.02, self.tick)
+
+    def tick(self):
+        self.end.wait()
+
+
+@pytest.mark.starts
+def test_a_callback_that_does_not_return_is_told_with_its_line(monkeypatch):
+    monkeypatch.delenv('MY_ROBOT_BASICS_ROOM', raising=False)
+    node = live.run(Waits)
+    live.wait_until(lambda: student.unfinished('/waits'))
+    said = r'its callback has not returned \(line \d+: self\.end\.wait\(\)'
+    assert re.match(said, what_stopped(['/other', '/waits']))
+    assert what_stopped(['/other']) == ''
+    node.end.set()
+    live.run(Raises)
+    live.wait_until(lambda: student.trouble('/raises'))
+    assert what_stopped(['/raises']).startswith('its callback raised ZeroDiv')
+    live.stop()
+
+
+@pytest.mark.starts
+def test_a_callback_that_returns_again_and_again_keeps_nobody_waiting(monkeypatch):
+    monkeypatch.delenv('MY_ROBOT_BASICS_ROOM', raising=False)
+    live.run(Node, 'ticks').create_timer(0.01, lambda: None)
+    assert student.unfinished('/ticks') == ''
+    live.stop()
 
 
 def test_a_stamp_that_is_no_message_is_told_what_makes_one(monkeypatch):

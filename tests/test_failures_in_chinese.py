@@ -175,3 +175,11 @@ def test_words_that_are_left_are_found():
     assert english_in('预期：`f(x)` 返回 /a_b；实际：3 rad。用 f(the_arm) 和 --ros-args') == []
     assert english_in('预期：一条消息；实际：none in 3 s。检查名称') == ['none', 'in']
     assert english_in('预期，一条消息，实际个错误 1') == ['预期，一条消息，实际个错误 1']
+
+
+def test_advice_behind_the_topic_of_a_cause_stays_behind_it():
+    advice = 'publish exactly the message that your callback is given'
+    for cause in 'no message arrives', 'only other messages arrive':
+        said = in_language('zh_CN', f'{cause} on /monitor/joint_states: {advice}')
+        assert said.startswith('/monitor/joint_states 上')
+        assert said.endswith(f'：{in_language("zh_CN", advice)}')

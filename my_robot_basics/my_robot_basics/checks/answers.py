@@ -9,6 +9,10 @@ from my_robot_basics.checks import angles
 MOST_NUMBERS = 1_000
 """Different numbers that one target may bring: with many thousands, some are always right."""
 _NUMBER = re.compile(r'([±∓]|\+/[-−]|[-−]/\+)?([-−+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?)')
+_NAN = re.compile(r'\bnan\b', re.IGNORECASE)
+_BRACES = re.compile(r'\{[A-Za-z_][^{}]*\}')
+"""What an f-string without its f leaves as it is; a dict begins with a quote."""
+_DECIMAL_COMMA = re.compile(r'(?<=\d),(?=\d)')
 _ELBOWS_DEG = (0.0, 180.0)
 """Elbow angles of an arm that is stretched, or folded, towards a target out of reach."""
 
@@ -51,6 +55,19 @@ def places_of(text: str) -> list[tuple[float, int, int]]:
         signs = {'±': (1, -1), '+': (1, -1)}.get(match[1][0], (-1, 1)) if match[1] else (1,)
         found += [(sign * number, match.start(), match.end()) for sign in signs]
     return found
+
+
+def why_unreadable(wanted: Iterable[float], texts: Iterable[str]) -> str:
+    """Advice for texts without the wanted angles: what stands there for a number, or ''."""
+    texts = list(texts)
+    if any(_NAN.search(text) for text in texts):
+        return 'an angle is nan, which is no number, so check how it is computed'
+    if any(_BRACES.search(text) for text in texts):
+        return 'put an f before the quotation mark: Python then puts the value there'
+    pointed = [number for text in texts for number in numbers_of(_DECIMAL_COMMA.sub('.', text))]
+    if pointed and not angles.missing(list(wanted), pointed):
+        return 'write decimals with a point, and not with a comma'
+    return ''
 
 
 def form_of(text: str) -> str:

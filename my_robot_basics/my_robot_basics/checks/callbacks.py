@@ -4,8 +4,13 @@ from collections.abc import Iterable
 
 from my_robot_basics.exchange import student
 from my_robot_basics.feedback.errors import fail
-from my_robot_basics.graph.raised import what_raised
+from my_robot_basics.graph import graphs
+from my_robot_basics.graph.raised import what_raised, what_stopped
+from my_robot_basics.graph.watcher import Watcher
 
+ENDED = (
+    'the node has ended: leave rclpy.shutdown(), destroy_node() and exit() out of its callbacks'
+)
 FIX_FIRST = 'so fix that first: rclpy.spin would have ended there'
 
 
@@ -21,6 +26,14 @@ class CallbackErrors:
         names = [n for n, times in self._before.items() if student.times_raised(n) > times]
         raised = what_raised(names)
         return f'{raised}, {FIX_FIRST}' if raised else ''
+
+    def why(self, watcher: Watcher) -> str:
+        """The same; or a clause on one that does not return, or on a node that ended; or ''."""
+        if raised := self.hint():
+            return raised
+        if stopped := what_stopped(self._before):
+            return f'{stopped}, so fix that first'
+        return '' if {*self._before} <= {*graphs.node_names(watcher.node)} else ENDED
 
     def expect_none(self) -> None:
         """Raise CheckFailed where there was one."""

@@ -1,13 +1,12 @@
 """What a node logs, as everybody else on the robot can read it: the topic /rosout."""
 
-import re
 from collections.abc import Callable, Iterable, Sequence
 from typing import Self
 
 from my_robot_basics.checks import angles, answers, pairing
 from my_robot_basics.checks.node_log import NodeLog
 from my_robot_basics.feedback.errors import fail
-from my_robot_basics.graph.raised import what_raised
+from my_robot_basics.graph.raised import what_stopped
 
 EXTRA_SEC = 0.3
 """How long angles may come behind a warning …"""
@@ -18,7 +17,6 @@ ANSWER_SEC, ONCE_MORE_SEC = 3.0, 1.5
 was free."""
 ONE_LATE = 'each answer is one target late: use the point that the callback is given, at once'
 EARLIER = 'these are the angles of an earlier target: use the point that the callback is given'
-_NAN = re.compile(r'\bnan\b', re.IGNORECASE)
 WARN_ONLY = 'warn only when inverse_kinematics(x, y) raises ValueError'
 INFO_FOR_ANGLES = 'log angles with self.get_logger().info(…), and ' + WARN_ONLY
 
@@ -167,11 +165,11 @@ class Log(NodeLog):
         return ONE_LATE if is_late else ''
 
     def _why_unanswered(self, wanted: Sequence[float]) -> str:
-        raised = '' if self.has('INFO') else what_raised([self.node_name])
-        if raised:
-            return f'{raised}, so fix that first'
-        if any(_NAN.search(text) for text in self.texts('INFO')):
-            return 'an angle is nan, which is no number, so check how it is computed'
+        why = '' if self.has('INFO') else what_stopped([self.node_name])
+        if why:
+            return f'{why}, so fix that first'
+        if unreadable := answers.why_unreadable(wanted, self.texts('INFO')):
+            return unreadable
         if self._answer and not angles.missing(self._answer, self.numbers()):
             return EARLIER
         if self.has('INFO') or not self.has('WARN'):
@@ -180,9 +178,9 @@ class Log(NodeLog):
         return INFO_FOR_ANGLES if elsewhere else WARN_ONLY
 
     def _why_unwarned(self) -> str:
-        raised = what_raised([self.node_name])
-        if raised and 'ValueError' not in raised:
-            return f'{raised}, so fix that first'
+        why = what_stopped([self.node_name])
+        if why and 'ValueError' not in why:
+            return f'{why}, so fix that first'
         if self.records:
             return 'a target out of reach needs the level WARN: self.get_logger().warning(…)'
         return (

@@ -21,7 +21,7 @@ from my_robot_basics.feedback.errors import expect, fail
 from my_robot_basics.feedback.hidden import theirs
 from my_robot_basics.graph import graphs
 from my_robot_basics.graph.qos_compatibility import brief, incompatible, leave_out
-from my_robot_basics.graph.raised import what_raised
+from my_robot_basics.graph.raised import what_raised, what_stopped
 from my_robot_basics.graph.snapshot import GraphSnapshot
 from my_robot_basics.graph.watcher import Watcher
 
@@ -136,8 +136,8 @@ class RelayEndpoints:
         if is_latched and gaps and all(gaps):
             return leave_out(gaps[0])
         listeners = graphs.subscription_infos(watcher.node, self.source)
-        if raised := what_raised(map(graphs.full_name, listeners)):
-            return f'{raised}, so fix that first'
+        if why := what_stopped(map(graphs.full_name, listeners)):
+            return f'{why}, so fix that first'
         if has_others:
             return 'publish exactly the message that your callback is given'
         return (

@@ -1,6 +1,8 @@
 """What became of messages that went through a node: late, lost, copied, and what to say of it."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from my_robot_basics.checks.variety import PLAIN
 
@@ -40,3 +42,13 @@ class RelayFaults:
         return f'a message that is republished {self.copies} times', (
             'subscribe once, and publish once in each call of the callback'
         )
+
+
+def what_differs(others: Sequence[Any], sent: Any, fields: Sequence[str] = ()) -> str:
+    """Which of the fields (of all) are others where some are right, as a clause; or ''."""
+    names = fields or tuple(sent.get_fields_and_field_types())
+    for received in others:
+        wrong = [name for name in names if getattr(received, name) != getattr(sent, name)]
+        if 0 < len(wrong) < len(names):
+            return f'; not the same: {", ".join(wrong)}'
+    return ''

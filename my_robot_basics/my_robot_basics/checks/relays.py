@@ -8,13 +8,12 @@ from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.serialization import serialize_message
 
-from my_robot_basics.checks import relay_endpoints
 from my_robot_basics.checks.callbacks import CallbackErrors
 from my_robot_basics.checks.latched import published_before_discovery
 from my_robot_basics.checks.passage import QUIET_SEC, Passage
 from my_robot_basics.checks.recorder import Recorder
-from my_robot_basics.checks.relay_endpoints import RelayEndpoints
-from my_robot_basics.checks.relay_faults import RelayFaults
+from my_robot_basics.checks.relay_endpoints import TIMEOUT_SEC, RelayEndpoints
+from my_robot_basics.checks.relay_faults import RelayFaults, what_differs
 from my_robot_basics.checks.variety import filled, varied
 from my_robot_basics.feedback.errors import fail
 from my_robot_basics.graph import familiar
@@ -114,25 +113,25 @@ class Relay:
         source_recorder = Recorder(
             watcher, topic_name=self.source, type_=recorder.type, qos_profile=EVERYTHING
         )
-        watcher.spin_until(source_recorder.is_connected, timeout_sec=relay_endpoints.TIMEOUT_SEC)
+        watcher.spin_until(source_recorder.is_connected, timeout_sec=TIMEOUT_SEC)
         watcher.spin_for(QUIET_SEC)
         passage = Passage(watcher, recorder, publish=publisher.publish, what=self._what)
         messages = varied(make_message)
         carried = passage.carry(messages)
         if not carried.is_whole():
             fault, hint = carried.fault()
-            self._fail(fault, raised.hint() or hint)
+            self._fail(fault, raised.why(watcher) or hint)
         seen = watcher.context, ('passes on after a pause', self), recorder.endpoint_gids()
         if not familiar.is_known(*seen) and passage.loses_after_a_pause(messages):
             self._fail(
                 'a message that is not republished when it is the first after a pause',
-                raised.hint() or 'publish in every call of the callback, whenever it comes',
+                raised.why(watcher) or 'publish in every call of the callback, whenever it comes',
             )
         familiar.remember(*seen)
         if passage.loses_one_of_two(messages):
             self._fail(
                 'two messages in quick succession of which only one is republished',
-                raised.hint()
+                raised.why(watcher)
                 or 'publish each in the callback itself, or keep all of them until then',
             )
         if passage.invents(source_recorder.received):
@@ -171,17 +170,17 @@ class Relay:
                 return
             if times % TIMES_RAISED == 0 and raised.hint():
                 break
-        others = recorder.messages()[before:]
+        ends, others = RelayEndpoints(self.source, self.to), recorder.messages()[before:]
+        topic_name = self.to
         has_others, seconds = bool(others), min(times * AGAIN_SEC, LOST_SEC)
         fail(
             expected=f'a message from {self.source} to be republished on {self.to}, unchanged',
             seen=f'only others in {seconds:g} s' if has_others else f'none in {seconds:g} s',
-            hint=RelayEndpoints(self.source, self.to).why_lost(
-                watcher, is_latched=again is None, has_others=has_others
-            )
-            + self._what_differs(others, message),
-            cause=f'{"only other messages arrive" if has_others else "no message arrives"} on'
-            f' {self.to}',
+            hint=ends.why_lost(watcher, is_latched=again is None, has_others=has_others)
+            + what_differs(others, message, self.fields),
+            cause=f'only other messages arrive on {topic_name}'
+            if has_others
+            else f'no message arrives on {topic_name}',
         )
 
     def _what(self, message: Any) -> bytes:
@@ -192,12 +191,3 @@ class Relay:
 
     def _is_same(self, received: Any, sent: Any) -> bool:
         return self._what(received) == self._what(sent)
-
-    def _what_differs(self, others: list[Any], sent: Any) -> str:
-        """Which fields are others where some are right, as a clause; or ''."""
-        names = self.fields or tuple(sent.get_fields_and_field_types())
-        for received in others:
-            wrong = [name for name in names if getattr(received, name) != getattr(sent, name)]
-            if 0 < len(wrong) < len(names):
-                return f'; not the same: {", ".join(wrong)}'
-        return ''

@@ -11,7 +11,7 @@ from typing import Any
 from my_robot_basics.exchange import settled, values, wire
 
 _PROTOCOL = ('call', 'value', 'endpoint', 'settled', 'clock', 'package')
-_PROTOCOL_OF_TROUBLES = ('trouble', 'raised', 'field')
+_PROTOCOL_OF_TROUBLES = ('trouble', 'raised', 'field', 'unfinished')
 
 
 def answer(request_text: str) -> str:
@@ -34,6 +34,8 @@ def answer(request_text: str) -> str:
         return _reply(_times_raised(name))
     if op == 'field':
         return _reply(_unpublished_field(name))
+    if op == 'unfinished':
+        return _reply(_unfinished(name))
     if op == 'clock':
         return _reply(_set_use_sim_time(name, *args))
     if op == 'package':
@@ -88,6 +90,12 @@ def _unpublished_field(node_name: str) -> tuple[str, str]:
     """For which field a node could not publish, and its type."""
     troubles = sys.modules.get('my_robot_basics.live.troubles')
     return troubles.field(node_name) if troubles else ('', '')
+
+
+def _unfinished(node_name: str) -> str:
+    """Where a callback is that keeps a node from all else, if live has run one, or ''."""
+    troubles = sys.modules.get('my_robot_basics.live.troubles')
+    return troubles.unfinished(node_name) if troubles else ''
 
 
 def _set_use_sim_time(node_name: str, value: bool) -> bool | None:

@@ -132,6 +132,15 @@ def times_raised(node_name: str) -> int:
     return body if type(body) is int else 0
 
 
+def unfinished(node_name: str) -> str:
+    """Where a callback of that node is that keeps all others from running: its line, or ''.
+
+    It tells students where to look; the verdict stays with what was seen.
+    """
+    body = _told(wire.request(op='unfinished', name=node_name))
+    return shorten(body) if isinstance(body, str) else ''
+
+
 def set_use_sim_time(node_name: str, value: bool) -> bool | None:
     """Give a node of the notebook's process its clock; its former `use_sim_time`.
 

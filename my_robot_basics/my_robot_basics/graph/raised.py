@@ -1,4 +1,4 @@
-"""What the callback of a node has raised."""
+"""What keeps a node from its work: what its callback has raised, or that it does not return."""
 
 from collections.abc import Iterable
 
@@ -25,3 +25,12 @@ def what_raised(node_names: Iterable[str]) -> str:
     elif 'bad argument type for built-in operation' in said:
         why += ', so a field of the message holds a value of another type'
     return why
+
+
+def what_stopped(node_names: Iterable[str]) -> str:
+    """The same; or a clause on the callback of one of them that does not return, or ''."""
+    names = sorted(set(node_names))
+    if raised := what_raised(names):
+        return raised
+    said = next(filter(None, map(student.unfinished, names)), '')
+    return f'its callback has not returned ({theirs(said)})' if said else ''

@@ -5,7 +5,7 @@ from collections.abc import Collection
 from dataclasses import dataclass
 
 from my_robot_basics.feedback.hidden import theirs
-from my_robot_basics.graph.raised import what_raised
+from my_robot_basics.graph.raised import what_stopped
 
 NOT_RUNNING = (
     'the node is not running, so run the cell that starts it and read its output; a node whose'
@@ -65,8 +65,8 @@ class GraphSnapshot:
         """What to try when nothing arrives on a topic: one clause."""
         if senders := self.publishers(topic_name):
             who = theirs(', '.join(dict.fromkeys(senders)))
-            if raised := what_raised(senders):
-                return f'{who} has a publisher there and sends nothing, because {raised}'
+            if why := what_stopped(senders):
+                return f'{who} has a publisher there and sends nothing, because {why}'
             return (
                 f'{who} has a publisher there and sends nothing, so see that it spins, that its '
                 'timer is created (with a period in seconds, and the name of a method, without '
@@ -103,9 +103,11 @@ class GraphSnapshot:
             uses = theirs(f'{", ".join(names[near])} uses {near}')
             if near in {name.rpartition('/')[0] + topic_name for name in names[near]}:
                 return f"{uses}: a name without a leading / is relative to its node's namespace"
+            if near in {name + topic_name for name in names[near]}:
+                return f"{uses}: a name with ~ begins with its node's own name"
             return f'{uses}, so compare the spelling'
-        if raised := what_raised(runs):
-            return f'{theirs(", ".join(runs))} runs, and {raised}, so fix that first'
+        if why := what_stopped(runs):
+            return f'{theirs(", ".join(runs))} runs, and {why}, so fix that first'
         look = f'look at the topic name in {maker}(…) and that the node calls it'
         if len(runs) == 1:
             return f'{theirs(runs[0])} runs, so {look}'

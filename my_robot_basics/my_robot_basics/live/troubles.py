@@ -1,6 +1,7 @@
-"""What a student needs to know of an exception: the error, and which of their lines led to it."""
+"""What keeps a node from its work: an exception, or a callback that does not return, and where."""
 
 import sysconfig
+import time
 import traceback
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ from rclpy.service import Service
 
 from my_robot_basics.exchange.wrong_fields import wrong_field
 
+UNFINISHED_SEC = 0.5
 _last: dict[str, str] = {}
 """What a callback of a node raised last, by the node's full name."""
 _times: dict[str, int] = {}
@@ -76,6 +78,21 @@ def times(node_name: str) -> int:
 def of_service(service_name: str) -> dict[str, str]:
     """Return what the callbacks of a service raised last, by their nodes' full names."""
     return {node: what for (node, name), what in _of_services.items() if name == service_name}
+
+
+def unfinished(node_name: str) -> str:
+    """Return where a callback is that keeps all others of the node from running, or ''.
+
+    That is one that goes on for UNFINISHED_SEC, while this looks.
+    """
+    from my_robot_basics.doctor import inside  # few answers need it
+
+    seen = inside.Inside()
+    seen.look()
+    time.sleep(UNFINISHED_SEC)
+    seen.look()
+    lasting = seen.callbacks(at_least_sec=UNFINISHED_SEC)
+    return next((each.line for each in lasting if node_name in each.holds and each.line), '')
 
 
 def _frames(error: BaseException) -> list[traceback.FrameSummary]:
