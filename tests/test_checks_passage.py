@@ -26,11 +26,11 @@ class Node:
             self.received.append((message, self.apart_ns * number))
 
 
-def passage_through(node):
+def passage_through(node, **options):
     watcher = SimpleNamespace(
         spin_for=lambda _: None, spin_until_free=lambda done, free_sec: done()
     )
-    return Passage(watcher, node, publish=node.publish, what=lambda message: message)
+    return Passage(watcher, node, publish=node.publish, what=lambda message: message, **options)
 
 
 def loses_one_of_two(loses, **options):
@@ -83,3 +83,17 @@ def test_what_others_sent_before_they_were_received_is_not_invented(
     assert not passage.loses_one_of_two(Sent(n, '') for n in count())
     own = [(n, SEC * n) for n in range(4)]
     assert passage.invents(own + [(f'of another {n}', SEC * n) for n in received]) == invents
+
+
+@pytest.mark.parametrize(('is_timer', 'invents'), [(False, False), (True, True)])
+def test_copies_that_were_in_a_queue_are_not_invented(monkeypatch, is_timer, invents):
+    """A slow node passes on late what it was sent again and again; a timer goes on with it."""
+    monkeypatch.setattr(passage_module.time, 'time_ns', lambda: 0)
+    node = Node(lambda pair: False)
+    passage = passage_through(node, earlier='first')
+    node.received += [('first', SEC * n) for n in range(5)]
+    assert not passage.loses_one_of_two(Sent(n, '') for n in count())
+    if is_timer:
+        node.received += [('first', SEC * n) for n in range(5)]
+        assert not passage.loses_after_a_pause(Sent(n, '') for n in count(100))
+    assert passage.invents([(n, SEC * n) for n in range(4)]) == invents

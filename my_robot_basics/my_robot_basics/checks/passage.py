@@ -4,6 +4,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
+from my_robot_basics.checks.enough import fewest_in_a_row
 from my_robot_basics.checks.pairs import GAP_SEC, Pairs
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.relay_faults import RelayFaults
@@ -17,18 +18,8 @@ TIMEOUT_FACTOR, LEAST_SEC = 10.0, 0.2
 """Once some came out, no more than so many times as long as the slowest of them, and that."""
 QUIET_SEC = 0.1
 """How long to listen for a second copy."""
-TIMES = 120
-"""Messages in a row that have to come out: one that is left out each hundredth time is among
-them. …"""
-FEWEST = 24
-"""… So many will do after SOME_SEC, …"""
-SOME_SEC = 2.5
-FEWEST_SLOW = 12
-"""… So many of a slow node, or on a slow machine, after LONG_SEC, which finds each eleventh, too.
-…"""
-LONG_SEC = 4.0
 MOST_SEC, LAST_SEC = 12.0, 20.0
-"""… After so long, of wall time, what was seen decides, and then pairs and pauses end, too:
+"""After so long, of wall time, what was seen decides, and then pairs and pauses end, too:
 *Validate* gives a cell 30 s."""
 FEWEST_LOST = 2
 """So many that never came out are no chance then, where later ones did."""
@@ -59,10 +50,16 @@ class Passage:
         *,
         publish: Callable[[Any], None],
         what: Callable[[Any], Any],
+        earlier: Any = None,
     ) -> None:
-        """`what(message)` is the same of two messages that are one. Only what comes now counts."""
+        """`what(message)` is the same of two messages that are one. Only what comes now counts.
+
+        Of the `earlier` message, which was sent again and again, a slow node may still have some
+        in its queue: they come out before all others.
+        """
         self._watcher, self._recorder = watcher, recorder
         self._publish, self._what = publish, what
+        self._earlier = None if earlier is None else what(earlier)
         self._seen = len(recorder.received)
         self._waiting: list[Sent] = []
         self._out: list[tuple[Sent, int]] = []
@@ -81,7 +78,7 @@ class Passage:
         """
         late = in_a_row = pushed_out = 0
         row = Stopwatch()
-        while in_a_row < _fewest(row) and late < MOST_LATE:
+        while in_a_row < fewest_in_a_row(row) and late < MOST_LATE:
             # who swaps two has one in time, and none in a row
             if in_a_row > 1 and self._is_over():
                 break
@@ -97,7 +94,7 @@ class Passage:
         self._take()
         doubled = [number for number in self._copies if number > 1]
         copies = min(doubled) if len(doubled) >= FEWEST_COPIES else 1
-        is_enough = in_a_row >= _fewest(row) or len(self._waiting) < FEWEST_LOST
+        is_enough = in_a_row >= fewest_in_a_row(row) or len(self._waiting) < FEWEST_LOST
         if late < MOST_LATE and is_enough:
             return RelayFaults(copies=copies)
         return RelayFaults(
@@ -188,12 +185,5 @@ class Passage:
             if self._what(message) == self._what(self._out[place][0].message):
                 self._copies[place] += 1
                 return
-        self._others.append((message, sent_ns))
-
-
-def _fewest(row: Stopwatch) -> int:
-    """How many messages in a row are enough after so long."""
-    wall_sec = row.wall_sec()
-    if wall_sec < SOME_SEC:
-        return TIMES
-    return FEWEST if wall_sec < LONG_SEC else FEWEST_SLOW
+        if self._out or self._what(message) != self._earlier:
+            self._others.append((message, sent_ns))

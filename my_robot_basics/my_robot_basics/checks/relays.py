@@ -72,7 +72,7 @@ class Relay:
             endpoints.expect_one_profile(watcher)
             self._expect_out(watcher, recorder, first, raised, again=publisher)
             watcher.spin_for(QUIET_SEC)
-            self._expect_passage(watcher, recorder, publisher, make_message, raised)
+            self._expect_passage(watcher, recorder, publisher, make_message, raised, first)
 
     def assert_carries_latched(self, make_message: Callable[[], Any], *, times: int = 1) -> None:
         """A message that was published before anybody subscribed comes out on `to`, once.
@@ -109,13 +109,15 @@ class Relay:
         publisher: Publisher,
         make_message: Callable[[], Any],
         raised: CallbackErrors,
+        earlier: Any = None,
     ) -> None:
         source_recorder = Recorder(
             watcher, topic_name=self.source, type_=recorder.type, qos_profile=EVERYTHING
         )
         watcher.spin_until(source_recorder.is_connected, timeout_sec=TIMEOUT_SEC)
         watcher.spin_for(QUIET_SEC)
-        passage = Passage(watcher, recorder, publish=publisher.publish, what=self._what)
+        sends = {'publish': publisher.publish, 'what': self._what, 'earlier': earlier}
+        passage = Passage(watcher, recorder, **sends)
         messages = varied(make_message)
         carried = passage.carry(messages)
         if not carried.is_whole():
