@@ -90,6 +90,25 @@ def test_a_failure_says_whether_it_is_of_what_students_are_given(cell, outputs, 
     assert cell.metadata[KEY].failed_at_grading is only_there
 
 
+@pytest.mark.parametrize(
+    ('outputs', 'note', 'details'),
+    [
+        ([], 'what you started has ended: your code sent it SIGUSR1', ''),
+        (
+            [said('began')],
+            'what you started has ended in the part checked at grading',
+            'your code sent it SIGUSR1',
+        ),
+    ],
+)
+def test_how_an_answer_ended_in_the_hidden_part_is_for_instructors(cell, outputs, note, details):
+    """A signal's number may be one of the hidden inputs."""
+    run = failing(ending='your code sent it SIGUSR1')
+    run.outputs[:0] = map(nbformat.from_dict, outputs)
+    verdict = judge(cell, run, [])
+    assert (verdict.notes, verdict.details) == ((note,), details)
+
+
 @pytest.mark.parametrize('earned', ['0.0', '3.0', '-1.0', 'nan', 'inf'])
 def test_no_other_number_of_points_is_a_part_of_them(cell, earned):
     run = failing('PartlyRight', '1 wrong')

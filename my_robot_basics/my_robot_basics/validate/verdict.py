@@ -78,7 +78,10 @@ def judge(cell: NotebookNode, run: CellRun | None, own: Iterable[tuple[str, Cell
     if run.error.ename == 'AssertionError' and hidden.has_started(run.outputs):
         reason, details = _in_words(reason, cell), reason
     notes += tuple(sentence for each in own if (sentence := _trouble(*each)))
-    if run.ending:
+    if run.ending and hidden.has_started(run.outputs):  # a signal's number may be a hidden input
+        notes += ('what you started has ended in the part checked at grading',)
+        details = '; '.join(filter(None, (details, run.ending)))
+    elif run.ending:
         notes += (f'what you started has ended: {run.ending}',)
     beyond = hidden.failed_only_there(run.outputs)
     if run.error.ename != 'PartlyRight':
