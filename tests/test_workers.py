@@ -1,4 +1,6 @@
 import signal
+import socket
+import subprocess
 import sys
 import time
 from pathlib import Path
@@ -12,11 +14,11 @@ from my_robot_basics.session import pressure
 from grader.common.errors import TaskFailed
 from grader.course import Course
 from grader.grade import grade_all
-from grader.judging.task import GradingTask
+from grader.judging.task import GradingTask, pack
 from grader.sandbox.limits import SUBMISSION_MEMORY_BYTES
 from grader.storage.records import records
 from grader.storage.submitted import find_submissions
-from grader.workers import worker_process, workers
+from grader.workers import worker, worker_process, workers
 from grader.workers.workers import Workers
 
 COMMAND = (sys.executable, str(Path(__file__).with_name('toy_worker.py')))
@@ -152,6 +154,20 @@ def test_a_worker_that_hangs_is_replaced(course, tmp_path, monkeypatch):
         monkeypatch.setattr(worker_process, 'MOST_MISSED', 10_000)
         assert pid_of(work.result()) != hung.pid
         assert not hung.is_running()
+
+
+def test_a_worker_that_loops_ends_without_the_run_that_would_end_it(course, tmp_path):
+    ours, theirs = socket.socketpair()
+    with ours, theirs:
+        fd = theirs.fileno()
+        process = subprocess.Popen([*COMMAND, str(fd)], pass_fds=[fd], stderr=subprocess.DEVNULL)
+        text = pack(task(course, f'# loop {tmp_path / "mark"}')).encode()
+        ours.sendall(worker._HEAD.pack(1, len(text)) + text)
+        wait_for((tmp_path / 'mark').exists)
+    try:
+        assert process.wait(timeout=120) == -signal.SIGALRM
+    finally:
+        process.kill()
 
 
 def test_what_a_worker_starts_inherits_no_way_to_the_run(course):

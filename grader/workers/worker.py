@@ -6,6 +6,7 @@
 import asyncio
 import importlib
 import os
+import signal
 import socket
 import struct
 
@@ -16,6 +17,8 @@ from grader.sandbox.limits import MAX_TASK_BYTES
 
 BEAT_SEC = 5.0
 """How often a worker says that it is alive, whatever it is at."""
+DEAD_SEC = 180
+"""A worker that does nothing for so long ends, even if the run that would end it is gone."""
 _HEAD = struct.Struct('>QQ')
 """The number of a task, and how many bytes of JSON follow."""
 BEAT = 0
@@ -65,6 +68,7 @@ async def _answer(writer: asyncio.StreamWriter, number: int, text: str) -> None:
 
 async def _beat(writer: asyncio.StreamWriter) -> None:
     while True:
+        signal.alarm(DEAD_SEC)  # what Linux does then, no loop can put off
         await send(writer, BEAT)
         await asyncio.sleep(BEAT_SEC)
 
