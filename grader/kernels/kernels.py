@@ -8,7 +8,12 @@ from typing import cast
 from jupyter_client.provisioning import LocalProvisioner
 from my_robot_basics.validate.messages import OnInput
 from my_robot_basics.validate.outputs import CellRun
-from my_robot_basics.validate.timeouts import finished, finished_in_grace
+from my_robot_basics.validate.timeouts import (
+    UsedSec,
+    finished,
+    finished_in_grace,
+    finished_while_served,
+)
 
 from grader.common.errors import RoomFailure
 from grader.kernels.kernel_connection import KernelConnection
@@ -74,10 +79,12 @@ class GradingKernel:
         timeout_sec: float,
         on_input: OnInput | None = None,
         expressions: dict[str, str] | None = None,
+        used_sec: UsedSec = lambda: None,
     ) -> CellRun:
         """Run one cell; interrupt it after `timeout_sec`, kill the kernel if that does nothing.
 
-        A cell that floods its outputs counts as timed out at once.
+        A cell that floods its outputs counts as timed out at once. `used_sec` tells of one that
+        had too little of a processor.
         """
         result = CellRun()
         if not self.alive:
@@ -86,11 +93,12 @@ class GradingKernel:
         connection = self._connection
         cell = connection.messages.run(code, result, on_input=on_input, expressions=expressions)
         async with cell as done:
-            result.timed_out = not await finished(
+            result.timed_out = not await finished_while_served(
                 done,
                 timeout_sec,
                 self._is_alive,
                 lambda: result.flooded or connection.is_cut_off,
+                used_sec,
             )
             if result.timed_out and connection.is_cut_off:
                 result.timed_out = result.cut_off = await self._lives_on()

@@ -88,7 +88,9 @@ class GradingRooms:
 
         Raises RoomFailure where their kernel ended and nothing shows that they did it.
         """
-        run = await self._student.run(source, timeout_sec=timeout_sec)
+        run = await self._student.run(
+            source, timeout_sec=timeout_sec, used_sec=self.student_cpu_sec
+        )
         if run.died and not run.leaves:
             run.ending = await self._expect_fair()
         return run
@@ -137,7 +139,10 @@ class GradingRooms:
     async def _ask_student(self, request: str) -> str:
         """Take one question of a check over, and text of a bounded size back."""
         run = await self._student.run(
-            '', timeout_sec=REPLY_TIMEOUT_SEC, expressions=as_expression(request)
+            '',
+            timeout_sec=REPLY_TIMEOUT_SEC,
+            expressions=as_expression(request),
+            used_sec=self.student_cpu_sec,
         )
         return reply_of(run, within_sec=REPLY_TIMEOUT_SEC)
 

@@ -7,9 +7,15 @@ from my_robot_basics.session import pressure
 from my_robot_basics.validate.limits import INTERRUPT_GRACE_SEC, INTERRUPT_MOST_SEC
 
 LOOK_EVERY_SEC = 0.2
+MOST_TIMES = 3.0
+"""So many times as long may it take at most, on a busy machine. …"""
+ASLEEP_PART = 0.01
+"""… Code that works gets more than this of a processor there."""
 
 IsAlive = Callable[[], Awaitable[bool]]
 """Whether the kernel lives."""
+UsedSec = Callable[[], float | None]
+"""How long the code has kept processors busy so far; None where nobody counts."""
 
 
 async def finished(
@@ -34,6 +40,30 @@ async def finished(
             await asyncio.wait([done], timeout=0.2)  # what it said last may be under way
             return True
     await done
+    return True
+
+
+async def finished_while_served(
+    done: asyncio.Future,
+    timeout_sec: float,
+    is_alive: IsAlive,
+    is_enough: Callable[[], bool],
+    used_sec: UsedSec,
+) -> bool:
+    """As `finished`, but who works, and got too little of a processor, is waited for longer.
+
+    Code that waits for something else than a processor uses none, and gets no longer for that.
+    """
+    watch, before_sec = pressure.Stopwatch(), used_sec()
+    left_sec = timeout_sec
+    while not await finished(done, left_sec, is_alive, is_enough):
+        now_sec, wall_sec = used_sec(), watch.wall_sec()
+        if is_enough() or before_sec is None or now_sec is None:
+            return False
+        used, is_over = now_sec - before_sec, wall_sec >= MOST_TIMES * timeout_sec
+        if is_over or used < ASLEEP_PART * wall_sec or max(used, watch.free_sec()) >= timeout_sec:
+            return False
+        left_sec = LOOK_EVERY_SEC
     return True
 
 

@@ -1,0 +1,67 @@
+"""How long code is waited for that gets too little of a processor, and code that sleeps."""
+
+import asyncio
+from types import SimpleNamespace
+
+import pytest
+from my_robot_basics.validate import timeouts
+from my_robot_basics.validate.timeouts import LOOK_EVERY_SEC, MOST_TIMES, finished_while_served
+
+LIMIT_SEC = 10.0
+
+
+@pytest.fixture
+def waits(monkeypatch):
+    """Whether code that needs so much of a processor is waited for, and how long that was.
+
+    It gets a part of one, and the machine is free for another part of the time.
+    """
+
+    def wait(needs_sec, *, gets, is_free=0.0, is_counted=True, floods=False):
+        told = SimpleNamespace(wall_sec=0.0)
+
+        def used_sec():
+            return gets * told.wall_sec if is_counted else None
+
+        async def finished(done, seconds, is_alive, is_enough):
+            if is_enough():
+                return False
+            told.wall_sec += seconds
+            return used_sec() is not None and used_sec() >= needs_sec
+
+        watch = SimpleNamespace(
+            wall_sec=lambda: told.wall_sec, free_sec=lambda: is_free * told.wall_sec
+        )
+        monkeypatch.setattr(timeouts, 'finished', finished)
+        monkeypatch.setattr(timeouts.pressure, 'Stopwatch', lambda: watch)
+        ended = asyncio.run(finished_while_served(None, LIMIT_SEC, None, lambda: floods, used_sec))
+        return ended, pytest.approx(told.wall_sec, abs=2 * LOOK_EVERY_SEC)
+
+    return wait
+
+
+def test_code_that_gets_a_fifth_of_a_processor_is_waited_for(waits):
+    assert waits(4.0, gets=0.2) == (True, 20.0)
+
+
+def test_it_has_no_more_time_than_it_is_to_have(waits):
+    assert waits(100.0, gets=1.0) == (False, LIMIT_SEC)
+    assert waits(100.0, gets=0.5) == (False, 20.0)
+    assert waits(100.0, gets=0.2, is_free=0.8) == (False, 12.5)
+
+
+def test_a_class_has_to_end(waits):
+    assert waits(4.0, gets=0.1) == (False, MOST_TIMES * LIMIT_SEC)
+
+
+@pytest.mark.parametrize('gets', [0.0, 0.009])
+def test_code_that_sleeps_gets_no_longer(waits, gets):
+    assert waits(4.0, gets=gets) == (False, LIMIT_SEC)
+
+
+def test_where_nobody_counts_the_limit_holds(waits):
+    assert waits(4.0, gets=0.2, is_counted=False) == (False, LIMIT_SEC)
+
+
+def test_a_flood_is_over_at_once(waits):
+    assert waits(4.0, gets=0.2, floods=True) == (False, 0.0)
