@@ -179,6 +179,10 @@ def test_a_failure_tells_what_happened_in_the_students_own_cells(cell):
         ),
         (('NotImplementedError', ''), 'stopped with NotImplementedError'),
         (('OSError', 'no data.py: (x.py)'), 'stopped with OSError: no data.py: (x.py)'),
+        (
+            ('StdinNotImplementedError', 'raw_input was called, but this frontend does not …'),
+            'calls input(), and nobody answers: write the value into the code',
+        ),
     ],
 )
 def test_an_error_is_told_without_what_says_nothing(cell, error, told):

@@ -169,6 +169,10 @@ def _trouble(name: str, run: CellRun) -> str | None:
         return f'{TROUBLE}`{name}` {what} and {how} interrupted'
     if run.died:
         return f'{TROUBLE}`{name}` ended the kernel' + (f': {run.ending}' if run.ending else '')
+    if run.error is not None and run.error.ename == 'StdinNotImplementedError':
+        return (
+            f'{TROUBLE}`{name}` calls input(), and nobody answers: write the value into the code'
+        )
     if run.error is not None:
         said = _TEMPORARY_FILE.sub('(', f'{run.error.ename}: {run.error.evalue}').rstrip(': ')
         return f'{TROUBLE}`{name}` stopped with {shorten(printable(said), 300)}'
