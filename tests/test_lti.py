@@ -103,11 +103,12 @@ def test_only_what_is_final_is_sent_and_who_is_unknown_is_listed(given, platform
     assert platform.received == [sent(1, '4712', 0.0)]  # no platform takes less than nothing
 
 
-def test_one_assignment_can_be_sent(given, platform):
+def test_one_assignment_can_be_sent(given, platform, capsys):
     cells = cell('ada', 4.0), cell('ada', 1.0, OTHER)
     assert given(*cells, assignment=[OTHER]) == 0
     assert platform.received == [sent(1, '4711', 1.0)]
     assert given(*cells, assignment=['05_command_line']) == 1
+    assert "there is no assignment '05_command_line' in solutions/" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -31,10 +31,10 @@ def send_scores(course: Course, assignment: str, say: Callable[[str], None]) -> 
     it is graded.
     """
     settings = read_settings(course)
-    if assignment:
-        course.expect_assignment(assignment)
     platform = LtiService(settings)
     found = records(course)
+    if assignment and not final_scores(found, assignment):
+        course.expect_assignment(assignment)
     with gradebook_lock(course.gradebook, say), opened_lti_queue(course.gradebook) as queue:
         queue.note(_to_be_sent(found, assignment, settings, say))
         return _send_waiting(queue, platform, assignment, say)
