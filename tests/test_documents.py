@@ -10,6 +10,7 @@ from xml.etree import ElementTree
 import pytest
 from my_robot_basics.session import package_files
 from my_robot_basics.validate import limits as cell_limits
+from my_robot_basics.validate import timeouts
 from my_robot_basics.validate.names import MAX_SOURCE_CHARACTERS
 from my_robot_basics.validate.outputs import MAX_OUTPUT_CHARACTERS
 
@@ -141,7 +142,8 @@ FIGURES = {
     ],
     'docs/architecture.md': [
         f'{cell_limits.STUDENT_CELL_TIMEOUT_SEC:.0f} s for a cell, '
-        f'{cell_limits.BUILD_TIMEOUT_SEC:.0f} s for one that builds a package',
+        f'{cell_limits.BUILD_TIMEOUT_SEC:.0f} s for one that builds a package; up to '
+        f'{timeouts.MOST_TIMES * cell_limits.STUDENT_CELL_TIMEOUT_SEC:.0f} s for one that works',
         f'{cell_limits.CHECK_TIMEOUT_SEC:.0f} s each at most',
     ],
     'docs/decisions.md': [f'A list of {len(ALLOWED)} names and numbers'],
