@@ -6,10 +6,11 @@ import signal
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
-from my_robot_basics.checks import CheckFailed, drawing, player, player_report
-from my_robot_basics.feedback.errors import fail
+from my_robot_basics.checks import CheckFailed, drawing, player, player_meeting, player_report
+from my_robot_basics.feedback.errors import Starved, fail
 
 PLAYERS = Path(__file__).parent / 'nodes/players.py'
 VISIBLE = (
@@ -140,3 +141,20 @@ def test_targets_are_chosen_apart_with_each_word():
 def test_an_unknown_word_is_refused():
     with pytest.raises(ValueError, match='not late'):
         player.expect_plays(('late', 1.0, 1.0))
+
+
+@pytest.mark.parametrize(('free_sec', 'doubt'), [(8.0, CheckFailed), (1.0, Starved)])
+def test_a_program_without_a_processor_is_not_to_blame(monkeypatch, free_sec, doubt):
+    """It had no client after eight seconds on the wall clock, and most of them were not free."""
+    monkeypatch.setattr(player_meeting, 'expect_no_other', lambda *_, own: None)
+    monkeypatch.setattr(player_meeting.drawing_hints, 'why_no_client', lambda watcher: 'look')
+    watch = SimpleNamespace(free_sec=lambda: free_sec)
+    monkeypatch.setattr(player_meeting, 'Stopwatch', lambda: watch)
+    watcher = SimpleNamespace(
+        node=SimpleNamespace(count_clients=lambda name: 0),
+        spin_until_free=lambda done, free_sec: done(),
+    )
+    process = SimpleNamespace(expect_running=lambda: None)
+    with pytest.raises(CheckFailed, match='a client of /solve_ik, saw none: look') as raised:
+        player_meeting.PlayerMeeting(watcher, process).wait_for_clients()
+    assert raised.type is doubt
