@@ -11,9 +11,10 @@ from typing import Any, NoReturn, Self
 from my_robot_basics.checks import polite_end, spinning
 from my_robot_basics.checks.doubts import doubt_after
 from my_robot_basics.checks.package_words import has_ended, how, last_words, text_in
+from my_robot_basics.checks.services import answers_parameters
 from my_robot_basics.exchange import student
 from my_robot_basics.exchange.endings import is_clean
-from my_robot_basics.feedback.errors import expect, fail, shorten
+from my_robot_basics.feedback.errors import Starved, expect, fail, shorten
 from my_robot_basics.feedback.hidden import theirs
 from my_robot_basics.graph import graphs
 from my_robot_basics.graph.watcher import Watcher
@@ -151,13 +152,15 @@ class RunningExecutable:
         watch = Stopwatch()
         for name in self._nodes:
             is_gone = partial(graphs.is_gone, self._watcher, name)
-            expect(
-                self._watcher.spin_until_free(is_gone, free_sec=GONE_SEC),
+            if self._watcher.spin_until_free(is_gone, free_sec=GONE_SEC):
+                continue
+            doubt = doubt_after(watch, GONE_SEC)
+            fail(
                 expected=f'{name} to be gone from the graph',
                 seen='it is still there',
                 hint='let main end all that it has started',
                 cause=f'{name} lives on',
-                doubt=doubt_after(watch, GONE_SEC),
+                doubt=doubt if answers_parameters(self._watcher, name) else Starved,
             )
 
     def _fail_ended(self, expected: str) -> NoReturn:

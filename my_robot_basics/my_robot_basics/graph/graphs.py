@@ -125,8 +125,13 @@ def none_in(seconds: float) -> str:
 
 
 def is_gone(watcher: Watcher, node_name: str) -> bool:
-    """Whether no node of that full name is on the graph."""
-    return node_name not in node_names(watcher.node)
+    """Whether no node of that full name is on the graph, or its name alone.
+
+    That stays for ever where rmw takes what a participant said last behind its end. Each node of
+    rclpy that lives publishes on /parameter_events.
+    """
+    living = {full_name(info) for info in publisher_infos(watcher.node, '/parameter_events')}
+    return node_name not in living or node_name not in node_names(watcher.node)
 
 
 def _look(node: Node) -> GraphSnapshot:

@@ -1,0 +1,33 @@
+"""A name that stays on the graph though its node has ended, and what tells it from a node."""
+
+import pytest
+from my_robot_basics.graph import graphs
+from my_robot_basics.graph.watcher import Watcher
+from my_robot_basics.session import classroom
+from rclpy.context import Context
+from rclpy.node import Node
+
+pytestmark = pytest.mark.starts
+
+
+@pytest.fixture
+def node():
+    """A node of another participant; the test destroys it."""
+    context = Context()
+    context.init(domain_id=classroom.enter())
+    yield Node('speaker', context=context)
+    context.try_shutdown()
+
+
+def test_a_name_without_a_node_is_gone(monkeypatch, node):
+    names = graphs.node_names
+    monkeypatch.setattr(graphs, 'node_names', lambda node: ['/ghost', *names(node)])
+    with Watcher() as watcher:
+
+        def comes(is_so):
+            return watcher.spin_until(is_so, timeout_sec=30.0)
+
+        assert graphs.is_gone(watcher, '/ghost')
+        assert comes(lambda: not graphs.is_gone(watcher, '/speaker'))
+        node.destroy_node()
+        assert comes(lambda: graphs.is_gone(watcher, '/speaker'))
