@@ -13,6 +13,7 @@ from launcher.messages import say
 from launcher.unstable import (
     MOST,
     add_unstable,
+    count_causes,
     read_failures,
     read_import_errors,
     read_passes,
@@ -118,8 +119,8 @@ class Checks:
         """Run alone what failed beside others: what fails twice has failed.
 
         A machine that was short of time fails tests that nothing is wrong with. They are written
-        down, with why: more than MOST of them in a run have failed, too. A file that cannot be
-        imported is no such test.
+        down, with why: more than MOST of them in a run have failed, too, where the cells of a
+        lesson whose kernel did not start are one. A file that cannot be imported is no such test.
         """
         if status != 1:
             return status
@@ -141,7 +142,7 @@ class Checks:
                 f'{len(passed)} of the {what} failed beside others and passed alone; why is '
                 f'written in {RECORD}, which counts {written} by now'
             )
-        if len(passed) > MOST:
+        if count_causes(passed) > MOST:
             say(f'more than {MOST} such in one run count as a failure: find out why they do that')
             return status or 1
         return status

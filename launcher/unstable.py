@@ -7,6 +7,8 @@ from xml.etree import ElementTree
 
 MOST = 2
 """How many of them a run may have."""
+NO_KERNEL = 'failed on setup with "RuntimeError: Kernel died before'
+"""How the reason begins of each cell of a lesson whose kernel has never run one."""
 BAD = ('failure', 'error')
 UNREAD = 'collection failure'
 """What pytest writes where a file of tests could not be imported."""
@@ -50,6 +52,12 @@ def read_passes(report: Path) -> set[str]:
 def unstable(failures: dict[str, str], passes: set[str]) -> dict[str, str]:
     """Return those that failed first and passed then, with why they failed."""
     return {name: why for name, why in failures.items() if name in passes}
+
+
+def count_causes(tests: dict[str, str]) -> int:
+    """Return how many there are, where a kernel that did not start fails all cells of a lesson."""
+    no_kernel = {name for name, why in tests.items() if why.startswith(NO_KERNEL)}
+    return len(tests.keys() - no_kernel) + len({name.rpartition('::')[0] for name in no_kernel})
 
 
 def add_unstable(record: Path, tests: dict[str, str]) -> int:

@@ -22,7 +22,14 @@ from launcher.messages import LauncherError
 from launcher.set_up import BUILD_TOOLS, build_tools
 from launcher.shares import executables_of
 from launcher.testing import Checks
-from launcher.unstable import add_unstable, read_failures, read_passes, unstable
+from launcher.unstable import (
+    NO_KERNEL,
+    add_unstable,
+    count_causes,
+    read_failures,
+    read_passes,
+    unstable,
+)
 from launcher.verbs import read_verbs
 from launcher.words import put
 
@@ -270,6 +277,16 @@ def test_the_record_counts_those_of_all_runs(tmp_path):
     assert add_unstable(record, {'f::a': 'late'}) == 1
     assert add_unstable(record, {'f::a': 'late', 'f::b': 'late'}) == 3
     assert record.read_text().splitlines()[0].endswith('  f::a: late')
+
+
+def test_all_cells_of_a_lesson_whose_kernel_did_not_start_have_one_cause():
+    why = f'{NO_KERNEL} replying to kernel_info"'
+    lesson = {f'solutions.08.ipynb::Cell {number}': why for number in range(26)}
+    assert count_causes(lesson) == 1
+    assert count_causes(lesson | {'solutions.09.ipynb::Cell 0': why}) == 2
+    late = {f'solutions.10.ipynb::Cell {number}': 'late' for number in range(3)}
+    assert count_causes(lesson | late) == 4
+    assert count_causes({}) == 0
 
 
 @pytest.mark.parametrize(('number', 'status'), [(0, 0), (1, 0), (2, 0), (3, 1)])
