@@ -65,6 +65,22 @@ def test_a_failed_check_tells_what_was_expected_seen_and_what_to_try(course):
     assert '1 of 5 points' in html
 
 
+def test_what_stopped_the_students_cell_comes_first_where_points_are_missing(course):
+    html = feedback(
+        course,
+        'bea',
+        answered(course, RIGHT),
+        reasons={'double-hidden': 'expected a function `double`, saw none: define it'},
+        notes=['your cell `double` stopped with NameError: no such thing'],
+    )
+    why = 'Your cell <code>double</code> stopped with NameError: no such thing'
+    assert re.search(f'<td class="why"[^>]*>{why}</td>', html)
+    assert 'Fix that first. What the check saw stands below.' in html
+    assert f'<p>{why}</p>' in html
+    assert '<dt>Try</dt><dd class="next">Define it</dd>' in html
+    assert 'Note: ' not in html
+
+
 @pytest.mark.parametrize(
     ('reason', 'shown'),
     [

@@ -189,9 +189,7 @@ def test_all_verbs_in_a_row(tmp_path, capsys):
     submit(course, 'ada', b'')
     (course.folder('submitted', 'eve', '99_other')).mkdir(parents=True)
     assert main(['grade'], course=course) == 1  # eve's could not be placed
-    counts = (
-        '{} graded, {} unchanged, {} could not be graded (–); 0 of them all wait for a person (…).'
-    )
+    counts = '{} graded, {} unchanged, {} could not be graded (–); 0 wait for a person (…).'
     assert counts.format(1, 0, 1) in capsys.readouterr().out
     assert main(['grade', '--student', 'ada'], course=course) == 0
     assert counts.format(0, 1, 0) in capsys.readouterr().out

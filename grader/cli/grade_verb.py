@@ -76,7 +76,7 @@ def _run_grade(
     waiting = sum(row.stored is not None and row.stored.pending for row in rows)
     print(
         f'{len(rows) - failed - reused} graded, {reused} unchanged, {failed} could not be graded '
-        f'(–); {waiting} of them all wait for a person (…).\n'
+        f'(–); {waiting} wait for a person (…).\n'
         f'Report: {report}\nNext: {_BY_HAND * bool(waiting)}./course feedback, ./course scores'
     )
     return 1 if failed else 0

@@ -9,6 +9,7 @@ from my_robot_basics.language.sentences import REASON
 from my_robot_basics.language.speaking import sentences
 from my_robot_basics.validate.pictures import KINDS, why_not_shown
 from my_robot_basics.validate.titles import title_of_check, title_of_failure
+from my_robot_basics.validate.verdict import TROUBLE
 from nbconvert.filters import strip_ansi
 from nbformat import NotebookNode
 
@@ -48,6 +49,8 @@ class CheckedCell:
     expected: str
     seen: str
     hint: str
+    troubles: tuple[str, ...]
+    """What went wrong in the student's own cells, where points are missing: look there first."""
     notes: tuple[str, ...]
     comment: str
     outputs: tuple[CellOutput, ...]
@@ -98,6 +101,8 @@ def _check(cell: NotebookNode, language: str = ENGLISH) -> CheckedCell:
     status = 'waiting' if verdict.get('waits') else 'by hand' if verdict.get('by_hand') else status
     reason = verdict.get('reason') or _missing_reason(status, is_answer=is_answer)
     title = 'Your written answer' if is_answer else _title(cell) or name
+    told = tuple(verdict.get('notes', ()))
+    troubles = tuple(note for note in told if note.startswith(TROUBLE) and score < points)
     return CheckedCell(
         name=name,
         title=title,
@@ -105,7 +110,8 @@ def _check(cell: NotebookNode, language: str = ENGLISH) -> CheckedCell:
         points=points,
         status=status,
         reason=reason,
-        notes=tuple(verdict.get('notes', ())),
+        troubles=troubles,
+        notes=tuple(note for note in told if note not in troubles),
         comment='' if is_answer else marks.get('comment') or '',
         outputs=() if is_answer else tuple(_outputs(cell, about=title, reason=reason)),
         source='' if is_answer else cell.source.strip(),
