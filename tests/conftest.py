@@ -149,6 +149,11 @@ def pytest_configure(config: pytest.Config) -> None:
     if not hasattr(config, 'workerinput'):  # what is made once, also for xdist's workers
         folders.append(Path(tempfile.mkdtemp(prefix='shared-')))
         os.environ['MY_ROBOT_BASICS_TESTS'] = str(folders[2])
+    if config.getoption('--nbval'):
+        from tests import lesson_kernels  # all that nbval imports, which other sessions need not
+
+        folders.append(Path(tempfile.mkdtemp(prefix='zmq-')))
+        lesson_kernels.prepare(folders[-1])
     classroom.enter()
 
 
