@@ -40,6 +40,7 @@ NBVAL = (
     *('-p', 'tests.conftest', '--nbval', '--nbval-cell-timeout', '60'),
     *('-o', f'cache_dir={LESSONS_CACHE}'),
 )
+HELP = {'-h', '--help'}
 USAGE_ERROR = 4
 """How pytest ends that does not understand an argument."""
 RECORD = 'unstable_tests.txt'
@@ -150,6 +151,9 @@ class Checks:
 
 def run(environment: Environment, variables: dict[str, str], arguments: list[str]) -> int:
     """Run everything even after a failure; return the last failure's exit status."""
+    if not HELP.isdisjoint(arguments):
+        command = [str(environment.python), '-P', '-m', 'pytest', '--help']
+        return subprocess.call(command, cwd=environment.root, env=variables)
     options = [argument for argument in arguments if argument.startswith(ALL_THE_SAME)]
     named = [argument for argument in arguments if not argument.startswith(ALL_THE_SAME)]
     with tempfile.TemporaryDirectory(prefix='reports-') as reports:

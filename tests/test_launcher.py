@@ -5,7 +5,6 @@ import re
 import shutil
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -344,14 +343,24 @@ def test_every_package_without_a_wheel_is_built_with_tools_that_are_pinned():
 
 @pytest.mark.starts
 def test_a_mistake_in_an_argument_of_pytest_ends_all_of_it_at_once(tmp_path, monkeypatch):
-    for name, does in {'ruff': 'exit 0', 'mypy': 'exec sleep 60', 'python': 'exit 4'}.items():
+    types = f'sleep 10; touch {tmp_path}/waited-for'
+    for name, does in {'ruff': 'exit 0', 'mypy': types, 'python': 'exit 4'}.items():
         program = tmp_path / '.venv/bin' / name
         program.parent.mkdir(parents=True, exist_ok=True)
         program.write_text(f'#!/bin/sh\n{does}\n')
         program.chmod(0o755)
-    begun = time.monotonic()
     assert testing.run(Environment(tmp_path), {'PATH': os.environ['PATH']}, ['--bogus']) == 4
-    assert time.monotonic() - begun < 30
+    assert not (tmp_path / 'waited-for').exists()
+
+
+@pytest.mark.starts
+def test_who_asks_for_help_gets_that_of_pytest_alone(tmp_path, capfd):
+    python = tmp_path / '.venv/bin/python'
+    python.parent.mkdir(parents=True)
+    python.write_text('#!/bin/sh\necho "$@"\n')
+    python.chmod(0o755)  # there is no ruff, and none is called
+    assert testing.run(Environment(tmp_path), {'PATH': os.environ['PATH']}, ['--help']) == 0
+    assert capfd.readouterr().out == '-P -m pytest --help\n'
 
 
 @pytest.mark.starts
