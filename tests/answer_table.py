@@ -50,15 +50,20 @@ class Answer:
 
 @cache
 def answers_to(exercise: str) -> list[Answer]:
-    """Read the answers to one exercise. Raises ValueError where a line fits nowhere."""
-    head, *blocks = (FOLDER / f'{exercise}.txt').read_text(encoding='utf-8').split('\n\n')
+    """Read the answers to one exercise. Raises ValueError, with the answer, where one is wrong."""
+    path = FOLDER / f'{exercise}.txt'
+    head, *blocks = path.read_text(encoding='utf-8').split('\n\n')
     told = [line.split() for line in head.splitlines() if not line.startswith('#')]
     lesson = told[0][1]
     full = {check: float(points) for _, check, points in told[1:]}
     found: list[Answer] = []
     for block in blocks:
         usual = found[0].code.splitlines() if found else []
-        found.append(_answer(block.splitlines(), lesson, exercise, full, usual))
+        try:
+            found.append(_answer(block.splitlines(), lesson, exercise, full, usual))
+        except ValueError as error:
+            title = block.partition('\n')[0]
+            raise ValueError(f'{path.name}: the answer {title!r}: {error}') from error
     return found
 
 
@@ -121,9 +126,9 @@ def _answer(
         elif line[0] in '+- ':
             part.append(line)
         else:
-            raise ValueError(f'{exercise} {name}: {line!r} is none of an answer')
+            raise ValueError(f'{line!r} begins with none of earns, says, cell, +, - and a space')
     if (kind == 'right') != (points == full):
-        raise ValueError(f'{exercise} {name}: {kind}, and earns {points}')
+        raise ValueError(f'it is {kind}, and earns {points} of {full}')
     written = {cell: '\n'.join(line[1:] for line in text) for cell, text in cells.items()}
     changed = '\n'.join(_changed(usual, code))
     return Answer(lesson, exercise, name, why, changed, full, points, says, written)
@@ -139,6 +144,8 @@ def _changed(usual: list[str], changes: list[str]) -> list[str]:
         if mark == '+':
             result.append(text)
             continue
+        if text not in usual[done:]:
+            raise ValueError(f'{text!r} is no line of the first answer, or stands further up')
         here = usual.index(text, done)
         result += usual[done:here] + [text] * (mark == ' ')
         done = here + 1

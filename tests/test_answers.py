@@ -1,5 +1,6 @@
 """Unusual answers, right and wrong: each earns what it should, and is told why it does not."""
 
+import answer_table
 import nbformat
 import pytest
 from answer_table import Answer, all_answers, answers_to, in_class, paper
@@ -55,6 +56,24 @@ def test_the_usual_answer_to_each_exercise_and_all_that_it_takes_are_there():
     packages = {'12_package'}  # whose answer is a folder: tests/changed_packages.py
     assert {each.lesson for each in usual} == set(LESSONS) - packages
     assert all(each.points == each.full for each in usual)
+
+
+@pytest.mark.parametrize(
+    ('lines', 'why'),
+    [
+        (['right b: also so', '-no such line'], "'no such line' is no line of the first answer"),
+        (['right b: also so', 'points 1'], "'points 1' begins with none of"),
+        (['right b: also so', 'earns 0'], 'it is right, and earns'),
+        (['wrong b: not so', 'earns 0 1', '+x = 3'], 'zip'),
+    ],
+)
+def test_an_answer_that_is_written_wrongly_is_named(lines, why, tmp_path, monkeypatch):
+    head = 'lesson 00_two_link_arm\ncheck it 1'
+    table = tmp_path / 'reaching.txt'
+    table.write_text('\n\n'.join([head, 'right a: so\n+x = 2', '\n'.join(lines)]))
+    monkeypatch.setattr(answer_table, 'FOLDER', tmp_path)
+    with pytest.raises(ValueError, match=rf"^reaching\.txt: the answer '{lines[0]}': .*{why}"):
+        answers_to.__wrapped__('reaching')
 
 
 @pytest.mark.slow
