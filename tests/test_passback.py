@@ -165,14 +165,23 @@ def test_canvas_without_a_roster_is_told_numbers(course, capsys):
     ) in capsys.readouterr().out
 
 
+def test_a_platform_that_knows_nobody_of_a_class_gets_no_file(course, capsys):
+    (course.gradebook / 'numbers.json').unlink()
+    assert main(['scores', '--format', 'canvas'], course=course) == 0
+    captured = capsys.readouterr()
+    assert captured.out.count('has no Canvas number') == 3
+    assert 'No file was written' in captured.err
+    assert not (course.gradebook / 'canvas').exists()
+
+
 def test_two_rows_of_one_name_or_two_students_of_one_row_are_left_to_a_person(
     course, roster, capsys, monkeypatch
 ):
-    monkeypatch.setattr(
-        write, 'records', lambda course: [cell('bob', 1.0), cell('Bob', 2.0), cell('Eve', 3.0)]
-    )
-    rows = canvas(course, '--roster', roster('Student,ID,Section', 'Bob,1,', 'Eve,2,', 'Eve,3,'))
-    assert rows == [['Student', 'ID', 'Section', '03_publisher']]
+    scores = {'Ann': 4.0, 'bob': 1.0, 'Bob': 2.0, 'Eve': 3.0}
+    monkeypatch.setattr(write, 'records', lambda course: [cell(*each) for each in scores.items()])
+    lines = 'Student,ID,Section', 'Ann,4,', 'Bob,1,', 'Eve,2,', 'Eve,3,'
+    rows = canvas(course, '--roster', roster(*lines))
+    assert [row[0] for row in rows] == ['Student', 'Ann']
     said = capsys.readouterr().out
     assert 'Eve has several rows in roster.csv' in said
     assert 'bob has a row that others may be meant by, too in roster.csv' in said

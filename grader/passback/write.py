@@ -26,8 +26,8 @@ def write_platform_scores(
 ) -> list[Path]:
     """Write the final scores of an assignment, or of all; return the paths.
 
-    `say` gets a line for each student who is in none of them, with why. Raises CourseError where
-    the roster doesn't fit, or nothing is graded.
+    An assignment without a row has no file. `say` gets a line for each student who is in none of
+    them, with why. Raises CourseError where the roster doesn't fit, or nothing is graded.
     """
     found = final_scores(records(course), assignment)
     if assignment and not found:
@@ -43,9 +43,10 @@ def write_platform_scores(
     paths = []
     for scores in found:
         made = TABLES[platform](course, scores, roster)
-        path = _folder(course, platform) / f'{scores.assignment}.csv'
-        write_whole(path, made.text)
-        paths.append(path)
+        if made.rows:
+            path = _folder(course, platform) / f'{scores.assignment}.csv'
+            write_whole(path, made.text)
+            paths.append(path)
         for student in scores.waiting:
             say(f'{scores.assignment}: {student} waits for a person, in the formgrader')
         for line in made.left_out:
