@@ -40,7 +40,6 @@ NBVAL = (
     *('-p', 'tests.conftest', '--nbval', '--nbval-cell-timeout', '60'),
     *('-o', f'cache_dir={LESSONS_CACHE}'),
 )
-HELP = {'-h', '--help'}
 USAGE_ERROR = 4
 """How pytest ends that does not understand an argument."""
 RECORD = 'unstable_tests.txt'
@@ -151,9 +150,9 @@ class Checks:
 
 def run(environment: Environment, variables: dict[str, str], arguments: list[str]) -> int:
     """Run everything even after a failure; return the last failure's exit status."""
-    if not HELP.isdisjoint(arguments):
-        command = [str(environment.python), '-P', '-m', 'pytest', '--help']
-        return subprocess.call(command, cwd=environment.root, env=variables)
+    if not {'-h', '--help'}.isdisjoint(arguments):
+        asked = Checks(environment, variables, Path())
+        return asked.call(str(environment.python), '-P', '-m', 'pytest', '--help')
     options = [argument for argument in arguments if argument.startswith(ALL_THE_SAME)]
     named = [argument for argument in arguments if not argument.startswith(ALL_THE_SAME)]
     with tempfile.TemporaryDirectory(prefix='reports-') as reports:
@@ -165,8 +164,7 @@ def run(environment: Environment, variables: dict[str, str], arguments: list[str
         is_all = not named and '--quick' not in options
         has_lessons = is_all and any(environment.root.glob(LESSONS))
         with ExitStack() as beside:
-            mypy = checks.beside('mypy', str(environment.venv / 'bin/mypy'))
-            types = beside.enter_context(mypy)
+            types = beside.enter_context(checks.beside('mypy', str(environment.venv / 'bin/mypy')))
             in_lessons = None
             if is_all:
                 checks.compile_tests()
@@ -189,8 +187,7 @@ def run(environment: Environment, variables: dict[str, str], arguments: list[str
 def has_own_network() -> bool:
     """Return whether OWN_NETWORK works on this machine."""
     try:
-        tried = subprocess.run([*OWN_NETWORK, 'true'], capture_output=True, check=False)
-        return tried.returncode == 0
+        return subprocess.run([*OWN_NETWORK, 'true'], capture_output=True).returncode == 0
     except OSError:
         return False
 

@@ -16,7 +16,7 @@ def grade_cell(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[], object]
     monkeypatch.setattr(cell_context, 'kernel', SimpleNamespace(shell=lambda: shell))
     monkeypatch.setenv('MY_ROBOT_BASICS_ROOM', 'test')
     # no grader is there to pass questions on
-    monkeypatch.setattr('my_robot_basics.exchange.student.is_in_test_room', lambda: False)
+    monkeypatch.setattr('my_robot_basics.exchange.asking.is_in_test_room', lambda: False)
     try:
         yield lambda: [end() for end in ends]
     finally:

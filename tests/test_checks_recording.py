@@ -9,8 +9,9 @@ import resource
 import pytest
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import Point
-from my_robot_basics.checks import CheckFailed, periods, rates, student
+from my_robot_basics.checks import CheckFailed, periods, rates
 from my_robot_basics.checks.recording import Recording, Sample
+from my_robot_basics.exchange import node_troubles
 from sensor_msgs.msg import JointState
 
 START_SEC = 1000.0
@@ -101,7 +102,9 @@ def test_pauses_are_named_below_nine_tenths_of_the_rate_too():
 @pytest.mark.parametrize('period_sec', [0.2, 0.4])
 def test_a_callback_that_raised_fails_at_any_rate(monkeypatch, period_sec):
     made = recording(every(period_sec))
-    monkeypatch.setattr(student, 'trouble', lambda name: {'/a': 'ValueError: no pose'}[name])
+    monkeypatch.setattr(
+        node_troubles, 'last_raised', lambda name: {'/a': 'ValueError: no pose'}[name]
+    )
     with pytest.raises(
         CheckFailed, match='callback raised ValueError: no pose, so fix that first'
     ):

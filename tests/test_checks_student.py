@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 from builtin_interfaces.msg import Time
 from my_robot_basics.checks import CheckFailed, student
-from my_robot_basics.exchange import responder, values
+from my_robot_basics.exchange import node_troubles, responder, values
 from my_robot_basics.graph.raised import what_raised, what_stopped
+from my_robot_basics.live import troubles
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 
@@ -208,15 +209,15 @@ class Still(Node):
 @pytest.mark.starts
 def test_what_a_callback_raised_is_told_until_its_node_begins_anew(monkeypatch):
     monkeypatch.delenv('MY_ROBOT_BASICS_ROOM', raising=False)
-    assert student.trouble('/raises') == ''
+    assert node_troubles.last_raised('/raises') == ''
     live.run(Raises)
-    live.wait_until(lambda: student.trouble('/raises'))
+    live.wait_until(lambda: node_troubles.last_raised('/raises'))
     said = 'ZeroDivisionError: once more \\(.*line \\d+, in tick: raise ZeroDivisionError'
-    assert re.match(said, student.trouble('/raises'))
+    assert re.match(said, node_troubles.last_raised('/raises'))
     assert what_raised(['/other', '/raises']).startswith('its callback raised ZeroDiv')
     assert what_raised(['/other']) == ''
     live.run(Still, key='Raises')
-    assert (student.trouble('/raises'), student.times_raised('/raises')) == ('', 0)
+    assert (node_troubles.last_raised('/raises'), node_troubles.times_raised('/raises')) == ('', 0)
     live.stop()
 
 
@@ -225,9 +226,38 @@ def test_what_a_callback_raised_is_told_until_its_node_begins_anew(monkeypatch):
 def test_how_often_a_callback_raised_is_told_until_its_node_ends(monkeypatch, end):
     monkeypatch.delenv('MY_ROBOT_BASICS_ROOM', raising=False)
     live.run(Raises)
-    live.wait_until(lambda: student.times_raised('/raises') > 2)
+    live.wait_until(lambda: node_troubles.times_raised('/raises') > 2)
     end()
-    assert (student.trouble('/raises'), student.times_raised('/raises')) == ('', 0)
+    assert (node_troubles.last_raised('/raises'), node_troubles.times_raised('/raises')) == ('', 0)
+
+
+class Threaded(Node):
+    def __init__(self, work):
+        super().__init__('threaded')
+        threading.Thread(target=work, args=[self], daemon=True).start()
+
+
+def divide(node):
+    node.shares = 1 / 0
+
+
+@pytest.mark.starts
+@pytest.mark.filterwarnings('ignore::pytest.PytestUnhandledThreadExceptionWarning')
+def test_what_ended_the_thread_of_a_node_is_told_while_that_node_is_there(monkeypatch):
+    monkeypatch.delenv('MY_ROBOT_BASICS_ROOM', raising=False)
+    # each test has a hook of pytest's in place of the one that `live` makes once
+    monkeypatch.setattr(threading, 'excepthook', threading.excepthook)
+    troubles.watch_threads()
+    live.run(Threaded, divide)
+    live.wait_until(lambda: node_troubles.thread_error('/threaded'))
+    said = (
+        r'its thread raised ZeroDivisionError: .* \(.*line \d+, in divide: node\.shares = 1 / 0\)'
+    )
+    assert re.fullmatch(said, what_stopped(['/other', '/threaded']))
+    assert what_raised(['/threaded']) == ''
+    live.run(Threaded, lambda node: None)
+    assert what_stopped(['/threaded']) == ''
+    live.stop()
 
 
 class Waits(Node):
@@ -244,13 +274,13 @@ class Waits(Node):
 def test_a_callback_that_does_not_return_is_told_with_its_line(monkeypatch):
     monkeypatch.delenv('MY_ROBOT_BASICS_ROOM', raising=False)
     node = live.run(Waits)
-    live.wait_until(lambda: student.unfinished('/waits'))
+    live.wait_until(lambda: node_troubles.unfinished('/waits'))
     said = r'its callback has not returned \(line \d+: self\.end\.wait\(\)'
     assert re.match(said, what_stopped(['/other', '/waits']))
     assert what_stopped(['/other']) == ''
     node.end.set()
     live.run(Raises)
-    live.wait_until(lambda: student.trouble('/raises'))
+    live.wait_until(lambda: node_troubles.last_raised('/raises'))
     assert what_stopped(['/raises']).startswith('its callback raised ZeroDiv')
     live.stop()
 
@@ -259,19 +289,19 @@ def test_a_callback_that_does_not_return_is_told_with_its_line(monkeypatch):
 def test_a_callback_that_returns_again_and_again_keeps_nobody_waiting(monkeypatch):
     monkeypatch.delenv('MY_ROBOT_BASICS_ROOM', raising=False)
     live.run(Node, 'ticks').create_timer(0.01, lambda: None)
-    assert student.unfinished('/ticks') == ''
+    assert node_troubles.unfinished('/ticks') == ''
     live.stop()
 
 
 def test_a_stamp_that_is_no_message_is_told_what_makes_one(monkeypatch):
     said = "AttributeError: 'Time' object has no attribute 'sec' (line 3)"
-    monkeypatch.setattr(student, 'trouble', lambda name: said)
+    monkeypatch.setattr(node_troubles, 'last_raised', lambda name: said)
     assert what_raised(['/any']).endswith('so make a stamp of the time with .to_msg()')
 
 
 def test_a_field_of_another_type_is_told_from_what_rclpy_says_of_it(monkeypatch):
     said = 'TypeError: bad argument type for built-in operation (line 3)'
-    monkeypatch.setattr(student, 'trouble', lambda name: said)
+    monkeypatch.setattr(node_troubles, 'last_raised', lambda name: said)
     assert what_raised(['/any']).endswith('a field of the message holds a value of another type')
 
 
@@ -291,12 +321,12 @@ def test_the_field_of_another_type_is_named_where_rclpy_was_to_publish_it(monkey
             self.publisher.publish(message)
 
     live.run(Floats)
-    live.wait_until(lambda: student.times_raised('/floats'))
-    assert student.unpublished_field('/floats') == ('header.stamp.sec', 'int32')
+    live.wait_until(lambda: node_troubles.times_raised('/floats'))
+    assert node_troubles.unpublished_field('/floats') == ('header.stamp.sec', 'int32')
     assert what_raised(['/floats']).endswith(
         'so give `header.stamp.sec` a value of the type `int32`'
     )
-    assert student.unpublished_field('/others') == ('', '')
+    assert node_troubles.unpublished_field('/others') == ('', '')
     live.stop()
 
 
@@ -313,6 +343,6 @@ def test_what_a_library_raised_is_told_with_the_students_line(monkeypatch):
             JointState(position=['0.1'])
 
     live.run(Texts)
-    live.wait_until(lambda: student.times_raised('/texts'))
-    assert "in tick: JointState(position=['0.1'])" in student.trouble('/texts')
+    live.wait_until(lambda: node_troubles.times_raised('/texts'))
+    assert "in tick: JointState(position=['0.1'])" in node_troubles.last_raised('/texts')
     live.stop()

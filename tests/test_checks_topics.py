@@ -386,5 +386,5 @@ def test_what_cannot_come_any_more_is_not_waited_for(run, monkeypatch):
 
 @pytest.mark.parametrize('reply', ['', '{"failed":"no usable answer"}', '{"ok":1}', None])
 def test_a_notebook_that_does_not_say_is_waited_for(monkeypatch, reply):
-    monkeypatch.setattr(student, '_send', lambda question: reply)
+    monkeypatch.setattr(student, 'send', lambda question: reply)
     assert student.has_endpoint(TOPIC)

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from my_robot_basics.exchange import student
+from my_robot_basics.exchange import node_troubles
 from my_robot_basics.feedback.errors import fail
 from my_robot_basics.graph import graphs
 from my_robot_basics.graph.raised import what_raised, what_stopped
@@ -19,11 +19,11 @@ class CallbackErrors:
 
     def __init__(self, node_names: Iterable[str]) -> None:
         """`node_names`: the nodes' full names."""
-        self._before = {name: student.times_raised(name) for name in node_names}
+        self._before = {name: node_troubles.times_raised(name) for name in node_names}
 
     def hint(self) -> str:
         """A clause that names one of them, and what to do; or ''."""
-        names = [n for n, times in self._before.items() if student.times_raised(n) > times]
+        names = [n for n, times in self._before.items() if node_troubles.times_raised(n) > times]
         raised = what_raised(names)
         return f'{raised}, {FIX_FIRST}' if raised else ''
 

@@ -11,8 +11,8 @@ from my_robot_basics.checks.inconclusive import Inconclusive
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.recording import Recording
 from my_robot_basics.checks.topic_endpoints import TopicEndpoints
-from my_robot_basics.exchange import student
 from my_robot_basics.feedback.errors import CheckFailed, Disturbed, expect, fail
+from my_robot_basics.feedback.hidden import is_in_test_room
 from my_robot_basics.graph.raised import what_raised
 from my_robot_basics.graph.watcher import Watcher
 
@@ -118,4 +118,4 @@ def _expect_ends_by_itself(recorder: Recorder) -> None:
 
 
 def _looks_sec() -> float:
-    return GRADING_SEC if student.is_in_test_room() else VALIDATE_SEC
+    return GRADING_SEC if is_in_test_room() else VALIDATE_SEC

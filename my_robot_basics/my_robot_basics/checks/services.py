@@ -10,7 +10,7 @@ from rclpy.task import Future
 
 from my_robot_basics.checks.awaited_servers import SERVER_SEC, wait_for_server
 from my_robot_basics.checks.callbacks import CallbackErrors
-from my_robot_basics.exchange import student
+from my_robot_basics.exchange import node_troubles
 from my_robot_basics.exchange.values import type_name
 from my_robot_basics.feedback.errors import expect, fail
 from my_robot_basics.feedback.hidden import theirs
@@ -127,7 +127,7 @@ class Service:
     def _why_unanswered(self, watcher: Watcher, server: str, raised: CallbackErrors) -> str:
         if raised.hint():
             # rclpy checks the type of what a callback returns, and says nothing but that
-            if student.trouble(server) == 'TypeError':
+            if node_troubles.last_raised(server) == 'TypeError':
                 return 'end the callback with `return response`, in each of its branches'
             return raised.hint()
         if not answers_parameters(watcher, server):

@@ -11,7 +11,7 @@ from typing import Any
 from my_robot_basics.exchange import settled, values, wire
 
 _PROTOCOL = ('call', 'value', 'endpoint', 'settled', 'clock', 'package')
-_PROTOCOL_OF_TROUBLES = ('trouble', 'raised', 'field', 'unfinished')
+_PROTOCOL_OF_TROUBLES = ('trouble', 'raised', 'field', 'unfinished', 'thread')
 
 
 def answer(request_text: str) -> str:
@@ -36,6 +36,8 @@ def answer(request_text: str) -> str:
         return _reply(_unpublished_field(name))
     if op == 'unfinished':
         return _reply(_unfinished(name))
+    if op == 'thread':
+        return _reply(_of_thread(name))
     if op == 'clock':
         return _reply(_set_use_sim_time(name, *args))
     if op == 'package':
@@ -96,6 +98,12 @@ def _unfinished(node_name: str) -> str:
     """Where a callback is that keeps a node from all else, if live has run one, or ''."""
     troubles = sys.modules.get('my_robot_basics.live.troubles')
     return troubles.unfinished(node_name) if troubles else ''
+
+
+def _of_thread(node_name: str) -> str:
+    """What ended a thread that worked with a node, or ''."""
+    troubles = sys.modules.get('my_robot_basics.live.troubles')
+    return troubles.of_thread(node_name) if troubles else ''
 
 
 def _set_use_sim_time(node_name: str, value: bool) -> bool | None:

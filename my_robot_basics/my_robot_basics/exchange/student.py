@@ -7,7 +7,8 @@ student's own kernel the same question is answered in place, in the same words.
 import builtins
 from typing import Any
 
-from my_robot_basics.exchange import responder, values, wire
+from my_robot_basics.exchange import values, wire
+from my_robot_basics.exchange.asking import send, told
 from my_robot_basics.exchange.expected_types import (
     brief,
     check_type,
@@ -18,7 +19,6 @@ from my_robot_basics.exchange.expected_types import (
 )
 from my_robot_basics.feedback import hidden
 from my_robot_basics.feedback.errors import fail, shorten
-from my_robot_basics.feedback.hidden import is_in_test_room
 from my_robot_basics.session import interactions
 
 __all__ = ['call', 'value']
@@ -87,7 +87,7 @@ def has_endpoint(topic_name: str, end: str = '', type_name: str = '') -> bool:
     """
     question = wire.request(op='endpoint', name=topic_name, args=(end, type_name))
     try:
-        kind, body = wire.parse_reply(_send(question))
+        kind, body = wire.parse_reply(send(question))
     except values.WireError:
         return True
     return kind != 'ok' or body is not False
@@ -96,7 +96,7 @@ def has_endpoint(topic_name: str, end: str = '', type_name: str = '') -> bool:
 def publishes(topic_name: str) -> bool:
     """Whether the notebook's process says that it publishes there, also before the graph does."""
     request = wire.request(op='endpoint', name=topic_name, args=('publishers', ''))
-    return _told(request) is True
+    return told(request) is True
 
 
 def settled_nodes() -> list[str] | None:
@@ -105,40 +105,9 @@ def settled_nodes() -> list[str] | None:
     It saves waiting for what can't come; the verdict stays with the graph.
     """
     question = wire.request(op='settled', name='', args=(hidden.checked_for_sec(),))
-    body = _told(question)
+    body = told(question)
     is_told = isinstance(body, list) and all(isinstance(name, str) for name in body)
     return body if is_told else None
-
-
-def trouble(node_name: str) -> str:
-    """What a callback of that node raised last, where the notebook's process knows; or ''.
-
-    It tells students where to look; the verdict stays with what was seen.
-    """
-    body = _told(wire.request(op='trouble', name=node_name))
-    return shorten(body) if isinstance(body, str) else ''
-
-
-def unpublished_field(node_name: str) -> tuple[str, str]:
-    """For which field a message of that node did not travel, and its type; or texts of ''."""
-    body = _told(wire.request(op='field', name=node_name))
-    is_told = isinstance(body, tuple) and [type(text) for text in body] == [str, str]
-    return (shorten(body[0], 60), shorten(body[1], 60)) if is_told else ('', '')
-
-
-def times_raised(node_name: str) -> int:
-    """How often a callback of that node raised, where the notebook's process knows; or 0."""
-    body = _told(wire.request(op='raised', name=node_name))
-    return body if type(body) is int else 0
-
-
-def unfinished(node_name: str) -> str:
-    """Where a callback of that node is that keeps all others from running: its line, or ''.
-
-    It tells students where to look; the verdict stays with what was seen.
-    """
-    body = _told(wire.request(op='unfinished', name=node_name))
-    return shorten(body) if isinstance(body, str) else ''
 
 
 def set_use_sim_time(node_name: str, value: bool) -> bool | None:
@@ -147,7 +116,7 @@ def set_use_sim_time(node_name: str, value: bool) -> bool | None:
     None where that process has no such node, or does not answer, or the node refuses. It drives a
     node that nothing else can drive; the verdict stays with what the node publishes.
     """
-    body = _told(wire.request(op='clock', name=node_name, args=(value,)))
+    body = told(wire.request(op='clock', name=node_name, args=(value,)))
     return body if isinstance(body, bool) else None
 
 
@@ -158,27 +127,14 @@ def ask_package(package: str, verb: str, *args: object) -> dict[str, Any]:
     a package does is seen over DDS.
     """
     interactions.note()
-    body = _told(wire.request(op='package', name=package, args=(verb, *args)))
+    body = told(wire.request(op='package', name=package, args=(verb, *args)))
     is_told = isinstance(body, dict) and all(isinstance(key, str) for key in body)
     return body if is_told else {}
 
 
-def _told(question: str) -> Any:
-    """What the notebook's process answers, or None."""
-    try:
-        kind, body = wire.parse_reply(_send(question))
-    except values.WireError:
-        return None
-    return body if kind == 'ok' else None
-
-
-def _send(question: str) -> str:
-    return input(question) if is_in_test_room() else responder.answer(question)
-
-
 def _ask(question: str, shown: str) -> tuple[str, Any]:
     try:
-        kind, body = wire.parse_reply(_send(question))
+        kind, body = wire.parse_reply(send(question))
     except values.WireError as error:
         hint = 'return plain values (numbers, text, lists, dicts) or a ROS message'
         fail(expected=f'an answer from `{shown}`', seen=error, hint=hint)

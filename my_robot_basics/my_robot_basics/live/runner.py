@@ -20,6 +20,7 @@ from my_robot_basics.live import (
     notebook,
     spinning,
     thread_pools,
+    troubles,
 )
 from my_robot_basics.live.background import Background
 from my_robot_basics.live.destroying import destroy
@@ -121,11 +122,7 @@ def stop(key_or_node: str | type[Node] | Node | None = None) -> None:
         commands.stop_commands()
         executables.stop_started()
         return
-    keys = [
-        key
-        for key, background in _running.items()
-        if key_or_node in (key, background.node, type(background.node))
-    ]
+    keys = [k for k, b in _running.items() if key_or_node in (k, b.node, type(b.node))]
     if not keys:
         name = getattr(key_or_node, '__name__', repr(key_or_node))
         tell(f'nothing to stop: no node runs as {name}')
@@ -185,6 +182,7 @@ def set_up() -> int:
             interrupting.let_cells_be_interrupted()
             if not classroom.in_grading_room():
                 spinning.help_in_cells()
+        troubles.watch_threads()
         harmless_errors.hide()
         thread_pools.let_threads_begin()
         child_loggers.remember_child_loggers()
