@@ -14,7 +14,10 @@ ARRIVED = {0: 10.01, 2: 10.3, 4: 10.9}
 def drawn(monkeypatch):
     """The figure and the words of the last picture."""
     shown = []
-    monkeypatch.setattr(timeline, '_show', lambda figure, text: shown.append((figure, text)))
+    monkeypatch.setattr(timeline, 'png', lambda figure: figure)
+    monkeypatch.setattr(
+        timeline.notebook, 'show_picture', lambda figure, text: shown.append((figure, text))
+    )
     return lambda: shown[-1]
 
 

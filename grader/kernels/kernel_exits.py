@@ -5,6 +5,8 @@ import signal
 from dataclasses import dataclass
 from enum import Enum
 
+from my_robot_basics.exchange.endings import signal_name
+
 from grader.sandbox.cgroups import MemoryEvents
 from grader.sandbox.limits import PROCESS_LIMITS, ROOM_MEMORY_BYTES
 
@@ -71,11 +73,3 @@ def whose_memory(memory: MemoryEvents) -> tuple[Responsibility, str]:
 def is_from_outside(number: int) -> bool:
     """Whether a signal is none that Linux sends a program for what it, or its terminal, did."""
     return signal_name(number) not in _CRASHES | _OWN | _TERMINALS
-
-
-def signal_name(number: int) -> str:
-    """Return what a signal is called."""
-    try:
-        return signal.Signals(number).name
-    except ValueError:
-        return f'signal {number}'

@@ -5,6 +5,7 @@ import shutil
 from collections.abc import Sequence
 from pathlib import Path
 
+from my_robot_basics.exchange.endings import signal_name
 from my_robot_basics.session.domain import Claim, claim
 from my_robot_basics.session.errors import LiveError
 from my_robot_basics.validate.limits import CHECK_TIMEOUT_SEC, REPLY_TIMEOUT_SEC
@@ -19,7 +20,7 @@ from my_robot_basics.validate.questions import (
 from my_robot_basics.validate.together import together
 
 from grader.common.errors import RoomFailure
-from grader.kernels.kernel_exits import Responsibility, signal_name, whose_memory
+from grader.kernels.kernel_exits import Responsibility, whose_memory
 from grader.kernels.kernels import GradingKernel
 from grader.sandbox.cgroups import MemoryEvents
 from grader.sandbox.sandbox import Sandbox

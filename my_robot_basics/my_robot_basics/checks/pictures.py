@@ -1,13 +1,12 @@
 """Pictures that say what a sentence can't, as PNG bytes."""
 
-import io
 import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from my_robot_basics.drawing.figures import png
 
+if TYPE_CHECKING:
     from my_robot_basics.checks.recording import Recording
 
 SHOWN_PERIODS = 25
@@ -44,7 +43,7 @@ def arrivals(recording: 'Recording', *, hz: float | None = None) -> bytes:
     if until < recording.seconds:
         title = f'messages on {recording.topic_name}, the first {until:g} s'
     axes.set_title(title)
-    return _png(figure)
+    return png(figure)
 
 
 def misread(position: Sequence[float]) -> bytes | None:
@@ -56,11 +55,3 @@ def misread(position: Sequence[float]) -> bytes | None:
     picture = ArmPicture()
     picture.move(*map(math.degrees, position), title='your numbers, read as radians')
     return picture.png()
-
-
-def _png(figure: 'Figure') -> bytes:
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-
-    buffer = io.BytesIO()
-    FigureCanvasAgg(figure).print_png(buffer)
-    return buffer.getvalue()

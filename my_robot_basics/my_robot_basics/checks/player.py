@@ -7,8 +7,9 @@ other links than the course's: where a target leads, only who asks can know.
 import math
 import random
 
+from my_robot_basics.checks.action_ends import TERMINAL
 from my_robot_basics.checks.drawing import QUIET_SEC, Drawing
-from my_robot_basics.checks.player_servers import ENDS, WORDS, Target
+from my_robot_basics.checks.player_servers import WORDS, Target
 from my_robot_basics.graph.watcher import Watcher
 
 NEAREST_M, FARTHEST_M = 0.6, 1.7
@@ -29,7 +30,7 @@ def expect_plays(*targets: Target, first_goal_sec: float = QUIET_SEC) -> None:
             raise ValueError(f'a target ends as one of {", ".join(WORDS)}, not {word}')
     with Watcher() as watcher, Drawing.opened(watcher, targets) as drawing:
         drawing.expect_waits_for_both()
-        moves = [number for number, (word, _, _) in enumerate(targets) if word in ENDS]
+        moves = [number for number, (word, _, _) in enumerate(targets) if word in TERMINAL]
         for number in range(len(targets)):
             is_first = number in moves[:1]
             drawing.expect_visit(number, goal_sec=first_goal_sec if is_first else QUIET_SEC)

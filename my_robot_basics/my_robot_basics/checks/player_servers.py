@@ -1,6 +1,5 @@
 """The check's own `/solve_ik` and `/move_arm`, for a node that visits targets: by a script."""
 
-import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -9,20 +8,20 @@ from rclpy.client import Client
 
 from arm_interfaces.action import MoveArm
 from arm_interfaces.srv import SolveIK
+from my_robot_basics.checks.action_ends import TERMINAL
 from my_robot_basics.checks.holding_server import HoldingServer
 from my_robot_basics.checks.scripted_action import ReceivedGoal, ScriptedActionServer
-from my_robot_basics.checks.solutions import request, solve
+from my_robot_basics.checks.solutions import is_for, request, solve
 from my_robot_basics.feedback.errors import expect
 from my_robot_basics.graph.watcher import Watcher
 
 SOLVE_IK, MOVE_ARM = '/solve_ik', '/move_arm'
 Target = tuple[str, float, float]
 """How it ends, x and y in metres."""
-ENDS = 'succeeded', 'canceled', 'aborted'
-WORDS = *ENDS, 'rejected', 'unreachable'
+WORDS = *TERMINAL, 'rejected', 'unreachable'
 L1_M = 1.3
 """The first link of the check's arm: its angles are known only to who asks."""
-NEAR_M = NEAR_RAD = 1e-6
+NEAR_RAD = 1e-6
 MOST_GOALS = 500
 CANCEL_SEC = 4.0
 """How long a request to cancel may take, of time that was free."""
@@ -64,7 +63,7 @@ class PlayerServers(ScriptedActionServer):
     def was_asked(self, number: int) -> bool:
         """Whether a request came for a target."""
         _, x, y = self.targets[number]
-        return any(_is_at(asked, x, y) for asked in self.solver.requests)
+        return any(is_for(asked, x, y) for asked in self.solver.requests)
 
     def was_skipped(self, number: int) -> bool:
         """Whether a request came for a later target, and none for this one."""
@@ -74,7 +73,7 @@ class PlayerServers(ScriptedActionServer):
     def strays(self) -> list[Any]:
         """The requests for a point that is no target."""
         points = [(x, y) for _, x, y in self.targets]
-        return [r for r in self.solver.requests if not any(_is_at(r, *each) for each in points)]
+        return [r for r in self.solver.requests if not any(is_for(r, *each) for each in points)]
 
     def number_of(self, goal: Any) -> int | None:
         """Which target a goal is for, or None."""
@@ -97,7 +96,7 @@ class PlayerServers(ScriptedActionServer):
 
     def _answer(self, asked: Any) -> Any:
         for word, x, y in self.targets:
-            if _is_at(asked, x, y) and word == 'unreachable':
+            if is_for(asked, x, y) and word == 'unreachable':
                 return SolveIK.Response(message='this arm does not get there')
         return solve(asked, l1=L1_M)
 
@@ -117,7 +116,3 @@ def is_near(seen: Sequence[float], wanted: Sequence[float]) -> bool:
     return len(seen) == len(wanted) and all(
         abs(a - b) < NEAR_RAD for a, b in zip(seen, wanted, strict=True)
     )
-
-
-def _is_at(asked: Any, x: float, y: float) -> bool:
-    return math.hypot(asked.target.x - x, asked.target.y - y) < NEAR_M

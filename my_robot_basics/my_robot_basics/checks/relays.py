@@ -28,9 +28,9 @@ LOST_SEC = 4.0
 """What has not come out in so much time that was free is lost: no relay waits."""
 TIMES_RAISED = 10
 """After so many times, a callback that raised has decided: see `CallbackErrors.expect_none`."""
-OFTEN = 40
-"""After so many times it is sent each tenth time alone: the more time a busy machine takes, the
-more would come out of a node that leaves out the first hundred."""
+OFTEN, SELDOM = 40, 10
+"""After so many times, a message is sent each tenth time only: a busy machine takes longer, and a
+node that leaves out the first hundred must not receive more than a hundred."""
 
 
 def relay(source: str, *, to: str, fields: Sequence[str] = ()) -> 'Relay':
@@ -116,8 +116,9 @@ class Relay:
         )
         watcher.spin_until(source_recorder.is_connected, timeout_sec=TIMEOUT_SEC)
         watcher.spin_for(QUIET_SEC)
-        sends = {'publish': publisher.publish, 'what': self._what, 'earlier': earlier}
-        passage = Passage(watcher, recorder, **sends)
+        passage = Passage(
+            watcher, recorder, publish=publisher.publish, what=self._what, earlier=earlier
+        )
         messages = varied(make_message)
         carried = passage.carry(messages)
         if not carried.is_whole():
@@ -163,7 +164,7 @@ class Relay:
     ) -> None:
         """Wait for the message on `to`, behind so many; publish it `again` and again meanwhile."""
         for times in free_turns(LOST_SEC):
-            if again is not None and (times <= OFTEN or times % TIMES_RAISED == 0):
+            if again is not None and (times <= OFTEN or times % SELDOM == 0):
                 again.publish(message)
             if watcher.spin_until(
                 lambda: any(self._is_same(received, message) for received in recorder.messages()),

@@ -14,7 +14,7 @@ from my_robot_basics.doctor.evidence import Endpoint, Evidence, Kind, ReceivedMe
 from my_robot_basics.doctor.inside import Inside
 from my_robot_basics.graph import graphs, participants
 from my_robot_basics.graph.message_info import with_info
-from my_robot_basics.graph.snapshot import GraphSnapshot
+from my_robot_basics.graph.snapshot import PLUMBING, GraphSnapshot
 from my_robot_basics.graph.watcher import HIDDEN, Watcher
 from my_robot_basics.ros2.interfaces import message_class
 from my_robot_basics.session import domain
@@ -32,7 +32,6 @@ DEPTH = 5000
 """Of the doctor's own queue: more messages than it can receive in one look."""
 ANNOUNCEMENTS = 'ros_discovery_info'
 """DDS topic on which each ROS participant publishes the names of its nodes."""
-_PLUMBING = ('/clock', '/parameter_events', '/rosout')
 
 
 def other_domains(domain_id: int) -> Iterator[int]:
@@ -117,7 +116,7 @@ def endpoints_of(node: Node) -> Iterator[Endpoint]:
         'subscription': node.get_subscriptions_info_by_topic,
     }
     for topic_name, _ in node.get_topic_names_and_types():
-        if topic_name in _PLUMBING:
+        if topic_name in PLUMBING:
             continue
         for kind, look_up in look_ups.items():
             for info in look_up(topic_name):

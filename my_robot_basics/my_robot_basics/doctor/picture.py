@@ -1,15 +1,14 @@
 """The graph around a topic as a picture, the broken edge marked."""
 
-import io
 from typing import TYPE_CHECKING
 
 from my_robot_basics.doctor.evidence import Diagnosis, Endpoint, Evidence, Kind
 from my_robot_basics.doctor.report import summary
 from my_robot_basics.drawing.described import gettext_noop
+from my_robot_basics.drawing.figures import png
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 
 # Okabe and Ito's colours are told apart by everyone; a broken edge is dashed and crossed, too
@@ -113,12 +112,3 @@ def arrow(
 
 def _towards(end: tuple[float, float], middle: tuple[float, float]) -> tuple[float, float]:
     return 0.9 * middle[0] + 0.1 * end[0], 0.9 * middle[1] + 0.1 * end[1]
-
-
-def png(figure: 'Figure') -> bytes:
-    """Return the figure as a PNG."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-
-    buffer = io.BytesIO()
-    FigureCanvasAgg(figure).print_png(buffer)
-    return buffer.getvalue()

@@ -1,5 +1,6 @@
-"""How a program has ended: its exit code, and the error in what it printed."""
+"""How a program has ended: its exit code, its signal, and the error in what it printed."""
 
+import signal
 from collections.abc import Sequence
 
 RACE = 'rcl_shutdown already called'
@@ -12,8 +13,8 @@ TRY_SHUTDOWN = 'try_shutdown'
 def is_clean(code: int | None, lines: Sequence[str], *, is_second: bool = False) -> bool:
     """Whether a program that was told to end did so as it should: with exit code 0.
 
-    `is_second`: it has ended by the race before. Only `try_shutdown` has such bad luck twice, for
-    who calls `shutdown` once too often meets the same error each time.
+    `is_second`: it has ended by the race before. A second time, only a program that calls
+    `try_shutdown` is excused: one `shutdown` too many raises the same error each time.
     """
     is_luck = not is_second or any(TRY_SHUTDOWN in line for line in lines)
     return code == 0 or (code == 1 and RACE in error_in(lines) and is_luck)
@@ -26,3 +27,11 @@ def error_in(lines: Sequence[str]) -> str:
         return ''
     errors = (line for line in lines[starts[-1] + 1 :] if line[:1].isalpha())
     return next(errors, 'a traceback')
+
+
+def signal_name(number: int) -> str:
+    """What a signal is called: SIGINT, say."""
+    try:
+        return signal.Signals(number).name
+    except ValueError:
+        return f'signal {number}'

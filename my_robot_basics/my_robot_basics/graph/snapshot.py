@@ -11,7 +11,8 @@ NOT_RUNNING = (
     'the node is not running, so run the cell that starts it and read its output; a node whose'
     ' __init__ raises, waits, loops or spins never runs'
 )
-_PLUMBING = ('/clock', '/parameter_events', '/rosout')
+PLUMBING = ('/clock', '/parameter_events', '/rosout')
+"""Topics that every node has, whatever its author wrote."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,7 @@ class GraphSnapshot:
         return not any(
             {*nodes} & {*node_names}
             for topic_name, nodes in self.publisher_names.items()
-            if topic_name not in _PLUMBING
+            if topic_name not in PLUMBING
         )
 
     def without(self, node_names: Collection[str]) -> 'GraphSnapshot':
@@ -90,7 +91,7 @@ class GraphSnapshot:
     ) -> str:
         # who is at the other end of the topic is not the one that is missing at this end
         runs = [name for name in self.node_names if name not in others]
-        near = similar(topic_name, [name for name in names if name not in _PLUMBING])
+        near = similar(topic_name, [name for name in names if name not in PLUMBING])
         # it may be the one that was meant, with its two ends mixed up
         if mixed := sorted({*names.get(near or '', others if not runs else ())} & {*others}):
             return (

@@ -33,5 +33,4 @@ def show_arm(
         picture.dashed(*other)
         text += '; ' + gettext_noop(f'dashed: θ1 = {other[0]:.1f}°, θ2 = {other[1]:.1f}°')
     picture.move(theta1_deg, theta2_deg, title=title)
-    display = notebook.Display()
-    display.show({'image/png': picture.png(), 'text/plain': text})
+    notebook.show_picture(picture.png(), text)

@@ -4,8 +4,8 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from my_robot_basics.doctor.picture import png
 from my_robot_basics.drawing.described import gettext_noop
+from my_robot_basics.drawing.figures import png
 from my_robot_basics.kinematics_subscriber import same_pose
 from my_robot_basics.live import notebook
 from my_robot_basics.two_link_kinematics import L1, L2, forward_kinematics, inverse_kinematics
@@ -61,5 +61,4 @@ def show_branches(
     )
     text = gettext_noop('poses by branch') + f': {counts}; '
     text += gettext_noop('elbow_up has θ2 below 0, elbow_down above')
-    display = notebook.Display()
-    display.show({'image/png': png(figure), 'text/plain': text})
+    notebook.show_picture(png(figure), text)

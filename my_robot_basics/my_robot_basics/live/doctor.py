@@ -43,4 +43,4 @@ def _show(diagnosis: Diagnosis) -> None:
     page = as_html.tell_as_html(diagnosis, language_here())
     notebook.Display().show({'text/plain': told, 'text/html': page})
     drawn, words = picture.draw(diagnosis), picture.describe(diagnosis)
-    notebook.Display().show({'image/png': drawn, 'text/plain': words})
+    notebook.show_picture(drawn, words)

@@ -10,6 +10,7 @@ from my_robot_basics.doctor import picture
 from my_robot_basics.doctor.evidence import Endpoint
 from my_robot_basics.doctor.looking import endpoints_of
 from my_robot_basics.drawing.described import gettext_noop
+from my_robot_basics.drawing.figures import png
 from my_robot_basics.graph import graphs
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.live import notebook
@@ -49,8 +50,7 @@ def show_graph(title: str = '') -> None:
         nodes = graphs.take(watcher).nodes()
         arrows = arrows_of(nodes, endpoints_of(watcher.node))
     text = describe(arrows)
-    display = notebook.Display()
-    display.show({'image/png': draw(arrows, title=title), 'text/plain': text})
+    notebook.show_picture(draw(arrows, title=title), text)
 
 
 def arrows_of(nodes: Iterable[str], endpoints: Iterable[Endpoint]) -> Arrows:
@@ -107,7 +107,7 @@ def draw(arrows: Arrows, *, title: str = '') -> bytes:
             aside = ASIDE * (1 if to_x > x else -1) if box in arrows[other] else 0.0
             bend = BEND if abs(to_x - x) > 1 else 0.0
             picture.arrow(axes, (x, y + aside), (to_x, to_y + aside), bend=bend)
-    return picture.png(figure)
+    return png(figure)
 
 
 def _places(arrows: Arrows) -> dict[Box, tuple[int, float]]:

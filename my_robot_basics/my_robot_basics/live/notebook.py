@@ -124,6 +124,11 @@ class Display:
         )
 
 
+def show_picture(png: bytes, text: str) -> None:
+    """Show a picture with its alternative text in the cell that runs now."""
+    Display().show({'image/png': png, 'text/plain': text})
+
+
 class _Refresher:
     """The thread that updates displays, a few times a second."""
 

@@ -2,9 +2,9 @@
 
 import ast
 import re
-import signal
 from pathlib import Path
 
+from my_robot_basics.exchange.endings import signal_name
 from my_robot_basics.session.package_files import PackageFiles
 
 BUILD_TYPE = 'ament_python'
@@ -72,7 +72,7 @@ def fault_in_words(package: str, status: int, words: str) -> str:
     """What matters of colcon's words when it has failed, and what to do."""
     if status < 0:
         return (
-            f'colcon was ended by {_signal(-status)} while it built {package}: look for what '
+            f'colcon was ended by {signal_name(-status)} while it built {package}: look for what '
             'setup.py starts or uses up'
         )
     lines = words.splitlines()
@@ -112,13 +112,6 @@ def _last_error(lines: list[str]) -> str:
 
 def _is_colcons(line: str) -> bool:
     return line.startswith(('Starting >>>', 'Finished <<<', 'Failed   <<<', 'Summary:', '---'))
-
-
-def _signal(number: int) -> str:
-    try:
-        return signal.Signals(number).name
-    except ValueError:
-        return f'signal {number}'
 
 
 def short(text: str) -> str:

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 from my_robot_basics.doctor import picture
 from my_robot_basics.drawing.described import gettext_noop
+from my_robot_basics.drawing.figures import png
 from my_robot_basics.live import notebook
 
 if TYPE_CHECKING:
@@ -33,7 +34,7 @@ def show_offers() -> None:
         for offered, requested in product(values, repeat=2)
     ]
     text = gettext_noop('offered → requested, does it match') + ': ' + ', '.join(said)
-    notebook.Display().show({'image/png': draw(), 'text/plain': text})
+    notebook.show_picture(draw(), text)
 
 
 def matches(values: tuple[str, str], offered: str, requested: str) -> bool:
@@ -56,7 +57,7 @@ def draw() -> bytes:
         for y, value in enumerate(values):
             _name(axes, OFFERED, y, value, side='right')
             _name(axes, REQUESTED, y, value, side='left')
-    return picture.png(figure)
+    return png(figure)
 
 
 def _name(axes: 'Axes', x: float, y: float, value: str, *, side: str) -> None:

@@ -3,8 +3,8 @@
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from my_robot_basics.doctor.picture import png
 from my_robot_basics.drawing.described import gettext_noop
+from my_robot_basics.drawing.figures import png
 from my_robot_basics.live import notebook
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ def show_qos_matrix(outcomes: Mapping[tuple[str, str], str], *, title: str = '')
         for offer in offers
     ]
     figure = _draw_matrix(outcomes, offers=offers, requests=requests, title=title)
-    _show(figure, '\n'.join(filter(None, [title, *lines])))
+    notebook.show_picture(png(figure), '\n'.join(filter(None, [title, *lines])))
 
 
 def show_lost_messages(
@@ -45,7 +45,7 @@ def show_lost_messages(
         for name, numbers in received.items()
     ]
     figure = _draw_lost(received, sent=sent, title=title)
-    _show(figure, '\n'.join(filter(None, [title, *counts])))
+    notebook.show_picture(png(figure), '\n'.join(filter(None, [title, *counts])))
 
 
 def _told(request: str, outcome: str) -> str:
@@ -113,8 +113,3 @@ def _draw_lost(received: Mapping[str, Sequence[int]], *, sent: int, title: str) 
     handles, names = axes.get_legend_handles_labels()
     figure.legend(handles[:2], names[:2], loc='outside right upper', markerscale=0.6)
     return figure
-
-
-def _show(figure: 'Figure', text: str) -> None:
-    display = notebook.Display()
-    display.show({'image/png': png(figure), 'text/plain': text})

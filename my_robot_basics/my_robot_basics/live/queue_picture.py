@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 from my_robot_basics.doctor import picture
 from my_robot_basics.drawing.described import gettext_noop
+from my_robot_basics.drawing.figures import png
 from my_robot_basics.live import notebook
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ def show_queues() -> None:
         "path of a message: publisher → the publisher's queue → topic → the subscription's queue "
         '→ the executor takes it → callback'
     )
-    notebook.Display().show({'image/png': draw(), 'text/plain': text})
+    notebook.show_picture(draw(), text)
 
 
 def draw() -> bytes:
@@ -45,7 +46,7 @@ def draw() -> bytes:
     picture.box(axes, 8.0, 3.7, '/topic', style=ROUND, face=picture.TOPIC)
     _arrow(axes, (6.5, BOTTOM), (6.0, BOTTOM))
     _arrow(axes, (3.8, BOTTOM), (2.85, BOTTOM), 'calls')
-    return picture.png(figure)
+    return png(figure)
 
 
 def _queue(axes: 'Axes', x: float, y: float, title: str, *, waiting: int) -> None:

@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 from my_robot_basics.doctor import picture
 from my_robot_basics.drawing.described import gettext_noop
+from my_robot_basics.drawing.figures import png
 from my_robot_basics.live import notebook
 
 if TYPE_CHECKING:
@@ -27,7 +28,7 @@ def show_service() -> None:
         'request → the callback for left runs → the response goes to left alone → the callback '
         'for right runs → the response goes to right alone'
     )
-    notebook.Display().show({'image/png': draw(), 'text/plain': text})
+    notebook.show_picture(draw(), text)
 
 
 def draw() -> bytes:
@@ -46,7 +47,7 @@ def draw() -> bytes:
     _arrow(axes, RIGHT, SERVER, 4.4, 'request', REQUEST)
     _arrow(axes, SERVER, LEFT, 3.0, 'response', RESPONSE)
     _arrow(axes, SERVER, RIGHT, 0.8, 'response', RESPONSE)
-    return picture.png(figure)
+    return png(figure)
 
 
 def _work(axes: 'Axes', begin: float, end: float) -> None:

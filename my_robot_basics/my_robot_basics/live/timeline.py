@@ -5,15 +5,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from my_robot_basics.doctor.picture import png
 from my_robot_basics.drawing.described import gettext_noop
+from my_robot_basics.drawing.figures import png
 from my_robot_basics.live import notebook
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    pass
 
 # Okabe and Ito's colours are told apart by everyone; what is lost has another shape, too
-ARRIVED, LOST, BUSY, SENT = '#0072b2', '#d55e00', '#e69f00', '#000000'
+ARRIVED, LOST, BUSY = '#0072b2', '#d55e00', '#e69f00'
 WIDTH_INCHES, STRIP_INCHES, PANEL_INCHES = 7.0, 0.55, 1.3
 
 
@@ -51,7 +51,7 @@ def show_arrivals(
             gaps.set_ylabel('gap (ms)')
             gaps.ticklabel_format(useOffset=False)
     figure.axes[-1].set_xlabel('time since the first one (s)')
-    _show(figure, _told(_gaps(label, times) for label, times in rows.items()))
+    notebook.show_picture(png(figure), _told(_gaps(label, times) for label, times in rows.items()))
 
 
 def show_deliveries(
@@ -75,7 +75,9 @@ def show_deliveries(
         axes.set_title('× = never received', fontsize=9, loc='right', color=LOST)
         axes.set(yticks=[1, 0], yticklabels=['sent', 'received'], ylim=(-0.3, 1.3))
     figure.axes[-1].set_xlabel('time since the first message was sent (s)')
-    _show(figure, _told(_delays(label, each, sent) for label, each in rows.items()))
+    notebook.show_picture(
+        png(figure), _told(_delays(label, each, sent) for label, each in rows.items())
+    )
 
 
 def delays_sec(arrived: Mapping[int, float], *, sent: Mapping[int, float]) -> list[float]:
@@ -115,8 +117,3 @@ def _panels(heights_inches: Sequence[float], *, title: str) -> tuple:
 
 def _told(rows: Iterable[str]) -> str:
     return gettext_noop('timeline') + ': ' + '; '.join(rows)
-
-
-def _show(figure: 'Figure', text: str) -> None:
-    display = notebook.Display()
-    display.show({'image/png': png(figure), 'text/plain': text})

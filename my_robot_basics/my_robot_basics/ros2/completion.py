@@ -77,20 +77,20 @@ def interface_packages(**_: object) -> list[str]:
 
 def prototype(parsed_args: argparse.Namespace, **_: object) -> list[str]:
     """A message with its default values, as YAML."""
-    return [as_prototype(interfaces.message_class_for(parsed_args.message_type)())]
+    return [fields_as_yaml(interfaces.message_class_for(parsed_args.message_type)())]
 
 
 def request_prototype(parsed_args: argparse.Namespace, **_: object) -> list[str]:
     """A service's request with its default values, as YAML."""
-    return [as_prototype(interfaces.service_class_for(parsed_args.service_type).Request())]
+    return [fields_as_yaml(interfaces.service_class_for(parsed_args.service_type).Request())]
 
 
 def goal_prototype(parsed_args: argparse.Namespace, **_: object) -> list[str]:
     """An action's goal with its default values, as YAML."""
-    return [as_prototype(interfaces.action_class_for(parsed_args.action_type).Goal())]
+    return [fields_as_yaml(interfaces.action_class_for(parsed_args.action_type).Goal())]
 
 
-def as_prototype(message: Any) -> str:
+def fields_as_yaml(message: Any) -> str:
     """A message's fields, with the values that they have, as YAML."""
     from my_robot_basics.ros2.as_text import Shortening, as_yaml
 

@@ -67,7 +67,7 @@ def main(args: argparse.Namespace) -> None:
                 raise CommandError(
                     f'Action server is not available after waiting {limit_sec} seconds.'
                 )
-            print(f'Sending goal:\n     {_as_yaml(goal)}')
+            print(f'Sending goal:\n     {completion.fields_as_yaml(goal)}')
             _send(graph, client, goal, show_feedback=args.feedback, limit_sec=limit_sec)
         finally:
             client.destroy()
@@ -107,12 +107,12 @@ def _send(graph: Graph, client: Any, goal: Any, *, show_feedback: bool, limit_se
             raise
         _cancel(graph, handle)
         result = _answer(graph, ending, 'getting result')
-    print(f'Result:\n    {_as_yaml(result.result)}')
+    print(f'Result:\n    {completion.fields_as_yaml(result.result)}')
     print(f'Goal finished with status: {_status_name(result.status)}')
 
 
 def _show_feedback(message: Any) -> None:
-    print(f'Feedback:\n    {_as_yaml(message.feedback)}')
+    print(f'Feedback:\n    {completion.fields_as_yaml(message.feedback)}')
 
 
 def _answer(graph: Graph, future: Any, doing: str, *, limit_sec: float = math.inf) -> Any:
@@ -150,9 +150,3 @@ def _status_name(status: int) -> str:
 
     names = 'ACCEPTED', 'EXECUTING', 'CANCELING', 'SUCCEEDED', 'CANCELED', 'ABORTED'
     return {getattr(GoalStatus, f'STATUS_{name}'): name for name in names}.get(status, 'UNKNOWN')
-
-
-def _as_yaml(message: Any) -> str:
-    from my_robot_basics.ros2.as_text import Shortening, as_yaml
-
-    return as_yaml(message, Shortening())

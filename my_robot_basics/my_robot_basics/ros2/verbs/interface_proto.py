@@ -20,5 +20,5 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(args: argparse.Namespace) -> None:
     """Run the verb."""
-    prototype = completion.as_prototype(interfaces.sendable_class_for(args.type)())
+    prototype = completion.fields_as_yaml(interfaces.sendable_class_for(args.type)())
     print(prototype if args.no_quotes else f'"{prototype}"')
