@@ -1,17 +1,18 @@
 """The student's side of `student`: look a name or an endpoint up, answer in JSON.
 
-This module, settled.py, wire.py, values.py and wrong_fields.py are all of `checks` that a
-student's kernel runs at grading.
+Of what checks are made of, a student's kernel runs at grading only this module, settled.py,
+wire.py, values.py and wrong_fields.py.
 """
 
 import contextlib
 import sys
+from collections.abc import Callable
 from typing import Any
 
 from my_robot_basics.exchange import settled, values, wire
 
-_PROTOCOL = ('call', 'value', 'endpoint', 'settled', 'clock', 'package')
-_PROTOCOL_OF_TROUBLES = ('trouble', 'raised', 'field', 'unfinished', 'thread')
+_OF_NAMES = ('call', 'value')
+"""What is asked of a name of the notebook; `_OTHERS` has all other questions."""
 
 
 def answer(request_text: str) -> str:
@@ -22,26 +23,10 @@ def answer(request_text: str) -> str:
     request = wire.loads(request_text)
     op, args = request.get('op'), request.get('args', [])
     name: Any = request.get('name')
-    if request.get('protocol') != wire.PROTOCOL or op not in (*_PROTOCOL, *_PROTOCOL_OF_TROUBLES):
+    if request.get('protocol') != wire.PROTOCOL or op not in (*_OF_NAMES, *_OTHERS):
         raise values.WireError('a request of another protocol')
-    if op == 'endpoint':
-        return _reply(_has_endpoint(name, *args))
-    if op == 'settled':
-        return _reply(settled.settled_nodes(*args))
-    if op == 'trouble':
-        return _reply(_trouble(name))
-    if op == 'raised':
-        return _reply(_times_raised(name))
-    if op == 'field':
-        return _reply(_unpublished_field(name))
-    if op == 'unfinished':
-        return _reply(_unfinished(name))
-    if op == 'thread':
-        return _reply(_of_thread(name))
-    if op == 'clock':
-        return _reply(_set_use_sim_time(name, *args))
-    if op == 'package':
-        return _reply(_ask_package(name, *args))
+    if op in _OTHERS:
+        return _reply(_OTHERS[op](name, *args))
     namespace = vars(sys.modules['__main__'])
     if name not in namespace:
         return wire.dumps({'missing': name})
@@ -130,6 +115,24 @@ def _ask_package(package: str, verb: str, *args: Any) -> dict[str, Any] | None:
     """What `live` knows of a package that it has built, or does with it; None where it has not."""
     packages = sys.modules.get('my_robot_basics.live.packages')
     return packages.answer_check(package, verb, *args) if packages else None
+
+
+def _settled_nodes(_: str, *args: float) -> list[str] | None:
+    """The nodes of this process, if nothing in it can make another endpoint."""
+    return settled.settled_nodes(*args)
+
+
+_OTHERS: dict[str, Callable[..., object]] = {
+    'endpoint': _has_endpoint,
+    'settled': _settled_nodes,
+    'trouble': _trouble,
+    'raised': _times_raised,
+    'field': _unpublished_field,
+    'unfinished': _unfinished,
+    'thread': _of_thread,
+    'clock': _set_use_sim_time,
+    'package': _ask_package,
+}
 
 
 def _reply(value: object) -> str:

@@ -23,8 +23,8 @@ _FIRED_SEC = 2.0
 def settled_nodes(lived_sec: float = 0.0) -> list[str] | None:
     """Return the full names of this process's nodes; None where another endpoint may come.
 
-    Their timers may make one when they fire first: those have that did so in the `lived_sec`
-    which the nodes have lived at least.
+    A timer may make one when it first fires. The nodes have existed for `lived_sec` at least: a
+    timer with a shorter period has fired.
     """
     if any(may_come() for may_come in (_threads, _processes, _tasks, _alarm)):
         return None

@@ -32,7 +32,7 @@ def loads(text: object) -> dict:
 
 
 def request(*, op: str, name: str, args: tuple = ()) -> str:
-    """The text that asks for a value ('value') or calls a function ('call') by its name."""
+    """The text of a question: `op` is one that responder.py knows, and `name` what it is about."""
     body = {'protocol': PROTOCOL, 'op': op, 'name': name, 'args': [encode(a) for a in args]}
     return dumps(body)
 
