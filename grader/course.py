@@ -129,7 +129,7 @@ class Course:
         version, secret = self.version(assignment), self._secret()
 
         def seed(student_id: str) -> str:
-            # as JSON, for no name can then be taken for a part of another one
+            # as JSON: no name can then be taken for a part of another one
             text = json.dumps([assignment, version, student_id])
             return hmac.new(secret, text.encode('ascii'), hashlib.sha256).hexdigest()
 

@@ -62,7 +62,7 @@ def point(link: Path, target: Path) -> None:
 
 
 def make_tools(environment: Environment) -> None:
-    """Write the tools; a new file each, for an installer may have linked colcon elsewhere."""
+    """Write the tools; each as a new file: an installer may have linked colcon elsewhere."""
     for name, module in TOOLS.items():
         tool = environment.venv / 'bin' / name
         tool.unlink(missing_ok=True)

@@ -138,7 +138,7 @@ def test_archives_in_one_are_unpacked_within_its_limit_together(source, tmp_path
     assert [round(each, -4) for each in left] == [100_000, 30_000, 100_000, 100_000]
     assert found['ada.zip/a.ipynb'] == found['bob.zip/a.ipynb'] == b'x'
     assert found['ada.zip/0.tbz2/large.py'] == found['eve.zip/z.tbz2/large.py'] == bytes(60_000)
-    refused = 'not unpacked, for what came before it was too large together: a bomb?'
+    refused = 'not unpacked, because what came before it was too large together: a bomb?'
     for name in ('ada.zip/2.tbz2', 'ada.zip/z.tbz2', 'bob.zip/1.tbz2', 'bob.zip/z.tbz2'):
         assert found[name].startswith(refused)
 

@@ -16,7 +16,7 @@ _WORD = re.compile(r'[^\W\d_]{2,}')
 
 
 def split_blocks(text: str) -> list[str]:
-    """Return blocks and what stands between them, by turns; joined they are the text again.
+    """Return, alternately, what is between the blocks and the blocks; joined they are the text.
 
     Every second item, from the second on, is a block.
     """
@@ -47,7 +47,7 @@ def _lines(text: str) -> Iterator[tuple[str, str]]:
 
 
 def _with_line_ends_between(pieces: list[str]) -> Iterator[str]:
-    """Yield the pieces, the last line end of each block moved to what stands behind it."""
+    """Yield the pieces, the last line end of each block moved to what follows it."""
     moved = ''
     for index, piece in enumerate(pieces):
         if index % 2 == 0:

@@ -108,8 +108,8 @@ def _check_target(target: Path) -> None:
             pass
     except OSError as error:
         raise CourseError(
-            f'no bundle was made: {target} cannot be written, for nothing can be in {above}: '
-            f'{error.strerror}. Name another file: ./course bundle FILE'
+            f'no bundle was made: {target} cannot be written, because {above} takes no '
+            f'file ({error.strerror}). Name another file: ./course bundle FILE'
         ) from None
 
 

@@ -41,7 +41,7 @@ def exercises_of(lesson: NotebookNode) -> list[str]:
 
 
 def progress_row(name: str, lesson: NotebookNode) -> dict:
-    """Return what the list of a student's progress has of a lesson: who checks each exercise."""
+    """Return a lesson's row in the list of a student's progress: what checks each exercise."""
     kinds = dict.fromkeys(exercises_of(lesson), 'by hand')
     for exercise in find_exercises(lesson):
         checks = [lesson.cells[i].source for i in exercise.grades]

@@ -65,7 +65,7 @@ def files_in(folder: Path) -> list[Path]:
 
 
 def _secrets(cells: Iterable[NotebookNode]) -> set[str]:
-    """Return the lines that must not be released, but for what a lesson says openly."""
+    """Return the lines that must not be released, except what a lesson says openly."""
     secret = {line for cell in cells for line in _secret_lines(cell)}
     taught = {line for cell in cells for line in _open_lines(cell)}
     return {line for line in secret if not any(line in open_line for open_line in taught)}

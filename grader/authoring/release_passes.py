@@ -98,7 +98,7 @@ def broken(cleared: str) -> str:
 class LetRunAllGoOn(Preprocessor):
     """Tag the cells that check answers: where one fails, JupyterLab still runs the cells below.
 
-    Its error shows as ever. nbgrader looks at outputs alone, and what we grade and validate is
+    Its error is still shown. nbgrader looks at outputs alone, and what we grade and validate is
     made from solutions/, where no cell has this tag.
     """
 

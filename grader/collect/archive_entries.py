@@ -147,7 +147,7 @@ def _lay_bare(archive: Path, plain: Path, *, name: str, left: UnpackLimits) -> N
     """Unpack a tar, which counts whatever comes of it: it may lie beside a thousand like it."""
     most = min(left.bytes, left.tar_bytes)
     if most <= 0:
-        raise Refused('not unpacked, for what came before it was too large together: a bomb?')
+        raise Refused('not unpacked, because what came before it was too large together: a bomb?')
     reader, is_whole = TAR_READERS[Path(name.lower()).suffix], False
     with reader(archive, 'rb') as packed, plain.open('wb') as unpacked:
         try:

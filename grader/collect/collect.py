@@ -94,7 +94,7 @@ def collect(course: Course, source: Path, *, file_times: bool = False) -> Iterat
 
 
 def _refuse_the_course(course: Course, source: Path) -> None:
-    """Raise CourseError where the lessons are in it: a language would be a student of each."""
+    """Raise CourseError if `source` has the lessons in it: `zh_CN` would become a student."""
     root = course.root.resolve()
     lessons = [root / name for name in ('notebooks', 'solutions')]
     if root.is_relative_to(source) or any(map(source.is_relative_to, lessons)):

@@ -65,7 +65,7 @@ def stem_of(name: str) -> str:
 
 
 def bare(name: str) -> str:
-    """Return a folder's or an archive's name without what a program put behind it."""
+    """Return a folder's or an archive's name without what a program added at its end."""
     if not ARCHIVE.search(name):
         return name
     return re.sub(r' \(\d+\)$', '', ARCHIVE.sub('', name))

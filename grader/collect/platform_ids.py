@@ -19,7 +19,7 @@ FILE = 'numbers.json'
 
 
 class StudentNumbers:
-    """What is known of the students' numbers; who changes one holds the gradebook's lock."""
+    """What is known of the students' numbers; hold the gradebook's lock to change one."""
 
     def __init__(self, course: Course) -> None:
         """Read them. Raises CourseError where the file is damaged."""

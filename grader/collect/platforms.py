@@ -33,7 +33,7 @@ class Platform:
     teacher's, whose class is called so."""
 
 
-# The part before `rest` ends as early as it can: what stands behind it was the student's choice.
+# The part before `rest` ends as early as it can: what follows it was the student's choice.
 PLATFORMS = (
     Platform(
         name='moodle',

@@ -26,7 +26,7 @@ def write_whole(path: Path, content: str | bytes) -> None:
 
 
 def make_folder_for(time: datetime, parent: Path) -> Path:
-    """Make a folder named by a time; with a number behind it where there is one already."""
+    """Make a folder named by a time; with a number after it if there is one already."""
     parent.mkdir(parents=True, exist_ok=True)
     name, number = time.strftime('%Y-%m-%d_%H-%M-%S'), 1
     while True:

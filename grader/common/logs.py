@@ -42,5 +42,5 @@ def log_visibly() -> None:
 
 
 def tell(line: str) -> None:
-    """Print a line at once, be it into a pipe: who waits has to know for what."""
+    """Print a line at once, into a pipe too: anyone who waits has to know what for."""
     print(line, flush=True)

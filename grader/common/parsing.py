@@ -22,9 +22,9 @@ from grader.common.errors import CourseError
 COMMAND = (sys.executable, '-P', '-m', 'grader.common.parsing_process')
 MAX_ANSWER_BYTES = 100_000_000
 AT_ONCE = min(4, len(os.sched_getaffinity(0)))
-"""So many questions are answered at a time: who asks them can prepare no more than that."""
+"""How many questions are answered at a time: the process that asks can prepare no more."""
 END_GRACE_SEC = 60
-"""A process that was to be ended by its limits gets so long, on a busy machine, to be gone."""
+"""How long a process that its limits should have ended may take to be gone: machines are busy."""
 
 
 @dataclass(frozen=True)

@@ -86,7 +86,7 @@ def _inside(name: str) -> str:
 
 async def execute_exercises(notebook: NotebookNode, **options: Any) -> 'Execution':
     """Run and judge a notebook's exercises."""
-    # not before: who only hands tasks out needs no kernels, nor what they are made with
+    # not before: a process that only hands tasks out needs no kernels, nor what makes them
     from grader.judging import execute
 
     return await execute.execute_exercises(notebook, **options)

@@ -158,5 +158,5 @@ def _sealed_copy(path: Path) -> IO[bytes]:
 
 
 def _environment() -> dict[str, str]:
-    """Return what a server is told: what its kernels are, but for what is only in their rooms."""
+    """Return the environment of a server: its kernels', except what only their rooms have."""
     return passed_on() | ENVIRONMENT | {'MPLCONFIGDIR': font_cache()}

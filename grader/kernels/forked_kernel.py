@@ -19,7 +19,7 @@ _STATUS_SEC = 5.0
 
 
 class ForkedProcess:
-    """A kernel that was forked into a room, as subprocess.Popen would be it."""
+    """A kernel that was forked into a room, with the interface of subprocess.Popen."""
 
     stdin = stdout = stderr = None
 

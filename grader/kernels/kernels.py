@@ -83,8 +83,8 @@ class GradingKernel:
     ) -> CellRun:
         """Run one cell; interrupt it after `timeout_sec`, kill the kernel if that does nothing.
 
-        A cell that floods its outputs counts as timed out at once. `used_sec` tells of one that
-        had too little of a processor.
+        A cell that floods its outputs counts as timed out at once. One that used less of a
+        processor than it could have gets longer: `used_sec` tells how much its room has used.
         """
         result = CellRun()
         if not self.alive:

@@ -27,7 +27,7 @@ class AssignmentScores:
 
 
 def final_scores(found: Iterable[CellScore], assignment: str = '') -> list[AssignmentScores]:
-    """Add up graded cells, of one assignment or all; who handed nothing in is not there."""
+    """Add up graded cells, of one assignment or all, for students who handed something in."""
     cells: dict[str, dict[str, list[CellScore]]] = defaultdict(lambda: defaultdict(list))
     for each in found:
         if each.submitted and assignment in ('', each.assignment):

@@ -1,4 +1,4 @@
-"""Why points are missing, or a person is asked for: what is the same but for numbers is one."""
+"""Why points are missing, or a person is needed: messages that differ only in numbers are one."""
 
 import re
 from collections import defaultdict
@@ -24,7 +24,7 @@ class CellMessage:
 
 @dataclass(frozen=True)
 class Reason:
-    """What was said of several students, where it is the same but for numbers."""
+    """What was said of several students, where only the numbers differ."""
 
     assignment: str
     words: str
@@ -59,7 +59,7 @@ def numberless(reason: str) -> str:
 
 
 def _common(reasons: list[str]) -> str:
-    """Return what reasons say that are alike but for numbers, with … for those that differ."""
+    """Return the words of reasons that differ only in numbers, with … for those that differ."""
     numbers = [[found[0] for found in NUMBER.finditer(reason)] for reason in reasons]
     if len(set(map(len, numbers))) > 1:  # lists of numbers, of different lengths
         return numberless(reasons[0])

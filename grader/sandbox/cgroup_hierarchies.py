@@ -22,7 +22,7 @@ NEEDED, WANTED = ('memory', 'pids'), ('memory', 'pids', 'cpu')
 COUNTS = 'cpuacct'
 """Counts the time of processors in version 1; in version 2 every cgroup does."""
 GRADERS_WEIGHT = 1_000
-"""Of the processor, beside 200 of a sandbox: who grades must answer however many run."""
+"""Of the processor, beside 200 of a sandbox: the grader must answer however many run."""
 
 _MOVES = 10
 

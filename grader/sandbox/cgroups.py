@@ -4,7 +4,7 @@ It counts memory that no process is seen to have, too: shared, of files in memor
 kernel's for pipes, sockets, semaphores. Each room has limits of its own, so none of what a student
 uses up is the test's. Where no cgroup can be had, `hierarchies` says why.
 
-Who wants to know why a kernel ended asks its room, while the sandbox is open or afterwards:
+To know why a kernel ended, ask its room, while the sandbox is open or afterwards:
 
     cgroup = sandbox.cgroup('student')      # None where this machine gives us none
     cgroup.memory_limit_bytes               # what all its processes may use together

@@ -74,7 +74,7 @@ OUT_OF_MEMORY_SCORE = 1_000
 
 
 def process_limits() -> dict[int, int]:
-    """Return PROCESS_LIMITS; less where our own hard limit is less, for nobody can raise that."""
+    """Return PROCESS_LIMITS; less where our own hard limit is less: nobody can raise that."""
     limits = {
         kind: _allowed(most, resource.getrlimit(kind)[1]) for kind, most in PROCESS_LIMITS.items()
     }

@@ -37,8 +37,8 @@ def remedy() -> str:
         return _about_apparmor(step, error)
     if _in_container() and os.geteuid() == 0 and not _has_sys_admin():
         return (
-            'Root is not root in this container, for it lacks CAP_SYS_ADMIN, and bubblewrap asks '
-            'root for no namespace of users: grade as an ordinary user, with --user 1000:1000 '
+            'Root lacks CAP_SYS_ADMIN in this container, and bubblewrap makes no user namespace '
+            'for root: grade as an ordinary user, with --user 1000:1000 '
             f'(Docker and Podman); no capability is needed then. {CONTAINERS}'
         )
     if _in_container():

@@ -34,7 +34,7 @@ from grader.storage.submitted import SubmissionFolder
 
 @dataclass
 class Desk:
-    """All that the resident process has at hand."""
+    """All that the resident process works with."""
 
     course: Course
     queue: Queue

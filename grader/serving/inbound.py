@@ -37,7 +37,7 @@ class Entry:
     """When Linux last saw it change, in UTC: nobody can set that."""
     is_whole: bool
     owner: str = ''
-    """Whose it may be: entries of one are taken in by turns with those of others."""
+    """Whose it may be: owners take turns, so that one with many entries delays nobody."""
     problem: str = ''
     """Why it can't be looked at."""
 
@@ -57,7 +57,7 @@ def new_entries(
 ) -> Iterator[Entry]:
     """Yield what is not `seen`, by its fingerprint, and was written to its end; oldest first.
 
-    Where there is much, it is some of it, by turns of the owners: see `rounds`. Raises OSError
+    If there is much, it is some of it, with owners taking turns: see `rounds`. Raises OSError
     where the folder itself can't be read; whatever goes wrong with an entry is its `problem`.
     """
     with os.scandir(folder) as listed:

@@ -1,4 +1,4 @@
-"""Take in what is new, a little at a time, by turns of whoever handed it in."""
+"""Take in what is new, a little at a time; those who handed it in take turns."""
 
 import time
 from collections.abc import Mapping, Sequence
@@ -11,7 +11,7 @@ from grader.serving.queue import REFUSED, Arrival
 from grader.serving.trouble import meets_all, noted
 
 BUDGET_SEC = 0.5
-"""So long entries are taken in before what is graded is started and stored; one takes longer."""
+"""How long entries are taken in before gradings are started and stored; one may take longer."""
 
 
 def look(desk: Desk) -> bool:
@@ -36,7 +36,7 @@ def look(desk: Desk) -> bool:
 
 
 def next_entry(waiting: Sequence[Entry], last: Mapping[str, float]) -> Entry:
-    """Return which one is taken in next: the oldest, but for owners of whom one was since.
+    """Return which one is taken in next: the oldest; an owner waits for those served longer ago.
 
     So nobody overtakes with a second one, or under a second name, what came before it.
     """

@@ -34,7 +34,7 @@ def next_turn(
 
 
 def replaced_by(chosen: Arrival, waiting: Sequence[Arrival]) -> list[Arrival]:
-    """Return what needs not be graded any more, for a later one of the same lesson is."""
+    """Return what need not be graded: a later one of the same student and lesson will be."""
     return [
         each
         for each in waiting

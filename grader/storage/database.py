@@ -51,7 +51,7 @@ def has_database(course: Course) -> bool:
 
 
 def make_database(course: Course) -> None:
-    """Make the database where there is none: aside, for nbgrader would not repair half of one.
+    """Make the database if there is none: aside, because nbgrader would not repair half of one.
 
     Raises GradebookError where there was one, and its file is empty.
     """

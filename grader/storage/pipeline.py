@@ -47,7 +47,7 @@ def apply(passes: Sequence[str], notebook: NotebookNode, resources: dict) -> Not
 
 @cache
 def _made(passes: tuple[str, ...]) -> 'tuple[Preprocessor, ...]':
-    """Make passes as nbconvert's Exporter would; once, for that takes longer than their work."""
+    """Make passes as nbconvert's Exporter would; once: it takes longer than their work."""
     # only now: what is graded already needs no passes, and these take a third of a second
     from nbconvert.preprocessors import Preprocessor  # noqa: F401
     from traitlets.config import Config

@@ -68,7 +68,7 @@ async def _answer(writer: asyncio.StreamWriter, number: int, text: str) -> None:
 
 async def _beat(writer: asyncio.StreamWriter) -> None:
     while True:
-        signal.alarm(DEAD_SEC)  # what Linux does then, no loop can put off
+        signal.alarm(DEAD_SEC)  # SIGALRM ends the process even if its loop is blocked
         await send(writer, BEAT)
         await asyncio.sleep(BEAT_SEC)
 
@@ -82,6 +82,6 @@ def main(handle: str) -> None:
 
 
 def prepare() -> None:
-    """Have at hand what the first task needs; processes try it side by side."""
+    """Prepare what the first task needs; processes do it side by side."""
     look_ahead()
     importlib.import_module('grader.judging.execute')

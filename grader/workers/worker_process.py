@@ -92,7 +92,7 @@ class WorkerProcess:
             await _reap(process)
 
     async def _watch(self, process: subprocess.Popen) -> None:
-        """Kill a process that has gone silent; counted, for a machine may sleep meanwhile."""
+        """Kill a silent process; beats are counted, because a machine may sleep meanwhile."""
         while self._missed < MOST_MISSED:
             await asyncio.sleep(BEAT_SEC)
             self._missed += 1
@@ -100,7 +100,7 @@ class WorkerProcess:
 
 
 async def _reap(process: subprocess.Popen) -> None:
-    """Wait for a process that was told to end; without a thread, for Python may be ending, too."""
+    """Wait for a process that was told to end; without a thread: Python may be ending, too."""
     deadline = time.monotonic() + END_GRACE_SEC
     while process.poll() is None:
         if time.monotonic() > deadline:

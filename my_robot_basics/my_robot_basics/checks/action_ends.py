@@ -43,7 +43,7 @@ class SentGoal:
         self._received_before = len(ends.feedback.received)
         self._result: Future | None = None
         self.answer: Future = Future()
-        """The server's answer to it; set by who sends it."""
+        """The server's answer to it; set by the code that sends it."""
 
     @property
     def is_accepted(self) -> bool:

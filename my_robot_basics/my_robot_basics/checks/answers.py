@@ -83,7 +83,7 @@ def holds_any(wanted: Iterable[float], text: str) -> bool:
 def has_stretched(bearings_deg: Iterable[float], text: str) -> bool:
     """Whether a text holds a bearing as θ1, with the θ2 of a stretched or folded arm beside it.
 
-    A bearing alone is no answer: who logs each target may well log that.
+    A bearing alone is no answer: a node that logs each target may well log it.
     """
     # 0 without decimals counts something
     found = [number for _, number in _NUMBER.findall(text) if '.' in number]

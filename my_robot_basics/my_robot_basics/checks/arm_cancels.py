@@ -69,7 +69,7 @@ def expect_cancels(
 
 
 def expect_late_cancel(action: Action, position: Pose, *, start: Pose = (0.0, 0.0)) -> None:
-    """A request to cancel that comes after the end changes nothing, for the next goal neither.
+    """A request to cancel that comes after the end changes nothing, not for the next goal either.
 
     Raises CheckFailed.
     """

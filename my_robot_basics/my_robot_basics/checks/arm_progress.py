@@ -18,13 +18,13 @@ from my_robot_basics.feedback.errors import expect
 
 BY_TIME = "in each step, move by speed × the time that passed, on the node's own clock"
 FEWEST = 4
-"""So much feedback tells of a move. …"""
+"""So many messages of feedback show a move. …"""
 LATER_PART = 0.25
-"""… So much of the way is told by the later half of it; evenly, it is half. …"""
+"""… The later half of them covers this part of the way; in a steady move, half of it. …"""
 LATEST_SEC = 1.5
-"""… And the last of it has come since."""
+"""… And the last one is no older."""
 CALM = 0.5
-"""Speed, in rad/s, for a server that rejects the other one: that is another check's matter."""
+"""Speed, in rad/s, for a server that rejects HASTE: another check is about that."""
 SOON_SEC = 1.0
 """A move in haste that is on its way after that is a slow one."""
 SLOW_SEC = 20.0
@@ -34,7 +34,7 @@ SLOW_SEC = 20.0
 def is_under_way(arm: WatchedArm, sent: SentGoal, position: Pose) -> bool:
     """Whether the feedback on a goal tells of an arm that moves on, and is not there yet.
 
-    One that comes nearer and nearer, and less and less so, never gets there.
+    An arm that slows down all the time never gets there.
     """
     reports = sent.feedback()
     if sent.is_over() or len(reports) < FEWEST:
@@ -48,7 +48,7 @@ def is_under_way(arm: WatchedArm, sent: SentGoal, position: Pose) -> bool:
 
 
 def bring(arm: WatchedArm, position: Pose) -> None:
-    """Bring the arm to a position (rad), in haste where it lets us. Raises CheckFailed."""
+    """Bring the arm to a position (rad), in haste if the server takes it. Raises CheckFailed."""
     _reach(arm, arm.send(goal(position, speed=HASTE), goal(position, speed=CALM)), position)
 
 

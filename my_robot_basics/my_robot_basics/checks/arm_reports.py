@@ -19,7 +19,7 @@ LARGEST_GAP_SEC = 0.35
 FEWEST = 5
 ON_LINE_RAD = 0.01
 PROGRESS_PART = 0.06
-"""So much of the way may the arm be ahead of a steady move, or behind it."""
+"""How much of the way the arm may be ahead of a steady move, or behind it."""
 MOST_TIMES = 3.0
 
 

@@ -25,10 +25,10 @@ multiple of the clock's steps sleeps longer than it means to, and less so with f
 FINER = 0.002, 4.0
 """… Where too little feedback tells the speed in that time, the move has to be longer."""
 SLOW_PART = 0.5
-"""Feedback tells of no machine that is too busy where the speed is so much lower."""
+"""If the feedback tells a speed so much lower, no busy machine is the cause."""
 MOST_TIMES = 3.0
 JUMP_SEC = 0.3
-"""Who needs no longer does not move at a speed."""
+"""An arm that takes no longer does not move at a speed: it jumps."""
 ALIKE = 0.03
 """So near is a wrong speed to the one that a mistake makes."""
 FROM_HERE = 'start from where the arm is, at each goal'
@@ -62,7 +62,7 @@ def expect_speed(arm: WatchedArm, sent: SentGoal, position: Pose) -> None:
 
 
 def expect_no_slow_move(arm: WatchedArm, sent: SentGoal, position: Pose) -> None:
-    """A goal that has not ended in time is not that of a slow arm, by its feedback.
+    """A goal that has not ended in time is not one of an arm that is slow, by its feedback.
 
     Raises CheckFailed.
     """

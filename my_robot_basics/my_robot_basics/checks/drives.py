@@ -15,8 +15,8 @@ and their proof of 4 ms would make 60 ms of 50."""
 FINE_PARTS, FINER_PARTS, COARSE_TIMES = 2.5, 5, 5
 """The proof takes steps so many times as fine as the recording's, or as coarse …"""
 TWO_STEPS_PARTS = 2.75
-"""… Two of the recording's are no multiple of these: who looks whether 0.17 s have passed
-publishes each 0.2 s by steps of 0.1 s, and of 0.04 s …"""
+"""… Two of the recording's are no multiple of these: a node that looks whether 0.17 s have
+passed publishes each 0.2 s with steps of 0.1 s, and of 0.04 s …"""
 FINER_BELOW_SEC = 0.05
 """… and finer ones below this, or 10 ms would be no multiple of them, either."""
 PROOF_STEPS = 30

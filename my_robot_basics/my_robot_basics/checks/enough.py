@@ -9,7 +9,7 @@ FEWEST = 24
 """… So many will do after SOME_SEC, …"""
 SOME_SEC = 2.5
 FEWEST_SLOW = 12
-"""… So many of a slow node, or on a slow machine, after LONG_SEC: each eleventh is found, too."""
+"""… So many of a slow node or machine will do after LONG_SEC: that finds each eleventh, too."""
 LONG_SEC = 4.0
 
 

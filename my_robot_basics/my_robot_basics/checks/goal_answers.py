@@ -16,7 +16,7 @@ class GoalAnswers:
     has_rejected_last: bool = False
     """Whether it has rejected the last goal of all."""
     why_rejected: str = ''
-    """What a check has said of a goal that had to be accepted; '' where it has accepted one since.
+    """What a check said when it rejected a goal that was right; '' if it accepted one since.
 
     A server that locks itself rejects all that come: the first time tells why.
     """

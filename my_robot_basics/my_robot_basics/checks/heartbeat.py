@@ -13,7 +13,7 @@ from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
 
 BEATS, SPAN_SEC = 12, 1.2
-"""So many, in no less time, are enough: who counts ahead has to go on then; …"""
+"""So many, in no less time, are enough: a node that counts ahead has to go on then; …"""
 STILL_SEC = 0.8
 """… a silence is so long, of time that was free, and …"""
 LOOKS = 8
@@ -53,8 +53,8 @@ class Heartbeat:
     def goes_on(self, send: Callable[[], None] = lambda: None) -> bool:
         """Whether it counts now, without a silence.
 
-        `send()` sends the node a message, behind a beat: again only where that seems to hold it
-        up, for each may keep a thread of the node for good.
+        `send()` sends the node a message, after a beat: again only if that seems to hold it up,
+        because each may keep a thread of the node for good.
         """
         watch, pauses, sent = Stopwatch(), [self._pause()], 0
         while pauses[-1].is_over and (len(pauses) <= BEATS or watch.wall_sec() < SPAN_SEC):

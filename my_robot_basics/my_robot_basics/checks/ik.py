@@ -118,7 +118,7 @@ def expect_never_blocks(server: Server, *targets: tuple[float, float]) -> None:
     first, second, third = targets
     server.hold()
     ask(server, *first)
-    # no request is expected yet: who keeps targets asks for one after the other
+    # no request is expected yet: a client that keeps targets asks for one after the other
     server.expect_alive('the server takes its time', Point(x=second[0], y=second[1]))
     expect_no_others(server)
     server.release()

@@ -12,7 +12,7 @@ EXACT_RAD = 2e-4
 MOST_JOINTS = 100
 """What has more is no pose of an arm, and is not looked at."""
 CLOSE_RAD = 0.02
-"""Who rounds to two decimals is no further off."""
+"""A pose that was rounded to two decimals is no further off."""
 CONVERT = 'convert both angles with radians(), θ1 for joint1, θ2 for joint2'
 """What to try where nobody knows what a pose is instead. …"""
 CONVERT_EACH = (

@@ -155,7 +155,7 @@ class Log(NodeLog):
         self._raised.expect_none()
 
     def _why_late(self, is_answered: Callable[[Self], bool]) -> str:
-        """Send the target once more; who answers it only now answers the one before."""
+        """Send the target once more; a node that answers only now answers the one before."""
         if self._asked is None or not self.has('INFO'):
             return ''
         since_ns = self._since_ns

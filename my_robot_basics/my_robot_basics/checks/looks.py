@@ -106,7 +106,7 @@ def _fail_ended(recorder: Recorder) -> NoReturn:
 
 
 def _expect_ends_by_itself(recorder: Recorder) -> None:
-    """Who sends nothing any more has raised something, or the change of its clock ended it."""
+    """A node that went silent has raised something, or the change of its clock ended it."""
     expect(
         bool(what_raised(recorder.publishers())),
         expected=f'messages on {recorder.topic_name}',

@@ -30,7 +30,7 @@ PROOF_SEC = 2.0
 """How long to wait for them at most; a timer of the node's clock gets as much of its time."""
 PROOF_STEP_SEC = 0.05
 EXACT_NS = 1000
-"""A stamp by way of a float is off by less."""
+"""A stamp that went through a float is off by less."""
 SETTLE_SEC = 0.5
 """How long a node may take to follow where nothing tells that it has."""
 ATTEMPTS = 3
@@ -122,7 +122,7 @@ def _tick_ahead(watcher: Watcher, clock: Publisher, *, seconds: float) -> list[i
 
 
 def _ahead_sec(stamps: Sequence[tuple[int, int]], shown_ns: Sequence[int]) -> list[float]:
-    """How far stamps are ahead of when they were sent, but for those that `/clock` has shown.
+    """How far stamps are ahead of when they were sent, except those that `/clock` has shown.
 
     While a callback works, its node's clock stands still, and the computer's comes after it.
     """

@@ -30,7 +30,7 @@ def are_mixed_up(solutions: Solutions, texts: Iterable[str]) -> bool:
     """Whether θ1 of one branch plainly stands with θ2 of the other one.
 
     So it does where a word that no others have, a branch's name, say, joins the two; on two lines
-    with one angle of each joint; and by turns, where one line holds all four. Words that join
+    with one angle of each joint; and alternating, where one line holds all four. Words that join
     right pairs accuse nobody, nor does a set, a sorted row, or another number that happens to be
     one of the angles.
     """
@@ -99,7 +99,7 @@ def _is_right(pair: Iterable[Label]) -> bool:
 
 
 def _are_by_turns(line: Sequence[_Angle]) -> bool:
-    """Whether four angles, the first of each, are θ1 and θ2 by turns, in wrong pairs."""
+    """Whether four angles, the first of each, alternate between θ1 and θ2, in wrong pairs."""
     labels = list(dict.fromkeys(angle.label for angle in line))
     joints = [joint for _, joint in labels]
     return joints in ([0, 1, 0, 1], [1, 0, 1, 0]) and _is_wrong(labels[:2])

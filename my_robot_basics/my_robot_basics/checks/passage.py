@@ -13,7 +13,7 @@ from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
 
 ON_TIME_SEC = 1.0
-"""How long a message may take. Who passes it on by a timer is in time, too."""
+"""How long a message may take. A node that republishes by a timer is in time, too."""
 TIMEOUT_FACTOR, LEAST_SEC = 10.0, 0.2
 """Once some came out, no more than so many times as long as the slowest of them, and that."""
 QUIET_SEC = 0.1
@@ -22,14 +22,14 @@ MOST_SEC, LAST_SEC = 12.0, 20.0
 """After so long, of wall time, what was seen decides, and then pairs and pauses end, too:
 *Validate* gives a cell 30 s."""
 FEWEST_LOST = 2
-"""So many that never came out are no chance then, where later ones did."""
+"""So many that never came out are no coincidence if later ones did."""
 MOST_LATE = 4
 """So many tell enough: each is waited for, and a BEST_EFFORT end may lose one now and then."""
 FLOOD = 50
 """With so many messages of others while one is waited for, the queue overflows without anybody's
 fault: …"""
 MOST_PUSHED_OUT = 20
-"""… So many such losses are no chance, either."""
+"""… So many such losses are no coincidence, either."""
 FEWEST_COPIES = 2
 """Messages of which there are copies."""
 FEWEST_INVENTED = 3

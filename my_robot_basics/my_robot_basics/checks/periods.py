@@ -20,15 +20,15 @@ MOST_TURNS = 4
 FEWEST_ROUNDS = 3
 """… And have to come so many times."""
 TURNS_PART = 0.15
-"""So much of a period two gaps differ which come by turns; a busy machine has no such order."""
+"""Alternating gaps differ by this part of a period; a busy machine has no such order."""
 SHUFFLES = 50
 """So many other orders of the same gaps are tried: each is more even."""
 FEWEST_LEFT_OUT = 3
-"""Messages that are missing, each as many behind the one before: no thread is late so evenly."""
+"""Messages that are missing at equal distances: no thread is late so evenly."""
 TOO_MANY_TIMES, PARTS = 1.25, 4
 """So many times as many messages as there should be, in each of so many parts of a recording."""
 SHORTEST_ROUND = 3
-"""Gaps from one missing message to the next: a long and a short one by turns may be anything."""
+"""Gaps from one missing message to the next: two that alternate may be anything."""
 
 
 def spanned(times_sec: np.ndarray, slack_sec: float) -> tuple[float, float]:
@@ -94,7 +94,7 @@ def _apart_by_turns(gaps: np.ndarray, count: int) -> float:
 def come_too_often(times_sec: np.ndarray, hz: float, *, seconds: float) -> bool:
     """Whether more messages came than `hz` times a second, and all through `seconds`.
 
-    Who was kept waiting may send late ones at once, and none goes on to send more.
+    A node that was kept waiting may send late ones at once, but goes on to send no more.
     """
     counts, _ = np.histogram(times_sec[1:], bins=PARTS, range=(0.0, seconds))
     return bool(np.min(counts) > TOO_MANY_TIMES * hz * seconds / PARTS + 1)

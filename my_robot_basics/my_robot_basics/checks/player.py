@@ -1,7 +1,7 @@
 """What the executable `arm_player` is to do with its targets; in metres, in `base_link`.
 
 The check serves `/solve_ik` and `/move_arm` itself, and says how each target ends. Its arm has
-other links than the course's: where a target leads, only who asks can know.
+other links than the course's: only a client that asks can know where a target leads.
 """
 
 import math
@@ -23,7 +23,7 @@ def expect_plays(*targets: Target, first_goal_sec: float = QUIET_SEC) -> None:
     A target is a word and a point, `('succeeded', 1.2, 0.8)`. The word is 'succeeded', 'canceled'
     or 'aborted', which is how its goal ends; 'rejected', which its goal is; or 'unreachable',
     which `/solve_ik` answers. The first goal that is accepted takes so many seconds, which no
-    other one does: an arm is slow, and who waits for it is not. Raises CheckFailed.
+    other one does: an arm is slow, and a node that waits for it is right. Raises CheckFailed.
     """
     for word, _, _ in targets:
         if word not in WORDS:

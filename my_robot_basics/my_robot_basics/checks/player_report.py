@@ -72,7 +72,7 @@ class PlayerReport:
             )
 
     def expect_kept(self, process: RunningExecutable) -> None:
-        """Who joins now receives it, too. Raises CheckFailed."""
+        """A subscriber that joins now receives it, too. Raises CheckFailed."""
         process.expect_running()
         why = self.why_none()
         expect(

@@ -20,7 +20,7 @@ Target = tuple[str, float, float]
 """How it ends, x and y in metres."""
 WORDS = *TERMINAL, 'rejected', 'unreachable'
 L1_M = 1.3
-"""The first link of the check's arm: its angles are known only to who asks."""
+"""The first link of the check's arm: only a client that asks knows its angles."""
 NEAR_RAD = 1e-6
 MOST_GOALS = 500
 CANCEL_SEC = 4.0

@@ -17,7 +17,7 @@ RECORD_SEC = 4.0
 HOLD_PERIODS, HOLD_SEC = 3.0, 1.0
 """The clock stands still for so many periods of the rate that is asked for, so long at most."""
 NEAR_PART = 0.1
-"""So near to each other are two rates that are the same one, for who asks which one it is …"""
+"""Two rates that are nearer to each other than this part are taken for the same one …"""
 UNCHANGED_PART = 0.25
 """… and so near, on a busy machine, is a rate to what it was: refused values are farther away."""
 ANOTHER_HZ = (4.0, 20.0, 8.0)
@@ -99,7 +99,7 @@ class RateParameter:
             self._expect_refused(kept_hz, [math.nan])
 
     def _expect_stays(self, kept_hz: float, rates_hz: Sequence[float]) -> None:
-        """These are refused, and the rate stays: who takes them over has the lowest in the end."""
+        """These are refused, and the rate stays: a node that takes them ends with the lowest."""
         self._expect_refused(kept_hz, rates_hz)
         seen_hz, _ = self._measure(kept_hz)
         if _are_near(seen_hz, kept_hz, part=UNCHANGED_PART):

@@ -22,7 +22,7 @@ SILENT_PERIODS = 2.75
 LONGER_PAUSE = 1.5
 GAP_SLACK_SEC = 0.05
 UNEVEN_PART = 0.25
-"""So much of a period may most messages be off: 0.1 s and 0.3 s by turns are no 5 Hz."""
+"""How much of a period most messages may be off: 0.1 s and 0.3 s alternating are no 5 Hz."""
 AT_ONCE_SEC = 0.02
 """Nobody's timer means two messages so near to each other."""
 ONCE = 'publish one message each time the timer fires'
@@ -74,7 +74,7 @@ def pattern_of(recording: 'Recording') -> periods.Pattern | None:
 
 
 def pattern_in(recording: 'Recording') -> periods.Pattern | None:
-    """The pattern that these steps of the robot's clock show, be it what they have made."""
+    """The pattern that these steps of the robot's clock show, though they may have made it."""
     times_sec, seconds = times_of(recording), recording.seconds
     return periods.pattern_of(times_sec, recording.step_sec, seconds=seconds)
 
@@ -155,7 +155,7 @@ def certain_range(recording: 'Recording') -> tuple[float, float]:
 def is_uneven(recording: 'Recording', hz: float, slack_sec: float = 0.0) -> bool:
     """Whether half of the messages, or more, are far from one period behind the one before.
 
-    Or whether they come by turns. On a busy machine one or the other is late, and the next one
+    Or whether their gaps alternate. On a busy machine one or the other is late, and the next one
     is early. `slack_sec`: how far off a message may be for no fault of its node.
     """
     times = times_of(recording)

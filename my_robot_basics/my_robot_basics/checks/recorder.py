@@ -11,7 +11,7 @@ from my_robot_basics.graph.message_info import with_info
 from my_robot_basics.graph.watcher import Watcher
 
 MOST_AT_ONCE = 10_000
-"""Who publishes on and on may be quicker than we are."""
+"""A node that publishes on and on may be quicker than we are."""
 _NO_EVENTS = SubscriptionEventCallbacks(use_default_callbacks=False)
 """Each look of an executor costs more for every event; nobody waits for these."""
 

@@ -88,7 +88,7 @@ class RelayEndpoints:
     def expect_transient_local(self, watcher: Watcher) -> None:
         """A subscription to `source` asks for what was published before.
 
-        Who asks for what is offered subscribes only when there is a publisher.
+        A node that asks for what is offered subscribes only when there is a publisher.
         """
 
         def asked() -> set[str]:
@@ -146,7 +146,7 @@ class RelayEndpoints:
         )
 
     def expect_type(self, watcher: Watcher, type_: type) -> None:
-        """Who subscribes to `source` does so with that type: another one never meets it."""
+        """Each subscription to `source` has that type: one with another type never matches."""
         wanted = values.type_name(type_)
         infos = graphs.subscription_infos(watcher.node, self.source)
         found = {info.topic_type for info in infos}

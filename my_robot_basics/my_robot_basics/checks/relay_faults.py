@@ -45,7 +45,7 @@ class RelayFaults:
 
 
 def what_differs(others: Sequence[Any], sent: Any, fields: Sequence[str] = ()) -> str:
-    """Which of the fields (of all) are others where some are right, as a clause; or ''."""
+    """Which fields (of these, or of all) differ while others are right, as a clause; or ''."""
     names = fields or tuple(sent.get_fields_and_field_types())
     for received in others:
         wrong = [name for name in names if getattr(received, name) != getattr(sent, name)]

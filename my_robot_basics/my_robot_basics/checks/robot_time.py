@@ -10,7 +10,7 @@ from my_robot_basics.session.pressure import Stopwatch
 
 DUE_SEC = 0.05
 """How long to wait, of time that was free, for what a thread of the node is to do in a tick."""
-VAIN_TIMES = 5
+MOST_FAILED_WAITS = 5
 PUSH_NS = 500_000_000
 PUSH_SEC = 0.001
 """Steps of a clock that is only to come to an end, and how long each lasts."""
@@ -79,8 +79,8 @@ class DrivenTime:
         self._silent_steps = 0
         self._every = 0
         """A beat came after so many steps lately; 0: nobody knows."""
-        self._in_vain = 0
-        """How often more a beat was waited for in vain than not: then there is no such thread."""
+        self._failed_waits = 0
+        """How many more waits for a beat failed than not: if many, no such thread exists."""
 
     def now_ns(self) -> int:
         """What `/clock` shows, in ns."""
@@ -135,11 +135,11 @@ class DrivenTime:
         self._clock.tick(self.step_ns)
         self._silent_steps += 1
         is_due = 0 < self._every <= self._silent_steps
-        if is_due and self._beat() == self._last and self._in_vain < VAIN_TIMES:
+        if is_due and self._beat() == self._last and self._failed_waits < MOST_FAILED_WAITS:
             came = self._watcher.spin_until_free(
                 lambda: self._beat() > self._last, free_sec=DUE_SEC
             )
-            self._in_vain += -1 if came else 1
+            self._failed_waits += -1 if came else 1
             if came:
                 self._clock.acknowledge()  # it has its turn to go to sleep again
         if (count := self._beat()) > self._last:

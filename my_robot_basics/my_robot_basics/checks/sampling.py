@@ -22,12 +22,12 @@ HOLD_SEC = 1.0
 UNEVEN = 'its messages are not evenly spaced'
 COUNTS = "it counts the calls of a timer that is faster than the clock's steps"
 CLOSER = (1.0, 0.1)
-"""Parts of the steps and of the time that are asked for: the second for who counts calls. …"""
+"""Parts of the steps and of the time that are asked for: the second finds counted calls. …"""
 SECONDS_LEAST = 2.0
 """… It records no less. A drive that waits for threads has to prove something in so much first:
-who remembers when it published last is silent on the wall clock until that has come as far."""
+a node that remembers when it published last is silent until the wall clock has come as far."""
 PATTERN_SEC = 6.0
-"""Messages that come by turns, or several at once each second, have shown it by then."""
+"""Messages with alternating gaps, or several at once each second, have shown it by then."""
 PATTERN_STEP_SEC, STEPS_APART = 0.01, 4
 """Finer steps take as long as the wall clock, and so do fine ones for many messages: fewer than so
 many steps from one to the next."""

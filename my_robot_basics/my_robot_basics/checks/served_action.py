@@ -172,7 +172,7 @@ class ServedAction(ScriptedActionServer):
         self._publishers[topic_name].publish(message)
 
     def _meet_client(self) -> None:
-        """Wait for who sends goals: it meets the server at about the same time."""
+        """Wait for the client: it meets the server at about the same time."""
         if self._known_starts < self.starts:
             node, name = self._watcher.node, f'{self.name}/_action/send_goal'
             self._watcher.spin_until(lambda: node.count_clients(name) > 0, timeout_sec=MEET_SEC)

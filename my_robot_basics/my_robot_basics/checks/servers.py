@@ -22,8 +22,8 @@ TIMEOUT_SEC = 4.0
 QUIET_SEC = 0.5
 """How long to listen for what must not come."""
 AGAIN_SEC = 0.5
-"""Who has only just met the server may lose a request: until one has arrived, the message that
-leads to it is published again so often."""
+"""A client that has only just met the server may lose a request: until one has arrived, the
+message that leads to it is published again after so long."""
 Hint = Callable[[Any], str]
 
 

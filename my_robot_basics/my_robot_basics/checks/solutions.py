@@ -26,8 +26,8 @@ def is_for(asked: SolveIK.Request, x: float, y: float) -> bool:
 def solve(asked: SolveIK.Request, *, l1: float = L1, l2: float = L2) -> SolveIK.Response:
     """The right response to a request.
 
-    With other lengths of the links, in metres, it is one that only who is answered can know. No
-    answer is made of it: it raises NotRunnable where a student's code is graded or validated.
+    With other lengths of the links, in metres, only a client that got it can know it. No answer
+    may use it: it raises NotRunnable where a student's code is graded or validated.
     """
     if classroom.in_students_room():
         raise NotRunnable(

@@ -24,17 +24,17 @@ MOST_TIMES = 1.03
 """So many times as many messages may a busy machine bring: those that were late, at once."""
 
 NEAR_LEAST = 0.75
-"""… and so many times as many are nearly right: who looks every 10 ms makes 60 ms of 50."""
+"""… and so many times as many are nearly right: a look every 10 ms makes 60 ms of 50."""
 
 
 def may_be(recording: 'Recording', hz: float) -> bool:
     """Whether a node of that rate may have been kept waiting for what was recorded.
 
     A machine that is too busy makes messages late, each by another time, and no more of them. How
-    much is told by how late the recording itself was; what comes by turns, or as evenly as with
-    a timer of another period, is no machine's doing, but a pause of the right one may be. Where
+    much is told by how late the recording itself was; alternating gaps, or gaps as even as with a
+    timer of another period, are no machine's doing, but a pause of the right one may be. Where
     processes waited for a processor most of the time, a rate that is nearly right is no proof
-    either, whoever had to wait; and where there was no time for the robot's clock, not even an
+    either; and where there was no time for the robot's clock, not even an
     even one: a node that looks at its clock again and again is exact on that one alone. Such a
     machine may bring any pause, too.
     """

@@ -137,7 +137,7 @@ class Topic(TopicEndpoints):
     def _expect_none_late(
         self, watcher: Watcher, recorder: Recorder, after: Callable[[], None]
     ) -> None:
-        """Do once more what brings messages; who sends one only now sends the one before."""
+        """Do once more what brings messages; one that comes only now is the one before."""
         after()
         expect(
             not watcher.spin_until(lambda: bool(recorder.received), timeout_sec=ONCE_MORE_SEC),

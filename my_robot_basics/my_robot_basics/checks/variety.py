@@ -10,7 +10,7 @@ from typing import Any
 PLAIN, AGAIN = '', 'equal to the one before'
 ZERO, NEGATIVE, LARGE = 'with zeros, or empty', 'with negative numbers', 'with large numbers'
 BLOCK = (PLAIN, PLAIN, AGAIN, ZERO, NEGATIVE, LARGE)
-"""What each so many messages are, in an order that is another one each time: who counts messages
+"""What each so many messages are, in an order that differs each time: a node that counts messages
 meets every kind."""
 LARGE_FACTOR = 100.0
 SHUFFLED = 2026

@@ -82,7 +82,7 @@ def _received(evidence: Evidence) -> str:
 
 
 def _lost(evidence: ServiceEvidence) -> str:
-    """A note on requests that were sent in vain; who asks again is answered, so it is no fault."""
+    """A note on requests without an answer; a second one gets it, so that is no fault."""
     idle = all(end.node_name in evidence.visible for end in evidence.servers)
     spun = [e.node_name for e in evidence.unanswered if evidence.state(e.node_name).answers]
     names = sorted({*spun})

@@ -1,6 +1,6 @@
 """Gathers the evidence on a service: the graph, what nodes answer, what their callbacks do.
 
-The service is never called: who knows what that would set in motion.
+The service is never called: nobody knows what that would set in motion.
 """
 
 from collections.abc import Callable, Mapping

@@ -38,7 +38,7 @@ def what_is_unsupported(body: str, wanted: type | tuple[type, ...] | None) -> tu
 
 
 def kind_of(body: str) -> str:
-    """What it is that cannot travel, in words: the type of a class is `type`."""
+    """What cannot travel, in words; `body` names its type, which is `type` for a class."""
     return 'a class' if body == 'type' else with_article(shorten(body))
 
 

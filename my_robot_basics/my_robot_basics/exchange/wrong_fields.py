@@ -14,7 +14,7 @@ _BRIEF.maxstring = _BRIEF.maxother = 60
 def wrong_field(message: Any, type_: type) -> tuple[str, str, str]:
     """Return a field, its value and its type: ('header.frame_id', '5', 'string'); or texts of ''.
 
-    It is the first one that does not travel in a message in which all others are as new.
+    It is the first one that cannot be serialized in a message whose other fields have defaults.
     """
     for field, wanted in message.get_fields_and_field_types().items():
         value = getattr(message, field)

@@ -1,7 +1,7 @@
 """What a participant has looked at long enough: the checks of a grade cell share one.
 
-Who comes a moment later than the first is waited for once. After that it is there, or it was made
-between two checks.
+An endpoint that comes a moment later than the first is waited for once. After that it is there, or
+it was made between two checks.
 """
 
 from collections.abc import Hashable

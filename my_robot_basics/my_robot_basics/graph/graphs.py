@@ -125,10 +125,10 @@ def none_in(seconds: float) -> str:
 
 
 def is_gone(watcher: Watcher, node_name: str) -> bool:
-    """Whether no node of that full name is on the graph, or its name alone.
+    """Whether no node of that full name is on the graph.
 
-    That stays for ever where rmw takes what a participant said last behind its end. Each node of
-    rclpy that lives publishes on /parameter_events.
+    A name alone is no node: it stays if rmw handles a participant's last message after its end.
+    Each running node of rclpy publishes on /parameter_events.
     """
     living = {full_name(info) for info in publisher_infos(watcher.node, '/parameter_events')}
     return node_name not in living or node_name not in node_names(watcher.node)

@@ -1,7 +1,7 @@
 """An executor of one thread for the nodes of a check: a callback costs it half of rclpy's own.
 
-That one builds its set of what to wait for anew for each callback, and looks once more in vain
-after it. Here the set is kept until nodes make or destroy something, and all that one look has
+rclpy's builds its set of what to wait for again for each callback, and looks once more after it,
+for nothing. Here the set is kept until nodes make or destroy something, and all that one look has
 found is dealt with.
 """
 

@@ -39,7 +39,7 @@ class GraphSnapshot:
         return self.subscription_names.get(topic_name, ())
 
     def publishes_nothing(self, node_names: Collection[str]) -> bool:
-        """Whether none of those nodes has a publisher, but for what each node has."""
+        """Whether none of those nodes has a publisher, except those that each node has."""
         return not any(
             {*nodes} & {*node_names}
             for topic_name, nodes in self.publisher_names.items()

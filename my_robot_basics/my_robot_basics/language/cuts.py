@@ -1,4 +1,4 @@
-"""Which template would cut a text where nothing ends, so that it does not fit."""
+"""Whether a template would cut a text where no phrase ends, so that it does not fit."""
 
 import re
 from collections.abc import Mapping
@@ -12,7 +12,7 @@ MOST_DROPPED = 5
 _OPENED = re.compile(r'(?<!\w)[\'"](?=\w)')
 """A quote that is not closed."""
 _RAISES = re.compile(r'(Error|Exception|Interrupt|Exit):( |$)')
-"""Behind it Python's own words follow, with colons, brackets and 'and' of their own."""
+"""After it follow Python's own words, with colons, brackets and 'and' of their own."""
 
 
 def cuts(template: Template, found: Mapping[str, str]) -> bool:
@@ -41,7 +41,7 @@ def cuts(template: Template, found: Mapping[str, str]) -> bool:
 def cuts_raised(template: Template, found: Mapping[str, str], starts: tuple[str, ...]) -> bool:
     """Whether a template would end what Python says of an exception before its end.
 
-    It ends where words of ours follow: those of the template, or what `starts` so.
+    That ends where words of ours follow: the template's, or words that `starts` lists.
     """
     pairs = zip(template.places, template.places[1:], template.literals[1:], strict=False)
     return any(

@@ -11,7 +11,7 @@ _ARTICLE = re.compile(rf'({QUOTED.pattern})|(?:(?<={_HAN})|(?<={_HAN} ))an? (?=[
 
 
 def close_up(text: str) -> str:
-    """Return a text without spaces between Chinese words, but for what is quoted.
+    """Return a text without spaces between Chinese words, except in what is quoted.
 
     And without the article of a name, such as 'an int'.
     """

@@ -11,7 +11,7 @@ from rclpy.impl.rcutils_logger import RcutilsLogger
 from rclpy.node import Node
 
 _nodes: WeakKeyDictionary[RcutilsLogger, str] = WeakKeyDictionary()
-"""The name of the node's logger from which each child comes, or its parent, and so on."""
+"""Each child logger, and the name of the node's logger from which it comes, directly or not."""
 
 
 def remember_child_loggers() -> None:

@@ -55,7 +55,7 @@ def run_answer(name: str, *args: Any, **kwargs: Any) -> Node | None:
     if node is None and any(_is_idle(answer, other) for other in nodes_here()):
         raise NotRunnable(
             f'expected the class {name} alone, saw a node of it that nothing spins: leave out the '
-            'line that makes it, for this cell makes one, and spins it'
+            'line that makes it, because this cell makes one, and spins it'
         )
     return node
 

@@ -27,9 +27,9 @@ POLL_SEC = 0.1
 
 
 def let_cells_be_interrupted() -> None:
-    """Let a cell that waits in rclpy for ever be interrupted, at whatever moment.
+    """Let a cell that waits in rclpy without end be interrupted, at any moment.
 
-    Only the thread in which cells run sees a difference: a student's own threads spin as ever.
+    Only the thread in which cells run sees a difference: a student's own threads spin as before.
     """
     wait = _interruptible(Executor.wait_for_ready_callbacks)
     patch(Executor, 'wait_for_ready_callbacks', wait)

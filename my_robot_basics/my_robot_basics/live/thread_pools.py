@@ -2,15 +2,15 @@
 
 rclpy of Jazzy keeps them waiting. From handing a callback to its pool until a thread there begins
 it, that executor does not wait but goes round: it hands the callback over again, and its wait set
-returns at once, for the subscription is left out but not its QoS events, and Fast DDS has one
+returns at once: the subscription is left out, but not its QoS events, and Fast DDS has one
 condition for both. Python lets another thread in during each of these waits, some 10 µs long. A
-thread that takes longer to wake up comes too late, again and again; and since it was woken, and
-did not wait in vain, it does not make the first one give way. On an idle machine up to each second
-message came seconds late.
+thread that takes longer to wake up comes too late, again and again; and since it was woken before
+its wait timed out, it does not make the first one give way. On an idle machine up to half of the
+messages came seconds late.
 See https://github.com/ros2/rclpy/issues/1452, which is fixed in later releases.
 
 By default there are as many threads as processors. Callbacks that wait keep a thread each, so an
-answer would be right on one machine and stand still on a smaller one: here, each machine has the
+answer would be right on one machine and block on a smaller one: here, each machine has the
 same number.
 """
 

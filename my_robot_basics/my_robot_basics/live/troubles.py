@@ -117,7 +117,7 @@ def of_thread(node_name: str) -> str:
 def unfinished(node_name: str) -> str:
     """Return where a callback is that keeps all others of the node from running, or ''.
 
-    That is one that goes on for UNFINISHED_SEC, while this looks.
+    It looks for UNFINISHED_SEC; a callback that goes on all that time is one.
     """
     from my_robot_basics.doctor import inside  # few answers need it
 

@@ -11,7 +11,7 @@ PAUSE_SEC = 0.01
 """Between two looks at the condition."""
 
 SILENT_SEC = 1.0
-"""Who waits for longer is told so, once every such time."""
+"""Anyone who waits for longer is told so, once every such time."""
 
 
 def wait_until(condition: Callable[[], object], timeout_sec: float = 5.0) -> None:

@@ -23,7 +23,7 @@ POLL_SEC = 0.01
 COMPLETE_SEC = 0.05
 """A graph with everybody on it counts as settled when it has not changed for so long."""
 INCOMPLETE_SEC = 2.0
-"""… and so long while somebody is still missing, who may have nothing to say to ROS."""
+"""… and so long while a participant is still missing, which may have no nodes at all."""
 FIRST_PAUSE_SEC = 0.05
 """Between two times that all are asked to announce themselves; each pause is twice the last."""
 NETWORK_SEC = 0.5

@@ -86,7 +86,7 @@ def _list(value: Any, slot_type: Any, path: str, setters: list[StampSetter] | No
 
 
 def _packed(items: list, slot_type: Any) -> Any:
-    """In the container that message classes use, for the message's repr to be its usual one."""
+    """In the container that message classes use, so that the message's repr is the usual one."""
     import array
 
     import numpy

@@ -77,7 +77,7 @@ def destroy_orphans() -> None:
 
 def nodes_here(*, alive: bool = True) -> Iterator[Node]:
     """Yield this process's nodes that are not destroyed, in a live context or in a dead one."""
-    # not all objects: who but looks at a tuple that another thread is building breaks it
+    # not all objects: only to look at a tuple that another thread is building breaks it
     for thing in gc.get_referrers(*_classes(Node)):
         if not issubclass(type(thing), Node):
             continue

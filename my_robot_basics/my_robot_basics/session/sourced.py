@@ -98,7 +98,7 @@ def _instead(folder: str, name: str) -> ModuleSpec | None:
 
 
 def _checks() -> ModuleType:
-    """The module overlays, under its own name: who imports it later gets the same."""
+    """The module overlays, under its own name: a later import gets the same one."""
     name = 'my_robot_basics.session.overlays'
     if name not in sys.modules:
         file = os.path.join(os.path.dirname(os.path.realpath(__file__)), 'overlays.py')

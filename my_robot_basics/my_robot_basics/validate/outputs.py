@@ -41,9 +41,9 @@ class CellRun:
     """After how long *Validate* gave the student's code up, where grading waits longer; else 0."""
     died: bool = False
     cut_off: bool = False
-    """Whether its kernel had to be ended, for nothing that it says could be received any more."""
+    """Whether its kernel had to be ended, because nothing from it could be received any more."""
     leaves: bool = False
-    """Whether its kernel ends right behind it, for it has called `exit()`."""
+    """Whether its kernel ends right after it, because it has called `exit()`."""
     ending: str = ''
     """How the student's kernel, or what it had started, was ended, if that was their doing."""
     _kept: int = 0

@@ -1,6 +1,6 @@
 """What two kernels need to meet: a message that crosses, and a check's questions to the student.
 
-The rooms have no path to each other but DDS: who holds both kernels takes questions over as text,
+The rooms have no path to each other but DDS: what holds both kernels takes questions over as text,
 and text of a bounded size back.
 """
 

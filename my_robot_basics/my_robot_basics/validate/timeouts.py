@@ -8,14 +8,14 @@ from my_robot_basics.validate.limits import INTERRUPT_GRACE_SEC, INTERRUPT_MOST_
 
 LOOK_EVERY_SEC = 0.2
 MOST_TIMES = 3.0
-"""So many times as long may it take at most, on a busy machine. …"""
+"""How many times its limit a cell may take at most, on a busy machine. …"""
 ASLEEP_PART = 0.01
-"""… Code that works gets more than this of a processor there."""
+"""… Code that works gets more than this part of a processor, however busy the machine is."""
 
 IsAlive = Callable[[], Awaitable[bool]]
 """Whether the kernel lives."""
 UsedSec = Callable[[], float | None]
-"""How long the code has kept processors busy so far; None where nobody counts."""
+"""How long the code has kept processors busy so far; None if nobody counts."""
 
 
 async def finished(
@@ -24,7 +24,7 @@ async def finished(
     is_alive: IsAlive,
     is_enough: Callable[[], bool] = lambda: False,
 ) -> bool:
-    """Wait for a cell's end, or its kernel's; False where its time limit came first, or enough.
+    """Wait for a cell's end, or its kernel's; False if its time is over, or `is_enough()`, first.
 
     What counts is time in which we could look: a grader that stood still for seconds, on a
     machine that was too busy, has not seen the cell take them.
@@ -37,7 +37,7 @@ async def finished(
         await asyncio.wait([done], timeout=tick_sec)
         left_sec -= tick_sec
         if not done.done() and not await is_alive():
-            await asyncio.wait([done], timeout=0.2)  # what it said last may be under way
+            await asyncio.wait([done], timeout=0.2)  # its last messages may be under way
             return True
     await done
     return True
@@ -50,9 +50,10 @@ async def finished_while_served(
     is_enough: Callable[[], bool],
     used_sec: UsedSec,
 ) -> bool:
-    """As `finished`, but who works, and got too little of a processor, is waited for longer.
+    """As `finished`, but code that works and gets too little of a processor has longer.
 
-    Code that waits for something else than a processor uses none, and gets no longer for that.
+    It has until it has used `timeout_sec` of a processor, or could have, and MOST_TIMES as long at
+    most. Code that waits for anything else uses no processor, and has no longer.
     """
     watch, before_sec = pressure.Stopwatch(), used_sec()
     left_sec = timeout_sec

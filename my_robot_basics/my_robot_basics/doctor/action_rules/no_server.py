@@ -8,7 +8,7 @@ from my_robot_basics.doctor.evidence import Finding
 
 
 def examine(evidence: ActionEvidence) -> Iterator[Finding]:
-    """Say who sends goals in vain, and who runs."""
+    """Say which nodes send goals to no server, and which nodes run."""
     if evidence.servers:
         return
     sending = sorted({end.node_name for end in evidence.clients})

@@ -9,7 +9,7 @@ from my_robot_basics.doctor.evidence import Evidence, Finding
 FEWEST = 5
 """Fewer at once are no burst; so are two of each publisher, whose timers fire together."""
 PART_IN_BURSTS = 0.5
-"""Who sends in bursts sends most messages so; a machine that stood still makes one or two."""
+"""A node that sends in bursts sends most messages so; a busy machine makes one or two."""
 
 
 def examine(evidence: Evidence) -> Iterator[Finding]:

@@ -36,7 +36,7 @@ def examine(evidence: Seen) -> Iterator[Finding]:
 
 
 def _wrong_end(evidence: Seen, other: Endpoint) -> tuple[Endpoint, str]:
-    """The end to edit, and the name that it should have: who made a name relative meant another.
+    """The end to edit, and the name that it should have: a relative name was meant to be another.
 
     If nobody did, the name that was asked about is right.
     """

@@ -8,7 +8,7 @@ from my_robot_basics.doctor.service_evidence import ServiceEvidence
 
 
 def examine(evidence: ServiceEvidence) -> Iterator[Finding]:
-    """Say who asks in vain, and who runs."""
+    """Say which nodes call a service without a server, and which nodes run."""
     if evidence.servers:
         return
     asking = sorted({end.node_name for end in evidence.clients})
