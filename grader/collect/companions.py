@@ -43,21 +43,21 @@ class Companions:
         return extra
 
     def changed(self) -> list[datetime]:
-        """Return when Linux last saw each of them change, where a student wrote it."""
+        """Return when Linux last saw each of them change, of those that a student wrote."""
         of_modules = [each.changed for each in self.modules.values() if each.changed]
         return of_modules + [at for _, chosen in self.packages.values() for at in chosen.changed]
 
     def stamped(self) -> datetime | None:
-        """Return the time that stands in nbgrader's file, unless a student wrote that."""
+        """Return the time in nbgrader's file, unless a student wrote it."""
         return date_of(self.stamp.readable) if self.stamp and not self.stamp.login else None
 
     def left_out(self) -> tuple[str, ...]:
         """Return what the student is told of files that were not taken."""
-        told = ((name, chosen) for name, (_, chosen) in self.packages.items())
-        return tuple(clause for name, chosen in told for clause in chosen.clauses(name))
+        chosen = {name: files for name, (_, files) in self.packages.items()}
+        return tuple(clause for name, files in chosen.items() for clause in files.clauses(name))
 
     def used(self) -> set[Incoming]:
-        """Return the files beside the notebook that serve it."""
+        """Return the files beside the notebook that are taken with it, or that say something of it."""
         is_date = self.stamp is not None and date_of(self.stamp.readable) is not None
         others = self.stamp if is_date else None, self.secret
         return {*self.modules.values(), *(each for each in others if each)}

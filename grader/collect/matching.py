@@ -84,8 +84,19 @@ def match(
             asked_for=asked_for.get(owner.assignment, ()),
             packages=beside_notebooks,
         )
-        when = _handed_in(notebook, owner, with_it, file_times=file_times)
-        hand_ins.append(_matched(notebook, owner, with_it, when, remark=remarks[notebook]))
+        hand_ins.append(
+            MatchedFile(
+                student_id=owner.student_id,
+                assignment=owner.assignment,
+                notebook=notebook,
+                extra=with_it.extra(),
+                handed_in=_handed_in(notebook, owner, with_it, file_times=file_times),
+                label=owner.label,
+                remark=remarks[notebook],
+                secret=with_it.secret.readable if with_it.secret else None,
+                left_out=with_it.left_out(),
+            )
+        )
         used |= with_it.used()
         others |= with_it.foreign
         for there, chosen in with_it.packages.values():
@@ -103,28 +114,16 @@ def match(
 def _handed_in(
     notebook: Incoming, owner: Owner, with_it: Companions, *, file_times: bool
 ) -> datetime | None:
-    """Return when it was handed in; None where nothing tells."""
-    if notebook.changed:  # who wrote it could claim any time, and go on with any file of it
+    """Return when it was handed in; None if nothing tells.
+
+    In a folder into which students write, names and `timestamp.txt` could claim any time, and any
+    of the files could be edited later: there, Linux's times count alone.
+    """
+    if notebook.changed:
         return max([notebook.changed, *with_it.changed()])
     told = owner.handed_in or with_it.stamped()
     claimed = notebook.modified if file_times else None
     return max([*with_it.changed(), *([told] if told else [])], default=claimed)
-
-
-def _matched(
-    notebook: Incoming, owner: Owner, with_it: Companions, when: datetime | None, *, remark: str
-) -> MatchedFile:
-    return MatchedFile(
-        owner.student_id,
-        owner.assignment,
-        notebook,
-        with_it.extra(),
-        when,
-        owner.label,
-        remark,
-        with_it.secret.readable if with_it.secret else None,
-        with_it.left_out(),
-    )
 
 
 def _not_taken(each: Incoming, *, in_upload: bool) -> UntakenFile:
