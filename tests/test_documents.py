@@ -106,6 +106,9 @@ def test_what_is_looked_for_is_found():
     text = (ROOT / 'README.md').read_text()
     assert 'tests/benchmarks/class_of_500.py' in {*paths_in(text)}
     assert 'gradebook/scores.csv' not in {*paths_in(text)}
+    reasons = (ROOT / 'docs/decisions.md').read_text()
+    assert len(TEST.findall(reasons)) > 5
+    assert len(ROWS.findall(' '.join(reasons.split()))) > 5
     assert {*modules_in('see grader.cli.verbs and launcher.lab')} == {
         'grader.cli.verbs',
         'launcher.lab',
@@ -115,6 +118,30 @@ def test_what_is_looked_for_is_found():
     assert is_named('grader.course.Course')
     assert not is_named('grader.course.Nothing')
     assert not is_named('grader.never.Nothing')
+
+
+TEST = re.compile(r'`(test_\w+)`')
+ROWS = re.compile(r'((?:`\w+`(?:,| and)? )+)(?:and others )?in `(tests/[\w/]+(?:\.\w+|/))`')
+"""Names of a table of tests, or of files in a folder of them, and where they are."""
+
+
+def test_each_test_that_a_document_names_exists(document):
+    tests = '\n'.join(path.read_text() for path in sorted(ROOT.glob('tests/test_*.py')))
+    known = set(re.findall(r'^def (test_\w+)', tests, re.MULTILINE))
+    assert [name for name in TEST.findall(document.read_text()) if name not in known] == []
+
+
+def test_each_row_of_a_table_of_tests_that_a_document_names_exists(document):
+    found = ROWS.findall(' '.join(document.read_text().split()))
+    rows = [(name, ROOT / place) for text, place in found for name in re.findall('`(.+?)`', text)]
+    assert [name for name, place in rows if name not in names_in(place)] == []
+
+
+def names_in(place):
+    """Return the words of a table, or the names of a folder's files."""
+    if place.is_dir():
+        return {path.stem for path in place.iterdir()}
+    return {*re.findall(r'\w+', place.read_text())}
 
 
 # --- figures that the code decides ---------------------------------------------------------------
@@ -128,6 +155,7 @@ FIGURES = {
         f'which holds no gradebook; {MAX_SOURCE_CHARACTERS:,} characters',
         f'{cell_limits.MAX_MESSAGE_BYTES // 10**6} MB, {cell_limits.MAX_MESSAGE_PARTS:,} parts, '
         f'{MAX_OUTPUT_CHARACTERS:,} characters a cell',
+        f'in linear time, {cell_limits.MAX_REPLY:,} characters',
         f'{formgrader.LIMITS.cpu_sec} or {feedback.LIMITS.cpu_sec} s of processor time',
         f'{similar_answers.LIMITS.cpu_sec} s for each exercise; answers of up to '
         f'{similar_answers.MOST_CHARACTERS:,} characters',

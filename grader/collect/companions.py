@@ -57,7 +57,7 @@ class Companions:
         return tuple(clause for name, files in chosen.items() for clause in files.clauses(name))
 
     def used(self) -> set[Incoming]:
-        """Return the files beside the notebook that are taken with it, or that say something of it."""
+        """Return the files beside the notebook that are used for it."""
         is_date = self.stamp is not None and date_of(self.stamp.readable) is not None
         others = self.stamp if is_date else None, self.secret
         return {*self.modules.values(), *(each for each in others if each)}

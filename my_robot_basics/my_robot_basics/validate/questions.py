@@ -51,7 +51,7 @@ def reply_of(run: CellRun, *, within_sec: float, at_grading: str = '') -> str:
         case {'reply': {'data': {'text/plain': str(text)}}} if len(text) > MAX_REPLY:
             return _failed(f'an answer of {len(text):,} characters')
         case {'reply': {'data': {'text/plain': str(text)}}} if _STRING.fullmatch(text):
-            # \x of no digits, or half a character: no text for the test's kernel
+            # a number that is no character, or half a surrogate pair, is no text for the test
             with contextlib.suppress(SyntaxError, ValueError):
                 return ast.literal_eval(text).encode().decode()
     return _failed('no usable answer')
