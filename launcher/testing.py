@@ -118,9 +118,9 @@ class Checks:
     def again(self, what: str, status: int, command: Callable[[], list[str]]) -> int:
         """Run alone what failed beside others: what fails twice has failed.
 
-        A machine that was short of time fails tests that nothing is wrong with. They are written
-        down, with why: more than MOST of them in a run have failed, too, where the cells of a
-        lesson whose kernel did not start are one. A file that cannot be imported is no such test.
+        A machine that is short of time fails tests that nothing is wrong with. They are written
+        down, with their reasons; if these have more than MOST causes in a run, the run has failed,
+        too. A file that cannot be imported is no such test.
         """
         if status != 1:
             return status

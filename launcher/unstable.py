@@ -55,7 +55,7 @@ def unstable(failures: dict[str, str], passes: set[str]) -> dict[str, str]:
 
 
 def count_causes(tests: dict[str, str]) -> int:
-    """Return how many there are, where a kernel that did not start fails all cells of a lesson."""
+    """Return how many causes: a kernel that did not start fails all cells of a lesson."""
     no_kernel = {name for name, why in tests.items() if why.startswith(NO_KERNEL)}
     return len(tests.keys() - no_kernel) + len({name.rpartition('::')[0] for name in no_kernel})
 

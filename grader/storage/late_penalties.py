@@ -20,7 +20,7 @@ from grader.storage.deadlines import Deadlines, deadlines
 from grader.storage.lateness import tell_what_is_due
 
 _SILENT = logging.getLogger(__name__)
-"""Whatever lateness takes off is told with the score; nbgrader would log it for each notebook."""
+"""What lateness takes off is shown with the score; nbgrader would log it for each notebook."""
 _SILENT.setLevel(logging.ERROR)
 
 

@@ -28,7 +28,7 @@ class CallbackErrors:
         return f'{raised}, {FIX_FIRST}' if raised else ''
 
     def why(self, watcher: Watcher) -> str:
-        """The same; or a clause on one that does not return, or on a node that ended; or ''."""
+        """As `hint`; else a clause on one that does not return, or on a node that ended; or ''."""
         if raised := self.hint():
             return raised
         if stopped := what_stopped(self._before):

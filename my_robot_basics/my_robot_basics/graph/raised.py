@@ -28,7 +28,7 @@ def what_raised(node_names: Iterable[str]) -> str:
 
 
 def what_stopped(node_names: Iterable[str]) -> str:
-    """The same; or a clause on a thread that has raised, or a callback that goes on; or ''."""
+    """As `what_raised`; else a clause on a thread that raised, or a callback that goes on."""
     names = sorted(set(node_names))
     if raised := what_raised(names):
         return raised
