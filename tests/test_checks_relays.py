@@ -6,6 +6,7 @@ import time
 import pytest
 from my_robot_basics.checks import (
     CheckFailed,
+    enough,
     passage,
     relay,
     relay_endpoints,
@@ -549,7 +550,7 @@ def test_what_a_callback_raised_before_the_check_is_not_of_the_other_topic(run):
 
 @pytest.fixture
 def leisurely(monkeypatch):
-    monkeypatch.setattr(passage, 'SOME_SEC', 60.0)
+    monkeypatch.setattr(enough, 'SOME_SEC', 60.0)
     monkeypatch.setattr(passage, 'MOST_SEC', 60.0)
 
 
@@ -564,8 +565,8 @@ def test_every_hundredth_message_is_missed_where_the_machine_is_quick(run):
 @pytest.mark.slow
 @pytest.mark.parametrize('node_class', [DropsEverySecond, DropsEveryEleventh])
 def test_where_no_time_is_left_a_few_messages_tell(run, monkeypatch, node_class):
-    monkeypatch.setattr(passage, 'SOME_SEC', 0.0)
-    monkeypatch.setattr(passage, 'LONG_SEC', 0.0)
+    monkeypatch.setattr(enough, 'SOME_SEC', 0.0)
+    monkeypatch.setattr(enough, 'LONG_SEC', 0.0)
     run(node_class)
     with pytest.raises(CheckFailed, match='saw messages that are not republished'):
         check_delivery()
@@ -573,8 +574,8 @@ def test_where_no_time_is_left_a_few_messages_tell(run, monkeypatch, node_class)
 
 @pytest.mark.slow
 def test_without_time_a_right_node_passes(run, monkeypatch):
-    monkeypatch.setattr(passage, 'SOME_SEC', 0.0)
-    monkeypatch.setattr(passage, 'LONG_SEC', 0.0)
+    monkeypatch.setattr(enough, 'SOME_SEC', 0.0)
+    monkeypatch.setattr(enough, 'LONG_SEC', 0.0)
     monkeypatch.setattr(passage, 'MOST_SEC', 0.0)
     run(monitor.JointStateMonitor)
     check_delivery()
