@@ -13,6 +13,7 @@ from my_robot_basics.checks import (
     clock,
     clock_budget,
     driven_topic,
+    drives,
     sampling,
     topic,
 )
@@ -74,7 +75,7 @@ def test_a_node_is_alive_after_a_check_that_was_cut_short(monkeypatch, error):
         raise error
 
     with running('five_hz'):
-        monkeypatch.setattr(sampling, '_find_step', interrupt)
+        monkeypatch.setattr(drives, '_find_step', interrupt)
         with pytest.raises(error):
             topic(TOPIC).record()
         topic(TOPIC).wait_for(timeout_sec=5.0)
