@@ -65,20 +65,31 @@ def test_a_failed_check_tells_what_was_expected_seen_and_what_to_try(course):
     assert '1 of 5 points' in html
 
 
+STOPPED = 'your cell `double` stopped with NameError: no such thing'
+UNDEFINED = {'double-hidden': 'expected a function `double`, saw none: define it'}
+
+
 def test_what_stopped_the_students_cell_comes_first_where_points_are_missing(course):
-    html = feedback(
-        course,
-        'bea',
-        answered(course, RIGHT),
-        reasons={'double-hidden': 'expected a function `double`, saw none: define it'},
-        notes=['your cell `double` stopped with NameError: no such thing'],
-    )
+    html = feedback(course, 'bea', answered(course, RIGHT), reasons=UNDEFINED, notes=[STOPPED])
     why = 'Your cell <code>double</code> stopped with NameError: no such thing'
     assert re.search(f'<td class="why"[^>]*>{why}</td>', html)
     assert 'Fix that first. What the check saw is below.' in html
     assert f'<p>{why}</p>' in html
     assert '<dt>Try</dt><dd class="next">Define it</dd>' in html
     assert 'Note: ' not in html
+
+
+def test_what_stopped_it_is_told_in_the_students_language(course):
+    notebook = answered(course, RIGHT)
+    notebook.metadata[KEY] = {'language': 'zh_CN'}
+    html = feedback(course, 'bea', notebook, reasons=UNDEFINED, notes=[STOPPED])
+    assert html.count('你的单元格 <code>double</code> 停止了：NameError: no such thing') == 2
+
+
+def test_what_stopped_it_is_a_note_where_no_points_are_missing(course):
+    html = feedback(course, 'bea', answered(course, RIGHT), notes=[STOPPED])
+    assert 'Note: your cell <code>double</code> stopped with NameError' in html
+    assert 'Fix that first' not in html
 
 
 @pytest.mark.parametrize(
