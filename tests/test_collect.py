@@ -557,11 +557,27 @@ def test_the_lessons_themselves_are_no_submissions(course, place, monkeypatch, c
     assert not course.folder('submitted', '', '').exists()
 
 
-def test_another_spelling_of_a_student_is_told(course, source):
-    write(course.folder('submitted', 'Ada Lovelace', '99_other') / '99_other.ipynb', '{}')
+def test_the_lessons_are_known_behind_a_link_and_a_folder_beside_them_is_collected(
+    course, tmp_path
+):
+    link = tmp_path / 'link'
+    link.symlink_to(course.root)
+    behind_link = Course(root=link, gradebook=course.gradebook)
+    for place in link, course.root:
+        with pytest.raises(CourseError, match="holds the course's own lessons"):
+            list(collect(behind_link, place))
+    beside = course.root / 'came in'
+    write(beside / f'ada_{TOY}.ipynb', nbformat.writes(course.release(TOY)))
+    assert [row.outcome for row in collect(behind_link, beside)] == [NEW]
+
+
+def test_other_spellings_of_a_student_are_told(course, source):
+    for name in 'Ada Lovelace', 'ADA_lovelace', 'Ada_Lovelace':
+        write(course.folder('submitted', name, '99_other') / '99_other.ipynb', '{}')
     write(source / f'ada_lovelace_{TOY}.ipynb', nbformat.writes(course.release(TOY)))
     write(source / f'bob_{TOY}.ipynb', nbformat.writes(course.release(TOY)))
     first, second = collect(course, source)
     assert first.student_id == 'ada_lovelace'
-    assert first.reason == 'not the same as Ada Lovelace: if it is, rename one'
+    others = 'ADA_lovelace, Ada Lovelace, Ada_Lovelace'
+    assert first.reason == f'not the same as {others}: if it is, rename one'
     assert second.reason == ''
