@@ -6,6 +6,7 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from xml.sax.saxutils import quoteattr
 
 import pytest
 from my_robot_basics.language.catalogues import read_translations
@@ -253,7 +254,9 @@ def test_the_executables_are_those_of_setup_py():
 
 def report(path, **cases):
     """Write what pytest writes: each case failed with these words, or passed."""
-    bodies = {name: f'<failure message="{why}"/>' if why else '' for name, why in cases.items()}
+    bodies = {
+        name: f'<failure message={quoteattr(why)}/>' if why else '' for name, why in cases.items()
+    }
     rows = [f'<testcase classname="f" name="{n}">{body}</testcase>' for n, body in bodies.items()]
     path.write_text(f'<testsuites><testsuite>{"".join(rows)}</testsuite></testsuites>')
     return path
@@ -288,12 +291,16 @@ def test_all_cells_of_a_lesson_whose_kernel_did_not_start_have_one_cause():
     assert count_causes({}) == 0
 
 
-@pytest.mark.parametrize(('number', 'status'), [(0, 0), (1, 0), (2, 0), (3, 1)])
-def test_more_than_two_unstable_tests_fail_a_run(number, status, tmp_path, capsys):
+@pytest.mark.parametrize(
+    ('number', 'why', 'status'),
+    [(0, '', 0), (1, 'late', 0), (2, 'late', 0), (3, 'late', 1), (26, f'{NO_KERNEL} …"', 0)],
+    ids=['none', 'one', 'two', 'three', 'no kernel'],
+)
+def test_more_than_two_unstable_tests_fail_a_run(number, why, status, tmp_path, capsys):
     names = [f't{each}' for each in range(number)]
     checks = Checks(Environment(tmp_path), {}, tmp_path)
 
-    report(tmp_path / 'tests.xml', good='', **dict.fromkeys(names, 'late'))
+    report(tmp_path / 'tests.xml', good='', **dict.fromkeys(names, why))
 
     def pass_alone():
         report(tmp_path / 'tests-alone.xml', **dict.fromkeys(names, ''))
