@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import pytest
 from my_robot_basics.checks import pairs
 from my_robot_basics.checks import passage as passage_module
+from my_robot_basics.checks.enough import fewest_in_a_row
 from my_robot_basics.checks.passage import Passage
 from my_robot_basics.checks.variety import Sent
 
@@ -83,6 +84,13 @@ def test_what_others_sent_before_they_were_received_is_not_invented(
     assert not passage.loses_one_of_two(Sent(n, '') for n in count())
     own = [(n, SEC * n) for n in range(4)]
     assert passage.invents(own + [(f'of another {n}', SEC * n) for n in received]) == invents
+
+
+@pytest.mark.parametrize(
+    ('row_sec', 'fewest'), [(0.0, 120), (2.4, 120), (2.5, 24), (3.9, 24), (4.0, 12), (60.0, 12)]
+)
+def test_fewer_in_a_row_are_enough_of_a_slow_node(row_sec, fewest):
+    assert fewest_in_a_row(SimpleNamespace(wall_sec=lambda: row_sec)) == fewest
 
 
 @pytest.mark.parametrize(('is_timer', 'invents'), [(False, False), (True, True)])
