@@ -192,7 +192,9 @@ def test_all_verbs_in_a_row(tmp_path, capsys):
     counts = '{} graded, {} unchanged, {} could not be graded (–); 0 wait for a person (…).'
     assert counts.format(1, 0, 1) in capsys.readouterr().out
     assert main(['grade', '--student', 'ada'], course=course) == 0
-    assert counts.format(0, 1, 0) in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert counts.format(0, 1, 0) in said
+    assert 'Next: ./course feedback, ' in said
     assert main(['feedback'], course=course) == 0
     assert 'feedback/ada/' in capsys.readouterr().out
     assert main(['scores'], course=course) == 0
