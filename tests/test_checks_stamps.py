@@ -196,8 +196,9 @@ def test_one_stamp_that_a_busy_machine_made_late_costs_nobody_points(off_sec, wa
 
 def test_a_clock_that_stands_still_while_a_callback_works_is_no_computers():
     shown_ns = [100 * 10**9, 105 * 10**9]
+    by_way_of_a_float = 105 * 10**9 + 300
     stood = [(105 * 10**9, sent * 10**8) for sent in (1040, 1048, 1050)]
-    assert _ahead_sec(stood, shown_ns) == []
+    assert _ahead_sec([*stood, (by_way_of_a_float, 104 * 10**9)], shown_ns) == []
     assert _ahead_sec([(104 * 10**9 + 5000, 104 * 10**9)], shown_ns) == [5e-6]
 
 
