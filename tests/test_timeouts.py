@@ -14,20 +14,21 @@ LIMIT_SEC = 10.0
 def waits(monkeypatch):
     """Whether code that needs so much of a processor is waited for, and how long that was.
 
-    It gets a part of one, and the machine is free for another part of the time.
+    It gets a part of one, and the machine is free for another part of the time. What ran before
+    it in the same kernel has used some, too.
     """
 
-    def wait(needs_sec, *, gets, is_free=0.0, is_counted=True, floods=False):
+    def wait(needs_sec, *, gets, is_free=0.0, counted=lambda wall_sec: True, floods=False):
         told = SimpleNamespace(wall_sec=0.0)
 
         def used_sec():
-            return gets * told.wall_sec if is_counted else None
+            return 100.0 + gets * told.wall_sec if counted(told.wall_sec) else None
 
         async def finished(done, seconds, is_alive, is_enough):
             if is_enough():
                 return False
             told.wall_sec += seconds
-            return used_sec() is not None and used_sec() >= needs_sec
+            return gets * told.wall_sec >= needs_sec
 
         watch = SimpleNamespace(
             wall_sec=lambda: told.wall_sec, free_sec=lambda: is_free * told.wall_sec
@@ -59,8 +60,13 @@ def test_code_that_sleeps_gets_no_longer(waits, gets):
     assert waits(4.0, gets=gets) == (False, LIMIT_SEC)
 
 
-def test_where_nobody_counts_the_limit_holds(waits):
-    assert waits(4.0, gets=0.2, is_counted=False) == (False, LIMIT_SEC)
+@pytest.mark.parametrize(
+    'counted',
+    [lambda wall_sec: False, lambda wall_sec: wall_sec > 0.0, lambda wall_sec: wall_sec == 0.0],
+    ids=['never', 'only later', 'no longer'],
+)
+def test_where_nobody_counts_the_limit_holds(waits, counted):
+    assert waits(4.0, gets=0.2, counted=counted) == (False, LIMIT_SEC)
 
 
 def test_a_flood_is_over_at_once(waits):
