@@ -155,6 +155,12 @@ def test_a_cell_does_not_pay_for_a_grader_that_stood_still(shared, loop):
     assert (text_of(result), result.timed_out) == ('1\n', False)
 
 
+def test_a_cell_is_waited_for_by_what_it_has_used(shared, loop):
+    asked = []
+    loop.run(shared.run('1', timeout_sec=10.0, used_sec=lambda: asked.append('…')))
+    assert asked
+
+
 def test_an_answer_that_fails_is_an_error_at_once(own, loop):
     async def answer(prompt):
         raise RuntimeError('no answer to ' + prompt)

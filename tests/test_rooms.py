@@ -5,6 +5,7 @@ import json
 import shutil
 import tempfile
 from pathlib import Path
+from types import SimpleNamespace
 
 import psutil
 import pytest
@@ -108,6 +109,21 @@ def test_all_time_that_a_students_room_takes_is_counted_however_it_is_taken(room
     # nobody waits for these: their times are no parent's
     student(rooms, BURN)
     assert rooms.student_cpu_sec() - before_sec >= 0.5
+
+
+def test_cells_and_questions_are_waited_for_by_what_the_students_room_has_used(monkeypatch):
+    waited = []
+
+    async def run(source, *, timeout_sec, used_sec, expressions=None):
+        waited.append(used_sec())
+        return CellRun()
+
+    rooms = GradingRooms()
+    monkeypatch.setattr(rooms, '_student', SimpleNamespace(run=run), raising=False)
+    monkeypatch.setattr(rooms, 'student_cpu_sec', lambda: 5.0)
+    asyncio.run(rooms.run_student_cell('1', timeout_sec=10.0))
+    asyncio.run(rooms._ask_student('{}'))
+    assert waited == [5.0, 5.0]
 
 
 def test_a_cell_that_names_live_finds_the_kernel_set_up(rooms, student):
