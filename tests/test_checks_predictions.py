@@ -104,6 +104,7 @@ def test_a_coin_earns_next_to_nothing():
     [
         ({'arrives': True}, "expected the key 'is_lost' in `answer`, saw no such key: write the"),
         ({'arrives': True, 'is lost': False}, "saw 'is lost': write the keys as in the table"),
+        ({'arrives': True, 'IS_LOST': False}, "saw 'IS_LOST': write the keys as in the table"),
         ({'arrives': None, 'is_lost': False}, "for 'arrives', saw None: put your prediction"),
         ({'arrives': True, 'is_lost': 'no'}, "for 'is_lost', saw 'no': write True .*, without qu"),
         ({'arrives': 1, 'is_lost': False}, "for 'arrives', saw 1: write True if the message ar"),

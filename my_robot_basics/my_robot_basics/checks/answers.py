@@ -2,7 +2,7 @@
 
 import itertools
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from my_robot_basics.checks import angles
 
@@ -57,15 +57,14 @@ def places_of(text: str) -> list[tuple[float, int, int]]:
     return found
 
 
-def why_unreadable(wanted: Iterable[float], texts: Iterable[str]) -> str:
+def why_unreadable(wanted: Sequence[float], texts: Sequence[str]) -> str:
     """Advice for texts without the wanted angles: what stands there for a number, or ''."""
-    texts = list(texts)
     if any(_NAN.search(text) for text in texts):
         return 'an angle is nan, which is no number, so check how it is computed'
     if any(_BRACES.search(text) for text in texts):
         return 'put an f before the quotation mark: Python then puts the value there'
     pointed = [number for text in texts for number in numbers_of(_DECIMAL_COMMA.sub('.', text))]
-    if pointed and not angles.missing(list(wanted), pointed):
+    if not angles.missing(wanted, pointed):
         return 'write decimals with a point, and not with a comma'
     return ''
 
