@@ -3,8 +3,8 @@
 from types import SimpleNamespace
 
 import pytest
-from my_robot_basics.checks import awaited_servers
-from my_robot_basics.checks.awaited_servers import SERVER_SEC, wait_for_server
+from my_robot_basics.checks import awaited_servers, open_action, services
+from my_robot_basics.checks.awaited_servers import SERVER_SEC, NoServer, wait_for_server
 from my_robot_basics.feedback.errors import CheckFailed, Starved
 from my_robot_basics.graph.graphs import SETTLED_SEC
 
@@ -47,3 +47,24 @@ def test_where_none_can_come_nobody_waits_for_long(waited):
     none = wait_for_server(waited.watcher, lambda: False)
     assert (none.seen, none.doubt) == ('none', CheckFailed)
     assert (waited.free, waited.wall) == ([], [SETTLED_SEC])
+
+
+@pytest.mark.parametrize('doubt', [CheckFailed, Starved])
+@pytest.mark.parametrize(
+    ('module', 'graph', 'look'),
+    [
+        (services, services.services, lambda check: services.Service._meet(check, check.watcher)),
+        (open_action, open_action.actions, open_action.OpenAction._find),
+    ],
+    ids=['service', 'action'],
+)
+def test_the_check_of_one_that_does_not_come_has_that_doubt(
+    monkeypatch, module, graph, look, doubt
+):
+    monkeypatch.setattr(module, 'wait_for_server', lambda *_: NoServer('none in 9 s', doubt))
+    seen = SimpleNamespace(why_none=lambda name, maker: f'look at {name} in {maker}(…)')
+    monkeypatch.setattr(graph, 'take', lambda node: seen)
+    check = SimpleNamespace(name='/arm', watcher=SimpleNamespace(node=None))
+    with pytest.raises(CheckFailed, match='/arm, saw none in 9 s: look at /arm in') as raised:
+        look(check)
+    assert raised.type is doubt

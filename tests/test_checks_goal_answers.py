@@ -20,9 +20,10 @@ def test_a_rejected_goal_does_not_hide_when_one_was_accepted():
 
 
 def test_why_a_server_is_locked_is_told_until_it_accepts_again():
+    note_answer(SERVER, sent_ns=3, is_accepted=True)
     note_answer(SERVER, sent_ns=5, is_accepted=False)
     goal_answers.note_why_rejected(SERVER, 'the flag')
     note_answer(SERVER, sent_ns=7, is_accepted=False)
-    assert answers_of(SERVER).why_rejected == 'the flag'
+    assert answers_of(SERVER) == GoalAnswers(3, has_rejected_last=True, why_rejected='the flag')
     note_answer(SERVER, sent_ns=9, is_accepted=True)
     assert answers_of(SERVER) == GoalAnswers(9)
