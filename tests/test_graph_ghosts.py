@@ -1,5 +1,7 @@
 """A name that stays on the graph though its node has ended, and what tells it from a node."""
 
+from types import SimpleNamespace
+
 import pytest
 from my_robot_basics.graph import graphs
 from my_robot_basics.graph.watcher import Watcher
@@ -31,3 +33,15 @@ def test_a_name_without_a_node_is_gone(monkeypatch, node):
         assert comes(lambda: not graphs.is_gone(watcher, '/speaker'))
         node.destroy_node()
         assert comes(lambda: graphs.is_gone(watcher, '/speaker'))
+
+
+@pytest.mark.parametrize(
+    ('names', 'publishers', 'is_gone'),
+    [(['/a'], ['/a'], False), (['/a'], ['/b'], True), (['/b'], ['/a'], True), ([], [], True)],
+    ids=['a node', 'a name alone', 'a publisher alone', 'neither'],
+)
+def test_a_node_has_a_name_and_a_publisher(monkeypatch, names, publishers, is_gone):
+    monkeypatch.setattr(graphs, 'node_names', lambda node: names)
+    monkeypatch.setattr(graphs, 'publisher_infos', lambda node, topic_name: publishers)
+    monkeypatch.setattr(graphs, 'full_name', lambda info: info)
+    assert graphs.is_gone(SimpleNamespace(node=None), '/a') == is_gone
