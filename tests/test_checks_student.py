@@ -296,6 +296,8 @@ def test_a_callback_that_returns_again_and_again_keeps_nobody_waiting(monkeypatc
 def test_a_stamp_that_is_no_message_is_told_what_makes_one(monkeypatch):
     said = "AttributeError: 'Time' object has no attribute 'sec' (line 3)"
     monkeypatch.setattr(node_troubles, 'last_raised', lambda name: said)
+    field = 'header.stamp', 'Time'
+    monkeypatch.setattr(node_troubles, 'unpublished_field', lambda name: field)
     assert what_raised(['/any']).endswith('so make a stamp of the time with .to_msg()')
 
 

@@ -9,8 +9,6 @@ from my_robot_basics.session import classroom
 from rclpy.context import Context
 from rclpy.node import Node
 
-pytestmark = pytest.mark.starts
-
 
 @pytest.fixture
 def node():
@@ -21,6 +19,7 @@ def node():
     context.try_shutdown()
 
 
+@pytest.mark.starts
 def test_a_name_without_a_node_is_gone(monkeypatch, node):
     names = graphs.node_names
     monkeypatch.setattr(graphs, 'node_names', lambda node: ['/ghost', *names(node)])
