@@ -432,7 +432,10 @@ WRONG_CANCELS = [
         'no request to cancel the goal for False .*: look at message.data: only Tru',
     ),
     (CancelsByTheClock, 'no request to cancel .*, saw one'),
-    (RemembersTheObstacle, 'after True .*: an obstacle cancels the goal that moves then, and no'),
+    (
+        RemembersTheObstacle,
+        'after True .*: an obstacle cancels the goal that moves the arm then, and no',
+    ),
     (
         NeverCancels,
         r'expected a request to cancel .*saw none.*: call cancel_goal_async\(\) of the',

@@ -536,7 +536,7 @@ def test_a_stamp_is_near_the_clock(clock, off_sec, passes):
 @pytest.mark.parametrize('clock', ['simulated', 'wall'])
 def test_what_is_published_twice_is_told_from_a_stamp_that_stands_still(clock):
     twice = [time for time in every(0.2) for _ in range(2)]
-    with pytest.raises(CheckFailed, match='two messages with one stamp at once: publish one'):
+    with pytest.raises(CheckFailed, match='two messages at once with the same stamp: publish one'):
         recording(twice, clock=clock).assert_stamps()
 
 

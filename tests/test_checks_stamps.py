@@ -111,7 +111,7 @@ def recorded(samples, **options):
     ('apart_sec', 'told'),
     [
         # a busy machine parts the two messages of one callback
-        ([0.001, 0.001, 0.1, 0.001], 'two messages with one stamp at once'),
+        ([0.001, 0.001, 0.1, 0.001], 'two messages at once with the same stamp'),
         ([0.2, 0.2, 0.2, 0.001], 'a stamp that does not advance'),
     ],
 )
@@ -138,7 +138,7 @@ def test_messages_of_one_tick_share_a_stamp_but_none_comes_twice(is_another):
     if is_another:
         made.assert_stamps()
     else:
-        with pytest.raises(CheckFailed, match='two messages with one stamp at once'):
+        with pytest.raises(CheckFailed, match='two messages at once with the same stamp'):
             made.assert_stamps()
 
 

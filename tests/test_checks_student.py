@@ -43,6 +43,12 @@ def with_a_stamp_for_a_header(x):
     return message
 
 
+def deep_in_itself(x):
+    endless = [x]
+    endless.append(endless)
+    return endless
+
+
 def exiting(x):
     raise SystemExit(3)
 
@@ -75,6 +81,8 @@ FAILURES = {
     'text for a bool': (lambda x: 'True', "saw a str ('True'): a text in quotes is no other"),
     'a generator': (lambda x: iter([]), 'to return a bool, saw a list_iterator: return plain'),
     'a generator within': (lambda x: {'a': iter([])}, 'bool, saw a list_iterator in it'),
+    'a complex number of NumPy': (lambda x: np.complex128(1), 'a bool, saw a numpy complex128: '),
+    'too deep': (deep_in_itself, 'to return a bool, saw values nested more than'),
     'a wrong field': (with_a_stamp_for_a_header, 'is no std_msgs/Header): give each field a'),
     'exits silently': (lambda x: sys.exit(), 'expected `f(2)` to return, saw SystemExit: call'),
     'not a function': (5, "saw TypeError: 'int' object is not callable"),

@@ -32,7 +32,7 @@ WORD = re.compile(r'(?<![A-Za-z])[a-z]{2,}(?![A-Za-z])')
 NAMES = {
     *('rad', 'notebook', 'rcl', 'rclpy', 'colcon', 'logger', 'main', 'time', 'call', 'return'),
     *('nan', 'string', 'wstring', 'liveliness', 'remaining', 'reachable', 'targets'),
-    *('name', 'position', 'header'),
+    *('name', 'position', 'header', 'future'),
     *('succeeded', 'canceled', 'aborted'),
 }
 """What ROS, Python and the lessons call so in each language."""

@@ -73,7 +73,7 @@ def test_what_stopped_the_students_cell_comes_first_where_points_are_missing(cou
     html = feedback(course, 'bea', answered(course, RIGHT), reasons=UNDEFINED, notes=[STOPPED])
     why = 'Your cell <code>double</code> stopped with NameError: no such thing'
     assert re.search(f'<td class="why"[^>]*>{why}</td>', html)
-    assert 'Fix that first. What the check saw is below.' in html
+    assert 'Fix that first. What the check saw is shown below.' in html
     assert f'<p>{why}</p>' in html
     assert '<dt>Try</dt><dd class="next">Define it</dd>' in html
     assert 'Note: ' not in html

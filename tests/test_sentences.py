@@ -192,7 +192,7 @@ WITH_COLONS = {
         'expected': '来自 /a 的消息原样转发到 /b',
         'seen': '1 s 内没有',
         'hint': "它的回调抛出了 AttributeError: no 'send' (line 1, in f: self.send(m))，"
-        '所以先改正它',
+        '请先改正它',
     },
     'expected rate_hz = 5.0 to be set, saw it refused: Wrong parameter type, expected '
     "'Type.INTEGER' got 'Type.DOUBLE': a parameter has the type of its default value: "
@@ -309,7 +309,15 @@ OF_CHECKS = {
     'it accepted in 10 s': '10 s 之后状态为 accepted',
     '1 of the 2 that this part runs wrong': '这一部分实际运行的 2 个预测里有 1 个错误',
     '1 wrong, which leaves 1 of 2 points': '1 个错误，还剩 2 分中的 1 分',
-    'numpy object in it': '其中有 numpy object',
+    'a numpy object in it': '其中有 numpy object',
+    'a numpy complex128': 'numpy complex128',
+    'arm_driver to end after SIGINT': 'arm_driver 在 SIGINT 之后结束',
+    'gear_ratios is of type float32: the table asks for another number of bits': (
+        'gear_ratios 的类型是 float32：表格要求的位数不同'
+    ),
+    'turns takes any number of values, []: see how many the table asks for': (
+        'turns 写的是任意多个值，[]：看看表格要求几个'
+    ),
     'a point just beyond the outer border, l1 + l2, has to give False': (
         '紧靠外边界（l1 + l2）外侧的点，应该得到 False'
     ),
@@ -356,11 +364,11 @@ OF_STUDENTS = {
     "its callback raised AttributeError: 'float' object has no attribute 'sec' (line 4, in f: "
     'p.publish(m)), so give `header.stamp` a value of the type `builtin_interfaces/Time`': (
         "它的回调抛出了 AttributeError: 'float' object has no attribute 'sec' (line 4, in f: "
-        'p.publish(m))，所以给 `header.stamp` 一个 `builtin_interfaces/Time` 类型的值'
+        'p.publish(m))，应当给 `header.stamp` 一个 `builtin_interfaces/Time` 类型的值'
     ),
     'its callback raised KeyboardInterrupt (line 9, in f: raise KeyboardInterrupt), so fix that '
     'first': (
-        '它的回调抛出了 KeyboardInterrupt (line 9, in f: raise KeyboardInterrupt)，所以先改正它'
+        '它的回调抛出了 KeyboardInterrupt (line 9, in f: raise KeyboardInterrupt)，请先改正它'
     ),
     'your cell `a` stopped with InvalidNodeNameException: Invalid node name: node name must not '
     "contain characters other than alphanumerics or '_': 'my-node' ^": (

@@ -96,7 +96,7 @@ def test_a_failure_says_whether_it_is_of_what_students_are_given(cell, outputs, 
         ([], 'what you started has ended: your code sent it SIGUSR1', ''),
         (
             [said('began')],
-            'what you started has ended in the part checked at grading',
+            'in the part checked at grading, what you started has ended',
             'your code sent it SIGUSR1',
         ),
     ],

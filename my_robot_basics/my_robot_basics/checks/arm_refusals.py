@@ -88,7 +88,8 @@ def expect_one_at_a_time(
             expected='the first goal to go on when a second one is rejected',
             seen='it ended early',
             hint=(is_early and arm.why_too_soon(moving))
-            or 'leave the goal that moves alone: the goal callback alone answers the second',
+            or 'leave the goal that moves the arm alone: the goal callback alone answers the '
+            'second',
             cause='a second goal disturbs the first',
         )
         arm.settle()

@@ -65,8 +65,8 @@ def _difference(found: DefinedMember, wanted: DefinedMember) -> str:
         return f'{name} is a field: a constant has = and its value behind the name'
     if found.is_constant and not wanted.is_constant:
         return f'{name} is a constant: a default value is written without ='
-    if fault := _type_difference(found.type, wanted.type):
-        return f'{name} {fault}'
+    if fault := _type_difference(name, found.type, wanted.type):
+        return fault
     if found.value == wanted.value:
         return ''
     if wanted.is_constant:
@@ -82,15 +82,21 @@ def _difference(found: DefinedMember, wanted: DefinedMember) -> str:
     return f'{name} has another default value than the table says'
 
 
-def _type_difference(found: Any, wanted: Any) -> str:
-    """The same for two types; of constants they are names."""
+def _type_difference(name: str, found: Any, wanted: Any) -> str:
+    """The same for the two types of that name; of constants they are names."""
     one, other = (_base(type_) for type_ in (found, wanted))
     if one != other:
-        return f'is of type {shorten(one, 60)}: {_about_types(one, other)}'
+        return f'{name} is of type {shorten(one, 60)}: {_about_types(one, other)}'
     for is_wrong, words in (
-        (_is_array(found) != _is_array(wanted), _about_arrays(found)),
-        (_size(found) != _size(wanted), 'has another number of values than the table says'),
-        (_bound(found) != _bound(wanted), 'is a text of another length than the table says'),
+        (_is_array(found) != _is_array(wanted), _about_arrays(name, found)),
+        (
+            _size(found) != _size(wanted),
+            f'{name} has another number of values than the table says',
+        ),
+        (
+            _bound(found) != _bound(wanted),
+            f'{name} is a text of another length than the table says',
+        ),
     ):
         if is_wrong:
             return words
@@ -118,7 +124,7 @@ _NUMBERS = {
 }
 
 
-def _about_arrays(found: Any) -> str:
+def _about_arrays(name: str, found: Any) -> str:
     size = _size(found)
     kind = {
         'fixed': f'exactly so many values, [{size}]',
@@ -126,7 +132,7 @@ def _about_arrays(found: Any) -> str:
         'unbounded': 'any number of values, []',
         '': 'one value, without brackets',
     }[_is_array(found)]
-    return f'takes {kind}: see how many the table asks for'
+    return f'{name} takes {kind}: see how many the table asks for'
 
 
 def _base(type_: Any) -> str:

@@ -41,7 +41,7 @@ def why_no_goal(
         return f'it sends goals of {asks_for}, so compare the type in ActionClient(…)'
     hint = (
         f'call send_goal_async(goal) for each message on {asked_on}, when it arrives, also while '
-        'another goal moves'
+        'another goal moves the arm'
     )
     if was_away:
         hint = (

@@ -102,7 +102,8 @@ class RunningExecutable:
 
     def expect_end(self, *, code: int = 0, within_sec: float = 10.0) -> None:
         """It ends by itself with that exit code, in so much time that was free."""
-        self._wait_for_end('to end by itself', within_sec, hint='let main return when it is done')
+        wanted = f'{self.executable} to end by itself'
+        self._wait_for_end(wanted, within_sec, hint='let main return when it is done')
         self._expect_code(code, hint='let main return without an exception when it is done')
 
     def expect_clean_end(self) -> None:
@@ -113,7 +114,7 @@ class RunningExecutable:
         self.expect_running()
         spinning.wait_until_they_spin(self._watcher, self._nodes)
         self._ask('signal', self._number, 'SIGINT')
-        self._wait_for_end('to end after SIGINT', END_SEC, hint=AT_ONCE)
+        self._wait_for_end(f'{self.executable} to end after SIGINT', END_SEC, hint=AT_ONCE)
         code, said = self._state()
         if not is_clean(code, said.splitlines(), is_second=self._is_second):
             self._expect_code(0, hint=CLEANLY)
@@ -129,12 +130,12 @@ class RunningExecutable:
                 second.expect_node(name)
             second.expect_clean_end()
 
-    def _wait_for_end(self, what: str, free_sec: float, *, hint: str) -> None:
+    def _wait_for_end(self, expected: str, free_sec: float, *, hint: str) -> None:
         watch = Stopwatch()
         self._ask_every_sec, self._next_question = ASK_END_EVERY_SEC, 0.0
         expect(
             self._watcher.spin_until_free(self._has_ended, free_sec=free_sec),
-            expected=f'{self.executable} {what}',
+            expected=expected,
             seen=f'it still runs after {free_sec:g} s',
             hint=hint,
             cause=f'{self.executable} does not end',

@@ -39,7 +39,7 @@ def check_stamps(recording: 'Recording', messages: Sequence) -> None:
     if 0 in stamps_ns:
         _fail('a stamp of 0')
     if _come_in_pairs(recording, stamps_ns):
-        fail(expected=EXPECTED, seen='two messages with one stamp at once', hint=ONCE)
+        fail(expected=EXPECTED, seen='two messages at once with the same stamp', hint=ONCE)
     if not _advance(recording, stamps_ns):
         _fail('a stamp that does not advance')
     offs = _offs(recording, stamps_ns)

@@ -13,7 +13,7 @@ def expect_none_for_earlier(server: ServedAction, goal: ReceivedGoal) -> None:
         not server.is_cancelled(goal, soon=True),
         expected=f'no request to cancel a goal that came after True on {server.cancelled_on}',
         seen='one',
-        hint='an obstacle cancels the goal that moves then, and no later one',
+        hint='an obstacle cancels the goal that moves the arm then, and no later one',
         cause=CAUSE,
     )
 
@@ -22,9 +22,11 @@ def expect_none_for_another(server: ServedAction, goal: ReceivedGoal) -> None:
     """No request comes to cancel the goal now that another was sent. Raises CheckFailed."""
     expect(
         not server.is_cancelled(goal, soon=True),
-        expected=f'no request to cancel the goal that moves for a message on {server.asked_on}',
+        expected=f'no request to cancel the goal that moves the arm for a message on '
+        f'{server.asked_on}',
         seen='one',
-        hint='send the new goal and cancel nothing: only an obstacle cancels the goal that moves',
+        hint='send the new goal and cancel nothing: only an obstacle cancels the goal that moves '
+        'the arm',
         cause=CAUSE,
     )
 

@@ -39,6 +39,8 @@ def what_is_unsupported(body: str, wanted: type | tuple[type, ...] | None) -> tu
 
 def kind_of(body: str) -> str:
     """What cannot travel, in words; `body` names its type, which is `type` for a class."""
+    if body.startswith(('a numpy ', 'values ')):  # it is in words already
+        return shorten(body)
     return 'a class' if body == 'type' else with_article(shorten(body))
 
 

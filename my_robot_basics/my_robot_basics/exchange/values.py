@@ -55,7 +55,7 @@ def encode(value: object, depth: int = 0) -> Any:
     if isinstance(value, np.generic | np.ndarray):
         if value.dtype.kind not in 'biufU':
             raise UnsupportedValue(
-                f'numpy {value.dtype} in it' if depth else f'numpy {value.dtype}'
+                f'a numpy {value.dtype} in it' if depth else f'a numpy {value.dtype}'
             )
         value = value.tolist()
     if value is None or isinstance(value, bool | str):

@@ -79,7 +79,7 @@ def judge(cell: NotebookNode, run: CellRun | None, own: Iterable[tuple[str, Cell
         reason, details = _in_words(reason, cell), reason
     notes += tuple(sentence for each in own if (sentence := _trouble(*each)))
     if run.ending and hidden.has_started(run.outputs):  # a signal's number may be a hidden input
-        notes += ('what you started has ended in the part checked at grading',)
+        notes += ('in the part checked at grading, what you started has ended',)
         details = '; '.join(filter(None, (details, run.ending)))
     elif run.ending:
         notes += (f'what you started has ended: {run.ending}',)
