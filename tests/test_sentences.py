@@ -336,6 +336,25 @@ COUNTED = (
 
 
 OF_STUDENTS = {
+    'your cell `a` ended the kernel: your code sent it SIGKILL': (
+        '你的单元格 `a` 使内核终止：你的代码向它发送了 SIGKILL'
+    ),
+    'what you started has ended: your code used more than 2,048 MB': (
+        '你启动的东西已经结束：你的代码使用的内存超过了 2,048 MB'
+    ),
+    'expected an answer from `f`, saw no answer within 5 s; at grading it has 10 s: keep both '
+    'keys': ('预期：`f` 的回答；实际：5 s 内没有回答；评分时有 10 s。两个键都要保留'),
+    'expected an answer from `f`, saw no answer: your code sent over 32 MB at once, or closed a '
+    'connection of its kernel, which was ended: nothing that it says could be received any more: '
+    'keep both keys': (
+        '预期：`f` 的回答；实际：没有回答：你的代码一次发送了超过 32 MB，或者关闭了内核的'
+        '一个连接，因此内核已被终止：它再说什么也收不到了。两个键都要保留'
+    ),
+    'arm_interfaces in /ws was built for Python 3.11, and this is Python 3.12: build it again, '
+    'with `cd /ws && colcon build --packages-select arm_interfaces`': (
+        '/ws 里的 arm_interfaces 是为 Python 3.11 编译的，而这里是 Python 3.12：请再编译一次，用 '
+        '`cd /ws && colcon build --packages-select arm_interfaces`'
+    ),
     "your cell `a` stopped with SyntaxError: expected ':' (line 15)": (
         "你的单元格 `a` 停止了：SyntaxError: expected ':'（第 15 行）"
     ),

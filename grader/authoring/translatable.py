@@ -51,6 +51,7 @@ MODULES = {
     ],
     'quiz': ['my_robot_basics/my_robot_basics/quiz/*.py'],
     'feedback': [
+        'grader/kernels/kernel_exits.py',
         'grader/notebook/*.py',
         'grader/report/page*.py',
         'grader/report/statistics.py',

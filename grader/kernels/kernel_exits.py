@@ -3,7 +3,7 @@
 import resource
 import signal
 from dataclasses import dataclass
-from enum import Enum
+from enum import Enum, auto
 
 from my_robot_basics.exchange.endings import signal_name
 
@@ -21,9 +21,12 @@ _TERMINALS = {'SIGHUP', 'SIGINT', 'SIGQUIT'}
 class Responsibility(Enum):
     """Who is responsible for the end of a kernel."""
 
-    STUDENTS = 'their code did it'
-    DOUBTFUL = 'their code seems to have done it: it would do it again'
-    NOT_SHOWN = 'nothing shows that their code did it'
+    STUDENTS = auto()
+    """Their code did it."""
+    DOUBTFUL = auto()
+    """Their code seems to have done it: it would do it again."""
+    NOT_SHOWN = auto()
+    """Nothing shows that their code did it."""
 
 
 @dataclass(frozen=True)

@@ -107,11 +107,11 @@ class Overlay:
         folders, option = f'build/{self.package} install/{self.package}', ''
         if self.is_merged:
             folders, option = 'build install', '--merge-install '
-        return (
-            f'{self.package} in {self.prefix} {fault}: build it again, with `cd '
-            f'{_quoted(self.workspace)} && rm -rf {folders} && colcon build {option}'
-            f'--packages-select {self.package} && source install/setup.bash`'
+        command = (
+            f'cd {_quoted(self.workspace)} && rm -rf {folders} && colcon build {option}'
+            f'--packages-select {self.package} && source install/setup.bash'
         )
+        return f'{self.package} in {self.prefix} {fault}: build it again, with `{command}`'
 
 
 def sourced(variables: Mapping[str, str]) -> Iterator[Overlay]:

@@ -37,14 +37,22 @@ def as_expression(request: str) -> dict[str, str]:
     return {'reply': _RESPONDER.format(request=request)}
 
 
-def reply_of(run: CellRun, *, within_sec: float, at_grading: str = '') -> str:
-    """Return what came of it in so long as text for the check: a reply, or why there is none."""
+def reply_of(run: CellRun, *, within_sec: float, at_grading_sec: float = 0.0) -> str:
+    """Return what came of it in so long as text for the check: a reply, or why there is none.
+
+    `at_grading_sec` is how long it has there, if that is longer.
+    """
     if run.cut_off:
-        return _failed(f'no answer: your code {CUT_OFF}')
+        why = CUT_OFF  # a sentence of its own: what stands in a place in capitals is a name
+        return _failed(f'no answer: your code {why}')
     if run.flooded:
         return _failed(f'no answer in {FLOOD_CHARACTERS:,} characters of output')
     if run.timed_out:
-        return _failed(f'no answer within {within_sec:g} s{at_grading}')
+        if at_grading_sec:
+            return _failed(
+                f'no answer within {within_sec:g} s; at grading it has {at_grading_sec:g} s'
+            )
+        return _failed(f'no answer within {within_sec:g} s')
     if run.died:
         return _failed('the kernel of your notebook has ended')
     match run.expressions:

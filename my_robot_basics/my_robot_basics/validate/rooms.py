@@ -147,8 +147,8 @@ class LocalRooms:
         if run.cut_after_sec:
             self._unanswered = run
         within_sec = rounded_down(run.cut_after_sec or REPLY_TIMEOUT_SEC)
-        at_grading = f'; at grading it has {REPLY_TIMEOUT_SEC:g} s' if run.cut_after_sec else ''
-        return reply_of(run, within_sec=within_sec, at_grading=at_grading)
+        at_grading_sec = REPLY_TIMEOUT_SEC if run.cut_after_sec else 0.0
+        return reply_of(run, within_sec=within_sec, at_grading_sec=at_grading_sec)
 
     def _open(self) -> Path:
         """Make the kernels' folder; return it."""
