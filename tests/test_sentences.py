@@ -336,6 +336,24 @@ COUNTED = (
 
 
 OF_STUDENTS = {
+    'expected elbow_up of [1.1, -1.2] rad for the target (1, 2), saw [1.0, 2.0]: keep both keys': (
+        '预期：目标 (1, 2) 的 elbow_up 为 [1.1, -1.2] rad；实际：[1.0, 2.0]。两个键都要保留'
+    ),
+    'expected reachable to be True for the target (1, 2) with z = 0.7, saw False: z does not '
+    'matter: look at x and y of the target alone': (
+        '预期：z = 0.7 的目标 (1, 2) 的 reachable 为 True；实际：False。'
+        'z 无关紧要：只看目标点的 x 和 y'
+    ),
+    '`late` arrives (a topic takes any number of publishers); `other_type` does not arrive (name '
+    'and type must both be equal)': (
+        '`late` 能收到（一个话题可以有任意多个发布者）；'
+        '`other_type` 收不到（名称和类型都必须相同）'
+    ),
+    "colcon does not build a: setup.py, line 7: NameError: name 'x' is not defined: fix that, and "
+    'build again': (
+        "colcon 没有编译 a：setup.py，第 7 行：NameError: name 'x' is not defined："
+        '先改正，再重新编译'
+    ),
     'your cell `a` ended the kernel: your code sent it SIGKILL': (
         '你的单元格 `a` 使内核终止：你的代码向它发送了 SIGKILL'
     ),

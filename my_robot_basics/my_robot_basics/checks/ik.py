@@ -47,8 +47,9 @@ def expect_solutions(service: Service, *targets: tuple[float, float]) -> None:
 
 def _why_wrong(response: Any, target: Point) -> dict[str, Any]:
     """What is wrong with the response to a target within reach, as `fail` takes it; or nothing."""
-    height = f', with z = {target.z:g}' if target.z else ''
-    where = f'the target ({target.x:g}, {target.y:g}){height}'
+    where = f'the target ({target.x:g}, {target.y:g})'
+    if target.z:
+        where = f'the target ({target.x:g}, {target.y:g}) with z = {target.z:g}'
     if not response.reachable:
         return {
             'expected': f'reachable to be True for {where}',

@@ -73,7 +73,7 @@ class Predictions:
         has_all = self._ran == len(self._keys)
         earned = max((p for least, p in points.items() if has_all and right >= least), default=0)
         reasons = [
-            f'`{each.__name__}` {"arrives" if arrived else "does not arrive"} ({each.__doc__})'
+            _what_happened(f'`{each.__name__}`', each.__doc__ or '', arrived=arrived)
             for each, arrived in self._wrong
         ]
         # it tells what happens on the check's own stage, and the student's own yes and no
@@ -108,3 +108,9 @@ class Predictions:
         if found is None:
             hint = 'put your prediction, True or False, in place of None'
         fail(expected=f'True or False for {key!r}', seen=shorten(repr(found), 60), hint=hint)
+
+
+def _what_happened(message: str, why: str, *, arrived: bool) -> str:
+    if arrived:
+        return f'{message} arrives ({why})'
+    return f'{message} does not arrive ({why})'

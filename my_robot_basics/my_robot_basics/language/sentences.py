@@ -34,9 +34,9 @@ MOST_SPACES = 40
 MOST_SPLITS = 10
 """In how many ways one template may fit one text."""
 
-_HOW_MANY = re.compile(r'(len|count|code)\d*')
+_HOW_MANY = re.compile(r'(len|count|code|number|(f_)?lineno|line_number)\d*')
 """The places of numbers, so that `{len} wrong` fits nothing but these; hidden ones are `…`."""
-_NUMBER = re.compile(r'[\d,]+|…')
+_NUMBER = re.compile(r'[\d,.]+|…')
 
 
 @dataclass
