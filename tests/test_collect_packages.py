@@ -183,7 +183,7 @@ def test_ten_thousand_files_cost_the_package_and_not_the_notebook(course, work, 
     assert submitted(course, 'ada') == {NOTEBOOK, LEFT_OUT}
     [note] = read(course, 'ada').notes
     assert f'it has 4,006 files, and at most {MAX_FILES} are taken' in note
-    assert 'most lie in data/' in note
+    assert 'most are in data/' in note
 
 
 def test_an_archive_chooses_no_place(course, work, source):

@@ -282,7 +282,7 @@ def test_an_executable_that_ends_at_once_says_why(folder, capsys):
         ({'resource/greeter': None}, 'setup.py installs resource/greeter, and there is no such'),
         pytest.param(
             {'setup.cfg': None},
-            'lie in bin/, where `ros2 run` does not look: write a setup.cfg',
+            'are in bin/, where `ros2 run` does not look: write a setup.cfg',
             marks=pytest.mark.slow,
         ),
         pytest.param(

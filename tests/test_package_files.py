@@ -76,7 +76,7 @@ def test_too_many_files_are_not_taken_in_part(folder):
     assert found.taken == {}
     assert found.problem == (
         'it has 206 files, and at most 200 are taken: remove what is no part of the package '
-        '(most lie in data/)'
+        '(most are in data/)'
     )
 
 

@@ -156,7 +156,7 @@ def test_a_folder_of_a_thousand_levels_is_looked_at_as_deep_as_any_is_taken(
     hand_in(course, inbound, 'zoe')
     with deep(inbound / 'mallory', 1_100):
         serve_here(course, inbound)
-    assert refused(course) == {'mallory': f'it lies more than {MAX_PARTS} folders deep'}
+    assert refused(course) == {'mallory': f'it is more than {MAX_PARTS} folders deep'}
 
 
 def test_all_that_can_be_taken_is_part_of_what_is_looked_at(inbound, at_once):

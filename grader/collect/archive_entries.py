@@ -169,7 +169,7 @@ def _parts(path: str) -> tuple[tuple[str, ...], str]:
     elif '..' in parts:
         problem = 'its path leads out of the archive'
     elif len(parts) > MAX_PARTS:
-        problem = f'it lies more than {MAX_PARTS} folders deep'
+        problem = f'it is more than {MAX_PARTS} folders deep'
     elif any(len(part.encode(errors='replace')) > MAX_NAME_BYTES for part in parts):
         problem = 'its name is longer than a file system takes'
     parts = tuple(part for part in parts if part != '.')

@@ -126,7 +126,7 @@ class LiveFolder:
                 changed=(utc_of(changed) or datetime.now(UTC)) if foreign else None,
             )
         elif len(parts) > MAX_PARTS:
-            yield Incoming(parts, problem=f'it lies more than {MAX_PARTS} folders deep')
+            yield Incoming(parts, problem=f'it is more than {MAX_PARTS} folders deep')
         else:
             inner = _Within(
                 descriptor,

@@ -160,7 +160,7 @@ class RunningExecutable:
                 expected=f'{name} to be gone from the graph',
                 seen='it is still there',
                 hint='let main end all that it has started',
-                cause=f'{name} lives on',
+                cause=f'{name} keeps running',
                 doubt=doubt if answers_parameters(self._watcher, name) else Starved,
             )
 

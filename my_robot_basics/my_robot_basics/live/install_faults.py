@@ -31,7 +31,7 @@ def fault_in_install(package: str, prefix: Path, files: PackageFiles) -> str:
         )
     if entries and not scripts.is_dir():
         return (
-            f'the executables of {package} lie in bin/, where `ros2 run` does not look: write a '
+            f'the executables of {package} are in bin/, where `ros2 run` does not look: write a '
             f'setup.cfg with [install] and install_scripts=$base/lib/{package}'
         )
     site = prefix / 'lib/python{}.{}/site-packages'.format(*sys.version_info)

@@ -71,7 +71,7 @@ def why_not(parts: Sequence[str]) -> str:
         if len(part.encode(errors='replace')) > MAX_NAME_BYTES:
             return f'its name is longer than {MAX_NAME_BYTES} bytes'
     if len(parts) > MAX_DEPTH:
-        return f'it lies more than {MAX_DEPTH} folders deep'
+        return f'it is more than {MAX_DEPTH} folders deep'
     return ''
 
 
@@ -85,7 +85,7 @@ def too_much(sizes: Mapping[str, int]) -> str:
     else:
         return ''
     if top := _holds_most(sizes):
-        return f'{what}: remove what is no part of the package (most lie in {top}/)'
+        return f'{what}: remove what is no part of the package (most are in {top}/)'
     return f'{what}: remove what is no part of the package'
 
 

@@ -11,5 +11,5 @@ def path_below(server: ServerApp, path: str) -> Path:
     root = Path(server.root_dir).expanduser().resolve()
     found = (root / path.lstrip('/')).resolve()
     if not found.is_relative_to(root):
-        raise web.HTTPError(403, 'the notebook lies outside of the folder that is served')
+        raise web.HTTPError(403, 'the notebook is outside of the folder that is served')
     return found
