@@ -31,6 +31,8 @@ MODULE = 'my_robot_basics_sourced'
 LINE = f"import os; os.environ.get('PYTHONPATH') and __import__('{MODULE}').start()\n"
 """What each Python of .venv runs first: `.pth` files are read by name, and that of ROS's wheels,
 ros_wheels_bootstrapper.pth, starts Python again."""
+WAITS = 'my_robot_basics_waits'
+"""What rclpy's EventsExecutor imports, so that it can wait without end."""
 ENVIRONMENT, PACKAGES = 'made_environment', 'made_packages'
 """Files in .venv that say what the packages, and what our own, were made from."""
 
@@ -50,7 +52,7 @@ def made_packages(root: str) -> str:
         files += ['pyproject.toml', 'grader/kernels/kernelspec/kernel.json']
     with open(f'{root}/{interfaces_wheel(root)}', 'rb') as file:
         wheel = hashlib.sha256(file.read()).hexdigest()
-    shares = [UNDERLAY, KERNELS, str(TOOLS), FOREIGN_HEADERS, LINE]
+    shares = [UNDERLAY, KERNELS, str(TOOLS), FOREIGN_HEADERS, LINE, WAITS]
     return ''.join([*(_text(root, name) for name in files), wheel, *shares])
 
 

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from launcher.environment import Environment
 from launcher.installer import Installer, version_of, writing
-from launcher.interfaces import fix_exports, tell_python
+from launcher.interfaces import fix_exports, fix_waits, tell_python
 from launcher.made import (
     ENVIRONMENT,
     PACKAGES,
@@ -100,6 +100,7 @@ def install_packages(installer: Installer) -> None:
         tell_jupyter(environment)
         make_tools(environment)
         fix_exports(environment)
+        fix_waits(environment)
         tell_python(environment)
         remember(environment, PACKAGES, made_packages(root))
 

@@ -1,0 +1,41 @@
+"""Let rclpy's EventsExecutor wait without end, as `spin()` asks it to.
+
+In the wheel, a wait without a limit is one for a moment that overflows: it looks at the clock
+without a pause, lets no event in, and stops all threads that have one. With a limit, it waits as
+it should. `./course` links this into .venv as a module of its own, which rclpy's
+`experimental/events_executor.py` imports at its end.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+from rclpy.impl.implementation_singleton import rclpy_implementation
+from rclpy.task import Future
+
+LONG_SEC = 1e8
+"""Three years: longer than a node runs."""
+
+
+def limit(executor_class: Any) -> None:
+    """Give a limit to each wait of the class that has none."""
+    once = executor_class.spin_once
+
+    def spin_once(self: Any, timeout_sec: float | None = None) -> None:
+        once(self, LONG_SEC if timeout_sec is None else timeout_sec)
+
+    def spin(self: Any) -> None:
+        self.spin_until_future_complete(Future())
+
+    executor_class.spin_once, executor_class.spin = spin_once, spin
+    for name in ('spin_until_future_complete', 'spin_once_until_future_complete'):
+        setattr(executor_class, name, _limited(getattr(executor_class, name)))
+
+
+def _limited(wait: Callable[..., None]) -> Callable[..., None]:
+    def wait_for(self: Any, future: Future, timeout_sec: float | None = None) -> None:
+        wait(self, future, LONG_SEC if timeout_sec is None else timeout_sec)
+
+    return wait_for
+
+
+limit(rclpy_implementation.EventsExecutor)
