@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from my_robot_basics.exchange import node_troubles
 from my_robot_basics.feedback.errors import fail
 from my_robot_basics.graph import graphs
-from my_robot_basics.graph.raised import what_raised, what_stopped
+from my_robot_basics.graph.raised import what_ended_a_thread, what_raised, what_stopped
 from my_robot_basics.graph.watcher import Watcher
 
 ENDED = (
@@ -26,6 +26,16 @@ class CallbackErrors:
         names = [n for n, times in self._before.items() if node_troubles.times_raised(n) > times]
         raised = what_raised(names)
         return f'{raised}, {FIX_FIRST}' if raised else ''
+
+    def hint_or_thread(self) -> str:
+        """The same; or a clause on what a thread of the notebook's own raised, or ''.
+
+        It tells where to look, where something is missing: a thread may end without any harm.
+        """
+        if raised := self.hint():
+            return raised
+        stopped = what_ended_a_thread()
+        return f'{stopped}, so fix that first' if stopped else ''
 
     def why(self, watcher: Watcher) -> str:
         """As `hint`; else a clause on one that does not return, or on a node that ended; or ''."""

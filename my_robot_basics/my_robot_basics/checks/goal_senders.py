@@ -29,7 +29,7 @@ def why_no_goal(
 
     `was_away`: there was no server when a message came before.
     """
-    if hint := raised.hint():
+    if hint := raised.hint_or_thread():
         return hint
     ends = actions.take(watcher.node)
     clients = ends.clients.get(name, {})
@@ -55,7 +55,7 @@ def why_silent(
     watcher: Watcher, hint: str, *, node_names: Collection[str], raised: CallbackErrors
 ) -> str:
     """What to try where nothing comes of an answer; `hint` is for one that waits for nothing."""
-    if why := raised.hint():
+    if why := raised.hint_or_thread():
         return why
     is_free = all(answers_parameters(watcher, name) for name in set(node_names))
     return hint if is_free else WAITS

@@ -116,7 +116,7 @@ class OpenAction:
             fail(
                 expected=f'an answer to {what}',
                 seen='none',
-                hint=self.raised.hint() or self._why_unanswered(),
+                hint=self.raised.hint_or_thread() or self._why_unanswered(),
                 cause=f'{self.name} does not answer',
             )
         return asked.result()
@@ -144,6 +144,8 @@ class OpenAction:
                 'the goal was accepted, and is not executed: a handle_accepted_callback calls '
                 'goal_handle.execute()'
             )
+        if hint := self.raised.hint_or_thread():
+            return hint
         if self._is_blocked():
             return BLOCKED
         return 'end the loop of the execute callback when the arm is there'

@@ -5,7 +5,8 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from my_robot_basics.checks.recorder import Recorder
-from my_robot_basics.feedback.errors import fail, shorten
+from my_robot_basics.checks.shown import shown
+from my_robot_basics.feedback.errors import fail
 from my_robot_basics.graph.watcher import Watcher
 
 MadeOf = Callable[[Any, Any], bool]
@@ -71,7 +72,7 @@ class Made:
         if others := self.others(made_of):
             fail(
                 expected=f'one message on {topic_name} for each response, and no other',
-                seen=shorten(others[0]),
+                seen=shown(others[0]),
                 hint=hint(others[0]),
                 cause=f'a message on {topic_name} that should not be',
             )

@@ -11,10 +11,11 @@ from my_robot_basics.checks.heartbeat import Heartbeat
 from my_robot_basics.checks.holding_server import HoldingServer
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.responses import Made, MadeOf, of_none, wait_for_owed
+from my_robot_basics.checks.shown import shown
 from my_robot_basics.checks.sole_server import expect_no_other, wait_until_known
 from my_robot_basics.checks.topics import Topic
 from my_robot_basics.checks.waiting_clients import WaitingClient
-from my_robot_basics.feedback.errors import expect, fail, shorten
+from my_robot_basics.feedback.errors import expect, fail
 from my_robot_basics.graph.watcher import Watcher
 
 TIMEOUT_SEC = 4.0
@@ -119,7 +120,7 @@ class Server(HoldingServer):
             )
         fail(
             expected=f'a request to {self.name} for the message on {self.asked_on}',
-            seen=shorten(others[-1]) if others else f'none in {TIMEOUT_SEC:g} s',
+            seen=shown(others[-1]) if others else f'none in {TIMEOUT_SEC:g} s',
             hint=hint,
             cause=f'{self.name} is {"asked for something else" if others else "not asked"}',
         )
@@ -144,7 +145,7 @@ class Server(HoldingServer):
         others, wrong = received(), cause or f'a wrong message on {self._answers.topic_name}'
         fail(
             expected=f'{expected} on {self._answers.topic_name}',
-            seen=shorten(others[-1]) if others else f'none in {TIMEOUT_SEC:g} s',
+            seen=shown(others[-1]) if others else f'none in {TIMEOUT_SEC:g} s',
             hint=hint(others[-1]) if others else self._client().why_not_published(),
             cause=wrong if others else f'{self.name} has answered, and nothing is published',
         )
@@ -159,7 +160,7 @@ class Server(HoldingServer):
         expect(
             not others,
             expected=f'no message on {self._answers.topic_name}',
-            seen=shorten(others[-1]) if others else '',
+            seen=shown(others[-1]) if others else '',
             hint=hint(others[-1]) if others else '',
             cause=f'a message on {self._answers.topic_name} that should not be',
         )

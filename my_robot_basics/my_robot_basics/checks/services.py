@@ -130,6 +130,13 @@ class Service:
             if node_troubles.last_raised(server) == 'TypeError':
                 return 'end the callback with `return response`, in each of its branches'
             return raised.hint()
+        if why := raised.hint_or_thread():
+            return why
+        if line := node_troubles.unfinished(server):
+            return (
+                f'its callback has not returned ({theirs(line)}), so see what it waits for: no '
+                'answer is delivered to its node while it waits'
+            )
         if not answers_parameters(watcher, server):
             return (
                 f'{theirs(server)} answers nothing at all, so see that it spins, and that its '

@@ -45,7 +45,7 @@ class WaitingClient:
 
         `was_away`: there was no server when it was to ask before.
         """
-        if raised := self.raised.hint():
+        if raised := self.raised.hint_or_thread():
             return raised
         ends = services.take(self.watcher.node)
         clients = ends.clients.get(self.name, {})
@@ -66,7 +66,7 @@ class WaitingClient:
 
     def why_not_published(self) -> str:
         """What to try where an answer was sent, and nothing is made of it."""
-        raised = self.raised.hint()
+        raised = self.raised.hint_or_thread()
         if raised and not _is_of_no_answer(raised):
             return raised
         if not self.goes_on():
@@ -79,7 +79,7 @@ class WaitingClient:
 
     def why_still(self, *, has_asked: bool) -> str:
         """What to try where nothing of it goes on."""
-        raised = self.raised.hint()
+        raised = self.raised.hint_or_thread()
         if raised and not _is_of_no_answer(raised):
             return raised
         return waits_for_answer(self.name) if has_asked else waits_for_server(self.name)

@@ -31,9 +31,3 @@ def unfinished(node_name: str) -> str:
     """Where a callback of that node is that keeps all others from running: its line, or ''."""
     body = told(wire.request(op='unfinished', name=node_name))
     return shorten(body) if isinstance(body, str) else ''
-
-
-def thread_error(node_name: str) -> str:
-    """What ended a thread of the student's that worked with that node, or ''."""
-    body = told(wire.request(op='thread', name=node_name))
-    return shorten(body) if isinstance(body, str) else ''

@@ -85,12 +85,6 @@ def _unfinished(node_name: str) -> str:
     return troubles.unfinished(node_name) if troubles else ''
 
 
-def _of_thread(node_name: str) -> str:
-    """What ended a thread that worked with a node, or ''."""
-    troubles = sys.modules.get('my_robot_basics.live.troubles')
-    return troubles.of_thread(node_name) if troubles else ''
-
-
 def _set_use_sim_time(node_name: str, value: bool) -> bool | None:
     """Give a node of this process its clock; its former `use_sim_time`.
 
@@ -129,7 +123,6 @@ _OTHERS: dict[str, Callable[..., object]] = {
     'raised': _times_raised,
     'field': _unpublished_field,
     'unfinished': _unfinished,
-    'thread': _of_thread,
     'clock': _set_use_sim_time,
     'package': _ask_package,
 }

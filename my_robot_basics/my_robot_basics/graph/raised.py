@@ -28,11 +28,18 @@ def what_raised(node_names: Iterable[str]) -> str:
 
 
 def what_stopped(node_names: Iterable[str]) -> str:
-    """As `what_raised`; else a clause on a thread that raised, or a callback that goes on."""
+    """As `what_raised`; else on a callback that goes on, or a thread that ended; or ''."""
     names = sorted(set(node_names))
     if raised := what_raised(names):
         return raised
-    if said := next(filter(None, map(node_troubles.thread_error, names)), ''):
-        return f'its thread raised {safely(said)}'
     said = next(filter(None, map(node_troubles.unfinished, names)), '')
-    return f'its callback has not returned ({theirs(said)})' if said else ''
+    return f'its callback has not returned ({theirs(said)})' if said else what_ended_a_thread()
+
+
+def what_ended_a_thread() -> str:
+    """A clause on what a thread that the notebook has begun itself raised, or ''.
+
+    An executor of the student's own may have run there: then nothing of its nodes goes on.
+    """
+    said = node_troubles.last_raised('')
+    return f'a thread of the notebook raised {safely(said)}' if said else ''

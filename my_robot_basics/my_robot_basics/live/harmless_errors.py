@@ -7,6 +7,8 @@ from collections.abc import Callable
 from rclpy.executors import Executor, ExternalShutdownException
 from rclpy.signals import SignalHandlerGuardCondition
 
+from my_robot_basics.live import troubles
+
 _OF_EXECUTORS = {each.__del__.__qualname__ for each in (Executor, SignalHandlerGuardCondition)}
 
 
@@ -19,11 +21,17 @@ def hide() -> None:
 def _without_shutdowns(
     former: Callable[[threading.ExceptHookArgs], object],
 ) -> Callable[[threading.ExceptHookArgs], None]:
-    """Make a hook for threads that a student lets spin: that rclpy is shut down is no error."""
+    """Make a hook for threads that a student lets spin: that rclpy is shut down is no error.
+
+    Any other one is remembered: a check that misses a message can tell why it does not come.
+    """
 
     def hook(args: threading.ExceptHookArgs) -> None:
-        if not (args.exc_type and issubclass(args.exc_type, ExternalShutdownException)):
-            former(args)
+        if args.exc_type and issubclass(args.exc_type, ExternalShutdownException):
+            return
+        if args.exc_value is not None:
+            troubles.remember(troubles.THREADS, args.exc_value)
+        former(args)
 
     return hook
 

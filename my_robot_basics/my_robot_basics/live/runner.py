@@ -20,7 +20,6 @@ from my_robot_basics.live import (
     notebook,
     spinning,
     thread_pools,
-    troubles,
 )
 from my_robot_basics.live.background import Background
 from my_robot_basics.live.destroying import destroy
@@ -182,7 +181,6 @@ def set_up() -> int:
             interrupting.let_cells_be_interrupted()
             if not classroom.in_grading_room():
                 spinning.help_in_cells()
-        troubles.watch_threads()
         harmless_errors.hide()
         thread_pools.let_threads_begin()
         child_loggers.remember_child_loggers()

@@ -1,22 +1,20 @@
 """What keeps a node from its work: an exception, or a callback that does not return, and where."""
 
 import sysconfig
-import threading
 import time
 import traceback
 from pathlib import Path
 from typing import Any
-from weakref import WeakKeyDictionary
 
 import rclpy
-from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.service import Service
 
 from my_robot_basics.exchange.wrong_fields import wrong_field
-from my_robot_basics.session.neighbours import nodes_here
 
 UNFINISHED_SEC = 0.5
+THREADS = ''
+"""Stands for the threads that the notebook has begun itself, in the place of a node's name."""
 _last: dict[str, str] = {}
 """What a callback of a node raised last, by the node's full name."""
 _times: dict[str, int] = {}
@@ -25,8 +23,6 @@ _fields: dict[str, tuple[str, str]] = {}
 """The field of a message that could not be published, and its type, if that was it."""
 _of_services: dict[tuple[str, str], str] = {}
 """What the callback of a service raised last, by the node's and the service's full names."""
-_of_threads: WeakKeyDictionary[Node, str] = WeakKeyDictionary()
-"""What ended a thread that a student began to work with a node."""
 _NOT_THEIRS = (str(Path(rclpy.__file__).parent), str(Path(__file__).parent))
 _OF_A_LIBRARY = tuple(sysconfig.get_path(kind) for kind in ('stdlib', 'purelib', 'platlib'))
 
@@ -38,44 +34,29 @@ def where_and_what(error: BaseException) -> tuple[str, str]:
 
 
 def remember(node_name: str, error: BaseException) -> None:
-    """Note what a callback of the node raised, and where."""
-    _last[node_name] = _what_with_line(error)
+    """Note what a callback of the node, or a thread of the notebook's own, raised, and where."""
+    _, what = where_and_what(error)
+    frames = _frames(error)
+    own = [frame for frame in frames if not frame.filename.startswith(_OF_A_LIBRARY)]
+    place = _line((own or frames)[-1]) if frames else ''
+    _last[node_name] = f'{what} ({place})' if place else what
     _times[node_name] = times(node_name) + 1
     _fields[node_name] = _unpublished(error)
-    if service_name := _service(error):
+    if node_name != THREADS and (service_name := _service(error)):
         _of_services[node_name, service_name] = _last[node_name]
 
 
-def watch_threads() -> None:
-    """Note from now on which exceptions end threads, beside what is done with these already."""
-    former = threading.excepthook
-
-    def hook(args: threading.ExceptHookArgs) -> None:
-        if args.exc_value:
-            _remember_thread(args.exc_value)
-        former(args)
-
-    threading.excepthook = hook
-
-
-def _remember_thread(error: BaseException) -> None:
-    for frame, _ in traceback.walk_tb(error.__traceback__):
-        for value in [*frame.f_locals.values()]:
-            if isinstance(value, Node):
-                _of_threads[value] = _what_with_line(error)
-
-
 def forget(node_name: str) -> None:
-    """Forget it: a new node of that name begins."""
+    """Forget it, and what ended threads: a new node of that name begins, and its threads do."""
     for of_nodes in (_last, _times, _fields):
         of_nodes.pop(node_name, None)
+        of_nodes.pop(THREADS, None)
     for key in [key for key in _of_services if key[0] == node_name]:
         del _of_services[key]
 
 
 def forget_all() -> None:
     """Forget what the nodes of all names raised: an exercise begins."""
-    _of_threads.clear()
     _last.clear()
     _times.clear()
     _fields.clear()
@@ -102,22 +83,10 @@ def of_service(service_name: str) -> dict[str, str]:
     return {node: what for (node, name), what in _of_services.items() if name == service_name}
 
 
-def of_thread(node_name: str) -> str:
-    """Return what ended a thread that worked with a node of that name, which is still there."""
-    return next(
-        (
-            _of_threads[node]
-            for node in nodes_here()
-            if node in _of_threads and node.get_fully_qualified_name() == node_name
-        ),
-        '',
-    )
-
-
 def unfinished(node_name: str) -> str:
     """Return where a callback is that keeps all others of the node from running, or ''.
 
-    It looks for UNFINISHED_SEC; a callback that goes on all that time is one.
+    That is one that goes on for UNFINISHED_SEC, while this looks.
     """
     from my_robot_basics.doctor import inside  # few answers need it
 
@@ -127,14 +96,6 @@ def unfinished(node_name: str) -> str:
     seen.look()
     lasting = seen.callbacks(at_least_sec=UNFINISHED_SEC)
     return next((each.line for each in lasting if node_name in each.holds and each.line), '')
-
-
-def _what_with_line(error: BaseException) -> str:
-    _, what = where_and_what(error)
-    frames = _frames(error)
-    own = [frame for frame in frames if not frame.filename.startswith(_OF_A_LIBRARY)]
-    place = _line((own or frames)[-1]) if frames else ''
-    return f'{what} ({place})' if place else what
 
 
 def _frames(error: BaseException) -> list[traceback.FrameSummary]:

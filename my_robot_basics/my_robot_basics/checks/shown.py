@@ -1,0 +1,13 @@
+"""What the feedback shows of a message that arrived."""
+
+from typing import Any
+
+from sensor_msgs.msg import JointState
+
+from my_robot_basics.checks import joints
+from my_robot_basics.feedback.errors import shorten
+
+
+def shown(message: Any) -> str:
+    """One line: of a JointState its joints alone, as they stand in what was expected."""
+    return shorten(joints.shown(message) if isinstance(message, JointState) else message)
