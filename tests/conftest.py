@@ -6,7 +6,7 @@ import signal
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
 
@@ -32,7 +32,14 @@ UNTESTED = pytest.StashKey[list]()
 """The tests that a machine without a sandbox leaves out."""
 
 LONG = (
-    *('checks_relays', 'sample_class', 'browser', 'checks_sampling', 'nbgrader_commands'),
+    *(
+        'checks_relays',
+        'checks_relays_lost',
+        'sample_class',
+        'browser',
+        'checks_sampling',
+        'nbgrader_commands',
+    ),
     *('live_kernel', 'attacks', 'checks_topics', 'release', 'kernel_exits', 'workers', 'answers'),
     *('doctor_faults', 'interrupt', 'course', 'ros2_streams', 'checks_clock', 'kernels'),
     *('workspace', 'checks_logs', 'hidden', 'executables', 'live_lessons', 'checks_stamps'),
@@ -40,6 +47,7 @@ LONG = (
     *('lesson_own_program', 'package', 'formgrader', 'validate', 'ros2_graph', 'lessons_run'),
     *('full_disk', 'accessibility', 'live_target', 'hidden_inputs', 'isolation', 'execute'),
     *('ros2_service', 'rooms', 'bundle', 'feedback', 'collect', 'report', 'live_arm'),
+    *('live_interrupts', 'checks_relays'),
 )
 """Files that take longest come first: begun at the end, one would be waited for alone. Those that
 keep processors busy stand beside those that wait: all at once, each would take longer."""
@@ -212,6 +220,16 @@ def signals() -> Iterator[None]:
 # that a test starts would inherit it: notebooks would behave otherwise than for a student. A hook
 # cannot delete it: pytest sets it in the same step that runs the test.
 _pytest.runner._update_current_test_var = lambda item, when: None
+
+
+@pytest.fixture
+@tiers.starts
+def run() -> Iterator[Callable]:
+    """`live.run`; all nodes that it started are stopped after the test."""
+    from my_robot_basics import live  # not before: most need no rclpy
+
+    yield live.run
+    live.stop()
 
 
 @pytest.fixture

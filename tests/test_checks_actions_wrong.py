@@ -9,16 +9,9 @@ from rclpy.action import ActionServer, GoalResponse
 from rclpy.duration import Duration
 
 from arm_interfaces.action import MoveArm
-from my_robot_basics import live
 
 MoveArmServer = imported('move_arm_server').MoveArmServer
 STEP_SEC = imported('move_arm_server').STEP_SEC
-
-
-@pytest.fixture
-def run():
-    yield live.run
-    live.stop()
 
 
 def reaches(move_arm):

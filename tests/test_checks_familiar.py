@@ -9,9 +9,9 @@ from my_robot_basics.checks.passage import Passage
 from my_robot_basics.graph import graphs
 from my_robot_basics.graph.watcher import Watcher
 from rclpy.node import Node
+from relaying import check_delivery, monitor
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
-from test_checks_relays import check_delivery, monitor
 
 from my_robot_basics import live
 
@@ -23,12 +23,6 @@ NEVER_SEC = 1e6
 def end_cell(monkeypatch):
     with grade_cell(monkeypatch) as end:
         yield end
-
-
-@pytest.fixture
-def run():
-    yield live.run
-    live.stop()
 
 
 @pytest.fixture

@@ -15,12 +15,6 @@ from my_robot_basics import live
 numbers = itertools.count()
 
 
-@pytest.fixture
-def run():
-    yield live.run
-    live.stop()
-
-
 def description():
     return String(data=f'an arm with {next(numbers)} joints')
 

@@ -200,12 +200,6 @@ def test_another_name_is_the_cause_where_a_node_runs(monkeypatch):
         rosout('ik').__enter__()
 
 
-@pytest.fixture
-def run():
-    yield live.run
-    live.stop()
-
-
 class SaysMore(IKSolver):
     """Logs where each target is, reachable or not, in several ways."""
 

@@ -15,17 +15,9 @@ from my_robot_basics.checks.rate_parameters import RateParameter
 from nodes.running import imported
 from rcl_interfaces.msg import SetParametersResult
 
-from my_robot_basics import live
-
 pytestmark = pytest.mark.starts
 adjustable = imported('adjustable')
 TOPIC = '/kinematics/joint_states'
-
-
-@pytest.fixture
-def run():
-    yield live.run
-    live.stop()
 
 
 def look_at_the_rate():

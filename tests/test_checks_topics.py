@@ -28,12 +28,6 @@ LIMITS = {'low': (-1.571, -2.095), 'high': (1.571, 2.095)}
 pytestmark = pytest.mark.usefixtures('patient')
 
 
-@pytest.fixture
-def run():
-    yield live.run
-    live.stop()
-
-
 def check_messages(recording):
     recording.assert_joint_names(('joint1', 'joint2'))
     recording.assert_frame_id('base_link')

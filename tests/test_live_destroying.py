@@ -29,12 +29,6 @@ class Fails(MoveArmServer):
         raise RuntimeError('no', self)
 
 
-@pytest.fixture
-def run():
-    yield live.run
-    live.stop()
-
-
 @pytest.mark.parametrize('node_class', [MoveArmServer, Client])
 def test_a_stopped_node_leaves_the_graph(run, node_class):
     node = run(node_class)

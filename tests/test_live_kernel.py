@@ -1,8 +1,6 @@
 """What `live` promises, in real notebook kernels."""
 
-import contextlib
 import os
-import queue
 import re
 import signal
 import subprocess
@@ -12,168 +10,18 @@ from pathlib import Path
 
 import pytest
 import rclpy
-from jupyter_client.manager import start_new_kernel
+from live_lesson import SILENT, TALKER, Lesson, opened_lesson, stop_nodes_after
 from rclpy.node import Node
-
-TALKER = """
-from my_robot_basics.live import follow_arm, reset, run, run_answer, show_arm, stop
-from my_robot_basics.session import classroom
-import rclpy
-from rclpy.node import Node
-from std_msgs.msg import String
-
-class Talker(Node):
-    def __init__(self, text='x', period_sec=0.05):
-        super().__init__('talker')
-        self.publisher = self.create_publisher(String, '/talk', 10)
-        self.get_logger().info(f'made with {text}\\nin two lines')
-        self.text, self.count = text, 0
-        self.create_timer(period_sec, self.tick)
-
-    def tick(self):
-        self.count += 1
-        self.publisher.publish(String(data=self.text))
-
-def publishers(topic_name='/talk'):
-    watcher = rclpy.create_node('_watcher')
-    names = [info.node_name for info in watcher.get_publishers_info_by_topic(topic_name)]
-    watcher.destroy_node()
-    return names
-
-def alive(node):
-    import time
-    before, deadline = node.count, time.monotonic() + 10
-    while node.count < before + 2 and time.monotonic() < deadline:
-        time.sleep(0.01)
-    return node.count >= before + 2
-
-def frozen(node):
-    import time
-    before = node.count
-    time.sleep(0.3)
-    return node.count == before
-"""
-
-
-class Lesson:
-    """A kernel, and the outputs of each cell that it has run."""
-
-    def __init__(self, *setup):
-        # ipykernel's debugger may else write a warning of its own to stderr as it starts
-        env = os.environ | {'PYDEVD_DISABLE_FILE_VALIDATION': '1'}
-        self.manager, self.client = start_new_kernel(
-            kernel_name='python3', stderr=subprocess.PIPE, env=env
-        )
-        self.messages = {}
-        for source in setup:
-            assert self.run(source).error is None
-
-    def send(self, source):
-        cell = Cell(self, self.client.execute(source))
-        self.messages[cell.id] = []
-        return cell
-
-    def run(self, source):
-        cell = self.send(source)
-        self.wait_for(lambda: cell.done)
-        return cell
-
-    def wait_for(self, condition, timeout_sec=30):
-        """Take messages until the condition holds; return whether it does."""
-        deadline = time.monotonic() + timeout_sec
-        while not condition() and time.monotonic() < deadline:
-            with contextlib.suppress(queue.Empty):
-                message = self.client.get_iopub_msg(timeout=0.1)
-                parent_id = message['parent_header'].get('msg_id')
-                self.messages.setdefault(parent_id, []).append(message)
-        return condition()
-
-    def value(self, expression):
-        """What `repr` says of an expression."""
-        cell = self.run(f'print(repr(({expression})))')
-        assert cell.error is None
-        return cell.stdout.strip()
-
-    def restart(self):
-        """Restart the kernel as JupyterLab does."""
-        self.manager.restart_kernel()
-        self.client.wait_for_ready(timeout=60)
-
-    def shut_down(self):
-        """Shut the kernel down as JupyterLab does; return its exit status and its stderr."""
-        process = self.manager.provisioner.process
-        self.client.stop_channels()
-        self.manager.request_shutdown()
-        process.wait(timeout=30)
-        stderr = process.stderr.read().decode()
-        self.manager.shutdown_kernel(now=True)
-        return process.returncode, stderr
-
-
-class Cell:
-    """The outputs of one cell, also those that come after its end."""
-
-    def __init__(self, lesson, message_id):
-        self.id = message_id
-        self._lesson = lesson
-
-    def _contents(self, *types):
-        return [m['content'] for m in self._lesson.messages[self.id] if m['msg_type'] in types]
-
-    @property
-    def done(self):
-        return any(c['execution_state'] == 'idle' for c in self._contents('status'))
-
-    @property
-    def stdout(self):
-        return ''.join(c['text'] for c in self._contents('stream') if c['name'] == 'stdout')
-
-    @property
-    def stderr(self):
-        return ''.join(c['text'] for c in self._contents('stream') if c['name'] == 'stderr')
-
-    @property
-    def error(self):
-        return next(
-            (
-                re.sub(r'\x1b\[\d[\d;]*m', '', '\n'.join(c['traceback']))
-                for c in self._contents('error')
-            ),
-            None,
-        )
-
-    @property
-    def displays(self):
-        """The states of what the cell shows, oldest first."""
-        return self._contents('display_data', 'update_display_data')
-
-    @property
-    def panel(self):
-        """What the panel says now."""
-        return self.displays[-1]['data']['text/plain'] if self.displays else ''
 
 
 @pytest.fixture(scope='module')
 def lesson():
-    lesson = Lesson(TALKER)
-    yield lesson
-    for cell_id in lesson.messages:
-        assert Cell(lesson, cell_id).stderr == ''
-    returncode, stderr = lesson.shut_down()
-    assert returncode == 0
-    assert 'terminate called' not in stderr
+    yield from opened_lesson()
 
 
 @pytest.fixture(autouse=True)
 def nothing_runs(request):
-    yield
-    if 'lesson' in request.fixturenames:
-        lesson = request.getfixturevalue('lesson')
-        stop = lesson.run('stop()')
-        if not stop.done:  # a cell did not end: its test has failed, and no other is to
-            lesson.restart()
-            stop = lesson.run(TALKER)
-        assert stop.error is None
+    yield from stop_nodes_after(request)
 
 
 def test_the_same_cell_again_replaces_the_node(lesson):
@@ -398,149 +246,6 @@ def test_what_cannot_run_is_refused_in_two_lines(lesson, thing):
     lesson.run('rclpy.try_shutdown()')
 
 
-def test_an_interrupted_cell_stops_no_node(lesson):
-    cell = lesson.run('talker = run(Talker)')
-    waiting = lesson.send('print("waiting", flush=True); import time; time.sleep(60)')
-    assert lesson.wait_for(lambda: 'waiting' in waiting.stdout)
-    lesson.manager.interrupt_kernel()
-    assert lesson.wait_for(lambda: waiting.done)
-    assert 'KeyboardInterrupt' in waiting.error
-    assert lesson.value('alive(talker)') == 'True'
-    assert cell.panel.startswith('Talker: running')
-
-
-SILENT = """class Silent(Node):
-    def __init__(self):
-        super().__init__('silent')"""
-
-
-@pytest.mark.parametrize(
-    'endless',
-    [
-        'rclpy.spin(node)',
-        'from rclpy import spin; spin(node)',
-        'rclpy.spin_once(node)',
-        'executor = rclpy.executors.SingleThreadedExecutor(); executor.add_node(node);'
-        'executor.spin()',
-        'rclpy.spin_until_future_complete(node, rclpy.task.Future())',
-        "from rclpy.wait_for_message import wait_for_message as wait; wait(String, node, '/no')",
-    ],
-)
-def test_a_cell_that_spins_for_ever_can_be_interrupted(lesson, endless):
-    lesson.run(f'{SILENT}\nif not rclpy.ok(): rclpy.init()\nnode = Silent()')
-    talker = lesson.run('talker = run(Talker)')
-    cell = lesson.send(f"print('begun'); {endless}")
-    lesson.wait_for(lambda: 'begun' in cell.stdout)
-    time.sleep(0.3)  # until it waits
-    assert not cell.done
-    lesson.manager.interrupt_kernel()
-    assert lesson.wait_for(lambda: cell.done)
-    assert cell.error
-    assert lesson.value('alive(talker)') == 'True'
-    assert talker.panel.startswith('Talker: running')
-    lesson.run('node.destroy_node()')
-
-
-def test_a_cell_that_spins_is_told_how_to_stop_and_how_to_go_on(lesson):
-    lesson.run(f'{SILENT}\nif not rclpy.ok(): rclpy.init()')
-    cell = lesson.send('node = Silent()\nrclpy.spin(node)')
-    assert lesson.wait_for(lambda: '■ (Interrupt the kernel)' in cell.stdout)
-    lesson.manager.interrupt_kernel()
-    lesson.wait_for(lambda: cell.done)
-    assert ' '.join(cell.error.split()) == (
-        'rclpy.spin was interrupted, and silent is stopped. To go on, write run(Silent) in place '
-        'of the lines that make silent and spin it, and run this cell again: run spins in the '
-        'background.'
-    )
-    # what it says works
-    assert lesson.run('node = run(Silent)').stdout == ''
-    assert 'already: leave rclpy.spin out' in ' '.join(
-        lesson.run('rclpy.spin(node)').error.split()
-    )
-
-
-PROGRAM = f"""{SILENT}
-rclpy.init()
-node = Silent()
-try:
-    rclpy.spin(node)
-except KeyboardInterrupt:
-    print('caught')
-finally:
-    node.destroy_node()
-    rclpy.shutdown()"""
-
-
-def test_a_program_pasted_into_a_cell_ends_as_on_a_robot_each_time():
-    # in a new kernel: what an earlier rclpy.init has left may keep rclpy's handler away
-    lesson = Lesson(TALKER)
-    try:
-        for _ in range(2):
-            ends_when_interrupted(lesson, PROGRAM)
-    finally:
-        lesson.shut_down()
-
-
-def ends_when_interrupted(lesson, program):
-    cell = lesson.send(program)
-    assert lesson.wait_for(lambda: '■' in cell.stdout)
-    time.sleep(0.3)  # until it waits
-    assert not cell.done
-    lesson.manager.interrupt_kernel()
-    assert lesson.wait_for(lambda: cell.done)
-    assert (cell.error, cell.stdout.splitlines()[-1]) == (None, 'caught')
-
-
-def test_a_program_spins_after_one_that_was_interrupted_as_rclpy_made_its_executor(lesson):
-    lesson.run('reset()\nfrom unittest.mock import patch')
-    # what rclpy calls when it has kept the executor, and before it would drop it at a shutdown
-    moment = "with patch('rclpy.get_default_context', side_effect=KeyboardInterrupt):"
-    spin = 'rclpy.spin(node)'
-    assert 'caught' in lesson.run(PROGRAM.replace(spin, f'{moment} {spin}')).stdout
-    ends_when_interrupted(lesson, PROGRAM)
-
-
-def test_an_interrupt_that_meets_the_deletion_of_an_object_is_not_lost(lesson):
-    lesson.run(f"""{SILENT}
-class Meeting:
-    def __del__(self):
-        signal.raise_signal(signal.SIGINT)  # Python drops what is raised here
-import signal
-if not rclpy.ok(): rclpy.init()""")
-    cell = lesson.send('node = Silent(); meeting = Meeting(); del meeting; rclpy.spin(node)')
-    assert lesson.wait_for(lambda: cell.done)
-    assert 'silent is stopped' in ' '.join(cell.error.split())
-    assert cell.stderr == ''
-
-
-MEETING = """class Meeting:
-    def __init__(self, lock): self.lock = lock
-    def acquire(self, *args):
-        self.lock.acquire(*args)
-        raise KeyboardInterrupt  # where Python may raise it
-    def __getattr__(self, name): return getattr(self.lock, name)
-
-def interrupt(ask, thread):
-    lock, thread._tstate_lock = thread._tstate_lock, Meeting(thread._tstate_lock)
-    try: ask()
-    except KeyboardInterrupt: pass
-    if thread._tstate_lock is not None: thread._tstate_lock = lock"""
-
-
-@pytest.mark.skipif(sys.version_info >= (3, 13), reason='a thread has no such lock')
-def test_an_interrupt_takes_no_thread_for_dead(lesson):
-    """As ipykernel's that sends a kernel's outputs: two would send them at the same time then."""
-    lesson.run(f"""{MEETING}
-import threading
-end = threading.Event()
-runs = threading.Thread(target=end.wait); runs.start()
-interrupt(runs.is_alive, runs)""")
-    assert lesson.value('runs.is_alive()') == 'True'
-    # where it has ended, as whoever asked was interrupted, that is not forgotten
-    lesson.run('end.set(); interrupt(runs.join, runs); runs.join()')
-    assert lesson.value('runs.is_alive()') == 'False'
-
-
 def test_a_second_init_is_explained_in_a_sentence(lesson):
     lesson.run('run(Talker)')
     error = ' '.join(lesson.run('rclpy.init()').error.split())
@@ -553,24 +258,6 @@ def test_a_second_init_is_explained_in_a_sentence(lesson):
     assert lesson.run('c = rclpy.Context(); rclpy.init(context=c); c.shutdown()').error is None
 
 
-def test_where_work_is_graded_rclpy_is_as_it_is_on_a_robot():
-    room = "import os; os.environ['MY_ROBOT_BASICS_ROOM'] = 'student'"
-    lesson = Lesson(room, 'import rclpy; spin, init = rclpy.spin, rclpy.init', TALKER)
-    try:
-        assert lesson.value('(rclpy.spin, rclpy.init) == (spin, init)') == 'True'
-        # only an interrupt is better off: it need not kill the kernel where a cell's time is over
-        lesson.run(f'{SILENT}\nrun(Talker)')
-        cell = lesson.send("node = Silent(); print('begun'); rclpy.spin(node)")
-        lesson.wait_for(lambda: 'begun' in cell.stdout)
-        time.sleep(0.3)  # until it waits
-        assert not cell.done
-        lesson.manager.interrupt_kernel()
-        assert lesson.wait_for(lambda: cell.done)
-        assert 'KeyboardInterrupt' in cell.error
-    finally:
-        lesson.shut_down()
-
-
 def test_a_node_that_was_stopped_and_said_nothing_leaves_nothing_to_read(lesson):
     lesson.run(SILENT)
     cell = lesson.run('run(Silent)')
@@ -581,23 +268,6 @@ def test_a_node_that_was_stopped_and_said_nothing_leaves_nothing_to_read(lesson)
     talker = lesson.run('run(Talker)')
     lesson.run('stop()')
     assert lesson.wait_for(lambda: talker.panel.startswith('Talker: stopped\n[INFO]'))
-
-
-def test_a_constructor_that_blocks_can_be_interrupted(lesson):
-    lesson.run('run(Talker)')
-    lesson.run("""class Blocking(Talker):
-    def __init__(self):
-        super().__init__()
-        print('blocks', flush=True)
-        __import__('time').sleep(60)""")
-    cell = lesson.send("run(Blocking, key='Talker')")
-    assert lesson.wait_for(lambda: 'blocks' in cell.stdout)
-    lesson.manager.interrupt_kernel()
-    assert lesson.wait_for(lambda: cell.done)
-    assert 'KeyboardInterrupt' in cell.error
-    assert lesson.value('publishers()') == '[]'
-    lesson.run('talker = run(Talker)')
-    assert lesson.value('alive(talker)') == 'True'
 
 
 def test_a_node_that_spins_itself_is_left_to_it_and_stopped_all_the_same(lesson):
@@ -642,82 +312,6 @@ def test_a_callback_that_stops_its_own_node(lesson):
     cell = lesson.run('leaver = run(Leaver)')
     assert lesson.wait_for(lambda: 'a callback called exit()' in cell.panel)
     assert lesson.wait_for(lambda: lesson.value('publishers()') == '[]')
-
-
-def test_reset_and_run_answer(lesson):
-    lesson.run('run(Talker)')
-    lesson.run('class Answer(Talker): pass')
-    assert 'reset' in lesson.run("reset('Answer', 'never_defined')").stdout
-    assert lesson.value("'Answer' in globals(), rclpy.ok()") == '(False, False)'
-    error = lesson.run("run_answer('Answer')").error
-    assert 'saw nothing of that name: run the answer cell' in ' '.join(error.split())
-    assert len(error.splitlines()) <= 2
-    where = 'write it in the answer cell: only the notebook is submitted'
-    for definition, advice in {
-        'Answer = 3': 'saw an object of type int: begin it with `class Answer(Node):`',
-        'class Answer: pass': 'saw one that is not: begin it with `class Answer(Node):`',
-        'from my_robot_basics.kinematics_publisher import KinematicsPublisher as Answer': where,
-    }.items():
-        lesson.run(definition)
-        error = lesson.run("run_answer('Answer')").error
-        assert error.startswith('NotRunnable: expected ')
-        assert ' '.join(error.split()).endswith(advice)
-        assert len(error.splitlines()) <= 2
-    lesson.run("class Answer(Talker): pass\nanswer = run_answer('Answer', 'yes')")
-    assert lesson.value('answer.text, alive(answer)') == "('yes', True)"
-    lesson.run('reset()')
-    assert lesson.run('rclpy.init(); rclpy.shutdown()').error is None
-
-
-def test_an_answer_that_makes_its_node_and_does_not_spin_it_is_told_so(lesson):
-    lesson.run("reset('Answer')")
-    lesson.run('class Answer(Talker): pass\nrclpy.init()\nmine = Answer()')
-    error = lesson.run("run_answer('Answer')").error
-    assert 'saw a node of it that nothing spins: leave out the' in ' '.join(error.split())
-    assert len(error.splitlines()) <= 2
-    lesson.run('mine.destroy_node()')
-    assert lesson.run("answer = run_answer('Answer')").error is None
-    lesson.run('reset()')
-
-
-IMPORTED = 'from my_robot_basics import kinematics_publisher as course\n'
-TAKEN = {
-    'derives': f'{IMPORTED}class Answer(course.KinematicsPublisher): pass',
-    'derives by a class between': f"""{IMPORTED}
-class Between(course.KinematicsPublisher): pass
-class Answer(Between): pass""",
-    'takes a method': f"""{IMPORTED}
-class Answer(Node):
-    publish_pose = course.KinematicsPublisher.publish_pose
-    def __init__(self): super().__init__('answer')""",
-    'makes one': f"""{IMPORTED}
-class Answer(Node):
-    def __init__(self):
-        super().__init__('answer')
-        self.inner = course.KinematicsPublisher()""",
-}
-
-
-@pytest.mark.parametrize('definition', TAKEN.values(), ids=TAKEN)
-def test_no_answer_is_made_of_the_courses_nodes(lesson, definition):
-    lesson.run("reset('Answer')")
-    assert lesson.run(definition).error is None
-    error = ' '.join(lesson.run("run_answer('Answer')").error.split())
-    assert error.startswith('NotRunnable: expected ')
-    assert 'write your own in the answer cell' in error
-    assert lesson.run('run(course.KinematicsPublisher); stop()').error is None
-
-
-def test_an_answer_may_call_the_courses_functions(lesson):
-    lesson.run("reset('Answer')")
-    lesson.run("""from my_robot_basics.two_link_kinematics import forward_kinematics
-class Answer(Node):
-    forward = staticmethod(forward_kinematics)
-    def __init__(self):
-        super().__init__('answer')
-        self.point = self.forward(0.0, 0.0)""")
-    assert lesson.run("answer = run_answer('Answer')").error is None
-    assert lesson.value('answer.point[0] > 1.7') == 'True'
 
 
 @pytest.mark.slow

@@ -32,12 +32,14 @@ STARTING = re.compile(r'\bcolcon build|(?:^|[\s/])ros2 |\brclpy\b|\bipykernel')
 STARTING_FILES = frozenset(
     """
     checks_clock checks_latched checks_logs checks_sampling checks_predictions checks_relays
-    checks_servers checks_services checks_settled checks_delivery_experiment checks_stamps
-    checks_tick checks_topics checks_watcher course crowd dask_backend doctor_faults doctor_healthy
+    checks_relays_lost checks_relays_stopped checks_servers checks_services checks_settled
+    checks_delivery_experiment checks_stamps checks_tick checks_topics checks_watcher
+    course crowd dask_backend doctor_faults doctor_healthy
     doctor_service_faults doctor_service_healthy doctor_actions
     executables execute grade gradebook imports
     interrupt isolation isolation_everywhere kernels lesson_own_program lessons_run
-    live_camera live_classroom live_domain live_kernel live_lessons live_neighbours
+    live_answers live_camera live_classroom live_domain live_interrupts live_kernel
+    live_lessons live_neighbours
     live_qos_pairs live_refusals live_runner live_sliders live_target logs main
     manual_grading nbgrader_commands nbgrader_contract nodes ordinary_events package
     partial preprocessors readme release replay reuse rooms ros2_action ros2_completion

@@ -1,0 +1,228 @@
+"""A node that passes messages on and loses some, sends them late or more than once."""
+
+import time
+
+import pytest
+from my_robot_basics.checks import CheckFailed, enough, passage, relays
+from relaying import Counts, check_delivery, check_late_joiner, monitor
+
+
+class DropsEverySecond(Counts):
+    def chosen(self, received):
+        return received[-1:] if len(received) % 2 else []
+
+
+class DropsEveryTenth(Counts):
+    def chosen(self, received):
+        return received[-1:] if len(received) % 10 else []
+
+
+class DropsEveryEleventh(Counts):
+    def chosen(self, received):
+        return received[-1:] if len(received) % 11 else []
+
+
+class DropsEveryHundredth(Counts):
+    def chosen(self, received):
+        return received[-1:] if len(received) % 100 else []
+
+
+class DropsEqualOnes(Counts):
+    def chosen(self, received):
+        return received[-1:] if received[-1:] != received[-2:-1] else []
+
+
+class DropsZeros(Counts):
+    def chosen(self, received):
+        return received[-1:] if any(received[-1].position) else []
+
+
+class DropsNegativeOnes(Counts):
+    def chosen(self, received):
+        return received[-1:] if min(received[-1].position) >= 0.0 else []
+
+
+class DropsLargeOnes(Counts):
+    def chosen(self, received):
+        return received[-1:] if max(received[-1].position) < 2000.0 else []
+
+
+class DropsEmptyTexts(Counts):
+    def chosen(self, received):
+        return received[-1:] if received[-1].data else []
+
+
+class DropsWhatComesSoon(Counts):
+    def chosen(self, received):
+        now, before = time.monotonic(), getattr(self, 'before', 0.0)
+        if now - before < 0.2:
+            return []
+        self.before = now
+        return received[-1:]
+
+
+class DropsAfterAPause(Counts):
+    def chosen(self, received):
+        now, before = time.monotonic(), getattr(self, 'before', 0.0)
+        self.before = now
+        return received[-1:] if now - before < 1.0 else []
+
+
+class Lags(Counts):
+    def chosen(self, received):
+        return received[-2:-1]
+
+
+class Doubles(Counts):
+    def chosen(self, received):
+        return received[-1:] * 2
+
+
+class SwapsPairs(Counts):
+    def chosen(self, received):
+        return [] if len(received) % 2 else received[:-3:-1]
+
+
+@pytest.mark.parametrize(
+    ('node_class', 'reason'),
+    [
+        (DropsEverySecond, 'saw messages that are not republished: publish in every call'),
+        (DropsEveryTenth, 'saw messages that are not republished: publish in every call'),
+        (DropsEveryEleventh, 'saw messages that are not republished: publish in every call'),
+        (DropsEqualOnes, 'not republished: those equal to the one before: publish in every call'),
+        (DropsZeros, 'not republished: those with zeros, or empty: publish in every call'),
+        (DropsNegativeOnes, 'not republished: those with negative numbers: publish in every call'),
+        (DropsLargeOnes, 'not republished: those with large numbers: publish in every call'),
+        (DropsWhatComesSoon, 'saw messages that are not republished'),
+        (DropsAfterAPause, 'not republished when it is the first after a pause: publish'),
+        (Lags, 'is republished only when the next one arrives: publish the message'),
+        (SwapsPairs, 'saw a message that is republished only when the next one arrives'),
+        (Doubles, 'a message that is republished 2 times: subscribe once'),
+    ],
+)
+def test_each_message_comes_out_at_once_and_once(run, node_class, reason):
+    run(node_class)
+    with pytest.raises(CheckFailed, match=reason):
+        check_delivery()
+
+
+class LeavesOutTheFirstHundred(monitor.JointStateMonitor):
+    def changed(self, publish):
+        received = []
+
+        def receive(message):
+            received.append(message)
+            if len(received) > 100:
+                publish(message)
+
+        return receive
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(120)
+def test_no_first_hundred_may_be_left_out_however_long_that_takes(run, monkeypatch):
+    turns = range(1, 201)  # of a machine that is busy all the time
+    monkeypatch.setattr(relays, 'free_turns', lambda free_sec: iter(turns))
+    run(LeavesOutTheFirstHundred)
+    with pytest.raises(CheckFailed, match='to be republished on /monitor/joint_states, unchanged'):
+        check_delivery()
+
+
+@pytest.fixture
+def leisurely(monkeypatch):
+    monkeypatch.setattr(enough, 'SOME_SEC', 60.0)
+    monkeypatch.setattr(passage, 'MOST_SEC', 60.0)
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures('leisurely')
+def test_every_hundredth_message_is_missed_where_the_machine_is_quick(run):
+    run(DropsEveryHundredth)
+    with pytest.raises(CheckFailed, match='saw messages that are not republished'):
+        check_delivery()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize('node_class', [DropsEverySecond, DropsEveryEleventh])
+def test_where_no_time_is_left_a_few_messages_tell(run, monkeypatch, node_class):
+    monkeypatch.setattr(enough, 'SOME_SEC', 0.0)
+    monkeypatch.setattr(enough, 'LONG_SEC', 0.0)
+    run(node_class)
+    with pytest.raises(CheckFailed, match='saw messages that are not republished'):
+        check_delivery()
+
+
+@pytest.mark.slow
+def test_without_time_a_right_node_passes(run, monkeypatch):
+    monkeypatch.setattr(enough, 'SOME_SEC', 0.0)
+    monkeypatch.setattr(enough, 'LONG_SEC', 0.0)
+    monkeypatch.setattr(passage, 'MOST_SEC', 0.0)
+    run(monitor.JointStateMonitor)
+    check_delivery()
+
+
+@pytest.mark.slow
+def test_a_description_that_comes_out_twice_is_one_too_many(run):
+    run(Doubles)
+    with pytest.raises(CheckFailed, match='a message that is republished 2 times: subscribe once'):
+        check_late_joiner()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ('node_class', 'reason'),
+    [
+        (DropsEqualOnes, 'not republished: those equal to the one before: publish in every call'),
+        (DropsEmptyTexts, 'not republished: those with zeros, or empty: publish in every call'),
+        (DropsEveryEleventh, 'saw messages that are not republished: publish in every call'),
+    ],
+)
+def test_each_description_that_follows_comes_out_too(run, node_class, reason):
+    run(node_class)
+    with pytest.raises(CheckFailed, match=reason):
+        check_late_joiner()
+
+
+@pytest.mark.slow
+def test_a_timer_that_has_only_the_latest_loses_one_of_two(run):
+    class Latest(Counts):
+        def __init__(self):
+            self.latest = {}
+            super().__init__()
+            self.create_timer(0.1, self.flush)
+
+        def changed(self, publish):
+            return lambda message: self.latest.update({publish: message})
+
+        def flush(self):
+            while self.latest:
+                publish, message = self.latest.popitem()
+                publish(message)
+
+    run(Latest)
+    for check in check_delivery, check_late_joiner:
+        with pytest.raises(
+            CheckFailed, match='saw two messages in quick succession of which only'
+        ):
+            check()
+
+
+@pytest.mark.slow
+def test_what_waits_for_a_timer_is_in_time(run):
+    class Queues(Counts):
+        def __init__(self):
+            self.queue = []
+            super().__init__()
+            self.create_timer(0.1, self.flush)
+
+        def changed(self, publish):
+            return lambda message: self.queue.append((publish, message))
+
+        def flush(self):
+            while self.queue:
+                publish, message = self.queue.pop(0)
+                publish(message)
+
+    run(Queues)
+    check_delivery()
+    check_late_joiner()

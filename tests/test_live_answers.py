@@ -1,0 +1,90 @@
+"""`reset` and `run_answer` in a real kernel: what is run as an answer, and what is refused."""
+
+import pytest
+from live_lesson import opened_lesson, stop_nodes_after
+
+
+@pytest.fixture(scope='module')
+def lesson():
+    yield from opened_lesson()
+
+
+@pytest.fixture(autouse=True)
+def nothing_runs(request):
+    yield from stop_nodes_after(request)
+
+
+def test_reset_and_run_answer(lesson):
+    lesson.run('run(Talker)')
+    lesson.run('class Answer(Talker): pass')
+    assert 'reset' in lesson.run("reset('Answer', 'never_defined')").stdout
+    assert lesson.value("'Answer' in globals(), rclpy.ok()") == '(False, False)'
+    error = lesson.run("run_answer('Answer')").error
+    assert 'saw nothing of that name: run the answer cell' in ' '.join(error.split())
+    assert len(error.splitlines()) <= 2
+    where = 'write it in the answer cell: only the notebook is submitted'
+    for definition, advice in {
+        'Answer = 3': 'saw an object of type int: begin it with `class Answer(Node):`',
+        'class Answer: pass': 'saw one that is not: begin it with `class Answer(Node):`',
+        'from my_robot_basics.kinematics_publisher import KinematicsPublisher as Answer': where,
+    }.items():
+        lesson.run(definition)
+        error = lesson.run("run_answer('Answer')").error
+        assert error.startswith('NotRunnable: expected ')
+        assert ' '.join(error.split()).endswith(advice)
+        assert len(error.splitlines()) <= 2
+    lesson.run("class Answer(Talker): pass\nanswer = run_answer('Answer', 'yes')")
+    assert lesson.value('answer.text, alive(answer)') == "('yes', True)"
+    lesson.run('reset()')
+    assert lesson.run('rclpy.init(); rclpy.shutdown()').error is None
+
+
+def test_an_answer_that_makes_its_node_and_does_not_spin_it_is_told_so(lesson):
+    lesson.run("reset('Answer')")
+    lesson.run('class Answer(Talker): pass\nrclpy.init()\nmine = Answer()')
+    error = lesson.run("run_answer('Answer')").error
+    assert 'saw a node of it that nothing spins: leave out the' in ' '.join(error.split())
+    assert len(error.splitlines()) <= 2
+    lesson.run('mine.destroy_node()')
+    assert lesson.run("answer = run_answer('Answer')").error is None
+    lesson.run('reset()')
+
+
+IMPORTED = 'from my_robot_basics import kinematics_publisher as course\n'
+TAKEN = {
+    'derives': f'{IMPORTED}class Answer(course.KinematicsPublisher): pass',
+    'derives by a class between': f"""{IMPORTED}
+class Between(course.KinematicsPublisher): pass
+class Answer(Between): pass""",
+    'takes a method': f"""{IMPORTED}
+class Answer(Node):
+    publish_pose = course.KinematicsPublisher.publish_pose
+    def __init__(self): super().__init__('answer')""",
+    'makes one': f"""{IMPORTED}
+class Answer(Node):
+    def __init__(self):
+        super().__init__('answer')
+        self.inner = course.KinematicsPublisher()""",
+}
+
+
+@pytest.mark.parametrize('definition', TAKEN.values(), ids=TAKEN)
+def test_no_answer_is_made_of_the_courses_nodes(lesson, definition):
+    lesson.run("reset('Answer')")
+    assert lesson.run(definition).error is None
+    error = ' '.join(lesson.run("run_answer('Answer')").error.split())
+    assert error.startswith('NotRunnable: expected ')
+    assert 'write your own in the answer cell' in error
+    assert lesson.run('run(course.KinematicsPublisher); stop()').error is None
+
+
+def test_an_answer_may_call_the_courses_functions(lesson):
+    lesson.run("reset('Answer')")
+    lesson.run("""from my_robot_basics.two_link_kinematics import forward_kinematics
+class Answer(Node):
+    forward = staticmethod(forward_kinematics)
+    def __init__(self):
+        super().__init__('answer')
+        self.point = self.forward(0.0, 0.0)""")
+    assert lesson.run("answer = run_answer('Answer')").error is None
+    assert lesson.value('answer.point[0] > 1.7') == 'True'

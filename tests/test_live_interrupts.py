@@ -1,0 +1,190 @@
+"""A cell that spins, waits or runs a program, and the ■ that interrupts it, in real kernels."""
+
+import sys
+import time
+
+import pytest
+from live_lesson import SILENT, TALKER, Lesson, opened_lesson, stop_nodes_after
+
+
+@pytest.fixture(scope='module')
+def lesson():
+    yield from opened_lesson()
+
+
+@pytest.fixture(autouse=True)
+def nothing_runs(request):
+    yield from stop_nodes_after(request)
+
+
+def test_an_interrupted_cell_stops_no_node(lesson):
+    cell = lesson.run('talker = run(Talker)')
+    waiting = lesson.send('print("waiting", flush=True); import time; time.sleep(60)')
+    assert lesson.wait_for(lambda: 'waiting' in waiting.stdout)
+    lesson.manager.interrupt_kernel()
+    assert lesson.wait_for(lambda: waiting.done)
+    assert 'KeyboardInterrupt' in waiting.error
+    assert lesson.value('alive(talker)') == 'True'
+    assert cell.panel.startswith('Talker: running')
+
+
+@pytest.mark.parametrize(
+    'endless',
+    [
+        'rclpy.spin(node)',
+        'from rclpy import spin; spin(node)',
+        'rclpy.spin_once(node)',
+        'executor = rclpy.executors.SingleThreadedExecutor(); executor.add_node(node);'
+        'executor.spin()',
+        'rclpy.spin_until_future_complete(node, rclpy.task.Future())',
+        "from rclpy.wait_for_message import wait_for_message as wait; wait(String, node, '/no')",
+    ],
+)
+def test_a_cell_that_spins_for_ever_can_be_interrupted(lesson, endless):
+    lesson.run(f'{SILENT}\nif not rclpy.ok(): rclpy.init()\nnode = Silent()')
+    talker = lesson.run('talker = run(Talker)')
+    cell = lesson.send(f"print('begun'); {endless}")
+    lesson.wait_for(lambda: 'begun' in cell.stdout)
+    time.sleep(0.3)  # until it waits
+    assert not cell.done
+    lesson.manager.interrupt_kernel()
+    assert lesson.wait_for(lambda: cell.done)
+    assert cell.error
+    assert lesson.value('alive(talker)') == 'True'
+    assert talker.panel.startswith('Talker: running')
+    lesson.run('node.destroy_node()')
+
+
+def test_a_cell_that_spins_is_told_how_to_stop_and_how_to_go_on(lesson):
+    lesson.run(f'{SILENT}\nif not rclpy.ok(): rclpy.init()')
+    cell = lesson.send('node = Silent()\nrclpy.spin(node)')
+    assert lesson.wait_for(lambda: '■ (Interrupt the kernel)' in cell.stdout)
+    lesson.manager.interrupt_kernel()
+    lesson.wait_for(lambda: cell.done)
+    assert ' '.join(cell.error.split()) == (
+        'rclpy.spin was interrupted, and silent is stopped. To go on, write run(Silent) in place '
+        'of the lines that make silent and spin it, and run this cell again: run spins in the '
+        'background.'
+    )
+    # what it says works
+    assert lesson.run('node = run(Silent)').stdout == ''
+    assert 'already: leave rclpy.spin out' in ' '.join(
+        lesson.run('rclpy.spin(node)').error.split()
+    )
+
+
+PROGRAM = f"""{SILENT}
+rclpy.init()
+node = Silent()
+try:
+    rclpy.spin(node)
+except KeyboardInterrupt:
+    print('caught')
+finally:
+    node.destroy_node()
+    rclpy.shutdown()"""
+
+
+def test_a_program_pasted_into_a_cell_ends_as_on_a_robot_each_time():
+    # in a new kernel: what an earlier rclpy.init has left may keep rclpy's handler away
+    lesson = Lesson(TALKER)
+    try:
+        for _ in range(2):
+            ends_when_interrupted(lesson, PROGRAM)
+    finally:
+        lesson.shut_down()
+
+
+def ends_when_interrupted(lesson, program):
+    cell = lesson.send(program)
+    assert lesson.wait_for(lambda: '■' in cell.stdout)
+    time.sleep(0.3)  # until it waits
+    assert not cell.done
+    lesson.manager.interrupt_kernel()
+    assert lesson.wait_for(lambda: cell.done)
+    assert (cell.error, cell.stdout.splitlines()[-1]) == (None, 'caught')
+
+
+def test_a_program_spins_after_one_that_was_interrupted_as_rclpy_made_its_executor(lesson):
+    lesson.run('reset()\nfrom unittest.mock import patch')
+    # what rclpy calls when it has kept the executor, and before it would drop it at a shutdown
+    moment = "with patch('rclpy.get_default_context', side_effect=KeyboardInterrupt):"
+    spin = 'rclpy.spin(node)'
+    assert 'caught' in lesson.run(PROGRAM.replace(spin, f'{moment} {spin}')).stdout
+    ends_when_interrupted(lesson, PROGRAM)
+
+
+def test_an_interrupt_that_meets_the_deletion_of_an_object_is_not_lost(lesson):
+    lesson.run(f"""{SILENT}
+class Meeting:
+    def __del__(self):
+        signal.raise_signal(signal.SIGINT)  # Python drops what is raised here
+import signal
+if not rclpy.ok(): rclpy.init()""")
+    cell = lesson.send('node = Silent(); meeting = Meeting(); del meeting; rclpy.spin(node)')
+    assert lesson.wait_for(lambda: cell.done)
+    assert 'silent is stopped' in ' '.join(cell.error.split())
+    assert cell.stderr == ''
+
+
+MEETING = """class Meeting:
+    def __init__(self, lock): self.lock = lock
+    def acquire(self, *args):
+        self.lock.acquire(*args)
+        raise KeyboardInterrupt  # where Python may raise it
+    def __getattr__(self, name): return getattr(self.lock, name)
+
+def interrupt(ask, thread):
+    lock, thread._tstate_lock = thread._tstate_lock, Meeting(thread._tstate_lock)
+    try: ask()
+    except KeyboardInterrupt: pass
+    if thread._tstate_lock is not None: thread._tstate_lock = lock"""
+
+
+@pytest.mark.skipif(sys.version_info >= (3, 13), reason='a thread has no such lock')
+def test_an_interrupt_takes_no_thread_for_dead(lesson):
+    """As ipykernel's that sends a kernel's outputs: two would send them at the same time then."""
+    lesson.run(f"""{MEETING}
+import threading
+end = threading.Event()
+runs = threading.Thread(target=end.wait); runs.start()
+interrupt(runs.is_alive, runs)""")
+    assert lesson.value('runs.is_alive()') == 'True'
+    # where it has ended, as whoever asked was interrupted, that is not forgotten
+    lesson.run('end.set(); interrupt(runs.join, runs); runs.join()')
+    assert lesson.value('runs.is_alive()') == 'False'
+
+
+def test_where_work_is_graded_rclpy_is_as_it_is_on_a_robot():
+    room = "import os; os.environ['MY_ROBOT_BASICS_ROOM'] = 'student'"
+    lesson = Lesson(room, 'import rclpy; spin, init = rclpy.spin, rclpy.init', TALKER)
+    try:
+        assert lesson.value('(rclpy.spin, rclpy.init) == (spin, init)') == 'True'
+        # only an interrupt is better off: it need not kill the kernel where a cell's time is over
+        lesson.run(f'{SILENT}\nrun(Talker)')
+        cell = lesson.send("node = Silent(); print('begun'); rclpy.spin(node)")
+        lesson.wait_for(lambda: 'begun' in cell.stdout)
+        time.sleep(0.3)  # until it waits
+        assert not cell.done
+        lesson.manager.interrupt_kernel()
+        assert lesson.wait_for(lambda: cell.done)
+        assert 'KeyboardInterrupt' in cell.error
+    finally:
+        lesson.shut_down()
+
+
+def test_a_constructor_that_blocks_can_be_interrupted(lesson):
+    lesson.run('run(Talker)')
+    lesson.run("""class Blocking(Talker):
+    def __init__(self):
+        super().__init__()
+        print('blocks', flush=True)
+        __import__('time').sleep(60)""")
+    cell = lesson.send("run(Blocking, key='Talker')")
+    assert lesson.wait_for(lambda: 'blocks' in cell.stdout)
+    lesson.manager.interrupt_kernel()
+    assert lesson.wait_for(lambda: cell.done)
+    assert 'KeyboardInterrupt' in cell.error
+    assert lesson.value('publishers()') == '[]'
+    lesson.run('talker = run(Talker)')
+    assert lesson.value('alive(talker)') == 'True'
