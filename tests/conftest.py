@@ -41,13 +41,13 @@ LONG = (
         'nbgrader_commands',
     ),
     *('live_kernel', 'attacks', 'checks_topics', 'release', 'kernel_exits', 'workers', 'answers'),
-    *('doctor_faults', 'interrupt', 'course', 'ros2_streams', 'checks_clock', 'kernels'),
+    *('doctor_faults', 'interrupt', 'course_setup', 'ros2_streams', 'checks_clock', 'kernels'),
     *('workspace', 'checks_logs', 'hidden', 'executables', 'live_lessons', 'checks_stamps'),
     *('survival', 'dask_backend', 'sandbox', 'browser_hostile', 'fork_servers', 'environment'),
     *('lesson_own_program', 'package', 'formgrader', 'validate', 'ros2_graph', 'lessons_run'),
     *('full_disk', 'accessibility', 'live_target', 'hidden_inputs', 'isolation', 'execute'),
     *('ros2_service', 'rooms', 'bundle', 'feedback', 'collect', 'report', 'live_arm'),
-    *('live_interrupts', 'checks_relays'),
+    *('live_interrupts', 'checks_relays', 'course'),
 )
 """Files that take longest come first: begun at the end, one would be waited for alone. Those that
 keep processors busy stand beside those that wait: all at once, each would take longer."""
