@@ -79,10 +79,8 @@ class RunningExecutable:
 
         watcher.spin_until_free(lambda: is_there() or self._has_ended(), free_sec=NODE_SEC)
         if not is_there():
-            doubt, wanted = (
-                doubt_after(watch, NODE_SEC),
-                f'the node {node_name} of {self.executable}',
-            )
+            doubt = doubt_after(watch, NODE_SEC)
+            wanted = f'the node {node_name} of {self.executable}'
             names = graphs.take(watcher).nodes()
             if self._state()[0] is not None:
                 self._fail_ended(wanted)
