@@ -79,8 +79,8 @@ class Passage:
         late = in_a_row = pushed_out = 0
         row = Stopwatch()
         while in_a_row < fewest_in_a_row(row) and late < MOST_LATE:
-            # who swaps two has one in time, and none in a row
-            if in_a_row > 1 and self._is_over():
+            # a node that swaps two has one in time, and none in a row
+            if in_a_row > 1 and self._is_over(MOST_SEC):
                 break
             others, sent = len(self._others), next(messages)
             if self._send(sent):
@@ -142,7 +142,7 @@ class Passage:
                 return False
         return True
 
-    def _is_over(self, most_sec: float = MOST_SEC) -> bool:
+    def _is_over(self, most_sec: float) -> bool:
         return self._watch.wall_sec() >= most_sec
 
     def _send(self, sent: Sent) -> bool:
