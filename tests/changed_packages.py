@@ -320,7 +320,7 @@ WRONG = (
         'no_function_in_the_entry_point',
         swap(SETUP, ('arm_player.arm_player:main', 'arm_player.arm_player')),
         NOTHING,
-        {'package_builds': 'write a colon and the function behind the module'},
+        {'package_builds': 'write a colon and the function after the module'},
     ),
     Change(
         'no_marker_file', without('resource/arm_player'), NOTHING, {'package_builds': 'resource/'}

@@ -171,7 +171,7 @@ WRONG = {
         turns('int32[2] turns', 'int32[2]\u00a0turns'),
         'a no-break space or the',
     ),
-    'the name of the file': (count('Turns total', 'Turns.msg total'), 'behind its name: Turns'),
+    'the name of the file': (count('Turns total', 'Turns.msg total'), 'after its name: Turns'),
     'std_msgs': (count('bool success', 'std_msgs/Bool success'), 'write the plain type, bool'),
     'space in the type': (turns('int32[2]', 'int32 [2]'), 'no space between a type and its'),
     'bound with <': (count('[<=60]', '[<60]'), 'at most two [<=2]'),

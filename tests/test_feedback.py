@@ -242,7 +242,7 @@ def test_a_page_that_can_t_be_made_at_all_costs_no_other(course, monkeypatch):
     monkeypatch.setattr(module, 'parse', too_hard)
     said = []
     pages = write_feedback(course, say=said.append)
-    assert f'{TOY} of eve has no page of feedback, for it takes too much\\x1b[2J memory' in said
+    assert f'{TOY} of eve has no page of feedback: it takes too much\\x1b[2J memory' in said
     assert {page.parts[-3] for page in pages} >= {'zoe'}
     assert 'eve' not in {page.parts[-3] for page in pages}
 
@@ -284,7 +284,7 @@ def test_of_many_pages_each_is_there_and_told_in_order(course, tmp_path):
     assert write_feedback(course, say=told.append) == pages[:2] + pages[3:]
     assert told == [
         str(pages[1]),
-        f'{TOY} of {students[2]} has no page of feedback, for the graded notebook {damaged} is '
+        f'{TOY} of {students[2]} has no page of feedback: the graded notebook {damaged} is '
         f'damaged: run ./course grade --student {students[2]}, which grades it again',
     ]
     assert pages[2].read_bytes() == whole[pages[2]]  # that of before

@@ -96,7 +96,7 @@ def test_a_file_of_another_user_in_a_students_folder_is_refused(owner, inbound, 
     os.chown(folder / f'{LESSON}.ipynb', owner, owner)
     assert collected(inbound, tmp_path) == (
         {},
-        ['it is not of the user whose folder it lies in'],
+        ['it is not of the user whose folder it is in'],
     )
 
 
@@ -124,7 +124,7 @@ def test_what_another_user_puts_into_a_folder_of_the_teachers_is_not_the_student
     why = {each.incoming.path.removeprefix('bob/'): each.reason for each in left if each.matters}
     assert {*why} == {'helper.py', SECRET, 'greeter/setup.py', 'greeter (1)/evil.py'}
     assert why['helper.py'] == (
-        'it lies beside the notebook of bob, and the user alice put it there'
+        'it is beside the notebook of bob, and the user alice put it there'
     )
 
 

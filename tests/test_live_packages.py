@@ -349,7 +349,7 @@ def installed(folder, entry):
         ('greet = greeter.greet:main', NODE, ''),
         ('greet = greeter.greet:mian', NODE, 'greeter/greet.py has no function mian'),
         ('greet = greeter.greet', NODE, 'names no function: write a colon and the function'),
-        ('greet = greeter.greet.main', NODE, 'behind the module, greeter.MODULE:main'),
+        ('greet = greeter.greet.main', NODE, 'after the module, greeter.MODULE:main'),
         ('greet = greeter.greet:main', 'def main(:', 'greeter/greet.py is not valid Python (line'),
         ('greet = greeter.greet:main', None, 'greeter/greet.py was not installed, and greet'),
         ('greet = grete.greet:main', NODE, 'and there is no package grete: correct it'),

@@ -253,8 +253,8 @@ def test_what_would_meet_the_next_one_too_ends_it(course, inbound, at_once, monk
 STEPS = {
     '_prepared': (KeyError('double'), FAILED, 'not graded, the grader failed: KeyError: '),
     'put_in_place': (KeyError('\x1b'), REFUSED, 'the grader failed: KeyError: '),
-    'write_page': (KeyError('\x1b'), GRADED, 'no page can be made, for the grader failed: Key'),
-    'release_page': (OSError(5, 'I/O'), GRADED, 'no page can be made, for the grader failed: OSE'),
+    'write_page': (KeyError('\x1b'), GRADED, 'no page can be made: the grader failed: Key'),
+    'release_page': (OSError(5, 'I/O'), GRADED, 'no page can be made: the grader failed: OSE'),
 }
 
 

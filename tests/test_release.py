@@ -158,7 +158,7 @@ def test_an_answer_to_be_fixed_is_released_broken_and_graded_fixed(course):
     ],
 )
 def test_broken_lines_that_no_stub_waits_for_are_refused(source):
-    with pytest.raises(CourseError, match='right behind ### END SOLUTION'):
+    with pytest.raises(CourseError, match='right after ### END SOLUTION'):
         broken(source)
 
 
@@ -167,7 +167,7 @@ def test_a_failure_leaves_the_former_release_as_it_was(course):
     broken = toy_lesson()
     broken.cells[4].source += '\n\n### BROKEN: x = 1'
     write_source(course, broken)
-    with pytest.raises(CourseError, match='right behind ### END SOLUTION'):
+    with pytest.raises(CourseError, match='right after ### END SOLUTION'):
         release(course)
     assert course.release_path(TOY).read_bytes() == before
     write_source(course, toy_lesson())
@@ -176,7 +176,7 @@ def test_a_failure_leaves_the_former_release_as_it_was(course):
 UNPAIRED = {
     'no end': (
         '1\n### BEGIN HIDDEN TESTS\n2',
-        "line 2: 'BEGIN HIDDEN TESTS' has no end: add a line '### END HIDDEN TESTS' behind the"
+        "line 2: 'BEGIN HIDDEN TESTS' has no end: add a line '### END HIDDEN TESTS' after the"
         ' last hidden line',
     ),
     'two beginnings': (
@@ -196,7 +196,7 @@ UNPAIRED = {
     ),
     'no end of a mark scheme': (
         '### BEGIN MARK SCHEME\n1',
-        "line 1: 'BEGIN MARK SCHEME' has no end: add a line '### END MARK SCHEME' behind its last"
+        "line 1: 'BEGIN MARK SCHEME' has no end: add a line '### END MARK SCHEME' after its last"
         ' line',
     ),
 }

@@ -62,7 +62,7 @@ def _faults(cell: NotebookNode, region: _Region) -> Iterator[str]:
                 )
             opened = 0
     if opened:
-        yield _without_end(region, opened, f'behind {region.last}')
+        yield _without_end(region, opened, f'after {region.last}')
 
 
 def _without_end(region: _Region, opened: int, where: str) -> str:

@@ -82,14 +82,14 @@ class ReleaseBroken(Preprocessor):
 def broken(cleared: str) -> str:
     """Return the source of an answer cell, cleared of its answer, with its broken lines as code.
 
-    Raises CourseError when such lines stand anywhere but right behind an answer.
+    Raises CourseError when such lines are anywhere but right after an answer.
     """
     stub = re.escape(CODE_STUB['python'])
     after_stub = re.compile(rf'^ *{stub}\n((?: *{BROKEN}.*(?:\n|\Z))+)', re.MULTILINE)
     source = after_stub.sub(lambda found: found[1].replace(BROKEN, ''), cleared)
     if BROKEN.strip() in source:
         raise CourseError(
-            f'a line with {BROKEN.strip()!r} is behind no answer: write such lines right behind'
+            f'a line with {BROKEN.strip()!r} follows no answer: write such lines right after'
             f' ### END SOLUTION, each beginning with {BROKEN!r}'
         )
     return source

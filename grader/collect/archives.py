@@ -70,7 +70,7 @@ def unpack(
                 file, problem = _copied(entry, aside, left)
             yield Member(entry.parts, entry.modified, file, problem)
     except Refused as refusal:
-        yield Member((), problem=f'{refusal}; what lies behind that was not read')
+        yield Member((), problem=f'{refusal}; what comes after that was not read')
     except _BROKEN as error:
         yield Member((), problem=_broken(error))
 

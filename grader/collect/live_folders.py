@@ -106,7 +106,7 @@ class LiveFolder:
         changed = max(within.changed, status.st_ctime) if foreign else 0.0
         problem = _problem_of_kind(status.st_mode)
         if within.uid not in (None, status.st_uid):
-            problem = 'it is not of the user whose folder it lies in'
+            problem = 'it is not of the user whose folder it is in'
         elif foreign and not _login(status.st_uid):
             problem = f'it is of user {status.st_uid}, who has no name on this machine'
         elif within.is_shared and stat.S_ISREG(status.st_mode) and status.st_nlink > 1:

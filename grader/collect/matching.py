@@ -139,7 +139,7 @@ def _not_taken(each: Incoming, *, in_upload: bool) -> UntakenFile:
         return UntakenFile(each, f"a time in a student's own {where} is not believed")
     if date_of(each.readable) is None:
         return UntakenFile(each, 'it holds no date')
-    return UntakenFile(each, 'it lies beside no notebook of one student')
+    return UntakenFile(each, 'it is beside no notebook of one student')
 
 
 def _in_order(hand_ins: list[MatchedFile], rest: list[UntakenFile]) -> list[MatchedFile]:

@@ -171,7 +171,7 @@ class Naming:
             of = self._forms.named(name)
             other = name if name in self._known else of.what if of else assignment
             if other != assignment:
-                raise UnclearOwner(f'it lies in a folder of another assignment, {other}')
+                raise UnclearOwner(f'it is in a folder of another assignment, {other}')
         return assignment
 
     def _all_by_platform(self, notebooks: Sequence[Incoming], students: Sequence[str]) -> bool:

@@ -46,7 +46,7 @@ def why_not_theirs(each: Incoming, student: str) -> str:
     """
     if each.login in ('', student):
         return ''
-    return f'it lies beside the notebook of {student}, and the user {each.login} put it there'
+    return f'it is beside the notebook of {student}, and the user {each.login} put it there'
 
 
 def _checked(each: Incoming, owner: Owner) -> Owner:

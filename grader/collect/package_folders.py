@@ -14,9 +14,7 @@ from grader.collect.owners import why_not_theirs
 from grader.collect.platforms import label_in
 from grader.collect.uploads import package_in
 
-NO_NOTEBOOK = (
-    'it is part of a package that lies beside no notebook of one student that asks for it'
-)
+NO_NOTEBOOK = 'it is part of a package that is beside no notebook of one student that asks for it'
 
 
 @dataclass(frozen=True)
@@ -137,9 +135,9 @@ def _why_not(each: Incoming, parts: tuple[str, ...], root: tuple[str, ...]) -> s
     if each.problem:
         return each.problem
     if not parts or each.parts[: len(root)] != root:
-        return 'it lies beside the package in its archive'
+        return 'it is beside the package in its archive'
     if any(ARCHIVE.search(part) for part in parts[:-1]):
-        return 'it lies in an archive: unpack that in the folder of the package'
+        return 'it is in an archive: unpack that in the folder of the package'
     if each.file is None:
         return 'it could not be read'
     return package_files.why_not(parts)

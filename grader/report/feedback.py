@@ -128,7 +128,7 @@ def write_feedback(
             try:
                 place, is_new = _put(course, student, assignment, work.result())
             except (DamagedResult, ParsingFailed) as why:
-                say(printable(f'{assignment} of {student} has no page of feedback, for {why}'))
+                say(printable(f'{assignment} of {student} has no page of feedback: {why}'))
                 continue
             except Exception as error:
                 error.add_note(f'This was the page of {student} for {assignment}.')

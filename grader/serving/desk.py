@@ -137,11 +137,11 @@ def _release(desk: Desk, arrival: Arrival) -> str:
         if desk.feedback and (secret := secret_of(desk.course, arrival)):
             release_page(page, desk.feedback, secret=secret, notebook=arrival.assignment)
     except ParsingFailed as why:
-        return f'no page can be made, for {why}'
+        return f'no page can be made: {why}'
     except Exception as error:
         if meets_all(error):
             raise
-        return f'no page can be made, for {noted(shown(arrival), error)}'
+        return f'no page can be made: {noted(shown(arrival), error)}'
     return ''
 
 

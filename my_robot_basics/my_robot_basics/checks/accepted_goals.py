@@ -35,7 +35,7 @@ def ends_too_soon() -> str:
     """What to try where the arm moves on after the server has told how the goal ended."""
     return (
         'the arm moves on after the goal has ended: call goal_handle.succeed() when the arm is '
-        'there, behind the loop that moves it'
+        'there, after the loop that moves it'
     )
 
 

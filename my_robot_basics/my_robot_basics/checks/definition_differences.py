@@ -62,7 +62,7 @@ def differences(found: Definition, wanted: Definition, kind: str) -> list[str]:
 def _difference(found: DefinedMember, wanted: DefinedMember) -> str:
     name = found.name
     if wanted.is_constant and not found.is_constant:
-        return f'{name} is a field: a constant has = and its value behind the name'
+        return f'{name} is a field: a constant has = and its value after the name'
     if found.is_constant and not wanted.is_constant:
         return f'{name} is a constant: a default value is written without ='
     if fault := _type_difference(name, found.type, wanted.type):
@@ -78,7 +78,7 @@ def _difference(found: DefinedMember, wanted: DefinedMember) -> str:
             return ''
         return f'nobody has asked for a default value of {name}'
     if found.value is None:
-        return f'{name} has no default value: write it behind the name, without ='
+        return f'{name} has no default value: write it after the name, without ='
     return f'{name} has another default value than the table says'
 
 

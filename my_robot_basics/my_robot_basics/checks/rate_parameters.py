@@ -49,7 +49,7 @@ class RateParameter:
             expected=f'{self.name} = {rate_hz}',
             seen=theirs(shorten(repr(value))),
             hint=f"declare it with its default: self.declare_parameter('{self.name}', {rate_hz}); "
-            'if somebody has set it since, run the node anew',
+            'if somebody has set it since, run the node again',
             cause=f'another default of {self.name}',
         )
         if isinstance(value, int):

@@ -80,7 +80,7 @@ def _fault_of_entry(entry: EntryPoint, package: str, site: Path, files: PackageF
     if not entry.attr:
         return (
             f'entry_points of setup.py has {line!r}, which names no function: write a colon and '
-            f'the function behind the module, {package}.MODULE:main'
+            f'the function after the module, {package}.MODULE:main'
         )
     path = entry.module.replace('.', '/')
     names = (f'{path}.py', f'{path}/__init__.py')

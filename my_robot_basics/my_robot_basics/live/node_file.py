@@ -30,7 +30,7 @@ def write_node(line: str, cell: str) -> None:
     """
     name = line.strip()
     if not (name.endswith('.py') and name.removesuffix('.py').isidentifier()):
-        raise NotWritten(f'expected a name such as greeter.py behind %%write_node, saw {name!r}')
+        raise NotWritten(f'expected a name such as greeter.py after %%write_node, saw {name!r}')
     modules = workspace.copy() / workspace.NAME
     if not modules.is_dir():
         raise NotWritten('there is no workspace yet: run the cell with make_workspace() first')

@@ -39,7 +39,7 @@ def fault_in_sources(package: str, files: PackageFiles) -> str:
         where = f'line {error.lineno} of {package}/setup.py'
         return f'{where} is not valid Python ({error.msg}): fix that line, and build again'
     except NO_PYTHON as error:
-        return f'{package}/setup.py is not valid Python ({error}): write it anew as text'
+        return f'{package}/setup.py is not valid Python ({error}): write it again as text'
     return ''
 
 

@@ -98,7 +98,7 @@ def _about_characters(line: str) -> str:
     for character in line:
         plain = unicodedata.normalize('NFKC', character)
         if plain == ' ' != character:
-            return 'one of its spaces is a no-break space or the like: type it anew'
+            return 'one of its spaces is a no-break space or the like: type it again'
         if unicodedata.east_asian_width(character) == 'F' and plain in _ASCII:
             return f'it has {character!r}, a full-width character: write {plain!r}'
     if re.search(r'(?<!:)//|/\*', line):
@@ -165,7 +165,7 @@ def _about_type(type_name: str) -> str:
         return f'types are written in lower case: {plain.lower()}'
     parts = [part for part in re.split(r'::|[./]', plain) if part]
     if parts[-1:] == ['msg'] and plain.endswith('.msg'):
-        return f'a type has no .msg behind its name: {shorten(plain.removesuffix(".msg"), 40)}'
+        return f'a type has no .msg after its name: {shorten(plain.removesuffix(".msg"), 40)}'
     if len(parts) == 3 and parts[1] == 'msg':
         return f'in a definition, a type has no msg in its name: {parts[0]}/{parts[2]}'
     if len(parts) == 2 and '/' not in plain:
@@ -181,7 +181,7 @@ def _about_name(name: str) -> str:
     if _FIELD_NAME.fullmatch(name):
         return ''
     if _CONSTANT_NAME.fullmatch(name) and len(name) > 1:
-        return 'a field has a name in lower case; a constant has = and a value behind its name'
+        return 'a field has a name in lower case; a constant has = and a value after its name'
     words = re.sub('(?<=[a-z0-9])(?=[A-Z])', '_', name).replace('-', '_').lower()
     proper = re.sub('_+', '_', words).strip('_')
     if _FIELD_NAME.fullmatch(proper):
