@@ -10,7 +10,7 @@ import pytest
 
 from grader.collect import platforms
 from grader.course import ROOT
-from my_robot_basics import checks, live
+from my_robot_basics import checks
 
 PAGE = (ROOT / 'CONTRIBUTING.md').read_text(encoding='utf-8')
 
@@ -38,15 +38,11 @@ def test_the_row_of_a_check_makes_it_public(example):
     assert checks.expect_text is example.expect_text
 
 
-@pytest.mark.starts
 @pytest.mark.parametrize('name', ['test_the_text_is_found', 'test_another_text_is_told'])
-def test_the_test_of_a_check_passes(name, example):
+def test_the_test_of_a_check_passes(name, example, run):
     names = {}
     exec(blocks_of('A check')[1], names)
-    try:
-        names[name](live.run)
-    finally:
-        live.stop()
+    names[name](run)
 
 
 def test_the_row_of_a_platform_reads_its_names(monkeypatch):
