@@ -241,7 +241,7 @@ def test_a_promise_that_nobody_gives_is_named_to_a_late_joiner(run, impatient):
 
 
 @pytest.mark.slow
-def test_best_effort_hears_nothing_of_what_was_said_before(run, impatient):
+def test_best_effort_receives_nothing_of_what_was_sent_before(run, impatient):
     run(monitor.JointStateMonitor, description=PROFILES['BEST_EFFORT TRANSIENT_LOCAL'])
     with pytest.raises(CheckFailed, match='request RELIABLE, too: only then'):
         check_late_joiner()

@@ -53,11 +53,6 @@ class Watched:
         return float(STORED.findall(self.said)[-1])
 
     @property
-    def per_minute(self) -> float:
-        """Return the rate of the whole command: with its start and its end."""
-        return 60 * len(self.done_at) / self.seconds
-
-    @property
     def per_minute_warm(self) -> float:
         """Return the rate from the first third of the submissions on."""
         first = len(self.done_at) // 3
