@@ -118,6 +118,9 @@ def test_value_reads_a_name(notebook):
     assert student.value('endpoints', type=dict)['subscriptions'] == ('c',)
     with pytest.raises(CheckFailed, match='expected `endpoints` to be a list, saw a dict'):
         student.value('endpoints', type=list)
+    notebook(endpoints=dict)
+    with pytest.raises(CheckFailed, match='expected `endpoints` to be a dict, saw a class'):
+        student.value('endpoints', type=dict)
     with pytest.raises(CheckFailed, match='expected a value for `nothing`, saw no such name'):
         student.value('nothing')
 
@@ -141,6 +144,8 @@ def test_advice_follows_the_type_that_is_wanted(notebook, wanted, advice):
     ('result', 'seen'),
     [
         (JointState, 'saw the class JointState: make a message of it with parentheses, Joi'),
+        (type('JointState', (), {})(), 'saw another class JointState: make no class JointState'),
+        (int, 'saw a class: make a message with JointState()'),
         (
             {'angles': JointState().position},
             'saw an array in it: make a message with JointState()',
@@ -163,6 +168,14 @@ def test_any_bad_reply_is_a_failed_check(monkeypatch, reply):
     monkeypatch.setattr('builtins.input', lambda question: reply)
     with pytest.raises(CheckFailed, match='expected an answer from `f'):
         student.call('f', 2)
+
+
+@pytest.mark.parametrize('body', [5, True, None, ['a', 'b'], ('a', 5), ('a',), {}])
+def test_what_a_notebook_tells_of_its_nodes_is_believed_in_its_form_alone(monkeypatch, body):
+    monkeypatch.setattr(student, '_told', lambda request: body)
+    assert (student.trouble('/a'), student.unfinished('/a')) == ('', '')
+    assert student.unpublished_field('/a') == ('', '')
+    assert student.times_raised('/a') == (5 if body == 5 else 0)
 
 
 def test_the_question_is_the_agreed_text(monkeypatch):

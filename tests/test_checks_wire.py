@@ -123,6 +123,11 @@ WRONG = {
         'header': Time(sec=5)
     },
     "name = ['joint1', 2] is no sequence<string>": {'name': ['joint1', 2]},
+    'header = builtin_interfaces.msg.Time(sec=1.5, nanosec=0) is no std_msgs/Header': {
+        'header': Time(),
+        'header.sec': 1.5,
+    },
+    'name = [1, 1, 1, 1, 1, 1, …] is no sequence<string>': {'name': [1] * 9_000},
     'name = <generator object <genexpr>> is no sequence<string>': {
         'name': (name for name in ['joint1'])
     },
@@ -137,6 +142,14 @@ def test_a_message_with_a_field_of_a_wrong_type_is_unsupported_and_the_field_nam
         setattr(functools.reduce(getattr, parents, broken), last, value)
     wanted = f'sensor_msgs/msg/JointState with a field of a wrong type ({says})'
     with pytest.raises(values.UnsupportedValue, match=re.escape(wanted)):
+        values.encode(broken)
+
+
+def test_where_no_field_alone_is_wrong_python_is_quoted(monkeypatch):
+    monkeypatch.setattr(values, 'wrong_field', lambda message, type_: ('', '', ''))
+    broken = joint_state()
+    broken.name = 5
+    with pytest.raises(values.UnsupportedValue, match=r'with a field of a wrong type \(\w+'):
         values.encode(broken)
 
 
