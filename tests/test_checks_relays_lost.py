@@ -1,10 +1,19 @@
 """A node that passes messages on and loses some, sends them late or more than once."""
 
 import time
+from types import SimpleNamespace
 
 import pytest
 from my_robot_basics.checks import CheckFailed, enough, passage, relays
-from relaying import Counts, check_delivery, check_late_joiner, monitor
+from relaying import (
+    Counts,
+    check_delivery,
+    check_late_joiner,
+    joint_states,
+    monitor,
+    pose,
+)
+from sensor_msgs.msg import JointState
 
 
 class DropsEverySecond(Counts):
@@ -126,6 +135,34 @@ def test_no_first_hundred_may_be_left_out_however_long_that_takes(run, monkeypat
     run(LeavesOutTheFirstHundred)
     with pytest.raises(CheckFailed, match='to be republished on /monitor/joint_states, unchanged'):
         check_delivery()
+
+
+def test_a_first_message_that_does_not_come_out_is_sent_now_and_then_for_ever(monkeypatch):
+    monkeypatch.setattr(relays, 'free_turns', lambda free_sec: iter(range(1, 201)))
+    monkeypatch.setattr(relays.RelayEndpoints, 'why_lost', lambda *_, **__: 'look')
+    watcher = SimpleNamespace(spin_until=lambda done, timeout_sec: done())
+    recorder, raised = SimpleNamespace(messages=list), SimpleNamespace(hint=str)
+    sent = []
+    with pytest.raises(CheckFailed, match='saw none in 4 s: look'):
+        joint_states._expect_out(
+            watcher, recorder, pose(), raised, again=SimpleNamespace(publish=sent.append)
+        )
+    assert len(sent) == 40 + 160 / 10
+
+
+def test_what_was_sent_again_and_again_is_known_to_those_that_look_for_others(run, monkeypatch):
+    earlier = []
+
+    class Told(passage.Passage):
+        def __init__(self, *args, **options):
+            earlier.append(options['earlier'])
+            super().__init__(*args, **options)
+
+    monkeypatch.setattr(relays, 'Passage', Told)
+    run(monitor.JointStateMonitor)
+    check_delivery()
+    check_late_joiner()
+    assert [type(message) for message in earlier] == [JointState, type(None)]
 
 
 @pytest.fixture

@@ -109,6 +109,12 @@ def test_how_an_answer_ended_in_the_hidden_part_is_for_instructors(cell, outputs
     assert (verdict.notes, verdict.details) == ((note,), details)
 
 
+def test_how_it_ended_there_stands_beside_what_failed_there(cell):
+    run = failing('AssertionError', '7 is not 5', ending='your code sent it SIGUSR1')
+    run.outputs.insert(0, nbformat.from_dict(said('began')))
+    assert judge(cell, run, []).details == '7 is not 5; your code sent it SIGUSR1'
+
+
 @pytest.mark.parametrize('earned', ['0.0', '3.0', '-1.0', 'nan', 'inf'])
 def test_no_other_number_of_points_is_a_part_of_them(cell, earned):
     run = failing('PartlyRight', '1 wrong')
@@ -177,6 +183,8 @@ def test_a_failure_tells_what_happened_in_the_students_own_cells(cell):
             ('IndentationError', 'unindent does not match (<tokenize>, line 5)'),
             'unindent does not match (line 5)',
         ),
+        (('SyntaxError', 'no end (<string>, line 1)'), 'SyntaxError: no end (line 1)'),
+        (('SyntaxError', 'no end (<ipython-input-3-a1>, line 1)'), 'SyntaxError: no end (line 1)'),
         (('NotImplementedError', ''), 'stopped with NotImplementedError'),
         (('OSError', 'no data.py: (x.py)'), 'stopped with OSError: no data.py: (x.py)'),
         (
