@@ -161,21 +161,36 @@ def test_reading_a_cell_runs_none_of_it(capfd):
     assert capfd.readouterr() == ('', '')
 
 
-@pytest.mark.parametrize('line', ['a?', '%a', '!a', 'a=%b', ',f a'])
-def test_magics_beyond_number_are_not_read(line):
-    """IPython would read all of the cell anew for each of them, and give up after 500."""
-    assert names_of(f'{line}\n' * 600) == Names()
-    assert names_of(f'x = 1\n{line}\n').bound >= {'x'}
-
-
-@pytest.mark.parametrize('text', [';', ',', '\t;'])
-def test_what_ipython_reads_again_and_again_is_left_soon(text, monkeypatch):
-    tokenized = []
+@pytest.fixture
+def tokenized(monkeypatch):
+    """An item for each time that IPython has read all of a cell."""
+    times = []
     monkeypatch.setattr(
         inputtransformer2,
         'make_tokens_by_line',
-        lambda lines: tokenized.append(1) or make_tokens_by_line(lines),
+        lambda lines: times.append(1) or make_tokens_by_line(lines),
     )
+    names_of.cache_clear()
+    return times
+
+
+@pytest.mark.parametrize('line', ['a?', '%a', '!a', 'a=%b', ',f a'])
+def test_magics_beyond_number_are_not_read(line, tokenized):
+    """IPython would read all of the cell anew for each of them, and give up after 500."""
+    assert names_of(f'{line}\n' * 600) == Names()
+    assert tokenized == []
+    assert names_of(f'x = 1\n{line}\n').bound >= {'x'}
+
+
+@pytest.mark.parametrize(('more', 'is_read'), [(0, True), (1, False)])
+def test_a_long_cell_with_a_magic_is_not_read(more, is_read, tokenized):
+    source = 'x = 1\n!ls\n#'
+    names = names_of(source + 'a' * (MAX_IPYTHON['characters'] - len(source) + more))
+    assert ('x' in names.bound, tokenized != []) == (is_read, is_read)
+
+
+@pytest.mark.parametrize('text', [';', ',', '\t;'])
+def test_what_ipython_reads_again_and_again_is_left_soon(text, tokenized):
     assert names_of(f'x = 1\n{text * 700}\n') == Names()
     assert len(tokenized) <= 2 * MAX_IPYTHON['lines']
 
