@@ -178,6 +178,18 @@ def test_a_helper_that_is_lent_brings_what_it_needs_along():
     assert [notebook.cells[i].source for i in first.demonstrations] == ['shown = 1']
 
 
+@pytest.mark.timeout(60)
+def test_shown_cells_that_need_one_another_are_run_once():
+    notebook = lesson(area='area = ping')
+    [ping] = [cell for cell in notebook.cells if cell.source == 'shown = 1']
+    pong = nbformat.from_dict(ping)
+    ping.source, pong.source = 'ping = pong', 'pong = ping'
+    notebook.cells.insert(notebook.cells.index(ping), pong)
+    first = next(plans(notebook, find_exercises(notebook)[0]))
+    shown = [notebook.cells[i].source for i in first.demonstrations]
+    assert shown == ['pong = ping', 'ping = pong']
+
+
 def test_many_cells_that_each_need_the_next_one_take_no_time():
     notebook = lesson(area='def area(r): return v0', at_start='# many')
     [many] = [cell for cell in notebook.cells if cell.source == '# many']
