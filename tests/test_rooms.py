@@ -467,6 +467,7 @@ LITERALS = {
     "'a'": True, '"a"': True, r"'\''": True, r"'\\'": True, "''": True, f"'{'x' * 60_000}'": True,
     "'a' 'b'": False, "'a' + 'b'": False, "'": False, '': False, "'a''": False, "'a\n'": False,
     r"'\x00\u2028\U000e0001e'": True, r"'\x0'": False, "'" + r'\xabcd' * 40: False,
+    "'" + r'\u2028ab' * 40: False, "'" + r'\U000e0001ab' * 40: False,
     "b'a'": False, "f'{1}'": False, '5': False, "['a']": False, "'a" + '\\' * 60_001 + "'": False,
 }  # fmt: skip
 
