@@ -249,6 +249,12 @@ def test_a_kernel_that_dies_is_noticed(spare, run, code):
     assert (again.died, again.ran_to_end, again.outputs) == (True, False, [])
 
 
+def test_a_kernel_whose_cell_calls_exit_ends_with_it_and_that_is_nobodys_doubt(spare, loop, run):
+    result = run(spare, 'exit()')
+    assert (result.leaves, result.died, spare.alive) == (True, True, False)
+    assert loop.run(spare.ending()) is None
+
+
 FLOODS = {
     'one huge text': "print('x' * 5_000_000)",
     'many lines': "for i in range(100_000): print(i)",
