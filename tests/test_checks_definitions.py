@@ -104,6 +104,7 @@ WRONG = {
     'hyphen': (turns('gear_ratios', 'gear-ratios'), 'lower case, with single _: gear_ratios'),
     'capital field': (turns('int32[2] turns', 'int32[2] Turns'), 'with single _: turns'),
     'constant in lower case': (turns('MOTOR1=0', 'motor1=0'), 'in capital letters (MOTOR1)'),
+    'constant of C': (turns('MOTOR1=0', 'motor1=0;'), 'no line ends with a semicolon'),
     'constant without =': (turns('MOTOR1=0', 'MOTOR1 0'), 'a constant has = and a value'),
     'default with =': (turns('gear_ratios [', 'gear_ratios = ['), 'is written without ='),
     'no separator': (count('---\n', ''), 'one line --- between the request and the response, and'),

@@ -49,8 +49,8 @@ def parse_line(package: str, line: str) -> Any:
         raise BadLine('rosidl takes no space before the type')
     if equals and not _CONSTANT_NAME.fullmatch(name):
         # a bound of an array, int32[<=60], may have its brackets in the wrong place
-        about_form = _about_form(type_name, rest) if name.endswith('<') else ''
-        raise BadLine(_about_characters(line) or about_form or _about_constant(type_name, name))
+        about_line = _about_characters(line) or _about_form(type_name, rest)
+        raise BadLine(about_line or _about_constant(type_name, name))
     try:
         return _parsed(package, line)
     except Exception as error:
