@@ -114,7 +114,7 @@ def _unpublished(error: BaseException) -> tuple[str, str]:
     """The field for which a message did not travel, and its type: rclpy's function has both."""
     for frame, _ in traceback.walk_tb(error.__traceback__):
         publisher, message = (frame.f_locals.get(name) for name in ('self', 'msg'))
-        if frame.f_code.co_name == 'publish' and isinstance(publisher, Publisher):
+        if isinstance(publisher, Publisher):
             type_: Any = publisher.msg_type
             if isinstance(message, type_):
                 path, _, type_name = wrong_field(message, type_)

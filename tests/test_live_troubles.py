@@ -1,0 +1,77 @@
+"""What is known of a node that does not go on: what it raised, and where it stands still."""
+
+import json
+from types import SimpleNamespace
+
+import pytest
+from my_robot_basics.doctor import inside
+from my_robot_basics.doctor.callback import Callback
+from my_robot_basics.live import exercise, troubles
+from rclpy.node import Node
+from sensor_msgs.msg import JointState
+
+from my_robot_basics import live
+
+
+@pytest.mark.parametrize('forget', [lambda: troubles.forget('/a'), troubles.forget_all])
+def test_what_could_not_be_published_is_forgotten_with_its_node(monkeypatch, forget):
+    monkeypatch.setattr(troubles, '_unpublished', lambda error: ('header.stamp', 'Time'))
+    troubles.remember('/a', TypeError('no stamp'))
+    assert (troubles.last('/a'), troubles.field('/a')[0]) == (
+        'TypeError: no stamp',
+        'header.stamp',
+    )
+    forget()
+    assert (troubles.last('/a'), troubles.times('/a')) == ('', 0)
+    assert troubles.field('/a') == ('', '')
+
+
+def test_what_a_library_raised_by_itself_is_told_with_its_own_line():
+    try:
+        json.loads('{')
+    except ValueError as error:
+        troubles.remember('/a', error.with_traceback(error.__traceback__.tb_next))
+    assert ', in raw_decode: ' in troubles.last('/a')
+    troubles.forget('/a')
+
+
+@pytest.mark.starts
+def test_what_is_no_message_has_no_field_that_is_wrong():
+    class Wrong(Node):
+        def __init__(self):
+            super().__init__('wrong')
+            self.publisher = self.create_publisher(JointState, '/wrong', 10)
+            self.create_timer(0.01, lambda: self.publisher.publish(5))
+
+    live.run(Wrong)
+    live.wait_until(lambda: troubles.times('/wrong') > 1)
+    assert troubles.last('/wrong').startswith('TypeError')
+    assert troubles.field('/wrong') == ('', '')
+    live.stop()
+
+
+def test_of_what_keeps_a_node_busy_the_line_is_told_that_is_known(monkeypatch):
+    def callback(line, *holds):
+        return Callback(node_name='', name='f', line=line, seconds=1.0, holds=holds)
+
+    found = [callback('line 1', '/b'), callback('', '/a'), callback('line 3', '/a', '/b')]
+    seen = SimpleNamespace(look=lambda: None, callbacks=lambda at_least_sec: found)
+    monkeypatch.setattr(inside, 'Inside', lambda: seen)
+    monkeypatch.setattr(troubles.time, 'sleep', lambda seconds: None)
+    assert troubles.unfinished('/a') == 'line 3'
+    assert troubles.unfinished('/b') == 'line 1'
+    assert troubles.unfinished('/c') == ''
+
+
+@pytest.mark.parametrize(
+    ('own', 'executor', 'is_idle'),
+    [(True, None, True), (True, 'spins', False), (False, None, False)],
+    ids=['left alone', 'spun', 'another node'],
+)
+def test_a_node_of_the_answer_that_nothing_spins_is_idle(own, executor, is_idle):
+    class Answer:
+        pass
+
+    node = Answer() if own else SimpleNamespace()
+    node.executor = executor
+    assert exercise._is_idle(Answer, node) == is_idle
