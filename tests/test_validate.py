@@ -123,6 +123,7 @@ BROKEN = {
         'stopped with SyntaxError: invalid syntax (line 1)',
     ),
     'one that ends the kernel': ({'to_joint_state': 'import os; os._exit(0)'}, 'ended the kernel'),
+    'one that calls exit': ({'to_joint_state': 'exit()'}, 'ended the kernel: it calls exit()'),
 }
 
 
