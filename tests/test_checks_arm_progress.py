@@ -2,6 +2,8 @@
 
 from types import SimpleNamespace
 
+import pytest
+from my_robot_basics.checks import CheckFailed, arm_refusals
 from my_robot_basics.checks.arm_progress import LATEST_SEC, is_under_way
 
 from arm_interfaces.action import MoveArm
@@ -54,3 +56,11 @@ def test_one_that_tells_no_more_may_have_stopped():
 def test_too_little_feedback_and_none_of_two_joints_tell_nothing():
     assert not is_slow(evenly(0.01)[:3])
     assert not is_slow(evenly(0.01), lengths=1)
+
+
+def test_who_rejects_haste_is_told_so_where_each_speed_has_to_be_accepted(monkeypatch):
+    arm = SimpleNamespace(send=lambda first, other: SimpleNamespace(goal=other))
+    monkeypatch.setattr(arm_refusals, 'look', lambda action, body, start: body(arm))
+    wanted = 'it rejected, and one at 0.5 rad/s accepted: each speed above 0 is right'
+    with pytest.raises(CheckFailed, match=wanted):
+        arm_refusals.expect_accepts(None, GOAL)

@@ -1,5 +1,6 @@
 """How exact a speed has to be, whatever the machine: 2 % of a robot minute."""
 
+import contextlib
 import itertools
 import random
 from types import SimpleNamespace
@@ -161,3 +162,21 @@ def test_feedback_that_goes_on_proves_a_request_that_waits(count, is_proof):
     told = [(asked_ns + step * 50_000_000, None) for step in range(-9, count)]
     sent = SimpleNamespace(feedback=lambda: told)
     assert _went_on_without_answer(sent, asked_ns) is is_proof
+
+
+@pytest.mark.parametrize(
+    ('part', 'goes_on', 'is_slow'),
+    [(0.4, True, True), (0.4, False, False), (0.6, True, False), (0.0, True, False)],
+    ids=['slow', 'stands still', 'late', 'tells nothing'],
+)
+def test_a_goal_without_an_end_is_one_of_a_slow_arm_by_its_feedback(
+    monkeypatch, part, goes_on, is_slow
+):
+    told = SimpleNamespace(rad_per_sec=part * SPEED)
+    monkeypatch.setattr(arm_speed, 'reported_speed', lambda *_: told)
+    monkeypatch.setattr(arm_speed, 'is_under_way', lambda *_: goes_on)
+    arm = SimpleNamespace(start=(0.0, 0.0))
+    sent = SimpleNamespace(goal=moves.goal(MINUTE, speed=SPEED))
+    slow = pytest.raises(CheckFailed, match='saw 150 s, as the feedback tells: in each step')
+    with slow if is_slow else contextlib.nullcontext():
+        arm_speed.expect_no_slow_move(arm, sent, MINUTE)
