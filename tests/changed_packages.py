@@ -144,6 +144,26 @@ RIGHT = (
 )
 
 
+RIGHT += (
+    Change(
+        'events_executor',
+        swap(
+            DRIVER,
+            (
+                'from rclpy.executors import ExternalShutdownException\n',
+                'from rclpy.executors import ExternalShutdownException\n'
+                'from rclpy.experimental.events_executor import EventsExecutor\n',
+            ),
+            (
+                '        rclpy.spin(ArmDriver())',
+                '        executor = EventsExecutor()\n        executor.add_node(ArmDriver())\n'
+                '        executor.spin()',
+            ),
+        ),
+    ),
+)
+
+
 def _in_turn(files: Files) -> None:
     """Each target is visited from the callback of the one before: nothing ever waits."""
     head, rest = files[PLAYER].split('    def play(self):')

@@ -13,6 +13,7 @@ from my_robot_basics.checks import CheckFailed, student
 from my_robot_basics.exchange import node_troubles, responder, values
 from my_robot_basics.graph.raised import what_raised, what_stopped
 from my_robot_basics.live import harmless_errors
+from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 
@@ -252,35 +253,6 @@ def test_how_often_a_callback_raised_is_told_until_its_node_ends(monkeypatch, en
     assert (node_troubles.last_raised('/raises'), node_troubles.times_raised('/raises')) == ('', 0)
 
 
-class Threaded(Node):
-    def __init__(self, work):
-        super().__init__('threaded')
-        threading.Thread(target=work, args=[self], daemon=True).start()
-
-
-def divide(node):
-    node.shares = 1 / 0
-
-
-@pytest.mark.starts
-@pytest.mark.filterwarnings('ignore::pytest.PytestUnhandledThreadExceptionWarning')
-def test_what_ended_a_thread_is_told_until_a_node_begins_anew(monkeypatch):
-    monkeypatch.delenv('MY_ROBOT_BASICS_ROOM', raising=False)
-    # each test has a hook of pytest's in place of the one that `live` makes once
-    monkeypatch.setattr(threading, 'excepthook', threading.excepthook)
-    monkeypatch.setattr(sys, 'unraisablehook', sys.unraisablehook)
-    harmless_errors.hide()
-    live.run(Threaded, divide)
-    live.wait_until(lambda: node_troubles.last_raised(''))
-    why = what_stopped(['/other', '/threaded'])
-    assert why.startswith('a thread of the notebook raised ZeroDivisionError: ')
-    assert re.search(r'line \d+, in divide: node\.shares = 1 / 0\)$', why)
-    assert what_raised(['/threaded']) == ''
-    live.run(Threaded, lambda node: None)
-    assert what_stopped(['/threaded']) == ''
-    live.stop()
-
-
 class Waits(Node):
     def __init__(self):
         super().__init__('waits')
@@ -304,6 +276,27 @@ def test_a_callback_that_does_not_return_is_told_with_its_line(monkeypatch):
     live.wait_until(lambda: node_troubles.last_raised('/raises'))
     assert what_stopped(['/raises']).startswith('its callback raised ZeroDiv')
     live.stop()
+
+
+@pytest.mark.starts
+@pytest.mark.parametrize('end', [live.reset, lambda: live.run(Node, 'next')], ids=['all', 'next'])
+def test_what_ended_a_thread_is_told_until_a_node_begins(monkeypatch, end):
+    monkeypatch.delenv('MY_ROBOT_BASICS_ROOM', raising=False)
+    monkeypatch.setattr(threading, 'excepthook', lambda args: None)
+    monkeypatch.setattr(sys, 'unraisablehook', sys.unraisablehook)
+    harmless_errors.hide()
+    for error in ExternalShutdownException(), ValueError('too far'):
+        threading.Thread(target=_raise, args=(error,)).start()
+    live.wait_until(lambda: node_troubles.last_raised(''))
+    said = r'a thread of the notebook raised ValueError: too far \(.*in _raise: raise error\)'
+    assert re.fullmatch(said, what_stopped(['/any']))
+    end()
+    assert what_stopped(['/any']) == ''
+    live.stop()
+
+
+def _raise(error):
+    raise error
 
 
 @pytest.mark.starts

@@ -58,12 +58,12 @@ def expect_cancels(
         expect_canceled(arm, sent)
         began, stopped = arm.start, list(sent.result.position)
         if stopped:
-            expect_on_the_way(sent, position, start=began)
+            expect_on_the_way(arm, sent, position, start=began)
             arm.start = tuple(stopped)
         moved = _expect_moves_on(arm, began, former=sent if stopped else None)
         # a server that fills in no result at all is told so by the check of those
         if not stopped and moved.result is not None and moved.result.position:
-            expect_on_the_way(sent, position, start=began)
+            expect_on_the_way(arm, sent, position, start=began)
 
     look(action, stops, start=start)
 

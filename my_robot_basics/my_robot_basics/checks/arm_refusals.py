@@ -114,4 +114,9 @@ def _why_wrong(wrong: MoveArm.Goal) -> str:
         return 'each comparison with NaN is False, so ask what is right: `goal.speed > 0`, say'
     if wrong.speed <= 0.0:
         return 'reject a goal whose speed is not above 0'
+    if all(angle <= limit for angle, limit in zip(wrong.position, LIMITS_RAD, strict=True)):
+        return (
+            'the limits hold on both sides: compare the size of each angle, abs(…), with its '
+            'limit in radians'
+        )
     return 'compare with radians(90) and radians(120): the positions are in radians'

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from my_robot_basics.checks import periods
+from my_robot_basics.checks import joints, periods
 from my_robot_basics.checks.action_ends import SentGoal
 from my_robot_basics.checks.actions import Action
 from my_robot_basics.checks.arm_looks import look
@@ -97,8 +97,7 @@ class MoveReport:
                 self._fail_position(
                     seen, 'put one position for each joint into feedback.position', 'two positions'
                 )
-        last = list(self.messages[-1].position)
-        far_deg = [math.degrees(each) for each in self.end]
+        last, far_deg = list(self.messages[-1].position), [*map(math.degrees, self.end)]
         if np.allclose(last, far_deg, atol=0.1 * max(map(abs, far_deg))):
             self._fail_position(
                 last,
@@ -118,6 +117,8 @@ class MoveReport:
         hint = 'move both joints by the same part of their ways, so that they arrive together'
         if self._off_line(positions, (0.0,) * len(self.end)).max() <= ON_LINE_RAD:
             hint = 'start from where the arm is, at each goal'
+        elif self._off_line(positions[:, ::-1], self.arm.start).max() <= ON_LINE_RAD:
+            hint = joints.SWAPPED
         self._fail_position(positions[int(off.argmax())], hint, 'positions on a straight line')
 
     def expect_steady(self) -> None:

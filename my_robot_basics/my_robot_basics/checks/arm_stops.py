@@ -1,9 +1,11 @@
 """What becomes of a goal of `/move_arm` that was cancelled: its status and its result."""
 
 import math
+from collections.abc import Sequence
 
 from my_robot_basics.checks.action_ends import SentGoal
 from my_robot_basics.checks.arm_moves import is_near, why_aborted
+from my_robot_basics.checks.joints import SWAPPED
 from my_robot_basics.checks.watched_arm import Pose, WatchedArm
 from my_robot_basics.feedback.errors import fail, shorten
 
@@ -27,23 +29,24 @@ def expect_canceled(arm: WatchedArm, sent: SentGoal) -> None:
     )
 
 
-def expect_on_the_way(sent: SentGoal, position: Pose, *, start: Pose) -> None:
+def expect_on_the_way(arm: WatchedArm, sent: SentGoal, position: Pose, *, start: Pose) -> None:
     """Its result holds a position between start and goal. Raises CheckFailed."""
     seen = list(sent.result.position)
-    ways = [b - a for a, b in zip(start, position, strict=True)]
-    joint = max(range(len(ways)), key=lambda number: abs(ways[number]))
     hint = ''
     if not seen:
-        hint = 'fill in the result of a goal that was cancelled, too: MoveArm.Result(position=…)'
-    elif len(seen) != len(ways) or not all(map(math.isfinite, seen)):
+        hint = arm.server.log.raised(since_ns=sent.sent_ns) or (
+            'fill in the result of a goal that was cancelled, too: MoveArm.Result(position=…)'
+        )
+    elif len(seen) != len(position) or not all(map(math.isfinite, seen)):
         hint = 'put one position for each joint into the result'
     elif is_near(seen, position):
         hint = _why_at_the_goal(sent, position)
-    else:
-        parts = [(each - a) / way for each, a, way in zip(seen, start, ways, strict=True) if way]
-        part = (seen[joint] - start[joint]) / ways[joint]
-        if not 0.0 < part < 1.0 or not all(-ON_LINE < each < 1.0 + ON_LINE for each in parts):
-            hint = 'put in where the arm was stopped, on its way, in radians'
+    elif not _is_between(seen, start, position):
+        hint = 'put in where the arm was stopped, on its way, in radians'
+        if _is_between(seen[::-1], start, position):
+            hint = SWAPPED
+        elif _is_between([math.radians(each) for each in seen], start, position):
+            hint = 'these are degrees: all positions of MoveArm are in radians'
     if hint:
         fail(
             expected='where the arm was stopped in the result',
@@ -51,6 +54,15 @@ def expect_on_the_way(sent: SentGoal, position: Pose, *, start: Pose) -> None:
             hint=hint,
             cause='the result of a cancelled goal is wrong',
         )
+
+
+def _is_between(seen: Sequence[float], start: Pose, goal: Pose) -> bool:
+    """Whether each joint is on its way, and the one that has farthest to go is not at its end."""
+    ways = [b - a for a, b in zip(start, goal, strict=True)]
+    parts = [(each - a) / way for each, a, way in zip(seen, start, ways, strict=True) if way]
+    joint = max(range(len(ways)), key=lambda number: abs(ways[number]))
+    part = (seen[joint] - start[joint]) / ways[joint]
+    return 0.0 < part < 1.0 and all(-ON_LINE < each < 1.0 + ON_LINE for each in parts)
 
 
 def _why_at_the_goal(sent: SentGoal, position: Pose) -> str:

@@ -13,6 +13,7 @@ MOST_JOINTS = 100
 """What has more is no pose of an arm, and is not looked at."""
 CLOSE_RAD = 0.02
 """A pose that was rounded to two decimals is no further off."""
+SWAPPED = 'the joints are swapped: θ1 belongs to joint1, and comes first'
 CONVERT = 'convert both angles with radians(), θ1 for joint1, θ2 for joint2'
 """What to try where nobody knows what a pose is instead. …"""
 CONVERT_EACH = (
@@ -107,7 +108,7 @@ def why_off(
         return 'a position is not a finite number (nan or inf), so check how it is computed'
     causes = {
         'these are degrees: convert both with radians()': pose_deg,
-        'the joints are swapped: θ1 belongs to joint1, and comes first': right[::-1],
+        SWAPPED: right[::-1],
         'radians() is called twice': [math.radians(angle) for angle in right],
         'degrees() converts the other way: call radians()': [math.degrees(a) for a in pose_deg],
         'joint2 is still in degrees: convert both with radians()': [right[0], pose_deg[1]],
