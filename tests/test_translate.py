@@ -178,6 +178,17 @@ def test_the_edit_of_one_sentence_puts_one_block_out_of_date(course):
     assert 'out of date: title: You double numbers. There are three ways.' in said
 
 
+def test_the_english_before_goes_with_the_mark_of_one_that_was_looked_at(course):
+    write_opening(course, OPENING.replace('two ways', 'three ways'))
+    update(course)
+    path = catalogue_path(course.root / 'locale', 'zh_CN', TOY)
+    text = path.read_text(encoding='utf-8')
+    path.write_text(text.replace('#, fuzzy\n', ''), encoding='utf-8')
+    assert of_the_toy(update(course)).outdated == ()
+    assert 'two ways' in text
+    assert 'two ways' not in path.read_text(encoding='utf-8')
+
+
 def test_before_any_update_the_edited_block_is_english_and_nothing_else_changes(course):
     (edition,) = editions(course)
     edited = OPENING.replace('two ways', 'three ways')

@@ -64,6 +64,11 @@ def _updated(path: Path, language: str, texts: Texts) -> Catalog:
     catalogue = _read(path, language)
     catalogue.update(template, update_creation_date=False)
     catalogue.obsolete.clear()
+    for message in catalogue:
+        if not message.fuzzy:  # somebody has removed the mark, and left the English before
+            message.user_comments = [
+                line for line in message.user_comments if not line.startswith('|')
+            ]
     return catalogue
 
 
