@@ -365,7 +365,7 @@ def test_a_lesson_that_was_released_again_grades_its_submissions_again(course, l
     submit(course, 'ada', answered(course, RIGHT, explained='so'))
     submit(course, 'bob', answered(course, WRONG))
     assert main(['grade'], course=course) == 0
-    assert 'changed' not in capsys.readouterr().out
+    assert 'score changed' not in capsys.readouterr().out
     score_by_hand(course, 'ada', 1.5)
     another_lesson(course, None)
     assert main(['release', TOY], course=course) == 0

@@ -58,6 +58,8 @@ rclpy.init()
 node = {{}}()
 {SPIN}
 """
+END_SEC = 20.0
+"""How long a process may take to end, on a busy machine."""
 
 
 def edited(source: str, *edits: tuple[str, str]) -> str:
@@ -94,4 +96,8 @@ def process(command: list[str], **environment: str) -> Iterator[None]:
         yield
     finally:
         started.terminate()
-        started.wait()
+        try:
+            started.wait(END_SEC)
+        except subprocess.TimeoutExpired:  # rclpy may lose a signal that comes as it begins
+            started.kill()
+            started.wait()
