@@ -26,6 +26,19 @@ def test_what_could_not_be_published_is_forgotten_with_its_node(monkeypatch, for
     assert troubles.field('/a') == ('', '')
 
 
+def test_what_raised_is_told_and_counted_once_all_else_of_it_is_known(monkeypatch):
+    known = []
+
+    def look(error):
+        known.append((troubles.last('/a'), troubles.times('/a')))
+        return '', ''
+
+    monkeypatch.setattr(troubles, '_unpublished', look)
+    troubles.remember('/a', TypeError('no stamp'))
+    assert known == [('', 0)]
+    troubles.forget('/a')
+
+
 def test_what_a_library_raised_by_itself_is_told_with_its_own_line():
     try:
         json.loads('{')

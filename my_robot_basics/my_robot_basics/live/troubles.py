@@ -39,11 +39,13 @@ def remember(node_name: str, error: BaseException) -> None:
     frames = _frames(error)
     own = [frame for frame in frames if not frame.filename.startswith(_OF_A_LIBRARY)]
     place = _line((own or frames)[-1]) if frames else ''
-    _last[node_name] = f'{what} ({place})' if place else what
-    _times[node_name] = times(node_name) + 1
+    told = f'{what} ({place})' if place else what
     _fields[node_name] = _unpublished(error)
     if node_name != THREADS and (service_name := _service(error)):
-        _of_services[node_name, service_name] = _last[node_name]
+        _of_services[node_name, service_name] = told
+    # last: a check in another thread that knows of these asks for the others at once
+    _last[node_name] = told
+    _times[node_name] = times(node_name) + 1
 
 
 def forget(node_name: str) -> None:
