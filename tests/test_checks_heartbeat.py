@@ -66,7 +66,7 @@ def test_only_a_silence_that_the_machine_does_not_explain_counts(
 ):
     fake = Fake(beats_sec, free_share=free_share)
     monkeypatch.setattr(heartbeat, 'Stopwatch', fake.stopwatch)
-    monkeypatch.setattr(heartbeat.node_troubles, 'times_raised', lambda name: 0)
+    monkeypatch.setattr(heartbeat, 'wait_for_turn', lambda: None)
     assert heartbeat.Heartbeat(fake, SimpleNamespace(received=fake.received)).goes_on() is goes_on
 
 
@@ -102,7 +102,7 @@ def test_who_waits_upon_each_message_does_not_go_on_however_busy_the_machine_is(
 ):
     fake = Waits(waits_sec, free_share=BUSY)
     monkeypatch.setattr(heartbeat, 'Stopwatch', fake.stopwatch)
-    monkeypatch.setattr(heartbeat.node_troubles, 'times_raised', lambda name: 0)
+    monkeypatch.setattr(heartbeat, 'wait_for_turn', lambda: None)
     beats = heartbeat.Heartbeat(fake, SimpleNamespace(received=fake.received))
     assert (beats.goes_on(fake.send), fake.sent) == (goes_on, sent)
 
@@ -111,6 +111,6 @@ def test_a_machine_that_holds_everything_up_holds_up_no_message(monkeypatch):
     fake = Waits([1.0] * 3, free_share=BUSY)
     fake.beats_sec = every(0.7)
     monkeypatch.setattr(heartbeat, 'Stopwatch', fake.stopwatch)
-    monkeypatch.setattr(heartbeat.node_troubles, 'times_raised', lambda name: 0)
+    monkeypatch.setattr(heartbeat, 'wait_for_turn', lambda: None)
     beats = heartbeat.Heartbeat(fake, SimpleNamespace(received=fake.received))
     assert beats.goes_on(fake.send)

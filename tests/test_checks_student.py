@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from builtin_interfaces.msg import Time
 from my_robot_basics.checks import CheckFailed, student
-from my_robot_basics.exchange import node_troubles, responder, values
+from my_robot_basics.exchange import node_troubles, responder, values, wire
 from my_robot_basics.graph.raised import what_raised, what_stopped
 from my_robot_basics.live import harmless_errors
 from rclpy.executors import ExternalShutdownException
@@ -287,7 +287,7 @@ def test_what_ended_a_thread_is_told_until_a_node_begins(monkeypatch, end):
     harmless_errors.hide()
     for error in ExternalShutdownException(), ValueError('too far'):
         threading.Thread(target=_raise, args=(error,)).start()
-    live.wait_until(lambda: node_troubles.last_raised(''))
+    live.wait_until(lambda: node_troubles.last_raised(wire.THREADS))
     said = r'a thread of the notebook raised ValueError: too far \(.*in _raise: raise error\)'
     assert re.fullmatch(said, what_stopped(['/any']))
     end()

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from my_robot_basics.checks.recorder import Recorder
-from my_robot_basics.exchange import node_troubles
+from my_robot_basics.exchange.asking import wait_for_turn
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
 
@@ -83,7 +83,7 @@ class Heartbeat:
                 lambda: len(self._recorder.received) > before, timeout_sec=LOOK_SEC
             ):
                 return _Pause(watch.wall_sec(), is_over=True)
-            node_troubles.times_raised('')  # its process has had a turn when that is answered
+            wait_for_turn()
             looks += 1
             sec = watch.wall_sec()
             if looks >= LOOKS and watch.free_sec() >= STILL_SEC:

@@ -1,6 +1,6 @@
 """Whether somebody serves: that nobody but the check does, and that the check no longer does."""
 
-from my_robot_basics.exchange import node_troubles
+from my_robot_basics.exchange.asking import wait_for_turn
 from my_robot_basics.feedback.errors import expect
 from my_robot_basics.feedback.hidden import theirs
 from my_robot_basics.graph import services
@@ -32,4 +32,4 @@ def wait_until_known(watcher: Watcher) -> None:
     """Wait until the student's node has had the time to know that the check's server has gone."""
     for _ in range(TURNS):
         watcher.spin_until_free(lambda: False, free_sec=TURN_SEC)
-        node_troubles.times_raised('')
+        wait_for_turn()

@@ -11,6 +11,11 @@ def send(question: str) -> str:
     return input(question) if is_in_test_room() else responder.answer(question)
 
 
+def wait_for_turn() -> None:
+    """Return once the notebook has answered something: its process has had a turn."""
+    send(wire.request(op='raised', name=wire.THREADS))
+
+
 def told(question: str) -> Any:
     """Return what the notebook answers, or None where it has no value to tell."""
     try:

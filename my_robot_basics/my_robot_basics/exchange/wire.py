@@ -8,6 +8,8 @@ from my_robot_basics.exchange.values import WireError, decode, encode
 
 PROTOCOL = 'my_robot_basics.student/1'
 MOST_BYTES = 64 * 1024
+THREADS = ''
+"""Stands for the threads that the notebook has begun itself, in the place of a node's name."""
 _REPLIES = {'ok': object, 'raised': dict, 'missing': str, 'unsupported': str, 'failed': str}
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from my_robot_basics.exchange import node_troubles
+from my_robot_basics.exchange import node_troubles, wire
 from my_robot_basics.feedback.hidden import raised as safely
 from my_robot_basics.feedback.hidden import theirs
 
@@ -41,5 +41,5 @@ def what_ended_a_thread() -> str:
 
     An executor of the student's own may have run there: then nothing of its nodes goes on.
     """
-    said = node_troubles.last_raised('')
+    said = node_troubles.last_raised(wire.THREADS)
     return f'a thread of the notebook raised {safely(said)}' if said else ''

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from rclpy.executors import Executor, ExternalShutdownException
 from rclpy.signals import SignalHandlerGuardCondition
 
+from my_robot_basics.exchange.wire import THREADS
 from my_robot_basics.live import troubles
 
 _OF_EXECUTORS = {each.__del__.__qualname__ for each in (Executor, SignalHandlerGuardCondition)}
@@ -30,7 +31,7 @@ def _without_shutdowns(
         if args.exc_type and issubclass(args.exc_type, ExternalShutdownException):
             return
         if args.exc_value is not None:
-            troubles.remember(troubles.THREADS, args.exc_value)
+            troubles.remember(THREADS, args.exc_value)
         former(args)
 
     return hook

@@ -1,16 +1,12 @@
 """Pictures of when messages arrive: how evenly, how late, and which of them never do."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from my_robot_basics.drawing.described import gettext_noop
 from my_robot_basics.drawing.figures import png
 from my_robot_basics.live import notebook
-
-if TYPE_CHECKING:
-    pass
 
 # Okabe and Ito's colours are told apart by everyone; what is lost has another shape, too
 ARRIVED, LOST, BUSY = '#0072b2', '#d55e00', '#e69f00'

@@ -10,11 +10,10 @@ import rclpy
 from rclpy.publisher import Publisher
 from rclpy.service import Service
 
+from my_robot_basics.exchange.wire import THREADS
 from my_robot_basics.exchange.wrong_fields import wrong_field
 
 UNFINISHED_SEC = 0.5
-THREADS = ''
-"""Stands for the threads that the notebook has begun itself, in the place of a node's name."""
 _last: dict[str, str] = {}
 """What a callback of a node raised last, by the node's full name."""
 _times: dict[str, int] = {}
