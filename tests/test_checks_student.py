@@ -279,7 +279,7 @@ def test_a_callback_that_does_not_return_is_told_with_its_line(monkeypatch):
 
 
 @pytest.mark.starts
-@pytest.mark.parametrize('end', [live.reset, lambda: live.run(Node, 'next')], ids=['all', 'next'])
+@pytest.mark.parametrize('end', [lambda: live.run(Node, 'next'), live.reset], ids=['next', 'all'])
 def test_what_ended_a_thread_is_told_until_a_node_begins(monkeypatch, end):
     monkeypatch.delenv('MY_ROBOT_BASICS_ROOM', raising=False)
     monkeypatch.setattr(threading, 'excepthook', lambda args: None)
