@@ -120,6 +120,16 @@ def test_a_title_is_true_of_what_failed():
     assert page_parts._check(cell).title == 'The others are right'
 
 
+def test_what_to_try_is_what_the_check_has_told_whatever_colons_are_in_it():
+    reason = 'expected {1: 2}, saw E: no: its thread raised E: no, so fix that first: it ended'
+    hint = 'its thread raised E: no, so fix that first: it ended'
+    assert page_parts._parts(reason, hint, 'en') == {
+        'expected': '{1: 2}',
+        'seen': 'E: no',
+        'hint': hint,
+    }
+
+
 def test_no_hidden_test_is_shown_but_its_open_part_is(course):
     html = feedback(course, 'ada', answered(course, RIGHT))
     graded = (course.folder('autograded', 'ada', TOY) / f'{TOY}.ipynb').read_text()

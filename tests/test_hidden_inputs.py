@@ -192,6 +192,19 @@ def test_of_an_exception_only_a_name_of_pythons_own_is_told(told, said, kept):
     assert hidden.without_inputs(hidden.raised(said)) == kept
 
 
+@pytest.mark.parametrize(
+    ('quiet', 'hints'), [(False, ['it ended: /a']), (True, [])], ids=['visible', 'hidden']
+)
+def test_a_visible_part_alone_hands_over_which_words_are_its_hint(monkeypatch, quiet, hints):
+    said = []
+    monkeypatch.setenv('MY_ROBOT_BASICS_ROOM', 'test')
+    monkeypatch.setattr(hidden, '_quiet', quiet)
+    monkeypatch.setattr(hidden, '_display', lambda mime, text: said.append((mime, text)))
+    with pytest.raises(CheckFailed):
+        fail(expected=1, seen=2, hint=f'it ended: {hidden.theirs("/a")}')
+    assert [text for mime, text in said if mime == hidden._HINT] == hints
+
+
 def test_a_visible_part_tells_all(monkeypatch):
     monkeypatch.setattr(hidden, '_quiet', False)
     with pytest.raises(CheckFailed, match=r'^expected 1, saw 2\.25: add /a$'):

@@ -90,6 +90,19 @@ def test_a_failure_says_whether_it_is_of_what_students_are_given(cell, outputs, 
     assert cell.metadata[KEY].failed_at_grading is only_there
 
 
+def test_the_hint_is_the_one_of_this_reason(cell):
+    """A check may have met another failure before, and gone on."""
+    hints = 'see b', 'fix: that', 'fix: this'
+    told = [new_output('display_data', {'application/vnd.my_robot_basics.hint': h}) for h in hints]
+    run = failing(value='expected 1: 2, saw 2: 3: fix: this')
+    run.outputs[:0] = map(nbformat.from_dict, told)
+    verdict = judge(cell, run, [])
+    assert verdict.hint == 'fix: this'
+    write_verdict(cell, verdict, run.outputs)
+    assert [output.output_type for output in cell.outputs] == ['error']
+    assert cell.metadata[KEY].hint == 'fix: this'
+
+
 @pytest.mark.parametrize(
     ('outputs', 'note', 'details'),
     [
@@ -241,6 +254,7 @@ def test_a_failure_is_written_as_one_error_without_the_test(cell):
         'details': '',
         'failed_at_grading': False,
         'earned': 0.0,
+        'hint': '',
     }
 
 

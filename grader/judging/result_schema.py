@@ -69,6 +69,7 @@ _VERDICT = jsonschema.Draft202012Validator(
             'details': {'type': 'string', 'maxLength': MAX_REASON_CHARACTERS},
             'earned': {'type': 'number', 'minimum': 0},
             'failed_at_grading': {'type': 'boolean'},
+            'hint': {'type': 'string', 'maxLength': MAX_REASON_CHARACTERS},
         },
         'required': ['role', 'outcome', 'reason', 'notes'],
         'additionalProperties': False,

@@ -19,7 +19,7 @@ from grader.notebook.restore import KEY, grade_id, role
 MAX_TEXT_CHARACTERS = 5_000
 """What is shown of one output."""
 
-_REASON = re.compile(r'expected (?P<expected>.+?), saw (?P<seen>.+): (?P<hint>.+)', re.DOTALL)
+_REASON = '(?s)expected (?P<expected>.+?), saw (?P<seen>.+): (?P<hint>{hint})'
 _BASE64 = re.compile(r'[A-Za-z0-9+/=\s]+')
 
 
@@ -115,17 +115,17 @@ def _check(cell: NotebookNode, language: str = ENGLISH) -> CheckedCell:
         comment='' if is_answer else marks.get('comment') or '',
         outputs=() if is_answer else tuple(_outputs(cell, about=title, reason=reason)),
         source='' if is_answer else cell.source.strip(),
-        **_parts(reason, language),
+        **_parts(reason, verdict.get('hint', ''), language),
     )
 
 
-def _parts(reason: str, language: str) -> dict[str, str]:
+def _parts(reason: str, hint: str, language: str) -> dict[str, str]:
     """Return what was expected and seen, and what to try, in a language; blanks if it says none.
 
-    A hint may have a colon in it, and so may what was seen: a catalogue tells which words belong
-    together.
+    A hint may have a colon in it, and so may what was seen: the check has told which is the hint,
+    and a catalogue tells which words belong together.
     """
-    said = _REASON.fullmatch(reason)
+    said = re.fullmatch(_REASON.format(hint=re.escape(hint) or '.+'), reason)
     if said is None:
         return {'expected': '', 'seen': '', 'hint': ''}
     parts = {} if language == ENGLISH else sentences(language).parts(REASON, reason)

@@ -84,8 +84,10 @@ def fail(
         hidden.tell_grader(sentence)
         why = hidden.without_inputs(f'{cause}: {hint}' if cause else hint)
         sentence = f'{hidden.PLACE}{why}'
-    elif picture is not None:
-        show(picture, alt=f'Picture of what was seen: {seen}')
+    else:
+        hidden.tell_hint(hidden.in_full(hint))
+        if picture is not None:
+            show(picture, alt=f'Picture of what was seen: {seen}')
     failure = Failure(sentence)
     failure.repeat = partial(fail, expected=expected, seen=seen, hint=hint, cause=cause)
     raise failure

@@ -26,7 +26,9 @@ chosen. …"""
 _DETAILS = 'application/vnd.my_robot_basics.details'
 """… Of this one, too: the sentence that a student is not told. …"""
 _POINTS = 'application/vnd.my_robot_basics.points'
-"""… And of this one: the points that a check leaves which fails."""
+"""… Of this one: the points that a check leaves which fails. …"""
+_HINT = 'application/vnd.my_robot_basics.hint'
+"""… And of this one: which words of its sentence say what to try."""
 _BEGAN, _INPUTS, _ALREADY = 'began', 'inputs', 'already'
 
 _OPEN, _CLOSE = '\u2068', '\u2069'
@@ -125,6 +127,17 @@ def points_in(outputs: Iterable[Any]) -> float:
     return float(next(iter(_said(outputs, _POINTS)), 0.0))
 
 
+def tell_hint(hint: str) -> None:
+    """Hand over which words at the end of a sentence say what to try."""
+    if is_in_test_room():
+        _display(_HINT, hint)
+
+
+def hint_in(outputs: Iterable[Any], reason: str) -> str:
+    """The words at a reason's end that were handed over, or ''."""
+    return next((said for said in _said(outputs, _HINT) if reason.endswith(f': {said}')), '')
+
+
 @contextmanager
 def said_in_full() -> Iterator[None]:
     """For what a check says of a student's work without a word of any hidden input."""
@@ -174,7 +187,7 @@ def _said(outputs: Iterable[Any], mime: str) -> list[str]:
 
 
 def _is_for_the_grader(output: Any) -> bool:
-    return bool({_MARK, _DETAILS, _POINTS} & {*(output.get('data') or ())})
+    return bool({_MARK, _DETAILS, _POINTS, _HINT} & {*(output.get('data') or ())})
 
 
 def _display(mime: str, text: str) -> None:

@@ -159,7 +159,8 @@ async def _explained_in_full(notebook: NotebookNode, rooms: Rooms, cut: Checks) 
             run = await rooms.run_check(marked(visible(cell.source)))
             again = judge(cell, run, [])
             if again.outcome == 'failed':
-                explained[index] = replace(verdict, reason=again.reason, details=''), run.outputs
+                told = replace(verdict, reason=again.reason, hint=again.hint, details='')
+                explained[index] = told, run.outputs
     return explained
 
 

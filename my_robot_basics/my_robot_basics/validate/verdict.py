@@ -49,6 +49,8 @@ class Verdict:
     """The points of a `partial` outcome."""
     failed_at_grading: bool = False
     """Whether what students can run of it passed, and what is checked at grading did not."""
+    hint: str = ''
+    """The words at the reason's end that say what to try, where the check has told which."""
 
     @property
     def score(self) -> float | None:
@@ -83,15 +85,15 @@ def judge(cell: NotebookNode, run: CellRun | None, own: Iterable[tuple[str, Cell
         details = '; '.join(filter(None, (details, run.ending)))
     elif run.ending:
         notes += (f'what you started has ended: {run.ending}',)
-    beyond = hidden.failed_only_there(run.outputs)
+    beyond, hint = hidden.failed_only_there(run.outputs), hidden.hint_in(run.outputs, reason)
     if run.error.ename != 'PartlyRight':
-        return Verdict(name, 'failed', points, reason, notes, details, failed_at_grading=beyond)
+        return Verdict(name, 'failed', points, reason, notes, details, 0.0, beyond, hint)
     earned = hidden.points_in(run.outputs)
     if not 0.0 < earned < points:
         raise RoomFailure(
             f'the check `{name}` came to no verdict: {earned:g} of {points:g} points'
         )
-    return Verdict(name, 'partial', points, reason, notes, details, earned, beyond)
+    return Verdict(name, 'partial', points, reason, notes, details, earned, beyond, hint)
 
 
 def ungraded(cell: NotebookNode, why: str) -> Verdict:
@@ -132,6 +134,7 @@ def write_verdict(cell: NotebookNode, verdict: Verdict, outputs: Iterable[Notebo
         'details': verdict.details,
         'earned': verdict.earned,
         'failed_at_grading': verdict.failed_at_grading,
+        'hint': verdict.hint,
     }
     if verdict.outcome == 'failed':
         error = nbformat.v4.new_output(
