@@ -1,5 +1,6 @@
 """What every test session needs: a ROS domain of its own, and kernels that know of no pytest."""
 
+import asyncio
 import os
 import shutil
 import signal
@@ -9,6 +10,7 @@ import time
 from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import _pytest.runner
 import nbgrader.api
@@ -19,6 +21,9 @@ from my_robot_basics.session import classroom
 from grader.authoring import release
 from grader.kernels.isolation import TRUST, missing
 from tests import ordinary, preloaded, tiers  # also where nbval runs with this as a plugin
+
+if TYPE_CHECKING:
+    from grader.sandbox.sandbox import Sandbox
 
 # a busy machine fails no test
 settings.register_profile('busy', deadline=None, suppress_health_check=[HealthCheck.too_slow])
@@ -40,7 +45,7 @@ LONG = (
     *('lesson_own_program', 'package', 'formgrader', 'validate', 'ros2_graph', 'lessons_run'),
     *('full_disk', 'accessibility', 'live_target', 'hidden_inputs', 'isolation', 'execute'),
     *('ros2_service', 'rooms', 'bundle', 'feedback', 'collect', 'report', 'live_arm'),
-    *('live_interrupts', 'course', 'checks_relays'),
+    *('live_interrupts', 'course', 'checks_relays', 'sandbox_share'),
 )
 """Files that take longest come first: begun at the end, one would be waited for alone. Those that
 keep processors busy stand beside those that wait: all at once, each would take longer."""
@@ -213,6 +218,33 @@ def signals() -> Iterator[None]:
 # that a test starts would inherit it: notebooks would behave otherwise than for a student. A hook
 # cannot delete it: pytest sets it in the same step that runs the test.
 _pytest.runner._update_current_test_var = lambda item, when: None
+
+
+@pytest.fixture(scope='module')
+def loop() -> Iterator[asyncio.Runner]:
+    """What runs the coroutines of a file's tests, all in one event loop."""
+    with asyncio.Runner() as runner:
+        yield runner
+
+
+@pytest.fixture
+@tiers.starts
+def sandbox(loop: asyncio.Runner) -> Iterator['Sandbox']:
+    """A sandbox of one test's own."""
+    from inside_sandbox import opened  # not before: most need no sandbox
+
+    with opened(loop) as sandbox:
+        yield sandbox
+
+
+@pytest.fixture(scope='module')
+@tiers.starts
+def shared_sandbox(loop: asyncio.Runner) -> Iterator['Sandbox']:
+    """A sandbox for all tests of a file that do it no harm."""
+    from inside_sandbox import opened
+
+    with opened(loop) as sandbox:
+        yield sandbox
 
 
 @pytest.fixture

@@ -23,7 +23,7 @@ FEW = 1
 """How many cases of a test without a row."""
 ORDINARY = {
     # they are quick, and each is another limit, or another end
-    'test_sandbox::test_a_room_can_use_up_only_its_share': ALL,
+    'test_sandbox_share::test_a_room_can_use_up_only_its_share': ALL,
     'test_sandbox::test_the_course_and_the_machines_own_are_not_there': ALL,
     'test_kernels::test_a_cell_comes_to_its_end': ALL,
     'test_execute::test_what_others_may_be_to_blame_for_is_looked_at_again_and_burning_time_gains_nothing': ALL,  # noqa: E501

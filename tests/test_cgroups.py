@@ -1,6 +1,5 @@
 """What Linux counts of a room, what it does when that is too much, and that nothing is left."""
 
-import asyncio
 import dataclasses
 import os
 import signal
@@ -31,12 +30,6 @@ def needs_cgroups():
         hierarchies()
     except NoCgroups as problem:
         pytest.skip(f'no cgroup can be had here: {problem}')
-
-
-@pytest.fixture(scope='module')
-def loop():
-    with asyncio.Runner() as runner:
-        yield runner
 
 
 @pytest.fixture

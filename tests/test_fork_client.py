@@ -1,7 +1,6 @@
 """A forked kernel is the kernel that would have been started: no more, no less."""
 
 import ast
-import asyncio
 import functools
 import os
 import time
@@ -27,12 +26,6 @@ from grader.sandbox.bubblewrap import slot_user
 pytestmark = pytest.mark.isolation
 
 SEED = 'canary-seed-' + '5eed' * 8
-
-
-@pytest.fixture(scope='module')
-def loop():
-    with asyncio.Runner() as runner:
-        yield runner
 
 
 @pytest.fixture(scope='module')

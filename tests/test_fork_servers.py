@@ -34,12 +34,6 @@ from grader.sandbox.sandbox import Sandbox
 pytestmark = pytest.mark.isolation
 
 
-@pytest.fixture(scope='module')
-def loop():
-    with asyncio.Runner() as runner:
-        yield runner
-
-
 @pytest.fixture
 def forked(loop):
     yield from kernel_of(loop)

@@ -34,12 +34,6 @@ DOMAIN = 0
 
 
 @pytest.fixture(scope='module')
-def loop():
-    with asyncio.Runner() as runner:
-        yield runner
-
-
-@pytest.fixture(scope='module')
 def shared(loop):
     """A kernel for cells that do it no harm."""
     kernel = GradingKernel(room='student', domain_id=DOMAIN)

@@ -35,12 +35,6 @@ except ChildProcessError:
 
 
 @pytest.fixture(scope='module')
-def loop():
-    with asyncio.Runner() as runner:
-        yield runner
-
-
-@pytest.fixture(scope='module')
 def shared(loop, tmp_path_factory):
     """Rooms whose student handed in files that would like to shadow others."""
     folder = tmp_path_factory.mktemp('handed_in')
