@@ -7,6 +7,9 @@ import subprocess
 import time
 import urllib.request
 import zipfile
+from importlib.machinery import SourceFileLoader
+from importlib.util import cache_from_source
+from pathlib import Path
 
 import pytest
 from course_maker import TOY, make_course
@@ -211,6 +214,23 @@ def test_the_same_files_give_the_same_bytes(made, course, fresh_lessons, tmp_pat
     (course.root / 'notebooks/.ipynb_checkpoints/x.ipynb').touch()
     bundle(course, tmp_path / 'two.zip')
     assert (tmp_path / 'one.zip').read_bytes() == (tmp_path / 'two.zip').read_bytes()
+
+
+def test_a_new_version_that_is_unpacked_over_the_old_one_is_what_runs(
+    course, fresh_lessons, tmp_path
+):
+    module = 'my_robot_basics/my_robot_basics/units.py'
+    for value in 1, 2:
+        (course.root / module).write_text(f'VALUE = {value}\n')
+        bundle(course, tmp_path / 'students.zip')
+        with zipfile.ZipFile(tmp_path / 'students.zip') as box:
+            [info] = [each for each in box.infolist() if each.filename.endswith(module)]
+            path = Path(box.extract(info, tmp_path))
+        os.utime(path, (time.mktime((*info.date_time, 0, 0, -1)),) * 2)  # as unzip does
+        seen = {}
+        exec(SourceFileLoader('units', str(path)).get_code('units'), seen)  # it keeps bytecode
+        assert Path(cache_from_source(path)).is_file()
+        assert seen['VALUE'] == value
 
 
 @pytest.mark.starts  # to release takes long

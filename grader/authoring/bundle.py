@@ -1,8 +1,6 @@
 """Make the students' zip: what is on a list, nothing else, and nothing of it stale or telling."""
 
-import io
 import tempfile
-import zipfile
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fnmatch import fnmatch
@@ -17,6 +15,7 @@ from grader.authoring.index import INDEX, copied_pages
 from grader.authoring.leaks import files_in, leaks_beside
 from grader.authoring.quizzes import quizzes
 from grader.authoring.release import stale_or_leaking
+from grader.authoring.reproducible_zip import zipped
 from grader.common.errors import CourseError
 from grader.common.files import write_whole
 from grader.course import Course
@@ -54,9 +53,7 @@ IN_INTERFACES: tuple[str, ...] = ('package.xml', 'CMakeLists.txt', 'srv/*.srv', 
 IN_INTERFACES += ('wheel/*.py', 'wheel/abi3.h', 'wheel/*.whl')
 PACKAGES = {PACKAGE: IN_PACKAGE, INTERFACES: IN_INTERFACES}
 MADE_BY_TOOLS = ('*__pycache__*', '*.egg-info*', 'build/*', 'install/*', 'log/*')
-EXECUTABLE = ('course',)
-LONG_AGO = (1980, 1, 1, 0, 0, 0)
-"""The time of each file, so that the same files give the same zip."""
+EXECUTABLE = (f'{FOLDER}/course',)
 
 
 @dataclass(frozen=True)
@@ -86,7 +83,7 @@ def bundle(course: Course, target: Path) -> Bundle:
     faults += leaks_beside(course, {n: c for n, c in files.items() if not _is_lesson(course, n)})
     if faults:
         raise CourseError('no bundle was made: ' + '; '.join(faults))
-    packed = _zipped(files)
+    packed = zipped(files, EXECUTABLE)
     _check_target(target)  # what was read has made gradebook/, where there was none
     target.parent.mkdir(parents=True, exist_ok=True)
     write_whole(target, packed)
@@ -181,15 +178,3 @@ def _is_lesson(course: Course, name: str) -> bool:
         for folder in _folders(course)
         for each in course.assignments()
     )
-
-
-def _zipped(files: dict[str, bytes]) -> bytes:
-    packed = io.BytesIO()
-    with zipfile.ZipFile(packed, 'w') as box:
-        for name, content in files.items():
-            info = zipfile.ZipInfo(name, LONG_AGO)
-            info.create_system = 3  # Unix, whose rights are kept
-            mode = 0o755 if name.removeprefix(f'{FOLDER}/') in EXECUTABLE else 0o644
-            info.external_attr = (0o100000 | mode) << 16
-            box.writestr(info, content, zipfile.ZIP_DEFLATED, 9)
-    return packed.getvalue()
