@@ -19,7 +19,7 @@ from grader.common.errors import GradebookError
 from grader.common.text import printable
 from grader.serving import desk as desk_module
 from grader.serving import inbound as inbound_module
-from grader.serving import reception
+from grader.serving import intake, reception
 from grader.serving import rounds as rounds_module
 from grader.serving.desk import Desk
 from grader.serving.inbound import Entry, new_entries
@@ -446,6 +446,30 @@ def test_the_many_entries_of_one_hide_nobodys_that_waits_for_a_person(course, in
         assert any('honest_00_tyo' in line for line in status_lines(course, queue))
         page = write_status_page(course, queue).read_text(encoding='utf-8')
     assert '7 more before these: ./course serve --status' in page
+
+
+@pytest.mark.parametrize(('limit', 'most'), [('MOST_KEPT', 2), ('MOST_KEPT_BYTES', 50_000)])
+def test_nobody_fills_the_disk_by_handing_in(course, inbound, at_once, monkeypatch, limit, most):
+    """What is left out lies where it was handed in, and counts for nobody else."""
+    monkeypatch.setattr(intake, limit, most)
+    notebook = answered(course, RIGHT)
+    for number in range(4):
+        notebook.cells[-1].source = f'{number}' * 15_000
+        (inbound / f'mallory_{TOY}.ipynb').write_text(nbformat.writes(notebook))
+        serve_here(course, inbound)
+    (inbound / f'zoe_{TOY}.ipynb').write_text(nbformat.writes(notebook))
+    serve_here(course, inbound)
+    found = arrivals(course)
+    assert [each.student_id for each in found if each.state == GRADED][-1] == 'zoe'
+    (refused,) = (each for each in found if each.state == REFUSED)
+    assert 'submissions for 00_toy of mallory are kept, in ' in refused.reason
+    assert f'nobody needs from gradebook/submitted_before/mallory/{TOY}' in refused.reason
+    kept = course.folder('submitted_before', 'mallory', TOY)
+    assert 1 <= len(list(kept.iterdir())) <= 2
+    shutil.rmtree(kept)
+    (inbound / f'mallory_{TOY}.ipynb').touch()
+    serve_here(course, inbound)
+    assert not [each for each in arrivals(course) if each.state == REFUSED]
 
 
 def test_what_is_refused_again_and_again_is_listed_once(course, inbound, at_once):

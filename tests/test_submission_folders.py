@@ -5,7 +5,7 @@ import os
 import pytest
 
 from grader.collect import submission_folders
-from grader.collect.submission_folders import contents
+from grader.collect.submission_folders import contents, contents_of_earlier
 from grader.common.errors import TaskFailed
 
 
@@ -32,6 +32,25 @@ def test_nothing_is_followed_or_waited_for(folder):
     (folder / 'loop').symlink_to(folder)
     os.mkfifo(folder / 'pipe.py')
     assert contents(folder) == before
+
+
+def test_an_earlier_one_is_read_once_and_again_where_it_has_changed(tmp_path, monkeypatch):
+    """All of them were read for each further one: who hands in often kept the others waiting."""
+    for number in range(3):
+        (tmp_path / f'{number}/submitted').mkdir(parents=True)
+        (tmp_path / f'{number}/submitted/a.ipynb').write_text(f'{number}')
+    read, digest = [], submission_folders._digest
+    monkeypatch.setattr(
+        submission_folders, '_digest', lambda path: read.append(path) or digest(path)
+    )
+    first = contents_of_earlier(tmp_path)
+    assert len(read) == 3
+    assert contents_of_earlier(tmp_path) == first == [contents(p) for p in tmp_path.glob('*/*')]
+    del read[:]
+    changed = tmp_path / '1/submitted/a.ipynb'
+    changed.write_text('changed by hand')
+    assert contents_of_earlier(tmp_path) != first
+    assert read == [changed]
 
 
 @pytest.mark.parametrize('limit', ['MAX_FILES', 'MAX_BYTES', 'MAX_DEPTH'])

@@ -3,8 +3,7 @@
 import os
 import shutil
 import tempfile
-from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -26,6 +25,9 @@ from grader.storage.submitted import known_students
 FOLDER = 'arrived'
 MOST_WAITING = 50
 """Of one student: each takes room on the disk, and only the newest of a lesson is graded."""
+MOST_KEPT, MOST_KEPT_BYTES = 1_000, 1_000_000_000
+"""Of one student and lesson, those that wait and what became of earlier ones included: no program
+that hands in all night fills the disk, on which all others' work lies."""
 MAX_REASON = 300
 
 
@@ -33,7 +35,7 @@ def take_in(course: Course, queue: Queue, inbound: Path, entry: Entry) -> list[A
     """Copy what an entry holds into gradebook/arrived/, and note it; return the new arrivals."""
     shelf = course.gradebook / FOLDER
     shelf.mkdir(parents=True, exist_ok=True)
-    waiting = Counter(each.student_id for each in queue.find(WAITING))
+    waiting = queue.find(WAITING)
     with tempfile.TemporaryDirectory(prefix='.new-', dir=shelf) as aside:
         packages = {name: course.packages(name) for name in course.assignments()}
         asked_for = {each for several in packages.values() for each in several}
@@ -42,22 +44,21 @@ def take_in(course: Course, queue: Queue, inbound: Path, entry: Entry) -> list[A
             [each for each in found if not each.litter],
             packages,
             packages=packages,
-            students={*known_students(course), *waiting},
+            students={*known_students(course), *(each.student_id for each in waiting)},
         )
         with gradebook_lock(course.gradebook):
             problems = StudentNumbers(course).take(hand_ins)
         reasons = [each.reason for each in rest if each.matters and _is_work(each.incoming)]
         rows = []
         for each, problem in zip(hand_ins, problems, strict=True):
-            waiting[each.student_id] += 1
-            if waiting[each.student_id] > MOST_WAITING:
-                problem = problem or f'{MOST_WAITING} submissions of {each.student_id} wait'
+            problem = problem or _why_no_room(course, each, waiting)
             if problem:
                 reasons.append(problem)
             else:
                 folder = _keep(each, shelf)
                 whose = (each.student_id, each.assignment)
                 rows.append(_arrival(entry, WAITING, *whose, folder=folder))
+                waiting.append(rows[-1])
         if reasons:
             more = f' (and {len(reasons) - 1} more)' if len(reasons) > 1 else ''
             reason = shorten(storable(reasons[0]), MAX_REASON) + more
@@ -114,6 +115,30 @@ def _hand_in(folder: Path, arrival: Arrival) -> MatchedFile:
         secret=secret if secret.is_file() else None,
         left_out=tuple(left_out.read_text('utf-8').splitlines()) if left_out.is_file() else (),
     )
+
+
+def _why_no_room(course: Course, each: MatchedFile, waiting: Sequence[Arrival]) -> str:
+    """Say why one more of a student is left to a person; '' where there is room for it."""
+    theirs = [other for other in waiting if other.student_id == each.student_id]
+    if len(theirs) >= MOST_WAITING:
+        return f'{MOST_WAITING} submissions of {each.student_id} wait'
+    earlier = course.folder('submitted_before', each.student_id, each.assignment)
+    same_lesson = [other.folder for other in theirs if other.assignment == each.assignment]
+    waits = [course.gradebook / FOLDER / folder for folder in same_lesson]
+    kept = len(waits) + sum(1 for _ in earlier.glob('*'))
+    size = sum(map(_size_of, (earlier, *waits)))
+    if kept < MOST_KEPT and size < MOST_KEPT_BYTES:
+        return ''
+    return (
+        f'{kept:,} submissions for {each.assignment} of {each.student_id} are kept, in '
+        f'{size / 1e6:,.0f} MB: remove those that nobody needs from '
+        f'{earlier.relative_to(course.gradebook.parent)}, and this one may be handed in again'
+    )
+
+
+def _size_of(folder: Path) -> int:
+    inside = (Path(above, name) for above, _, names in os.walk(folder) for name in names)
+    return sum(path.lstat().st_size for path in inside)
 
 
 def _keep(each: MatchedFile, shelf: Path) -> str:
