@@ -78,6 +78,29 @@ def test_no_answer_is_made_of_the_courses_nodes(lesson, definition):
     assert lesson.run('run(course.KinematicsPublisher); stop()').error is None
 
 
+PROGRAMS = {
+    'ros2 run': "'ros2', 'run', 'my_robot_basics', 'kinematics_publisher'",
+    'python -m': "sys.executable, '-m', 'my_robot_basics.kinematics_publisher'",
+}
+
+
+@pytest.mark.parametrize('words', PROGRAMS.values(), ids=PROGRAMS)
+def test_no_answer_is_a_program_of_the_courses_nodes(lesson, words):
+    start = f'subprocess.Popen([{words}], stderr=subprocess.DEVNULL)'
+    lesson.run(f'import subprocess, sys\nbefore = {start}')
+    lesson.run("reset('Answer')")
+    lesson.run(f"""class Answer(Node):
+    def __init__(self):
+        super().__init__('answer')
+        self.inner = {start}""")
+    error = ' '.join(lesson.run("run_answer('Answer')").error.split())
+    assert error.startswith("NotRunnable: expected a node of your own, saw the course's program")
+    assert 'program kinematics_publisher started: write your own in the answer cell' in error
+    inner = "next(n for n in __import__('gc').get_objects() if type(n) is Answer).inner"
+    assert lesson.value(f'{inner}.poll() is None, before.poll() is None') == '(False, True)'
+    lesson.run('before.kill(); before.wait()')
+
+
 def test_an_answer_may_call_the_courses_functions(lesson):
     lesson.run("reset('Answer')")
     lesson.run("""from my_robot_basics.two_link_kinematics import forward_kinematics

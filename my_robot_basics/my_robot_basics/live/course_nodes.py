@@ -1,14 +1,18 @@
 """The course's own nodes are to be read and run in lessons; no answer is made of them.
 
 An answer may call the course's functions, such as those of `two_link_kinematics`. Where its node
-derives from one of the package, takes a method of it, or makes one, it is told so.
+derives from one of the package, takes a method of it, or makes one, or starts the program of one,
+it is told so.
 """
 
 import importlib
-from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+import re
+import signal
+from collections.abc import Callable, Collection, Iterator
+from contextlib import ExitStack, contextmanager, suppress
 from types import FunctionType
 
+import psutil
 from rclpy.node import Node
 
 from my_robot_basics.live.patching import patch, patched
@@ -18,6 +22,12 @@ MODULES = tuple(
     f'my_robot_basics.{name}'
     for name in ('hello_node', 'kinematics_node', 'kinematics_publisher', 'kinematics_subscriber')
 )
+_PROGRAM = re.compile(
+    rf'\bmy_robot_basics[./ ]({"|".join(m.partition(".")[2] for m in MODULES)})\b'
+)
+"""In a command line: `ros2 run` and what that starts, or `python -m`."""
+END_SEC = 3.0
+"""How long a program has to leave the graph after SIGINT, before it is killed."""
 HOW = 'write your own in the answer cell; the functions of two_link_kinematics may be called'
 
 
@@ -31,6 +41,26 @@ def taken_from(answer: type) -> str:
             if isinstance(function, FunctionType) and function.__module__ in (*MODULES, __name__):
                 return f"one whose {name} is that of the course's {function.__qualname__}"
     return ''
+
+
+def programs() -> dict[psutil.Process, str]:
+    """Return what this process has started that is a program of one of these nodes, by name."""
+    found = {}
+    for process in psutil.Process().children(recursive=True):
+        with suppress(psutil.Error):  # it has ended meanwhile
+            if program := _PROGRAM.search(' '.join(process.cmdline())):
+                found[process] = program[1]
+    return found
+
+
+def end_programs(processes: Collection[psutil.Process]) -> None:
+    """End them as Ctrl-C does, so that their nodes leave the graph; kill what goes on."""
+    for process in processes:
+        with suppress(psutil.Error):
+            process.send_signal(signal.SIGINT)
+    for process in psutil.wait_procs(processes, timeout=END_SEC)[1]:
+        with suppress(psutil.Error):
+            process.kill()
 
 
 @contextmanager

@@ -3,12 +3,16 @@
 import sys
 from typing import Any
 
+import psutil
 from rclpy.node import Node
 
 from my_robot_basics.live import course_nodes, runner, troubles
 from my_robot_basics.session import classroom
 from my_robot_basics.session.errors import NotRunnable, tell
 from my_robot_basics.session.neighbours import nodes_here
+
+_programs_before: set[psutil.Process] = set()
+"""Those of the course's nodes that ran before the answer: a lesson's own cells may start some."""
 
 
 def reset(*names: str) -> None:
@@ -21,6 +25,8 @@ def reset(*names: str) -> None:
     troubles.forget_all()
     if classroom.in_grading_room():
         course_nodes.close()
+    _programs_before.clear()
+    _programs_before.update(course_nodes.programs())
     for name in names:
         _notebook().pop(name, None)
     if names:
@@ -33,8 +39,8 @@ def run_answer(name: str, *args: Any, **kwargs: Any) -> Node | None:
     """Run the node class `name` that the answer cell defines; see `run` for the rest.
 
     Raises NotRunnable where the notebook has no class of that name that derives from Node, where
-    it was imported or taken from the course's own nodes, and where the answer has made its node
-    already, but does not spin it.
+    it was imported or taken from the course's own nodes, where the answer has started the program
+    of one, and where it has made its node already, but does not spin it.
     """
     answer = _notebook().get(name)
     where = 'write it in the answer cell: only the notebook is submitted'
@@ -52,12 +58,25 @@ def run_answer(name: str, *args: Any, **kwargs: Any) -> Node | None:
         raise NotRunnable(f'expected {name} to be your own, saw {taken}: {course_nodes.HOW}')
     with course_nodes.none_made():
         node = runner.run(answer, *args, **kwargs)
+    _refuse_programs()
     if node is None and any(_is_idle(answer, other) for other in nodes_here()):
         raise NotRunnable(
             f'expected the class {name} alone, saw a node of it that nothing spins: leave out the '
             'line that makes it, because this cell makes one, and spins it'
         )
     return node
+
+
+def _refuse_programs() -> None:
+    """End the programs of the course's nodes that the answer has started, and say so."""
+    started = {p: name for p, name in course_nodes.programs().items() if p not in _programs_before}
+    if started:
+        course_nodes.end_programs(started)
+        name = min(started.values())
+        raise NotRunnable(
+            f"expected a node of your own, saw the course's program {name} started:"
+            f' {course_nodes.HOW}'
+        )
 
 
 def _is_idle(NodeClass: type[Node], node: Node) -> bool:
