@@ -11,6 +11,7 @@ from my_robot_basics.checks.arm_moves import expect_result
 from my_robot_basics.checks.arm_progress import is_under_way
 from my_robot_basics.checks.arm_stops import expect_begins_at, expect_canceled, expect_on_the_way
 from my_robot_basics.checks.open_action import BLOCKED
+from my_robot_basics.checks.slow_moves import wait_unless_it_crawls
 from my_robot_basics.checks.watched_arm import Pose, WatchedArm, far_rad, goal
 from my_robot_basics.feedback.errors import CheckFailed, expect, fail
 
@@ -171,7 +172,7 @@ def _expect_moves_on(
     sent = accepted(arm.server, goal(position, speed=max(NEXT_SPEED, far / 2.0)))
     wanted_sec = far / sent.goal.speed
     most_sec = MOST_TIMES * wanted_sec + MORE_SEC
-    ends = arm.time.wait(sent.is_over, seconds=most_sec)
+    ends = wait_unless_it_crawls(arm, sent, position, seconds=most_sec)
     if ends:
         arm.has_result(sent)
     elif not is_under_way(arm, sent, position):

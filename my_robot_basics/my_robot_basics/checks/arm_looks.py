@@ -13,7 +13,7 @@ from rcl_interfaces.srv import GetParameters
 from arm_interfaces.action import MoveArm
 from my_robot_basics.checks.action_ends import SentGoal
 from my_robot_basics.checks.actions import Action, FollowedClock
-from my_robot_basics.checks.arm_progress import bring, is_under_way
+from my_robot_basics.checks.arm_progress import bring, is_under_way, wait_for_probe
 from my_robot_basics.checks.clock import SimulatedClock
 from my_robot_basics.checks.goal_answers import Identity
 from my_robot_basics.checks.inconclusive import Inconclusive
@@ -22,6 +22,7 @@ from my_robot_basics.checks.reported_speed import is_of_wall_time
 from my_robot_basics.checks.robot_time import DrivenTime, WallTime
 from my_robot_basics.checks.services import PARAMETERS_SEC
 from my_robot_basics.checks.watched_arm import HASTE_SEC, STEP_NS, Pose, WatchedArm, goal
+from my_robot_basics.feedback.hidden import is_advice
 
 T = TypeVar('T')
 
@@ -89,7 +90,8 @@ def _clock(action: Action, arm: WatchedArm) -> FollowedClock:
     server, name, clocks = arm.server.identity(), arm.server.node_name, action.known.clocks
     if name not in clocks:
         clocks[name] = _clocks.get(server) or _seen_clock(arm)
-    if clocks[name] != FollowedClock.WALL:  # it looks so on a busy machine, too: ask again
+    # that of the wall looks so on a busy machine, too: the grader asks again
+    if clocks[name] != FollowedClock.WALL or is_advice():
         _clocks[server] = clocks[name]
     return clocks[name]
 
@@ -117,13 +119,14 @@ def _answers_while_it_moves(arm: WatchedArm) -> bool:
     watcher = arm.server.watcher
     asks = watcher.node.create_client(GetParameters, f'{arm.server.node_name}/get_parameters')
     watcher.spin_until(asks.service_is_ready, timeout_sec=PARAMETERS_SEC)
-    sent = arm.send(_probe(arm, PROBE_SEC))
+    probe = _probe(arm, PROBE_SEC)
+    sent = arm.send(probe)
     watcher.spin_until(sent.is_over, timeout_sec=PROBE_ASK_SEC)
     asked = asks.call_async(GetParameters.Request(names=['use_sim_time']))
     watcher.spin_until_free(lambda: asked.done() or sent.is_over(), free_sec=HASTE_SEC)
     is_free = asked.done() and not sent.is_over()
     watcher.node.destroy_client(asks)
-    arm.time.wait(sent.is_over, seconds=HASTE_SEC)
+    wait_for_probe(arm, sent, probe.position, is_free=is_free)
     return is_free
 
 

@@ -5,6 +5,7 @@ A server that computes the position from its clock does; one that adds up steps 
 
 from my_robot_basics.checks.action_ends import SentGoal
 from my_robot_basics.checks.robot_time import DrivenTime
+from my_robot_basics.checks.slow_moves import wait_unless_it_crawls
 from my_robot_basics.checks.watched_arm import Pose, WatchedArm, far_rad
 
 COARSE_NS = 250_000_000
@@ -16,6 +17,8 @@ BEHIND_SEC = 0.1
 """A server that falls behind by more in one coarse step gets fine ones."""
 REPORT_SEC = 0.2
 """The next feedback has come by then."""
+TELLS_PART = 0.25
+"""After that part of a long move, its feedback tells whether the arm crawls."""
 
 
 def wait_for_end(arm: WatchedArm, sent: SentGoal, position: Pose, *, seconds: float) -> bool:
@@ -26,7 +29,7 @@ def wait_for_end(arm: WatchedArm, sent: SentGoal, position: Pose, *, seconds: fl
     arm.lost_sec = 0.0
     wanted_sec = far_rad(arm.start, position) / sent.goal.speed
     if not isinstance(arm.time, DrivenTime) or not LONG_SEC < wanted_sec <= seconds:
-        return arm.time.wait(sent.is_over, seconds=seconds)
+        return wait_unless_it_crawls(arm, sent, position, seconds=seconds)
     time, began_ns, fine_ns = arm.time, arm.time.now_ns(), arm.time.step_ns
     try:
         if time.wait(sent.is_over, seconds=BEGIN_SEC):
@@ -38,8 +41,14 @@ def wait_for_end(arm: WatchedArm, sent: SentGoal, position: Pose, *, seconds: fl
             time.wait(sent.is_over, seconds=left_sec)
     finally:
         time.step_ns = fine_ns
-    left_sec = seconds - (time.now_ns() - began_ns) / 1e9
-    return time.wait(sent.is_over, seconds=left_sec)
+    passed_sec = (time.now_ns() - began_ns) / 1e9
+    return wait_unless_it_crawls(
+        arm,
+        sent,
+        position,
+        seconds=seconds - passed_sec,
+        look_after_sec=max(0.0, TELLS_PART * wanted_sec - passed_sec),
+    )
 
 
 def _keeps_pace(arm: WatchedArm, time: DrivenTime, sent: SentGoal, position: Pose) -> bool:

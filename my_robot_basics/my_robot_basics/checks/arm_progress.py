@@ -1,9 +1,12 @@
 """An arm that is on its way, and slow: that costs the points of its speed, and no others."""
 
+import time
+
 from my_robot_basics.checks.action_ends import SentGoal
 from my_robot_basics.checks.clock import SimulatedClock
 from my_robot_basics.checks.inconclusive import Inconclusive
 from my_robot_basics.checks.robot_time import DrivenTime
+from my_robot_basics.checks.waits_in_vain import is_in_vain
 from my_robot_basics.checks.watched_arm import (
     HASTE,
     HASTE_SEC,
@@ -25,6 +28,8 @@ LATEST_SEC = 1.5
 """… And the last one is no older."""
 CALM = 0.5
 """Speed, in rad/s, for a server that rejects HASTE: another check is about that."""
+TELLS_SEC = 0.5
+"""Of a clock that is driven in haste: then feedback tells whether the arm goes by it."""
 SOON_SEC = 1.0
 """A move in haste that is on its way after that is a slow one."""
 SLOW_SEC = 20.0
@@ -89,6 +94,19 @@ def _wait_longer(arm: WatchedArm, sent: SentGoal, position: Pose) -> None:
     )
 
 
+def wait_for_probe(arm: WatchedArm, sent: SentGoal, position: Pose, *, is_free: bool) -> None:
+    """Wait for the end of a short move that a check has sent, and not in vain if that is long.
+
+    `is_free`: the node answers other questions meanwhile, so that its clock may be driven.
+    """
+    if arm.time.wait(sent.is_over, seconds=SOON_SEC):
+        return
+    if is_free and is_under_way(arm, sent, position) and _drives_on(arm, sent):
+        return
+    if not is_in_vain(sent, free_sec=HASTE_SEC - SOON_SEC):
+        arm.time.wait(sent.is_over, seconds=HASTE_SEC - SOON_SEC)
+
+
 def _drives_on(arm: WatchedArm, sent: SentGoal) -> bool:
     """Whether the robot's clock, driven in haste, brings a move to its end."""
     if isinstance(arm.time, DrivenTime):
@@ -97,7 +115,12 @@ def _drives_on(arm: WatchedArm, sent: SentGoal) -> bool:
     try:
         with SimulatedClock(watcher, needed={name}) as clock:
             beats = arm.server.ends.feedback.received
-            time = DrivenTime(watcher, clock, step_ns=STEP_NS, beat=lambda: len(beats))
-            return time.push(sent.is_over, free_sec=SETTLE_SEC)
+            driven = DrivenTime(watcher, clock, step_ns=STEP_NS, beat=lambda: len(beats))
+            began_ns = time.time_ns()
+            if driven.push(sent.is_over, free_sec=TELLS_SEC):
+                return True
+            if is_in_vain(sent, free_sec=SETTLE_SEC, since_ns=began_ns):
+                return False
+            return driven.push(sent.is_over, free_sec=SETTLE_SEC - TELLS_SEC)
     except Inconclusive:
         return False

@@ -8,6 +8,7 @@ from my_robot_basics.checks.action_ends import ActionEnds
 from my_robot_basics.checks.actions import Action
 from my_robot_basics.checks.arm_looks import look
 from my_robot_basics.checks.arm_progress import bring_in_haste, is_under_way
+from my_robot_basics.checks.slow_moves import wait_unless_it_crawls
 from my_robot_basics.checks.watched_arm import Pose, WatchedArm, far_rad, goal
 from my_robot_basics.feedback.errors import expect, fail
 
@@ -73,7 +74,8 @@ def expect_one_at_a_time(
                 hint='remember that the arm moves, and return GoalResponse.REJECT meanwhile',
                 cause='a second goal is accepted',
             )
-        arm.time.wait(moving.is_over, seconds=MOST_TIMES * wanted_sec + MORE_SEC)
+        most_sec = MOST_TIMES * wanted_sec + MORE_SEC
+        wait_unless_it_crawls(arm, moving, first, seconds=most_sec)
         expect(
             moving.is_over() or is_under_way(arm, moving, first),
             expected='the first goal to end',

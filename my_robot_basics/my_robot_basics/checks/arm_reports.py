@@ -10,6 +10,7 @@ from my_robot_basics.checks import joints, periods
 from my_robot_basics.checks.action_ends import SentGoal
 from my_robot_basics.checks.actions import Action
 from my_robot_basics.checks.arm_looks import look
+from my_robot_basics.checks.slow_moves import wait_unless_it_crawls
 from my_robot_basics.checks.watched_arm import Pose, WatchedArm, far_rad
 from my_robot_basics.feedback.errors import fail
 
@@ -33,8 +34,8 @@ def expect_feedback(
 
     def reports(arm: WatchedArm) -> None:
         sent = arm.send(arm.goal(position, speed=speed))
-        wanted_sec = far_rad(arm.start, position) / sent.goal.speed
-        arm.time.wait(sent.is_over, seconds=MOST_TIMES * wanted_sec)
+        most_sec = MOST_TIMES * far_rad(arm.start, position) / sent.goal.speed
+        wait_unless_it_crawls(arm, sent, position, seconds=most_sec)
         reported = MoveReport(arm, sent, tuple(position))
         reported.expect_enough()
         reported.expect_positions()
@@ -99,11 +100,8 @@ class MoveReport:
                 )
         last, far_deg = list(self.messages[-1].position), [*map(math.degrees, self.end)]
         if np.allclose(last, far_deg, atol=0.1 * max(map(abs, far_deg))):
-            self._fail_position(
-                last,
-                'these are degrees: all positions of MoveArm are in radians',
-                'angles in radians',
-            )
+            hint = 'these are degrees: all positions of MoveArm are in radians'
+            self._fail_position(last, hint, 'angles in radians')
 
     def expect_line(self) -> None:
         """All positions are on the straight line from where the arm was to the goal."""

@@ -11,9 +11,10 @@ from my_robot_basics.session.pressure import Stopwatch
 DUE_SEC = 0.05
 """How long to wait, of time that was free, for what a thread of the node is to do in a tick."""
 MOST_FAILED_WAITS = 5
-PUSH_NS = 500_000_000
+PUSH_NS, LONGEST_PUSH_NS = 500_000_000, 16_000_000_000
 PUSH_SEC = 0.001
-"""Steps of a clock that is only to come to an end, and how long each lasts."""
+"""Steps of a clock that is only to come to an end, each twice as far as the one before up to the
+longest, and how long each lasts."""
 PUSHED_TIMES = 5
 """How much longer that may take on a busy machine."""
 MOST_OFF_NS = 1_000_000_000
@@ -123,12 +124,13 @@ class DrivenTime:
 
         Time in which processes waited for a processor does not count, up to PUSHED_TIMES as much.
         """
-        watch = Stopwatch()
+        watch, step_ns = Stopwatch(), PUSH_NS
         while not done():
             if watch.free_sec() > free_sec or watch.wall_sec() > PUSHED_TIMES * free_sec:
                 return False
-            self._clock.show(self._clock.now_ns + PUSH_NS)
+            self._clock.show(self._clock.now_ns + step_ns)
             self._watcher.spin_for(PUSH_SEC)
+            step_ns = min(2 * step_ns, LONGEST_PUSH_NS)
         return True
 
     def _step(self) -> None:

@@ -1,6 +1,7 @@
 """The arm behind `/move_arm`, and the time in which a check watches it."""
 
 import math
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -9,6 +10,7 @@ from my_robot_basics.checks.accepted_goals import accepted, ends_too_soon
 from my_robot_basics.checks.action_ends import SentGoal
 from my_robot_basics.checks.open_action import OpenAction
 from my_robot_basics.checks.robot_time import DrivenTime, WallTime
+from my_robot_basics.checks.waits_in_vain import is_in_vain
 from my_robot_basics.feedback.errors import CheckFailed, Starved
 
 Pose = Sequence[float]
@@ -22,8 +24,9 @@ HASTE_SEC = 4.0
 """It may take so long, of time that was free."""
 RESULT_SEC = 1.0
 """How long a result may come behind the status, of time that was free."""
-SETTLE_SEC = 3.0
-"""How long goals may take to end when nobody looks any more, of time that was free."""
+SETTLE_SEC, SOON_SEC = 3.0, 0.5
+"""How long goals may take to end when nobody looks any more, of time that was free, and when to
+see whether that is in vain."""
 SHORTER_PART, TURN = 0.35, 7.7
 """Short moves are shorter than the longest by up to that part: which, comes of the position."""
 EARLY_PART = 0.8
@@ -139,9 +142,18 @@ class WatchedArm:
         for cancel_first in False, True:
             if cancel_first:  # last: it may leave a wrong server with a wish to stop
                 server.ends.cancel_all()
-            if isinstance(self.time, DrivenTime):
-                self.time.push(lambda: not server.has_active(), free_sec=SETTLE_SEC)
-            else:
-                watcher.spin_until_free(lambda: not server.has_active(), free_sec=SETTLE_SEC)
-            if not server.has_active():
-                return
+            began_ns = time.time_ns() if self.time.is_driven else 0
+            for free_sec in SOON_SEC, SETTLE_SEC - SOON_SEC:
+                if isinstance(self.time, DrivenTime):
+                    self.time.push(lambda: not server.has_active(), free_sec=free_sec)
+                else:
+                    watcher.spin_until_free(lambda: not server.has_active(), free_sec=free_sec)
+                if not server.has_active():
+                    return
+                if not cancel_first and self._is_last_in_vain(since_ns=began_ns):
+                    break
+
+    def _is_last_in_vain(self, *, since_ns: int) -> bool:
+        """Whether the last goal does not end by itself while goals are brought to their end."""
+        last = self.server.accepted[-1:]
+        return any(is_in_vain(sent, free_sec=SETTLE_SEC, since_ns=since_ns) for sent in last)

@@ -46,6 +46,11 @@ def is_in_test_room() -> bool:
     return os.environ.get('MY_ROBOT_BASICS_ROOM') == 'test'
 
 
+def is_advice() -> bool:
+    """Whether *Validate* runs this check: what it says costs nobody points."""
+    return os.environ.get('MY_ROBOT_BASICS_ADVICE') == '1'
+
+
 def start(*, quiet: bool) -> None:
     """Begin a grade cell."""
     global _quiet, _start_sec
@@ -59,8 +64,7 @@ def checked_for_sec() -> float:
     What has not come in that time is not waited for once more. The grader takes nobody's word
     that a callback would not have made it later.
     """
-    is_advice = os.environ.get('MY_ROBOT_BASICS_ADVICE') == '1'
-    return time.monotonic() - _start_sec if is_advice and _start_sec is not None else 0.0
+    return time.monotonic() - _start_sec if is_advice() and _start_sec is not None else 0.0
 
 
 def begin() -> None:
