@@ -5,9 +5,9 @@
 - What came of its cells: `messages` and `outputs` gather it, `timeouts` waits for it, `questions`
   are a check's to the student's kernel, `verdict` judges one check and `judging` an exercise.
 - *Validate* itself: `lesson` reads a student's notebook, `rooms`, `kernel`, `forks` and
-  `forkserver` start what its cells run in, `short_budget` says how long each may take and
-  `overdue` what was given up, `cell_names` names cells as students find them, `run` does all of
-  it, `report` tells it, `check_feedback` of each cell, `as_text` in a terminal, and `server` with
-  `labextension/` in JupyterLab.
+  `forkserver` start what its cells run in, `short_budget` says how long each may take,
+  `checks_budget` how long its checks may, and `overdue` what was given up, `cell_names` names
+  cells as students find them, `run` does all of it, `report` tells it, `check_feedback` of each
+  cell, `as_text` in a terminal, and `server` with `labextension/` in JupyterLab.
 - For all of them: `errors`, `limits`, `text`, `titles`, `together`.
 """

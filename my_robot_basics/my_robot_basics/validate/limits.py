@@ -8,6 +8,11 @@ what takes more is not checked, and never called wrong. Time in which processes 
 processor does not count, unless the code itself had one, up to the grader's own limit, …"""
 VALIDATE_NEXT_TIMEOUT_SEC = 1.0
 """… and so long where something has not returned already."""
+VALIDATE_CHECKS_SEC = 20.0
+"""*Validate* waits so long for the checks of an exercise together, as it waits for a cell: those
+that are left are not checked there. …"""
+VALIDATE_CHECKS_MOST_SEC = 90.0
+"""… And so long on a machine that is too busy."""
 BUILD_TIMEOUT_SEC = 90.0
 """A locked cell that builds a package has so long: 2 to 4 s of an idle machine. What takes longer
 is built once more in fresh rooms, and then left to a person."""

@@ -39,6 +39,8 @@ class CellRun:
     timed_out: bool = False
     cut_after_sec: float = 0.0
     """After how long *Validate* gave the student's code up, where grading waits longer; else 0."""
+    given_up: str = ''
+    """Why *Validate* did not wait for a check, where grading does; else empty."""
     died: bool = False
     cut_off: bool = False
     """Whether its kernel had to be ended, because nothing from it could be received any more."""

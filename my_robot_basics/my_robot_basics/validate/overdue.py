@@ -23,6 +23,8 @@ def judge_overdue(
     if run is not None and run.ran_to_end:
         return None
     name, points = graded_id(cell), float(cell.metadata.nbgrader.points)
+    if run is not None and run.given_up:
+        return Verdict(name, 'ungraded', points, reason=run.given_up)
     if run is not None and run.cut_after_sec and run.error is not None:
         return Verdict(name, 'ungraded', points, reason=run.error.evalue.strip())
     if not given_up:

@@ -9,11 +9,11 @@ from pathlib import Path
 
 from my_robot_basics.session.domain import Claim, claim
 from my_robot_basics.session.errors import LiveError
+from my_robot_basics.validate.checks_budget import ChecksBudget
 from my_robot_basics.validate.errors import RoomFailure
 from my_robot_basics.validate.forks import ForkServer
 from my_robot_basics.validate.kernel import LocalKernel
 from my_robot_basics.validate.limits import (
-    CHECK_TIMEOUT_SEC,
     REPLY_TIMEOUT_SEC,
     VALIDATE_TIMEOUT_SEC,
 )
@@ -57,6 +57,7 @@ class LocalRooms:
         self._claim: Claim | None = None
         self._folder: Path | None = None
         self._kernels: list[LocalKernel] = []
+        self._checks = ChecksBudget()
         self._unanswered: CellRun | None = None
         """The question that was given up."""
 
@@ -129,9 +130,7 @@ class LocalRooms:
     async def run_check(self, source: str) -> CellRun:
         """Run a grade cell, passing its questions on to the student's kernel."""
         self.say(f'checking: {title_of_check(source)}')
-        run = await self._test.run(
-            source, timeout_sec=CHECK_TIMEOUT_SEC, on_input=self._ask_student
-        )
+        run = await self._checks.run(self._test, source, on_input=self._ask_student)
         if self._unanswered is not None and not run.ran_to_end:
             run.cut_after_sec = self._unanswered.cut_after_sec
         return run

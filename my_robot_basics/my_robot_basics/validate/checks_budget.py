@@ -1,0 +1,43 @@
+"""How long *Validate* waits for the checks of an exercise: it is advice, and comes soon."""
+
+from dataclasses import dataclass
+
+from my_robot_basics.session.pressure import Stopwatch
+from my_robot_basics.validate.kernel import LocalKernel
+from my_robot_basics.validate.limits import VALIDATE_CHECKS_MOST_SEC, VALIDATE_CHECKS_SEC
+from my_robot_basics.validate.messages import OnInput
+from my_robot_basics.validate.outputs import CellRun
+
+TOO_SLOW = (
+    f'not checked here: the checks of this exercise have taken {VALIDATE_CHECKS_SEC:g} s, and '
+    'those of a right answer take a few; look for what is slow in yours. Grading waits longer'
+)
+TOO_BUSY = (
+    f'not checked here: the checks of this exercise have taken {VALIDATE_CHECKS_MOST_SEC:g} s, '
+    'because this machine is too busy; validate again when it is not. Grading waits longer'
+)
+
+
+@dataclass
+class ChecksBudget:
+    """What is left of the time that the checks of an exercise may take together."""
+
+    free_sec: float = VALIDATE_CHECKS_SEC
+    wall_sec: float = VALIDATE_CHECKS_MOST_SEC
+    given_up: CellRun | None = None
+    """The check that was not waited for: none begins after it."""
+
+    async def run(self, kernel: LocalKernel, source: str, *, on_input: OnInput) -> CellRun:
+        """Run a grade cell within what is left; one that is given up says so, and why."""
+        if self.given_up is not None:
+            return self.given_up
+        watch = Stopwatch()
+        run = await kernel.run(
+            source, timeout_sec=self.wall_sec, free_sec=self.free_sec, on_input=on_input
+        )
+        self.free_sec -= watch.free_sec()
+        self.wall_sec -= watch.wall_sec()
+        if run.cut_after_sec:
+            run.given_up = TOO_BUSY if self.wall_sec <= 0.0 else TOO_SLOW
+            self.given_up = run
+        return run
