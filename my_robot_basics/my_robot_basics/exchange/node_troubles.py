@@ -15,7 +15,10 @@ def last_raised(node_name: str) -> str:
 
 
 def unpublished_field(node_name: str) -> tuple[str, str]:
-    """For which field a message of that node did not travel, and its type; or texts of ''."""
+    """For which field a message of that node did not travel, and its type; or texts of ''.
+
+    Without a field, the type is how to make what rclpy was to be given.
+    """
     body = told(wire.request(op='field', name=node_name))
     is_told = isinstance(body, tuple) and [type(text) for text in body] == [str, str]
     return (shorten(body[0], 60), shorten(body[1], 60)) if is_told else ('', '')

@@ -5,6 +5,7 @@ from collections.abc import Iterable
 from my_robot_basics.exchange import node_troubles, wire
 from my_robot_basics.feedback.hidden import raised as safely
 from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.feedback.python_errors import what_to_do
 
 
 def what_raised(node_names: Iterable[str]) -> str:
@@ -22,9 +23,11 @@ def what_raised(node_names: Iterable[str]) -> str:
     elif field:
         where, kind = theirs(field), theirs(type_name)
         why += f', so give `{where}` a value of the type `{kind}`'
+    elif type_name:
+        why += f', so what you give it has to be made with `{theirs(type_name)}`'
     elif 'bad argument type for built-in operation' in said:
         why += ', so a field of the message holds a value of another type'
-    return why
+    return why + what_to_do(said)
 
 
 def what_stopped(node_names: Iterable[str]) -> str:

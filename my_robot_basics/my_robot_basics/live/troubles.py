@@ -12,6 +12,7 @@ from rclpy.service import Service
 
 from my_robot_basics.exchange.wire import THREADS
 from my_robot_basics.exchange.wrong_fields import wrong_field
+from my_robot_basics.live.bare_errors import made_with
 
 UNFINISHED_SEC = 0.5
 _last: dict[str, str] = {}
@@ -39,7 +40,7 @@ def remember(node_name: str, error: BaseException) -> None:
     own = [frame for frame in frames if not frame.filename.startswith(_OF_A_LIBRARY)]
     place = _line((own or frames)[-1]) if frames else ''
     told = f'{what} ({place})' if place else what
-    _fields[node_name] = _unpublished(error)
+    _fields[node_name] = _unpublished(error) or ('', made_with(error))
     if node_name != THREADS and (service_name := _service(error)):
         _of_services[node_name, service_name] = told
     # last: a check in another thread that knows of these asks for the others at once
@@ -70,7 +71,10 @@ def last(node_name: str) -> str:
 
 
 def field(node_name: str) -> tuple[str, str]:
-    """Return the field for which it could not publish, and its type, where it raised that last."""
+    """Return the field for which it could not publish, and its type, where it raised that last.
+
+    Where it gave rclpy what is no request or goal, no field, and how to make one.
+    """
     return _fields.get(node_name, ('', ''))
 
 
@@ -111,7 +115,7 @@ def _line(frame: traceback.FrameSummary) -> str:
     return f'{_place(frame.filename)}line {frame.lineno}, in {frame.name}: {frame.line}'
 
 
-def _unpublished(error: BaseException) -> tuple[str, str]:
+def _unpublished(error: BaseException) -> tuple[str, str] | None:
     """The field for which a message did not travel, and its type: rclpy's function has both."""
     for frame, _ in traceback.walk_tb(error.__traceback__):
         publisher, message = (frame.f_locals.get(name) for name in ('self', 'msg'))
@@ -119,8 +123,8 @@ def _unpublished(error: BaseException) -> tuple[str, str]:
             type_: Any = publisher.msg_type
             if isinstance(message, type_):
                 path, _, type_name = wrong_field(message, type_)
-                return path, type_name
-    return '', ''
+                return (path, type_name) if path else None
+    return None
 
 
 def _service(error: BaseException) -> str:

@@ -9,6 +9,7 @@ import nbformat
 from nbformat import NotebookNode
 
 from my_robot_basics.feedback import hidden
+from my_robot_basics.feedback.python_errors import what_to_do
 from my_robot_basics.validate.cells import KEY, graded_id, role
 from my_robot_basics.validate.errors import RoomFailure
 from my_robot_basics.validate.limits import FLOOD_CHARACTERS
@@ -65,8 +66,7 @@ def judge(cell: NotebookNode, run: CellRun | None, own: Iterable[tuple[str, Cell
     `own` are the student's cells of the exercise. Raises RoomFailure where the check did not
     come to a verdict.
     """
-    own = list(own)
-    name, points = graded_id(cell), float(cell.metadata.nbgrader.points)
+    name, points, own = graded_id(cell), float(cell.metadata.nbgrader.points), list(own)
     if run is None:
         reason = 'the kernel of your notebook ended before the check: ' + _who_ended_it(own)
         return Verdict(name, outcome='failed', points=points, reason=reason)
@@ -178,7 +178,8 @@ def _trouble(name: str, run: CellRun) -> str | None:
         )
     if run.error is not None:
         said = _TEMPORARY_FILE.sub('(', f'{run.error.ename}: {run.error.evalue}').rstrip(': ')
-        return f'{TROUBLE}`{name}` stopped with {shorten(printable(said), 300)}'
+        told = f'{TROUBLE}`{name}` stopped with {shorten(printable(said), 300)}'
+        return told + what_to_do(said)
     return None
 
 

@@ -1,0 +1,31 @@
+"""What rclpy takes where it raises a TypeError without a word: a request, a goal, a feedback."""
+
+import traceback
+from typing import Any
+
+from rclpy.action import ActionClient
+from rclpy.action.server import ServerGoalHandle
+from rclpy.client import Client
+
+MOST_FIELDS = 3
+
+
+def made_with(error: BaseException) -> str:
+    """How to make what was to be given, such as 'SolveIK.Request(target=…)'; '' elsewhere."""
+    if type(error) is not TypeError or error.args or error.__traceback__ is None:
+        return ''
+    *_, (frame, _) = traceback.walk_tb(error.__traceback__)
+    match frame.f_locals.get('self'), frame.f_code.co_name:
+        case Client() as client, 'call' | 'call_async':
+            return _call(client.srv_type, 'Request')
+        case ActionClient() as client, 'send_goal' | 'send_goal_async':
+            return _call(client._action_type, 'Goal')
+        case ServerGoalHandle() as handle, 'publish_feedback':
+            return _call(handle._action_server.action_type, 'Feedback')
+    return ''
+
+
+def _call(type_: Any, part: str) -> str:
+    """The call that makes a part of a service's or an action's type, with its first fields."""
+    fields = list(getattr(type_, part).get_fields_and_field_types())[:MOST_FIELDS]
+    return f'{type_.__name__}.{part}({", ".join(f"{field}=…" for field in fields)})'
