@@ -8,6 +8,7 @@ from sensor_msgs.msg import JointState
 
 from arm_interfaces.action import MoveArm
 from my_robot_basics.checks import joints
+from my_robot_basics.checks.absent_servers import publish_in_vain
 from my_robot_basics.checks.scripted_action import Ending, ReceivedGoal
 from my_robot_basics.checks.served_action import ServedAction
 from my_robot_basics.checks.unasked_cancels import (
@@ -66,9 +67,9 @@ def expect_outcomes(server: ServedAction, **positions: Pose) -> None:
 def expect_waiting(server: ServedAction, early: Pose, later: Pose) -> None:
     """A pose that comes while there is no server, which then starts, takes its time, and succeeds.
 
-    The client sends a goal for the later pose. Raises CheckFailed.
+    The client waits for no server, and sends a goal for the later pose. Raises CheckFailed.
     """
-    server.publish(_pose(early))
+    publish_in_vain(server, _pose(early))
     server.let_client_know()  # or the goal for it may be sent when there is a server
     server.start()
     goal = ask(server, later)

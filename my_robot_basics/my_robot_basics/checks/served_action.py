@@ -40,9 +40,9 @@ class ServedAction(ScriptedActionServer):
     ) -> None:
         super().__init__(watcher.node, name=name, type_=type_)
         self.asked_on, self.cancelled_on = asked_on, cancelled_on
-        self._watcher, self._outcomes = watcher, outcomes
+        self.watcher, self._outcomes = watcher, outcomes
         self._raised = CallbackErrors(set(outcomes.publishers()))
-        self._publishers: dict[str, Publisher] = {}
+        self.publishers: dict[str, Publisher] = {}
         self._known_starts = self._before = 0
         self._was_away = False  # when a message was to lead to a goal that has not come
         self._mute: set[str] = set()  # nodes that tell no parameters are asked once
@@ -69,7 +69,7 @@ class ServedAction(ScriptedActionServer):
 
         self.publish(message)
         for _ in range(round(REPLY_SEC / AGAIN_SEC)):
-            if self._watcher.spin_until_free(lambda: bool(found()), free_sec=AGAIN_SEC):
+            if self.watcher.spin_until_free(lambda: bool(found()), free_sec=AGAIN_SEC):
                 self._known_starts, self._was_away = self.starts, False
                 self.let_client_know()
                 return found()[0]
@@ -92,7 +92,7 @@ class ServedAction(ScriptedActionServer):
         """A request comes to cancel that goal for True on `cancelled_on`. Raises CheckFailed."""
         self.say_obstacle(is_there=True)
         for _ in range(round(REPLY_SEC / AGAIN_SEC)):
-            if self._watcher.spin_until_free(lambda: bool(goal.cancels), free_sec=AGAIN_SEC):
+            if self.watcher.spin_until_free(lambda: bool(goal.cancels), free_sec=AGAIN_SEC):
                 self._cancelled_sec = max(self._cancelled_sec, goal.cancelled_sec())
                 return
             # it may have come before the client knew that its goal was accepted
@@ -108,7 +108,7 @@ class ServedAction(ScriptedActionServer):
         """Whether a request comes to cancel it, soon or after a while."""
         # for longer than one has taken so far: a client may cancel each goal after a while
         quiet_sec = SOON_SEC if soon else QUIET_SEC + 1.5 * self._cancelled_sec
-        return self._watcher.spin_until(lambda: bool(goal.cancels), timeout_sec=quiet_sec)
+        return self.watcher.spin_until(lambda: bool(goal.cancels), timeout_sec=quiet_sec)
 
     def expect_outcome(self, word: str, *, hint: Callable[[str], str]) -> None:
         """That word comes on the topic of the outcomes, and no other: `hint(seen)` is for those.
@@ -120,9 +120,9 @@ class ServedAction(ScriptedActionServer):
             return [message.data for message in self._outcomes.messages()[self._before :]]
 
         topic_name = self._outcomes.topic_name
-        if self._watcher.spin_until_free(lambda: word in new(), free_sec=REPLY_SEC):
+        if self.watcher.spin_until_free(lambda: word in new(), free_sec=REPLY_SEC):
             self._raised.expect_none()
-            self._watcher.spin_for(MORE_SEC)
+            self.watcher.spin_for(MORE_SEC)
             expect(
                 {*new()} == {word},
                 expected=f"one outcome of a goal, '{word}', on {topic_name}",
@@ -141,13 +141,13 @@ class ServedAction(ScriptedActionServer):
 
     def forget_outcomes(self) -> None:
         """Wait for what goals of earlier come to, and count it no more."""
-        self._watcher.spin_for(QUIET_SEC)
+        self.watcher.spin_for(QUIET_SEC)
         self._before = len(self._outcomes.received)
 
     def expect_no_outcome(self, while_: str) -> None:
         """Nothing comes there for a while, as `while_`, a clause, is so. Raises CheckFailed."""
         self.let_client_know()
-        self._watcher.spin_for(SOON_SEC)
+        self.watcher.spin_for(SOON_SEC)
         others = [message.data for message in self._outcomes.messages()[self._before :]]
         expect(
             not others,
@@ -163,33 +163,38 @@ class ServedAction(ScriptedActionServer):
         for goal in self.goals:
             if not goal.end.done():
                 goal.finish('aborted')
-        self._watcher.spin_for(0.1)
+        self.watcher.spin_for(0.1)
         self.stop()
 
     def _publish(self, topic_name: str, message: Any) -> None:
-        if topic_name not in self._publishers:
-            self._publishers[topic_name] = Topic(topic_name).meet(self._watcher, type(message))
-        self._publishers[topic_name].publish(message)
+        if topic_name not in self.publishers:
+            self.publishers[topic_name] = Topic(topic_name).meet(self.watcher, type(message))
+        self.publishers[topic_name].publish(message)
 
     def _meet_client(self) -> None:
         """Wait for the client: it meets the server at about the same time."""
         if self._known_starts < self.starts:
-            node, name = self._watcher.node, f'{self.name}/_action/send_goal'
-            self._watcher.spin_until(lambda: node.count_clients(name) > 0, timeout_sec=MEET_SEC)
-            self._watcher.spin_for(MET_SEC)
+            node, name = self.watcher.node, f'{self.name}/_action/send_goal'
+            self.watcher.spin_until(lambda: node.count_clients(name) > 0, timeout_sec=MEET_SEC)
+            self.watcher.spin_for(MET_SEC)
 
     def let_client_know(self) -> None:
         """Wait until it has had turns enough to deal with what was sent to it before."""
+        self.who_answers()
+        self.watcher.spin_for(SOON_SEC if self._mute else 0.0)
+
+    def who_answers(self) -> set[str]:
+        """The full names of the client's nodes that have told their parameters each time."""
         names = {*self._outcomes.publishers()} - self._mute
-        self._mute |= {name for name in names if not answers_parameters(self._watcher, name)}
-        self._watcher.spin_for(SOON_SEC if self._mute else 0.0)
+        self._mute |= {name for name in names if not answers_parameters(self.watcher, name)}
+        return names - self._mute
 
     def _why_no_goal(self) -> str:
         how = {'asked_on': self.asked_on, 'was_away': self._was_away, **self._who()}
-        return why_no_goal(self._watcher, self.name, self.type, **how)
+        return why_no_goal(self.watcher, self.name, self.type, **how)
 
     def _why_silent(self, hint: str) -> str:
-        return why_silent(self._watcher, hint, **self._who())
+        return why_silent(self.watcher, hint, **self._who())
 
     def _who(self) -> dict[str, Any]:
         return {'node_names': self._outcomes.publishers(), 'raised': self._raised}

@@ -1,0 +1,66 @@
+"""Whether a client goes on with its work while there is no server for what it is to ask."""
+
+from typing import Any
+
+from rcl_interfaces.srv import GetParameters
+from rclpy.client import Client
+from rclpy.duration import Duration
+
+from my_robot_basics.checks.barriers import NOTHING
+from my_robot_basics.checks.doubts import doubt_after
+from my_robot_basics.checks.served_action import ServedAction
+from my_robot_basics.exchange import node_troubles
+from my_robot_basics.feedback.errors import CheckFailed, fail
+from my_robot_basics.session.pressure import Stopwatch
+
+AWAY_SEC, MOST_SEC = 3.0, 4.5
+"""How long an answer of the client may take, of time that was free, and of the wall clock. A wait
+of two seconds is always shorter, and one of five is always longer. …"""
+FIRST_SEC, LOOK_SEC = 0.5, 0.1
+"""… Where none has come after the first, the notebook tells what its callback does."""
+TIMES = 3
+"""So often it is asked: a message that has arrived is dealt with between two answers."""
+ARRIVED_SEC = 2.0
+WAITS = 'wait', 'sleep', 'spin'
+"""A callback that stands in such a line does not wait for a processor."""
+
+
+def publish_in_vain(server: ServedAction, message: Any) -> None:
+    """Publish a message while there is no server: the client waits for none. Raises CheckFailed.
+
+    It is asked for its parameters meanwhile, if it has told them before.
+    """
+    node = server.watcher.node
+    clients = {
+        name: node.create_client(GetParameters, f'{name}/get_parameters')
+        for name in sorted(server.who_answers())
+    }
+    server.watcher.spin_until_free(
+        lambda: all(client.service_is_ready() for client in clients.values()), free_sec=AWAY_SEC
+    )
+    server.publish(message)
+    server.publishers[server.asked_on].wait_for_all_acked(Duration(seconds=ARRIVED_SEC))
+    for _ in range(TIMES):
+        for name, client in clients.items():
+            _expect_answer(server, name, client)
+    for client in clients.values():
+        node.destroy_client(client)
+
+
+def _expect_answer(server: ServedAction, name: str, client: Client) -> None:
+    watch, asked = Stopwatch(), client.call_async(NOTHING)
+    if server.watcher.spin_until(asked.done, timeout_sec=FIRST_SEC):
+        return
+    line = node_troubles.unfinished(name)
+    is_waiting = any(word in line for word in WAITS)
+    while watch.free_sec() < AWAY_SEC and watch.wall_sec() < MOST_SEC:
+        if server.watcher.spin_until(asked.done, timeout_sec=LOOK_SEC):
+            return
+    fail(
+        expected=f'a node that goes on with its work while there is no server of {server.name}',
+        seen=f'no answer from it in {AWAY_SEC:g} s',
+        hint='it waits inside a callback: look at server_is_ready(), which answers at once, and '
+        'send no goal while there is no server',
+        cause='the node waits for a server',
+        doubt=CheckFailed if is_waiting else doubt_after(watch, AWAY_SEC),
+    )
