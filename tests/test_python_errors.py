@@ -3,7 +3,7 @@
 import time
 
 import pytest
-from my_robot_basics.feedback.python_errors import DECIMAL_COMMA, what_to_do
+from my_robot_basics.feedback.python_errors import DECIMAL_COMMA, explained, what_to_do
 from my_robot_basics.graph import raised
 from my_robot_basics.live.bare_errors import made_with
 from my_robot_basics.validate.outputs import CellRun
@@ -45,6 +45,12 @@ def error_of(code, **names):
 def test_commas_and_full_width_characters_are_told(code, why):
     error = error_of(code, time=time)
     assert what_to_do(f'{type(error).__name__}: {error}') == why
+
+
+def test_a_full_stop_does_not_stand_before_a_comma():
+    said = 'TypeError: Third element 0 in parameters list is not a ParameterDescriptor'
+    assert explained(f'{said}.') == said + DECIMAL_COMMA
+    assert explained('TypeError: not so.') == 'TypeError: not so.'
 
 
 def test_the_note_on_a_cell_tells_what_to_do():

@@ -25,6 +25,12 @@ _PLAIN = {
 }
 
 
+def explained(told: str) -> str:
+    """A sentence or clause that tells what was raised, with what to do behind it, if anything."""
+    why = what_to_do(told)
+    return told.rstrip('.') + why if why else told
+
+
 def what_to_do(said: str) -> str:
     """A clause to put behind what was raised, such as 'AttributeError: …'; or ''."""
     if _TWO_NUMBERS.search(said):

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from my_robot_basics.exchange import node_troubles, wire
 from my_robot_basics.feedback.hidden import raised as safely
 from my_robot_basics.feedback.hidden import theirs
-from my_robot_basics.feedback.python_errors import what_to_do
+from my_robot_basics.feedback.python_errors import explained
 
 
 def what_raised(node_names: Iterable[str]) -> str:
@@ -27,7 +27,7 @@ def what_raised(node_names: Iterable[str]) -> str:
         why += f', so what you give it has to be made with `{theirs(type_name)}`'
     elif 'bad argument type for built-in operation' in said:
         why += ', so a field of the message holds a value of another type'
-    return why + what_to_do(said)
+    return explained(why)
 
 
 def what_stopped(node_names: Iterable[str]) -> str:

@@ -9,7 +9,7 @@ import nbformat
 from nbformat import NotebookNode
 
 from my_robot_basics.feedback import hidden
-from my_robot_basics.feedback.python_errors import what_to_do
+from my_robot_basics.feedback.python_errors import explained
 from my_robot_basics.validate.cells import KEY, graded_id, role
 from my_robot_basics.validate.errors import RoomFailure
 from my_robot_basics.validate.limits import FLOOD_CHARACTERS
@@ -179,7 +179,7 @@ def _trouble(name: str, run: CellRun) -> str | None:
     if run.error is not None:
         said = _TEMPORARY_FILE.sub('(', f'{run.error.ename}: {run.error.evalue}').rstrip(': ')
         told = f'{TROUBLE}`{name}` stopped with {shorten(printable(said), 300)}'
-        return told + what_to_do(said)
+        return explained(told)
     return None
 
 
