@@ -565,7 +565,18 @@ def _scripts_for_entry_points(files: Files) -> None:
         files[script] = f'#!/usr/bin/env python3\nfrom arm_player.{name} import main\n\nmain()\n'
 
 
+def _finds_no_package(files: Files) -> None:
+    """setup.py looks for folders with an __init__.py, and there is none."""
+    without('arm_player/__init__.py')(files)
+    swap(
+        SETUP,
+        ('import setup\n', 'import find_packages, setup\n'),
+        ("packages=['arm_player']", 'packages=find_packages()'),
+    )(files)
+
+
 WRONG += (
+    Change('finds_no_package', _finds_no_package, NOTHING, {'package_builds': '__init__'}),
     Change(
         'scripts_for_entry_points',
         _scripts_for_entry_points,
