@@ -11,9 +11,11 @@ from my_robot_basics.checks import (
     topic,
 )
 from my_robot_basics.checks.inconclusive import Inconclusive
+from my_robot_basics.checks.parameters import NodeParameters
 from my_robot_basics.checks.rate_parameters import RateParameter
 from nodes.running import imported
-from rcl_interfaces.msg import SetParametersResult
+from rcl_interfaces.msg import ParameterValue, SetParametersResult
+from rcl_interfaces.srv import GetParameters, SetParameters
 
 pytestmark = pytest.mark.starts
 adjustable = imported('adjustable')
@@ -185,6 +187,26 @@ def test_a_node_of_another_name_is_named(run):
     words = 'expected the node /adjustable_publisher, saw /kinematics_publisher: run the cell'
     with pytest.raises(CheckFailed, match=words):
         look_at_the_rate()
+
+
+FORMLESS = {
+    'no such type': GetParameters.Response(values=[ParameterValue(type=77)]),
+    'two for one': GetParameters.Response(values=[ParameterValue(type=3)] * 2),
+    'no result': SetParameters.Response(),
+    'a result too many': SetParameters.Response(results=[SetParametersResult()] * 3),
+}
+
+
+@pytest.mark.parametrize('response', FORMLESS.values(), ids=FORMLESS)
+def test_services_of_their_own_that_answer_in_no_form_are_named(monkeypatch, response):
+    """They stopped the check, and left the exercise to a person in place of a zero."""
+    monkeypatch.setattr(NodeParameters, '_call', lambda *_: response)
+    parameters = NodeParameters('/adjustable_publisher')
+    is_told = isinstance(response, GetParameters.Response)
+    ask, values = (parameters.get, ()) if is_told else (parameters.set, (7.0, 70.0))
+    words = '/adjustable_publisher/.et_parameters.*, saw .*: leave the parameter services to'
+    with pytest.raises(CheckFailed, match=words):
+        ask('rate_hz', *values)
 
 
 def test_parameters_are_read_and_set(run):

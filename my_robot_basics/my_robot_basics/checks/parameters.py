@@ -22,6 +22,7 @@ SERVICES_SEC = 4.0
 """How long the services of a node that is there may take to appear, of time that was free."""
 MEETINGS, MEETING_SEC = 4, 1.0
 """How often a node is asked for nothing, and how long for each answer, of time that was free."""
+_LEAVE_SERVICES = 'leave the parameter services to rclpy, and make none of your own'
 _OF_EVERY_NODE = ('use_sim_time', 'start_type_description_service')
 
 
@@ -58,6 +59,14 @@ class NodeParameters:
         values = self._call('get_parameters', GetParameters, request).values
         if not values:
             self._fail_undeclared(name)
+        kinds = {each.type for each in values}
+        expect(
+            len(values) == 1 and kinds <= {kind.value for kind in Parameter.Type},
+            expected=f'one value of {name} from {self.node_name}/get_parameters',
+            seen=f'{len(values):,} of the types {theirs(shorten(sorted(kinds)))}',
+            hint=_LEAVE_SERVICES,
+            cause=f'{self.node_name}/get_parameters does not answer as rclpy does',
+        )
         return parameter_value_to_python(values[0])
 
     def get_number(self, name: str) -> float:
@@ -76,7 +85,15 @@ class NodeParameters:
         """Set a parameter to each of these values, one after the other; what the node says."""
         parameters = [Parameter(name, value=value).to_parameter_msg() for value in values]
         request = SetParameters.Request(parameters=parameters)
-        return self._call('set_parameters', SetParameters, request).results
+        results = self._call('set_parameters', SetParameters, request).results
+        expect(
+            len(results) == len(values),
+            expected=f'a result from {self.node_name}/set_parameters for each value of {name}',
+            seen=f'{len(results):,} for {len(values):,} values',
+            hint=_LEAVE_SERVICES,
+            cause=f'{self.node_name}/set_parameters does not answer as rclpy does',
+        )
+        return results
 
     def _fail_undeclared(self, name: str) -> NoReturn:
         request = ListParameters.Request()
