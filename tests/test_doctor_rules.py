@@ -1,10 +1,11 @@
 """What a rule on topics says of evidence, without a graph."""
 
 import dataclasses
+from importlib import resources
 
 import pytest
 from made_evidence import DEADLOCK, SILENT, TOPIC, end, healthy, replaced
-from my_robot_basics.doctor import picture, remaps, report, rules, service_rules
+from my_robot_basics.doctor import action_rules, picture, remaps, report, rules, service_rules
 from my_robot_basics.doctor.evidence import NodeState
 from my_robot_basics.doctor.remaps import of_command
 from my_robot_basics.doctor.rules import judge
@@ -137,10 +138,11 @@ def test_an_empty_domain_sends_to_the_others():
     assert not any('--domains' in finding.fix for finding in judge(looked).findings)
 
 
-@pytest.mark.parametrize('table', [rules, service_rules], ids=lambda table: table.__name__)
-def test_every_rule_is_in_its_table(table):
-    from importlib import resources
+TABLES = [rules, service_rules, action_rules]
 
+
+@pytest.mark.parametrize('table', TABLES, ids=lambda table: table.__name__)
+def test_every_rule_is_in_its_table(table):
     folder = resources.files(table)
     files = {f.name.removesuffix('.py') for f in folder.iterdir() if f.name.endswith('.py')}
     tabled = [rule.__module__.rpartition('.') for rule in table.RULES]
