@@ -6,7 +6,8 @@ import sys
 from collections.abc import Iterable
 from pathlib import Path
 
-from changed_packages import ALL, LESSON, Files, write
+from changed_packages import ALL
+from package_changes import LESSON, Files, write
 
 from grader.course import Course
 from grader.grade import grade_all

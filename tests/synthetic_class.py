@@ -23,7 +23,7 @@ from nbformat.v4 import new_code_cell, new_markdown_cell, new_output
 if __name__ == '__main__':
     sys.path[:0] = [str(Path(__file__).parents[1])]
 
-from changed_packages import Files, write
+from package_changes import Files, write
 from sample_class import EXPECTED, PATHS, assignment_of, package_of, rebased
 
 from grader.course import Course

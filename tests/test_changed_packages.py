@@ -5,7 +5,10 @@ import re
 import nbformat
 import pytest
 from answered import read
-from changed_packages import ALL, CHECKS, FULL, HOSTILE, LESSON, RIGHT, WRONG, Change, ours, write
+from changed_packages import ALL
+from package_changes import CHECKS, FULL, LESSON, Change, ours, write
+from right_packages import RIGHT
+from wrong_packages import HOSTILE, WRONG
 
 from grader.course import Course
 from grader.grade import grade_all

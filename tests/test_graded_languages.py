@@ -7,11 +7,11 @@ from functools import cache
 
 import nbformat
 import pytest
-from changed_packages import write
 from course_maker import TOY, answered, executed, released_course, submit
 from my_robot_basics.language.catalogues import languages
 from my_robot_basics.language.speaking import LANGUAGE
 from nbformat import NotebookNode
+from package_changes import write
 from sample_class import EXPECTED, PATHS, assignment_of, package_of
 from stand_in import stand_in
 

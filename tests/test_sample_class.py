@@ -7,7 +7,8 @@ from pathlib import Path
 
 import nbformat
 import pytest
-from changed_packages import ALL, FULL, LESSON, write
+from changed_packages import ALL
+from package_changes import FULL, LESSON, write
 from sample_class import EXPECTED, PATHS, assignment_of, grade, package_of, rebased
 from stock_validator import validators
 

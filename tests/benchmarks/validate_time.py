@@ -17,7 +17,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from answered import LESSONS, ROOT, answered, read
-from changed_packages import write
+from package_changes import write
 from sample_class import package_of
 
 ENDLESS = 'while True: pass'

@@ -1,0 +1,324 @@
+"""Packages for lesson 12 with one mistake each, and hostile ones."""
+
+from package_changes import DRIVER, PLAYER, SETUP, Change, Files, swap, without
+
+NOTHING = 0, 0, 0
+WRONG = (
+    Change(
+        'no_entry_point',
+        swap(SETUP, ("            'arm_driver = arm_player.arm_driver:main',\n", '')),
+        (0, 0, 4),
+        {'package_builds': 'name arm_driver in entry_points', 'package_runs': 'arm_driver'},
+    ),
+    Change(
+        'wrong_module',
+        swap(SETUP, ('arm_player.arm_player:main', 'arm_player.player:main')),
+        NOTHING,
+        {'package_builds': 'player'},
+    ),
+    Change(
+        'no_function_in_the_entry_point',
+        swap(SETUP, ('arm_player.arm_player:main', 'arm_player.arm_player')),
+        NOTHING,
+        {'package_builds': 'write a colon and the function after the module'},
+    ),
+    Change(
+        'no_marker_file', without('resource/arm_player'), NOTHING, {'package_builds': 'resource/'}
+    ),
+    Change('no_setup_cfg', without('setup.cfg'), NOTHING, {'package_builds': 'setup.cfg'}),
+    Change('no_setup_py', without('setup.py'), NOTHING, {'package_builds': 'setup.py'}),
+    Change('no_package_xml', without('package.xml'), NOTHING, {'package_builds': 'package.xml'}),
+    Change(
+        'no_clean_end',
+        swap(
+            DRIVER, ('except (KeyboardInterrupt, ExternalShutdownException)', 'except ValueError')
+        ),
+        (1, 0, 4),
+        {'package_runs': 'catch KeyboardInterrupt'},
+    ),
+    Change(
+        'shuts_down_once_too_often',
+        swap(DRIVER, ('rclpy.try_shutdown()', 'rclpy.shutdown()')),
+        (1, 0, 4),
+        {'package_runs': 'catch KeyboardInterrupt.*try_shutdown'},
+    ),
+    Change(
+        'stops_at_the_first_unreachable',
+        swap(
+            PLAYER,
+            (
+                'words = [self.visit(x, y) for x, y in targets]',
+                'words = []\n        for x, y in targets:\n'
+                '            words.append(self.visit(x, y))\n'
+                "            if words[-1] == 'unreachable':\n                break",
+            ),
+        ),
+        (1, 2, 0),
+        {'arm_player_plays': 'go on with the next target'},
+    ),
+    Change(
+        'does_not_wait_for_the_arm',
+        swap(PLAYER, ('        self.arm.wait_for_server()\n', '')),
+        (1, 2, 0),
+        {'arm_player_plays': 'wait for both servers first'},
+    ),
+    Change(
+        'gives_up_after_a_second',
+        swap(
+            PLAYER,
+            (
+                'return ENDS[self.wait_for(goal_handle.get_result_async()).status]',
+                'future = goal_handle.get_result_async()\n'
+                '        rclpy.spin_until_future_complete(self, future, timeout_sec=1.0)\n'
+                "        return ENDS[future.result().status] if future.result() else 'aborted'",
+            ),
+        ),
+        (1, 2, 0),
+        {'arm_player_plays': 'when the result of the one before is there'},
+    ),
+    Change(
+        'all_goals_at_once',
+        swap(
+            PLAYER,
+            (
+                'return ENDS[self.wait_for(goal_handle.get_result_async()).status]',
+                "goal_handle.get_result_async()\n        return 'succeeded'",
+            ),
+        ),
+        (1, 2, 0),
+        {'arm_player_plays': 'when the result of the one before is there'},
+    ),
+    Change(
+        'reports_before_the_end',
+        swap(
+            PLAYER,
+            (
+                'numbers = self',
+                "self.done.publish(String(data='succeeded'))\n        numbers = self",
+            ),
+        ),
+        (1, 2, 0),
+        {'arm_player_plays': 'publish one report'},
+    ),
+    Change(
+        'calls_in_a_callback',
+        swap(
+            PLAYER,
+            ('        player.play()\n', '        player.create_timer(0.5, player.play)\n'),
+            ('self.wait_for(self.solver.call_async(', '(self.solver.call('),
+        ),
+        (1, 2, 0),
+        {'arm_player_plays': 'inside a callback and waited there'},
+    ),
+    Change(
+        'volatile',
+        swap(PLAYER, ("'/arm_player/done', LATCHED", "'/arm_player/done', 10")),
+        (1, 2, 0),
+        {'arm_player_plays': 'TRANSIENT_LOCAL'},
+    ),
+    Change(
+        'degrees',
+        swap(DRIVER, ('[math.radians(angle) for angle in', '[angle for angle in')),
+        (1, 0, 4),
+        {'package_runs': 'radians'},
+    ),
+    Change(
+        'elbow_down',
+        swap(PLAYER, ('position=answer.elbow_up', 'position=answer.elbow_down')),
+        (1, 2, 0),
+        {'arm_player_plays': 'this is elbow_down: send response.elbow_up'},
+    ),
+    Change(
+        'other_speed',
+        swap(PLAYER, ('speed=0.5', 'speed=1.0')),
+        (1, 2, 0),
+        {'arm_player_plays': 'the speed that the task names'},
+    ),
+    Change(
+        'swaps_x_and_y',
+        swap(PLAYER, ('Point(x=x, y=y)', 'Point(x=y, y=x)')),
+        (1, 0, 0),
+        {'package_runs': 'put x and y into', 'arm_player_plays': 'put x and y into'},
+    ),
+    Change(
+        'other_parameter',
+        swap(
+            PLAYER,
+            ("declare_parameter('targets'", "declare_parameter('points'"),
+            ("get_parameter('targets')", "get_parameter('points')"),
+        ),
+        (1, 2, 0),
+        {'arm_player_plays': 'targets'},
+    ),
+    Change(
+        'last_one_first',
+        swap(PLAYER, ('for x, y in targets]', 'for x, y in [*targets][::-1]]')),
+        (1, 2, 0),
+        {'arm_player_plays': 'target'},
+    ),
+    Change(
+        'takes_rejected_ones_for_accepted',
+        swap(
+            PLAYER,
+            ("        if not goal_handle.accepted:\n            return 'rejected'\n", ''),
+        ),
+        (1, 2, 0),
+        {'arm_player_plays': 'KeyError|not accepted'},
+    ),
+    Change(
+        'numbers_for_words',
+        swap(
+            PLAYER,
+            (
+                'return ENDS[self.wait_for(goal_handle.get_result_async()).status]',
+                'return str(self.wait_for(goal_handle.get_result_async()).status)',
+            ),
+        ),
+        (1, 2, 0),
+        {'arm_player_plays': 'write the word for each status, and not its number'},
+    ),
+    Change(
+        'two_ls',
+        swap(PLAYER, ("STATUS_CANCELED: 'canceled'", "STATUS_CANCELED: 'cancelled'")),
+        (1, 2, 0),
+        {'arm_player_plays': 'write the words as the task does'},
+    ),
+    Change(
+        'other_topic',
+        swap(PLAYER, ("'/arm_player/done'", "'/arm_player/finished'")),
+        (1, 2, 0),
+        {'arm_player_plays': 'the report'},
+    ),
+    Change(
+        'asks_nobody',
+        swap(
+            PLAYER,
+            ('self.solver = self.create_client(SolveIK, ', 'self.solver = str('),
+            ('        self.solver.wait_for_service()\n', ''),
+            (
+                'self.wait_for(self.solver.call_async(SolveIK.Request(target=Point(x=x, y=y))))',
+                'SolveIK.Response(reachable=True, elbow_up=[x, y])',
+            ),
+        ),
+        (1, 0, 0),
+        {'package_runs': '/solve_ik', 'arm_player_plays': '/solve_ik'},
+    ),
+    Change(
+        'other_node_name',
+        swap(DRIVER, ("super().__init__('arm_driver')", "super().__init__('driver')")),
+        (1, 0, 4),
+        {'package_runs': r'look at super\(\).__init__'},
+    ),
+    Change(
+        'goes_on_after_ctrl_c',
+        swap(
+            DRIVER,
+            ('        rclpy.init()\n', '        rclpy.init(signal_handler_options=NO)\n'),
+            (
+                '        rclpy.spin(ArmDriver())\n',
+                '        driver = ArmDriver()\n        while True:\n            try:\n'
+                '                rclpy.spin(driver)\n            except KeyboardInterrupt:\n'
+                "                print('not now')\n",
+            ),
+            (
+                'from rclpy.node import Node\n',
+                'from rclpy.node import Node\nfrom rclpy.signals import SignalHandlerOptions\n',
+            ),
+            ('class ArmDriver', 'NO = SignalHandlerOptions.NO\n\n\nclass ArmDriver'),
+        ),
+        (1, 0, 4),
+        {'package_runs': 'it still runs after'},
+    ),
+)
+
+
+def _scripts_for_entry_points(files: Files) -> None:
+    """Programs of setuptools' other kind, which colcon's build leaves as for a wheel."""
+    head, rest = files[SETUP].split('    entry_points={')
+    names = 'arm_driver', 'arm_player'
+    scripts = [f'scripts/{name}' for name in names]
+    files[SETUP] = f'{head}    scripts={scripts},\n' + rest.split('    },\n', maxsplit=1)[1]
+    for name, script in zip(names, scripts, strict=True):
+        files[script] = f'#!/usr/bin/env python3\nfrom arm_player.{name} import main\n\nmain()\n'
+
+
+def _finds_no_package(files: Files) -> None:
+    """setup.py looks for folders with an __init__.py, and there is none."""
+    without('arm_player/__init__.py')(files)
+    swap(
+        SETUP,
+        ('import setup\n', 'import find_packages, setup\n'),
+        ("packages=['arm_player']", 'packages=find_packages()'),
+    )(files)
+
+
+WRONG += (
+    Change('finds_no_package', _finds_no_package, NOTHING, {'package_builds': '__init__'}),
+    Change(
+        'scripts_for_entry_points',
+        _scripts_for_entry_points,
+        NOTHING,
+        {'package_builds': 'name a function in entry_points of setup.py'},
+    ),
+)
+
+
+def _shell_script(files: Files) -> None:
+    """`lib/arm_player/arm_driver` is a script that does nothing, and never ends."""
+    files['scripts/arm_driver'] = '#!/bin/sh\ntrap "" INT TERM\nwhile :; do sleep 1; done\n'
+    swap(
+        SETUP,
+        ("            'arm_driver = arm_player.arm_driver:main',\n", ''),
+        ('data_files=[', "data_files=[\n        ('lib/arm_player', ['scripts/arm_driver']),"),
+    )(files)
+
+
+_STARTS_IT = """import os, sys
+if os.fork() == 0:
+    os.setsid()
+    sys.path.insert(0, os.getcwd())
+    from arm_player.arm_node import main
+    main()
+    os._exit(0)
+"""
+
+
+def _setup_starts_a_node(files: Files) -> None:
+    """The driver runs from the build on, and holds colcon's pipe; the executable only waits."""
+    files['arm_player/arm_node.py'] = files[DRIVER]
+    files[DRIVER] = 'import time\n\n\ndef main():\n    time.sleep(600)\n'
+    files[SETUP] = f'{_STARTS_IT}{files[SETUP]}'
+
+
+_ITS_OWN_SERVERS = """
+        from arm_player.arm_driver import ArmDriver
+        import threading
+        driver = ArmDriver()
+        threading.Thread(target=rclpy.spin, args=(driver,), daemon=True).start()
+        player.play()
+"""
+
+HOSTILE = (
+    Change('shell_script', _shell_script, (0, 0, 4)),
+    Change(
+        'setup_starts_a_node', _setup_starts_a_node, (1, 0, 4), {'package_runs': '/arm_driver'}
+    ),
+    Change(
+        'player_serves_itself',
+        swap(PLAYER, ('        player.play()\n', _ITS_OWN_SERVERS.removeprefix('\n'))),
+        (1, 0, 0),
+        {'package_runs': '/solve_ik', 'arm_player_plays': '/solve_ik'},
+    ),
+    Change(
+        'player_reports_what_it_was_not_told',
+        swap(
+            PLAYER,
+            (
+                "        self.done.publish(String(data=' '.join(words)))",
+                "        self.done.publish(String(data='succeeded ' * len(words)))",
+            ),
+        ),
+        (1, 2, 0),
+        {'arm_player_plays': 'the status of the result tells how it ended'},
+    ),
+)
