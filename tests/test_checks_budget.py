@@ -63,7 +63,7 @@ def test_checks_share_their_time_and_none_begins_when_it_is_over():
 
 
 def test_a_busy_machine_has_longer_and_is_told_of():
-    assert run(Kernel(60.0, 2.0), 3) == ['', TOO_BUSY, TOO_BUSY]
+    assert run(Kernel(40.0, 2.0), 3) == ['', TOO_BUSY, TOO_BUSY]
 
 
 def test_what_is_in_time_is_judged():

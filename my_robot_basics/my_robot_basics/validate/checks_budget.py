@@ -14,7 +14,8 @@ TOO_SLOW = (
 )
 TOO_BUSY = (
     f'not checked here: the checks of this exercise have taken {VALIDATE_CHECKS_MOST_SEC:g} s, '
-    'because this machine is too busy; validate again when it is not. Grading waits longer'
+    'on a machine that is busy; validate again when it is not, and if that is no better, look for '
+    'what is slow in yours. Grading waits longer'
 )
 
 

@@ -11,7 +11,7 @@ VALIDATE_NEXT_TIMEOUT_SEC = 1.0
 VALIDATE_CHECKS_SEC = 20.0
 """*Validate* waits so long for the checks of an exercise together, as it waits for a cell: those
 that are left are not checked there. …"""
-VALIDATE_CHECKS_MOST_SEC = 90.0
+VALIDATE_CHECKS_MOST_SEC = 60.0
 """… And so long on a machine that is too busy."""
 BUILD_TIMEOUT_SEC = 90.0
 """A locked cell that builds a package has so long: 2 to 4 s of an idle machine. What takes longer
