@@ -7,7 +7,7 @@ from my_robot_basics.feedback.python_errors import DECIMAL_COMMA, explained, wha
 from my_robot_basics.graph import raised
 from my_robot_basics.live.bare_errors import made_with
 from my_robot_basics.validate.outputs import CellRun
-from my_robot_basics.validate.verdict import _trouble
+from my_robot_basics.validate.trouble import trouble_in
 from nbformat.v4 import new_output
 from rclpy.action import ActionClient, ActionServer
 from rclpy.node import Node
@@ -34,10 +34,10 @@ def error_of(code, **names):
         ("float('0,2')", DECIMAL_COMMA),
         ("float('fast')", ''),
         ('time.sleep()', ''),
-        ('timer(0，2)', ', so write `,` in place of `，`: code takes plain characters alone'),
-        ('timer(0。2)', ', so write `.` in place of `。`: code takes plain characters alone'),
-        ('timer（0.2)', ', so write `(` in place of `（`: code takes plain characters alone'),
-        ('x = “a”', ', so write `"` in place of `“`: code takes plain characters alone'),
+        ('timer(0，2)', ", so write ',' in its place"),
+        ('timer(0。2)', ", so write '.' in its place"),
+        ('timer（0.2)', ", so write '(' in its place"),
+        ('x = “a”', ", so write '\"' in its place"),
         ('x = 5€', ''),
         ('x = (1', ''),
     ],
@@ -56,7 +56,7 @@ def test_a_full_stop_does_not_stand_before_a_comma():
 def test_the_note_on_a_cell_tells_what_to_do():
     said = "'function' object has no attribute 'add_entity'"
     run = CellRun(error=new_output('error', ename='AttributeError', evalue=said))
-    told = _trouble('five_hz-run', run)
+    told = trouble_in('five_hz-run', run)
     assert told == f'your cell `five_hz-run` stopped with AttributeError: {said}{DECIMAL_COMMA}'
 
 

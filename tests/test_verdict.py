@@ -188,6 +188,13 @@ def test_a_failure_tells_what_happened_in_the_students_own_cells(cell):
     assert judge(cell, ended(), own).notes == ()
 
 
+SWAPPED = """\
+rclpy_resolve_name(): incompatible function arguments. The following argument types are supported:
+    1. (arg0: rclpy::Node, arg1: str, arg2: bool, arg3: bool) -> str
+
+Invoked with: <rclpy.Node object at 0x7f>, <class 'sensor_msgs.msg.JointState'>, False, False"""
+
+
 @pytest.mark.parametrize(
     ('error', 'told'),
     [
@@ -200,6 +207,27 @@ def test_a_failure_tells_what_happened_in_the_students_own_cells(cell):
         (('SyntaxError', 'no end (<ipython-input-3-a1>, line 1)'), 'SyntaxError: no end (line 1)'),
         (('NotImplementedError', ''), 'stopped with NotImplementedError'),
         (('OSError', 'no data.py: (x.py)'), 'stopped with OSError: no data.py: (x.py)'),
+        (
+            ('SyntaxError', "invalid character '，' (U+FF0C) (63915088.py, line 3)"),
+            "invalid character '，' (U+FF0C) (line 3), so write ',' in its place",
+        ),
+        (
+            ('SyntaxError', "invalid character '‘' (U+2018) (63915088.py, line 3)"),
+            '(line 3), so write "\'" in its place',
+        ),
+        (
+            ('SyntaxError', "invalid character '²' (U+00B2) (63915088.py, line 3)"),
+            "invalid character '²' (U+00B2) (line 3)",
+        ),
+        (
+            ('SyntaxError', 'invalid non-printable character U+00A0 (63915088.py, line 3)'),
+            'so type that line again: it has a space of another kind, as copied text may have',
+        ),
+        (
+            ('TypeError', SWAPPED),
+            'rclpy_resolve_name(): incompatible function arguments, so give the type first, such'
+            ' as JointState, and the name of the topic or service second',
+        ),
         (
             ('StdinNotImplementedError', 'raw_input was called, but this frontend does not …'),
             'calls input(), and nobody answers: write the value into the code',

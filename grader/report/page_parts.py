@@ -9,7 +9,7 @@ from my_robot_basics.language.sentences import REASON
 from my_robot_basics.language.speaking import sentences
 from my_robot_basics.validate.pictures import KINDS, why_not_shown
 from my_robot_basics.validate.titles import title_of_check, title_of_failure
-from my_robot_basics.validate.verdict import TROUBLE
+from my_robot_basics.validate.trouble import TROUBLE
 from nbconvert.filters import strip_ansi
 from nbformat import NotebookNode
 

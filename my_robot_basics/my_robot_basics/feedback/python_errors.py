@@ -3,7 +3,6 @@
 import re
 import unicodedata
 
-DECIMAL_COMMA = ', so a decimal comma may have made two numbers of one: write 0.2, and not 0,2'
 _TWO_NUMBERS = re.compile(
     r"object has no attribute 'add_entity'"  # create_timer(0,2, …) takes the callback for a group
     r"|argument must be a string or a real number, not 'tuple'"  # period_sec = 0,2
@@ -11,18 +10,37 @@ _TWO_NUMBERS = re.compile(
     r'|is not a ParameterDescriptor'  # declare_parameter('rate_hz', 5,0)
     r'|sleep\(\) takes exactly one argument \(2 given\)'
 )
-_CHARACTER = re.compile(r"invalid (?:non-printable )?character '?(.)'? \(U\+[0-9A-F]+\)")
-_PLAIN = {
-    '。': '.',
-    '、': ',',
-    '“': '"',
-    '”': '"',
-    '‘': "'",
-    '’': "'",
-    '−': '-',
-    '–': '-',
-    '×': '*',
+DECIMAL_COMMA = ', so a decimal comma may have made two numbers of one: write 0.2, and not 0,2'
+_BY_WORDS = (
+    (_TWO_NUMBERS, DECIMAL_COMMA),
+    (
+        re.compile(r'rclpy_resolve_name\(\): incompatible|has no .*_TYPE_SUPPORT'),
+        ', so give the type first, such as JointState, and the name of the topic or service '
+        'second',
+    ),
+    (
+        re.compile("missing 1 required positional argument: 'node_name'"),
+        ", so give the node its name: super().__init__('…') in a method __init__",
+    ),
+    (re.compile("requires a 'super' object"), ', so write super() with its parentheses'),
+    (
+        re.compile("a real number, not 'method'"),
+        ', so give create_timer the period first, and the callback second',
+    ),
+    (
+        re.compile("received <enum 'QoSPresetProfiles'>"),
+        ', so take the profile out of the preset with .value',
+    ),
+)
+"""What to do, by the words of rclpy's or Python's own sentence."""
+_CHARACTER = re.compile(r"invalid (?:character '(.)' \(|non-printable character )U\+")
+_MARKS = {
+    **dict.fromkeys('‘’‚‛′', "'"),
+    **dict.fromkeys('“”„‟″', '"'),
+    **dict.fromkeys('‐‑‒–—−', '-'),
+    **{'。': '.', '、': ',', '【': '[', '】': ']', '《': '<', '》': '>', '×': '*', '÷': '/'},
 }
+"""What a word processor, or a keyboard of another language, has in place of what Python reads."""
 
 
 def explained(told: str) -> str:
@@ -33,11 +51,15 @@ def explained(told: str) -> str:
 
 def what_to_do(said: str) -> str:
     """A clause to put behind what was raised, such as 'AttributeError: …'; or ''."""
-    if _TWO_NUMBERS.search(said):
-        return DECIMAL_COMMA
     if found := _CHARACTER.search(said):
-        other = found[1]
-        plain = _PLAIN.get(other) or unicodedata.normalize('NFKC', other)
-        if plain != other and plain.isascii():
-            return f', so write `{plain}` in place of `{other}`: code takes plain characters alone'
-    return ''
+        return _about_character(found[1])
+    return next((clause for words, clause in _BY_WORDS if words.search(said)), '')
+
+
+def _about_character(character: str | None) -> str:
+    """Which character to type in place of this one; None is one that shows nothing."""
+    if character is None:
+        return ', so type that line again: it has a space of another kind, as copied text may have'
+    plain = _MARKS.get(character) or unicodedata.normalize('NFKC', character)
+    is_wide = unicodedata.east_asian_width(character) == 'F' and plain.isascii()
+    return f', so write {plain!r} in its place' if is_wide or character in _MARKS else ''

@@ -1,10 +1,15 @@
 """What goes wrong in a lesson, in a line or two: no traceback of ours in a student's notebook."""
 
+import re
+
 from my_robot_basics.language import lines
 from my_robot_basics.language.speaking import in_language_here
 
 COLUMNS = 90
 """What fits beside a file browser; JupyterLab breaks words, and Validate cuts long lines off."""
+
+_SIGNATURES = re.compile(r'\. The following argument types are supported:.*', re.DOTALL)
+"""What rclpy's functions in C++ take, and what they were given: in words of C++, for pages."""
 
 
 def in_lines(text: str, *, first: str = '') -> list[str]:
@@ -18,6 +23,11 @@ def tell(text: str, *, in_one: bool = True) -> None:
     lines = [shown] if in_one else in_lines(shown)
     # in one piece: an interrupt between the text and its end would leave the line open
     print('\n'.join([*lines, '']), end='', flush=True)
+
+
+def without_signatures(said: str) -> str:
+    """Return what an exception says, without the signatures of rclpy's functions in C++."""
+    return _SIGNATURES.sub('', said)
 
 
 class LiveError(Exception):

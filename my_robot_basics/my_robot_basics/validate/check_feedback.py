@@ -8,7 +8,8 @@ from my_robot_basics.validate.cells import KEY, graded_id
 from my_robot_basics.validate.lesson import Lesson
 from my_robot_basics.validate.report import CheckFeedback, Outcome
 from my_robot_basics.validate.titles import title_of_check
-from my_robot_basics.validate.verdict import TROUBLE, UNGRADED, Verdict
+from my_robot_basics.validate.trouble import TROUBLE
+from my_robot_basics.validate.verdict import UNGRADED, Verdict
 
 
 def make_check(

@@ -8,7 +8,8 @@ from nbformat import NotebookNode
 from my_robot_basics.validate.cells import graded_id
 from my_robot_basics.validate.limits import STUDENT_CELL_TIMEOUT_SEC
 from my_robot_basics.validate.outputs import CellRun
-from my_robot_basics.validate.verdict import TROUBLE, Verdict
+from my_robot_basics.validate.trouble import TROUBLE
+from my_robot_basics.validate.verdict import Verdict
 
 NOT_CHECKED = 'not checked, because your code did not return: look for a loop that does not end'
 

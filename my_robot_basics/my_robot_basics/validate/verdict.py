@@ -1,6 +1,5 @@
 """Turn what came of a grade cell into a verdict with its reason, and write it into the cell."""
 
-import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
@@ -9,13 +8,11 @@ import nbformat
 from nbformat import NotebookNode
 
 from my_robot_basics.feedback import hidden
-from my_robot_basics.feedback.python_errors import explained
 from my_robot_basics.validate.cells import KEY, graded_id, role
 from my_robot_basics.validate.errors import RoomFailure
-from my_robot_basics.validate.limits import FLOOD_CHARACTERS
-from my_robot_basics.validate.outputs import CUT_OFF, CellRun
+from my_robot_basics.validate.outputs import CellRun
 from my_robot_basics.validate.second_look import DISTURBED, STARVED
-from my_robot_basics.validate.text import printable, shorten
+from my_robot_basics.validate.trouble import trouble_in
 
 Outcome = Literal['passed', 'partial', 'failed', 'ungraded', 'manual']
 SCORED = ('passed', 'partial', 'failed')
@@ -23,14 +20,10 @@ SCORED = ('passed', 'partial', 'failed')
 
 NOTE = 'note: '
 """A check's line that starts so costs nothing, and is told to the student."""
-TROUBLE = 'your cell '
-"""A note that begins so tells what went wrong in one of the student's cells."""
 UNGRADED = 'not graded, a person has to look at it: '
 """How the reason begins where the grader itself failed."""
 _FAILURES = ('CheckFailed', 'PartlyRight', STARVED, DISTURBED, 'AssertionError')
 _SHOWN = ('display_data', 'stream')
-_TEMPORARY_FILE = re.compile(r'\((<(ipython-input|tokenize|string)[^>]*>|\d+\.py), (?=line \d+\))')
-"""How a SyntaxError names a cell of a notebook, which nobody would recognise."""
 
 
 @dataclass(frozen=True)
@@ -79,7 +72,7 @@ def judge(cell: NotebookNode, run: CellRun | None, own: Iterable[tuple[str, Cell
     details = hidden.details_in(run.outputs)
     if run.error.ename == 'AssertionError' and hidden.has_started(run.outputs):
         reason, details = _in_words(reason, cell), reason
-    notes += tuple(sentence for each in own if (sentence := _trouble(*each)))
+    notes += tuple(sentence for each in own if (sentence := trouble_in(*each)))
     if run.ending and hidden.has_started(run.outputs):  # a signal's number may be a hidden input
         notes += ('in the part checked at grading, what you started has ended',)
         details = '; '.join(filter(None, (details, run.ending)))
@@ -162,29 +155,8 @@ def _in_words(reason: str, cell: NotebookNode) -> str:
     return f'{hidden.PLACE}{words}'
 
 
-def _trouble(name: str, run: CellRun) -> str | None:
-    """Say what went wrong in one of the student's cells."""
-    if run.cut_off:
-        return f'{TROUBLE}`{name}` {CUT_OFF}'
-    if run.timed_out:
-        what = f'printed over {FLOOD_CHARACTERS:,} characters' if run.flooded else 'did not end'
-        how = 'could not be' if run.died else 'was'
-        return f'{TROUBLE}`{name}` {what} and {how} interrupted'
-    if run.died:
-        return f'{TROUBLE}`{name}` ended the kernel' + (f': {run.ending}' if run.ending else '')
-    if run.error is not None and run.error.ename == 'StdinNotImplementedError':
-        return (
-            f'{TROUBLE}`{name}` calls input(), and nobody answers: write the value into the code'
-        )
-    if run.error is not None:
-        said = _TEMPORARY_FILE.sub('(', f'{run.error.ename}: {run.error.evalue}').rstrip(': ')
-        told = f'{TROUBLE}`{name}` stopped with {shorten(printable(said), 300)}'
-        return explained(told)
-    return None
-
-
 def _who_ended_it(own: list[tuple[str, CellRun]]) -> str:
-    causes = [sentence for each in own if (sentence := _trouble(*each))]
+    causes = [sentence for each in own if (sentence := trouble_in(*each))]
     return causes[0] if causes else 'something that your code left running ended it'
 
 

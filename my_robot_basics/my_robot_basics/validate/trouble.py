@@ -1,0 +1,35 @@
+"""What went wrong in a student's own cell, in a sentence."""
+
+import re
+
+from my_robot_basics.feedback.python_errors import explained
+from my_robot_basics.session.errors import without_signatures
+from my_robot_basics.validate.limits import FLOOD_CHARACTERS
+from my_robot_basics.validate.outputs import CUT_OFF, CellRun
+from my_robot_basics.validate.text import printable, shorten
+
+TROUBLE = 'your cell '
+"""A note that begins so tells what went wrong in one of the student's cells."""
+_TEMPORARY_FILE = re.compile(r'\((<(ipython-input|tokenize|string)[^>]*>|\d+\.py), (?=line \d+\))')
+"""How a SyntaxError names a cell of a notebook, which nobody would recognise."""
+
+
+def trouble_in(name: str, run: CellRun) -> str | None:
+    """Say what went wrong in one of the student's cells, and what to try where that is plain."""
+    if run.cut_off:
+        return f'{TROUBLE}`{name}` {CUT_OFF}'
+    if run.timed_out:
+        what = f'printed over {FLOOD_CHARACTERS:,} characters' if run.flooded else 'did not end'
+        how = 'could not be' if run.died else 'was'
+        return f'{TROUBLE}`{name}` {what} and {how} interrupted'
+    if run.died:
+        return f'{TROUBLE}`{name}` ended the kernel' + (f': {run.ending}' if run.ending else '')
+    if run.error is not None and run.error.ename == 'StdinNotImplementedError':
+        return (
+            f'{TROUBLE}`{name}` calls input(), and nobody answers: write the value into the code'
+        )
+    if run.error is not None:
+        what = without_signatures(run.error.evalue)
+        said = _TEMPORARY_FILE.sub('(', f'{run.error.ename}: {what}').rstrip(': ')
+        return explained(f'{TROUBLE}`{name}` stopped with {shorten(printable(said), 300)}')
+    return None
