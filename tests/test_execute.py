@@ -184,6 +184,19 @@ def test_a_function_may_use_names_that_the_lesson_has_shown(demos, answer):
     assert outcomes(execute(handed_in(source, a=answer)))['a-check'] == 'passed'
 
 
+@pytest.mark.parametrize(
+    ('name', 'is_shown'), [('prnit', False), ('shown', True), ('nothing_of_it', False)]
+)
+def test_what_the_lesson_shows_is_run_for_a_name_that_it_may_bind_alone(name, is_shown):
+    source = lesson('a')
+    shown = new_code_cell('if 0 < 1:\n    print("shown")', metadata={'tags': ['demo']})
+    source.cells.insert(1, shown)
+    execution = execute(handed_in(source, a=f'{name}(1)\n{GOOD}'))
+    assert outcomes(execution)['a-check'] == 'failed'
+    assert f"NameError: name '{name}' is not defined" in execution.verdicts[0].notes[0]
+    assert bool(execution.notebook.cells[1].outputs) == is_shown
+
+
 IS_TWO = """
 from my_robot_basics.checks import expect, student
 expect(student.value('made') == 2, expected=2, seen='less', hint='two')

@@ -5,6 +5,7 @@ import time
 import nbformat
 import pytest
 from my_robot_basics.validate.exercises import find_exercises
+from my_robot_basics.validate.misspelled import are_misspelled
 from my_robot_basics.validate.plans import plan_for_names, plans
 from nbformat.v4 import new_code_cell, new_notebook
 from small_lesson import answer, grade, lesson, marked
@@ -297,3 +298,23 @@ def test_names_that_turn_out_to_be_needed_may_come_later_too():
 def test_a_cell_that_may_bind_any_name_is_lent(lender):
     notebook = lesson(area='def area(r): return k', at_start=lender)
     assert next(plans(notebook, find_exercises(notebook)[0])).why == LENT
+
+
+@pytest.mark.parametrize(
+    ('cells', 'is_misspelled'),
+    [
+        ({}, True),
+        ({'area': 'tua = 2'}, True),
+        ({'at_end': 'tau = 2'}, True),
+        ({'at_end': 'tua = 2'}, False),
+        ({'try_it': 'setattr(here, "tua", 2)'}, False),
+        ({'at_end': 'tua = ('}, False),
+        ({'at_start': 'from math import *'}, False),
+        ({'at_start': '%pylab inline'}, False),
+        ({'at_start': '%%time\ntau = 2'}, True),
+    ],
+)
+def test_a_name_is_misspelled_where_no_other_cell_may_bind_it(cells, is_misspelled):
+    notebook = lesson(**cells)
+    exercise = find_exercises(notebook)[0]
+    assert are_misspelled({'tua'}, notebook, exercise) == is_misspelled

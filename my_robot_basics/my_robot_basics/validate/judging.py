@@ -13,6 +13,7 @@ from my_robot_basics.validate.cell_names import number_of
 from my_robot_basics.validate.cells import grade_id, graded_id
 from my_robot_basics.validate.errors import RoomFailure
 from my_robot_basics.validate.exercises import Exercise
+from my_robot_basics.validate.misspelled import are_misspelled
 from my_robot_basics.validate.names import names_not_defined
 from my_robot_basics.validate.outputs import CellRun
 from my_robot_basics.validate.overdue import judge_overdue
@@ -85,7 +86,7 @@ async def _try_plan(
     async with looks.rooms() as rooms:
         # as they are now: a display that is updated later may show hidden inputs
         runs = copy.deepcopy(await _run_cells(notebook, exercise, plan, rooms, budget))
-        if not is_last and _lacks_a_name(runs, exercise, plan):
+        if not is_last and _lacks_a_name(notebook, runs, exercise, plan):
             return None
         checks, cut = await _judge_cells(notebook, exercise, looks, rooms, runs)
     if cut:
@@ -168,11 +169,21 @@ def _name(cells: list[NotebookNode], index: int) -> str:
     return f'`{name}`' if (name := grade_id(cells[index])) else f'{number_of(cells, index)}'
 
 
-def _lacks_a_name(runs: dict[int, CellRun], exercise: Exercise, plan: Plan) -> bool:
-    """Whether the answer, or starting it, stopped for want of a name, or may when it is called."""
+def _lacks_a_name(
+    notebook: NotebookNode, runs: dict[int, CellRun], exercise: Exercise, plan: Plan
+) -> bool:
+    """Whether the answer, or starting it, stopped for want of a name, or may when it is called.
+
+    One that no other cell can bind is not lacking: it is misspelled.
+    """
     if not all(runs[i].ran_to_end for i in plan.demonstrations):
         return True  # what the lesson shows may need more than names
-    return any(_wants_a_name(runs[i]) for i in (exercise.answer, *exercise.run))
+    wanting = [run for i in (exercise.answer, *exercise.run) if _wants_a_name(run := runs[i])]
+    if not wanting:
+        return False
+    errors = [run.error for run in wanting if run.error]
+    names = [names_not_defined(f'{error.ename}: {error.evalue}') for error in errors]
+    return not all(names) or not are_misspelled(set().union(*names), notebook, exercise)
 
 
 def _wants_a_name(run: CellRun) -> bool:

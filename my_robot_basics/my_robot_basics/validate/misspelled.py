@@ -1,0 +1,26 @@
+"""Whether a name that an answer lacks is misspelled: no other cell of its notebook can bind it."""
+
+import re
+
+from nbformat import NotebookNode
+
+from my_robot_basics.validate.cells import is_code
+from my_robot_basics.validate.exercises import Exercise
+from my_robot_basics.validate.names import names_of
+
+_WORD = re.compile(r'\w+')
+_LINE_MAGIC = re.compile(r'^[ \t]*%(?!%)', re.MULTILINE)
+"""Some bind names, as `%pylab` does."""
+
+
+def are_misspelled(names: set[str], notebook: NotebookNode, exercise: Exercise) -> bool:
+    """Whether no cell beside the answer has one of these names in its text.
+
+    Each of those cells has to tell all that it binds: one with a star import may bind any.
+    """
+    cells = enumerate(notebook.cells)
+    texts = [cell.source for i, cell in cells if is_code(cell) and i != exercise.answer]
+    return not any(
+        names & {*_WORD.findall(text)} or names_of(text).binds_more or _LINE_MAGIC.search(text)
+        for text in texts
+    )
