@@ -27,6 +27,8 @@ def test_numbers_are_read_as_people_write_them(text, numbers):
         ('{branch}: {a:.2f} {b:.2f}', 'put an f before'),
         ('elbow_up: 65,92 / -74,04', 'decimals with a point'),
         ('(65,92) / -74,0', ''),
+        ('theta1-65.92, theta2--74.04', 'a - right before a number is its sign'),
+        ('theta1-65.9, theta2--74.04', ''),
         ("{'elbow_up': (6.5, -7.4)}", ''),
         ('{"elbow_up": [6.5, -7.4]}', ''),
         ('', ''),

@@ -43,6 +43,12 @@ def test_joints_agree_in_any_order():
         (message(0.5236, -1.0472), {'joint1': 0.5236, 'joint2': -1.0472}, 'joint2 holds θ1 + θ2'),
         (message(0.2618, -0.7854), {'joint1': 0.2618, 'joint2': -0.7854}, '180 degrees are pi'),
         (message(0.0833, -0.25), {'joint1': 0.0833, 'joint2': -0.25}, 'these are parts of a wh'),
+        (message(0.1667, -0.5), {'joint1': 0.1667, 'joint2': -0.5}, 'these are parts of half a'),
+        (
+            message(1.0472, -3.1416),
+            {'joint1': 1.0472, 'joint2': -3.1416},
+            '180 degrees are pi radians, and not 2',
+        ),
         (message(0.5236, 4.7124), {'joint1': 0.5236, 'joint2': 4.7124}, 'it is a whole turn too'),
         (message(0.7, 0.1), {'joint1': 0.7, 'joint2': 0.1}, 'convert both angles with'),
         (message(0.5236, -1.5708, 0.0), '3 positions with 2 names', 'give each message two'),

@@ -37,15 +37,19 @@ def test_names_may_come_in_any_order_with_their_positions():
 
 
 MESSAGES = {
-    'wrong names': ({'name': ['joint_1', 'joint_2']}, 'saw joint_1, joint_2'),
-    'no names': ({'name': []}, 'expected the joint names joint1, joint2, saw none'),
-    'one name': ({'name': ['joint1']}, 'saw joint1'),
+    'wrong names': ({'name': ['joint_1', 'joint_2']}, "saw 'joint_1', 'joint_2'"),
+    'no names': ({'name': []}, "expected the joint names 'joint1', 'joint2', saw none"),
+    'one name': ({'name': ['joint1']}, "saw 'joint1'"),
+    'both in one text': ({'name': ['joint1, joint2']}, "saw 'joint1, joint2': "),
+    'a space behind': ({'name': ['joint1 ', 'joint2']}, "saw 'joint1 ', 'joint2'"),
     'degrees': ({'position': [23.4, -67.8]}, r'saw \(23.4, -67.8\), which looks like degrees'),
+    'more than degrees': ({'position': [1340.7, -3884.7]}, r'too large .*: call radians\(\)'),
     'out of range': ({'position': [0.1, 200.0]}, 'keep each joint within its range'),
     'not a number': ({'position': [math.nan, 0.0]}, r'saw \(nan, 0\)'),
     'no position': ({'position': []}, 'expected 2 positions in each message, saw 0'),
     'three positions': ({'position': [0.0] * 3}, 'saw 3'),
     'other frame': ({'frame_id': 'world'}, "expected frame_id 'base_link', saw 'world'"),
+    'frame and a space': ({'frame_id': 'base_link '}, "saw 'base_link '"),
     'no stamp': ({'stamp': 0.0}, 'saw a stamp of 0'),
     'one stamp': ({'stamp': START_SEC}, 'saw a stamp that does not advance'),
 }

@@ -347,6 +347,26 @@ def test_the_field_of_another_type_is_named_where_rclpy_was_to_publish_it(monkey
 
 
 @pytest.mark.starts
+def test_what_is_logged_and_no_text_is_told_with_its_line(monkeypatch):
+    monkeypatch.delenv('MY_ROBOT_BASICS_ROOM', raising=False)
+
+    class Logs(Node):
+        def __init__(self):
+            super().__init__('logs')
+            self.create_timer(0.01, self.tick)
+
+        def tick(self):
+            self.get_logger().info({'elbow_up': 1.0})
+
+    live.run(Logs)
+    live.wait_until(lambda: node_troubles.times_raised('/logs'))
+    why = what_raised(['/logs'])
+    assert ", in tick: self.get_logger().info({'elbow_up': 1.0}))" in why
+    assert why.endswith('so log a text: put the value into an f-string')
+    live.stop()
+
+
+@pytest.mark.starts
 def test_what_a_library_raised_is_told_with_the_students_line(monkeypatch):
     monkeypatch.delenv('MY_ROBOT_BASICS_ROOM', raising=False)
 

@@ -8,6 +8,12 @@ ROUNDED_DEG = 0.5
 """Angles that were rounded are no further off, in whole degrees or in hundredths of a radian."""
 HOW = '(print(…) does not reach the log, nor does a logger of another name)'
 
+IN_REACH = (
+    '; for a target in reach it does not, so give it x and y alone, and keep other lines out of'
+    ' that `try`'
+)
+"""Behind when to warn, where a node has only warned: another ValueError may have been caught."""
+
 
 def near(angle_deg: float, number: float, within_deg: float = WITHIN_DEG) -> bool:
     """Whether a number is that angle, whole turns aside."""

@@ -13,6 +13,8 @@ _NAN = re.compile(r'\bnan\b', re.IGNORECASE)
 _BRACES = re.compile(r'\{[A-Za-z_][^{}]*\}')
 """What an f-string without its f leaves as it is; a dict begins with a quote."""
 _DECIMAL_COMMA = re.compile(r'(?<=\d),(?=\d)')
+_HYPHEN = re.compile(r'(?<=\w)[-−](?=[-−+]?\d)')
+"""One that parts a number from what it is called: theta1-65.92."""
 _ELBOWS_DEG = (0.0, 180.0)
 """Elbow angles of an arm that is stretched, or folded, towards a target out of reach."""
 
@@ -66,6 +68,9 @@ def why_unreadable(wanted: Sequence[float], texts: Sequence[str]) -> str:
     pointed = [number for text in texts for number in numbers_of(_DECIMAL_COMMA.sub('.', text))]
     if not angles.missing(wanted, pointed):
         return 'write decimals with a point, and not with a comma'
+    parted = [number for text in texts for number in numbers_of(_HYPHEN.sub(' ', text))]
+    if not angles.missing(wanted, parted):
+        return 'a - right before a number is its sign: put a colon or a space between'
     return ''
 
 

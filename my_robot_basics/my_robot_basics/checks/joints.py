@@ -120,6 +120,8 @@ def why_off(
         'joint1 holds θ2, too': [right[1], right[1]],
         'joint2 holds θ1 + θ2, and not θ2 alone': [right[0], sum(right)],
         '180 degrees are pi radians, and not 360: call radians()': [each / 2 for each in right],
+        '180 degrees are pi radians, and not 2 pi: call radians()': [2 * each for each in right],
+        'these are parts of half a turn: call radians()': [each / 180 for each in pose_deg],
         'these are parts of a whole turn: call radians()': [each / 360 for each in pose_deg],
     }
     found = [cause for cause, wrong in causes.items() if _are_near(seen, wrong)]

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Self
 
 from my_robot_basics.checks import angles, answers, pairing
+from my_robot_basics.checks.angles import IN_REACH
 from my_robot_basics.checks.node_log import NodeLog
 from my_robot_basics.feedback.errors import fail
 from my_robot_basics.graph.raised import what_stopped
@@ -175,7 +176,7 @@ class Log(NodeLog):
         if self.has('INFO') or not self.has('WARN'):
             return angles.what_to_try(wanted, self.numbers())
         elsewhere = not angles.missing(wanted, self.numbers('WARN'), angles.ROUNDED_DEG)
-        return INFO_FOR_ANGLES if elsewhere else WARN_ONLY
+        return INFO_FOR_ANGLES if elsewhere else WARN_ONLY + IN_REACH
 
     def _why_unwarned(self) -> str:
         why = what_stopped([self.node_name])

@@ -9,6 +9,7 @@ from my_robot_basics.checks import pictures
 from my_robot_basics.feedback.errors import expect, fail
 
 ANGLE_SLACK_RAD = 1e-6
+WHOLE_TURN_DEG = 360.0
 FEWEST_STEPS = 8
 """So many in a row that go the same way are no chance."""
 
@@ -38,9 +39,10 @@ def _fail_position(
     pose: Sequence[float], low: Sequence[float], high: Sequence[float], *, poses: list
 ) -> None:
     degrees = [[math.degrees(bound) for bound in bounds] for bounds in (low, high)]
+    of_degrees = [[math.degrees(bound) for bound in bounds] for bounds in degrees]
     shown = ', '.join(f'{angle:.4g}' for angle in pose)
     picture = None
-    # half a turn is the most that an angle in radians is likely to be
+    # half a turn is the most that an angle in radians is likely to be, and a whole one in degrees
     largest = max(abs(angle) for each in poses for angle in each)
     if _grow(poses, low, high):
         seen = f'({shown}), further out with each message'
@@ -51,6 +53,9 @@ def _fail_position(
     elif largest > math.pi and all(_within(each, *degrees) for each in poses):
         seen, hint = f'({shown}), which looks like degrees', 'convert with math.radians(…)'
         picture = pictures.misread(pose)
+    elif largest > WHOLE_TURN_DEG and all(_within(each, *of_degrees) for each in poses):
+        seen = f'({shown}), too large for degrees, too'
+        hint = 'degrees() converts the other way: call radians()'
     else:
         seen = f'({shown})'
         hint = 'keep each joint within its range, and each position beside its own name'

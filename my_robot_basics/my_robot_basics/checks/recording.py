@@ -121,8 +121,8 @@ class Recording:
         for message in self._messages_with('name'):
             expect(
                 sorted(message.name) == sorted(names),
-                expected=f'the joint names {", ".join(names)}',
-                seen=shorten(', '.join(message.name)) or 'none',
+                expected=f'the joint names {", ".join(map(repr, names))}',
+                seen=shorten(', '.join(map(repr, message.name))) or 'none',
                 hint='message.name is a list of the joint names of the URDF, letter for letter',
             )
 
@@ -142,7 +142,7 @@ class Recording:
             expect(
                 message.header.frame_id == frame_id,
                 expected=f"frame_id '{frame_id}'",
-                seen=f"'{shorten(message.header.frame_id)}'",
+                seen=shorten(repr(message.header.frame_id)),
                 hint=f"set message.header.frame_id = '{frame_id}' before publishing",
             )
 

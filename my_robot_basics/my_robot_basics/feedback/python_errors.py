@@ -31,6 +31,10 @@ _BY_WORDS = (
         re.compile("received <enum 'QoSPresetProfiles'>"),
         ', so take the profile out of the preset with .value',
     ),
+    (
+        re.compile(r'rclpy_logging_rcutils_log\(\): incompatible'),
+        ', so log a text: put the value into an f-string',
+    ),
 )
 """What to do, by the words of rclpy's or Python's own sentence."""
 _CHARACTER = re.compile(r"invalid (?:character '(.)' \(|non-printable character )U\+")

@@ -13,6 +13,7 @@ from rclpy.service import Service
 from my_robot_basics.exchange.wire import THREADS
 from my_robot_basics.exchange.wrong_fields import wrong_field
 from my_robot_basics.live.bare_errors import made_with
+from my_robot_basics.session.errors import without_signatures
 
 UNFINISHED_SEC = 0.5
 _last: dict[str, str] = {}
@@ -39,6 +40,7 @@ def remember(node_name: str, error: BaseException) -> None:
     frames = _frames(error)
     own = [frame for frame in frames if not frame.filename.startswith(_OF_A_LIBRARY)]
     place = _line((own or frames)[-1]) if frames else ''
+    what = without_signatures(what)
     told = f'{what} ({place})' if place else what
     _fields[node_name] = _unpublished(error) or ('', made_with(error))
     if node_name != THREADS and (service_name := _service(error)):
