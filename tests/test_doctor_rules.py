@@ -88,8 +88,21 @@ def test_what_follows_from_what_was_seen(evidence, titles):
     assert [finding.title for finding in judge(evidence).findings] == titles
 
 
-def with_bursts(*firsts, number=6):
-    """100 Hz from a queue of one, in which `number` messages each came at once."""
+@pytest.mark.parametrize(
+    ('node_name', 'received', 'job'),
+    [
+        ('/talker', SILENT, 'its timers fire'),
+        ('/listener', {}, 'the callback is called'),
+    ],
+)
+def test_what_a_node_that_is_not_spinning_does_not_do_is_told(node_name, received, job):
+    seen = replaced(nodes={node_name: NodeState(answers=False)}, **received)
+    (finding,) = judge(seen).findings
+    assert finding.expected == f'{node_name} to be spun, so that {job}'
+
+
+def with_bursts(*firsts, number=6, depth=1):
+    """100 Hz from a queue of that depth, in which `number` messages each came at once."""
     evidence = healthy(rate_hz=100.0, number=200)
     received = list(evidence.received)
     for first in firsts:
@@ -97,7 +110,7 @@ def with_bursts(*firsts, number=6):
             received[i] = dataclasses.replace(
                 received[i], sent_sec=received[first + number - 1].sent_sec
             )
-    ends = end('publisher', '/talker', depth=1), end('subscription', '/listener')
+    ends = end('publisher', '/talker', depth=depth), end('subscription', '/listener')
     return replaced(evidence, received=tuple(received), endpoints=ends)
 
 
@@ -107,6 +120,10 @@ def with_bursts(*firsts, number=6):
         (with_bursts(50), []),  # a machine that stood still for a moment
         (with_bursts(50, 120), []),
         (with_bursts(*range(0, 180, 10)), ['messages lost to a short queue']),
+        (with_bursts(*range(0, 180, 10), depth=5), ['messages lost to a short queue']),
+        (with_bursts(*range(0, 180, 10), depth=6), []),  # a whole burst has room in it
+        (with_bursts(*range(0, 195, 8), number=5), ['messages lost to a short queue']),
+        (with_bursts(*range(0, 195, 8), number=4), []),  # so few are no burst
     ],
 )
 def test_who_sends_in_bursts_does_it_again_and_again(evidence, titles):
