@@ -239,6 +239,44 @@ def test_an_error_is_told_without_what_says_nothing(cell, error, told):
     assert note.endswith(told)
 
 
+CALLED = """\
+\x1b[96mCell\x1b[39m\x1b[96m \x1b[39m\x1b[32mIn[7]\x1b[39m\x1b[32m, line 2\x1b[39m
+\x1b[92m      1\x1b[39m y \x1b[38;5;204m=\x1b[39m 1
+\x1b[92m----> \x1b[39m\x1b[92m2\x1b[39m {}"""
+INSIDE = 'File rclpy/qos.py:136, in QoSProfile.reliability(self, value)\n--> 136     assert x'
+
+
+@pytest.mark.parametrize(
+    ('name', 'frames', 'told'),
+    [
+        ('AssertionError', [CALLED.format('double(0)')], 'AssertionError: line 2: double(0)'),
+        (
+            'StopIteration',
+            [CALLED.format('a()'), CALLED.format('next(b)'), INSIDE],
+            'StopIteration: line 2: next(b)',
+        ),
+        (
+            'NotImplementedError',
+            [CALLED.format('raise NotImplementedError')],
+            'with NotImplementedError',
+        ),
+        ('KeyboardInterrupt', [INSIDE], 'stopped with KeyboardInterrupt'),
+        (
+            'AssertionError',
+            [CALLED.format("q = QoSProfile(depth=1, reliability='best')"), INSIDE],
+            "reliability='best'), so give each policy as one, such as "
+            'ReliabilityPolicy.BEST_EFFORT, and depth as a whole number',
+        ),
+    ],
+)
+def test_an_error_that_says_nothing_is_told_with_the_line_of_the_student(cell, name, frames, told):
+    lines = '\n'.join(['---', f'{name}  Traceback (most recent call last)', *frames]).split('\n')
+    run = ended(error=new_output('error', ename=name, evalue='', traceback=lines))
+    [note] = judge(cell, failing(), [('five_hz', run)]).notes
+    assert note.endswith(told)
+    assert note.isprintable()
+
+
 def test_remarks_of_a_check_become_notes(cell):
     run = ended(text('checked 50 messages\nnote: judged on the wall clock\n'), PICTURE)
     assert judge(cell, run, []).notes == ('judged on the wall clock',)

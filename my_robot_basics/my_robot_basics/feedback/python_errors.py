@@ -32,6 +32,11 @@ _BY_WORDS = (
         ', so take the profile out of the preset with .value',
     ),
     (
+        re.compile(r'AssertionError: line \d+: .*QoSProfile\('),
+        ', so give each policy as one, such as ReliabilityPolicy.BEST_EFFORT, and depth as a '
+        'whole number',
+    ),
+    (
         re.compile(r'rclpy_logging_rcutils_log\(\): incompatible'),
         ', so log a text: put the value into an f-string',
     ),

@@ -12,6 +12,11 @@ TROUBLE = 'your cell '
 """A note that begins so tells what went wrong in one of the student's cells."""
 _TEMPORARY_FILE = re.compile(r'\((<(ipython-input|tokenize|string)[^>]*>|\d+\.py), (?=line \d+\))')
 """How a SyntaxError names a cell of a notebook, which nobody would recognise."""
+_COLOURS = re.compile(r'\x1b\[[\d;]*m')
+_OWN_LINE = re.compile(
+    r'^Cell In\[\d+\], line (\d+).*?^-*> ?\1 +(\S[^\n]*)$', re.MULTILINE | re.DOTALL
+)
+"""Where a frame of the notebook's own is in a traceback of IPython, and what stands there."""
 
 
 def trouble_in(name: str, run: CellRun) -> str | None:
@@ -29,7 +34,14 @@ def trouble_in(name: str, run: CellRun) -> str | None:
             f'{TROUBLE}`{name}` calls input(), and nobody answers: write the value into the code'
         )
     if run.error is not None:
-        what = without_signatures(run.error.evalue)
+        what = without_signatures(run.error.evalue) or _own_line(run.error.traceback)
         said = _TEMPORARY_FILE.sub('(', f'{run.error.ename}: {what}').rstrip(': ')
         return explained(f'{TROUBLE}`{name}` stopped with {shorten(printable(said), 300)}')
     return None
+
+
+def _own_line(traceback: list[str]) -> str:
+    """The student's last line, for an exception that says nothing; '' if that line raises it."""
+    lines = _OWN_LINE.findall(_COLOURS.sub('', '\n'.join(traceback)))
+    number, code = lines[-1] if lines else ('', 'raise')
+    return '' if code.startswith('raise') else f'line {number}: {code}'
