@@ -43,13 +43,21 @@ def taken_from(answer: type) -> str:
     return ''
 
 
-def programs() -> dict[psutil.Process, str]:
-    """Return what this process has started that is a program of one of these nodes, by name."""
+def programs(*, besides: Collection[psutil.Process]) -> dict[psutil.Process, str]:
+    """Return what this process has started that is a program of one of these nodes, by name.
+
+    Without those children of it, and all that they have started: `ros2 run` starts its program
+    a while after it was started itself.
+    """
     found = {}
-    for process in psutil.Process().children(recursive=True):
+    for child in set(psutil.Process().children()) - set(besides):
+        family = [child]
         with suppress(psutil.Error):  # it has ended meanwhile
-            if program := _PROGRAM.search(' '.join(process.cmdline())):
-                found[process] = program[1]
+            family += child.children(recursive=True)
+        for process in family:
+            with suppress(psutil.Error):
+                if program := _PROGRAM.search(' '.join(process.cmdline())):
+                    found[process] = program[1]
     return found
 
 

@@ -11,8 +11,8 @@ from my_robot_basics.session import classroom
 from my_robot_basics.session.errors import NotRunnable, tell
 from my_robot_basics.session.neighbours import nodes_here
 
-_programs_before: set[psutil.Process] = set()
-"""Those of the course's nodes that ran before the answer: a lesson's own cells may start some."""
+_started_before: set[psutil.Process] = set()
+"""What ran before the answer: a lesson's own cells may start programs of the course's nodes."""
 
 
 def reset(*names: str) -> None:
@@ -25,8 +25,8 @@ def reset(*names: str) -> None:
     troubles.forget_all()
     if classroom.in_grading_room():
         course_nodes.close()
-    _programs_before.clear()
-    _programs_before.update(course_nodes.programs())
+    _started_before.clear()
+    _started_before.update(psutil.Process().children())
     for name in names:
         _notebook().pop(name, None)
     if names:
@@ -69,7 +69,7 @@ def run_answer(name: str, *args: Any, **kwargs: Any) -> Node | None:
 
 def _refuse_programs() -> None:
     """End the programs of the course's nodes that the answer has started, and say so."""
-    started = {p: name for p, name in course_nodes.programs().items() if p not in _programs_before}
+    started = course_nodes.programs(besides=_started_before)
     if started:
         course_nodes.end_programs(started)
         name = min(started.values())
