@@ -63,6 +63,9 @@ def count_looks(node, service, *, unknown_times):
 @pytest.mark.usefixtures('client')
 def test_a_response_waits_until_dds_knows_who_reads_it():
     with Watcher() as here:
-        assert here.spin_until(lambda: here.node.count_clients('/ask') > 0, timeout_sec=20.0)
+        request = {'topic_name': 'rq/askRequest', 'no_mangle': True}
+        assert here.spin_until(
+            lambda: here.node.get_publishers_info_by_topic(**request), timeout_sec=20.0
+        )
         assert count_looks(here.node, '/ask', unknown_times=2) == 3
         assert count_looks(here.node, '/nobody_asks', unknown_times=2) == 1
