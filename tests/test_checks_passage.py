@@ -105,3 +105,34 @@ def test_copies_that_were_in_a_queue_are_not_invented(monkeypatch, is_timer, inv
         node.received += [('first', SEC * n) for n in range(5)]
         assert not passage.loses_after_a_pause(Sent(n, '') for n in count(100))
     assert passage.invents([(n, SEC * n) for n in range(4)]) == invents
+
+
+class SlowNode:
+    """Has a queue of depth 1. Some calls of its callback take so long."""
+
+    def __init__(self, takes_sec):
+        self.takes_sec, self.numbers = takes_sec, count()
+        self.received, self.queue, self.now_sec = [], None, 0.0
+
+    def publish(self, message):
+        self.queue = message, self.now_sec + self.takes_sec(next(self.numbers))
+
+    def spin(self, done, free_sec):
+        until_sec = self.now_sec + free_sec
+        if self.queue is not None and self.queue[1] <= until_sec:
+            (message, self.now_sec), self.queue = self.queue, None
+            self.received.append((message, round(self.now_sec * SEC)))
+        else:
+            self.now_sec = until_sec
+        return done()
+
+
+@pytest.mark.parametrize(('slow_sec', 'lost'), [(0.01, 0), (0.3, 0), (5.0, 4)])
+def test_a_message_that_is_late_is_not_pushed_out_of_a_short_queue_by_the_next(slow_sec, lost):
+    """Four such calls on a busy machine were enough for "messages that are not republished"."""
+    node = SlowNode(lambda number: slow_sec if number in (3, 9, 15, 21) else 0.001)
+    watcher = SimpleNamespace(spin_for=lambda _: None, spin_until_free=node.spin)
+    passage = Passage(watcher, node, publish=node.publish, what=lambda message: message)
+    faults = passage.carry(Sent(n, '') for n in count())
+    assert len(faults.lost) == lost
+    assert faults.is_whole() == (lost == 0)

@@ -15,7 +15,8 @@ from my_robot_basics.session.pressure import Stopwatch
 ON_TIME_SEC = 1.0
 """How long a message may take. A node that republishes by a timer is in time, too."""
 TIMEOUT_FACTOR, LEAST_SEC = 10.0, 0.2
-"""Once some came out, no more than so many times as long as the slowest of them, and that."""
+"""Once some came out, so many times as long as the slowest of them, and that, tell that a machine
+is busy, a queue has overflowed, or a message is late: that one has ON_TIME_SEC more."""
 QUIET_SEC = 0.1
 """How long to listen for a second copy."""
 MOST_SEC, LAST_SEC = 12.0, 20.0
@@ -88,6 +89,9 @@ class Passage:
             elif len(self._others) - others >= FLOOD and pushed_out < MOST_PUSHED_OUT:
                 pushed_out += 1
                 self._waiting.remove(sent)
+            # in a queue of depth 1, the next would push it out
+            elif self._wait_for(sent, free_sec=ON_TIME_SEC):
+                in_a_row += 1
             else:
                 late, in_a_row, row = late + 1, 0, Stopwatch()
         self._watcher.spin_for(QUIET_SEC)
@@ -149,18 +153,22 @@ class Passage:
         """Publish it; whether it has come out in time."""
         self._waiting.append(sent)
         self._let_in(sent)
+        timeout_sec, watch = ON_TIME_SEC, Stopwatch()
+        if self._slowest_sec:
+            timeout_sec = max(LEAST_SEC, TIMEOUT_FACTOR * self._slowest_sec)
+        if not self._wait_for(sent, free_sec=min(timeout_sec, ON_TIME_SEC)):
+            return False
+        self._slowest_sec = max(self._slowest_sec, watch.wall_sec())
+        return True
+
+    def _wait_for(self, sent: Sent, *, free_sec: float) -> bool:
+        """Wait until it has come out, for so much time that was free; whether it has."""
 
         def is_out() -> bool:
             self._take()
             return not any(each is sent for each in self._waiting)
 
-        timeout_sec, watch = ON_TIME_SEC, Stopwatch()
-        if self._slowest_sec:
-            timeout_sec = max(LEAST_SEC, TIMEOUT_FACTOR * self._slowest_sec)
-        if not self._watcher.spin_until_free(is_out, free_sec=min(timeout_sec, ON_TIME_SEC)):
-            return False
-        self._slowest_sec = max(self._slowest_sec, watch.wall_sec())
-        return True
+        return self._watcher.spin_until_free(is_out, free_sec=free_sec)
 
     def _let_in(self, sent: Sent) -> None:
         self._own.add(self._what(sent.message))
