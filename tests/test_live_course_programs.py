@@ -1,0 +1,59 @@
+"""Which of the course's own programs a notebook has started, itself or by another program."""
+
+import sys
+import time
+
+import psutil
+import pytest
+from my_robot_basics.live import course_nodes
+
+TIMEOUT_SEC = 60.0
+SLEEPS = 'import time; time.sleep(600)'
+NAMED = 'my_robot_basics.kinematics_publisher'
+STARTS_ANOTHER = f"""
+import subprocess, sys
+name = '.'.join(['my_robot_basics', 'kinematics_publisher'])
+subprocess.run([sys.executable, '-c', {SLEEPS!r}, name])
+"""
+"""The name is not in its own command line."""
+
+pytestmark = pytest.mark.starts
+
+
+@pytest.fixture
+def start():
+    started = []
+
+    def start(code, *arguments):
+        started.append(psutil.Popen([sys.executable, '-c', code, *arguments]))
+        return psutil.Process(started[-1].pid)
+
+    yield start
+    for process in started:
+        for each in [*process.children(recursive=True), process]:
+            each.kill()
+        process.wait()
+
+
+def found(*, besides=()):
+    """What is found, waited for: a program starts another one a while after its own start."""
+    until = time.monotonic() + TIMEOUT_SEC
+    while not (names := course_nodes.programs(besides=besides)) and time.monotonic() < until:
+        time.sleep(0.05)
+    return names
+
+
+@pytest.mark.parametrize(
+    ('code', 'arguments'), [(STARTS_ANOTHER, []), (SLEEPS, [NAMED])], ids=['by another', 'itself']
+)
+def test_a_program_of_the_course_is_found_whoever_started_it(start, code, arguments):
+    child = start(code, *arguments)
+    names = found()
+    assert [*names.values()] == ['kinematics_publisher']
+    assert not course_nodes.programs(besides=[child])
+
+
+def test_a_program_of_the_same_name_elsewhere_is_none_of_the_course(start):
+    start(SLEEPS, 'my_robot_basics_of_mine.kinematics_publisher')
+    own = start(SLEEPS, NAMED)
+    assert [*found()] == [own]
