@@ -45,7 +45,7 @@ LONG = (
     *('lesson_own_program', 'package', 'formgrader', 'validate', 'ros2_graph', 'lessons_run'),
     *('full_disk', 'accessibility', 'live_target', 'hidden_inputs', 'isolation', 'execute'),
     *('ros2_service', 'rooms', 'bundle', 'feedback', 'collect', 'report', 'live_arm'),
-    *('live_interrupts', 'course', 'checks_relays', 'sandbox_share'),
+    *('live_interrupts', 'course', 'checks_relays', 'sandbox_share', 'kernel_messages'),
 )
 """Files that take longest come first: begun at the end, one would be waited for alone. Those that
 keep processors busy stand beside those that wait: all at once, each would take longer."""

@@ -113,7 +113,7 @@ ORDINARY = {
     ),
     'test_fork_servers::test_what_can_not_be_forked_is_started_and_says_why': r'a thread',
     'test_kernels::test_a_kernel_that_dies_is_noticed': r'_exit|SIGKILL',
-    'test_kernels::test_a_flood_is_drained_and_bounded_and_the_kernel_goes_on': (
+    'test_kernel_messages::test_a_flood_is_drained_and_bounded_and_the_kernel_goes_on': (
         r'one huge text|many displays'
     ),
     'test_release::test_what_somebody_typed_into_a_release_is_kept_before_it_is_replaced': (

@@ -37,7 +37,8 @@ STARTING_FILES = frozenset(
     course course_checks course_setup crowd dask_backend doctor_faults doctor_healthy
     doctor_service_faults doctor_service_healthy doctor_actions
     executables execute grade gradebook imports
-    interrupt isolation isolation_everywhere kernels lesson_own_program lessons_run
+    interrupt isolation isolation_everywhere kernels kernel_messages kernel_starts
+    lesson_own_program lessons_run
     live_answers live_camera live_classroom live_domain live_interrupts live_kernel
     live_lessons live_neighbours
     live_qos_pairs live_refusals live_runner live_sliders live_target logs main
