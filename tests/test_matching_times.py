@@ -1,0 +1,90 @@
+"""Which of several counts: the time that a platform or a file tells, and no other."""
+
+import pytest
+from incoming_files import ADA, ASSIGNMENTS, BLACKBOARD, arriving, owners, time_of
+
+from grader.collect.matching import match
+
+
+@pytest.fixture
+def at(tmp_path):
+    return arriving(tmp_path)
+
+
+def test_the_time_is_the_exchanges_or_the_files(at):
+    notebook = at('ada/02_joint_state/02_joint_state.ipynb')
+    stamp = at('ada/02_joint_state/timestamp.txt', '2026-03-04 05:06:07.89 UTC\n')
+    assert time_of(notebook, stamp) == ('03-04 05:06:07', [])
+    assert time_of(notebook) == (None, [])
+    assert time_of(notebook, file_times=True) == ('01-01 12:00:00', [])
+    assert time_of(notebook, stamp, file_times=True) == ('03-04 05:06:07', [])
+    zone = at('ada/02_joint_state/timestamp.txt', '2026-03-04 05:06:07 +0200')
+    assert time_of(notebook, zone) == ('03-04 03:06:07', [])
+    exchange = 'ada+02_joint_state+2026-02-03 04:05:06.7 UTC'
+    exchanged = at(f'{exchange}/02_joint_state.ipynb'), at(f'{exchange}/timestamp.txt', 'soon')
+    assert time_of(*exchanged) == ('02-03 04:05:06', ['it holds no date'])
+
+
+def test_a_time_that_a_student_packed_is_not_believed(at):
+    notebook, stamp = at('ada.zip/02_joint_state.ipynb'), at('ada.zip/timestamp.txt', '2020-01-01')
+    assert time_of(notebook, stamp) == (
+        None,
+        ["a time in a student's own archive is not believed"],
+    )
+
+
+def test_several_notebooks_of_one_exercise_are_put_in_order_by_their_times(at):
+    exchange = 'ada+02_joint_state+2026-01-0{} 10:00:00 UTC/02_joint_state.ipynb'
+    hand_ins, left = match([at(exchange.format(day)) for day in (3, 1, 2)], ASSIGNMENTS)
+    assert [each.handed_in.day for each in hand_ins] == [1, 2, 3]
+    assert left == []
+
+
+def test_where_no_time_tells_them_apart_none_is_taken(at):
+    two = at('ada_02_joint_state.ipynb', 'one'), at('ada-02_joint_state.ipynb', 'two')
+    for options in ({}, {'file_times': True}):  # they are of the same time, too
+        taken, left = owners(*two, **options)
+        assert taken == []
+        assert [path for path, _ in left] == [each.path for each in two]
+        assert all('one of 2 notebooks for 02_joint_state by ada' in why for _, why in left)
+
+
+def test_the_same_notebook_twice_is_one(at):
+    two = at('ada_02_joint_state.ipynb', 'one'), at('ada-02_joint_state.ipynb', 'one')
+    taken, [(_, why)] = owners(*two)
+    assert taken == [('ada', '02_joint_state')]
+    assert why == 'the same again'
+
+
+def test_blackboard_says_which_attempt_is_the_latest(at):
+    attempts = [at(BLACKBOARD.format('ada', day), day) for day in ('10', '09', '11')]
+    hand_ins, left = match(attempts, ASSIGNMENTS)
+    assert [each.notebook for each in hand_ins] == [attempts[1], attempts[0], attempts[2]]
+    assert left == []
+    # the platform's clock is taken to be this machine's
+    local = hand_ins[0].handed_in.astimezone()
+    assert local.strftime('%m-%d %H:%M:%S') == '01-09 03:04:05'
+
+
+def test_a_time_that_is_none_is_left_out(at):
+    assert time_of(at(BLACKBOARD.format('ada', '41'))) == (None, [])
+
+
+@pytest.mark.parametrize(
+    'upload', [ADA, 'lovelaceada_18151_21012_homework.zip', f'{ADA}/homework.zip']
+)
+@pytest.mark.parametrize('inside', ['', '/ada lovelace'])
+def test_a_time_that_a_student_uploaded_is_not_believed(upload, inside, at):
+    notebook = at(f'{upload}{inside}/03_publisher.ipynb')
+    stamp = at(f'{upload}{inside}/timestamp.txt', '2020-01-01 00:00:00 UTC')
+    when, [why] = time_of(notebook, stamp)
+    assert when is None
+    assert 'is not believed' in why
+    assert time_of(notebook, stamp, file_times=True)[0] == '01-01 12:00:00'
+
+
+@pytest.mark.parametrize('upload', [ADA, 'ada lovelace.zip', f'{ADA}/homework.zip'])
+def test_nor_one_in_the_name_of_a_folder_in_the_exchange_s_form(upload, at):
+    folder = f'{upload}/Ada Lovelace+03_publisher+2020-01-01 00:00:00 UTC'
+    for options, when in (({}, None), ({'file_times': True}, '01-01 12:00:00')):
+        assert time_of(at(f'{folder}/03_publisher.ipynb'), **options) == (when, [])
