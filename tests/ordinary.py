@@ -170,7 +170,7 @@ ORDINARY = {
         r'a publisher without a stamp'
     ),
     'test_doctor_faults::test_a_publisher_out_of_reach': r'environment1-.*',
-    'test_checks_actions_wrong::test_who_gets_nowhere_is_told_why': r'NeverEnds-.*',
+    'test_checks_actions_nowhere::test_who_gets_nowhere_is_told_why': r'NeverEnds-.*',
     'test_checks_parameters::test_an_honest_way_passes': r'Adjustable',
     'test_checks_stamps::test_the_nodes_clock_passes_and_is_given_back': r'SteadyClock',
     'test_checks_topics::test_silence_is_explained': r'callback_raises-.*',

@@ -49,7 +49,8 @@ STARTING_FILES = frozenset(
     ros2_service ros2_shell ros2_streams same_scores survival synthetic_class temporary_folders
     validate validate_forks validate_server workers workspace_terminal
     serving
-    checks_action_servers checks_actions checks_actions_wrong live_destroying ros2_param
+    checks_action_servers checks_actions checks_actions_nowhere checks_actions_not_stopped
+    checks_actions_wrong live_destroying ros2_param
     live_packages package_grading
     checks_player command_line lean_imports
     """.split()  # noqa: SIM905

@@ -1,0 +1,77 @@
+"""An action server that gets nowhere is told why, by each check."""
+
+import pytest
+from arm_checks import CHECKS, reaches
+from my_robot_basics.checks import CheckFailed, action
+from nodes.running import imported
+
+from arm_interfaces.action import MoveArm
+
+MoveArmServer = imported('move_arm_server').MoveArmServer
+STEP_SEC = imported('move_arm_server').STEP_SEC
+
+
+class ReturnsTrue(MoveArmServer):
+    def judge(self, goal):
+        return self.is_possible(goal)
+
+
+class FlagStuck(MoveArmServer):
+    def finish(self, handle):
+        result = super().finish(handle)
+        self.is_moving = True
+        return result
+
+
+class ReturnsNothing(MoveArmServer):
+    def finish(self, handle):
+        super().finish(handle)
+
+
+class RaisesInExecute(MoveArmServer):
+    def step(self, handle):
+        raise KeyError('joint3')
+
+
+class NeverExecutes(MoveArmServer):
+    def make_server(self, **callbacks):
+        return super().make_server(handle_accepted_callback=lambda handle: None, **callbacks)
+
+
+class NeverEnds(MoveArmServer):
+    def step(self, handle):
+        super().step(handle)
+        self.part = 0.5
+
+
+class WaitsForItsOwnTimer(MoveArmServer):
+    def execute(self, handle):
+        self.create_rate(20).sleep()
+
+
+NOWHERE = [
+    (
+        ReturnsTrue,
+        'end the goal callback with `return GoalResponse.ACCEPT` or `GoalResponse.RE',
+    ),
+    (FlagStuck, 'see that the node knows that the arm moves no longer'),
+    (ReturnsNothing, r'end the execute callback with `return MoveArm.Result\(position=…\)`'),
+    (RaisesInExecute, 'the execute callback raised an exception .*joint3.*so fix that first'),
+    (NeverExecutes, r'a handle_accepted_callback calls goal_handle.execute\(\)'),
+    (WaitsForItsOwnTimer, "the execute callback keeps the node's only thread: wait with"),
+    (NeverEnds, 'end the loop of the execute callback when the arm is there'),
+]
+
+
+@pytest.mark.parametrize(('node_class', 'message'), NOWHERE)
+def test_who_gets_nowhere_is_told_why(run, node_class, message):
+    run(node_class)
+    with pytest.raises(CheckFailed, match=message):
+        reaches(action('/move_arm', MoveArm))
+
+
+def test_a_later_check_is_told_of_an_exception_before_it(run):
+    run(RaisesInExecute)
+    for check in CHECKS[:2]:
+        with pytest.raises(CheckFailed, match=r'the execute callback raised .*joint3'):
+            check(action('/move_arm', MoveArm))
