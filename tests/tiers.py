@@ -43,8 +43,8 @@ STARTING_FILES = frozenset(
     live_lessons live_neighbours
     live_qos_pairs live_refusals live_runner live_sliders live_target logs main
     manual_grading nbgrader_commands nbgrader_contract nodes ordinary_events package
-    partial preprocessors readme release replay reuse rooms rooms_hostile rooms_opening
-    ros2_action ros2_completion
+    partial preprocessors readme release replay reuse reuse_ends rooms
+    rooms_hostile rooms_opening ros2_action ros2_completion
     ros2_discovery ros2_graph ros2_interfaces ros2_main ros2_notebook ros2_real ros2_run
     ros2_service ros2_shell ros2_streams same_scores survival synthetic_class temporary_folders
     validate validate_forks validate_server workers workspace_terminal
