@@ -70,15 +70,17 @@ ORDINARY = {
     'test_checks_services::test_a_wrong_solution_is_named': r'(Degrees|Swapped)-.*',
     'test_checks_services::test_who_answers_right_passes_in_whatever_way': r'IKService|Coroutine',
     'test_checks_servers::test_who_asks_right_passes_in_whatever_way': r'IKClient',
-    'test_checks_servers::test_what_is_wrong_is_named': r'(ElbowDown|AsksNobody)-.*',
-    'test_checks_servers::test_who_waits_inside_a_callback_is_told': r'Calls',
+    'test_checks_wrong_clients::test_what_is_wrong_is_named': r'(ElbowDown|AsksNobody)-.*',
+    'test_checks_waiting_clients::test_who_waits_inside_a_callback_is_told': r'Calls',
     'test_doctor_service_faults::test_a_client_that_blocks_its_own_executor': r'call',
     'test_doctor_service_healthy::test_an_honest_client_of_a_quick_and_of_a_slow_server': (
         r'add_done_callback-2\.0'
     ),
     'test_checks_topics::test_a_node_of_the_same_kernel_is_judged_exactly': r'FiveHz',
-    'test_checks_servers::test_who_publishes_more_than_the_response_is_told': r'BothBranches-.*',
-    'test_checks_servers::test_who_never_gets_an_answer_is_told_why': r'Calls',
+    'test_checks_wrong_clients::test_who_publishes_more_than_the_response_is_told': (
+        r'BothBranches-.*'
+    ),
+    'test_checks_waiting_clients::test_who_never_gets_an_answer_is_told_why': r'Calls',
     'test_doctor_actions::test_what_becomes_of_a_goal_is_told': r'Forgets-.*',
     'test_doctor_actions::test_each_state_in_which_a_goal_stands_still_has_its_line': (
         r'executing-.*'

@@ -52,7 +52,7 @@ STARTING_FILES = frozenset(
     checks_action_servers checks_actions checks_actions_nowhere checks_actions_not_stopped
     checks_actions_wrong live_destroying ros2_param
     live_packages package_grading
-    checks_player command_line lean_imports
+    checks_player checks_waiting_clients checks_wrong_clients command_line lean_imports
     """.split()  # noqa: SIM905
 )
 """Files, test_NAME.py, of which all tests, or nearly all, start something: if not a kernel, then

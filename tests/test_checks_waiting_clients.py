@@ -1,0 +1,186 @@
+"""A client that waits for the answer, or for the server, keeps itself from it, and is told so."""
+
+import time
+
+import pytest
+import rclpy
+from geometry_msgs.msg import Point
+from ik_clients import IKClient, check_asks, check_never_blocks, server, stop_all
+from my_robot_basics.checks import CheckFailed, ik, servers, topic
+from my_robot_basics.graph.watcher import Watcher
+
+from arm_interfaces.srv import SolveIK
+from my_robot_basics import live
+
+
+@pytest.fixture
+def run():
+    yield live.run
+    stop_all()
+
+
+@pytest.fixture
+def impatient(monkeypatch):
+    """Wait for what does not come no longer than it takes to be sure."""
+    monkeypatch.setattr(servers, 'TIMEOUT_SEC', 1.5)
+
+
+WAITS = (
+    "it called `/solve_ik` inside a callback and waited there: the answer can't be delivered "
+    'while the callback runs, or while all threads of its executor wait like this; use '
+    'call_async and add_done_callback'
+)
+
+
+class Calls(IKClient):
+    def ask(self, target):
+        self.answer(self.client.call(SolveIK.Request(target=target), timeout_sec=20.0))
+
+
+class CallsAWhile(IKClient):
+    def ask(self, target):
+        self.answer(self.client.call(SolveIK.Request(target=target), timeout_sec=3.0))
+
+
+@pytest.mark.slow
+def test_who_waits_and_asks_late_for_what_came_before_is_told_of_the_wait(run):
+    run(CallsAWhile)
+    with Watcher() as here:
+        publisher = topic('/target_point').meet(here, Point)
+        for x in 0.7, 0.8, 0.9:
+            publisher.publish(Point(x=x, y=0.7))
+    with server() as serving:
+        serving.hold()
+        with pytest.raises(CheckFailed, match=r'saw .*x=0\.[789].*: it waits inside a callback'):
+            ik.ask(serving, 1.2, 0.8)
+
+
+class SpinsInside(IKClient):
+    def ask(self, target):
+        future = self.client.call_async(SolveIK.Request(target=target))
+        rclpy.spin_until_future_complete(self, future, timeout_sec=20.0)
+        self.answer(future.result())
+
+
+class Sleeps(IKClient):
+    def ask(self, target):
+        future = self.client.call_async(SolveIK.Request(target=target))
+        for _ in range(200):
+            if future.done():
+                break
+            time.sleep(0.1)
+        else:
+            return
+        self.answer(future.result())
+
+
+class AwaitsInItsOnlyGroup(IKClient):
+    async def ask(self, target):
+        self.answer(await self.client.call_async(SolveIK.Request(target=target)))
+
+
+WAITING = [Calls, SpinsInside, Sleeps, AwaitsInItsOnlyGroup]
+
+
+@pytest.mark.parametrize('node_class', WAITING)
+@pytest.mark.usefixtures('impatient')
+def test_who_waits_inside_a_callback_is_told(run, node_class):
+    run(node_class)
+    with pytest.raises(CheckFailed) as failure:
+        check_never_blocks()
+    assert str(failure.value) == (
+        'expected the count on /ik_client/alive to go on while the server takes its time, '
+        f'saw it stand still: {WAITS}'
+    )
+
+
+@pytest.mark.parametrize('node_class', [Calls, SpinsInside])
+@pytest.mark.usefixtures('impatient')
+def test_who_never_gets_an_answer_is_told_why(run, node_class):
+    run(node_class)
+    with pytest.raises(CheckFailed, match=r'expected the elbow-up pose .*saw none') as failure:
+        check_asks()
+    assert str(failure.value).endswith(WAITS)
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures('impatient')
+def test_who_gives_up_waiting_is_told_not_to_wait(run):
+    run(CallsAWhile)
+    for check in check_asks, check_never_blocks:
+        with pytest.raises(CheckFailed, match='inside a callback'):
+            check()
+
+
+class WaitsForTheServer(IKClient):
+    def ask(self, target):
+        self.client.wait_for_service(20.0)
+        super().ask(target)
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures('impatient')
+def test_who_waits_for_a_server_that_is_not_there_is_told(run):
+    run(WaitsForTheServer)
+    check_asks()
+    with pytest.raises(CheckFailed, match='while there is no server, saw it stand still: it wai'):
+        check_never_blocks()
+
+
+class CountsAhead(WaitsForTheServer):
+    def ask(self, target):
+        if not self.client.service_is_ready():
+            for _ in range(100):
+                self.say_alive()
+        super().ask(target)
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures('impatient')
+def test_who_counts_ahead_has_to_go_on_all_the_same(run):
+    run(CountsAhead)
+    with pytest.raises(CheckFailed, match='while there is no server, saw it stand still'):
+        check_never_blocks()
+
+
+class DropsMeanwhile(IKClient):
+    is_busy = False
+
+    def ask(self, target):
+        if not self.is_busy:
+            self.is_busy = True
+            super().ask(target)
+
+    def answer(self, response):
+        self.is_busy = False
+        super().answer(response)
+
+
+class RemembersOneFuture(IKClient):
+    future = None
+
+    def __init__(self):
+        super().__init__()
+        self.create_timer(0.05, self.look)
+
+    def ask(self, target):
+        self.future = self.client.call_async(SolveIK.Request(target=target))
+
+    def look(self):
+        if self.future and self.future.done():
+            future, self.future = self.future, None
+            self.answer(future.result())
+
+
+@pytest.mark.parametrize(
+    ('node_class', 'message'),
+    [
+        (DropsMeanwhile, 'ask for each target, also for one that comes while the answer to'),
+        (RemembersOneFuture, 'publish for each answer, though two requests are under way'),
+    ],
+)
+@pytest.mark.usefixtures('impatient')
+def test_who_loses_a_target_while_the_server_takes_its_time_is_told(run, node_class, message):
+    run(node_class)
+    with pytest.raises(CheckFailed, match=message):
+        check_never_blocks()

@@ -1,0 +1,232 @@
+"""A client that asks or publishes the wrong thing is told what."""
+
+from functools import partial
+
+import pytest
+from geometry_msgs.msg import Point
+from ik_clients import TARGETS, IKClient, check_asks, check_never_blocks, server, stop_all
+from my_robot_basics.checks import CheckFailed, holding_server, ik, servers
+from std_srvs.srv import Trigger
+
+from arm_interfaces.srv import SolveIK
+from my_robot_basics import live
+
+
+@pytest.fixture
+def run():
+    yield live.run
+    stop_all()
+
+
+@pytest.fixture
+def impatient(monkeypatch):
+    """Wait for what does not come no longer than it takes to be sure."""
+    monkeypatch.setattr(servers, 'TIMEOUT_SEC', 1.5)
+
+
+class ForwardsNothing(IKClient):
+    def answer(self, response):
+        pass
+
+
+class ElbowDown(IKClient):
+    def answer(self, response):
+        self.send(response.elbow_down)
+
+
+class Degrees(IKClient):
+    def send(self, position):
+        super().send([57.29577951308232 * angle for angle in position])
+
+
+class AsksForAnother(IKClient):
+    def ask(self, target):
+        super().ask(Point(x=target.y, y=target.x))
+
+
+class AsksNobody(IKClient):
+    def ask(self, target):
+        pass
+
+
+class RaisesInAnswer(IKClient):
+    def answer(self, response):
+        self.send(response.elbow)
+
+
+WRONG = [
+    (ForwardsNothing, 'saw none in 1.5 s: publish when the answer is there'),
+    (ElbowDown, 'this is elbow_down: publish the angles of response.elbow_up'),
+    (Degrees, 'these are degrees: convert both with radians'),
+    (AsksForAnother, 'a request to /solve_ik for the message on /target_point, saw arm_interf'),
+    (AsksNobody, 'saw none in 1.5 s: call self.client.call_async'),
+    (RaisesInAnswer, "saw none in 1.5 s: its callback raised AttributeError.*'elbow'"),
+]
+
+
+class Solves(IKClient):
+    def ask(self, target):
+        self.target = target
+        super().ask(target)
+
+    def answer(self, response):
+        super().answer(ik.solve(SolveIK.Request(target=self.target)))
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures('impatient')
+def test_who_asks_and_publishes_another_answer_is_found(run):
+    run(Solves)
+    with (
+        server(partial(ik.solve, l1=1.3)) as serving,
+        pytest.raises(CheckFailed, match='the angles of the response, not a solution of'),
+    ):
+        ik.expect_answer(serving, *TARGETS[0])
+
+
+class AnswersAnything(IKClient):
+    def answer(self, response):
+        self.send(response.elbow_up)
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures('impatient')
+def test_who_publishes_no_angles_is_told(run):
+    run(AnswersAnything)
+    with pytest.raises(CheckFailed, match=r'no message on /kin.*: publish only where response.re'):
+        check_asks()
+
+
+@pytest.mark.parametrize(('node_class', 'message'), WRONG)
+@pytest.mark.usefixtures('impatient')
+def test_what_is_wrong_is_named(run, node_class, message):
+    run(node_class)
+    with pytest.raises(CheckFailed, match=message):
+        check_asks()
+
+
+class SolvesAtOnce(IKClient):
+    def ask(self, target):
+        super().ask(target)
+        self.send(ik.solve(SolveIK.Request(target=target)).elbow_up)
+
+    def answer(self, response):
+        pass
+
+
+class BothBranches(IKClient):
+    def answer(self, response):
+        for position in (response.elbow_down, response.elbow_up):
+            super().send(position)
+
+
+class Twice(IKClient):
+    def send(self, position):
+        for _ in range(2):
+            super().send(position)
+
+
+ANOTHER = r'expected one message on /kinematics/joint_states for each response, and no other, saw '
+
+
+@pytest.mark.parametrize(
+    ('node_class', 'hint'),
+    [
+        (SolvesAtOnce, 'publish the angles of the response, not a solution of your own'),
+        (BothBranches, 'this is elbow_down: publish the angles of response.elbow_up alone'),
+        (Twice, 'publish the angles of the response, not a solution of your own, and once'),
+    ],
+)
+def test_who_publishes_more_than_the_response_is_told(run, node_class, hint):
+    run(node_class)
+    with pytest.raises(CheckFailed, match=f'{ANOTHER}.*{hint}'):
+        check_never_blocks()
+
+
+@pytest.mark.slow
+def test_who_publishes_more_is_found_before_the_end(run):
+    run(Twice)
+    with pytest.raises(CheckFailed, match='/kinematics/joint_states'):
+        check_asks()
+
+
+class AsksForTheLastTarget(IKClient):
+    """Twice a second, once there is one."""
+
+    def __init__(self):
+        super().__init__()
+        self.target = None
+        self.create_timer(0.5, lambda: self.target and super(type(self), self).ask(self.target))
+
+    def ask(self, target):
+        self.target = target
+        super().ask(target)
+
+
+@pytest.mark.slow
+def test_who_asks_again_and_publishes_each_answer_is_told(run):
+    run(AsksForTheLastTarget)
+    with pytest.raises(
+        CheckFailed, match=r'expected the pose of each target once, saw one \d tim'
+    ):
+        check_never_blocks()
+
+
+class AsksAgain(IKClient):
+    """Asks a hundred times a second, whether anything has arrived or not."""
+
+    def __init__(self):
+        super().__init__()
+        self.create_timer(0.01, lambda: self.ask(Point(x=1.2, y=0.4)))
+
+
+@pytest.mark.slow
+def test_who_asks_without_end_is_stopped(run, monkeypatch):
+    monkeypatch.setattr(holding_server, 'MOST_REQUESTS', 20)
+    run(AsksAgain)
+    with pytest.raises(CheckFailed, match=r'for each message, saw 20 of them: ask once in the'):
+        check_never_blocks()
+
+
+class AsksInALoop(IKClient):
+    """Asks for each target more often than its queue can hold answers."""
+
+    def ask(self, target):
+        for _ in range(holding_server.MOST_HELD):
+            self.client.call_async(SolveIK.Request(target=target))
+        super().ask(target)
+
+
+@pytest.mark.slow
+def test_who_asks_for_more_than_its_queue_holds_is_told_so_each_time(run):
+    run(AsksInALoop)
+    with pytest.raises(CheckFailed, match='for each message, saw more than 10 at once: ask once'):
+        check_never_blocks()
+
+
+class AsksElsewhere(IKClient):
+    def create_client(self, type_, name):
+        return super().create_client(type_, '/solve_it')
+
+
+class AsksForATrigger(IKClient):
+    def create_client(self, type_, name):
+        return super().create_client(Trigger, name)
+
+    def ask(self, target):
+        self.client.call_async(Trigger.Request())
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ('node_class', 'message'),
+    [
+        (AsksElsewhere, '/ik_client uses /solve_it, so compare the spelling'),
+        (AsksForATrigger, 'it asks for std_srvs/srv/Trigger, so compare the type in'),
+    ],
+)
+@pytest.mark.usefixtures('impatient')
+def test_a_client_of_something_else_is_found(run, node_class, message):
+    run(node_class)
+    with pytest.raises(CheckFailed, match=message):
+        check_asks()
