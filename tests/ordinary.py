@@ -176,7 +176,7 @@ ORDINARY = {
     'test_checks_parameters::test_an_honest_way_passes': r'Adjustable',
     'test_checks_stamps::test_the_nodes_clock_passes_and_is_given_back': r'SteadyClock',
     'test_checks_topics::test_silence_is_explained': r'callback_raises-.*',
-    'test_launcher::test_a_file_that_cannot_be_imported_is_named_and_not_run_again': (
+    'test_testing::test_a_file_that_cannot_be_imported_is_named_and_not_run_again': (
         r'def test_a.*'
     ),
     'test_ros2_notebook::test_an_interrupt_ends_a_cell_and_leaves_nothing_behind': (
