@@ -26,7 +26,6 @@ ORDINARY = {
     'test_sandbox_share::test_a_room_can_use_up_only_its_share': ALL,
     'test_sandbox::test_the_course_and_the_machines_own_are_not_there': ALL,
     'test_kernels::test_a_cell_comes_to_its_end': ALL,
-    'test_execute::test_what_others_may_be_to_blame_for_is_looked_at_again_and_burning_time_gains_nothing': ALL,  # noqa: E501
     'test_kernel_exits::test_only_what_can_be_shown_is_the_students': ALL,
     'test_rooms_hostile::test_only_the_literal_of_one_string_is_read': ALL,
     'test_checks_delivery_experiment::test_name_and_type_decide': ALL,

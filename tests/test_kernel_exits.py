@@ -11,8 +11,8 @@ from pathlib import Path
 
 import psutil
 import pytest
+from doubling_lesson import GOOD, handed_in, lesson
 from my_robot_basics.validate import budget
-from test_execute import GOOD, handed_in, lesson
 
 from grader.judging import execute as module
 from grader.judging.execute import execute
