@@ -21,12 +21,14 @@ from grader.serving import desk as desk_module
 from grader.serving import inbound as inbound_module
 from grader.serving import intake, reception
 from grader.serving import rounds as rounds_module
+from grader.serving import serve as serve_module
 from grader.serving.desk import Desk
 from grader.serving.inbound import Entry, new_entries
 from grader.serving.queue import (
     FAILED,
     GRADED,
     REFUSED,
+    REPLACED,
     WAITING,
     Arrival,
     opened_queue,
@@ -285,6 +287,53 @@ def test_whatever_goes_wrong_later_costs_only_one(
     assert all(line == printable(line) for line in said)
     assert 'Traceback' in caplog.text
     assert serve_here(course, inbound) == []
+
+
+def test_what_a_later_one_replaces_delays_nobody_s_grading(course, inbound, at_once, monkeypatch):
+    """Each of many large ones takes its time to be kept: others' turns come in between."""
+    monkeypatch.setattr(desk_module, 'BUDGET_SEC', 0.0)
+    monkeypatch.setattr(reception, 'BUDGET_SEC', 60.0)  # all have come in before the first turn
+    place, placed = desk_module.put_in_place, []
+
+    def puts(course, arrival):
+        placed.append((arrival.student_id, arrival.state))
+        return place(course, arrival)
+
+    monkeypatch.setattr(desk_module, 'put_in_place', puts)
+    for number in range(5):
+        folder = inbound / f'mallory+{TOY}+2026-01-01 10:00:0{number}.000000 UTC'
+        folder.mkdir()
+        notebook = answered(course, f'# {number}\n{RIGHT}')
+        (folder / f'{TOY}.ipynb').write_text(nbformat.writes(notebook))
+        time.sleep(0.02)  # Linux's clock tells them apart
+    hand_in(course, inbound, 'zoe')
+    serve_here(course, inbound)
+    assert [student for student, _ in placed].index('zoe') <= 3
+    with queue_to_read(course.gradebook) as queue:
+        found = [(each.student_id, each.state) for each in queue.find(GRADED, REPLACED)]
+    assert sorted(found) == [
+        ('mallory', GRADED),
+        *[('mallory', REPLACED)] * 4,
+        ('zoe', GRADED),
+    ]
+    assert len(list(course.folder('submitted_before', 'mallory', TOY).iterdir())) == 4
+
+
+def test_what_is_yet_to_be_kept_is_kept_by_the_next_process(course, inbound, at_once, monkeypatch):
+    for number in range(2):
+        (inbound / f'zoe_{TOY}.ipynb').write_text(
+            nbformat.writes(answered(course, f'# {number}\n{RIGHT}'))
+        )
+        with opened_queue(course.gradebook) as queue:
+            look(Desk(course, queue, None, inbound, None, print, queue.seen(), exporter=None))
+        time.sleep(0.02)
+    with monkeypatch.context() as patch:
+        patch.setattr(serve_module, 'keep_replaced', lambda desk: False)
+        serve_here(course, inbound)
+    assert not course.folder('submitted_before', 'zoe', TOY).exists()
+    said = serve_here(course, inbound)
+    assert [line.partition(':')[0] for line in said] == ['replaced']
+    assert len(list(course.folder('submitted_before', 'zoe', TOY).iterdir())) == 1
 
 
 @pytest.mark.parametrize('step', ['put_in_place', 'write_page'])

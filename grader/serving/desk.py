@@ -18,6 +18,7 @@ from grader.serving.queue import (
     FAILED,
     GRADED,
     GRADING,
+    KEEPING,
     REFUSED,
     REPLACED,
     WAITING,
@@ -30,6 +31,10 @@ from grader.serving.turns import next_turn, replaced_by
 from grader.storage.deadlines import FILE, Deadlines, deadlines
 from grader.storage.failures import in_sentences
 from grader.storage.submitted import SubmissionFolder
+
+BUDGET_SEC = 0.5
+"""How long replaced submissions are kept before others have their turn; one may take longer."""
+_LATER = 'a later one was graded in its place; it is in submitted_before/'
 
 
 @dataclass
@@ -53,10 +58,13 @@ class Desk:
 
 
 def begin_turns(desk: Desk) -> bool:
-    """Start to grade whose turn it is, as many as there is room for; return whether any was."""
+    """Start to grade whose turn it is, as many as there is room for; return whether any was.
+
+    It gives so many turns, too: not each one leads to something that is graded.
+    """
     started = False
     rules = (deadlines(desk.course.gradebook) or Deadlines()).resubmissions
-    while len(desk.running) < desk.grading.backend.capacity:
+    for _ in range(desk.grading.backend.capacity - len(desk.running)):
         if not (waiting := desk.queue.find(WAITING)):
             break
         busy = {each.student_id for each in desk.running.values()}
@@ -70,32 +78,35 @@ def begin_turns(desk: Desk) -> bool:
 
 
 def begin(desk: Desk, arrival: Arrival, earlier: list[Arrival]) -> None:
-    """Put a submission in its place, keep those that it replaces, and have it graded."""
+    """Put a submission in its place and have it graded; those that it replaces are kept later."""
     outcome, reason = _put(desk, arrival)
-    ended = []
-    for each in earlier:
-        its_outcome, its_reason = _put(desk, each)
-        if its_outcome == REFUSED:
-            ended.append(replace(each, state=REFUSED, reason=its_reason))
-        else:
-            in_place = 'a later one was graded in its place; it is in submitted_before/'
-            ended.append(replace(each, state=REPLACED, reason=in_place))
-    if outcome in (EARLIER, REFUSED):
+    if outcome == REFUSED:  # then an earlier one has its turn
+        _end(desk, replace(arrival, state=REFUSED, reason=reason, started=0.0))
+        return
+    desk.queue.update(*(replace(each, state=KEEPING) for each in earlier))
+    if outcome == EARLIER:
+        _end(desk, replace(arrival, state=REPLACED, reason=reason, started=0.0))
+        return
+    desk.queue.update(arrival)
+    found = SubmissionFolder(
+        arrival.student_id,
+        arrival.assignment,
+        desk.course.folder('submitted', arrival.student_id, arrival.assignment),
+    )
+    desk.running[_start(desk, found)] = arrival
+
+
+def keep_replaced(desk: Desk) -> bool:
+    """Keep some of what a later submission has replaced; return whether there was any."""
+    found = desk.queue.find(KEEPING)
+    end = time.monotonic() + BUDGET_SEC
+    for each in found:
+        outcome, reason = _put(desk, each)
         state = REFUSED if outcome == REFUSED else REPLACED
-        ended.append(replace(arrival, state=state, reason=reason, started=0.0))
-    else:
-        desk.queue.update(arrival)
-        found = SubmissionFolder(
-            arrival.student_id,
-            arrival.assignment,
-            desk.course.folder('submitted', arrival.student_id, arrival.assignment),
-        )
-        desk.running[_start(desk, found)] = arrival
-    desk.queue.update(*ended)
-    discard(desk.course, ended)
-    for each in ended:
-        what = 'not taken, look at it' if each.state == REFUSED else 'replaced'
-        desk.say(printable(f'{what}: {shown(each)}: {each.reason}'))
+        _end(desk, replace(each, state=state, reason=reason if state == REFUSED else _LATER))
+        if time.monotonic() >= end:
+            break
+    return bool(found)
 
 
 def finish_done(desk: Desk) -> bool:
@@ -153,6 +164,14 @@ def _put(desk: Desk, arrival: Arrival) -> tuple[str, str]:
         if meets_all(error):
             raise
         return REFUSED, noted(shown(arrival), error)
+
+
+def _end(desk: Desk, ended: Arrival) -> None:
+    """Note that an arrival is not graded, and say why."""
+    desk.queue.update(ended)
+    discard(desk.course, [ended])
+    what = 'not taken, look at it' if ended.state == REFUSED else 'replaced'
+    desk.say(printable(f'{what}: {shown(ended)}: {ended.reason}'))
 
 
 def _start(desk: Desk, found: SubmissionFolder) -> 'Future[GradedSubmission]':

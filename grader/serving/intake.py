@@ -17,7 +17,7 @@ from grader.common.text import shorten, storable
 from grader.course import Course
 from grader.notebook.submission import LEFT_OUT, SECRET
 from grader.serving.inbound import Entry
-from grader.serving.queue import REFUSED, WAITING, Arrival, Queue
+from grader.serving.queue import KEEPING, REFUSED, WAITING, Arrival, Queue
 from grader.storage.lock import gradebook_lock
 from grader.storage.records import records
 from grader.storage.submitted import known_students
@@ -35,7 +35,7 @@ def take_in(course: Course, queue: Queue, inbound: Path, entry: Entry) -> list[A
     """Copy what an entry holds into gradebook/arrived/, and note it; return the new arrivals."""
     shelf = course.gradebook / FOLDER
     shelf.mkdir(parents=True, exist_ok=True)
-    waiting = queue.find(WAITING)
+    waiting = queue.find(WAITING, KEEPING)
     with tempfile.TemporaryDirectory(prefix='.new-', dir=shelf) as aside:
         packages = {name: course.packages(name) for name in course.assignments()}
         asked_for = {each for several in packages.values() for each in several}
@@ -95,7 +95,7 @@ def discard(course: Course, arrivals: Iterable[Arrival]) -> None:
 
 def tidy(course: Course, queue: Queue) -> None:
     """Remove copies of which nothing is noted: the process ended before that, and begins anew."""
-    known = {each.folder for each in queue.find(WAITING)}
+    known = {each.folder for each in queue.find(WAITING, KEEPING)}
     for left in (course.gradebook / FOLDER).glob('*'):
         if left.name not in known:
             shutil.rmtree(left)
@@ -120,7 +120,7 @@ def _hand_in(folder: Path, arrival: Arrival) -> MatchedFile:
 def _why_no_room(course: Course, each: MatchedFile, waiting: Sequence[Arrival]) -> str:
     """Say why one more of a student is left to a person; '' where there is room for it."""
     theirs = [other for other in waiting if other.student_id == each.student_id]
-    if len(theirs) >= MOST_WAITING:
+    if sum(other.state == WAITING for other in theirs) >= MOST_WAITING:
         return f'{MOST_WAITING} submissions of {each.student_id} wait'
     earlier = course.folder('submitted_before', each.student_id, each.assignment)
     same_lesson = [other.folder for other in theirs if other.assignment == each.assignment]

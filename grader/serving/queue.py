@@ -10,8 +10,11 @@ from grader.common.text import storable
 
 FILE = 'serve.db'
 WAITING, GRADING, GRADED = 'waiting', 'grading', 'graded'
-REPLACED, REFUSED, FAILED = 'replaced', 'refused', 'failed'
-"""What became of an arrival; what is refused or has failed waits for a person."""
+KEEPING, REPLACED, REFUSED, FAILED = 'being kept', 'replaced', 'refused', 'failed'
+"""What became of an arrival; what is refused or has failed waits for a person.
+
+What is `being kept` is not graded, for a later one is, and is yet to be put beside that.
+"""
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from filelock import FileLock, Timeout
 from grader.common.errors import CourseError
 from grader.course import Course
 from grader.grading import Grading
-from grader.serving.desk import Desk, begin_turns, finish_done
+from grader.serving.desk import Desk, begin_turns, finish_done, keep_replaced
 from grader.serving.intake import tidy
 from grader.serving.queue import Queue, opened_queue
 from grader.serving.reception import look
@@ -54,7 +54,7 @@ def serve(
         grading = Grading(course, backend, isolated, trust_students=trust_students)
         desk = Desk(course, queue, grading, inbound, feedback, say, seen=queue.seen())
         while True:
-            events = [look(desk), begin_turns(desk), finish_done(desk)]
+            events = [look(desk), begin_turns(desk), finish_done(desk), keep_replaced(desk)]
             if any(events):
                 changed(queue)
             elif desk.rounds.is_under_way:
