@@ -47,6 +47,51 @@ def test_commas_and_full_width_characters_are_told(code, why):
     assert what_to_do(f'{type(error).__name__}: {error}') == why
 
 
+LETTERS = ', so write a name of letters from a to z, digits'
+NAMES = {
+    'a full-width slash': (
+        Node.create_client,
+        '／a',
+        ", so write '/' in place of '／', a full-width",
+    ),
+    'a full-width letter': (
+        Node.create_publisher,
+        'ａ',
+        ", so write 'a' in place of 'ａ', a full-",
+    ),
+    'a full-width colon': (Node.create_publisher, '/a：b', f'{LETTERS}, _ and / alone'),
+    'a space': (Node.create_publisher, 'a b', f'{LETTERS}, _ and / alone'),
+    'a character that shows nothing': (
+        Node.create_publisher,
+        'a\u200bb',
+        f'{LETTERS}, _ and / alone',
+    ),
+    'a node': (None, 'ａ／b', ", so write 'a' in place of 'ａ', a full-width character"),
+    'a node with a slash': (None, 'a／b', f'{LETTERS} and _ alone'),
+    'a node with a hyphen': (None, 'my-node', f'{LETTERS} and _ alone'),
+}
+
+
+@pytest.mark.starts
+@pytest.mark.parametrize('case', NAMES)
+def test_a_name_that_ros_refuses_is_told_with_what_to_write(run, case):
+    """Both where a cell raises it, on one line, and where a callback does."""
+    create, name, why = NAMES[case]
+    node = run(Node, 'namer')
+    kinds = {Node.create_client: SolveIK, Node.create_publisher: MoveArm.Result}
+    try:
+        if create is None:
+            Node(name)
+        else:
+            create(node, kinds[create], name, *[1] * (create is Node.create_publisher))
+    except Exception as error:
+        ename, evalue = type(error).__name__, str(error)
+    told = trouble_in('a', CellRun(error=new_output('error', ename=ename, evalue=evalue)))
+    assert why in told
+    assert '^' not in told
+    assert why in explained(f'its callback raised {ename}: {evalue} (line 4, in f: g(x))')
+
+
 def test_a_full_stop_does_not_stand_before_a_comma():
     said = 'TypeError: Third element 0 in parameters list is not a ParameterDescriptor'
     assert explained(f'{said}.') == said + DECIMAL_COMMA

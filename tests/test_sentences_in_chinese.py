@@ -256,6 +256,20 @@ OF_STUDENTS = {
         '你的单元格 `a` 停止了：InvalidNodeNameException: Invalid node name: node name must not '
         "contain characters other than alphanumerics or '_': 'my-node' ^"
     ),
+    'your cell `a` stopped with InvalidTopicNameException: Invalid topic name: topic name must '
+    "not contain characters other than alphanumerics, '_', '~', '{', or '}': '／a', so write '/' "
+    "in place of '／', a full-width character": (
+        '你的单元格 `a` 停止了：InvalidTopicNameException: Invalid topic name: topic name must '
+        "not contain characters other than alphanumerics, '_', '~', '{', or '}': '／a'，"
+        "请把全角字符 '／' 改写成 '/'"
+    ),
+    'its callback raised InvalidNodeNameException: Invalid node name: node name must not contain '
+    "characters other than alphanumerics or '_': 'a b' (line 4, in f: g(x)), so write a name of "
+    'letters from a to z, digits and _ alone': (
+        '它的回调抛出了 InvalidNodeNameException: Invalid node name: node name must not contain '
+        "characters other than alphanumerics or '_': 'a b' (line 4, in f: g(x))，名称只能用 a 到 "
+        'z 的字母、数字和 _，请改写'
+    ),
     "expected a warning in the log of /a, saw 'IK: x=1, y=2': keep both keys": (
         "预期：/a 的日志里有一条警告；实际：'IK: x=1, y=2'。两个键都要保留"
     ),
