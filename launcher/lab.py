@@ -53,6 +53,8 @@ def options(lessons: Path, language: str, settings: Path) -> list[str]:
         f'--LabApp.default_url={first_page(language)}',
         f'--LabApp.app_settings_dir={settings}',
         f'--ServerApp.terminado_settings={SHELL}',
+        # the other one that .venv has is the grader's
+        "--KernelSpecManager.allowed_kernelspecs={'python3'}",
         # it would warn that its configuration is missing
         "--ServerApp.jpserver_extensions={'nbgrader.server_extensions.formgrader': False}",
     ]

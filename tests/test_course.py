@@ -131,6 +131,7 @@ def test_lab_serves_the_lessons_alone(machine):
     served += ' --LabApp.default_url=/lab/tree/index.ipynb'
     for_students = (
         f'--LabApp.app_settings_dir={machine.root}/.jupyterlab '
+        "--KernelSpecManager.allowed_kernelspecs={'python3'} "
         "--ServerApp.jpserver_extensions={'nbgrader.server_extensions.formgrader': False}"
     )
     arguments = [served, for_students, *root, '--no-browser --port 1234']
