@@ -121,4 +121,7 @@ def _why_wrong(wrong: MoveArm.Goal) -> str:
             'the limits hold on both sides: compare the size of each angle, abs(…), with its '
             'limit in radians'
         )
-    return 'compare with radians(90) and radians(120): the positions are in radians'
+    return (
+        'compare both angles with their limits, radians(90) and radians(120): the positions are '
+        'in radians'
+    )

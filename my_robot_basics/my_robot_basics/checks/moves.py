@@ -48,12 +48,12 @@ def choose_wrong(numbers: random.Random) -> list[MoveArm.Goal]:
 
     Each is wrong in one way alone.
     """
-    inside, sign = choose(numbers), numbers.choice((-1, 1))
+    inside = choose(numbers)
     first, second = LIMITS_RAD
     beyond = numbers.uniform(BEYOND_RAD, 0.3)
     wrong = [
-        goal((sign * (first + beyond), inside[1])),
-        goal((inside[0], -sign * (second + beyond))),
+        *(goal((sign * (first + beyond), inside[1])) for sign in (-1, 1)),
+        *(goal((inside[0], sign * (second + beyond))) for sign in (-1, 1)),
         goal(inside[:1]),
         goal((*inside, numbers.uniform(-0.5, 0.5))),
         goal((math.nan, inside[1])),
