@@ -39,10 +39,11 @@ def check_all():
     """All that the exercise asks for, as its grade cells do."""
     move_arm, numbers = action('/move_arm', MoveArm), random.Random(7)
     moves.expect_reaches(move_arm, (1.2, -0.6), speed=0.02)
-    far = moves.choose(numbers, joint1_sign=-1)
-    moves.expect_reaches(move_arm, far, speed=0.1, start=moves.choose(numbers))
+    start, far = (moves.choose(numbers, farther=2, sign=sign) for sign in (1, -1))
+    moves.expect_reaches(move_arm, far, speed=0.1, start=start)
     moves.expect_serves_on(move_arm, moves.choose(numbers))
     moves.expect_feedback(move_arm, (1.2, -0.6), speed=0.1)
+    moves.expect_feedback(move_arm, moves.choose(numbers, farther=2), speed=0.1)
     moves.expect_cancels(move_arm, (1.2, -0.6), speed=0.2)
     moves.expect_late_cancel(move_arm, moves.choose(numbers))
     moves.expect_accepts(move_arm, *moves.choose_near_limits(numbers))

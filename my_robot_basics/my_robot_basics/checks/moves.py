@@ -34,13 +34,14 @@ BEYOND_RAD = 0.03
 """So far beyond a limit are goals that are wrong, or within it, if they are right."""
 
 
-def choose(numbers: random.Random, *, joint1_sign: int = 1) -> tuple[float, float]:
-    """A position with joint1 on that side, so that two with different signs are far apart.
+def choose(numbers: random.Random, *, farther: int = 1, sign: int = 1) -> tuple[float, float]:
+    """A position with that joint on that side, so that two with different signs are far apart.
 
-    Joint2 moves less than joint1 does, and not in proportion.
+    `farther`: 1 or 2, the joint that moves more than the other one does, and not in proportion.
     """
-    first = joint1_sign * numbers.uniform(0.7, 1.4)
-    return round(first, 3), round(numbers.choice((-1, 1)) * numbers.uniform(0.15, 0.6), 3)
+    far = round(sign * numbers.uniform(0.7, 1.4), 3)
+    near = round(numbers.choice((-1, 1)) * numbers.uniform(0.15, 0.6), 3)
+    return (far, near) if farther == 1 else (near, far)
 
 
 def choose_wrong(numbers: random.Random) -> list[MoveArm.Goal]:
