@@ -1,7 +1,7 @@
 """What there is to translate: each English text of the course, in parts, with where it stands."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from my_robot_basics.feedback.hidden_source import visible
@@ -93,53 +93,29 @@ def parts_of(course: Course) -> dict[str, Texts]:
 
 def _software(course: Course) -> dict[str, Texts]:
     """Return what the software says: its modules, the feedback page, the checks of the lessons."""
-    parts = {part: _modules(course.root, patterns) for part, patterns in MODULES.items()}
+    root = course.root
+    parts = {part: _modules(root, patterns) for part, patterns in MODULES.items()}
     if parts['checks']:
         parts['checks'] |= dict.fromkeys(JOINED, WHEREVER)
-    parts[PICTURES] = _pictures(course.root)
-    parts['report'] = {}
-    for path in sorted(course.root.glob(CHARTS)):
-        for text in marked_in(path.read_text(encoding='utf-8'), _SAY):
-            parts['report'].setdefault(text, []).append(path.name)
-    for part, page in PAGES.items():
-        for template in sorted(course.root.glob(page)):
-            for text in _MARKED.findall(template.read_text(encoding='utf-8')):
-                places = parts[part].setdefault(text.replace("\\'", "'"), [])
-                places.append(template.name)
-    parts[LAUNCHER] = _launcher(course.root)
-    for part in ('lesson_checks', 'hidden_checks'):
-        parts[part] = {}
-    for name in course.assignments():
-        for cell in course.source(name).cells:
-            if role(cell) == 'grade' and cell.cell_type == 'code':
-                shown = messages_in(visible(cell.source), title=True)
-                for text in messages_in(cell.source, title=True):
-                    texts = parts['lesson_checks' if text in shown else 'hidden_checks']
-                    texts.setdefault(text, []).append(f'{name}: {cell.id}')
+    parts[PICTURES] = _pictures(root)
+    parts['report'] = _charts(root)
+    for part, pattern in PAGES.items():
+        _add_templates(parts[part], root, pattern)
+    parts[LAUNCHER] = _launcher(root)
+    parts['lesson_checks'], parts['hidden_checks'] = _checks_of_lessons(course)
     return parts
 
 
-def _launcher(root: Path) -> Texts:
-    """Return what `./course` itself says: a shell script, the table of its verbs, and modules."""
-    texts: Texts = {}
-    for path in root.glob('course'):
-        for text in _PUT.findall(path.read_text(encoding='utf-8')):
-            texts.setdefault(text.replace('\\\n', ''), []).append(path.name)
-    for path in root.glob('launcher/verbs.txt'):
-        for row in path.read_text(encoding='utf-8').splitlines():
-            if not row.startswith('#'):
-                texts.setdefault(re.split(r'  +', row.rstrip())[-1], []).append(path.name)
-    for path in sorted(root.glob('launcher/*.py')):
-        for text in marked_in(path.read_text(encoding='utf-8'), _SAY):
-            texts.setdefault(text, []).append(str(path.relative_to(root)))
-    return texts
+def _add(texts: Texts, found: Iterable[str], place: str) -> None:
+    """Note that the texts that were found stand in that place."""
+    for text in found:
+        texts.setdefault(text, []).append(place)
 
 
 def _modules(root: Path, patterns: Sequence[str]) -> Texts:
     texts: Texts = {}
     for path in sorted(path for pattern in patterns for path in root.glob(pattern)):
-        for text in messages_in(path.read_text(encoding='utf-8')):
-            texts.setdefault(text, []).append(str(path.relative_to(root)))
+        _add(texts, messages_in(path.read_text(encoding='utf-8')), str(path.relative_to(root)))
     return texts
 
 
@@ -148,16 +124,59 @@ def _pictures(root: Path) -> Texts:
     texts: Texts = {}
     for package in DRAWN:
         for path in sorted(root.glob(f'my_robot_basics/my_robot_basics/{package}/*.py')):
-            for text in described_in(path.read_text(encoding='utf-8')):
-                texts.setdefault(text, []).append(str(path.relative_to(root)))
+            found = described_in(path.read_text(encoding='utf-8'))
+            _add(texts, found, str(path.relative_to(root)))
     return texts
+
+
+def _charts(root: Path) -> Texts:
+    """Return what the report's charts say."""
+    texts: Texts = {}
+    for path in sorted(root.glob(CHARTS)):
+        _add(texts, marked_in(path.read_text(encoding='utf-8'), _SAY), path.name)
+    return texts
+
+
+def _add_templates(texts: Texts, root: Path, pattern: str) -> None:
+    """Add what the templates of pages mark as a text to translate."""
+    for path in sorted(root.glob(pattern)):
+        marked = _MARKED.findall(path.read_text(encoding='utf-8'))
+        _add(texts, (text.replace("\\'", "'") for text in marked), path.name)
+
+
+def _launcher(root: Path) -> Texts:
+    """Return what `./course` itself says: a shell script, the table of its verbs, and modules."""
+    texts: Texts = {}
+    for path in root.glob('course'):
+        put = _PUT.findall(path.read_text(encoding='utf-8'))
+        _add(texts, (text.replace('\\\n', '') for text in put), path.name)
+    for path in root.glob('launcher/verbs.txt'):
+        rows = path.read_text(encoding='utf-8').splitlines()
+        helps = (re.split(r'  +', row.rstrip())[-1] for row in rows if not row.startswith('#'))
+        _add(texts, helps, path.name)
+    for path in sorted(root.glob('launcher/*.py')):
+        found = marked_in(path.read_text(encoding='utf-8'), _SAY)
+        _add(texts, found, str(path.relative_to(root)))
+    return texts
+
+
+def _checks_of_lessons(course: Course) -> tuple[Texts, Texts]:
+    """Return what grade cells say: in the part that students see, and in the hidden part alone."""
+    seen: Texts = {}
+    hidden: Texts = {}
+    for name in course.assignments():
+        for cell in course.source(name).cells:
+            if role(cell) == 'grade' and cell.cell_type == 'code':
+                shown = messages_in(visible(cell.source), title=True)
+                for text in messages_in(cell.source, title=True):
+                    _add(seen if text in shown else hidden, [text], f'{name}: {cell.id}')
+    return seen, hidden
 
 
 def _lesson(course: Course, name: str) -> Texts:
     texts = _notebook(course.source(name))
     for page in sorted(course.source_path(name).parent.glob('*.html')):
-        for text in translatable_html(page.read_text(encoding='utf-8')):
-            texts.setdefault(text, []).append(page.name)
+        _add(texts, translatable_html(page.read_text(encoding='utf-8')), page.name)
     return texts
 
 
@@ -165,8 +184,7 @@ def _notebook(notebook: NotebookNode) -> Texts:
     texts: Texts = {}
     for cell in notebook.cells:
         if is_translated(cell):
-            for block in translatable(without_mark_scheme(cell.source)):
-                texts.setdefault(block, []).append(cell.id)
+            _add(texts, translatable(without_mark_scheme(cell.source)), cell.id)
     return texts
 
 
