@@ -21,43 +21,52 @@ def fail_rate(recording: 'Recording', hz: float) -> NoReturn:
     """Raise CheckFailed with the rate that was seen, and a picture of the arrivals."""
     n = len(recording.messages)
     over = f'over {recording.seconds:.3g} s ({n} message{"" if n == 1 else "s"})'
-    near, pattern = recording.rate_hz >= 0.9 * hz, rates.pattern_of(recording)
+    seen, cause, hint = _explanation(recording, hz, over)
+    picture = pictures.arrivals(recording, hz=hz)
+    doubt = Starved if starved.may_be(recording, hz) else CheckFailed
+    fail(expected=_hz(hz), seen=seen, hint=hint, cause=cause, picture=picture, doubt=doubt)
+
+
+def _explanation(recording: 'Recording', hz: float, over: str) -> tuple[str, str, str]:
+    """Return what was seen, its cause, and what to try: of the first difference that fits."""
     if every := rates.leaves_out(recording):
         seen, cause = f'one message of {every} missing each time {over}', 'messages are left out'
-        hint = 'publish in every call of the timer'
-    elif pattern and pattern.is_burst:
+        return seen, cause, 'publish in every call of the timer'
+    pattern = rates.pattern_of(recording)
+    if pattern and pattern.is_burst:
         seen = f'{pattern.size} messages at once, every {pattern.cycle_sec:.3g} s, {over}'
-        cause, hint = AT_ONCE, rates.ONCE
-    elif recording.rate_hz > TOO_FAST_TIMES * hz:
+        return seen, AT_ONCE, rates.ONCE
+    if recording.rate_hz > TOO_FAST_TIMES * hz:
         # some nodes are busy with so many that none comes for a while
         seen, cause = f'{_hz(recording.rate_hz)} {over}', 'far too many messages'
         hint = (
             'the timer period is 0, or nearly (period = 1 / rate, and 1 // rate is 0), or each'
             ' call of the timer makes another timer: make one, in __init__'
         )
-    elif recording.is_over and (near or n == 0):
+        return seen, cause, hint
+    near = recording.rate_hz >= 0.9 * hz
+    if recording.is_over and (near or not recording.messages):
         seen, cause = f'none in the last {recording.silent_sec:.1f} s {over}', 'the messages end'
-        hint = 'publish as long as the node runs, in each call of a timer'
-    elif (near or _is_mostly(recording, hz)) and (
-        recording.largest_gap_sec > rates.LARGEST_GAP_PERIODS / hz
-    ):
+        return seen, cause, 'publish as long as the node runs, in each call of a timer'
+    has_pauses = recording.largest_gap_sec > rates.LARGEST_GAP_PERIODS / hz
+    if has_pauses and (near or _is_mostly(recording, hz)):
         seen, cause = f'pauses of {recording.largest_gap_sec:.1f} s {over}', 'there are pauses'
-        hint = rates.ONCE
-    elif near and (
-        pattern or _is_uneven(recording) or _hz(_measured_hz(recording, hz)) == _hz(hz)
-    ):
+        return seen, cause, rates.ONCE
+    if near and (pattern or _is_uneven(recording) or _is_right_in_words(recording, hz)):
         gaps = np.diff(rates.times_of(recording))
         seen = f'{np.min(gaps):.2f} to {np.max(gaps):.2f} s between messages {over}'
+        if np.min(gaps) < rates.AT_ONCE_SEC:
+            return seen, AT_ONCE, rates.ONCE
         cause = 'messages alternate between too early and too late'
         hint = 'the messages are unevenly spaced, so use one timer, and do not change its period'
-        if np.min(gaps) < rates.AT_ONCE_SEC:
-            cause, hint = AT_ONCE, rates.ONCE
-    else:
-        seen = f'{_hz(_measured_hz(recording, hz))} {over}'
-        hint, cause = 'the timer period is in seconds, and period = 1 / rate', 'another rate'
-    picture = pictures.arrivals(recording, hz=hz)
-    doubt = Starved if starved.may_be(recording, hz) else CheckFailed
-    fail(expected=_hz(hz), seen=seen, hint=hint, cause=cause, picture=picture, doubt=doubt)
+        return seen, cause, hint
+    seen, cause = f'{_hz(_measured_hz(recording, hz))} {over}', 'another rate'
+    return seen, cause, 'the timer period is in seconds, and period = 1 / rate'
+
+
+def _is_right_in_words(recording: 'Recording', hz: float) -> bool:
+    """Whether the rate that was seen would be told as the one that was asked for."""
+    return _hz(_measured_hz(recording, hz)) == _hz(hz)
 
 
 def _is_uneven(recording: 'Recording') -> bool:
