@@ -1,0 +1,102 @@
+"""`./course collect`: what it prints, and which folders it takes."""
+
+import os
+
+import nbformat
+import pytest
+from collected import write
+from course_maker import TOY, released_course
+
+from grader.__main__ import main
+from grader.collect.collect import NEW, collect
+from grader.common.errors import CourseError
+from grader.course import Course
+
+
+@pytest.fixture(scope='module')
+def released(tmp_path_factory):
+    return released_course(tmp_path_factory.mktemp('collect'))
+
+
+@pytest.fixture
+def course(released, tmp_path):
+    return Course(root=released.root, gradebook=tmp_path / 'gradebook')
+
+
+@pytest.fixture
+def source(tmp_path):
+    folder = tmp_path / 'came in'
+    folder.mkdir()
+    return folder
+
+
+def test_the_command_prints_a_row_for_each_and_ends_with_1_where_one_was_not_taken(
+    course, source, capsys
+):
+    write(source / f'小明_{TOY}.ipynb', 'x')
+    os.utime(source / f'小明_{TOY}.ipynb', (1_700_000_000, 1_700_000_000))
+    assert main(['collect', str(source), '--file-times'], course=course) == 0
+    assert capsys.readouterr().out.splitlines() == [
+        'student  assignment  handed in (UTC)',
+        '小明     00_toy      2023-11-14 22:13:20  new',
+        '',
+        '1 new; 0 not taken.',
+        'Next: ./course grade',
+    ]
+    write(source / '\x1b[31mred.ipynb', '')
+    for number in range(5):
+        write(source / f'photos/{number}.png', '')
+    assert main(['collect', str(source)], course=course) == 1
+    out = capsys.readouterr().out
+    assert '\x1b' not in out
+    assert '\\x1b[31mred.ipynb  named after no assignment: expected STUDENT_ASSIGNMENT' in out
+    assert 'photos/0.png and 4 more  neither a notebook nor Python' in out
+    assert out.splitlines()[-2:] == ['1 there already; 1 not taken.', 'Next: ./course grade']
+
+
+def test_nothing_that_is_there_to_collect_is_said(course, tmp_path, capsys):
+    assert main(['collect', str(tmp_path / 'nowhere')], course=course) == 1
+    assert 'nowhere is not there: expected a folder' in capsys.readouterr().err
+    (tmp_path / 'empty').mkdir()
+    assert main(['collect', str(tmp_path / 'empty')], course=course) == 1
+    assert capsys.readouterr().out == (
+        f'Nothing was taken: there is no file in {tmp_path / "empty"}\n'
+    )
+
+
+def test_the_report_begins_with_a_line_whatever_it_tells(course, tmp_path, capsys):
+    (tmp_path / 'litter').mkdir()
+    (tmp_path / 'litter' / '.DS_Store').write_text('')
+    assert main(['collect', str(tmp_path / 'litter')], course=course) == 1
+    assert capsys.readouterr().out.splitlines() == [
+        'Not used for grading:',
+        'file       reason',
+        '.DS_Store  hidden, or left behind by a program',
+        '',
+        'Nothing was taken; 0 not taken.',
+    ]
+
+
+@pytest.mark.parametrize('place', ['.', '..', 'notebooks', 'notebooks/zh_CN', 'solutions'])
+def test_the_lessons_themselves_are_no_submissions(course, place, monkeypatch, capsys):
+    source = course.root / place
+    source.mkdir(exist_ok=True)
+    monkeypatch.chdir(source)
+    assert main(['collect', '.'], course=course) == 1
+    said = capsys.readouterr().err
+    assert f"{source.resolve()} holds the course's own lessons: expected a folder with" in said
+    assert not course.folder('submitted', '', '').exists()
+
+
+def test_the_lessons_are_known_behind_a_link_and_a_folder_beside_them_is_collected(
+    course, tmp_path
+):
+    link = tmp_path / 'link'
+    link.symlink_to(course.root)
+    behind_link = Course(root=link, gradebook=course.gradebook)
+    for place in link, course.root:
+        with pytest.raises(CourseError, match="holds the course's own lessons"):
+            list(collect(behind_link, place))
+    beside = course.root / 'came in'
+    write(beside / f'ada_{TOY}.ipynb', nbformat.writes(course.release(TOY)))
+    assert [row.outcome for row in collect(behind_link, beside)] == [NEW]
