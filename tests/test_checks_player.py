@@ -79,7 +79,7 @@ RIGHT = (
 @pytest.mark.parametrize('variant', RIGHT)
 def test_who_plays_right_passes_in_whatever_way(play, variant):
     play(variant, VISIBLE, first_goal_sec=1.5)
-    play(variant, player.choose(random.Random(5)))
+    play(variant, player.choose(random.Random(5)), arm_first=True)
 
 
 WRONG = {
@@ -110,6 +110,11 @@ def test_what_is_wrong_is_named(play, variant):
     targets = [('succeeded', 0.9, -0.7), *VISIBLE[1:]] if variant == 'FixedTargets' else VISIBLE
     with pytest.raises(CheckFailed, match=WRONG[variant]):
         play(variant, targets)
+
+
+def test_who_does_not_wait_for_the_solver_is_told(play):
+    with pytest.raises(CheckFailed, match='wait until there is a server'):
+        play('NeverWaitsForTheSolver', VISIBLE, arm_first=True)
 
 
 @pytest.mark.parametrize(

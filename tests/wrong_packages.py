@@ -3,6 +3,10 @@
 from package_changes import DRIVER, PLAYER, SETUP, Change, Files, swap, without
 
 NOTHING = 0, 0, 0
+_FEEDBACK = (
+    '        goal_handle.publish_feedback'
+    '(MoveArm.Feedback(position=self.position, remaining=left))\n'
+)
 WRONG = (
     Change(
         'no_entry_point',
@@ -61,6 +65,30 @@ WRONG = (
         swap(PLAYER, ('        self.arm.wait_for_server()\n', '')),
         (1, 2, 0),
         {'arm_player_plays': 'wait for both servers first'},
+    ),
+    Change(
+        'does_not_wait_for_the_solver',
+        swap(PLAYER, ('        self.solver.wait_for_service()\n', '')),
+        (1, 2, 0),
+        {'arm_player_plays': 'wait until there is a server'},
+    ),
+    Change(
+        'driver_rejects_nothing',
+        swap(DRIVER, ("'goal_callback': self.judge, ", '')),
+        (1, 0, 4),
+        {'package_runs': 'a second goal is accepted'},
+    ),
+    Change(
+        'driver_rejects_no_second_goal',
+        swap(DRIVER, ('if self.is_moving or len', 'if len')),
+        (1, 0, 4),
+        {'package_runs': 'remember that the arm moves'},
+    ),
+    Change(
+        'driver_gives_no_feedback',
+        swap(DRIVER, (_FEEDBACK, '')),
+        (1, 0, 4),
+        {'package_runs': 'publish_feedback'},
     ),
     Change(
         'gives_up_after_a_second',

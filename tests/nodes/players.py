@@ -272,6 +272,12 @@ class NeverWaitsForTheArm(Program):
         self.report([self.visit(x, y) for x, y in self.targets()])
 
 
+class NeverWaitsForTheSolver(Program):
+    def play(self):
+        self.arm.wait_for_server()
+        self.report([self.visit(x, y) for x, y in self.targets()])
+
+
 class GivesUpAfterASecond(Program):
     def visit(self, x, y):
         answer = self.wait_for(self.ask(x, y))

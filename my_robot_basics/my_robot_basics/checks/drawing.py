@@ -6,7 +6,7 @@ from typing import NoReturn, Self
 
 from my_robot_basics.checks import drawing_hints
 from my_robot_basics.checks.packages import RunningExecutable, package
-from my_robot_basics.checks.player_meeting import NAME, PlayerMeeting
+from my_robot_basics.checks.player_meeting import ALONE_SEC, NAME, PlayerMeeting
 from my_robot_basics.checks.player_report import PlayerReport
 from my_robot_basics.checks.player_servers import (
     MOVE_ARM,
@@ -54,13 +54,18 @@ class Drawing:
             finally:
                 drawing._servers.stop()
 
-    def expect_waits_for_both(self) -> None:
+    def expect_waits_for_both(self, *, arm_first: bool) -> None:
         """It asks `/solve_ik` for nothing while there is no `/move_arm`; then serve that, too.
 
-        Raises CheckFailed.
+        `arm_first`: it is the other way round. What it asks for too soon is lost, and waited for
+        by `expect_visit`. Raises CheckFailed.
         """
         self._meeting.wait_for_clients()
-        self._meeting.expect_not_asked_yet(self._servers.solver)
+        if arm_first:
+            self._servers.start_arm()
+            self._comes(lambda: False, free_sec=ALONE_SEC)
+        else:
+            self._meeting.expect_not_asked_yet(self._servers.solver)
         self._servers.start()
 
     def expect_visit(self, number: int, *, goal_sec: float) -> None:

@@ -17,19 +17,22 @@ NEAREST_M, FARTHEST_M = 0.6, 1.7
 APART_M = 0.1
 
 
-def expect_plays(*targets: Target, first_goal_sec: float = QUIET_SEC) -> None:
+def expect_plays(
+    *targets: Target, first_goal_sec: float = QUIET_SEC, arm_first: bool = False
+) -> None:
     """`arm_player` visits the targets in order, one at a time, and reports how each one ended.
 
     A target is a word and a point, `('succeeded', 1.2, 0.8)`. The word is 'succeeded', 'canceled'
     or 'aborted', which is how its goal ends; 'rejected', which its goal is; or 'unreachable',
     which `/solve_ik` answers. The first goal that is accepted takes so many seconds, which no
-    other one does: an arm is slow, and a node that waits for it is right. Raises CheckFailed.
+    other one does: an arm is slow, and a node that waits for it is right. `arm_first`: it is
+    `/move_arm` that is there before the other server. Raises CheckFailed.
     """
     for word, _, _ in targets:
         if word not in WORDS:
             raise ValueError(f'a target ends as one of {", ".join(WORDS)}, not {word}')
     with Watcher() as watcher, Drawing.opened(watcher, targets) as drawing:
-        drawing.expect_waits_for_both()
+        drawing.expect_waits_for_both(arm_first=arm_first)
         moves = [number for number, (word, _, _) in enumerate(targets) if word in TERMINAL]
         for number in range(len(targets)):
             is_first = number in moves[:1]

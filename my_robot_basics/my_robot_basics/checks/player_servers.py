@@ -41,9 +41,14 @@ class PlayerServers(ScriptedActionServer):
         self._canceller: Client | None = None
 
     def start(self) -> None:
-        """Serve both, or `/move_arm` beside the solver that was started alone."""
+        """Serve both, or the other one beside that which was started alone."""
         if not self.solver.is_there():
             self.solver.start()
+        if not self.is_there():
+            super().start()
+
+    def start_arm(self) -> None:
+        """Serve `/move_arm` alone."""
         super().start()
 
     def stop(self) -> None:

@@ -74,6 +74,10 @@ class ScriptedActionServer:
         self._handles: dict[bytes, ReceivedGoal] = {}
         self.starts += 1
 
+    def is_there(self) -> bool:
+        """Whether it serves."""
+        return self._server is not None
+
     def stop(self) -> None:
         """Be absent."""
         if self._server is not None:
