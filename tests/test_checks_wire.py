@@ -7,12 +7,15 @@ import functools
 import json
 import math
 import re
+from collections import ChainMap, UserDict, UserList, deque
+from types import MappingProxyType
 
 import numpy as np
 import pytest
 from builtin_interfaces.msg import Time
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from IPython.utils.text import SList
 from my_robot_basics.exchange import values, wire
 from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState
@@ -73,10 +76,16 @@ class Gear(enum.IntEnum):
         ({'a': 1}.keys(), {'a'}),
         ({'a': 1}.values(), [1]),
         (Gear.FIRST, 1),
+        (SList(['a', 'b']), ['a', 'b']),
+        (deque([1, 2]), [1, 2]),
+        (UserList([1, 2]), [1, 2]),
+        (UserDict(a=1), {'a': 1}),
+        (ChainMap({'a': 1}, {'b': 2}), {'b': 2, 'a': 1}),
+        (MappingProxyType({'a': True}), {'a': True}),
         (np.array([math.nan, 1.0]), [math.nan, 1.0]),
     ],
 )
-def test_numpy_travels_as_the_plain_values_it_holds(value, expected):
+def test_what_is_like_a_plain_value_travels_as_one(value, expected):
     assert same(values.decode(json.loads(wire.dumps(values.encode(value)))), expected)
 
 

@@ -3,7 +3,8 @@
 A value is JSON as it stands (null, true, 1, 1.5, "text", a list), or an object with one tag:
 {"float": "nan"}, {"tuple": […]}, {"set": […]}, {"dict": [[key, value], …]}, or a ROS message
 {"ros": "sensor_msgs/msg/JointState", "cdr": base64}. NumPy scalars and arrays travel as the
-plain numbers and lists that they hold. Nothing outside MESSAGE_PACKAGES is ever imported.
+plain numbers and lists that they hold, and what is like a list or a dict as one. Nothing outside
+MESSAGE_PACKAGES is ever imported.
 """
 
 import base64
@@ -12,7 +13,8 @@ import importlib
 import math
 import os
 import re
-from collections.abc import Iterator, KeysView, ValuesView
+from collections import UserList, deque
+from collections.abc import Iterator, KeysView, Mapping, ValuesView
 from typing import Any
 
 import numpy as np
@@ -37,6 +39,8 @@ WRONG_FIELD = 'a field of a wrong type'
 """What is unsupported about a message that does not travel."""
 
 _MESSAGE_NAME = re.compile(rf'({"|".join(MESSAGE_PACKAGES)})/msg/([A-Z][A-Za-z0-9]*)')
+_LISTS = list, UserList, deque, ValuesView
+"""What travels as a list; `names = !ros2 …` makes one of a class of IPython's own."""
 _SPECIAL_FLOATS = {'nan': math.nan, 'inf': math.inf, '-inf': -math.inf}
 
 
@@ -64,13 +68,13 @@ def encode(value: object, depth: int = 0) -> Any:
         return int(value)
     if isinstance(value, float):
         return float(value) if math.isfinite(value) else {'float': repr(float(value))}
-    if type(value) is list or isinstance(value, ValuesView):
+    if isinstance(value, _LISTS):
         return [encode(item, depth + 1) for item in value]
     if isinstance(value, tuple):
         return {'tuple': [encode(item, depth + 1) for item in value]}
     if isinstance(value, set | frozenset | KeysView):
         return {'set': [encode(item, depth + 1) for item in value]}
-    if isinstance(value, dict):
+    if isinstance(value, Mapping):
         pairs = value.items()
         return {'dict': [[encode(k, depth + 1), encode(v, depth + 1)] for k, v in pairs]}
     return _encode_message(value, depth)
