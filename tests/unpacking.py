@@ -1,0 +1,18 @@
+"""How students unpack what they are given."""
+
+import shutil
+import subprocess
+import zipfile
+
+from grader.authoring.bundle import FOLDER
+
+
+def unpacked(path, folder):
+    """Unpack as students do; return what came out."""
+    if unzip := shutil.which('unzip'):
+        subprocess.run([unzip, '-q', path, '-d', folder], check=True)
+    else:
+        with zipfile.ZipFile(path) as box:
+            box.extractall(folder)
+        (folder / FOLDER / 'course').chmod(0o755)
+    return folder / FOLDER
