@@ -72,6 +72,15 @@ def cut_off(page):
     )
 
 
+def scrolls_sideways(page):
+    """The names of what a reader has to scroll sideways: the page itself, or a table."""
+    return page.evaluate(
+        """Array.from(document.querySelectorAll('html, .wide'))
+        .filter(each => each.scrollWidth > each.clientWidth)
+        .map(each => each.ariaLabel || each.tagName)"""
+    )
+
+
 @pytest.mark.slow
 def test_axe_finds_what_is_wrong(page):
     # or the tests below would find nothing in anything
@@ -98,8 +107,11 @@ def test_a_page_of_feedback_and_the_report_of_a_run(page, dark_phone, tmp_path, 
     assert serious(page, html) == []
     assert serious(dark_phone, html) == []
     assert cut_off(dark_phone) == []
+    assert scrolls_sideways(dark_phone) == []
     background = "getComputedStyle(document.querySelector('section')).backgroundColor"
     assert dark_phone.evaluate(background) != page.evaluate(background)
     report = write_report(course, Run(datetime.now().astimezone()), list(rows.values()))
     assert serious(page, report.read_text(encoding='utf-8')) == []
     assert serious(dark_phone, report.read_text(encoding='utf-8')) == []
+    assert cut_off(dark_phone) == []
+    assert scrolls_sideways(dark_phone) == []

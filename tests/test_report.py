@@ -249,8 +249,9 @@ def test_every_student_has_a_row_of_scores_whatever_was_graded_in_this_run(cours
     assert facts['totals']['max_scores'] == {TOY: 5.0}
     students = [(s['student_id'], *s['scores'], s['waiting']) for s in facts['totals']['students']]
     assert students == [('ada', 3.0, 1), ('bob', 1.0, 0)]
-    assert re.search(r'<th scope="row">bob</th><td class="number">1</td>', page)
-    assert re.search(r'<th scope="row">ada</th>.*<td class="number">3 …</td>', page)
+    score = f'<td role="cell" class="number" data-label="{TOY}">'
+    assert f'<th role="rowheader" scope="row">bob</th>{score}1</td>' in page
+    assert re.search(r'scope="row">ada</th>.* data-label="Total">3 …</td>', page)
 
 
 def test_a_name_that_is_no_text_is_reported_too(course):
