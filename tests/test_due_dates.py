@@ -113,3 +113,14 @@ def test_a_date_that_is_none_is_refused(course, capsys):
 def test_without_a_date_all_of_them_are_listed(course, capsys):
     assert due(course) == 0
     assert capsys.readouterr().out.splitlines()[0] == f'{TOY}  no due date'
+
+
+def test_what_a_date_changes_is_counted_by_the_next_grading(course, capsys):
+    assert due(course, TOY, '2026-11-30') == 0
+    assert 'Next: ' not in capsys.readouterr().out
+    course.folder('submitted', 'ada', TOY).mkdir(parents=True)
+    assert due(course, TOY, '2026-12-01') == 0
+    last = capsys.readouterr().out.splitlines()[-1]
+    assert last == 'Next: ./course grade, which brings scores and the formgrader up to date'
+    assert due(course) == 0
+    assert 'Next: ' not in capsys.readouterr().out
