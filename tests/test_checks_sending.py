@@ -69,3 +69,20 @@ def test_a_response_waits_until_dds_knows_who_reads_it():
         )
         assert count_looks(here.node, '/ask', unknown_times=2) == 3
         assert count_looks(here.node, '/nobody_asks', unknown_times=2) == 1
+
+
+@pytest.mark.starts
+@pytest.mark.usefixtures('client')
+def test_whoever_has_asked_is_waited_for_before_the_graph_knows_them():
+    with Watcher() as here:
+        look_up, looks = here.node.get_publishers_info_by_topic, []
+
+        def look_up_late(name, **options):
+            looks.append(name)
+            return look_up(name, **options) if len(looks) > 2 else []
+
+        request = {'topic_name': 'rq/askRequest', 'no_mangle': True}
+        assert here.spin_until(lambda: look_up(**request), timeout_sec=20.0)
+        here.node.get_publishers_info_by_topic = look_up_late
+        wait_for_readers(here.node, ['/ask', '/nobody_asks'], asked='/ask')
+        assert looks.count('rq/askRequest') >= 3

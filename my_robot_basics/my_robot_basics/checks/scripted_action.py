@@ -93,7 +93,7 @@ class ScriptedActionServer:
             received.finish('succeeded')
         if accepts:
             self._executed.append(received)
-        wait_for_readers(self._node, self._services)
+        wait_for_readers(self._node, self._services, asked=f'{self.name}/_action/send_goal')
         return GoalResponse.ACCEPT if accepts else GoalResponse.REJECT
 
     def _accepts(self, request: Any) -> bool:
@@ -117,5 +117,5 @@ class ScriptedActionServer:
 
     def _cancel(self, handle: ServerGoalHandle) -> CancelResponse:
         self._handles[bytes(handle.goal_id.uuid)].cancels.append(time.time_ns())
-        wait_for_readers(self._node, self._services)
+        wait_for_readers(self._node, self._services, asked=f'{self.name}/_action/cancel_goal')
         return CancelResponse.ACCEPT if self.cancels else CancelResponse.REJECT

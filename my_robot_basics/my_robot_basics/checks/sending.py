@@ -34,21 +34,24 @@ def send_until_met(send: Callable[[], None]) -> None:
             return
 
 
-def wait_for_readers(node: Node, services: Sequence[str]) -> None:
+def wait_for_readers(node: Node, services: Sequence[str], *, asked: str = '') -> None:
     """Wait until DDS knows where each client of these services reads its responses.
 
     An `ActionServer` sends a response once, and rmw drops it where it does not know that by then.
+    A request of `asked` is there: so it has a client, although the graph may not know it yet.
     It waits as long as `send_until_met` does, at most. Full names: '/move_arm/_action/send_goal'.
     """
     for _ in range(round(ATTEMPTS * 0.1 / POLL_SEC)):
-        if all(_knows_readers(node, name) for name in services):
+        if all(_knows_readers(node, name, is_asked=name == asked) for name in services):
             return
         time.sleep(POLL_SEC)
 
 
-def _knows_readers(node: Node, service: str) -> bool:
+def _knows_readers(node: Node, service: str, *, is_asked: bool) -> bool:
     clients = node.get_publishers_info_by_topic(f'rq{service}Request', no_mangle=True)
     readers = node.get_subscriptions_info_by_topic(f'rr{service}Reply', no_mangle=True)
+    if is_asked and not clients:
+        return False
     return _participants(clients) <= _participants(readers)
 
 
