@@ -22,6 +22,8 @@ NODE_SEC = 4.0
 it has waited before."""
 MOST_POSES = 3_600
 """An hour of poses: which of them is first seen depends on when somebody looks."""
+_OF_ALL = '/rosout', '/parameter_events'
+"""The topics on which each node publishes."""
 _PACKAGE, _EXECUTABLE = 'my_robot_basics', 'kinematics_publisher'
 
 
@@ -59,6 +61,8 @@ class NodeCommand:
         """
         self._expect_node()
         with Watcher(shared=True) as watcher:
+            # a busy machine may tell of a node long before its publishers
+            watcher.spin_until_free(lambda: self._publishes(watcher), free_sec=NODE_SEC)
             graphs.wait_for_publisher(watcher, topic_name, timeout_sec=1.0)
             snapshot = graphs.take(watcher)
         publishers = snapshot.publishers(topic_name)
@@ -81,6 +85,10 @@ class NodeCommand:
             cause=f'several nodes publish on {topic_name}',
         )
         self._expect_of_the_command(topic_name, instead_of=instead_of)
+
+    def _publishes(self, watcher: Watcher) -> bool:
+        names = graphs.take(watcher).publisher_names
+        return any(self.node_name in nodes for name, nodes in names.items() if name not in _OF_ALL)
 
     def _expect_of_the_command(self, topic_name: str, *, instead_of: str) -> None:
         """The command line brings that node and that topic: no other node will do for it."""

@@ -46,6 +46,11 @@ def for_a_topic(line: CommandLine, node_name: str, topic_name: str) -> str:
             f'the name of the topic begins with /, so no namespace moves it: add a rule for it, '
             f'-r {topic_name}:=…'
         )
+    if topic_name in (right for _, right in rules):
+        return (
+            'the name that the topic has in the program is to the left of :=, and the new one to '
+            f'its right: -r {topic_name}:=…'
+        )
     for left, right in rules:
         if left.strip('/') and not left.startswith('/') and left != topic_name:
             return (
