@@ -76,6 +76,11 @@ def test_call_returns_what_the_function_returned(notebook, function, returns, ex
 FAILURES = {
     'missing': (None, 'a function named `f`, saw no such name: define it as `def f(…):` in'),
     'raises': (raising, 'expected `f(2)` to return, saw ValueError: out of reach: call'),
+    'raises what Python tells in its own words': (
+        lambda x: 2.0 ^ x,
+        "for ^: 'float' and 'int', so write ** for a power, such as x**2: in Python ^ is some",
+    ),
+    'returns in one branch': (lambda x: None, 'end each branch of `f` with `return …` (printin'),
     'exits': (exiting, 'expected `f(2)` to return, saw SystemExit: 3: call'),
     'forgot return': (lambda x: print('!'), 'expected `f(2)` to return a value, saw None: end'),
     'int for a bool': (lambda x: 1, 'a bool, saw an int (1): write True or False, or a c'),

@@ -1,20 +1,53 @@
 """What is said of exceptions whose own words do not tell beginners what to do."""
 
+import inspect
+import math
 import time
+from collections import deque
 
+import numpy as np
 import pytest
+import rclpy
 from my_robot_basics.feedback.python_errors import DECIMAL_COMMA, explained, what_to_do
 from my_robot_basics.graph import raised
 from my_robot_basics.live.bare_errors import made_with
 from my_robot_basics.validate.outputs import CellRun
 from my_robot_basics.validate.trouble import trouble_in
 from nbformat.v4 import new_output
+from rcl_interfaces.msg import FloatingPointRange
 from rclpy.action import ActionClient, ActionServer
+from rclpy.exceptions import ParameterNotDeclaredException
 from rclpy.node import Node
+from rclpy.parameter import Parameter
+from sensor_msgs.msg import JointState
 
 from arm_interfaces.action import MoveArm
 from arm_interfaces.srv import SolveIK
 from my_robot_basics import live
+
+
+class Asker:
+    """What a student's class may do."""
+
+    def judge(self, parameters):
+        pass
+
+    def describe(self):
+        where = 'at index 0 in parameters list'
+        raise TypeError(
+            f'Third element {FloatingPointRange()} {where} is not a ParameterDescriptor'
+        )
+
+    def fail(self):
+        raise ParameterNotDeclaredException('rate_hz')
+
+
+NAMES = {
+    **{'time': time, 'math': math, 'inspect': inspect, 'deque': deque, 'np': np, 'rclpy': rclpy},
+    **{'FloatingPointRange': FloatingPointRange, 'Asker': Asker},
+    **{'JointState': JointState, 'Parameter': Parameter, 'SolveIK': SolveIK},
+}
+"""What the lines of code may use."""
 
 
 def error_of(code, **names):
@@ -38,13 +71,68 @@ def error_of(code, **names):
         ('timer(0。2)', ", so write '.' in its place"),
         ('timer（0.2)', ", so write '(' in its place"),
         ('x = “a”', ", so write '\"' in its place"),
+        ('true', ', so write True, False or None: in Python they begin with a capital letter'),
+        ('base_link', ', so import or define it first, or put it in quotes if it is a text'),
+        ('1.0^2', ', so write ** for a power, such as x**2: in Python ^ is something else'),
+        (
+            'np.float64(1)^2',
+            ', so write ** for a power, such as x**2: in Python ^ is something el',
+        ),
+        ('1.0 & 2.0', ', so write the words `and` and `or` between comparisons, and not & and |'),
+        (
+            'np.float64(1) | 2',
+            ', so write the words `and` and `or` between comparisons, and not &',
+        ),
+        ('{}.publishers', ", so write the key in quotes and square brackets: name['key']"),
+        ("dict()('publishers')", ", so write the key in quotes and square brackets: name['key']"),
+        ('[].append(1, 2)', ', so append one value at a time, or write extend([…])'),
+        ('JointState.header.stamp = 1', ', so make an object of the class with parentheses, such'),
+        ('JointState().position[0] = 1.0', ', so assign the whole list, [one, two], or append to'),
+        ('JointState().name[0] = "a"', ', so assign the whole list, [one, two], or append to it'),
+        ('JointState(position=0.5)', ', so write a list, in square brackets, where several numbe'),
+        ('math.radians([1, 2])', ', so convert each number by itself: [radians(angle) for angle '),
+        ('1.0 / Parameter("hz", value=5.0)', ', so take the value out of the parameter with .val'),
+        ('def f():\n    await g()', ', so begin its function with async def'),
+        ('rclpy.Future().reachable', ', so take the answer out of the future with .result()'),
+        ('rclpy.Future().result.reachable', ', so call it, with parentheses behind its name'),
+        ('[].name', ', so go through the list: for each in the_list'),
+        ('Asker().judge()', ', so give a callback by its name, without parentheses'),
+        ('SolveIK.Request(1.0, 2.0)', ', so write each field with its name, such as SolveIK.Req'),
+        ('SolveIK.Request().x', ', so look its fields up with ros2 interface show'),
+        ('Asker().describe()', ', so put the range into a list, and that into a descriptor: Para'),
+        ('FloatingPointRange()[0]', ', so put the range into a list, and that into a descriptor:'),
+        ('Asker().fail()', ', so declare it first, with self.declare_parameter'),
+        ('inspect.signature(deque().append)', ', so put it into a function of your own, such as'),
+        (
+            'with None:\n    pass',
+            ', so call rclpy.init() in a line of its own: no with takes what',
+        ),
         ('x = 5€', ''),
         ('x = (1', ''),
     ],
 )
-def test_commas_and_full_width_characters_are_told(code, why):
-    error = error_of(code, time=time)
-    assert what_to_do(f'{type(error).__name__}: {error}') == why
+def test_what_pythons_own_words_do_not_tell_is_told(code, why):
+    error = error_of(code, **NAMES)
+    said = what_to_do(f'{type(error).__name__}: {error}')
+    assert said.startswith(why) if why else said == ''
+
+
+@pytest.mark.starts
+def test_rclpy_itself_says_so_of_a_second_init():
+    context = rclpy.Context()
+    rclpy.init(context=context)
+    try:
+        error = error_of('rclpy.init(context=context)', rclpy=rclpy, context=context)
+    finally:
+        context.shutdown()
+    said = what_to_do(f'{type(error).__name__}: {error}')
+    assert said == ', so leave out rclpy.init(): it has been called already'
+
+
+def test_an_answer_that_is_not_there_yet_is_told_by_the_students_line():
+    said = "AttributeError: 'NoneType' object has no attribute 'reachable' (line 15, in receive: "
+    assert 'add_done_callback' in what_to_do(f'{said}if future.result().reachable:)')
+    assert what_to_do(f'{said}if answer.reachable:)') == ''
 
 
 LETTERS = ', so write a name of letters from a to z, digits'
@@ -93,7 +181,8 @@ def test_a_name_that_ros_refuses_is_told_with_what_to_write(run, case):
 
 
 def test_a_full_stop_does_not_stand_before_a_comma():
-    said = 'TypeError: Third element 0 in parameters list is not a ParameterDescriptor'
+    where = 'at index 0 in parameters list'
+    said = f'TypeError: Third element 0 {where} is not a ParameterDescriptor'
     assert explained(f'{said}.') == said + DECIMAL_COMMA
     assert explained('TypeError: not so.') == 'TypeError: not so.'
 

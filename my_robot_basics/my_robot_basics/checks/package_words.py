@@ -6,6 +6,7 @@ from typing import Any
 from my_robot_basics.exchange.endings import error_in
 from my_robot_basics.feedback.errors import shorten
 from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.feedback.python_errors import what_to_do
 
 
 def text_in(told: Mapping[str, Any], key: str) -> str:
@@ -31,4 +32,4 @@ def last_words(said: str) -> str:
     """The error in what was printed, or its last line; '' where nothing was."""
     lines = [line for line in said.splitlines() if line.strip()]
     last = error_in(lines) or next(reversed(lines), '')
-    return theirs(shorten(last)) if last else ''
+    return f'{theirs(shorten(last))}{what_to_do(last)}' if last else ''

@@ -19,6 +19,7 @@ from my_robot_basics.exchange.expected_types import (
 )
 from my_robot_basics.feedback import hidden
 from my_robot_basics.feedback.errors import fail, shorten
+from my_robot_basics.feedback.python_errors import what_to_do
 from my_robot_basics.session import interactions
 
 __all__ = ['call', 'value']
@@ -40,15 +41,17 @@ def call(name: str, *args: object, returns: type | tuple[type, ...] | None = Non
         _fail_missing(name, what='function')
     if kind == 'raised':
         raised = shorten(': '.join(filter(None, (body['type'], body['message']))))
-        hint = f'call {shown} in a cell of your own to see where'
-        cause = f'`{name}` raises {hidden.raised(raised)}'
-        fail(expected=f'`{shown}` to return', seen=raised, hint=hint, cause=cause)
+        hint, why = f'call {shown} in a cell of your own to see where', what_to_do(raised)
+        cause = f'`{name}` raises {hidden.raised(raised)}{why}'
+        fail(expected=f'`{shown}` to return', seen=f'{raised}{why}', hint=hint, cause=cause)
     if kind == 'unsupported':
         seen, hint = what_is_unsupported(body, returns)
         wanted = f'`{shown}` to return {wanted_type(returns)}'
         fail(expected=wanted, seen=seen, hint=hint, cause=not_always(name, returns))
     if body is None:
-        hint = f'end `{name}` with `return …` (printing a result does not return it)'
+        hint = (
+            f'end each branch of `{name}` with `return …` (printing a result does not return it)'
+        )
         fail(
             expected=f'`{shown}` to return a value',
             seen='None',
