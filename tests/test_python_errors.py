@@ -71,12 +71,12 @@ def error_of(code, **names):
         ('timer(0。2)', ", so write '.' in its place"),
         ('timer（0.2)', ", so write '(' in its place"),
         ('x = “a”', ", so write '\"' in its place"),
-        ('true', ', so write True, False or None: in Python they begin with a capital letter'),
+        ('true', ', so write True, False or None with a capital letter'),
         ('base_link', ', so import or define it first, or put it in quotes if it is a text'),
-        ('1.0^2', ', so write ** for a power, such as x**2: in Python ^ is something else'),
+        ('1.0^2', ', so write ** for a power, such as x**2'),
         (
             'np.float64(1)^2',
-            ', so write ** for a power, such as x**2: in Python ^ is something el',
+            ', so write ** for a power, such as x**2',
         ),
         ('1.0 & 2.0', ', so write the words `and` and `or` between comparisons, and not & and |'),
         (

@@ -42,7 +42,7 @@ _BY_WORDS = (
     ),
     (
         re.compile(r"name '(?i:true|false|none|null)' is not defined"),
-        ', so write True, False or None: in Python they begin with a capital letter',
+        ', so write True, False or None with a capital letter',
     ),
     (
         re.compile(r"name '\w+' is not defined$"),
@@ -50,7 +50,7 @@ _BY_WORDS = (
     ),
     (
         re.compile(r"operand type\(s\) for \^: |ufunc 'bitwise_xor'"),
-        ', so write ** for a power, such as x**2: in Python ^ is something else',
+        ', so write ** for a power, such as x**2',
     ),
     (
         re.compile(r"operand type\(s\) for [&|]: |ufunc 'bitwise_(?:and|or)'"),
