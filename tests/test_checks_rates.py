@@ -246,10 +246,11 @@ def test_a_note_is_printed_when_the_rate_is_right(capsys):
     assert capsys.readouterr().out == 'note: careful\n'
 
 
+@pytest.mark.parametrize('clock', ['wall', 'simulated'])
 @pytest.mark.parametrize(('until_sec', 'passes'), [(3.8, True), (3.6, True), (2.0, False)])
-def test_messages_that_end_on_the_wall_clock_are_no_rate(until_sec, passes):
+def test_messages_that_end_are_no_rate(until_sec, passes, clock):
     times = every(0.2, round(until_sec / 0.2))
-    ending = recording(times, clock='wall', seconds=4.0)
+    ending = recording(times, clock=clock, seconds=4.0)
     if passes:
         ending.assert_rate(hz=5.0)
         return
@@ -257,6 +258,12 @@ def test_messages_that_end_on_the_wall_clock_are_no_rate(until_sec, passes):
         CheckFailed, match=r'saw none in the last 2\.0 s over 4 s \(10 messages\): pub'
     ):
         ending.assert_rate(hz=5.0)
+
+
+@pytest.mark.parametrize('times', [[0.2], [0.2, 0.4], [0.4, 0.4]])
+def test_a_few_messages_whose_mean_is_right_are_no_rate(times):
+    with pytest.raises(CheckFailed, match=r'saw none in the last 9\.[68] s over 10 s'):
+        recording(times).assert_rate(hz=5.0)
 
 
 def test_a_pause_at_the_end_is_one_of_those_before():

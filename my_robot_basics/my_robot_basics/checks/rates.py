@@ -109,7 +109,8 @@ def has_rate(recording: 'Recording', hz: float) -> bool:
             low, high = _period_range(recording)
         # the mean alone is off by as much as a step
         is_right = off <= TOLERANCE and (low > high or _holds(low, high, hz))
-        return is_right and not leaves_out(recording) and not pattern_of(recording)
+        goes_on = not recording.is_over and not leaves_out(recording)
+        return is_right and goes_on and not pattern_of(recording)
     least, most = MEAN_TOLERANCE
     is_meant = abs(off_meant(recording, hz)) <= TOLERANCE
     return is_meant and least <= recording.rate_hz / hz - 1.0 <= most and is_steady(recording, hz)
