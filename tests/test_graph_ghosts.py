@@ -3,6 +3,7 @@
 from types import SimpleNamespace
 
 import pytest
+from my_robot_basics.checks import callbacks
 from my_robot_basics.graph import graphs
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session import classroom
@@ -44,3 +45,13 @@ def test_a_node_has_a_name_and_a_publisher(monkeypatch, names, publishers, is_go
     monkeypatch.setattr(graphs, 'publisher_infos', lambda node, topic_name: publishers)
     monkeypatch.setattr(graphs, 'full_name', lambda info: info)
     assert graphs.is_gone(SimpleNamespace(node=None), '/a') == is_gone
+
+
+@pytest.mark.parametrize(('living', 'why'), [(['/a'], ''), ([], callbacks.ENDED)])
+def test_why_a_node_publishes_no_more_is_not_that_its_name_stays(monkeypatch, living, why):
+    """A busy machine left the name of a node that had destroyed itself, and another reason."""
+    monkeypatch.setattr(graphs, 'node_names', lambda node: ['/a'])
+    monkeypatch.setattr(graphs, 'publisher_infos', lambda node, topic_name: living)
+    monkeypatch.setattr(graphs, 'full_name', lambda info: info)
+    watcher = SimpleNamespace(node=None, spin_until_free=lambda done, free_sec: done())
+    assert callbacks.CallbackErrors(['/a']).why(watcher) == why

@@ -1,6 +1,6 @@
 """What the callbacks of a node raised: `rclpy.spin` would have ended there."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 from my_robot_basics.exchange import node_troubles
 from my_robot_basics.feedback.errors import fail
@@ -11,6 +11,8 @@ from my_robot_basics.graph.watcher import Watcher
 ENDED = (
     'the node has ended: leave rclpy.shutdown(), destroy_node() and exit() out of its callbacks'
 )
+GONE_SEC = 0.2
+"""How long the graph may take to tell that a node has ended."""
 FIX_FIRST = 'so fix that first: rclpy.spin would have ended there'
 
 
@@ -43,7 +45,12 @@ class CallbackErrors:
             return raised
         if stopped := what_stopped(self._before):
             return f'{stopped}, so fix that first'
-        return '' if {*self._before} <= {*graphs.node_names(watcher.node)} else ENDED
+        return (
+            ENDED if watcher.spin_until_free(self._is_one_gone(watcher), free_sec=GONE_SEC) else ''
+        )
+
+    def _is_one_gone(self, watcher: Watcher) -> Callable[[], bool]:
+        return lambda: any(graphs.is_gone(watcher, name) for name in self._before)
 
     def expect_none(self) -> None:
         """Raise CheckFailed where there was one."""
