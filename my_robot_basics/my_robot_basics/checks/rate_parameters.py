@@ -88,15 +88,15 @@ class RateParameter:
     def expect_refuses(self, *rates_hz: float) -> None:
         """Each of these is refused, with a reason, and value and rate stay what they were.
 
-        NaN may be among them: it is tried last, and no rate is measured after it.
+        NaN and inf may be among them: they are tried last, and no rate is measured after them.
         """
         refusals.expect_leaves_others_alone(self.parameters, self.name)
         kept_hz = self.parameters.get_number(self.name)
-        numbers = sorted((hz for hz in rates_hz if not math.isnan(hz)), reverse=True)
+        numbers = sorted(filter(math.isfinite, rates_hz), reverse=True)
         if numbers:
             self._expect_stays(kept_hz, numbers)
-        if len(numbers) < len(rates_hz):
-            self._expect_refused(kept_hz, [math.nan])
+        for no_number in (hz for hz in rates_hz if not math.isfinite(hz)):
+            self._expect_refused(kept_hz, [no_number])
 
     def _expect_stays(self, kept_hz: float, rates_hz: Sequence[float]) -> None:
         """These are refused, and the rate stays: a node that takes them ends with the lowest."""
@@ -177,7 +177,7 @@ class RateParameter:
     def _in_its_type(self, rates_hz: Sequence[float], kept_hz: float = math.inf) -> list[float]:
         """As integers, where the parameter is one; those above kept_hz are rounded up."""
         if isinstance(self.parameters.get(self.name), int):
-            numbers = [rate_hz for rate_hz in rates_hz if not math.isnan(rate_hz)]
+            numbers = filter(math.isfinite, rates_hz)
             return [math.ceil(hz) if hz > kept_hz else int(hz) for hz in numbers]
         return [*rates_hz]
 
