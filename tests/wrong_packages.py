@@ -129,6 +129,42 @@ WRONG = (
         {'arm_player_plays': 'publish one report'},
     ),
     Change(
+        'visits_each_point_once',
+        swap(
+            PLAYER,
+            ('targets = zip(', 'targets = dict.fromkeys(zip('),
+            ('strict=True)\n', 'strict=True))\n'),
+        ),
+        (1, 2, 0),
+        {'arm_player_plays': 'also one that you have visited before'},
+    ),
+    Change(
+        'reports_twice',
+        swap(
+            PLAYER,
+            (
+                "self.done.publish(String(data=' '.join(words)))",
+                "report = String(data=' '.join(words))\n        self.done.publish(report)\n"
+                '        self.done.publish(report)',
+            ),
+        ),
+        (1, 2, 0),
+        {'arm_player_plays': 'publish the report once'},
+    ),
+    Change(
+        'no_clean_end_after_the_report',
+        swap(
+            PLAYER,
+            ('        rclpy.spin(player)  # the report stays available\n', ''),
+            (
+                '    finally:\n        rclpy.try_shutdown()',
+                '    rclpy.spin(player)\n    rclpy.try_shutdown()',
+            ),
+        ),
+        (1, 0, 4),
+        {'package_runs': 'catch KeyboardInterrupt'},
+    ),
+    Change(
         'calls_in_a_callback',
         swap(
             PLAYER,

@@ -104,19 +104,23 @@ class Drawing:
         self._report.expect_words(words)
         self._expect_one_at_a_time()
         self._report.expect_kept(self._process)
+        self._comes(self._report.has_come_twice, free_sec=QUIET_SEC)
+        self._report.expect_once()
         self._meeting.expect_alone(own=1)
 
-    def expect_clean_end(self) -> None:
+    def expect_clean_end(self, *, after_report: bool = False) -> None:
         """It asks for its first target, gets no answer yet, and ends cleanly on SIGINT.
 
-        Raises CheckFailed. Earlier, while it makes its node, rclpy itself prints a traceback.
+        Or `after_report`, if there is one. Raises CheckFailed.
         """
         self._process.expect_node(f'/{NAME}')
-        self._servers.solver.hold()
+        if not after_report:
+            self._servers.solver.hold()
         self._meeting.wait_for_clients()
         self._servers.start()
-        self._expect_asked(0)
-        self._process.expect_clean_end()
+        self._expect_asked(0)  # earlier, as it makes its node, rclpy itself prints a traceback
+        if not after_report or self._comes(self._report.is_there, free_sec=REPLY_SEC):
+            self._process.expect_clean_end()
 
     def _expect_asked(self, number: int) -> None:
         servers = self._servers
@@ -133,6 +137,8 @@ class Drawing:
                 cause=f'{SOLVE_IK} is asked for something else',
             )
         if not servers.was_asked(number):
+            if servers.times_before(number) and self._report.is_there():
+                self._fail_not_again(wanted)
             before, skipped = self._before(number), servers.was_skipped(number)
             hint = drawing_hints.why_not_asked(self._watcher, before, was_skipped=skipped)
             cause = 'a target is skipped' if skipped else drawing_hints.stops(before)
@@ -176,6 +182,14 @@ class Drawing:
             seen=shorten(_rounded(seen)),
             hint=drawing_hints.why_other_goal(self._servers, number, seen),
             cause='a goal has another position, or another place in the order',
+        )
+
+    def _fail_not_again(self, wanted: str) -> NoReturn:
+        fail(
+            expected=f'{wanted} once more: it is listed twice',
+            seen='the report',
+            hint='visit each target of the list, also one that you have visited before',
+            cause='a target that is listed twice is visited once',
         )
 
     def _before(self, number: int) -> str:

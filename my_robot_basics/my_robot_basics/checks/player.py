@@ -49,8 +49,17 @@ def expect_asks_and_ends(x: float, y: float) -> None:
         drawing.expect_clean_end()
 
 
+def expect_ends_after_report(x: float, y: float) -> None:
+    """`arm_player` ends cleanly once it has reported that its only target is unreachable.
+
+    Raises CheckFailed. `expect_plays` looks whether it reports at all.
+    """
+    with Watcher() as watcher, Drawing.opened(watcher, [('unreachable', x, y)]) as drawing:
+        drawing.expect_clean_end(after_report=True)
+
+
 def choose(numbers: random.Random) -> list[Target]:
-    """A target for each word, and one that succeeds after them, in some order."""
+    """A target for each word, in some order, and two that succeed: another one, and one again."""
     words = [*WORDS]
     numbers.shuffle(words)
     targets: list[Target] = []
@@ -59,7 +68,8 @@ def choose(numbers: random.Random) -> list[Target]:
         while any(math.dist(point, other[1:]) < APART_M for other in targets):
             point = _point(numbers)
         targets.append((word, *point))
-    return targets
+    again = next(each for each in targets if each[0] == 'succeeded')
+    return [*targets, again]
 
 
 def _point(numbers: random.Random) -> tuple[float, float]:

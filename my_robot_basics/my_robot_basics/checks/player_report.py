@@ -48,6 +48,20 @@ class PlayerReport:
         """Whether a message has come by now."""
         return bool(self._messages())
 
+    def has_come_twice(self) -> bool:
+        """Whether more than one message has come by now."""
+        return len(self._messages()) > 1
+
+    def expect_once(self) -> None:
+        """No second report has come. Raises CheckFailed."""
+        expect(
+            not self.has_come_twice(),
+            expected=f'one message on {TOPIC}',
+            seen=f'{len(self._messages())}',
+            hint='publish the report once: who joins late receives it from the publisher, too',
+            cause='the report is published again',
+        )
+
     def expect_none_yet(self) -> None:
         """No report has come while a goal has not ended. Raises CheckFailed."""
         said = self._messages()[-1:]

@@ -66,9 +66,14 @@ class PlayerServers(ScriptedActionServer):
         return list(solve(request(x, y), l1=L1_M).elbow_up)
 
     def was_asked(self, number: int) -> bool:
-        """Whether a request came for a target."""
+        """Whether a request came for a target: as many as it is listed up to here."""
         _, x, y = self.targets[number]
-        return any(is_for(asked, x, y) for asked in self.solver.requests)
+        count = sum(is_for(asked, x, y) for asked in self.solver.requests)
+        return count > self.times_before(number)
+
+    def times_before(self, number: int) -> int:
+        """How often the point of a target is listed before it."""
+        return [point for _, *point in self.targets[:number]].count([*self.targets[number][1:]])
 
     def was_skipped(self, number: int) -> bool:
         """Whether a request came for a later target, and none for this one."""
