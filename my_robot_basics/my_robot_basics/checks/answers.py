@@ -15,6 +15,7 @@ _BRACES = re.compile(r'\{[A-Za-z_][^{}]*\}')
 _DECIMAL_COMMA = re.compile(r'(?<=\d),(?=\d)')
 _HYPHEN = re.compile(r'(?<=\w)[-−](?=[-−+]?\d)')
 """One that parts a number from what it is called: theta1-65.92."""
+_WITH_DECIMALS = re.compile(r'\d+\.\d+')
 _ELBOWS_DEG = (0.0, 180.0)
 """Elbow angles of an arm that is stretched, or folded, towards a target out of reach."""
 
@@ -82,6 +83,15 @@ def form_of(text: str) -> str:
 def holds_any(wanted: Iterable[float], text: str) -> bool:
     """Whether one of the angles is among the numbers of a text."""
     return any(angles.near(angle, number) for angle in wanted for number in numbers_of(text))
+
+
+def stands_for_angles(bearings_deg: Iterable[float], text: str) -> bool:
+    """Whether a text has what a node without a solution gives for one: zeros, or a stretched arm.
+
+    Zeros are two numbers or more, with decimals, and no others beside them.
+    """
+    found = [float(number) for number in _WITH_DECIMALS.findall(text)]
+    return (len(found) > 1 and not any(found)) or has_stretched(bearings_deg, text)
 
 
 def has_stretched(bearings_deg: Iterable[float], text: str) -> bool:

@@ -119,9 +119,9 @@ class Log(NodeLog):
         """At least one WARN record comes, and no INFO record with angles.
 
         That is one that looks like those which held the angles of a target in reach, and has
-        other numbers; once the warning is there, these very angles, too; and one of `no_angles`
-        beside the θ2 of a stretched or folded arm, unless a target in reach had the same beside
-        its angles. Raises CheckFailed after `free_sec` of free time.
+        other numbers; once the warning is there, these very angles, too; and zeros alone, or one
+        of `no_angles` beside the θ2 of a stretched or folded arm, unless a target in reach had the
+        same beside its angles. Raises CheckFailed after `free_sec` of free time.
         """
         bearings = list(no_angles)
         if not self.wait_for_answer(lambda log: log.has('WARN'), free_sec=free_sec):
@@ -138,7 +138,7 @@ class Log(NodeLog):
         def has_angles(log: Self) -> bool:
             texts = log.texts('INFO')
             return any(
-                (answers.has_stretched(bearings, text) and not self._forms.is_other(text))
+                (answers.stands_for_angles(bearings, text) and not self._forms.is_other(text))
                 or (number >= count and answers.holds_any(self._answer, text))
                 or (self._forms.is_answer(text) and not answers.holds_any(self._answer, text))
                 for number, text in enumerate(texts)
