@@ -3,7 +3,8 @@
 from types import SimpleNamespace
 
 import pytest
-from my_robot_basics.checks import heartbeat
+from my_robot_basics.checks import CheckFailed, heartbeat
+from my_robot_basics.feedback.errors import Starved
 
 
 class Fake:
@@ -11,7 +12,7 @@ class Fake:
 
     def __init__(self, beats_sec, *, free_share):
         self.beats_sec, self.free_share = list(beats_sec), free_share
-        self.now_sec, self.received = 0.0, []
+        self.now_sec, self.received, self.turn_sec = 0.0, [], 0.0
 
     def spin_until(self, done, *, timeout_sec):
         end_sec = self.now_sec + timeout_sec
@@ -22,6 +23,9 @@ class Fake:
                 return True
         self.now_sec = end_sec
         return False
+
+    def wait_for_turn(self):
+        self.now_sec += self.turn_sec
 
     def stopwatch(self):
         began_sec = self.now_sec
@@ -43,31 +47,55 @@ def pausing(*, start_sec, end_sec, then_sec=0.1):
 BUSY, FREE = 0.0, 1.0
 
 
+@pytest.fixture
+def look(monkeypatch):
+    """Return whether the count goes on, and what to raise if it does not."""
+
+    def look(fake, *send):
+        monkeypatch.setattr(heartbeat, 'Stopwatch', fake.stopwatch)
+        monkeypatch.setattr(heartbeat, 'wait_for_turn', fake.wait_for_turn)
+        beats = heartbeat.Heartbeat(fake, SimpleNamespace(received=fake.received))
+        return 'goes on' if beats.goes_on(*send) else beats.doubt
+
+    return look
+
+
 @pytest.mark.parametrize(
-    ('beats_sec', 'free_share', 'goes_on'),
+    ('beats_sec', 'free_share', 'expected'),
     [
-        (every(0.1), FREE, True),
-        (every(0.1), BUSY, True),
-        ([], FREE, False),
-        ([], BUSY, False),
-        (pausing(start_sec=0.5, end_sec=1.0), FREE, True),
-        (pausing(start_sec=0.5, end_sec=1.6), FREE, False),  # it waited for a second
-        (pausing(start_sec=0.5, end_sec=2.5), BUSY, True),  # or had no processor
-        (pausing(start_sec=0.5, end_sec=4.5), BUSY, False),  # too long for that, …
-        (pausing(start_sec=0.5, end_sec=4.5, then_sec=1.2), BUSY, True),  # … unless it goes on
-        (pausing(start_sec=0.5, end_sec=40.0), BUSY, False),
-        ([0.01] * 100, FREE, False),  # counted ahead
-        ([0.01] * 100, BUSY, False),
-        ([*[0.01] * 100, *every(0.1, start_sec=10.0)], BUSY, False),
+        (every(0.1), FREE, 'goes on'),
+        (every(0.1), BUSY, 'goes on'),
+        ([], FREE, CheckFailed),
+        ([], BUSY, CheckFailed),
+        (pausing(start_sec=0.5, end_sec=1.0), FREE, 'goes on'),
+        (pausing(start_sec=0.5, end_sec=1.6), FREE, CheckFailed),  # it waited for a second
+        (pausing(start_sec=0.5, end_sec=2.5), BUSY, 'goes on'),  # or had no processor
+        (pausing(start_sec=0.5, end_sec=4.5), BUSY, Starved),  # or others were many for a while, …
+        (pausing(start_sec=0.5, end_sec=9.5), BUSY, Starved),
+        (
+            pausing(start_sec=0.5, end_sec=4.5, then_sec=1.2),
+            BUSY,
+            'goes on',
+        ),  # … as they still are
+        (pausing(start_sec=0.5, end_sec=4.5), 0.25, CheckFailed),  # a part of it was free
+        (pausing(start_sec=0.5, end_sec=40.0), BUSY, CheckFailed),
+        ([*every(0.1, end_sec=0.5), *every(0.1, start_sec=4.0, end_sec=4.5)], BUSY, CheckFailed),
+        ([0.01] * 100, FREE, CheckFailed),  # counted ahead
+        ([0.01] * 100, BUSY, CheckFailed),
+        ([*[0.01] * 100, *every(0.1, start_sec=8.0)], BUSY, Starved),
+        ([*[0.01] * 100, *every(0.1, start_sec=12.0)], BUSY, CheckFailed),
     ],
 )
 def test_only_a_silence_that_the_machine_does_not_explain_counts(
-    monkeypatch, beats_sec, free_share, goes_on
+    look, beats_sec, free_share, expected
 ):
-    fake = Fake(beats_sec, free_share=free_share)
-    monkeypatch.setattr(heartbeat, 'Stopwatch', fake.stopwatch)
-    monkeypatch.setattr(heartbeat, 'wait_for_turn', lambda: None)
-    assert heartbeat.Heartbeat(fake, SimpleNamespace(received=fake.received)).goes_on() is goes_on
+    assert look(Fake(beats_sec, free_share=free_share)) == expected
+
+
+def test_a_beat_that_comes_while_the_notebook_is_asked_is_received(look):
+    fake = Fake(pausing(start_sec=0.5, end_sec=2.0), free_share=0.5)
+    fake.turn_sec = 0.1
+    assert look(fake) == 'goes on'
 
 
 class Waits(Fake):
@@ -85,32 +113,31 @@ class Waits(Fake):
 
 
 @pytest.mark.parametrize(
-    ('waits_sec', 'goes_on', 'sent'),
+    ('waits_sec', 'free_share', 'expected', 'sent'),
     [
-        ([], True, 1),
-        ([1.0] * 3, False, 3),
-        ([0.5] * 3, False, 3),
+        ([], BUSY, 'goes on', 1),
+        ([4.0] * 3, BUSY, CheckFailed, 3),
+        ([1.0] * 3, BUSY, CheckFailed, 3),
+        # what a message takes a node on a busy machine, or a short wait
+        ([0.5] * 3, BUSY, Starved, 3),
+        ([0.5] * 3, 0.4, Starved, 3),
+        ([0.5] * 3, 0.6, CheckFailed, 3),
         # a machine that was short of time once, or twice
-        ([1.0], True, 2),
-        ([1.0, 0.5], True, 3),
+        ([1.0], BUSY, 'goes on', 2),
+        ([1.0, 0.5], BUSY, 'goes on', 3),
+        ([4.0], BUSY, Starved, 2),
         # short pauses are no waits
-        ([0.3] * 3, True, 1),
+        ([0.3] * 3, FREE, 'goes on', 1),
     ],
 )
 def test_who_waits_upon_each_message_does_not_go_on_however_busy_the_machine_is(
-    monkeypatch, waits_sec, goes_on, sent
+    look, waits_sec, free_share, expected, sent
 ):
-    fake = Waits(waits_sec, free_share=BUSY)
-    monkeypatch.setattr(heartbeat, 'Stopwatch', fake.stopwatch)
-    monkeypatch.setattr(heartbeat, 'wait_for_turn', lambda: None)
-    beats = heartbeat.Heartbeat(fake, SimpleNamespace(received=fake.received))
-    assert (beats.goes_on(fake.send), fake.sent) == (goes_on, sent)
+    fake = Waits(waits_sec, free_share=free_share)
+    assert (look(fake, fake.send), fake.sent) == (expected, sent)
 
 
-def test_a_machine_that_holds_everything_up_holds_up_no_message(monkeypatch):
+def test_a_machine_that_holds_everything_up_holds_up_no_message(look):
     fake = Waits([1.0] * 3, free_share=BUSY)
     fake.beats_sec = every(0.7)
-    monkeypatch.setattr(heartbeat, 'Stopwatch', fake.stopwatch)
-    monkeypatch.setattr(heartbeat, 'wait_for_turn', lambda: None)
-    beats = heartbeat.Heartbeat(fake, SimpleNamespace(received=fake.received))
-    assert beats.goes_on(fake.send)
+    assert look(fake, fake.send) == 'goes on'

@@ -1,7 +1,8 @@
 """Whether a node goes on while something else takes its time, by a topic on which it counts.
 
-A machine that is short of time is no node that waits: where no time is free, only a pause counts
-that is far longer than those after it. The notebook has to answer questions meanwhile.
+A machine that is short of time is no node that waits. Time that was free tells the two apart, and
+so does a silence in which the notebook answers many questions and that does not end. A long pause
+that ends, with no free time in it, is a doubt.
 """
 
 from collections.abc import Callable, Sequence
@@ -9,6 +10,7 @@ from dataclasses import dataclass
 
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.exchange.asking import wait_for_turn
+from my_robot_basics.feedback.errors import CheckFailed, Starved
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
 
@@ -18,19 +20,24 @@ STILL_SEC = 0.8
 """… a silence is so long, of time that was free, and …"""
 LOOKS = 8
 """… holds so many questions that the notebook answered. …"""
-BUSY_SEC, BUSY_LOOKS = 2.5, 10
-"""… Where no time is free, so long a pause is a silence, too, …"""
+BUSY_SEC, BUSY_LOOKS = 10.0, 40
+"""… If no time is free, a silence is so long, and holds so many. …"""
+LONG_SEC, LONG_LOOKS = 2.5, 10
+"""… A pause that ends after so much of both is a doubt, …"""
 MOST_TIMES = 4.0
-"""… unless it is less than so many times as long as another one, once the node counts again, …"""
-AGAIN_TIMES = 3
-"""… which it has to do in so many times as much of both."""
+"""… unless it is less than so many times as long as another one after it."""
 LOOK_SEC = 0.1
 ROUND, ROUNDS = 4, 3
 """A round of beats begins with a message: the first two pauses show what the node makes of it, and
 those behind show the machine. So many rounds, in which …"""
 STALL_SEC, STALL_TIMES = 0.4, 2.0
-"""… each message holds it up for so long, and for so many times as long as any other pause, are
-no chance: it waits a while each time, in a callback."""
+"""… each message holds it up for so long, and for so many times as long as any other pause, mean
+that it waits a while each time, in a callback, if …"""
+PERIOD_SEC, STALL_FREE_SEC = 0.1, 0.4
+"""… so much of these pauses, without a period of each, was free, or …"""
+SURE_SEC, SURE_TIMES = 0.8, 4.0
+"""… each was so long: a message takes a node some time, too, and a busy machine makes that longer,
+but not as long as this."""
 
 
 @dataclass(frozen=True)
@@ -38,10 +45,12 @@ class _Pause:
     """The time before a beat, or until enough is known without one."""
 
     sec: float
+    free_sec: float
+    """How much of it was free."""
     is_over: bool
     """Whether the beat has come."""
-    was_free: bool = False
-    """Whether enough of the time was free."""
+    is_long: bool
+    """Whether it may have been a silence."""
 
 
 class Heartbeat:
@@ -49,6 +58,8 @@ class Heartbeat:
 
     def __init__(self, watcher: Watcher, recorder: Recorder) -> None:
         self._watcher, self._recorder = watcher, recorder
+        self.doubt: type[CheckFailed] = CheckFailed
+        """What to raise if it does not go on: Starved if the machine may be to blame."""
 
     def goes_on(self, send: Callable[[], None] = lambda: None) -> bool:
         """Whether it counts now, without a silence.
@@ -62,39 +73,63 @@ class Heartbeat:
                 send()
                 sent += 1
             pauses.append(self._pause())
-        last = pauses[-1]
-        if last.is_over:
-            return not (sent == ROUNDS and _stalls(pauses[1 : 1 + ROUND * ROUNDS]))
-        return not last.was_free and self._is_usual(last)
-
-    def _is_usual(self, pause: _Pause) -> bool:
-        """Whether a machine that is short of time explains a pause, by those that come later."""
-        rest = self._pause(times=AGAIN_TIMES)
-        if not rest.is_over:
+        if not pauses[-1].is_over:
             return False
-        later_sec = max(self._pause().sec for _ in range(BEATS))
-        return pause.sec + rest.sec < MOST_TIMES * later_sec
+        rounds = pauses[1 : 1 + ROUND * ROUNDS]
+        if sent == ROUNDS and _stalls(rounds):
+            if not _is_sure(rounds):
+                self.doubt = Starved
+            return False
+        long = [each.sec for each in pauses if each.is_long]
+        return not long or self._is_usual(max(long))
 
-    def _pause(self, *, times: int = 1) -> _Pause:
+    def _is_usual(self, sec: float) -> bool:
+        """Whether a long pause is explained by those that come later."""
+        later = [self._pause() for _ in range(BEATS)]
+        if not all(each.is_over for each in later):
+            return False
+        # a machine that was short of time then may have enough of it now
+        self.doubt = Starved
+        return sec < MOST_TIMES * max(each.sec for each in later)
+
+    def _pause(self) -> _Pause:
         """Wait for a beat, no longer than until it is known that this is a silence."""
         before, watch, looks = len(self._recorder.received), Stopwatch(), 0
         while True:
-            if self._watcher.spin_until(
+            is_over = self._watcher.spin_until(
                 lambda: len(self._recorder.received) > before, timeout_sec=LOOK_SEC
-            ):
-                return _Pause(watch.wall_sec(), is_over=True)
+            )
+            sec, free_sec = watch.wall_sec(), watch.free_sec()
+            is_silence = (looks >= LOOKS and free_sec >= STILL_SEC) or (
+                looks >= BUSY_LOOKS and sec >= BUSY_SEC
+            )
+            if is_over or is_silence:
+                is_long = looks >= LONG_LOOKS and sec >= LONG_SEC
+                return _Pause(sec, free_sec, is_over=is_over, is_long=is_long)
+            # what comes while the notebook is asked is received by the next spin
             wait_for_turn()
             looks += 1
-            sec = watch.wall_sec()
-            if looks >= LOOKS and watch.free_sec() >= STILL_SEC:
-                return _Pause(sec, is_over=False, was_free=True)
-            if looks >= times * BUSY_LOOKS and sec >= times * BUSY_SEC:
-                return _Pause(sec, is_over=False)
 
 
-def _stalls(pauses: Sequence[_Pause]) -> bool:
+def _stalls(
+    pauses: Sequence[_Pause], least_sec: float = STALL_SEC, times: float = STALL_TIMES
+) -> bool:
     """Whether the message of each round so far held the node up for a while."""
+    longest, others = _by_round(pauses)
+    shortest = min((each.sec for each in longest), default=least_sec)
+    return shortest >= least_sec and shortest >= times * max(
+        (each.sec for each in others), default=0.0
+    )
+
+
+def _is_sure(pauses: Sequence[_Pause]) -> bool:
+    """Whether a machine that is short of time is no reason why messages held the node up."""
+    free_sec = sum(max(0.0, each.free_sec - PERIOD_SEC) for each in _by_round(pauses)[0])
+    return free_sec >= STALL_FREE_SEC or _stalls(pauses, SURE_SEC, SURE_TIMES)
+
+
+def _by_round(pauses: Sequence[_Pause]) -> tuple[list[_Pause], list[_Pause]]:
+    """The longest pause after each round's message, and those that show the machine."""
     rounds = [pauses[first : first + ROUND] for first in range(0, len(pauses), ROUND)]
-    shortest = min((max(each.sec for each in round_[:2]) for round_ in rounds), default=STALL_SEC)
-    others = max((each.sec for round_ in rounds for each in round_[2:]), default=0.0)
-    return shortest >= STALL_SEC and shortest >= STALL_TIMES * others
+    longest = [max(round_[:2], key=lambda each: each.sec) for round_ in rounds]
+    return longest, [each for round_ in rounds for each in round_[2:]]

@@ -169,14 +169,17 @@ class Server(HoldingServer):
     def expect_alive(self, meanwhile: str, message: Any) -> None:
         """The node goes on counting on `alive`, though `message` is published: see `Heartbeat`.
 
-        `meanwhile`: what happens, as a clause. Raises CheckFailed where the count stands still.
+        `meanwhile`: what happens, as a clause. Raises CheckFailed where the count stands still, or
+        Starved if the machine may be to blame.
         """
-        if not self._goes_on(lambda: self.publish(message)):
+        beats = Heartbeat(self._watcher, self._beats)
+        if not beats.goes_on(lambda: self.publish(message)):
             fail(
                 expected=f'the count on {self._beats.topic_name} to go on while {meanwhile}',
                 seen='it stand still',
                 hint=self._client().why_still(has_asked=self.holds_any()),
                 cause=f'the count on {self._beats.topic_name} stands still',
+                doubt=beats.doubt,
             )
         self.expect_alone()
 
