@@ -238,6 +238,20 @@ OF_STUDENTS = {
         "预期：`f(1)` 会返回；实际：TypeError: unsupported operand type(s) for ^: 'float' and "
         "'float'。在你自己的单元格里调用 f(1)，看看是在哪里"
     ),
+    "expected `f(1)` to return, saw it raised `AttributeError: 'property' object has no attribute "
+    "'stamp'`, so make an object of the class with parentheses, such as JointState(): call `f(1)` "
+    'in a cell of your own to see where': (
+        "预期：`f(1)` 会返回；实际：它抛出了 `AttributeError: 'property' object has no attribute "
+        "'stamp'`，请在类名后面加圆括号来创建对象，例如 JointState()。在你自己的单元格里调用 "
+        '`f(1)`，看看是在哪里'
+    ),
+    "expected `f(1)` to return, saw it raised `TypeError: 'float' object is not iterable`, so "
+    'write a list, in square brackets, where several numbers are wanted: call `f(1)` in a cell of '
+    'your own to see where': (
+        "预期：`f(1)` 会返回；实际：它抛出了 `TypeError: 'float' object is not iterable`，"
+        '需要多个数的地方，请写成列表，用方括号括起来。在你自己的单元格里调用 '
+        '`f(1)`，看看是在哪里'
+    ),
     'in the part checked at grading: `f` raises NotImplementedError: call … in a cell of your own '
     'to see where': (
         '在评分时检查的部分：`f` 抛出 NotImplementedError：在你自己的单元格里调用 …，看看是在哪里'

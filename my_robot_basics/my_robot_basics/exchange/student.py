@@ -43,7 +43,7 @@ def call(name: str, *args: object, returns: type | tuple[type, ...] | None = Non
         raised = shorten(': '.join(filter(None, (body['type'], body['message']))))
         hint, why = f'call {shown} in a cell of your own to see where', what_to_do(raised)
         cause = f'`{name}` raises {hidden.raised(raised)}{why}'
-        seen = f'it raised {raised}{why}' if why else raised
+        seen = f'it raised `{raised}`{why}' if why else raised
         fail(expected=f'`{shown}` to return', seen=seen, hint=hint, cause=cause)
     if kind == 'unsupported':
         seen, hint = what_is_unsupported(body, returns)

@@ -44,8 +44,10 @@ class Template:
         """The places between quotes: what stands there is somebody else's."""
         return {
             place
-            for place, before in zip(self.places, self.literals, strict=False)
+            for n, (place, before) in enumerate(zip(self.places, self.literals, strict=False))
+            # a backtick may as well be the end of a name, with a place right behind it
             if before.endswith(_QUOTES)
+            and not (before == '`' and ''.join(self.literals[: n + 1]).count('`') % 2 == 0)
         }
 
     def fits(self, text: str) -> Iterator[dict[str, str]]:
