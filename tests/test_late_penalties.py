@@ -9,6 +9,8 @@ from nbgrader.api import Gradebook
 
 from grader.common.errors import CourseError
 from grader.course import ROOT, Course
+from grader.export.scores import write_scores
+from grader.export.totals import write_totals
 from grader.grade import grade_all
 from grader.notebook.restore import restore
 from grader.notebook.submission import read_submission
@@ -88,7 +90,21 @@ def test_the_gradebook_knows_what_is_due_and_what_it_cost(course):
         submission = book.find_submission(TOY, 'ada')
         assert (submission.extension.days, submission.total_seconds_late) == (2, 86_400)
     found = {record.grade_id: record.score for record in records(course)}
-    assert found['late_penalty'] == pytest.approx(-0.3)
+    assert found['late_penalty'] == -0.3
+
+
+def test_every_number_is_the_one_that_is_shown(course):
+    (course.gradebook / FILE).write_text(RULES)
+    assert grade(course, 'bob', '2026-01-13 22:58:00 UTC') == 2.1  # 3 - 0.9
+    assert ',late_penalty,-0.9,' in write_scores(course).read_text(encoding='utf-8')
+    assert 'bob,2.1,2.1,' in write_totals(course).read_text(encoding='utf-8')
+    with Gradebook(course.db_url) as book:
+        assert book.find_submission(TOY, 'bob').late_submission_penalty == 0.9
+
+
+def test_a_penalty_is_in_hundredths_of_a_point():
+    rules = Deadlines(per_day=0.1)
+    assert [rules.penalty(points, 86_400) for points in (3, 0.33, 7 / 3)] == [0.3, 0.03, 0.23]
 
 
 def test_what_is_taken_out_of_the_file_counts_no_more(course):

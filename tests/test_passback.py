@@ -73,6 +73,11 @@ def canvas(course, *arguments):
     return table(course.gradebook / 'canvas' / '03_publisher.csv')
 
 
+def test_a_sum_of_tenths_is_in_tenths():
+    (scores,) = final_scores(cell('ada', score, name=str(score)) for score in (0.7, 0.1, 0.1))
+    assert scores.final[0].score == 0.9
+
+
 def test_a_score_is_final_once_no_person_has_to_decide():
     (scores,) = final_scores(CLASS)
     assert [(each.student_id, each.score, each.max_score) for each in scores.final] == [

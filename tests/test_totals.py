@@ -36,6 +36,12 @@ def test_each_student_has_a_score_for_each_assignment_and_a_total():
     assert (bob.scores, bob.total, bob.waiting) == ((None, 0.0), 0.0, 0)
 
 
+def test_a_sum_of_tenths_is_in_tenths():
+    tenths = [cell('ada', '00_arm', score, 1.0, name=str(score)) for score in (0.7, 0.1, 0.1)]
+    totals = add_up([*tenths, cell('ada', '01_topics', 0.3, 1.0)])
+    assert (totals.students[0].scores, totals.students[0].total) == ((0.9, 0.3), 1.2)
+
+
 def test_the_table_tells_nothing_handed_in_from_nothing_earned_and_starts_no_formula():
     rows = list(csv.reader(as_csv(add_up(CLASS)).lstrip('\ufeff').splitlines()))
     assert rows == [

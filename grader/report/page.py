@@ -91,7 +91,7 @@ def _sentence(text: str) -> str:
 
 
 def _number(value: float) -> str:
-    return f'{value:.2f}'.rstrip('0').rstrip('.')
+    return f'{value:g}'
 
 
 def _typed(text: str) -> Markup:

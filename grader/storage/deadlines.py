@@ -8,6 +8,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from grader.common.errors import CourseError
+from grader.common.points import in_hundredths
 from grader.common.text import printable
 from grader.course import Course
 from grader.storage.resubmissions import ResubmissionRules, read_rules
@@ -35,7 +36,8 @@ class Deadlines:
         """Return what lateness takes from a score; None where it takes nothing."""
         if not self.per_day or seconds_late <= 60 * self.grace_minutes:
             return None
-        return score * min(self.at_most, self.per_day * math.ceil(seconds_late / DAY_SEC))
+        share = min(self.at_most, self.per_day * math.ceil(seconds_late / DAY_SEC))
+        return in_hundredths(score * share)
 
 
 def deadlines(gradebook: Path, assignments: Collection[str] | None = None) -> Deadlines | None:
