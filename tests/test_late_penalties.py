@@ -14,6 +14,7 @@ from grader.export.totals import write_totals
 from grader.grade import grade_all
 from grader.notebook.restore import restore
 from grader.notebook.submission import read_submission
+from grader.report.feedback import write_feedback
 from grader.storage.deadlines import (
     FILE,
     Deadlines,
@@ -63,6 +64,14 @@ def grade(course, student, handed_in):
     return stored.score
 
 
+def give_by_hand(course, student, points):
+    """Do what the formgrader does."""
+    with Gradebook(course.db_url) as book:
+        found = book.find_grade('explain', TOY, TOY, student)
+        found.manual_score, found.needs_manual_grade = points, False
+        book.db.commit()
+
+
 @pytest.mark.parametrize(
     ('student', 'handed_in', 'score'),
     [
@@ -100,6 +109,21 @@ def test_every_number_is_the_one_that_is_shown(course):
     assert 'bob,2.1,2.1,' in write_totals(course).read_text(encoding='utf-8')
     with Gradebook(course.db_url) as book:
         assert book.find_submission(TOY, 'bob').late_submission_penalty == 0.9
+
+
+def test_lateness_takes_its_share_of_points_given_by_hand_too(course):
+    (course.gradebook / FILE).write_text(RULES)
+    grade(course, 'bob', '2026-01-13 22:58:00 UTC')
+    grade(course, 'ada', '2026-01-10 22:58:00 UTC')
+    for student in ('ada', 'bob'):
+        give_by_hand(course, student, 2.0)
+    write_totals(course)
+    assert {row.student_id: row.score for row in records(course) if not row.max_score} == {
+        'bob': -1.5
+    }
+    give_by_hand(course, 'bob', 1.0)
+    (page,) = (each for each in write_feedback(course) if 'bob' in each.parts)
+    assert '2.8 of 5 points' in page.read_text(encoding='utf-8')  # 4 - 1.2
 
 
 def test_a_penalty_is_in_hundredths_of_a_point():

@@ -18,9 +18,10 @@ from grader.common.text import printable
 from grader.course import Course
 from grader.notebook.restore import KEY, grade_id
 from grader.notebook.submission import SECRET, TIMESTAMP
-from grader.storage.database import connected, one_engine
+from grader.storage.database import connected, has_database, one_engine
 from grader.storage.gradebook import recover
 from grader.storage.held_scores import held_score
+from grader.storage.lateness import recount_late_penalties
 from grader.storage.pipeline import resources_of
 from grader.storage.records import graded_notebook
 from grader.storage.submission_rows import SubmissionRows
@@ -114,6 +115,8 @@ def write_feedback(
     """
     exporter = page_exporter()
     recover(course)
+    if has_database(course):
+        recount_late_penalties(course)
     found = sorted(course.folder('autograded', '', '').glob('*/*/*.ipynb'))
     whose = [each.parts[-3:] for each in found if each.stem == each.parts[-2]]
     pages = []

@@ -21,6 +21,7 @@ from grader.notebook.restore import KEY
 from grader.notebook.submission import Submission, from_exchange, handed_in, read_submission
 from grader.storage.database import connected, in_sentences, make_database, wait_until_free
 from grader.storage.held_scores import held_score
+from grader.storage.lateness import recount_late_penalties
 from grader.storage.lock import gradebook_lock
 from grader.storage.pipeline import finish, first_reason, resources_of
 from grader.storage.registering import register, register_all
@@ -157,6 +158,7 @@ def opened(course: Course) -> Iterator[Gradebook]:
     """Open the database to read in it; every assignment of the course is known to it then."""
     recover(course)
     register_all(course)
+    recount_late_penalties(course)
     with connected(course.db_url) as book:
         yield book
 
