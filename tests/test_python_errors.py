@@ -136,7 +136,7 @@ def test_an_answer_that_is_not_there_yet_is_told_by_the_students_line():
 
 
 LETTERS = ', so write a name of letters from a to z, digits'
-NAMES = {
+REFUSED = {
     'a full-width slash': (
         Node.create_client,
         '／a',
@@ -161,10 +161,10 @@ NAMES = {
 
 
 @pytest.mark.starts
-@pytest.mark.parametrize('case', NAMES)
+@pytest.mark.parametrize('case', REFUSED)
 def test_a_name_that_ros_refuses_is_told_with_what_to_write(run, case):
     """Both where a cell raises it, on one line, and where a callback does."""
-    create, name, why = NAMES[case]
+    create, name, why = REFUSED[case]
     node = run(Node, 'namer')
     kinds = {Node.create_client: SolveIK, Node.create_publisher: MoveArm.Result}
     try:
