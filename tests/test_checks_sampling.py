@@ -272,6 +272,39 @@ def test_who_seemed_to_ignore_the_robots_clock_is_waited_for_like_who_remembers_
     assert waited == [34.0, 4.0]
 
 
+@pytest.mark.parametrize(('ahead_sec', 'count'), [(30.0, 20), (0.0, 0)])
+def test_a_message_of_the_change_of_its_clock_is_not_where_a_recording_begins(
+    monkeypatch, ahead_sec, count
+):
+    """`sleep_until` returns at once then, and a thread sleeps on until a time that is ahead."""
+    now = SimpleNamespace(sec=100.0)
+    times_sec = [100.1, *(100.0 + 30.0 + 0.2 * n for n in range(100))]
+    watcher = SimpleNamespace(late_sec=0.0)
+    recorder = object.__new__(Recorder)
+    recorder.received, recorder.topic_name = [], TOPIC
+    recorder.publishers = lambda: ('/a',)
+
+    def take_all():
+        while times_sec and times_sec[0] <= now.sec:
+            recorder.received.append((None, round(times_sec.pop(0) * 1e9)))
+
+    def spin_until(done, timeout_sec):
+        end_sec = now.sec + timeout_sec
+        while not done() and now.sec < end_sec:
+            now.sec = min(now.sec + 0.02, end_sec)
+            take_all()
+        return done()
+
+    recorder.take_all, watcher.spin_until = take_all, spin_until
+    watcher.spin_for = lambda seconds: spin_until(lambda: False, seconds)
+    monkeypatch.setattr(wall_recording.time, 'time_ns', lambda: round(now.sec * 1e9))
+    end_sec = now.sec + ahead_sec
+    monkeypatch.setattr(wall_recording, 'ahead_sec', lambda: max(0.0, end_sec - now.sec))
+    monkeypatch.setattr(wall_recording, 'what_raised', lambda names: '')
+    recording = wall_recording.wall(watcher, recorder, why=Inconclusive(sampling.UNEVEN))
+    assert len(recording.messages) == count
+
+
 @pytest.mark.parametrize(
     ('why', 'is_waited_for'),
     [

@@ -41,19 +41,29 @@ def wall(
     one was; and as long for the next one, should that be longer: then it ends there. `why`: what
     spoke against the robot's clock.
     """
+    has_raised = not recorder.received and what_raised(recorder.publishers())
+    if has_raised:
+        seconds = timeout_sec = RAISED_SEC
     # who seemed to ignore the robot's clock may have been a thread that was late
-    first_sec = timeout_sec + (0.0 if isinstance(why, NoMessage) else ahead_sec())
-    if not recorder.received and what_raised(recorder.publishers()):
-        seconds = timeout_sec = first_sec = RAISED_SEC
-    recorder.take_all()
-    since_ns, watch = time.time_ns(), Stopwatch()
-    if watcher.spin_until(lambda: recorder.count_since(since_ns) > 0, timeout_sec=first_sec):
-        watcher.late_sec, watch = 0.0, Stopwatch()
-        watcher.spin_for(seconds)
-        watcher.spin_until(
-            lambda: recorder.count_since(since_ns) > 1, timeout_sec=timeout_sec - seconds
-        )
-        recorder.take_all()  # far too many may lie there still, and would seem to have ended
+    is_ahead = not (has_raised or isinstance(why, NoMessage))
+
+    def record() -> tuple[int, Stopwatch]:
+        first_sec = timeout_sec + (ahead_sec() if is_ahead else 0.0)
+        recorder.take_all()
+        since_ns, watch = time.time_ns(), Stopwatch()
+        if watcher.spin_until(lambda: recorder.count_since(since_ns) > 0, timeout_sec=first_sec):
+            watcher.late_sec, watch = 0.0, Stopwatch()
+            watcher.spin_for(seconds)
+            watcher.spin_until(
+                lambda: recorder.count_since(since_ns) > 1, timeout_sec=timeout_sec - seconds
+            )
+            recorder.take_all()  # far too many may lie there still, and would seem to have ended
+        return since_ns, watch
+
+    since_ns, watch = record()
+    if is_ahead and ahead_sec() and recorder.count_since(since_ns) == 1:
+        # a thread that sleeps until a time is woken by the change of its clock: its next is ahead
+        since_ns, watch = record()
     sent = [(message, sent_ns) for message, sent_ns in recorder.received if sent_ns > since_ns]
     start_ns = sent[0][1] if sent else since_ns
     samples = [
