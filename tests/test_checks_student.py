@@ -78,7 +78,7 @@ FAILURES = {
     'raises': (raising, 'expected `f(2)` to return, saw ValueError: out of reach: call'),
     'raises what Python tells in its own words': (
         lambda x: 2.0 ^ x,
-        "for ^: 'float' and 'int', so write ** for a power, such as x**2",
+        "for ^: 'float' and 'int'`, so write ** for a power, such as x**2",
     ),
     'returns in one branch': (lambda x: None, 'end each branch of `f` with `return …` (printin'),
     'exits': (exiting, 'expected `f(2)` to return, saw SystemExit: 3: call'),

@@ -42,8 +42,10 @@ def call(name: str, *args: object, returns: type | tuple[type, ...] | None = Non
     if kind == 'raised':
         raised = shorten(': '.join(filter(None, (body['type'], body['message']))))
         hint, why = f'call {shown} in a cell of your own to see where', what_to_do(raised)
-        cause = f'`{name}` raises {hidden.raised(raised)}{why}'
-        seen = f'it raised `{raised}`{why}' if why else raised
+        said = hidden.raised(raised)
+        cause, seen = f'`{name}` raises {said}', raised
+        if why:
+            cause, seen = f'`{name}` raises `{said}`{why}', f'it raised `{raised}`{why}'
         fail(expected=f'`{shown}` to return', seen=seen, hint=hint, cause=cause)
     if kind == 'unsupported':
         seen, hint = what_is_unsupported(body, returns)
