@@ -15,6 +15,7 @@ from my_robot_basics.checks.elbow_up import (
     is_elbow_up,
     why_other,
 )
+from my_robot_basics.checks.left_over import why_left_over
 from my_robot_basics.checks.servers import Server
 from my_robot_basics.checks.services import Service
 from my_robot_basics.checks.solutions import is_for, request, solve
@@ -78,12 +79,14 @@ def expect_refusals(service: Service, *targets: tuple[float, float]) -> None:
     """
     for x, y in targets:
         response = service.call(request(x, y))
+        left_over = why_left_over(service, x, y) if response.elbow_up else ''
         what = 'NaN' if math.isnan(x + y) else 'a target out of reach'
         expect(
             not response.reachable,
             expected=f'reachable to be False for ({x:g}, {y:g})',
             seen='True',
-            hint='inverse_kinematics raises ValueError there: catch it, and leave reachable False',
+            hint=left_over
+            or 'inverse_kinematics raises ValueError there: catch it, and leave reachable False',
             cause=f'{what} is called reachable',
         )
         angles = len(response.elbow_up) + len(response.elbow_down)
@@ -91,7 +94,7 @@ def expect_refusals(service: Service, *targets: tuple[float, float]) -> None:
             not angles,
             expected=f'no angles for ({x:g}, {y:g})',
             seen=f'{angles}',
-            hint='leave elbow_up and elbow_down empty',
+            hint=left_over or 'leave elbow_up and elbow_down empty',
             cause=f'{what} has angles',
         )
         expect(
