@@ -55,6 +55,7 @@ def choose_wrong(numbers: random.Random) -> list[MoveArm.Goal]:
     wrong = [
         *(goal((sign * (first + beyond), inside[1])) for sign in (-1, 1)),
         *(goal((inside[0], sign * (second + beyond))) for sign in (-1, 1)),
+        goal(()),
         goal(inside[:1]),
         goal((*inside, numbers.uniform(-0.5, 0.5))),
         goal((math.nan, inside[1])),
