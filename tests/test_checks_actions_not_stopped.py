@@ -166,7 +166,11 @@ WRONG = [
     (GoesBackWhenCancelled, 'cancels', 'a move begins where the arm was stopped: remember its po'),
     (TellsTheGoalWhenCancelled, 'cancels', 'put in where the arm is, not where it was to go'),
     (FlagStays, 'cancels rejects', 'a request to cancel is for one goal: forget it when the'),
-    (DegreesInTheLimits, 'rejects', r'compare with radians\(90\) and radians\(120\)'),
+    (
+        DegreesInTheLimits,
+        'rejects',
+        r'compare both angles with their limits, radians\(90\) and radians\(120\)',
+    ),
     (NoLimits, 'rejects', 'reject a goal whose speed is not above 0'),
     (LimitsTheWrongWayRound, 'rejects', 'each comparison with NaN is False, so ask what is right'),
     (LooksBeforeItCounts, 'rejects', 'its callback raised IndexError.*so fix that first'),
