@@ -111,7 +111,7 @@ def test_every_number_is_the_one_that_is_shown(course):
         assert book.find_submission(TOY, 'bob').late_submission_penalty == 0.9
 
 
-def test_lateness_takes_its_share_of_points_given_by_hand_too(course):
+def test_lateness_takes_its_share_of_points_given_by_hand_too(course, caplog):
     (course.gradebook / FILE).write_text(RULES)
     grade(course, 'bob', '2026-01-13 22:58:00 UTC')
     grade(course, 'ada', '2026-01-10 22:58:00 UTC')
@@ -124,6 +124,7 @@ def test_lateness_takes_its_share_of_points_given_by_hand_too(course):
     give_by_hand(course, 'bob', 1.0)
     (page,) = (each for each in write_feedback(course) if 'bob' in each.parts)
     assert '2.8 of 5 points' in page.read_text(encoding='utf-8')  # 4 - 1.2
+    assert caplog.text == ''  # the page says so to whom it concerns
 
 
 def test_a_penalty_is_in_hundredths_of_a_point():

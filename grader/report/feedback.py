@@ -50,7 +50,7 @@ class GatherVerdicts(GetGrades):
             held = held_score(book, *whose)
         assert held is not None  # it was found above
         if held.late:
-            self.log.warning('Late submission penalty: %s', held.late)
+            self.log.info('Late submission penalty: %s', held.late)
         at |= {'score': held.score, 'max_score': held.max_score, 'late_penalty': held.late}
         return nb, resources
 
