@@ -3,7 +3,6 @@
 import inspect
 import math
 import time
-from collections import deque
 
 import numpy as np
 import pytest
@@ -43,7 +42,7 @@ class Asker:
 
 
 NAMES = {
-    **{'time': time, 'math': math, 'inspect': inspect, 'deque': deque, 'np': np, 'rclpy': rclpy},
+    **{'time': time, 'math': math, 'inspect': inspect, 'np': np, 'rclpy': rclpy},
     **{'FloatingPointRange': FloatingPointRange, 'Asker': Asker},
     **{'JointState': JointState, 'Parameter': Parameter, 'SolveIK': SolveIK},
 }
@@ -102,7 +101,7 @@ def error_of(code, **names):
         ('Asker().describe()', ', so put the range into a list, and that into a descriptor: Para'),
         ('FloatingPointRange()[0]', ', so put the range into a list, and that into a descriptor:'),
         ('Asker().fail()', ', so declare it first, with self.declare_parameter'),
-        ('inspect.signature(deque().append)', ', so put it into a function of your own, such as'),
+        ('inspect.signature(max)', ', so put it into a function of your own, such as'),
         (
             'with None:\n    pass',
             ', so call rclpy.init() in a line of its own: no with takes what',
