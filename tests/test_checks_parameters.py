@@ -151,7 +151,7 @@ def test_timers_that_run_on_are_no_mistake_with_refusals(monkeypatch):
     assert timers.measured == 2
 
 
-@pytest.mark.parametrize('rates_hz', [(0.5, 60.0), (0.0, -3.0, 0.5, 51.0, 70.0)])
+@pytest.mark.parametrize('rates_hz', [(0.5, 60.0), (0.0, -3.0, 0.5, 51.0)])
 def test_a_timer_of_a_refused_value_is_one_beside_those_that_run_on(monkeypatch, rates_hz):
     timers = OldTimers(monkeypatch, of_any=True)
     with pytest.raises(CheckFailed, match='change the timer only if none is refused'):

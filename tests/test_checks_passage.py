@@ -8,6 +8,7 @@ from my_robot_basics.checks import pairs
 from my_robot_basics.checks import passage as passage_module
 from my_robot_basics.checks.enough import fewest_in_a_row
 from my_robot_basics.checks.passage import Passage
+from my_robot_basics.checks.relay_faults import RelayFaults
 from my_robot_basics.checks.variety import Sent
 
 SEC = 1_000_000_000
@@ -136,3 +137,10 @@ def test_a_message_that_is_late_is_not_pushed_out_of_a_short_queue_by_the_next(s
     faults = passage.carry(Sent(n, '') for n in count())
     assert len(faults.lost) == lost
     assert faults.is_whole() == (lost == 0)
+
+
+@pytest.mark.parametrize(('lost', 'is_named'), [(2, False), (3, True), (4, True)])
+def test_two_of_a_kind_name_no_cause(lost, is_named):
+    """A node that drops every eleventh lost two negative ones by chance, on a busy machine."""
+    fault, _ = RelayFaults(late=lost, lost=('with zeros',) * lost).fault()
+    assert fault.endswith('those with zeros') == is_named
