@@ -64,3 +64,17 @@ def test_a_form_that_other_lines_have_too_tells_nothing():
     assert not forms.is_answer('distance 3')
     assert not forms.is_answer('1.5')
     assert not forms.is_other('1.5')
+
+
+@pytest.mark.parametrize(
+    ('text', 'stands_for_them'),
+    [
+        ('none: 0.00 0.00', True),
+        ('θ1=-0.00°, θ2=0.0°', True),
+        ('moved by 0.00 m', False),
+        ('0 of 0 reached', False),
+        ('(0.00, 3.00) is too far', False),
+    ],
+)
+def test_zeros_alone_stand_for_angles(text, stands_for_them):
+    assert answers.stands_for_angles([], text) is stands_for_them

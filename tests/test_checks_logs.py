@@ -271,6 +271,13 @@ def test_a_table_of_all_angles_is_no_answer(run, step_deg):
             log.expect_solutions(SOLUTIONS)
 
 
+def test_zeros_for_a_target_out_of_reach_are_a_failure():
+    with running('ik_stretches'), rosout('ik_solver_node') as log:
+        ask(log, TOO_FAR)
+        with pytest.raises(CheckFailed, match=r"saw 'stretched: θ1=0.00°, θ2=0.00°'"):
+            log.expect_warning(no_angles=ANGLES)
+
+
 def test_angles_for_a_target_out_of_reach_are_a_failure():
     with running('ik_stretches'), rosout('ik_solver_node') as log:
         ask(log, Point(x=3.0, y=2.0))
