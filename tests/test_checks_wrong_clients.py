@@ -84,6 +84,25 @@ def test_who_asks_and_publishes_another_answer_is_found(run):
         ik.expect_answer(serving, *TARGETS[0])
 
 
+class CountsSlowly(IKClient):
+    """A count that its student has slowed down, from ten times a second to once."""
+
+    def __init__(self):
+        super().__init__()
+        self.calls = 0
+
+    def say_alive(self):
+        self.calls += 1
+        if self.calls % 10 == 0:
+            super().say_alive()
+
+
+def test_a_count_that_is_slow_is_no_count_that_stands_still(run):
+    run(CountsSlowly)
+    with pytest.raises(CheckFailed, match=r'expected 10.0 Hz, saw .* 1 / rate'):
+        check_never_blocks()
+
+
 class AnswersAnything(IKClient):
     def answer(self, response):
         self.send(response.elbow_up)

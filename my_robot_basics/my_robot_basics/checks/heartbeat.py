@@ -9,8 +9,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from my_robot_basics.checks.recorder import Recorder
+from my_robot_basics.checks.topics import Topic
 from my_robot_basics.exchange.asking import wait_for_turn
 from my_robot_basics.feedback.errors import CheckFailed, Starved
+from my_robot_basics.graph.raised import what_raised
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
 
@@ -27,6 +29,9 @@ LONG_SEC, LONG_LOOKS = 2.5, 10
 MOST_TIMES = 4.0
 """… unless it is less than so many times as long as another one after it."""
 LOOK_SEC = 0.1
+COUNTS_SEC, RATE_SEC = 2.0, 2.0
+"""A count that goes on at all shows it in so much time that was free. Its rate is measured over so
+many seconds of the robot's time."""
 ROUND, ROUNDS = 4, 3
 """A round of beats begins with a message: the first two pauses show what the node makes of it, and
 those behind show the machine. So many rounds, in which …"""
@@ -109,6 +114,18 @@ class Heartbeat:
             # what comes while the notebook is asked is received by the next spin
             wait_for_turn()
             looks += 1
+
+
+def expect_rate(watcher: Watcher, beats: Recorder, hz: float) -> None:
+    """A count that goes on comes `hz` times a second, evenly. Raises CheckFailed.
+
+    One that stands still, or whose node has raised, is left to the checks behind this one: they
+    tell what the node waits for, and what it raised.
+    """
+    before = len(beats.received)
+    counts = watcher.spin_until_free(lambda: len(beats.received) > before, free_sec=COUNTS_SEC)
+    if counts and not what_raised(beats.publishers()):
+        Topic(beats.topic_name).record(seconds=RATE_SEC).assert_rate(hz)
 
 
 def _stalls(

@@ -27,6 +27,8 @@ __all__ = ['expect_elbow_up', 'request', 'solve']
 UP, DOWN = 'elbow_up', 'elbow_down'
 MOST_ANGLES = 20
 """What is looked at of a branch, which has two: a response may have millions."""
+COUNT_HZ = 10.0
+"""How often a client's count, given by its skeleton, goes on."""
 HIGH_M = 0.7
 """The z of some targets: the arm moves in a plane."""
 
@@ -115,11 +117,12 @@ def expect_answer(server: Server, x: float, y: float) -> None:
 def expect_never_blocks(server: Server, *targets: tuple[float, float]) -> None:
     """The client goes on while the server takes its time, and while there is none.
 
-    It answers each of three targets, within reach, that it is asked for while there is a server:
-    two while the first answer is not there, and the third when the server has come back. Raises
-    CheckFailed.
+    It counts at COUNT_HZ, and answers each of three targets, within reach, that it is asked for
+    while there is a server: two while the first answer is not there, and the third when the
+    server has come back. Raises CheckFailed.
     """
     first, second, third = targets
+    server.expect_rate(COUNT_HZ)  # one that is slow would seem to stand still
     server.hold()
     ask(server, *first)
     # no request is expected yet: a client that keeps targets asks for one after the other

@@ -2,12 +2,13 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from typing import Any
 
 from rclpy.publisher import Publisher
 
+from my_robot_basics.checks import heartbeat
 from my_robot_basics.checks.callbacks import CallbackErrors
-from my_robot_basics.checks.heartbeat import Heartbeat
 from my_robot_basics.checks.holding_server import HoldingServer
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.responses import Made, MadeOf, of_none, wait_for_owed
@@ -166,13 +167,17 @@ class Server(HoldingServer):
         )
         self._raised.expect_none()
 
+    def expect_rate(self, hz: float) -> None:
+        """The node counts `hz` times a second on `alive`: see `heartbeat.expect_rate`."""
+        heartbeat.expect_rate(self._watcher, self._beats, hz)
+
     def expect_alive(self, meanwhile: str, message: Any) -> None:
         """The node goes on counting on `alive`, though `message` is published: see `Heartbeat`.
 
         `meanwhile`: what happens, as a clause. Raises CheckFailed where the count stands still, or
         Starved if the machine may be to blame.
         """
-        beats = Heartbeat(self._watcher, self._beats)
+        beats = heartbeat.Heartbeat(self._watcher, self._beats)
         if not beats.goes_on(lambda: self.publish(message)):
             fail(
                 expected=f'the count on {self._beats.topic_name} to go on while {meanwhile}',
@@ -188,10 +193,8 @@ class Server(HoldingServer):
         expect_no_other(self._watcher, self.name, own=int(self.is_there()))
 
     def _client(self) -> WaitingClient:
-        def goes_on() -> bool:
-            return self._goes_on(lambda: self.publish(self.published[-1]))
-
+        goes_on = partial(self._goes_on, lambda: self.publish(self.published[-1]))
         return WaitingClient(self._watcher, self.name, self.type, self._raised, goes_on)
 
     def _goes_on(self, send: Callable[[], None] = lambda: None) -> bool:
-        return Heartbeat(self._watcher, self._beats).goes_on(send)
+        return heartbeat.Heartbeat(self._watcher, self._beats).goes_on(send)
