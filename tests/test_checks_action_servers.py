@@ -338,7 +338,7 @@ WRONG_OUTCOMES = [
     ),
     (Degrees, 'put the positions of the pose into goal.position, as they are: in radians'),
     (OtherSpeed, 'saw .*speed=1.0.*: give each goal the speed that the task names'),
-    (Raises, r"expected 'succeeded' on .*its callback raised AttributeError.*so fix that first"),
+    (Raises, r"expected 'succeeded' on .*its callback raised AttributeError.*; fix that first"),
     (SendsAndWaits, IN_CALLBACK),
     (Sleeps, IN_CALLBACK),
     (OtherAction, '/move_arm_client uses /move_it, so compare the spelling'),

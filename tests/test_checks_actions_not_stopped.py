@@ -173,7 +173,7 @@ WRONG = [
     ),
     (NoLimits, 'rejects', 'reject a goal whose speed is not above 0'),
     (LimitsTheWrongWayRound, 'rejects', 'each comparison with NaN is False, so ask what is right'),
-    (LooksBeforeItCounts, 'rejects', 'its callback raised IndexError.*so fix that first'),
+    (LooksBeforeItCounts, 'rejects', 'its callback raised IndexError.*; fix that first'),
     (LocksItself, 'rejects', 'and let a goal that you reject change nothing in the node'),
     (TakesTwo, 'rejects', 'remember that the arm moves, and return GoalResponse.REJECT'),
 ]

@@ -56,7 +56,7 @@ NOWHERE = [
     ),
     (FlagStuck, 'see that the node knows that the arm moves no longer'),
     (ReturnsNothing, r'end the execute callback with `return MoveArm.Result\(position=…\)`'),
-    (RaisesInExecute, 'the execute callback raised an exception .*joint3.*so fix that first'),
+    (RaisesInExecute, 'the execute callback raised an exception .*joint3.*; fix that first'),
     (NeverExecutes, r'a handle_accepted_callback calls goal_handle.execute\(\)'),
     (WaitsForItsOwnTimer, "the execute callback keeps the node's only thread: wait with"),
     (NeverEnds, 'end the loop of the execute callback when the arm is there'),

@@ -77,9 +77,7 @@ def test_a_callback_that_raised_fails_at_any_rate(monkeypatch, period_sec):
     monkeypatch.setattr(
         node_troubles, 'last_raised', lambda name: {'/a': 'ValueError: no pose'}[name]
     )
-    with pytest.raises(
-        CheckFailed, match='callback raised ValueError: no pose, so fix that first'
-    ):
+    with pytest.raises(CheckFailed, match='callback raised ValueError: no pose; fix that first'):
         made.assert_rate(hz=5.0)
 
 

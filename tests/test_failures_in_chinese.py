@@ -151,7 +151,9 @@ def reasons():
                 first = {part: max(texts, key=bool) for part, texts in each.items()}
                 for part, texts in each.items():
                     for text in texts:
-                        if text and not text.startswith(','):  # that is an end of another one
+                        if text and not text.startswith(
+                            (',', ';')
+                        ):  # that is an end of another one
                             reason = REASON.format(**(first | {part: text}))
                             found.setdefault(reason, function.name)
     return found

@@ -32,10 +32,10 @@ WITH_COLONS = {
         'hint': 'joint2 还是度：两个都用 radians() 换算',
     },
     'expected a message from /a to be republished on /b, unchanged, saw none in 1 s: its callback '
-    "raised AttributeError: no 'send' (line 1, in f: self.send(m)), so fix that first": {
+    "raised AttributeError: no 'send' (line 1, in f: self.send(m)); fix that first": {
         'expected': '来自 /a 的消息原样转发到 /b',
         'seen': '1 s 内没有',
-        'hint': "它的回调抛出了 AttributeError: no 'send' (line 1, in f: self.send(m))，"
+        'hint': "它的回调抛出了 AttributeError: no 'send' (line 1, in f: self.send(m))；"
         '请先改正它',
     },
     'expected rate_hz = 5.0 to be set, saw it refused: Wrong parameter type, expected '
@@ -261,9 +261,9 @@ OF_STUDENTS = {
         "它的回调抛出了 AttributeError: 'float' object has no attribute 'sec' (line 4, in f: "
         'p.publish(m))，应当给 `header.stamp` 一个 `builtin_interfaces/Time` 类型的值'
     ),
-    'its callback raised KeyboardInterrupt (line 9, in f: raise KeyboardInterrupt), so fix that '
+    'its callback raised KeyboardInterrupt (line 9, in f: raise KeyboardInterrupt); fix that '
     'first': (
-        '它的回调抛出了 KeyboardInterrupt (line 9, in f: raise KeyboardInterrupt)，请先改正它'
+        '它的回调抛出了 KeyboardInterrupt (line 9, in f: raise KeyboardInterrupt)；请先改正它'
     ),
     'your cell `a` stopped with InvalidNodeNameException: Invalid node name: node name must not '
     "contain characters other than alphanumerics or '_': 'my-node' ^": (

@@ -13,7 +13,6 @@ ENDED = (
 )
 GONE_SEC = 0.2
 """How long the graph may take to tell that a node has ended."""
-FIX_FIRST = 'so fix that first: rclpy.spin would have ended there'
 
 
 class CallbackErrors:
@@ -27,7 +26,7 @@ class CallbackErrors:
         """A clause that names one of them, and what to do; or ''."""
         names = [n for n, times in self._before.items() if node_troubles.times_raised(n) > times]
         raised = what_raised(names)
-        return f'{raised}, {FIX_FIRST}' if raised else ''
+        return fix_first(raised) if raised else ''
 
     def hint_or_thread(self) -> str:
         """The same; or a clause on what a thread of the notebook's own raised, or ''.
@@ -37,14 +36,14 @@ class CallbackErrors:
         if raised := self.hint():
             return raised
         stopped = what_ended_a_thread()
-        return f'{stopped}, so fix that first' if stopped else ''
+        return f'{stopped}; fix that first' if stopped else ''
 
     def why(self, watcher: Watcher) -> str:
         """As `hint`; else a clause on one that does not return, or on a node that ended; or ''."""
         if raised := self.hint():
             return raised
         if stopped := what_stopped(self._before):
-            return f'{stopped}, so fix that first'
+            return f'{stopped}; fix that first'
         return (
             ENDED if watcher.spin_until_free(self._is_one_gone(watcher), free_sec=GONE_SEC) else ''
         )
@@ -58,10 +57,15 @@ class CallbackErrors:
             _fail(hint)
 
 
+def fix_first(raised: str) -> str:
+    """A clause on what a callback raised, and why nothing else is told before that is fixed."""
+    return f'{raised}; fix that first: rclpy.spin would have ended there'
+
+
 def expect_none_so_far(node_names: Iterable[str]) -> None:
     """No callback of the nodes has raised since they were started. Raises CheckFailed."""
     if raised := what_raised(node_names):
-        _fail(f'{raised}, {FIX_FIRST}')
+        _fail(fix_first(raised))
 
 
 def _fail(hint: str) -> None:

@@ -168,7 +168,7 @@ class Log(NodeLog):
     def _why_unanswered(self, wanted: Sequence[float]) -> str:
         why = '' if self.has('INFO') else what_stopped([self.node_name])
         if why:
-            return f'{why}, so fix that first'
+            return f'{why}; fix that first'
         if unreadable := answers.why_unreadable(wanted, self.texts('INFO')):
             return unreadable
         if self._answer and not angles.missing(self._answer, self.numbers()):
@@ -181,7 +181,7 @@ class Log(NodeLog):
     def _why_unwarned(self) -> str:
         why = what_stopped([self.node_name])
         if why and 'ValueError' not in why:
-            return f'{why}, so fix that first'
+            return f'{why}; fix that first'
         if self.records:
             return 'a target out of reach needs the level WARN: self.get_logger().warning(…)'
         return (

@@ -137,7 +137,7 @@ class RelayEndpoints:
             return leave_out(gaps[0])
         listeners = graphs.subscription_infos(watcher.node, self.source)
         if why := what_stopped(map(graphs.full_name, listeners)):
-            return f'{why}, so fix that first'
+            return f'{why}; fix that first'
         if has_others:
             return 'publish exactly the message that your callback is given'
         return (

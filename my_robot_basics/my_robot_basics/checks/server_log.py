@@ -6,7 +6,7 @@ from typing import Any
 from rcl_interfaces.msg import Log
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
-from my_robot_basics.checks.callbacks import FIX_FIRST
+from my_robot_basics.checks.callbacks import fix_first
 from my_robot_basics.feedback import hidden
 from my_robot_basics.feedback.errors import shorten
 from my_robot_basics.graph.message_info import with_info
@@ -41,7 +41,7 @@ class ServerLog:
         if not said:
             return ''
         why = hidden.theirs(shorten(said.removeprefix(_RAISED), 100))
-        return f'the execute callback raised an exception ({why}), {FIX_FIRST}'
+        return fix_first(f'the execute callback raised an exception ({why})')
 
     def was_not_set(self, *, since_ns: int) -> bool:
         """Whether the execute callback ended without succeed(), abort() or canceled()."""

@@ -108,7 +108,7 @@ class GraphSnapshot:
                 return f"{uses}: a name with ~ begins with its node's own name"
             return f'{uses}, so compare the spelling'
         if why := what_stopped(runs):
-            return f'{theirs(", ".join(runs))} runs, and {why}, so fix that first'
+            return f'{theirs(", ".join(runs))} runs, and {why}; fix that first'
         look = f'look at the topic name in {maker}(…) and that the node calls it'
         if len(runs) == 1:
             return f'{theirs(runs[0])} runs, so {look}'
