@@ -65,3 +65,69 @@ def test_what_is_no_node_class_is_named(thing, words):
     with pytest.raises(NotRunnable) as refused:
         run(thing)
     assert words in str(refused.value)
+
+
+class Handles(Node):
+    """Its method has a name that Node uses itself."""
+
+    def __init__(self):
+        super().__init__('handles')
+
+    def handle(self, message):
+        pass
+
+
+class Mixin:
+    def timers(self):
+        return []
+
+
+class MixedIn(Mixin, Node):
+    def __init__(self):
+        super().__init__('mixed_in')
+
+
+@pytest.mark.parametrize(('NodeClass', 'name'), [(Handles, 'handle'), (MixedIn, 'timers')])
+def test_a_method_in_place_of_a_property_of_node_is_named(NodeClass, name):
+    words = f'expected {NodeClass.__name__} to have no method `{name}`, saw one: .* another name'
+    with pytest.raises(NotRunnable, match=words):
+        run(NodeClass)
+
+
+class HalfMade(Node):
+    """Node's own constructor calls this one, and so raises when there is half a node."""
+
+    def __init__(self):
+        super().__init__('half_made')
+
+    def get_parameter(self):
+        return 5.0
+
+
+@pytest.mark.starts
+def test_what_rclpys_own_constructor_raised_is_told():
+    with pytest.raises(TypeError, match=r'HalfMade.get_parameter\(\) takes 1 positional argument'):
+        run(HalfMade)
+    stop()
+
+
+class Allowed(Node):
+    """What a node spins with: a name that executors leave alone, a method that Node has, too."""
+
+    def __init__(self):
+        super().__init__('allowed')
+        self.is_destroyed = False
+
+    def publishers(self):
+        return []
+
+    def destroy_node(self):
+        self.is_destroyed = True
+        super().destroy_node()
+
+
+@pytest.mark.starts
+def test_a_node_that_spins_all_the_same_is_run():
+    node = run(Allowed)
+    stop()
+    assert node.is_destroyed

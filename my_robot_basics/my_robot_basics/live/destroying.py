@@ -1,5 +1,7 @@
 """End a node with all that it has made."""
 
+from types import SimpleNamespace
+
 from rclpy.action import ActionClient, ActionServer
 from rclpy.node import Node
 
@@ -16,4 +18,7 @@ def destroy(node: Node) -> None:
         if isinstance(waitable, ActionServer | ActionClient):
             waitable.destroy()
     unregister_child_loggers(node)
+    # where rclpy's own constructor has raised, this one is missing, and destroy_node would raise
+    # an error of its own in place of that one
+    vars(node).setdefault('_type_description_service', SimpleNamespace(destroy=lambda: None))
     node.destroy_node()

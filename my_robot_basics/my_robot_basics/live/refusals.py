@@ -1,8 +1,35 @@
 """What `run` says to what it cannot run."""
 
+import inspect
 from types import ModuleType
 
 from rclpy.node import Node
+
+from my_robot_basics.session.errors import NotRunnable
+
+_OWN = sorted(n for n in dir(Node) if isinstance(vars(Node).get(n), property))
+_UNUSED = 'publishers'
+"""That one no executor looks at: a node spins without it."""
+
+
+def expect_runnable(NodeClass: object) -> None:
+    """Raise NotRunnable for what is no node class, or has a method in place of a Node's property.
+
+    rclpy reads these properties at each spin, so such a node would raise again and again.
+    """
+    __tracebackhide__ = True
+    if not (isinstance(NodeClass, type) and issubclass(NodeClass, Node)):
+        raise NotRunnable(not_a_class(NodeClass))
+    hidden = (
+        name
+        for name in _OWN
+        if name != _UNUSED and inspect.isroutine(inspect.getattr_static(NodeClass, name))
+    )
+    if name := next(hidden, ''):
+        raise NotRunnable(
+            f'expected {NodeClass.__name__} to have no method `{name}`, saw one: `Node` already '
+            'has an attribute of this name, and uses it, so choose another name'
+        )
 
 
 def not_a_class(thing: object) -> str:

@@ -25,7 +25,7 @@ from my_robot_basics.live.background import Background
 from my_robot_basics.live.destroying import destroy
 from my_robot_basics.live.naming import announce_name
 from my_robot_basics.live.panel import STOPPED, NodePanel, Panel
-from my_robot_basics.live.refusals import is_made, no_node_yet, not_a_class
+from my_robot_basics.live.refusals import expect_runnable, is_made, no_node_yet
 from my_robot_basics.session import classroom
 from my_robot_basics.session.errors import NotRunnable, tell
 from my_robot_basics.session.neighbours import Neighbours, destroy_orphans
@@ -52,8 +52,7 @@ def run(NodeClass: type[N], *args: Any, key: str | None = None, **kwargs: Any) -
     is None. What the constructor raises is raised; the old node is then stopped all the same.
     """
     __tracebackhide__ = True
-    if not (isinstance(NodeClass, type) and issubclass(NodeClass, Node)):
-        raise NotRunnable(not_a_class(NodeClass))
+    expect_runnable(NodeClass)
     key = NodeClass.__name__ if key is None else key
     return launch(NodeClass, args, kwargs, key=key, make_panel=lambda: Panel(NodeClass.__name__))
 
