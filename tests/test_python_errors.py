@@ -2,12 +2,15 @@
 
 import inspect
 import math
+import re
 import time
 
 import numpy as np
 import pytest
 import rclpy
-from my_robot_basics.feedback.python_errors import DECIMAL_COMMA, explained, what_to_do
+from my_robot_basics.feedback import rclpy_names
+from my_robot_basics.feedback.error_words import DECIMAL_COMMA
+from my_robot_basics.feedback.python_errors import explained, what_to_do
 from my_robot_basics.graph import raised
 from my_robot_basics.live.bare_errors import made_with
 from my_robot_basics.validate.outputs import CellRun
@@ -36,6 +39,12 @@ class Asker:
         raise TypeError(
             f'Third element {FloatingPointRange()} {where} is not a ParameterDescriptor'
         )
+
+    def solve(request, response):  # as a student may write it
+        pass
+
+    def get_logger(self, text):
+        pass
 
     def fail(self):
         raise ParameterNotDeclaredException('rate_hz')
@@ -105,6 +114,18 @@ def error_of(code, **names):
         (
             'with None:\n    pass',
             ', so call rclpy.init() in a line of its own: no with takes what',
+        ),
+        ('Asker().solve(1, 2)', ', so write a parameter for each of them into its def, such as '),
+        (
+            'Asker().get_logger()',
+            ', so give your method another name: `Node` already has a method',
+        ),
+        ('rclpy.Future().done(1)', ''),
+        ('1.0 / "5.0"', ', so leave out the quotes around a number, or convert a text to one wi'),
+        ('1 + "5"', ''),
+        (
+            'SolveIK()',
+            ', so write its name without parentheses, or SolveIK.Request() for a request',
         ),
         ('x = 5€', ''),
         ('x = (1', ''),
@@ -203,6 +224,52 @@ def test_rclpy_itself_says_so_of_a_decimal_comma(run):
     for code in 'node.create_timer(0,2, node.tick)', "node.declare_parameter('hz', 5,0)":
         error = error_of(code, node=node)
         assert what_to_do(f'{type(error).__name__}: {error}') == DECIMAL_COMMA
+
+
+ANOTHER_NAME = (
+    ', so choose another name: `Node` already has an attribute of this name, and uses it'
+)
+PROPERTIES = sorted(name for name, kept in vars(Node).items() if isinstance(kept, property))
+
+
+@pytest.mark.starts
+@pytest.mark.parametrize('name', PROPERTIES)
+def test_an_attribute_that_node_has_already_is_told_by_rclpys_own_words(run, name):
+    error = error_of(f'node.{name} = []', node=run(Node, 'keeper'))
+    assert what_to_do(f'{type(error).__name__}: {error}') == ANOTHER_NAME
+
+
+def test_a_property_of_the_students_own_is_none_of_nodes():
+    own = type('Own', (), {'rate': property(lambda self: 5.0)})
+    error = error_of('own.rate = 2.0', own=own())
+    assert what_to_do(f'{type(error).__name__}: {error}') == ''
+
+
+def test_only_methods_that_node_has_are_told_to_be_its_own():
+    names = [name for name in vars(Node) if re.fullmatch(rclpy_names.OWN_METHODS, name)]
+    assert 'get_logger' in names
+    assert 'create_timer' in names
+    assert len(names) == 15
+
+
+@pytest.mark.starts
+def test_a_method_behind_nodes_own_handle_is_told(run):
+    """Of a class named behind Node: `self.handle` is then rclpy's, which nobody can call."""
+    error = error_of('node.handle()', node=run(Node, 'keeper'))
+    said = f'{type(error).__name__}: {error}'
+    assert what_to_do(said).startswith(', so give your method another name than `handle`')
+
+
+@pytest.mark.starts
+def test_the_type_that_an_interface_needs_is_told(run):
+    node = run(Node, 'asker')
+    for code in 'create_client(SolveIK.Request, "/a")', 'create_client(JointState, "/a")':
+        error = error_of(f'node.{code}', node=node, **NAMES)
+        assert what_to_do(f'{error}').startswith(', so give the type of a service, such as Solve')
+    error = error_of('node.create_publisher(SolveIK, "/a", 10)', node=node, **NAMES)
+    assert what_to_do(f'{error}') == ', so give the type of a message, such as JointState'
+    error = error_of('node.create_subscription(JointState, "/a", None, 10)', node=node, **NAMES)
+    assert what_to_do(f'{error}').startswith(', so give it a function that takes one message')
 
 
 @pytest.mark.starts

@@ -23,8 +23,8 @@ _NOT_READ |= {'expect_names', 'expect_definitions'}
 _NOT_READ |= {'AssertionError', 'startswith', 'endswith'}
 """What mistakes in our own code raise; patterns; lines of ROS's interface definitions; what is
 looked for in a text of others."""
-_CODE = {'code', 'usage', 'prog'}
-"""Arguments that are shown as they are: they are typed."""
+_CODE = {'code', 'usage', 'prog', 'pattern'}
+"""Arguments that are shown as they are, because they are typed; patterns are shown to nobody."""
 _NO_WORDS = {'true', 'false', 'markdown', 'demo', 'setup', 'free'}
 """Words of Python, ROS and nbformat, between which code chooses; nobody reads them."""
 

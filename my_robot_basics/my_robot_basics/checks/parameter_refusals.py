@@ -16,6 +16,7 @@ _READ_ONLY = 'read-only'
 """What is in it, where one is declared as read-only."""
 _OF_ANOTHER_TYPE = 'Wrong parameter type'
 """How rclpy's reason begins, where a parameter is declared with another type."""
+_IS_TEXT = "expected 'Type.STRING'"
 
 
 def expect_all_refused(
@@ -128,6 +129,8 @@ def fail_refused(name: str, value: float, result: SetParametersResult) -> NoRetu
     )
     if is_type:
         hint = 'a parameter has the type of its default value: declare it with 5.0, not 5'
+        if _IS_TEXT in result.reason:
+            hint = "a parameter has the type of its default value: declare it with 5.0, not '5.0'"
     elif _READ_ONLY in result.reason:
         hint = 'nobody can set a read-only parameter: declare it without read_only=True'
     fail(

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from my_robot_basics.exchange import node_troubles, wire
 from my_robot_basics.feedback.hidden import raised as safely
 from my_robot_basics.feedback.hidden import theirs
-from my_robot_basics.feedback.python_errors import explained
+from my_robot_basics.feedback.python_errors import explained, what_to_do
 
 
 def what_raised(node_names: Iterable[str]) -> str:
@@ -15,7 +15,7 @@ def what_raised(node_names: Iterable[str]) -> str:
     if not said:
         return ''
     why = f'its callback raised {safely(said)}'
-    if said.endswith('object is not callable'):
+    if said.endswith('object is not callable') and not what_to_do(said):
         why += ', so give a method by its name, without parentheses'
     field, type_name = node_troubles.unpublished_field(name)
     if "'Time' object has no attribute 'sec'" in said:

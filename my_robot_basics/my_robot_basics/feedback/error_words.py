@@ -1,0 +1,197 @@
+"""What to do about exceptions of Python and rclpy: a table by the words of their sentences."""
+
+from typing import NamedTuple
+
+from my_robot_basics.feedback.rclpy_names import CLASSES, OWN_METHODS, OWN_PROPERTIES
+
+
+class Case(NamedTuple):
+    """What is raised, and what to do about it."""
+
+    pattern: str
+    """A regular expression, found in what Python or rclpy says."""
+    to_do: str
+    """A clause that goes behind that."""
+
+
+DECIMAL_COMMA = ', so a decimal comma may have made two numbers of one: write 0.2, and not 0,2'
+BY_WORDS = (
+    Case(
+        pattern=rf"property '(?:{OWN_PROPERTIES})' of .* has no setter"
+        '|handle cannot be modified after node creation'
+        r"|'(?:str|int|float|bool|list|dict|tuple|function)' object has no attribute 'add_node'",
+        to_do=', so choose another name: `Node` already has an attribute of this name, '
+        'and uses it',
+    ),
+    Case(
+        pattern=r"'rclpy\._rclpy_pybind11\.Node' object is not callable",
+        to_do=', so give your method another name than `handle`: `Node` already has '
+        'an attribute of this name',
+    ),
+    Case(
+        pattern=rf'(?<!Node)\.(?:{OWN_METHODS})\(\) (?:takes|missing) '
+        r"|no attribute '(?:info|warn|warning|error|debug|fatal)'.*self\.get_logger\(\)"
+        r"|'NoneType' object has no attribute 'now'.*self\.get_clock\(\)",
+        to_do=', so give your method another name: `Node` already has a method of this name, '
+        'and uses it',
+    ),
+    Case(
+        pattern=r"object has no attribute 'add_entity'"  # create_timer(0,2, callback)
+        r"|argument must be a string or a real number, not 'tuple'"  # period_sec = 0,2
+        r"|could not convert string to float: '\d+[,，]\d"  # '0,2'
+        r'|element [-\d.]+ .*is not a ParameterDescriptor'  # declare_parameter('rate_hz', 5,0)
+        r'|sleep\(\) takes exactly one argument \(2 given\)',
+        to_do=DECIMAL_COMMA,
+    ),
+    Case(
+        pattern=r'rclpy_resolve_name\(\): incompatible|has no .*_TYPE_SUPPORT',
+        to_do=', so give the type first, such as JointState, and the name of the topic or service '
+        'second',
+    ),
+    Case(
+        pattern="missing 1 required positional argument: 'node_name'",
+        to_do=", so give the node its name: super().__init__('…') in a method __init__",
+    ),
+    Case(pattern="requires a 'super' object", to_do=', so write super() with its parentheses'),
+    Case(
+        pattern="a real number, not 'method'",
+        to_do=', so give create_timer the period first, and the callback second',
+    ),
+    Case(
+        pattern="received <enum 'QoSPresetProfiles'>",
+        to_do=', so take the profile out of the preset with .value',
+    ),
+    Case(
+        pattern=r'AssertionError: line \d+: .*QoSProfile\(',
+        to_do=', so give each policy as one, such as ReliabilityPolicy.BEST_EFFORT, and depth as '
+        'a whole number',
+    ),
+    Case(
+        pattern=r'rclpy_logging_rcutils_log\(\): incompatible',
+        to_do=', so log a text: put the value into an f-string',
+    ),
+    Case(
+        pattern=r"name '(?i:true|false|none|null)' is not defined",
+        to_do=', so write True, False or None with a capital letter',
+    ),
+    Case(
+        pattern=r"name '\w+' is not defined$",
+        to_do=', so import or define it first, or put it in quotes if it is a text',
+    ),
+    Case(
+        pattern=r"operand type\(s\) for \^: |ufunc 'bitwise_xor'",
+        to_do=', so write ** for a power, such as x**2',
+    ),
+    Case(
+        pattern=r"operand type\(s\) for [&|]: |ufunc 'bitwise_(?:and|or)'",
+        to_do=', so write the words `and` and `or` between comparisons, and not & and |',
+    ),
+    Case(
+        pattern=r"'dict' object (?:has no attribute|is not callable)",
+        to_do=", so write the key in quotes and square brackets: name['key']",
+    ),
+    Case(
+        pattern=r'append\(\) takes exactly one argument',
+        to_do=', so append one value at a time, or write extend([…])',
+    ),
+    Case(
+        pattern=r"'(?:property|member_descriptor)' object has no attribute",
+        to_do=', so make an object of the class with parentheses, such as JointState()',
+    ),
+    Case(
+        pattern=r'(?:array|list) assignment index out of range',
+        to_do=', so assign the whole list, [one, two], or append to it: an empty list has no '
+        'first element',
+    ),
+    Case(
+        pattern='must be real number, not (?:list|tuple)',
+        to_do=', so convert each number by itself: [radians(angle) for angle in angles]',
+    ),
+    Case(
+        pattern="'float' object is not iterable",
+        to_do=', so write a list, in square brackets, where several numbers are wanted',
+    ),
+    Case(pattern="'await' outside async function", to_do=', so begin its function with async def'),
+    Case(
+        pattern=r"operand type\(s\) for \S+: .*'Parameter'",
+        to_do=', so take the value out of the parameter with .value',
+    ),
+    Case(
+        pattern=r"'NoneType' object has no attribute .*\.result\(\)",
+        to_do=', so let add_done_callback call this function: call_async returns before the '
+        'answer is there',
+    ),
+    Case(
+        pattern="'Future' object has no attribute",
+        to_do=', so take the answer out of the future with .result()',
+    ),
+    Case(
+        pattern="'(?:function|method)' object has no attribute",
+        to_do=', so call it, with parentheses behind its name',
+    ),
+    Case(
+        pattern="'list' object has no attribute",
+        to_do=', so go through the list: for each in the_list',
+    ),
+    Case(
+        pattern=r'\w\.\w+\(\) missing \d+ required positional argument',
+        to_do=', so give a callback by its name, without parentheses',
+    ),
+    Case(
+        pattern=r'_(?:Request|Response|Goal|Result|Feedback)\.__init__\(\) takes 1 positional',
+        to_do=', so write each field with its name, such as SolveIK.Request(target=point)',
+    ),
+    Case(
+        pattern="_(?:Request|Response|Goal|Result|Feedback)' object has no attribute",
+        to_do=', so look its fields up with ros2 interface show',
+    ),
+    Case(
+        pattern='ParameterNotDeclaredException: ',
+        to_do=', so declare it first, with self.declare_parameter',
+    ),
+    Case(
+        pattern=r"Range\(.* is not a ParameterDescriptor|'\w+Range' object is not subscriptable",
+        to_do=', so put the range into a list, and that into a descriptor: '
+        'ParameterDescriptor(floating_point_range=[…])',
+    ),
+    Case(
+        pattern=r'Context\.init\(\) must only be called once',
+        to_do=', so leave out rclpy.init(): it has been called already',
+    ),
+    Case(
+        pattern='no signature found for builtin',
+        to_do=', so put it into a function of your own, such as '
+        'lambda message: kept.append(message)',
+    ),
+    Case(
+        pattern="'NoneType' object does not support the context manager",
+        to_do=', so call rclpy.init() in a line of its own: no with takes what it returns',
+    ),
+    Case(
+        pattern=rf'\b(?!(?:{CLASSES})\b)\w+\.(?!__)\w+\(\) takes \d+ positional arguments? but',
+        to_do=', so write a parameter for each of them into its def, such as (self, request, '
+        'response) for a service, and (self, message) for a subscription',
+    ),
+    Case(
+        pattern=r'callback should be either be callable',
+        to_do=', so give it a function that takes one message, by its name and '
+        'without parentheses',
+    ),
+    Case(
+        pattern=r'service type provided is not valid',
+        to_do=', so give the type of a service, such as SolveIK, and none of its parts',
+    ),
+    Case(
+        pattern=r'message type provided is not valid',
+        to_do=', so give the type of a message, such as JointState',
+    ),
+    Case(
+        pattern='Service classes can not be instantiated',
+        to_do=', so write its name without parentheses, or SolveIK.Request() for a request',
+    ),
+    Case(
+        pattern=r"operand type\(s\) for [-/*]+: .*'str'",
+        to_do=', so leave out the quotes around a number, or convert a text to one with float()',
+    ),
+)
+"""The first whose pattern is found counts."""
