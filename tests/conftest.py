@@ -8,6 +8,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -23,6 +24,10 @@ from grader.kernels.isolation import TRUST, missing
 from tests import ordinary, preloaded, tiers  # also where nbval runs with this as a plugin
 
 if TYPE_CHECKING:
+    from grading_kernels import Spares
+
+    from grader.course import Course
+    from grader.kernels.kernels import GradingKernel
     from grader.sandbox.sandbox import Sandbox
 
 # a busy machine fails no test
@@ -249,12 +254,72 @@ def shared_sandbox(loop: asyncio.Runner) -> Iterator['Sandbox']:
 
 @pytest.fixture
 @tiers.starts
+def own_kernel(loop: asyncio.Runner) -> Iterator['GradingKernel']:
+    """A kernel of one test's own."""
+    from grading_kernels import opened_kernel  # not before: most need no kernel
+
+    with opened_kernel(loop) as kernel:
+        yield kernel
+
+
+@pytest.fixture(scope='module')
+@tiers.starts
+def spares(loop: asyncio.Runner) -> Iterator['Spares']:
+    """The kernels that tests of a file have left alive."""
+    from grading_kernels import Spares
+
+    spares = Spares(loop)
+    yield spares
+    spares.stop()
+
+
+@pytest.fixture
+def spare_kernel(spares: 'Spares') -> Iterator['GradingKernel']:
+    """A kernel for a cell that leaves nothing in it."""
+    with spares.kernel() as kernel:
+        yield kernel
+
+
+@pytest.fixture
+def run_cell(loop: asyncio.Runner) -> Callable:
+    """What runs a cell in a kernel: `run_cell(kernel, code)`."""
+    from grading_kernels import runs_in
+
+    return runs_in(loop)
+
+
+@pytest.fixture(scope='module')
+def released(tmp_path_factory: pytest.TempPathFactory) -> 'Course':
+    """The course of one small lesson, released: for all tests of a file that do it no harm."""
+    from course_maker import released_course  # not before: most need no course
+
+    return released_course(tmp_path_factory.mktemp('released'))
+
+
+@pytest.fixture
+def course(released: 'Course', tmp_path: Path) -> 'Course':
+    """That course, with an empty gradebook of one test's own; other files have it filled."""
+    return replace(released, gradebook=tmp_path / 'gradebook')
+
+
+@pytest.fixture
+def came_in(tmp_path: Path) -> Path:
+    """The folder that `./course collect` takes submissions from."""
+    folder = tmp_path / 'came in'
+    folder.mkdir()
+    return folder
+
+
+@pytest.fixture
+@tiers.starts
 def run() -> Iterator[Callable]:
-    """`live.run`; all nodes that it started are stopped after the test."""
+    """`live.run`; all nodes that it started are stopped after the test, and their threads."""
+    from nodes.running import stop_all
+
     from my_robot_basics import live  # not before: most need no rclpy
 
     yield live.run
-    live.stop()
+    stop_all()
 
 
 @pytest.fixture

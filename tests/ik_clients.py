@@ -1,24 +1,13 @@
-"""What the grade cells ask of a client of /solve_ik, and its threads' end."""
+"""What the grade cells ask of a client of /solve_ik."""
 
 from my_robot_basics.checks import ik, serve
 from nodes.running import imported
 
 from arm_interfaces.srv import SolveIK
-from my_robot_basics import live
 
 IKClient = imported('ik_client').IKClient
 
 TARGETS = [(1.2, 0.4), (-0.5, 1.1), (0.9, -1.3)]
-
-STOPS = []
-"""What ends the threads that nodes have made for themselves."""
-
-
-def stop_all():
-    """End the threads of nodes first: they would ask nodes that are gone."""
-    while STOPS:
-        STOPS.pop()()
-    live.stop()
 
 
 def server(answer=ik.solve):

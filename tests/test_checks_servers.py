@@ -4,21 +4,14 @@ import collections
 import threading
 
 import pytest
-from ik_clients import STOPS, TARGETS, IKClient, check_asks, check_never_blocks, server, stop_all
+from ik_clients import TARGETS, IKClient, check_asks, check_never_blocks, server
 from my_robot_basics.checks import CheckFailed, ik, responses, servers
-from nodes.running import imported, running
+from nodes.running import STOPS, imported, running
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import MultiThreadedExecutor
 from rclpy.node import Node
 
 from arm_interfaces.srv import SolveIK
-from my_robot_basics import live
-
-
-@pytest.fixture
-def run():
-    yield live.run
-    stop_all()
 
 
 class Base(IKClient):

@@ -5,18 +5,11 @@ import time
 import pytest
 import rclpy
 from geometry_msgs.msg import Point
-from ik_clients import IKClient, check_asks, check_never_blocks, server, stop_all
+from ik_clients import IKClient, check_asks, check_never_blocks, server
 from my_robot_basics.checks import CheckFailed, ik, servers, topic
 from my_robot_basics.graph.watcher import Watcher
 
 from arm_interfaces.srv import SolveIK
-from my_robot_basics import live
-
-
-@pytest.fixture
-def run():
-    yield live.run
-    stop_all()
 
 
 @pytest.fixture

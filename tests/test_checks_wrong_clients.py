@@ -4,18 +4,11 @@ from functools import partial
 
 import pytest
 from geometry_msgs.msg import Point
-from ik_clients import TARGETS, IKClient, check_asks, check_never_blocks, server, stop_all
+from ik_clients import TARGETS, IKClient, check_asks, check_never_blocks, server
 from my_robot_basics.checks import CheckFailed, holding_server, ik, servers
 from std_srvs.srv import Trigger
 
 from arm_interfaces.srv import SolveIK
-from my_robot_basics import live
-
-
-@pytest.fixture
-def run():
-    yield live.run
-    stop_all()
 
 
 @pytest.fixture

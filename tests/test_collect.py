@@ -7,11 +7,10 @@ from pathlib import Path
 import nbformat
 import pytest
 from collected import NOTEBOOK, rows, submitted, tree, write
-from course_maker import TOY, answered, executed, released_course
+from course_maker import TOY, answered, executed
 from nbgrader.coursedir import CourseDirectory
 
 from grader.collect.collect import AGAIN, EARLIER, KNOWN, LEFT, NEW, UNUSED
-from grader.course import Course
 from grader.notebook.restore import restore
 from grader.notebook.submission import read_submission
 from grader.storage.gradebook import store
@@ -22,42 +21,25 @@ from grader.storage.submitted import find_submissions
 RIGHT, WRONG = 'def double(x):\n    return 2 * x', 'def double(x):\n    return x'
 
 
-@pytest.fixture(scope='module')
-def released(tmp_path_factory):
-    return released_course(tmp_path_factory.mktemp('collect'))
-
-
-@pytest.fixture
-def course(released, tmp_path):
-    return Course(root=released.root, gradebook=tmp_path / 'gradebook')
-
-
-@pytest.fixture
-def source(tmp_path):
-    folder = tmp_path / 'came in'
-    folder.mkdir()
-    return folder
-
-
 def before(course, student='ada'):
     return tree(course.folder('submitted_before', student, TOY))
 
 
-def exchanged(source, day, content):
-    folder = source / f'ada+{TOY}+2026-01-0{day} 10:00:00.000000 UTC'
+def exchanged(came_in, day, content):
+    folder = came_in / f'ada+{TOY}+2026-01-0{day} 10:00:00.000000 UTC'
     write(folder / NOTEBOOK, content)
     write(folder / 'timestamp.txt', f'2026-01-0{day} 10:00:00.000000 UTC')
 
 
-def test_what_came_in_lies_where_it_is_graded(course, source):
-    write(source / f'ada_{TOY}.ipynb', 'ada’s')
-    write(source / f'bob/{TOY}/{NOTEBOOK}', 'bob’s')
-    write(source / f'bob/{TOY}/helper.py', 'x = 1')
-    write(source / f'bob/{TOY}/timestamp.txt', '2026-01-01 12:00:00 CET')
-    write(source / 'whose.ipynb', '')
-    write(source / 'notes.txt', '')
-    untouched = tree(source)
-    assert rows(course, source) == {
+def test_what_came_in_lies_where_it_is_graded(course, came_in):
+    write(came_in / f'ada_{TOY}.ipynb', 'ada’s')
+    write(came_in / f'bob/{TOY}/{NOTEBOOK}', 'bob’s')
+    write(came_in / f'bob/{TOY}/helper.py', 'x = 1')
+    write(came_in / f'bob/{TOY}/timestamp.txt', '2026-01-01 12:00:00 CET')
+    write(came_in / 'whose.ipynb', '')
+    write(came_in / 'notes.txt', '')
+    untouched = tree(came_in)
+    assert rows(course, came_in) == {
         f'ada_{TOY}.ipynb': NEW,
         f'bob/{TOY}/{NOTEBOOK}': NEW,
         'whose.ipynb': LEFT,
@@ -69,15 +51,15 @@ def test_what_came_in_lies_where_it_is_graded(course, source):
         'helper.py': 'x = 1',
         'timestamp.txt': '2026-01-01 11:00:00.000000 UTC',
     }
-    assert tree(source) == untouched
+    assert tree(came_in) == untouched
     assert [each.problem for each in find_submissions(course)] == ['', '']
 
 
-def test_doing_it_again_changes_nothing(course, source):
+def test_doing_it_again_changes_nothing(course, came_in):
     for day in (1, 2, 3):
-        exchanged(source, day, f'version {day}')
-    write(source / f'bob/{TOY}/{NOTEBOOK}', 'bob’s')
-    assert set(rows(course, source).values()) == {NEW, AGAIN}
+        exchanged(came_in, day, f'version {day}')
+    write(came_in / f'bob/{TOY}/{NOTEBOOK}', 'bob’s')
+    assert set(rows(course, came_in).values()) == {NEW, AGAIN}
     first = tree(course.gradebook)
     assert submitted(course)[NOTEBOOK] == 'version 3'
     assert [before(course)[f'{n}/submitted/{NOTEBOOK}'] for n in (1, 2)] == [
@@ -85,15 +67,15 @@ def test_doing_it_again_changes_nothing(course, source):
         'version 2',
     ]
     for _ in range(2):
-        assert set(rows(course, source).values()) == {KNOWN}
+        assert set(rows(course, came_in).values()) == {KNOWN}
         assert tree(course.gradebook) == first
 
 
-def test_a_later_one_counts_and_the_earlier_is_kept_with_its_time(course, source):
-    exchanged(source, 1, 'first')
-    rows(course, source)
-    exchanged(source, 2, 'second')
-    assert sorted(rows(course, source).values()) == [AGAIN, KNOWN]
+def test_a_later_one_counts_and_the_earlier_is_kept_with_its_time(course, came_in):
+    exchanged(came_in, 1, 'first')
+    rows(course, came_in)
+    exchanged(came_in, 2, 'second')
+    assert sorted(rows(course, came_in).values()) == [AGAIN, KNOWN]
     assert submitted(course)[NOTEBOOK] == 'second'
     assert submitted(course)['timestamp.txt'].startswith('2026-01-02')
     assert before(course) == {
@@ -102,9 +84,9 @@ def test_a_later_one_counts_and_the_earlier_is_kept_with_its_time(course, source
     }
 
 
-def test_an_earlier_one_that_comes_late_is_kept_and_does_not_count(course, source, tmp_path):
-    exchanged(source, 2, 'second')
-    rows(course, source)
+def test_an_earlier_one_that_comes_late_is_kept_and_does_not_count(course, came_in, tmp_path):
+    exchanged(came_in, 2, 'second')
+    rows(course, came_in)
     exchanged(tmp_path / 'mail', 1, 'first')
     assert list(rows(course, tmp_path / 'mail').values()) == [EARLIER]
     assert submitted(course)[NOTEBOOK] == 'second'
@@ -112,38 +94,38 @@ def test_an_earlier_one_that_comes_late_is_kept_and_does_not_count(course, sourc
     assert list(rows(course, tmp_path / 'mail').values()) == [KNOWN]
 
 
-def test_without_times_what_comes_later_is_later(course, source):
+def test_without_times_what_comes_later_is_later(course, came_in):
     for version in ('one', 'two'):
-        write(source / f'ada_{TOY}.ipynb', version)
-        rows(course, source)
+        write(came_in / f'ada_{TOY}.ipynb', version)
+        rows(course, came_in)
     assert submitted(course) == {NOTEBOOK: 'two'}
     assert before(course) == {f'1/submitted/{NOTEBOOK}': 'one'}
-    write(source / f'ada_{TOY}.ipynb', 'one')
-    assert rows(course, source) == {f'ada_{TOY}.ipynb': KNOWN}
+    write(came_in / f'ada_{TOY}.ipynb', 'one')
+    assert rows(course, came_in) == {f'ada_{TOY}.ipynb': KNOWN}
     assert submitted(course) == {NOTEBOOK: 'two'}
 
 
-def test_who_goes_back_to_a_former_version_later_is_graded_by_it(course, source):
+def test_who_goes_back_to_a_former_version_later_is_graded_by_it(course, came_in):
     for day, content in ((1, 'good'), (2, 'bad'), (3, 'good')):
-        exchanged(source, day, content)
-        rows(course, source)
+        exchanged(came_in, day, content)
+        rows(course, came_in)
     assert submitted(course)[NOTEBOOK] == 'good'
     assert before(course)[f'2/submitted/{NOTEBOOK}'] == 'bad'
 
 
-def test_a_changed_helper_is_another_submission(course, source):
-    write(source / f'ada/{NOTEBOOK}', 'same')
-    rows(course, source)
-    write(source / 'ada/helper.py', 'x = 1')
-    assert rows(course, source) == {f'ada/{NOTEBOOK}': AGAIN}
+def test_a_changed_helper_is_another_submission(course, came_in):
+    write(came_in / f'ada/{NOTEBOOK}', 'same')
+    rows(course, came_in)
+    write(came_in / 'ada/helper.py', 'x = 1')
+    assert rows(course, came_in) == {f'ada/{NOTEBOOK}': AGAIN}
 
 
-def test_the_earlier_one_keeps_its_grade(course, source):
-    write(source / f'ada_{TOY}.ipynb', '')
+def test_the_earlier_one_keeps_its_grade(course, came_in):
+    write(came_in / f'ada_{TOY}.ipynb', '')
     for answer, reasons in ((WRONG, {'double-check': 'expected 2, saw 1'}), (RIGHT, {})):
         notebook = answered(course, answer)
-        (source / f'ada_{TOY}.ipynb').write_text(nbformat.writes(notebook))
-        rows(course, source)
+        (came_in / f'ada_{TOY}.ipynb').write_text(nbformat.writes(notebook))
+        rows(course, came_in)
         register(course, TOY)
         folder = course.folder('submitted', 'ada', TOY)
         submission = read_submission(folder, student_id='ada', assignment=TOY)
@@ -166,10 +148,10 @@ def test_the_earlier_one_keeps_its_grade(course, source):
 
 @pytest.mark.parametrize('survived', range(5))
 def test_a_run_that_ended_half_way_loses_nothing_and_goes_on(
-    survived, course, source, monkeypatch
+    survived, course, came_in, monkeypatch
 ):
     for day in (1, 2):
-        exchanged(source, day, f'version {day}')
+        exchanged(came_in, day, f'version {day}')
     rename, calls = Path.rename, []
 
     def dies(path, target):
@@ -181,19 +163,19 @@ def test_a_run_that_ended_half_way_loses_nothing_and_goes_on(
     monkeypatch.setattr(Path, 'rename', dies)
     if survived < 4:  # new, one to the shelf, two to replace it
         with pytest.raises(KeyboardInterrupt):
-            rows(course, source)
+            rows(course, came_in)
     else:
-        rows(course, source)
+        rows(course, came_in)
     monkeypatch.undo()
-    rows(course, source)
+    rows(course, came_in)
     assert submitted(course)[NOTEBOOK] == 'version 2'
     kept = {path: text for path, text in before(course).items() if path.endswith('.ipynb')}
     assert kept == {f'1/submitted/{NOTEBOOK}': 'version 1'}
     assert not list(course.gradebook.rglob('.new-*'))
 
 
-def test_nbgrader_reads_the_time(course, source):
-    exchanged(source, 1, '{}')
-    rows(course, source)
+def test_nbgrader_reads_the_time(course, came_in):
+    exchanged(came_in, 1, '{}')
+    rows(course, came_in)
     folder = course.folder('submitted', 'ada', TOY)
     assert CourseDirectory().get_existing_timestamp(str(folder)) == datetime(2026, 1, 1, 10)

@@ -5,7 +5,7 @@ import os
 import nbformat
 import pytest
 from collected import write
-from course_maker import TOY, released_course
+from course_maker import TOY
 
 from grader.__main__ import main
 from grader.collect.collect import NEW, collect
@@ -13,29 +13,12 @@ from grader.common.errors import CourseError
 from grader.course import Course
 
 
-@pytest.fixture(scope='module')
-def released(tmp_path_factory):
-    return released_course(tmp_path_factory.mktemp('collect'))
-
-
-@pytest.fixture
-def course(released, tmp_path):
-    return Course(root=released.root, gradebook=tmp_path / 'gradebook')
-
-
-@pytest.fixture
-def source(tmp_path):
-    folder = tmp_path / 'came in'
-    folder.mkdir()
-    return folder
-
-
 def test_the_command_prints_a_row_for_each_and_ends_with_1_where_one_was_not_taken(
-    course, source, capsys
+    course, came_in, capsys
 ):
-    write(source / f'小明_{TOY}.ipynb', 'x')
-    os.utime(source / f'小明_{TOY}.ipynb', (1_700_000_000, 1_700_000_000))
-    assert main(['collect', str(source), '--file-times'], course=course) == 0
+    write(came_in / f'小明_{TOY}.ipynb', 'x')
+    os.utime(came_in / f'小明_{TOY}.ipynb', (1_700_000_000, 1_700_000_000))
+    assert main(['collect', str(came_in), '--file-times'], course=course) == 0
     assert capsys.readouterr().out.splitlines() == [
         'student  assignment  handed in (UTC)',
         '小明     00_toy      2023-11-14 22:13:20  new',
@@ -43,10 +26,10 @@ def test_the_command_prints_a_row_for_each_and_ends_with_1_where_one_was_not_tak
         '1 new; 0 not taken.',
         'Next: ./course grade',
     ]
-    write(source / '\x1b[31mred.ipynb', '')
+    write(came_in / '\x1b[31mred.ipynb', '')
     for number in range(5):
-        write(source / f'photos/{number}.png', '')
-    assert main(['collect', str(source)], course=course) == 1
+        write(came_in / f'photos/{number}.png', '')
+    assert main(['collect', str(came_in)], course=course) == 1
     out = capsys.readouterr().out
     assert '\x1b' not in out
     assert '\\x1b[31mred.ipynb  named after no assignment: expected STUDENT_ASSIGNMENT' in out
@@ -79,12 +62,12 @@ def test_the_report_begins_with_a_line_whatever_it_tells(course, tmp_path, capsy
 
 @pytest.mark.parametrize('place', ['.', '..', 'notebooks', 'notebooks/zh_CN', 'solutions'])
 def test_the_lessons_themselves_are_no_submissions(course, place, monkeypatch, capsys):
-    source = course.root / place
-    source.mkdir(exist_ok=True)
-    monkeypatch.chdir(source)
+    came_in = course.root / place
+    came_in.mkdir(exist_ok=True)
+    monkeypatch.chdir(came_in)
     assert main(['collect', '.'], course=course) == 1
     said = capsys.readouterr().err
-    assert f"{source.resolve()} holds the course's own lessons: expected a folder with" in said
+    assert f"{came_in.resolve()} holds the course's own lessons: expected a folder with" in said
     assert not course.folder('submitted', '', '').exists()
 
 

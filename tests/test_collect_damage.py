@@ -8,7 +8,7 @@ import zipfile
 
 import pytest
 from collected import NOTEBOOK, rows, tree, write
-from course_maker import TOY, released_course
+from course_maker import TOY
 
 from grader.__main__ import main
 from grader.collect import collect as module
@@ -16,32 +16,14 @@ from grader.collect import uploads
 from grader.collect.collect import AGAIN, LEFT, NEW, UNUSED, collect
 from grader.common.errors import CourseError
 from grader.common.parsing import Limits
-from grader.course import Course
 
 
-@pytest.fixture(scope='module')
-def released(tmp_path_factory):
-    return released_course(tmp_path_factory.mktemp('collect'))
-
-
-@pytest.fixture
-def course(released, tmp_path):
-    return Course(root=released.root, gradebook=tmp_path / 'gradebook')
-
-
-@pytest.fixture
-def source(tmp_path):
-    folder = tmp_path / 'came in'
-    folder.mkdir()
-    return folder
-
-
-def test_no_archive_writes_anywhere_else(course, source, tmp_path):
+def test_no_archive_writes_anywhere_else(course, came_in, tmp_path):
     secret = tmp_path / 'secret'
     secret.write_text('secret')
     link = zipfile.ZipInfo(f'eve/{NOTEBOOK}')
     link.external_attr = 0o120777 << 16
-    with zipfile.ZipFile(source / 'class.zip', 'w') as box:
+    with zipfile.ZipFile(came_in / 'class.zip', 'w') as box:
         box.writestr(f'../../../submitted/ada/{TOY}/{NOTEBOOK}', 'slip')
         box.writestr(f'/{tmp_path}/ada/{TOY}/{NOTEBOOK}', 'absolute')
         box.writestr(link, str(secret))
@@ -49,7 +31,7 @@ def test_no_archive_writes_anywhere_else(course, source, tmp_path):
         box.writestr(f'bob\x1b[2J_{TOY}.ipynb', 'escape')
         box.writestr(f'zoe/{TOY}/{NOTEBOOK}', 'fine')
     outside = {path for path in tmp_path.rglob('*') if course.gradebook not in path.parents}
-    found = rows(course, source / 'class.zip')
+    found = rows(course, came_in / 'class.zip')
     assert sorted(found.values()) == [LEFT] * 5 + [NEW]
     assert {path for path in tmp_path.rglob('*') if course.gradebook not in path.parents} == (
         outside | {course.gradebook}
@@ -57,29 +39,29 @@ def test_no_archive_writes_anywhere_else(course, source, tmp_path):
     assert tree(course.gradebook / 'submitted') == {f'zoe/{TOY}/{NOTEBOOK}': 'fine'}
 
 
-def test_a_file_that_is_in_the_way_costs_only_its_own_row(course, source):
+def test_a_file_that_is_in_the_way_costs_only_its_own_row(course, came_in):
     write(course.gradebook / 'submitted/ada', 'a file')
-    write(source / f'ada_{TOY}.ipynb', '')
-    write(source / f'bob_{TOY}.ipynb', '')
-    assert sorted(rows(course, source).values()) == [LEFT, NEW]
+    write(came_in / f'ada_{TOY}.ipynb', '')
+    write(came_in / f'bob_{TOY}.ipynb', '')
+    assert sorted(rows(course, came_in).values()) == [LEFT, NEW]
     assert (course.gradebook / 'submitted/ada').read_text() == 'a file'
 
 
-def test_a_full_disk_is_said_in_a_sentence(course, source, monkeypatch):
+def test_a_full_disk_is_said_in_a_sentence(course, came_in, monkeypatch):
     def full(*_):
         raise OSError(28, 'No space left on device')
 
-    write(source / f'ada_{TOY}.ipynb', '')
+    write(came_in / f'ada_{TOY}.ipynb', '')
     monkeypatch.setattr(module, 'put_whole', full)
     with pytest.raises(CourseError, match='the disk is full: what was collected is kept whole'):
-        rows(course, source)
+        rows(course, came_in)
 
 
-def test_a_hostile_time_costs_only_itself(course, source):
-    write(source / f'ada/{TOY}/{NOTEBOOK}', 'ada’s')
-    write(source / f'ada/{TOY}/timestamp.txt', '1:99999999999999999999999999999.5')
-    write(source / f'bob/{TOY}/{NOTEBOOK}', 'bob’s')
-    found = {row.path: (row.outcome, row.reason) for row in collect(course, source)}
+def test_a_hostile_time_costs_only_itself(course, came_in):
+    write(came_in / f'ada/{TOY}/{NOTEBOOK}', 'ada’s')
+    write(came_in / f'ada/{TOY}/timestamp.txt', '1:99999999999999999999999999999.5')
+    write(came_in / f'bob/{TOY}/{NOTEBOOK}', 'bob’s')
+    found = {row.path: (row.outcome, row.reason) for row in collect(course, came_in)}
     assert found == {
         f'ada/{TOY}/{NOTEBOOK}': (NEW, ''),
         f'ada/{TOY}/timestamp.txt': (LEFT, 'it holds no date'),
@@ -99,13 +81,13 @@ def a_tar_of_digits(path):
 
 
 @pytest.mark.slow
-def test_an_archive_that_takes_for_ever_costs_only_itself(course, source, monkeypatch):
+def test_an_archive_that_takes_for_ever_costs_only_itself(course, came_in, monkeypatch):
     monkeypatch.setattr(uploads, 'LIMITS_OF_ONE', Limits(cpu_sec=2))
-    for place in (source, source / f'bob/{TOY}'):
+    for place in (came_in, came_in / f'bob/{TOY}'):
         place.mkdir(parents=True, exist_ok=True)
         a_tar_of_digits(place / 'mallory.tar.gz')
-    write(source / f'ada_{TOY}.ipynb', 'ada’s')
-    found = {row.path: (row.outcome, row.reason) for row in collect(course, source)}
+    write(came_in / f'ada_{TOY}.ipynb', 'ada’s')
+    found = {row.path: (row.outcome, row.reason) for row in collect(course, came_in)}
     assert found.pop(f'ada_{TOY}.ipynb') == (NEW, '')
     assert {path.rpartition('/')[2] for path in found} <= {'mallory.tar.gz', 'a.ipynb'}
     for outcome, reason in found.values():
@@ -113,20 +95,20 @@ def test_an_archive_that_takes_for_ever_costs_only_itself(course, source, monkey
         assert 'over 2 s of processor time' in reason or 'named after no assignment' in reason
 
 
-def test_an_archive_that_takes_too_much_memory_costs_only_itself(course, source, monkeypatch):
+def test_an_archive_that_takes_too_much_memory_costs_only_itself(course, came_in, monkeypatch):
     limits = Limits(memory_bytes=40_000_000)  # the reader itself does not fit in
     monkeypatch.setattr(uploads, 'LIMITS_OF_ONE', limits)
-    with zipfile.ZipFile(source / 'mallory.zip', 'w') as box:
+    with zipfile.ZipFile(came_in / 'mallory.zip', 'w') as box:
         box.writestr(NOTEBOOK, 'x' * 10_000_000)
-    write(source / f'ada_{TOY}.ipynb', 'ada’s')
-    assert rows(course, source) == {'mallory.zip': LEFT, f'ada_{TOY}.ipynb': NEW}
+    write(came_in / f'ada_{TOY}.ipynb', 'ada’s')
+    assert rows(course, came_in) == {'mallory.zip': LEFT, f'ada_{TOY}.ipynb': NEW}
 
 
-def test_a_file_that_can_t_be_read_costs_only_itself(course, source, monkeypatch):
+def test_a_file_that_can_t_be_read_costs_only_itself(course, came_in, monkeypatch):
     """It may lie on a damaged disk, or be gone since the folder was listed."""
     for student in ('ada', 'bob', 'zoe'):
-        write(source / f'{student}_{TOY}.ipynb', student)
-        write(source / f'{student}-{TOY}.ipynb', student)
+        write(came_in / f'{student}_{TOY}.ipynb', student)
+        write(came_in / f'{student}-{TOY}.ipynb', student)
     lstat, read, open_file, opened = os.lstat, os.read, os.open, {}
 
     def remembered(path, *arguments, **options):
@@ -147,7 +129,7 @@ def test_a_file_that_can_t_be_read_costs_only_itself(course, source, monkeypatch
     monkeypatch.setattr(os, 'open', remembered)
     monkeypatch.setattr(os, 'read', damaged)
     monkeypatch.setattr(os, 'lstat', gone)
-    assert rows(course, source) == {
+    assert rows(course, came_in) == {
         f'ada_{TOY}.ipynb': LEFT,
         f'ada-{TOY}.ipynb': LEFT,
         f'bob_{TOY}.ipynb': LEFT,
@@ -155,22 +137,22 @@ def test_a_file_that_can_t_be_read_costs_only_itself(course, source, monkeypatch
         f'zoe-{TOY}.ipynb': NEW,
         f'zoe_{TOY}.ipynb': UNUSED,
     }
-    (source / f'ada_{TOY}.ipynb').unlink()
-    (row,) = (row for row in collect(course, source) if row.path.startswith('ada'))
+    (came_in / f'ada_{TOY}.ipynb').unlink()
+    (row,) = (row for row in collect(course, came_in) if row.path.startswith('ada'))
     assert (row.outcome, row.reason) == (LEFT, 'it can not be read: Input/output error')
 
 
-def test_thousands_of_broken_files_print_some_lines(course, source, capsys):
+def test_thousands_of_broken_files_print_some_lines(course, came_in, capsys):
     for student, name in (('mallory', '{}.ipynb'), ('eve', 'a_' + 'z' * 200 + '{}.ipynb')):
-        with zipfile.ZipFile(source / f'{student}.zip', 'w') as box:
+        with zipfile.ZipFile(came_in / f'{student}.zip', 'w') as box:
             for number in range(3_000):
                 box.writestr(name.format(number), 'x')
-        packed = (source / f'{student}.zip').read_bytes()
-        (source / f'{student}.zip').write_bytes(packed.replace(b'x' + b'PK\x03', b'yPK\x03'))
-    write(source / f'ada_{TOY}.ipynb', 'ada’s')
+        packed = (came_in / f'{student}.zip').read_bytes()
+        (came_in / f'{student}.zip').write_bytes(packed.replace(b'x' + b'PK\x03', b'yPK\x03'))
+    write(came_in / f'ada_{TOY}.ipynb', 'ada’s')
     for number in range(9):
-        write(source / f'homework {number}.zip', '')
-    assert main(['collect', str(source)], course=course) == 1
+        write(came_in / f'homework {number}.zip', '')
+    assert main(['collect', str(came_in)], course=course) == 1
     out = capsys.readouterr().out
     assert len(out.splitlines()) < 40
     assert max(map(len, out.splitlines())) < 400
@@ -179,18 +161,18 @@ def test_thousands_of_broken_files_print_some_lines(course, source, capsys):
     assert '1 new; 6009 not taken.' in out
 
 
-def test_large_files_of_a_submission_fill_no_memory(course, source):
+def test_large_files_of_a_submission_fill_no_memory(course, came_in):
     """Each hand-in was held whole, and each earlier one beside it."""
-    folder = source / f'ada/{TOY}'
+    folder = came_in / f'ada/{TOY}'
     write(folder / NOTEBOOK, 'hers')
     for number in range(4):
         (folder / f'{number}.py').write_bytes(bytes(10_000_000))
-    assert NEW in rows(course, source).values()
+    assert NEW in rows(course, came_in).values()
     write(folder / NOTEBOOK, 'hers again')
     write(folder / 'timestamp.txt', '2026-01-02 03:04:05 UTC')
     tracemalloc.start()
     try:
-        assert AGAIN in rows(course, source).values()
+        assert AGAIN in rows(course, came_in).values()
         most = tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()

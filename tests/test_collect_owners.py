@@ -7,54 +7,36 @@ import zipfile
 import nbformat
 import pytest
 from collected import NOTEBOOK, rows, submitted, write
-from course_maker import TOY, released_course
+from course_maker import TOY
 
 from grader.collect.collect import AGAIN, KNOWN, LEFT, NEW, collect
 from grader.common.errors import CourseError
-from grader.course import Course
 
 
-@pytest.fixture(scope='module')
-def released(tmp_path_factory):
-    return released_course(tmp_path_factory.mktemp('collect'))
-
-
-@pytest.fixture
-def course(released, tmp_path):
-    return Course(root=released.root, gradebook=tmp_path / 'gradebook')
-
-
-@pytest.fixture
-def source(tmp_path):
-    folder = tmp_path / 'came in'
-    folder.mkdir()
-    return folder
-
-
-def uploaded(source, who, number, content, inside=''):
-    write(source / f'{who}_{number}_assignsubmission_file_{inside}/{NOTEBOOK}', content)
+def uploaded(came_in, who, number, content, inside=''):
+    write(came_in / f'{who}_{number}_assignsubmission_file_{inside}/{NOTEBOOK}', content)
 
 
 def numbers(course):
     return json.loads((course.gradebook / 'numbers.json').read_text())
 
 
-def test_nobody_s_work_is_replaced_by_what_another_named_after_them(course, source):
-    uploaded(source, 'Ada Lovelace', 1815, 'hers')
-    rows(course, source)
-    uploaded(source, 'Mallory Evil', 666, 'forged', '/Ada Lovelace')
-    write(source / f'Mallory Evil_666_assignsubmission_file_/Ada Lovelace_{TOY}.ipynb', 'forged')
-    with zipfile.ZipFile(source / 'Mallory Evil_666_assignsubmission_file_/a.zip', 'w') as box:
+def test_nobody_s_work_is_replaced_by_what_another_named_after_them(course, came_in):
+    uploaded(came_in, 'Ada Lovelace', 1815, 'hers')
+    rows(course, came_in)
+    uploaded(came_in, 'Mallory Evil', 666, 'forged', '/Ada Lovelace')
+    write(came_in / f'Mallory Evil_666_assignsubmission_file_/Ada Lovelace_{TOY}.ipynb', 'forged')
+    with zipfile.ZipFile(came_in / 'Mallory Evil_666_assignsubmission_file_/a.zip', 'w') as box:
         box.writestr(f'Lovelace, Ada/{NOTEBOOK}', 'forged')
-    assert sorted(rows(course, source).values()) == [KNOWN, LEFT, LEFT, LEFT]
+    assert sorted(rows(course, came_in).values()) == [KNOWN, LEFT, LEFT, LEFT]
     assert submitted(course, 'Ada Lovelace') == {NOTEBOOK: 'hers'}
     assert [path.name for path in (course.gradebook / 'submitted').iterdir()] == ['Ada Lovelace']
 
 
-def test_moodle_s_number_is_kept_and_a_namesake_is_left_to_a_person(course, source, tmp_path):
-    uploaded(source, 'Ada Lovelace', 1815, 'hers')
-    uploaded(source, '王小明', 7, 'his')
-    assert set(rows(course, source).values()) == {NEW}
+def test_moodle_s_number_is_kept_and_a_namesake_is_left_to_a_person(course, came_in, tmp_path):
+    uploaded(came_in, 'Ada Lovelace', 1815, 'hers')
+    uploaded(came_in, '王小明', 7, 'his')
+    assert set(rows(course, came_in).values()) == {NEW}
     kept = {
         'Ada Lovelace': {TOY: {'moodle': '1815'}},
         '王小明': {TOY: {'moodle': '7'}},
@@ -72,71 +54,71 @@ def test_moodle_s_number_is_kept_and_a_namesake_is_left_to_a_person(course, sour
     assert numbers(course) == kept
 
 
-def test_two_downloads_that_disagree_on_a_number_are_both_left(course, source):
+def test_two_downloads_that_disagree_on_a_number_are_both_left(course, came_in):
     for number, folder in ((1, 'monday'), (2, 'tuesday')):
-        uploaded(source / folder, 'Ada Lovelace', number, folder)
-    assert set(rows(course, source).values()) == {LEFT}
+        uploaded(came_in / folder, 'Ada Lovelace', number, folder)
+    assert set(rows(course, came_in).values()) == {LEFT}
     assert not (course.gradebook / 'numbers.json').exists()
 
 
-def test_canvas_numbers_a_student_once(course, source):
-    write(source / f'lovelaceada_18151_21012_{TOY}.ipynb', 'one')
-    assert set(rows(course, source).values()) == {NEW}
-    (source / f'lovelaceada_18151_21012_{TOY}.ipynb').unlink()
-    write(source / f'lovelaceada_LATE_18151_21999_{TOY}-1.ipynb', 'two')
-    assert set(rows(course, source).values()) == {AGAIN}
-    write(source / f'lovelaceada_19061_22000_{TOY}.ipynb', 'another’s')
-    assert set(rows(course, source).values()) == {LEFT}
+def test_canvas_numbers_a_student_once(course, came_in):
+    write(came_in / f'lovelaceada_18151_21012_{TOY}.ipynb', 'one')
+    assert set(rows(course, came_in).values()) == {NEW}
+    (came_in / f'lovelaceada_18151_21012_{TOY}.ipynb').unlink()
+    write(came_in / f'lovelaceada_LATE_18151_21999_{TOY}-1.ipynb', 'two')
+    assert set(rows(course, came_in).values()) == {AGAIN}
+    write(came_in / f'lovelaceada_19061_22000_{TOY}.ipynb', 'another’s')
+    assert set(rows(course, came_in).values()) == {LEFT}
     assert numbers(course) == {'lovelaceada': {TOY: {'canvas': '18151'}}}
 
 
 @pytest.mark.parametrize('packed', [False, True])
-def test_a_class_s_folder_like_a_name_of_canvas_s_is_no_student(packed, course, source):
-    folder = source / 'kurs_101_202'
+def test_a_class_s_folder_like_a_name_of_canvas_s_is_no_student(packed, course, came_in):
+    folder = came_in / 'kurs_101_202'
     write(folder / 'ada' / NOTEBOOK, 'hers')
     write(folder / f'bob_{TOY}.ipynb', 'his')
     if packed:
-        shutil.make_archive(str(folder), 'zip', source, folder.name)
+        shutil.make_archive(str(folder), 'zip', came_in, folder.name)
         folder = folder.with_suffix('.zip')
     assert set(rows(course, folder).values()) == {NEW}
     assert [submitted(course, who)[NOTEBOOK] for who in ('ada', 'bob')] == ['hers', 'his']
     assert not course.folder('submitted', 'kurs', TOY).exists()
 
 
-def test_blackboard_has_times_and_no_numbers(course, source):
+def test_blackboard_has_times_and_no_numbers(course, came_in):
     attempt = f'Lab 1_{{}}_attempt_2026-01-0{{}}-10-00-00_{TOY}.ipynb'
-    write(source / attempt.format('ada', 2), 'first')
-    write(source / attempt.format('ada', 3), 'second')
-    write(source / attempt.format('bob', 2), 'his')
-    assert sorted(rows(course, source).values()) == [AGAIN, NEW, NEW]
+    write(came_in / attempt.format('ada', 2), 'first')
+    write(came_in / attempt.format('ada', 3), 'second')
+    write(came_in / attempt.format('bob', 2), 'his')
+    assert sorted(rows(course, came_in).values()) == [AGAIN, NEW, NEW]
     assert submitted(course)[NOTEBOOK] == 'second'
     assert submitted(course, 'bob')[NOTEBOOK] == 'his'
     assert not (course.gradebook / 'numbers.json').exists()
-    assert sorted(rows(course, source).values()) == [KNOWN, KNOWN, KNOWN]
-    write(source / 'later' / attempt.replace('Lab 1', 'Lab 1 again').format('ada', 4), 'third')
-    assert set(rows(course, source / 'later').values()) == {AGAIN}
+    assert sorted(rows(course, came_in).values()) == [KNOWN, KNOWN, KNOWN]
+    write(came_in / 'later' / attempt.replace('Lab 1', 'Lab 1 again').format('ada', 4), 'third')
+    assert set(rows(course, came_in / 'later').values()) == {AGAIN}
 
 
 @pytest.mark.parametrize('damage', ['{', '[]', '{"ada": 1}', '{"ada": {"x": {"moodle": 1}}}'])
-def test_damaged_numbers_are_said_in_a_sentence(damage, course, source):
+def test_damaged_numbers_are_said_in_a_sentence(damage, course, came_in):
     write(course.gradebook / 'numbers.json', damage)
-    uploaded(source, 'Ada', 1, '')
+    uploaded(came_in, 'Ada', 1, '')
     with pytest.raises(CourseError, match='is damaged: put a copy of it back, or remove it'):
-        rows(course, source)
+        rows(course, came_in)
 
 
-def test_a_folder_of_their_own_is_told_beside_what_was_taken(course, source):
-    uploaded(source, 'Ada', 1, '', '/turtles')
-    (row,) = collect(course, source)
+def test_a_folder_of_their_own_is_told_beside_what_was_taken(course, came_in):
+    uploaded(came_in, 'Ada', 1, '', '/turtles')
+    (row,) = collect(course, came_in)
     assert (row.outcome, row.reason) == (NEW, "from a folder of their own, 'turtles'")
 
 
-def test_other_spellings_of_a_student_are_told(course, source):
+def test_other_spellings_of_a_student_are_told(course, came_in):
     for name in 'Ada Lovelace', 'ADA_lovelace', 'Ada_Lovelace':
         write(course.folder('submitted', name, '99_other') / '99_other.ipynb', '{}')
-    write(source / f'ada_lovelace_{TOY}.ipynb', nbformat.writes(course.release(TOY)))
-    write(source / f'bob_{TOY}.ipynb', nbformat.writes(course.release(TOY)))
-    first, second = collect(course, source)
+    write(came_in / f'ada_lovelace_{TOY}.ipynb', nbformat.writes(course.release(TOY)))
+    write(came_in / f'bob_{TOY}.ipynb', nbformat.writes(course.release(TOY)))
+    first, second = collect(course, came_in)
     assert first.student_id == 'ada_lovelace'
     others = 'ADA_lovelace, Ada Lovelace, Ada_Lovelace'
     assert first.reason == f'not the same as {others}: if it is, rename one'

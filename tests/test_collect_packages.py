@@ -39,13 +39,6 @@ def work(tmp_path):
     return folder
 
 
-@pytest.fixture
-def source(tmp_path):
-    folder = tmp_path / 'came in'
-    folder.mkdir()
-    return folder
-
-
 def names(folder):
     files = (path for path in folder.rglob('*') if path.is_file())
     return {path.relative_to(folder).as_posix() for path in files}
@@ -55,8 +48,8 @@ def submitted(course, student):
     return names(course.folder('submitted', student, LESSON))
 
 
-def rows(course, source):
-    return {row.path: (row.outcome, row.reason) for row in collect(course, source)}
+def rows(course, came_in):
+    return {row.path: (row.outcome, row.reason) for row in collect(course, came_in)}
 
 
 def zipped(folder, at, *, within='', files=None):
@@ -80,42 +73,42 @@ def test_the_lesson_says_which_package_it_asks_for(course):
 MOODLE = 'Ada Lovelace_1815_assignsubmission_file_'
 
 
-def folder_of_a_student(work, source):
-    shutil.copytree(work, source / 'ada' / LESSON)
+def folder_of_a_student(work, came_in):
+    shutil.copytree(work, came_in / 'ada' / LESSON)
 
 
-def archive_of_a_student(work, source):
-    zipped(work, source / 'ada.zip', within=f'{LESSON}/')
+def archive_of_a_student(work, came_in):
+    zipped(work, came_in / 'ada.zip', within=f'{LESSON}/')
 
 
-def tar_of_a_student(work, source):
-    with tarfile.open(source / 'ada.tar.gz', 'w:gz') as box:
+def tar_of_a_student(work, came_in):
+    with tarfile.open(came_in / 'ada.tar.gz', 'w:gz') as box:
         box.add(work, LESSON)
 
 
-def moodle_with_folders(work, source):
-    shutil.copytree(work, source / MOODLE)
+def moodle_with_folders(work, came_in):
+    shutil.copytree(work, came_in / MOODLE)
 
 
-def moodle_with_a_zip_of_the_package(work, source):
-    (source / MOODLE).mkdir()
-    shutil.copy(work / NOTEBOOK, source / MOODLE)
-    zipped(work / PACKAGE, source / MOODLE / f'{PACKAGE}.zip', within=f'{PACKAGE}/')
+def moodle_with_a_zip_of_the_package(work, came_in):
+    (came_in / MOODLE).mkdir()
+    shutil.copy(work / NOTEBOOK, came_in / MOODLE)
+    zipped(work / PACKAGE, came_in / MOODLE / f'{PACKAGE}.zip', within=f'{PACKAGE}/')
 
 
-def moodle_with_a_zip_of_what_is_in_the_package(work, source):
-    (source / MOODLE).mkdir()
-    shutil.copy(work / NOTEBOOK, source / MOODLE)
-    zipped(work / PACKAGE, source / MOODLE / f'{PACKAGE} (1).zip')
+def moodle_with_a_zip_of_what_is_in_the_package(work, came_in):
+    (came_in / MOODLE).mkdir()
+    shutil.copy(work / NOTEBOOK, came_in / MOODLE)
+    zipped(work / PACKAGE, came_in / MOODLE / f'{PACKAGE} (1).zip')
 
 
-def canvas_with_two_uploads(work, source):
-    shutil.copy(work / NOTEBOOK, source / f'ada_18151_21012_{NOTEBOOK}')
-    zipped(work / PACKAGE, source / f'ada_18151_21013_{PACKAGE}-1.zip', within=f'{PACKAGE}/')
+def canvas_with_two_uploads(work, came_in):
+    shutil.copy(work / NOTEBOOK, came_in / f'ada_18151_21012_{NOTEBOOK}')
+    zipped(work / PACKAGE, came_in / f'ada_18151_21013_{PACKAGE}-1.zip', within=f'{PACKAGE}/')
 
 
-def exchange(work, source):
-    shutil.copytree(work, source / f'ada+{LESSON}+2026-11-20 10:00:00.000000 UTC+secret')
+def exchange(work, came_in):
+    shutil.copytree(work, came_in / f'ada+{LESSON}+2026-11-20 10:00:00.000000 UTC+secret')
 
 
 @pytest.mark.parametrize(
@@ -126,43 +119,43 @@ def exchange(work, source):
         *(canvas_with_two_uploads, exchange),
     ],
 )
-def test_a_package_comes_in_with_its_notebook(course, work, source, pack):
-    pack(work, source)
-    said = rows(course, source)
+def test_a_package_comes_in_with_its_notebook(course, work, came_in, pack):
+    pack(work, came_in)
+    said = rows(course, came_in)
     [student] = os.listdir(course.gradebook / 'submitted')
     assert submitted(course, student) - {'timestamp.txt'} == {NOTEBOOK, *FILES}
     assert [outcome for outcome, _ in said.values() if outcome != NEW] == []
     assert {*read(course, student).files} == FILES
 
 
-def test_a_changed_file_of_a_package_is_a_new_hand_in(course, work, source):
-    folder_of_a_student(work, source)
-    rows(course, source)
+def test_a_changed_file_of_a_package_is_a_new_hand_in(course, work, came_in):
+    folder_of_a_student(work, came_in)
+    rows(course, came_in)
     path = f'ada/{LESSON}/{NOTEBOOK}'
-    assert rows(course, source)[path][0] == KNOWN
-    (source / 'ada' / LESSON / PACKAGE / 'setup.cfg').write_text('# mine')
-    assert rows(course, source)[path][0] == AGAIN
+    assert rows(course, came_in)[path][0] == KNOWN
+    (came_in / 'ada' / LESSON / PACKAGE / 'setup.cfg').write_text('# mine')
+    assert rows(course, came_in)[path][0] == AGAIN
     place = course.folder('submitted', 'ada', LESSON)
     assert (place / PACKAGE / 'setup.cfg').read_text() == '# mine'
 
 
-def test_another_students_package_is_not_taken(course, work, source):
-    zipped(work / PACKAGE, source / f'bob_18152_21013_{PACKAGE}.zip', within=f'{PACKAGE}/')
-    shutil.copy(work / NOTEBOOK, source / f'ada_18151_21012_{NOTEBOOK}')
-    said = rows(course, source)
+def test_another_students_package_is_not_taken(course, work, came_in):
+    zipped(work / PACKAGE, came_in / f'bob_18152_21013_{PACKAGE}.zip', within=f'{PACKAGE}/')
+    shutil.copy(work / NOTEBOOK, came_in / f'ada_18151_21012_{NOTEBOOK}')
+    said = rows(course, came_in)
     assert submitted(course, 'ada') == {NOTEBOOK}
     left = {path: reason for path, (outcome, reason) in said.items() if outcome == LEFT}
     assert len(left) == len(FILES)
 
 
-def test_what_is_left_out_is_told_to_both(course, work, source):
+def test_what_is_left_out_is_told_to_both(course, work, came_in):
     package = work / PACKAGE
     for name in ('build/a.py', '__pycache__/a.pyc', '.git/config', 'x<y>.py'):
         (package / name).parent.mkdir(exist_ok=True)
         (package / name).write_text('')
-    folder_of_a_student(work, source)
-    (source / 'ada' / LESSON / PACKAGE / 'shadow').symlink_to('/etc/shadow')
-    said = rows(course, source)
+    folder_of_a_student(work, came_in)
+    (came_in / 'ada' / LESSON / PACKAGE / 'shadow').symlink_to('/etc/shadow')
+    said = rows(course, came_in)
     at = f'ada/{LESSON}/{PACKAGE}'
     assert said[f'{at}/build/a.py'][0] == UNUSED
     assert said[f'{at}/.git'][0] == UNUSED
@@ -172,28 +165,28 @@ def test_what_is_left_out_is_told_to_both(course, work, source):
     notes = ' '.join(read(course, 'ada').notes)
     for name in ('build/a.py', 'x<y>.py', 'shadow (a link'):
         assert name in notes
-    assert rows(course, source)[f'ada/{LESSON}/{NOTEBOOK}'][0] == KNOWN
+    assert rows(course, came_in)[f'ada/{LESSON}/{NOTEBOOK}'][0] == KNOWN
 
 
-def test_ten_thousand_files_cost_the_package_and_not_the_notebook(course, work, source):
-    with zipfile.ZipFile(zipped(work, source / 'ada.zip'), 'a') as box:
+def test_ten_thousand_files_cost_the_package_and_not_the_notebook(course, work, came_in):
+    with zipfile.ZipFile(zipped(work, came_in / 'ada.zip'), 'a') as box:
         for number in range(4_000):
             box.writestr(f'{PACKAGE}/data/{number}', '')
-    rows(course, source)
+    rows(course, came_in)
     assert submitted(course, 'ada') == {NOTEBOOK, LEFT_OUT}
     [note] = read(course, 'ada').notes
     assert f'it has 4,006 files, and at most {MAX_FILES} are taken' in note
     assert 'most are in data/' in note
 
 
-def test_an_archive_chooses_no_place(course, work, source):
-    with zipfile.ZipFile(zipped(work, source / 'ada.zip'), 'a') as box:
+def test_an_archive_chooses_no_place(course, work, came_in):
+    with zipfile.ZipFile(zipped(work, came_in / 'ada.zip'), 'a') as box:
         box.writestr(f'{PACKAGE}/../../../evil.py', 'x')
         box.writestr(f'/{PACKAGE}/evil.py', 'x')
         box.writestr(f'{PACKAGE}/setup.cfg/under_a_file', 'x')
         box.writestr(f'{PACKAGE}/inner.zip', zip_of('deep.py'))
         box.writestr(f'{PACKAGE}/setup.py', 'twice')
-    said = rows(course, source)
+    said = rows(course, came_in)
     place = course.folder('submitted', 'ada', LESSON)
     assert submitted(course, 'ada') == (
         {NOTEBOOK, LEFT_OUT, f'{PACKAGE}/setup.cfg/under_a_file', *FILES}
@@ -212,16 +205,16 @@ def zip_of(name):
     return packed.getvalue()
 
 
-def test_a_notebook_in_a_package_is_no_hand_in(course, work, source):
+def test_a_notebook_in_a_package_is_no_hand_in(course, work, came_in):
     shutil.copy(work / NOTEBOOK, work / PACKAGE / NOTEBOOK)
-    folder_of_a_student(work, source)
-    rows(course, source)
+    folder_of_a_student(work, came_in)
+    rows(course, came_in)
     assert submitted(course, 'ada') == {NOTEBOOK, f'{PACKAGE}/{NOTEBOOK}', *FILES}
 
 
-def test_a_package_without_a_notebook_is_left_to_a_person(course, work, source):
-    zipped(work / PACKAGE, source / 'ada' / f'{PACKAGE}.zip', within=f'{PACKAGE}/')
-    said = rows(course, source)
+def test_a_package_without_a_notebook_is_left_to_a_person(course, work, came_in):
+    zipped(work / PACKAGE, came_in / 'ada' / f'{PACKAGE}.zip', within=f'{PACKAGE}/')
+    said = rows(course, came_in)
     assert len(said) == len(FILES)
     assert {outcome for outcome, _ in said.values()} <= {LEFT, UNUSED}
 

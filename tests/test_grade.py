@@ -2,7 +2,7 @@ import os
 import tempfile
 
 import pytest
-from course_maker import TOY, answered, executed, released_course, submit
+from course_maker import TOY, answered, executed, submit
 from stand_in import stand_in
 
 from grader.cli.demo import demo
@@ -18,11 +18,6 @@ from grader.storage.submitted import find_submissions
 
 RIGHT = 'def double(x):\n    return 2 * x'
 WRONG = 'def double(x):\n    return x + 1'
-
-
-@pytest.fixture(scope='module')
-def released(tmp_path_factory):
-    return released_course(tmp_path_factory.mktemp('grade'))
 
 
 @pytest.fixture

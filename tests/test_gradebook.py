@@ -9,7 +9,7 @@ from pathlib import Path
 
 import nbformat
 import pytest
-from course_maker import TOY, answered, executed, released_course, submit, toy_lesson, write_source
+from course_maker import TOY, answered, executed, submit, toy_lesson, write_source
 from nbgrader.api import Gradebook
 from sqlalchemy import event
 from sqlalchemy.engine import Engine
@@ -28,11 +28,6 @@ from grader.storage.registering import register
 from grader.storage.submission_rows import SubmissionRows
 
 RIGHT = 'def double(x):\n    return 2 * x'
-
-
-@pytest.fixture(scope='module')
-def released(tmp_path_factory):
-    return released_course(tmp_path_factory.mktemp('released'))
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import re
 import psutil
 import pytest
 import zmq
-from grading_kernels import Spares, opened_kernel, runs_in, text_of
+from grading_kernels import text_of
 from my_robot_basics.validate.limits import (
     FLOOD_CHARACTERS,
     MAX_MESSAGE_BYTES,
@@ -18,32 +18,6 @@ from my_robot_basics.validate.outputs import CUT_OFF, MAX_OUTPUT_CHARACTERS
 from my_robot_basics.validate.questions import reply_of
 from my_robot_basics.validate.verdict import judge
 from nbformat.v4 import new_code_cell
-
-
-@pytest.fixture(scope='module')
-def spares(loop):
-    spares = Spares(loop)
-    yield spares
-    spares.stop()
-
-
-@pytest.fixture
-def spare(spares):
-    """A kernel for a cell that leaves nothing in it."""
-    with spares.kernel() as kernel:
-        yield kernel
-
-
-@pytest.fixture
-def own(loop):
-    """A kernel of one test's own."""
-    with opened_kernel(loop) as kernel:
-        yield kernel
-
-
-@pytest.fixture
-def run(loop):
-    return runs_in(loop)
 
 
 def size_of(cell_run):
@@ -60,12 +34,12 @@ FLOODS = {
 
 
 @pytest.mark.parametrize('code', FLOODS.values(), ids=FLOODS)
-def test_a_flood_is_drained_and_bounded_and_the_kernel_goes_on(spare, run, code):
-    result = run(spare, code)
+def test_a_flood_is_drained_and_bounded_and_the_kernel_goes_on(spare_kernel, run_cell, code):
+    result = run_cell(spare_kernel, code)
     assert not result.died
     assert size_of(result) < 1.1 * MAX_OUTPUT_CHARACTERS
     # ZMQ drops what a full queue has no room for, and that may be the first words after the flood
-    after = [run(spare, 'print("after")') for _ in range(4)]
+    after = [run_cell(spare_kernel, 'print("after")') for _ in range(4)]
     assert all(each.ran_to_end for each in after)
     assert text_of(after[-1]) == 'after\n', [text_of(each) for each in after]
 
@@ -82,16 +56,16 @@ ENDLESS = {
 
 @pytest.mark.slow
 @pytest.mark.parametrize('code', ENDLESS.values(), ids=ENDLESS)
-def test_an_endless_flood_does_not_keep_the_time_limit_waiting(spare, run, code):
-    result = run(spare, code, timeout_sec=1.0)
+def test_an_endless_flood_does_not_keep_the_time_limit_waiting(spare_kernel, run_cell, code):
+    result = run_cell(spare_kernel, code, timeout_sec=1.0)
     assert result.timed_out
     assert size_of(result) < 1.1 * MAX_OUTPUT_CHARACTERS
 
 
 @pytest.mark.slow
-def test_an_endless_flood_ends_long_before_the_time_limit(spare, run):
+def test_an_endless_flood_ends_long_before_the_time_limit(spare_kernel, run_cell):
     code = "from IPython.display import HTML\nwhile True: display(HTML('<b>' * 10_000))"
-    result = run(spare, code, timeout_sec=60.0)
+    result = run_cell(spare_kernel, code, timeout_sec=60.0)
     assert result.timed_out
     # up to its time limit it would print far more
     [dropped] = re.findall(r'\[([\d,]+) more characters of output were not kept', text_of(result))
@@ -111,17 +85,19 @@ threading.Thread(target=flood, daemon=True).start()
 
 
 @pytest.mark.slow
-def test_a_flood_for_another_cell_fills_no_memory_of_the_graders_and_counts(own, run, loop):
-    assert run(own, OF_ANOTHER).ran_to_end
+def test_a_flood_for_another_cell_fills_no_memory_of_the_graders_and_counts(
+    own_kernel, run_cell, loop
+):
+    assert run_cell(own_kernel, OF_ANOTHER).ran_to_end
     before = psutil.Process().memory_info().rss
     loop.run(asyncio.sleep(4.0))
     assert psutil.Process().memory_info().rss - before < 100_000_000
-    result = run(own, 'import time; time.sleep(50)')
+    result = run_cell(own_kernel, 'import time; time.sleep(50)')
     assert (result.flooded, result.timed_out) == (True, True)
 
 
 @pytest.mark.parametrize('part', ['[],', '{},'])
-def test_a_message_of_a_million_parts_is_passed_over(spare, run, part):
+def test_a_message_of_a_million_parts_is_passed_over(spare_kernel, run_cell, part):
     forged = (
         'kernel = get_ipython().kernel\n'
         f'content = {{"data": [{part}] * 300_000}}\n'
@@ -129,15 +105,15 @@ def test_a_message_of_a_million_parts_is_passed_over(spare, run, part):
         'kernel.session.send(kernel.iopub_socket, "display_data", content, parent=parent)\n'
         'print("after")'
     )
-    result = run(spare, forged)
+    result = run_cell(spare_kernel, forged)
     assert result.ran_to_end
     assert text_of(result) == 'after\n'
     with pytest.raises(ValueError, match='300,001 objects and lists'):
         unpacked(f'[{part * 300_000}0]'.encode())
 
 
-def test_the_limits_of_what_waits_are_those_of_the_sockets(spare):
-    client = spare._connection.client
+def test_the_limits_of_what_waits_are_those_of_the_sockets(spare_kernel):
+    client = spare_kernel._connection.client
     for channel in (client.iopub_channel, client.shell_channel, client.stdin_channel):
         limits = [channel.socket.getsockopt(each) for each in (zmq.RCVHWM, zmq.MAXMSGSIZE)]
         assert limits == [MAX_MESSAGES_WAITING, MAX_MESSAGE_BYTES]
@@ -152,9 +128,11 @@ TOO_LARGE = {
 
 @pytest.mark.slow
 @pytest.mark.parametrize(('code', 'asked'), TOO_LARGE.values(), ids=TOO_LARGE)
-def test_a_message_that_is_too_large_ends_the_kernel_and_it_is_said(spare, run, code, asked):
+def test_a_message_that_is_too_large_ends_the_kernel_and_it_is_said(
+    spare_kernel, run_cell, code, asked
+):
     """Else nothing that the kernel says would be received any more, and nobody told why."""
-    result = run(spare, code, expressions=asked)
+    result = run_cell(spare_kernel, code, expressions=asked)
     assert (result.cut_off, result.flooded, result.died) == (True, True, True)
     reply = json.loads(reply_of(result, within_sec=10.0))
     assert reply == {'failed': f'no answer: your code {CUT_OFF}'}
@@ -163,17 +141,17 @@ def test_a_message_that_is_too_large_ends_the_kernel_and_it_is_said(spare, run, 
     assert verdict.outcome == 'failed'
     assert verdict.reason.endswith(f'before the check: your cell `double` {CUT_OFF}')
     assert 'sent over 64 MB at once' in CUT_OFF
-    assert asyncio.run(spare.ending()) is None  # we have ended it: that is nobody's doubt
+    assert asyncio.run(spare_kernel.ending()) is None  # we have ended it: that is nobody's doubt
 
 
-def test_a_kernel_that_ends_is_not_taken_for_one_that_was_cut_off(spare, run):
-    result = run(spare, 'import os; os._exit(3)')
+def test_a_kernel_that_ends_is_not_taken_for_one_that_was_cut_off(spare_kernel, run_cell):
+    result = run_cell(spare_kernel, 'import os; os._exit(3)')
     assert (result.cut_off, result.timed_out, result.died) == (False, False, True)
 
 
-def test_a_large_message_within_the_limit_cuts_nothing_off(spare, run):
-    assert not run(spare, "print('x' * 9_000_000)").cut_off
-    assert text_of(run(spare, "print('after')")) == 'after\n'
+def test_a_large_message_within_the_limit_cuts_nothing_off(spare_kernel, run_cell):
+    assert not run_cell(spare_kernel, "print('x' * 9_000_000)").cut_off
+    assert text_of(run_cell(spare_kernel, "print('after')")) == 'after\n'
 
 
 FORGE = """
@@ -195,8 +173,8 @@ print('done')
 """
 
 
-def test_what_is_not_a_message_is_passed_over(spare, run):
-    result = run(spare, FORGE)
+def test_what_is_not_a_message_is_passed_over(spare_kernel, run_cell):
+    result = run_cell(spare_kernel, FORGE)
     assert result.ran_to_end
     assert 'done\n' in text_of(result)
 
@@ -210,8 +188,8 @@ while True: pass
 """
 
 
-def test_a_forged_end_is_not_the_end(spare, run):
-    result = run(spare, FORGED_END, timeout_sec=1.0)
+def test_a_forged_end_is_not_the_end(spare_kernel, run_cell):
+    result = run_cell(spare_kernel, FORGED_END, timeout_sec=1.0)
     assert result.timed_out
 
 

@@ -7,26 +7,13 @@ import time
 from pathlib import Path
 
 import pytest
-from grading_kernels import DOMAIN, IGNORES, opened_kernel, processes_of, runs_in, text_of
+from grading_kernels import DOMAIN, IGNORES, processes_of, text_of
 from jupyter_client.kernelspec import KernelSpec
 
 from grader.common.errors import RoomFailure
 from grader.kernels import kernels
 from grader.kernels.kernel_manager import OurKernelSpec
 from grader.kernels.kernels import GradingKernel
-
-
-@pytest.fixture
-def own(loop):
-    """A kernel of one test's own."""
-    with opened_kernel(loop) as kernel:
-        yield kernel
-
-
-@pytest.fixture
-def run(loop):
-    return runs_in(loop)
-
 
 CHILDREN = """
 import os, subprocess
@@ -40,31 +27,34 @@ if os.fork() == 0:
 
 
 @pytest.mark.parametrize('code', ['pass', IGNORES], ids=['ended', 'killed'])
-def test_nothing_that_a_cell_started_outlives_the_kernel(own, loop, run, code):
-    run(own, CHILDREN)
+def test_nothing_that_a_cell_started_outlives_the_kernel(own_kernel, loop, run_cell, code):
+    run_cell(own_kernel, CHILDREN)
     deadline = time.monotonic() + 30
     # one that is about to become another program shows no environment for a moment
-    while (count := len(processes_of(own))) != 4 and time.monotonic() < deadline:
+    while (count := len(processes_of(own_kernel))) != 4 and time.monotonic() < deadline:
         time.sleep(0.05)
     assert count == 4
-    run(own, code, timeout_sec=0.5)
-    loop.run(own.stop())
-    assert processes_of(own) == []
-    assert not own.folder.exists()
+    run_cell(own_kernel, code, timeout_sec=0.5)
+    loop.run(own_kernel.stop())
+    assert processes_of(own_kernel) == []
+    assert not own_kernel.folder.exists()
 
 
-def test_a_thread_that_will_not_end_does_not_keep_a_kernel(own, loop, run):
-    run(own, 'import threading, time\nthreading.Thread(target=time.sleep, args=(1000,)).start()')
-    loop.run(own.stop())
-    assert processes_of(own) == []
+def test_a_thread_that_will_not_end_does_not_keep_a_kernel(own_kernel, loop, run_cell):
+    run_cell(
+        own_kernel,
+        'import threading, time\nthreading.Thread(target=time.sleep, args=(1000,)).start()',
+    )
+    loop.run(own_kernel.stop())
+    assert processes_of(own_kernel) == []
 
 
-def test_a_kernel_leaves_no_file_and_no_descriptor(loop, run):
+def test_a_kernel_leaves_no_file_and_no_descriptor(loop, run_cell):
     before = None
     for _ in range(2):
         kernel = GradingKernel(room='test', domain_id=DOMAIN, seed='ab')
         loop.run(kernel.start())
-        assert run(kernel, "open('left.txt', 'w').write('x')").ran_to_end
+        assert run_cell(kernel, "open('left.txt', 'w').write('x')").ran_to_end
         loop.run(kernel.stop())
         loop.run(kernel.stop())  # twice does no harm
         assert not kernel.folder.exists()
@@ -73,13 +63,15 @@ def test_a_kernel_leaves_no_file_and_no_descriptor(loop, run):
     assert descriptors <= before
 
 
-def environment(run, kernel):
-    result = run(kernel, "import os; print('\\n'.join(f'{k}={v}' for k, v in os.environ.items()))")
+def environment(run_cell, kernel):
+    result = run_cell(
+        kernel, "import os; print('\\n'.join(f'{k}={v}' for k, v in os.environ.items()))"
+    )
     return dict(line.split('=', 1) for line in text_of(result).splitlines() if '=' in line)
 
 
 @pytest.mark.parametrize('room', ['student', 'test'])
-def test_a_kernel_is_told_only_what_its_room_may_know(loop, run, monkeypatch, room):
+def test_a_kernel_is_told_only_what_its_room_may_know(loop, run_cell, monkeypatch, room):
     forbidden = {
         'PYTHONPATH': '/tmp/nowhere',
         'PYTEST_CURRENT_TEST': 'x',
@@ -92,7 +84,7 @@ def test_a_kernel_is_told_only_what_its_room_may_know(loop, run, monkeypatch, ro
     kernel = GradingKernel(room=room, domain_id=5, seed='abcd')
     loop.run(kernel.start())
     try:
-        seen = environment(run, kernel)
+        seen = environment(run_cell, kernel)
     finally:
         loop.run(kernel.stop())
     assert seen['MY_ROBOT_BASICS_ROOM'] == room
@@ -102,9 +94,9 @@ def test_a_kernel_is_told_only_what_its_room_may_know(loop, run, monkeypatch, ro
     assert not [v for v in seen.values() if 'secret' in v]
 
 
-def test_a_kernel_works_in_an_empty_folder_and_imports_nothing_from_it(own, run):
+def test_a_kernel_works_in_an_empty_folder_and_imports_nothing_from_it(own_kernel, run_cell):
     code = "import os, sys; print(os.listdir(), {'', '.', os.getcwd()} & set(sys.path))"
-    assert text_of(run(own, code)) == '[] set()\n'
+    assert text_of(run_cell(own_kernel, code)) == '[] set()\n'
 
 
 @pytest.mark.parametrize(
@@ -130,17 +122,17 @@ def test_a_kernel_that_never_answers_is_given_up(loop, monkeypatch):
     assert processes_of(kernel) == []
 
 
-def test_cancelling_a_cell_leaves_a_kernel_that_can_be_stopped(own, loop):
+def test_cancelling_a_cell_leaves_a_kernel_that_can_be_stopped(own_kernel, loop):
     async def cancelled():
-        task = asyncio.ensure_future(own.run('while True: pass', timeout_sec=600.0))
+        task = asyncio.ensure_future(own_kernel.run('while True: pass', timeout_sec=600.0))
         await asyncio.sleep(0.3)
         task.cancel()
         await task
 
     with pytest.raises(asyncio.CancelledError):
         loop.run(cancelled())
-    loop.run(own.stop())
-    assert processes_of(own) == []
+    loop.run(own_kernel.stop())
+    assert processes_of(own_kernel) == []
 
 
 def test_a_long_path_for_temporary_files_is_not_used_for_sockets(monkeypatch, tmp_path):

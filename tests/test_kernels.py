@@ -4,7 +4,7 @@ import asyncio
 import time
 
 import pytest
-from grading_kernels import IGNORES, Spares, opened_kernel, processes_of, runs_in, text_of
+from grading_kernels import IGNORES, opened_kernel, processes_of, text_of
 from my_robot_basics.validate import timeouts
 
 
@@ -13,32 +13,6 @@ def shared(loop):
     """A kernel for cells that do it no harm."""
     with opened_kernel(loop) as kernel:
         yield kernel
-
-
-@pytest.fixture(scope='module')
-def spares(loop):
-    spares = Spares(loop)
-    yield spares
-    spares.stop()
-
-
-@pytest.fixture
-def spare(spares):
-    """A kernel for a cell that leaves nothing in it."""
-    with spares.kernel() as kernel:
-        yield kernel
-
-
-@pytest.fixture
-def own(loop):
-    """A kernel of one test's own."""
-    with opened_kernel(loop) as kernel:
-        yield kernel
-
-
-@pytest.fixture
-def run(loop):
-    return runs_in(loop)
 
 
 ENDS = {
@@ -58,21 +32,21 @@ ENDS = {
 
 
 @pytest.mark.parametrize(('code', 'ran_to_end', 'text'), ENDS.values(), ids=ENDS)
-def test_a_cell_comes_to_its_end(shared, run, code, ran_to_end, text):
-    result = run(shared, code)
+def test_a_cell_comes_to_its_end(shared, run_cell, code, ran_to_end, text):
+    result = run_cell(shared, code)
     assert result.ran_to_end is ran_to_end
     assert text_of(result) == text
     assert (result.timed_out, result.died) == (False, False)
     assert shared.alive
 
 
-def test_a_question_is_answered_only_where_somebody_answers(shared, run):
+def test_a_question_is_answered_only_where_somebody_answers(shared, run_cell):
     async def answer(prompt):
         return prompt.upper()
 
-    result = run(shared, "print(input('name? '), input('age? '))", on_input=answer)
+    result = run_cell(shared, "print(input('name? '), input('age? '))", on_input=answer)
     assert text_of(result) == 'NAME?  AGE? \n'
-    assert run(shared, "input('name? ')").error.ename == 'StdinNotImplementedError'
+    assert run_cell(shared, "input('name? ')").error.ename == 'StdinNotImplementedError'
 
 
 def test_a_cell_does_not_pay_for_a_grader_that_stood_still(shared, loop):
@@ -94,42 +68,42 @@ def test_a_cell_is_waited_for_by_what_it_has_used(shared, loop):
     assert asked
 
 
-def test_an_answer_that_fails_is_an_error_at_once(own, loop):
+def test_an_answer_that_fails_is_an_error_at_once(own_kernel, loop):
     async def answer(prompt):
         raise RuntimeError('no answer to ' + prompt)
 
     with pytest.raises(RuntimeError, match='no answer to name'):
-        loop.run(own.run("input('name? ')", timeout_sec=600.0, on_input=answer))
+        loop.run(own_kernel.run("input('name? ')", timeout_sec=600.0, on_input=answer))
 
 
-def test_expressions_come_back_with_the_reply(shared, run):
-    result = run(shared, '', expressions={'reply': "'a' * 3"})
+def test_expressions_come_back_with_the_reply(shared, run_cell):
+    result = run_cell(shared, '', expressions={'reply': "'a' * 3"})
     assert result.expressions['reply']['data']['text/plain'] == "'aaa'"
 
 
-def test_a_display_is_updated_from_a_later_cell(shared, run):
-    first = run(shared, "h = display('old', display_id=True)")
-    second = run(shared, "h.update('new'); print('done')")
+def test_a_display_is_updated_from_a_later_cell(shared, run_cell):
+    first = run_cell(shared, "h = display('old', display_id=True)")
+    second = run_cell(shared, "h.update('new'); print('done')")
     assert [o.data['text/plain'] for o in first.outputs] == ["'new'"]
     assert text_of(second) == 'done\n'
 
 
-def test_an_endless_cell_is_interrupted_and_costs_only_itself(spare, run):
-    run(spare, 'x = 5')
-    result = run(spare, 'while True: pass', timeout_sec=1.5)
+def test_an_endless_cell_is_interrupted_and_costs_only_itself(spare_kernel, run_cell):
+    run_cell(spare_kernel, 'x = 5')
+    result = run_cell(spare_kernel, 'while True: pass', timeout_sec=1.5)
     assert (result.timed_out, result.died, result.error.ename) == (
         True,
         False,
         'KeyboardInterrupt',
     )
-    assert text_of(run(spare, 'print(x)')) == '5\n'
+    assert text_of(run_cell(spare_kernel, 'print(x)')) == '5\n'
 
 
-def test_a_cell_that_ignores_the_interrupt_is_killed(own, run):
+def test_a_cell_that_ignores_the_interrupt_is_killed(own_kernel, run_cell):
     # it must have begun to ignore interrupts by then, on a busy machine too
-    result = run(own, IGNORES, timeout_sec=3.0)
-    assert (result.timed_out, result.died, own.alive) == (True, True, False)
-    assert processes_of(own) == []
+    result = run_cell(own_kernel, IGNORES, timeout_sec=3.0)
+    assert (result.timed_out, result.died, own_kernel.alive) == (True, True, False)
+    assert processes_of(own_kernel) == []
 
 
 SLOW_TO_END = """
@@ -144,19 +118,19 @@ except KeyboardInterrupt:
 @pytest.mark.slow
 @pytest.mark.parametrize(('is_busy', 'died'), [(False, True), (True, False)])
 def test_a_busy_machine_gives_an_interrupted_cell_more_time(
-    monkeypatch, spare, run, is_busy, died
+    monkeypatch, spare_kernel, run_cell, is_busy, died
 ):
     stalled_sec = time.monotonic if is_busy else lambda: 0.0
     monkeypatch.setattr(timeouts.pressure, 'stalled_sec', stalled_sec)
     monkeypatch.setattr(timeouts.pressure, 'idle_sec', time.monotonic)
-    result = run(spare, SLOW_TO_END, timeout_sec=1.5)
+    result = run_cell(spare_kernel, SLOW_TO_END, timeout_sec=1.5)
     assert (result.timed_out, result.died) == (True, died)
 
 
-def test_no_busy_machine_gives_more_than_its_limit(monkeypatch, own, run):
+def test_no_busy_machine_gives_more_than_its_limit(monkeypatch, own_kernel, run_cell):
     monkeypatch.setattr(timeouts.pressure, 'stalled_sec', time.monotonic)
     monkeypatch.setattr(timeouts, 'INTERRUPT_MOST_SEC', 1.0)
-    assert run(own, IGNORES, timeout_sec=3.0).died
+    assert run_cell(own_kernel, IGNORES, timeout_sec=3.0).died
 
 
 FATAL = {
@@ -168,21 +142,23 @@ FATAL = {
 
 
 @pytest.mark.parametrize('code', FATAL.values(), ids=FATAL)
-def test_a_kernel_that_dies_is_noticed(spare, run, code):
-    result = run(spare, code, timeout_sec=600.0)
-    assert (result.died, result.timed_out, spare.alive) == (True, False, False)
-    again = run(spare, 'print(1)', timeout_sec=600.0)
+def test_a_kernel_that_dies_is_noticed(spare_kernel, run_cell, code):
+    result = run_cell(spare_kernel, code, timeout_sec=600.0)
+    assert (result.died, result.timed_out, spare_kernel.alive) == (True, False, False)
+    again = run_cell(spare_kernel, 'print(1)', timeout_sec=600.0)
     assert (again.died, again.ran_to_end, again.outputs) == (True, False, [])
 
 
-def test_a_kernel_whose_cell_calls_exit_ends_with_it_and_that_is_nobodys_doubt(spare, loop, run):
-    result = run(spare, 'exit()')
-    assert (result.leaves, result.died, spare.alive) == (True, True, False)
-    assert loop.run(spare.ending()) is None
+def test_a_kernel_whose_cell_calls_exit_ends_with_it_and_that_is_nobodys_doubt(
+    spare_kernel, loop, run_cell
+):
+    result = run_cell(spare_kernel, 'exit()')
+    assert (result.leaves, result.died, spare_kernel.alive) == (True, True, False)
+    assert loop.run(spare_kernel.ending()) is None
 
 
-def test_an_error_counts_though_its_output_was_lost(own, run):
-    run(own, 'get_ipython()._showtraceback = lambda *a: None')
-    result = run(own, '1 / 0')
+def test_an_error_counts_though_its_output_was_lost(own_kernel, run_cell):
+    run_cell(own_kernel, 'get_ipython()._showtraceback = lambda *a: None')
+    result = run_cell(own_kernel, '1 / 0')
     assert not result.ran_to_end
     assert [o.ename for o in result.outputs] == ['ZeroDivisionError']

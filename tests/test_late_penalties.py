@@ -4,7 +4,7 @@ from datetime import datetime
 from pathlib import Path
 
 import pytest
-from course_maker import TOY, answered, executed, released_course, submit
+from course_maker import TOY, answered, executed, submit
 from nbgrader.api import Gradebook
 
 from grader.common.errors import CourseError
@@ -39,11 +39,6 @@ per_day = 0.1
 at_most = 0.5
 grace_minutes = 15
 """
-
-
-@pytest.fixture(scope='module')
-def released(tmp_path_factory):
-    return released_course(tmp_path_factory.mktemp('late'))
 
 
 @pytest.fixture

@@ -4,7 +4,7 @@ import asyncio
 
 import nbformat
 import pytest
-from course_maker import TOY, answered, released_course, submit
+from course_maker import TOY, answered, submit
 from nbformat.v4 import new_code_cell
 from stand_in import note_tasks
 
@@ -13,11 +13,6 @@ from grader.judging.task import GradingTask
 from grader.notebook.restore import KEY, grade_id
 
 ANSWER = 'def double(x): return 2 * x'
-
-
-@pytest.fixture(scope='module')
-def released(tmp_path_factory):
-    return released_course(tmp_path_factory.mktemp('course'))
 
 
 @pytest.fixture

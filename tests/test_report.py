@@ -3,7 +3,7 @@ import re
 from datetime import UTC, datetime
 
 import pytest
-from course_maker import TOY, answered, executed, released_course, submit
+from course_maker import TOY, answered, executed, submit
 from nbgrader.api import Gradebook
 
 from grader.cli.demo import demo
@@ -19,11 +19,6 @@ from grader.storage.pipeline import prepare, prepared_template, unanswered
 ANSWER = 'def double(x):\n    return x + x'
 SCRIPT = '<script>alert("from a student")</script>'
 RUN = Run(datetime(2026, 11, 21, 8, 30, tzinfo=UTC))
-
-
-@pytest.fixture(scope='module')
-def released(tmp_path_factory):
-    return released_course(tmp_path_factory.mktemp('report'))
 
 
 @pytest.fixture
