@@ -6,8 +6,8 @@ from pathlib import Path
 
 from chromium import LONG
 from hub_machine import PASSWORD
+from lab_browser import close_all
 from playwright.sync_api import expect
-from test_browser import close_all
 
 START = """async () => {
     window.started = window.started || [];

@@ -1,28 +1,29 @@
 """What a student sees: the released lessons in JupyterLab, opened as `./course lab` does."""
 
-import json
-import os
 import re
 import shutil
-import socket
-import subprocess
-import tempfile
-import time
-import urllib.error
-import urllib.request
-from pathlib import Path
 
 import nbformat
 import psutil
 import pytest
 from answered import answered
 from chromium import LONG, drives_chromium, launched
+from lab_browser import (
+    LESSONS,
+    ROOT,
+    TOKEN,
+    WIDTH,
+    Lab,
+    Lesson,
+    close_all,
+    errors,
+    run_through,
+    see_the_arm_move,
+    wait_until_open,
+    warnings,
+)
 from my_robot_basics.live.workspace import make_workspace
 from playwright.sync_api import expect
-
-ROOT = Path(__file__).parents[1]
-LESSONS = sorted(path.stem for path in ROOT.glob('notebooks/[0-9]*/*.ipynb'))
-TOKEN = 'a-token-of-this-test'
 
 pytestmark = drives_chromium
 
@@ -34,151 +35,6 @@ def to_joint_state(theta1_deg, theta2_deg, stamp):
     return message
 """
 RIGHT = WRONG.replace('[theta1_deg, theta2_deg]', '[radians(theta1_deg), radians(theta2_deg)]')
-
-
-class Lab:
-    """A JupyterLab of `./course lab`, for copies of the released lessons."""
-
-    def __init__(self, folder, *arguments):
-        self.folder = folder / 'notebooks'
-        self.folder.mkdir()
-        with socket.socket() as free:
-            free.bind(('127.0.0.1', 0))
-            self.address = f'http://127.0.0.1:{free.getsockname()[1]}'
-        # neither what this user's own JupyterLab remembers, nor what a test session sets
-        names = ['CONFIG', 'DATA', 'RUNTIME']
-        mine = {f'JUPYTER_{name}_DIR': str(folder / name) for name in names}
-        not_a_students = ('PYTEST_', 'COV_', 'MY_ROBOT_BASICS_', 'ROS_')
-        clean = {k: v for k, v in os.environ.items() if not k.startswith(not_a_students)}
-        options = ['--no-browser', '--expose-app-in-browser', '--ServerApp.port_retries=0']
-        options += [
-            f'--port={self.address.rpartition(":")[2]}',
-            f'--IdentityProvider.token={TOKEN}',
-        ]
-        self.log = folder / 'log'
-        with self.log.open('w') as log:
-            self.server = subprocess.Popen(
-                [ROOT / 'course', 'lab', self.folder, *options, *arguments],
-                env=clean | mine,
-                stdin=subprocess.DEVNULL,
-                stdout=log,
-                stderr=subprocess.STDOUT,
-            )
-
-    def wait_until_up(self):
-        deadline = time.monotonic() + LONG / 1000
-        while True:
-            try:
-                return urllib.request.urlopen(f'{self.address}/api/status?token={TOKEN}').close()
-            except urllib.error.URLError:
-                assert self.server.poll() is None, self.log.read_text()
-                assert time.monotonic() < deadline, self.log.read_text()
-                time.sleep(0.2)
-
-    def fresh_copy(self, name, language=''):
-        """A released lesson that nobody has opened yet, and so without a kernel: its path here."""
-        folder = Path(tempfile.mkdtemp(dir=self.folder))
-        shutil.copy(ROOT / 'notebooks' / language / name / f'{name}.ipynb', folder)
-        return f'{folder.name}/{name}.ipynb'
-
-    def stop(self):
-        self.server.terminate()
-        try:
-            self.server.wait(30)
-        except subprocess.TimeoutExpired:
-            self.server.kill()
-            self.server.wait()
-
-
-def wait_until_open(page, path):
-    """Wait until a notebook is the one in front, and its kernel is up."""
-    page.wait_for_function(f"""
-        jupyterapp.shell.currentWidget?.context?.path === '{path}'
-        && jupyterapp.shell.currentWidget.context.isReady
-        && jupyterapp.shell.currentWidget.sessionContext.session?.kernel?.status === 'idle'
-    """)
-
-
-class Lesson:
-    """One lesson, open in a browser."""
-
-    def __init__(self, page, path):
-        self.page = page
-        page.evaluate(  # as at a double click
-            "async path => { await jupyterapp.commands.execute('docmanager:open', {path}) }", path
-        )
-        wait_until_open(page, path)
-
-    def command(self, name, index=None):
-        """Run a command of JupyterLab's menus, with a cell selected, and wait for its end."""
-        self.page.evaluate(
-            """async ([name, index]) => {
-                if (index !== null)
-                    jupyterapp.shell.currentWidget.content.activeCellIndex = index;
-                await jupyterapp.commands.execute(name);
-            }""",
-            [name, index],
-        )
-
-    @property
-    def cells(self):
-        notebook = 'JSON.stringify(jupyterapp.shell.currentWidget.content.model.toJSON())'
-        return nbformat.from_dict(json.loads(self.page.evaluate(notebook))).cells
-
-    def index(self, cell_id):
-        return [cell.id for cell in self.cells].index(cell_id)
-
-    def shown(self, cell_id):
-        """The cell, scrolled to."""
-        index = self.index(cell_id)
-        self.page.evaluate('i => jupyterapp.shell.currentWidget.content.scrollToItem(i)', index)
-        cell = self.page.locator(f'.jp-Notebook .jp-Cell[data-windowed-list-index="{index}"]')
-        cell.scroll_into_view_if_needed()
-        return cell
-
-    def type(self, cell_id, text):
-        """Replace a cell's text, as with the keyboard."""
-        self.shown(cell_id).locator('.cm-content').click()
-        self.page.keyboard.press('Control+A')
-        self.page.keyboard.insert_text(text)
-
-    def validate(self, title='Validation Results', close='Close'):
-        """Press the button; return what its dialog says in the end."""
-        self.page.get_by_role('button', name='Validate').click()
-        dialog = self.page.locator('.jp-Dialog', has=self.page.locator('.mrb-validate-report'))
-        dialog.locator('.mrb-validate-summary').wait_for()
-        expect(dialog.locator('.jp-Dialog-header')).to_have_text(title)
-        said = dialog.inner_text()
-        dialog.get_by_role('button', name=close).click()
-        expect(dialog).to_have_count(0)
-        return ' '.join(said.split())
-
-
-def errors(cells):
-    return {
-        cell.id: re.sub(r'\x1b\[[\d;]*m', '', '\n'.join(output.traceback))
-        for cell in cells
-        for output in cell.get('outputs', [])
-        if output.output_type == 'error'
-    }
-
-
-ALL_RAN = """() => {
-    const {content, sessionContext} = jupyterapp.shell.currentWidget;
-    const code = content.model.toJSON().cells.filter(cell => cell.cell_type === 'code');
-    return code.every(cell => cell.execution_count !== null)
-        && sessionContext.session.kernel.status === 'idle';
-}"""
-WIDTH = 'async image => (await image.decode(), image.naturalWidth)'
-
-
-def pictures(cell):
-    """The stored outputs that show a picture."""
-    return [o for o in cell.get('outputs', []) if 'image/png' in o.get('data', {})]
-
-
-def warnings(cells):
-    return [o for c in cells for o in c.get('outputs', []) if o.get('name') == 'stderr']
 
 
 @pytest.fixture(scope='module')
@@ -209,14 +65,6 @@ def page(lab, chromium):
     wait_until_open(page, 'index.ipynb')
     yield page
     page.close()
-
-
-def close_all(page):
-    """End every kernel, and close what is open."""
-    page.evaluate("""async () => {
-        await jupyterapp.serviceManager.sessions.shutdownAll();
-        [...jupyterapp.shell.widgets('main')].forEach(widget => widget.dispose());
-    }""")
 
 
 @pytest.fixture
@@ -286,27 +134,6 @@ def test_the_workspace_opens_in_the_file_browser(lab, page, monkeypatch):
         close_all(page)
 
 
-def run_through(lesson):
-    """Run all cells of an unanswered lesson: it stops at no check, and every picture is shown."""
-    released = lesson.cells
-    # a check, and what runs an answer: lesson 11 has commands, and none is there yet
-    stops = [c.id for c in released if 'raises-exception' in c.metadata.get('tags', ())]
-    lesson.command('notebook:run-all-cells')
-    # the command waits for the first error only; a whole lesson takes longer than an action
-    lesson.page.wait_for_function(ALL_RAN, timeout=3 * LONG)
-    cells = lesson.cells
-    failed = errors(cells)
-    assert failed
-    assert {name: why for name, why in failed.items() if name not in stops} == {}
-    assert warnings(cells) == []
-    for cell in released:
-        if count := len(pictures(cell)):
-            images = lesson.shown(cell.id).locator('.jp-OutputArea img')
-            expect(images).to_have_count(count)
-            for image in images.all():
-                assert image.evaluate(WIDTH) > 200
-
-
 @pytest.mark.parametrize('name', LESSONS)
 def test_run_all_goes_through_an_unanswered_lesson_and_stops_at_no_check(opened, name):
     run_through(opened(name))
@@ -315,17 +142,6 @@ def test_run_all_goes_through_an_unanswered_lesson_and_stops_at_no_check(opened,
 @pytest.mark.slow
 def test_the_live_arm_moves(opened):
     see_the_arm_move(opened('03_publisher'))
-
-
-def see_the_arm_move(lesson):
-    """Run the cells of lesson 3 that show it, and see the picture change."""
-    lesson.command('notebook:run-cell', lesson.index('imports'))
-    lesson.command('notebook:run-cell', lesson.index('live'))
-    assert errors(lesson.cells) == {}
-    image = lesson.shown('live').locator('.jp-OutputArea img')
-    for _ in range(2):  # the first change may be that of the stored picture
-        before = image.get_attribute('src')
-        expect(image).not_to_have_attribute('src', before)
 
 
 @pytest.mark.slow

@@ -5,8 +5,7 @@ import shutil
 
 import pytest
 from chromium import LONG, drives_chromium, launched
-from playwright.sync_api import expect
-from test_browser import (
+from lab_browser import (
     ALL_RAN,
     LESSONS,
     ROOT,
@@ -19,6 +18,7 @@ from test_browser import (
     wait_until_open,
     warnings,
 )
+from playwright.sync_api import expect
 
 pytestmark = [*drives_chromium, pytest.mark.slow]  # the English edition has the same driver
 

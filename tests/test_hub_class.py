@@ -17,8 +17,8 @@ from hub_browser import (
 )
 from hub_machine import hub_machine, needs_root
 from hub_nodes import BUILD, COMMAND, LIST, LISTEN_AND_INJECT, LOOK_AROUND, MESSAGES, RUN
+from lab_browser import Lesson, close_all, see_the_arm_move
 from playwright.sync_api import expect
-from test_browser import Lesson, close_all, see_the_arm_move
 
 pytestmark = [
     *drives_chromium,

@@ -1,0 +1,204 @@
+"""JupyterLab of `./course lab`, and a lesson in it: what tests with a browser share."""
+
+import json
+import os
+import re
+import shutil
+import socket
+import subprocess
+import tempfile
+import time
+import urllib.error
+import urllib.request
+from pathlib import Path
+
+import nbformat
+from chromium import LONG
+from playwright.sync_api import expect
+
+ROOT = Path(__file__).parents[1]
+LESSONS = sorted(path.stem for path in ROOT.glob('notebooks/[0-9]*/*.ipynb'))
+TOKEN = 'a-token-of-this-test'
+ALL_RAN = """() => {
+    const {content, sessionContext} = jupyterapp.shell.currentWidget;
+    const code = content.model.toJSON().cells.filter(cell => cell.cell_type === 'code');
+    return code.every(cell => cell.execution_count !== null)
+        && sessionContext.session.kernel.status === 'idle';
+}"""
+WIDTH = 'async image => (await image.decode(), image.naturalWidth)'
+
+
+class Lab:
+    """A JupyterLab of `./course lab`, for copies of the released lessons."""
+
+    def __init__(self, folder, *arguments):
+        self.folder = folder / 'notebooks'
+        self.folder.mkdir()
+        with socket.socket() as free:
+            free.bind(('127.0.0.1', 0))
+            self.address = f'http://127.0.0.1:{free.getsockname()[1]}'
+        # neither what this user's own JupyterLab remembers, nor what a test session sets
+        names = ['CONFIG', 'DATA', 'RUNTIME']
+        mine = {f'JUPYTER_{name}_DIR': str(folder / name) for name in names}
+        not_a_students = ('PYTEST_', 'COV_', 'MY_ROBOT_BASICS_', 'ROS_')
+        clean = {k: v for k, v in os.environ.items() if not k.startswith(not_a_students)}
+        options = ['--no-browser', '--expose-app-in-browser', '--ServerApp.port_retries=0']
+        options += [
+            f'--port={self.address.rpartition(":")[2]}',
+            f'--IdentityProvider.token={TOKEN}',
+        ]
+        self.log = folder / 'log'
+        with self.log.open('w') as log:
+            self.server = subprocess.Popen(
+                [ROOT / 'course', 'lab', self.folder, *options, *arguments],
+                env=clean | mine,
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=subprocess.STDOUT,
+            )
+
+    def wait_until_up(self):
+        deadline = time.monotonic() + LONG / 1000
+        while True:
+            try:
+                return urllib.request.urlopen(f'{self.address}/api/status?token={TOKEN}').close()
+            except urllib.error.URLError:
+                assert self.server.poll() is None, self.log.read_text()
+                assert time.monotonic() < deadline, self.log.read_text()
+                time.sleep(0.2)
+
+    def fresh_copy(self, name, language=''):
+        """A released lesson that nobody has opened yet, and so without a kernel: its path here."""
+        folder = Path(tempfile.mkdtemp(dir=self.folder))
+        shutil.copy(ROOT / 'notebooks' / language / name / f'{name}.ipynb', folder)
+        return f'{folder.name}/{name}.ipynb'
+
+    def stop(self):
+        self.server.terminate()
+        try:
+            self.server.wait(30)
+        except subprocess.TimeoutExpired:
+            self.server.kill()
+            self.server.wait()
+
+
+def wait_until_open(page, path):
+    """Wait until a notebook is the one in front, and its kernel is up."""
+    page.wait_for_function(f"""
+        jupyterapp.shell.currentWidget?.context?.path === '{path}'
+        && jupyterapp.shell.currentWidget.context.isReady
+        && jupyterapp.shell.currentWidget.sessionContext.session?.kernel?.status === 'idle'
+    """)
+
+
+class Lesson:
+    """One lesson, open in a browser."""
+
+    def __init__(self, page, path):
+        self.page = page
+        page.evaluate(  # as at a double click
+            "async path => { await jupyterapp.commands.execute('docmanager:open', {path}) }", path
+        )
+        wait_until_open(page, path)
+
+    def command(self, name, index=None):
+        """Run a command of JupyterLab's menus, with a cell selected, and wait for its end."""
+        self.page.evaluate(
+            """async ([name, index]) => {
+                if (index !== null)
+                    jupyterapp.shell.currentWidget.content.activeCellIndex = index;
+                await jupyterapp.commands.execute(name);
+            }""",
+            [name, index],
+        )
+
+    @property
+    def cells(self):
+        notebook = 'JSON.stringify(jupyterapp.shell.currentWidget.content.model.toJSON())'
+        return nbformat.from_dict(json.loads(self.page.evaluate(notebook))).cells
+
+    def index(self, cell_id):
+        return [cell.id for cell in self.cells].index(cell_id)
+
+    def shown(self, cell_id):
+        """The cell, scrolled to."""
+        index = self.index(cell_id)
+        self.page.evaluate('i => jupyterapp.shell.currentWidget.content.scrollToItem(i)', index)
+        cell = self.page.locator(f'.jp-Notebook .jp-Cell[data-windowed-list-index="{index}"]')
+        cell.scroll_into_view_if_needed()
+        return cell
+
+    def type(self, cell_id, text):
+        """Replace a cell's text, as with the keyboard."""
+        self.shown(cell_id).locator('.cm-content').click()
+        self.page.keyboard.press('Control+A')
+        self.page.keyboard.insert_text(text)
+
+    def validate(self, title='Validation Results', close='Close'):
+        """Press the button; return what its dialog says in the end."""
+        self.page.get_by_role('button', name='Validate').click()
+        dialog = self.page.locator('.jp-Dialog', has=self.page.locator('.mrb-validate-report'))
+        dialog.locator('.mrb-validate-summary').wait_for()
+        expect(dialog.locator('.jp-Dialog-header')).to_have_text(title)
+        said = dialog.inner_text()
+        dialog.get_by_role('button', name=close).click()
+        expect(dialog).to_have_count(0)
+        return ' '.join(said.split())
+
+
+def close_all(page):
+    """End every kernel, and close what is open."""
+    page.evaluate("""async () => {
+        await jupyterapp.serviceManager.sessions.shutdownAll();
+        [...jupyterapp.shell.widgets('main')].forEach(widget => widget.dispose());
+    }""")
+
+
+def errors(cells):
+    return {
+        cell.id: re.sub(r'\x1b\[[\d;]*m', '', '\n'.join(output.traceback))
+        for cell in cells
+        for output in cell.get('outputs', [])
+        if output.output_type == 'error'
+    }
+
+
+def pictures(cell):
+    """The stored outputs that show a picture."""
+    return [o for o in cell.get('outputs', []) if 'image/png' in o.get('data', {})]
+
+
+def warnings(cells):
+    return [o for c in cells for o in c.get('outputs', []) if o.get('name') == 'stderr']
+
+
+def run_through(lesson):
+    """Run all cells of an unanswered lesson: it stops at no check, and every picture is shown."""
+    released = lesson.cells
+    # a check, and what runs an answer: lesson 11 has commands, and none is there yet
+    stops = [c.id for c in released if 'raises-exception' in c.metadata.get('tags', ())]
+    lesson.command('notebook:run-all-cells')
+    # the command waits for the first error only; a whole lesson takes longer than an action
+    lesson.page.wait_for_function(ALL_RAN, timeout=3 * LONG)
+    cells = lesson.cells
+    failed = errors(cells)
+    assert failed
+    assert {name: why for name, why in failed.items() if name not in stops} == {}
+    assert warnings(cells) == []
+    for cell in released:
+        if count := len(pictures(cell)):
+            images = lesson.shown(cell.id).locator('.jp-OutputArea img')
+            expect(images).to_have_count(count)
+            for image in images.all():
+                assert image.evaluate(WIDTH) > 200
+
+
+def see_the_arm_move(lesson):
+    """Run the cells of lesson 3 that show it, and see the picture change."""
+    lesson.command('notebook:run-cell', lesson.index('imports'))
+    lesson.command('notebook:run-cell', lesson.index('live'))
+    assert errors(lesson.cells) == {}
+    image = lesson.shown('live').locator('.jp-OutputArea img')
+    for _ in range(2):  # the first change may be that of the stored picture
+        before = image.get_attribute('src')
+        expect(image).not_to_have_attribute('src', before)
