@@ -37,3 +37,18 @@ def ticked(period_sec, seconds, step_sec, *, late=()):
     count = int(seconds / period_sec)
     ticks = [math.ceil(period_sec * i / step_sec - 1e-9) + (i in late) for i in range(1, count)]
     return [step_sec * tick for tick in ticks]
+
+
+def on_wall(gaps_sec, *, late_sec):
+    """A recording on the wall clock of messages so far apart, whatever they say."""
+    times = [sum(gaps_sec[:n]) for n in range(1, len(gaps_sec) + 1)]
+    samples = tuple(Sample(None, at, at) for at in times)
+    return Recording(
+        topic_name='/t',
+        messages=samples,
+        clock='wall',
+        publishers=('/a',),
+        seconds=times[-1],
+        start_sec=0.0,
+        late_sec=late_sec,
+    )

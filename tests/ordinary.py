@@ -58,8 +58,8 @@ ORDINARY = {
         r'NoFeedback-.*'
     ),
     'test_checks_action_servers::test_who_sends_right_passes_in_whatever_way': r'MoveArmClient',
-    'test_checks_action_servers::test_a_wrong_outcome_is_named': r'AlwaysSucceeded-.*',
-    'test_checks_action_servers::test_a_wrong_cancel_is_named_and_outcomes_are_right': (
+    'test_checks_action_servers_wrong::test_a_wrong_outcome_is_named': r'AlwaysSucceeded-.*',
+    'test_checks_action_servers_wrong::test_a_wrong_cancel_is_named_and_outcomes_are_right': (
         r'NeverCancels-.*'
     ),
     'test_checks_player::test_who_plays_right_passes_in_whatever_way': r'Usual|Callbacks',
@@ -84,7 +84,7 @@ ORDINARY = {
     'test_doctor_actions::test_each_state_in_which_a_goal_stands_still_has_its_line': (
         r'executing-.*'
     ),
-    'test_checks_actions::test_a_missing_server_is_looked_for': r'arguments0-.*',
+    'test_checks_actions_absent::test_a_missing_server_is_looked_for': r'arguments0-.*',
     'test_checks_services::test_a_missing_server_is_looked_for': r'arguments0-.*',
     'test_package::test_colcon_builds_what_the_ament_index_finds': r'options0',
     'test_sandbox::test_only_a_small_disk_can_be_written_to': r'forked',
@@ -127,7 +127,9 @@ ORDINARY = {
     'test_live_interrupts::test_a_cell_that_spins_for_ever_can_be_interrupted': (
         r'rclpy\.spin\(node\)'
     ),
-    'test_live_kernel::test_unruly_nodes_do_not_abort_the_kernel_when_it_ends': r'never_returns',
+    'test_live_kernel_ends::test_unruly_nodes_do_not_abort_the_kernel_when_it_ends': (
+        r'never_returns'
+    ),
     'test_checks_topics::test_a_wrong_message_fails': r'Degrees-.*',
     'test_checks_topics::test_a_notebook_that_does_not_say_is_waited_for': r'None',
     'test_checks_logs::test_a_near_miss_is_told_what_is_missing': r'ik_one_branch-.*',

@@ -6,8 +6,10 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+import nbformat
 import pytest
-from course_maker import executed
+from course_maker import TOY, answered, executed
+from nbgrader.utils import notebook_hash
 from stand_in import Here, stand_in
 
 from grader.cli.stopping import stoppable
@@ -17,10 +19,59 @@ from grader.grading import SubmissionOutcome
 from grader.judging.execute import Execution
 from grader.notebook.restore import KEY
 from grader.serving.exchange import feedback_folder
+from grader.serving.queue import FAILED, GRADED, REFUSED, WAITING, Arrival, queue_to_read
 from grader.serving.serve import serve
 from grader.serving.status import write_status_page
 from grader.storage import reuse
 from grader.storage.submitted import find_submissions
+
+RIGHT = 'def double(x):\n    return 2 * x'
+WRONG = 'def double(x):\n    return x + 1'
+
+
+def exchange_in(folder: Path) -> Path:
+    """Make the exchange of a course; return the folder of it into which students submit."""
+    for name in ('inbound', 'outbound', 'feedback'):
+        (folder / 'exchange' / name).mkdir(parents=True)
+    return folder / 'exchange' / 'inbound'
+
+
+def hand_in(
+    course: Course,
+    inbound: Path,
+    student: str,
+    answer: str,
+    *,
+    number: int = 1,
+    secret: str = 'aa',
+) -> Path:
+    """Put a submission there as `nbgrader submit` does; return its folder."""
+    folder = inbound / f'{student}+{TOY}+2026-01-01 10:00:0{number}.000000 UTC+x{number}'
+    folder.mkdir()
+    (folder / f'{TOY}.ipynb').write_text(nbformat.writes(answered(course, answer)))
+    (folder / 'timestamp.txt').write_text('2000-01-01 10:00:00.000000 UTC')
+    (folder / 'submission_secret.txt').write_text(secret)
+    folder.chmod(0o777)
+    return folder
+
+
+def put_there(course: Course, inbound: Path, student: str) -> Path:
+    """Put a right submission into a folder of uploads as a person does; return its folder."""
+    folder = inbound / student / TOY
+    folder.mkdir(parents=True)
+    (folder / f'{TOY}.ipynb').write_text(nbformat.writes(answered(course, RIGHT)))
+    return folder
+
+
+def arrivals(course: Course) -> list[Arrival]:
+    """Return what has come in, and was not replaced."""
+    with queue_to_read(course.gradebook) as queue:
+        return queue.find(WAITING, GRADED, REFUSED, FAILED)
+
+
+def page_of(inbound: Path, secret: str) -> Path:
+    """Return where nbgrader looks for the feedback of a submission."""
+    return inbound.parent / 'feedback' / f'{notebook_hash(secret=secret, notebook_id=TOY)}.html'
 
 
 def command(course: Course, inbound: Path, *options: str) -> list[str]:

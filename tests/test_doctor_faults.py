@@ -4,9 +4,9 @@ import contextlib
 import shlex
 import subprocess
 import sys
-import time
 
 import pytest
+from diagnosed import wait_for, wait_for_finding
 from my_robot_basics.doctor import looking
 from my_robot_basics.doctor.diagnosing import diagnose
 from my_robot_basics.live import run, stop
@@ -29,7 +29,6 @@ from nodes.patient import (
 )
 from rclpy.parameter import Parameter
 
-TIMEOUT_SEC = 20.0
 DEAD = 'while rclpy.ok(): time.sleep(0.1)'
 
 
@@ -44,13 +43,6 @@ def first_finding(**options):
     (diagnosis,) = diagnose(TOPIC, domain_id=classroom.enter(), **options)
     assert diagnosis.findings, 'nothing was found'
     return diagnosis.findings[0]
-
-
-def wait_for(done):
-    deadline = time.monotonic() + TIMEOUT_SEC
-    while not done() and time.monotonic() < deadline:
-        time.sleep(0.02)
-    return done()
 
 
 def assert_well(listener):
@@ -148,7 +140,7 @@ def test_a_clock_that_nobody_drives_is_named_and_given_back():
 def test_a_publisher_that_nobody_spins():
     listener = run(node_class(LISTENER))
     with process(program(TALKER, (SPIN, DEAD))):
-        found = wait_for_finding('the node is not spinning', seconds=2.0)
+        found = wait_for_finding(first_finding, 'the node is not spinning', seconds=2.0)
     with process(program(TALKER, (SPIN, found.code))):
         assert wait_for(lambda: listener.heard)
 
@@ -159,7 +151,7 @@ def test_two_types():
     other = SUBSCRIPTION.replace('JointState,', 'Point,')
     run(node_class(LISTENER, (SUBSCRIPTION, other)))
     with process(program(TALKER)):
-        found = wait_for_finding('types differ')
+        found = wait_for_finding(first_finding, 'types differ')
         listener = run(node_class(LISTENER, (SUBSCRIPTION, found.code)))
         assert_well(listener)
 
@@ -184,19 +176,10 @@ def test_a_subscription_that_nobody_spins(tmp_path):
     note = tmp_path / 'heard'
     write = (RECEIVE, f"open({str(note)!r}, 'w').close()")
     with process(program(LISTENER, write, (SPIN, DEAD))):
-        found = wait_for_finding('the node is not spinning')
+        found = wait_for_finding(first_finding, 'the node is not spinning')
     assert not note.exists()
     with process(program(LISTENER, write, (SPIN, found.code))):
         assert wait_for(note.exists)
-
-
-def wait_for_finding(title, **options):
-    """The first finding, once the other process is up."""
-    deadline = time.monotonic() + TIMEOUT_SEC
-    while (found := first_finding(**options)).title != title and time.monotonic() < deadline:
-        pass
-    assert found.title == title
-    return found
 
 
 @pytest.mark.slow
@@ -252,7 +235,7 @@ def test_a_remapped_publisher():
     listener = run(node_class(LISTENER))
     command = program(TALKER, ('rclpy.init()', 'import sys; rclpy.init(args=sys.argv)'))
     with process([*command, '--ros-args', '-r', f'{TOPIC}:=/elsewhere']):
-        found = wait_for_finding('remapped')
+        found = wait_for_finding(first_finding, 'remapped')
     with process(shlex.split(found.code.removeprefix('$ '))):
         assert wait_for(lambda: listener.heard)
 
@@ -270,7 +253,9 @@ def test_a_publisher_out_of_reach(environment, title):
     with neighbouring_domain() as neighbour:
         wrong = {name: value.format(neighbour=neighbour) for name, value in environment.items()}
         with process(program(TALKER), **wrong):
-            found = wait_for_finding(title, other_domains='ROS_DOMAIN_ID' in environment)
+            found = wait_for_finding(
+                first_finding, title, other_domains='ROS_DOMAIN_ID' in environment
+            )
         shell = f'{found.code.removeprefix("$ ")}; exec {shlex.join(program(TALKER))}'
         with process(['sh', '-c', shell], **wrong):
             assert wait_for(lambda: listener.heard)

@@ -4,9 +4,9 @@ import contextlib
 import re
 import shlex
 import threading
-import time
 
 import pytest
+from diagnosed import TIMEOUT_SEC, wait_for, wait_for_finding
 from my_robot_basics.doctor import inside
 from my_robot_basics.doctor.diagnosing import diagnose
 from my_robot_basics.live import run, stop, troubles
@@ -35,7 +35,6 @@ from rclpy.executors import MultiThreadedExecutor
 from rclpy.node import Node
 from std_srvs.srv import SetBool
 
-TIMEOUT_SEC = 20.0
 DEAD = 'while rclpy.ok(): time.sleep(0.1)'
 CALL = 'self.client.call(request, timeout_sec=30.0)'
 SPIN_HERE = (
@@ -69,13 +68,6 @@ def first_finding(name=NAME, **options):
     found = findings(name, **options)
     assert found, 'nothing was found'
     return found[0]
-
-
-def wait_for(done):
-    deadline = time.monotonic() + TIMEOUT_SEC
-    while not done() and time.monotonic() < deadline:
-        time.sleep(0.02)
-    return done()
 
 
 def assert_well(asker):
@@ -143,18 +135,9 @@ def test_two_types():
     # in one process rclpy itself refuses the second one
     run(node_class(ASKER, (IN_GROUP, CLIENT.replace('SetBool', 'Trigger'))))
     with process(program(SERVER)):
-        found = wait_for_finding('types differ')
+        found = wait_for_finding(first_finding, 'types differ')
         assert '/server serves std_srvs/srv/SetBool' in found.seen
         assert_well(run(node_class(ASKER, (IN_GROUP, found.code))))
-
-
-def wait_for_finding(title, **options):
-    """The first finding, once the other process is up."""
-    deadline = time.monotonic() + TIMEOUT_SEC
-    while (found := first_finding(**options)).title != title and time.monotonic() < deadline:
-        pass
-    assert found.title == title
-    return found
 
 
 DEADLOCKS = {
@@ -378,7 +361,7 @@ def test_a_remapped_server():
     run(node_class(ASKER))
     command = program(SERVER, ('rclpy.init()', 'import sys; rclpy.init(args=sys.argv)'))
     with process([*command, '--ros-args', '-r', f'{NAME}:=/elsewhere']):
-        found = wait_for_finding('remapped')
+        found = wait_for_finding(first_finding, 'remapped')
     with process(shlex.split(found.code.removeprefix('$ '))):
         assert_well(run(node_class(ASKER)))
 

@@ -1,10 +1,10 @@
 """Honest servers and clients of every kind are never accused, however long an answer takes."""
 
 import threading
-import time
 
 import pytest
 import rclpy
+from diagnosed import TIMEOUT_SEC, wait_for
 from my_robot_basics.doctor import report
 from my_robot_basics.doctor.diagnosing import diagnose
 from my_robot_basics.live import run, stop
@@ -26,7 +26,6 @@ from rclpy.node import Node
 from std_msgs.msg import Empty
 from std_srvs.srv import SetBool
 
-TIMEOUT_SEC = 20.0
 ASYNC = (DEF_ASK, f'async {DEF_ASK}')
 AWAIT = (ASK, 'self.receive(await self.client.call_async(request))')
 CALL = (ASK, 'self.receive(self.client.call(request))')
@@ -89,13 +88,6 @@ def ros():
 def asker(edits, group, make_executor):
     node = node_class(ASKER, *edits)(group=group() if group else None)
     return Spun(node, make_executor())
-
-
-def wait_for(done):
-    deadline = time.monotonic() + TIMEOUT_SEC
-    while not done() and time.monotonic() < deadline:
-        time.sleep(0.02)
-    return done()
 
 
 def look():

@@ -5,45 +5,32 @@ import shutil
 import tarfile
 import time
 from contextlib import contextmanager
-from datetime import UTC, datetime
-from types import SimpleNamespace
 
 import nbformat
 import pytest
 import serving_desk
-from course_maker import TOY, answered, released_course, with_own_database
-from serving_desk import serve_here
+from course_maker import TOY, answered, with_own_database
+from serving_desk import RIGHT, arrivals, put_there, serve_here
 
 from grader.collect.archive_entries import MAX_PARTS
 from grader.common.errors import GradebookError
 from grader.common.text import printable
 from grader.serving import desk as desk_module
 from grader.serving import inbound as inbound_module
-from grader.serving import intake, reception
+from grader.serving import reception
 from grader.serving import rounds as rounds_module
 from grader.serving import serve as serve_module
 from grader.serving.desk import Desk
-from grader.serving.inbound import Entry, new_entries
+from grader.serving.inbound import new_entries
 from grader.serving.queue import (
     FAILED,
     GRADED,
     REFUSED,
-    REPLACED,
-    WAITING,
     Arrival,
     opened_queue,
-    queue_to_read,
 )
 from grader.serving.reception import look
-from grader.serving.rounds import Rounds
-from grader.serving.status import SHOWN, status_lines, write_status_page
-
-RIGHT = 'def double(x):\n    return 2 * x'
-
-
-@pytest.fixture(scope='module')
-def released(tmp_path_factory):
-    return released_course(tmp_path_factory.mktemp('reception'))
+from grader.serving.status import write_status_page
 
 
 @pytest.fixture
@@ -62,19 +49,6 @@ def inbound(tmp_path):
 def at_once(monkeypatch):
     """Whatever lies there is whole."""
     monkeypatch.setattr(inbound_module, 'QUIET_SEC', -1.0)
-
-
-def hand_in(course, inbound, student):
-    """Put a submission there as a person does; return its folder."""
-    folder = inbound / student / TOY
-    folder.mkdir(parents=True)
-    (folder / f'{TOY}.ipynb').write_text(nbformat.writes(answered(course, RIGHT)))
-    return folder
-
-
-def arrivals(course):
-    with queue_to_read(course.gradebook) as queue:
-        return queue.find(WAITING, GRADED, REFUSED, FAILED)
 
 
 def refused(course):
@@ -108,7 +82,7 @@ def deep(folder, levels):
 
 
 def test_a_file_beside_a_notebook_has_any_name(course, inbound, at_once):
-    folder = hand_in(course, inbound, 'zoe')
+    folder = put_there(course, inbound, 'zoe')
     for name in (b'x\xff.txt', b'x\xff.py'):
         (folder / os.fsdecode(name)).touch()
     serve_here(course, inbound)
@@ -117,12 +91,12 @@ def test_a_file_beside_a_notebook_has_any_name(course, inbound, at_once):
 
 @pytest.mark.parametrize('name', [b'mallory\xff.zip', b'mallory\xff.ipynb', b'mallory\xff'])
 def test_an_entry_has_any_name(course, inbound, at_once, name):
-    hand_in(course, inbound, 'zoe')
+    put_there(course, inbound, 'zoe')
     path = inbound / os.fsdecode(name)
     if path.suffix:
         path.write_text('{}')
     else:
-        hand_in(course, inbound, path.name)
+        put_there(course, inbound, path.name)
     said = serve_here(course, inbound)
     stored = name.decode('utf-8', 'backslashreplace')
     ((entry, reason),) = refused(course).items()
@@ -143,7 +117,7 @@ def test_names_that_look_alike_are_two_entries(course, inbound, at_once):
 
 
 def test_a_name_in_an_archive_is_told_as_it_can_be_stored(course, inbound, at_once):
-    hand_in(course, inbound, 'zoe')
+    put_there(course, inbound, 'zoe')
     member = tarfile.TarInfo(os.fsdecode(b'bob\xff_00_toy.ipynb'))
     with tarfile.open(inbound / f'mallory_{TOY}.tar', 'w') as box:
         box.addfile(member)
@@ -155,7 +129,7 @@ def test_a_name_in_an_archive_is_told_as_it_can_be_stored(course, inbound, at_on
 def test_a_folder_of_a_thousand_levels_is_looked_at_as_deep_as_any_is_taken(
     course, inbound, at_once
 ):
-    hand_in(course, inbound, 'zoe')
+    put_there(course, inbound, 'zoe')
     with deep(inbound / 'mallory', 1_100):
         serve_here(course, inbound)
     assert refused(course) == {'mallory': f'it is more than {MAX_PARTS} folders deep'}
@@ -174,9 +148,9 @@ def test_all_that_can_be_taken_is_part_of_what_is_looked_at(inbound, at_once):
 def test_what_can_not_be_looked_at_is_told_once_and_taken_once_it_can_be(
     course, inbound, at_once, monkeypatch
 ):
-    hand_in(course, inbound, 'zoe')
+    put_there(course, inbound, 'zoe')
     for name in ('mallory+1', 'eve'):
-        hand_in(course, inbound, name)
+        put_there(course, inbound, name)
     walk = inbound_module._tree
 
     def hard(folder, name, status):
@@ -205,7 +179,7 @@ def test_what_can_not_be_looked_at_is_told_once_and_taken_once_it_can_be(
 
 
 def test_what_is_gone_meanwhile_is_not_told(course, inbound, at_once, monkeypatch):
-    hand_in(course, inbound, 'eve')
+    put_there(course, inbound, 'eve')
 
     def gone(folder, name, status):
         raise FileNotFoundError(2, 'No such file or directory')
@@ -217,8 +191,8 @@ def test_what_is_gone_meanwhile_is_not_told(course, inbound, at_once, monkeypatc
 def test_whatever_goes_wrong_with_an_entry_costs_only_itself(
     course, inbound, at_once, monkeypatch, caplog
 ):
-    hand_in(course, inbound, 'zoe')
-    hand_in(course, inbound, 'mallory')
+    put_there(course, inbound, 'zoe')
+    put_there(course, inbound, 'mallory')
     take = reception.take_in
 
     def fails(course, queue, inbound, entry):
@@ -239,7 +213,7 @@ def test_whatever_goes_wrong_with_an_entry_costs_only_itself(
     'error', [GradebookError('it is locked'), OSError(28, 'No space left on device')]
 )
 def test_what_would_meet_the_next_one_too_ends_it(course, inbound, at_once, monkeypatch, error):
-    hand_in(course, inbound, 'zoe')
+    put_there(course, inbound, 'zoe')
 
     def fails(*_):
         raise error
@@ -266,7 +240,7 @@ def test_whatever_goes_wrong_later_costs_only_one(
 ):
     error, state, reason = STEPS[step]
     for student in ('mallory', 'zoe'):
-        hand_in(course, inbound, student).joinpath('submission_secret.txt').write_text('aa')
+        put_there(course, inbound, student).joinpath('submission_secret.txt').write_text('aa')
     does, failed = getattr(desk_module, step), []
 
     def fails_once(*given, **named):
@@ -289,36 +263,6 @@ def test_whatever_goes_wrong_later_costs_only_one(
     assert serve_here(course, inbound) == []
 
 
-def test_what_a_later_one_replaces_delays_nobody_s_grading(course, inbound, at_once, monkeypatch):
-    """Each of many large ones takes its time to be kept: others' turns come in between."""
-    monkeypatch.setattr(desk_module, 'BUDGET_SEC', 0.0)
-    monkeypatch.setattr(reception, 'BUDGET_SEC', 60.0)  # all have come in before the first turn
-    place, placed = desk_module.put_in_place, []
-
-    def puts(course, arrival):
-        placed.append((arrival.student_id, arrival.state))
-        return place(course, arrival)
-
-    monkeypatch.setattr(desk_module, 'put_in_place', puts)
-    for number in range(5):
-        folder = inbound / f'mallory+{TOY}+2026-01-01 10:00:0{number}.000000 UTC'
-        folder.mkdir()
-        notebook = answered(course, f'# {number}\n{RIGHT}')
-        (folder / f'{TOY}.ipynb').write_text(nbformat.writes(notebook))
-        time.sleep(0.02)  # Linux's clock tells them apart
-    hand_in(course, inbound, 'zoe')
-    serve_here(course, inbound)
-    assert [student for student, _ in placed].index('zoe') <= 3
-    with queue_to_read(course.gradebook) as queue:
-        found = [(each.student_id, each.state) for each in queue.find(GRADED, REPLACED)]
-    assert sorted(found) == [
-        ('mallory', GRADED),
-        *[('mallory', REPLACED)] * 4,
-        ('zoe', GRADED),
-    ]
-    assert len(list(course.folder('submitted_before', 'mallory', TOY).iterdir())) == 4
-
-
 def test_what_is_yet_to_be_kept_is_kept_by_the_next_process(course, inbound, at_once, monkeypatch):
     for number in range(2):
         (inbound / f'zoe_{TOY}.ipynb').write_text(
@@ -338,7 +282,7 @@ def test_what_is_yet_to_be_kept_is_kept_by_the_next_process(course, inbound, at_
 
 @pytest.mark.parametrize('step', ['put_in_place', 'write_page'])
 def test_a_full_disk_ends_it_and_the_next_one_goes_on(course, inbound, at_once, monkeypatch, step):
-    hand_in(course, inbound, 'zoe')
+    put_there(course, inbound, 'zoe')
 
     def full(*_):
         raise OSError(28, 'No space left on device')
@@ -352,115 +296,12 @@ def test_a_full_disk_ends_it_and_the_next_one_goes_on(course, inbound, at_once, 
     assert course.folder('feedback', 'zoe', TOY).exists()
 
 
-def entry(name, owner, changed=0):
-    at = datetime.fromtimestamp(changed, UTC)
-    return Entry(name, f'{name} as it is', at, is_whole=True, owner=owner)
-
-
-@pytest.fixture
-def desk(course, inbound):
-    with opened_queue(course.gradebook) as queue:
-        grading = SimpleNamespace(backend=SimpleNamespace(capacity=1))
-        yield Desk(course, queue, grading, inbound, None, lambda line: None, exporter=None)
-
-
-@pytest.fixture
-def taken(monkeypatch):
-    """Let entries be there, and taking one in be a wait; return what was taken, in its order."""
-    there, names = [], []
-
-    def new(folder, seen, rounds):
-        return (each for each in there if each.key not in seen)
-
-    def take(course, queue, inbound, entry):
-        names.append(entry.name)
-        time.sleep(0.01)
-        return []
-
-    monkeypatch.setattr(reception, 'new_entries', new)
-    monkeypatch.setattr(reception, 'take_in', take)
-    return there, names
-
-
-def test_between_two_long_ones_others_things_are_done(desk, taken, monkeypatch):
-    there, names = taken
-    there += [entry('1', 'mallory'), entry('2', 'mallory')]
-    monkeypatch.setattr(reception, 'BUDGET_SEC', 0.0)
-    assert [look(desk), len(names)] == [True, 1]
-    assert [look(desk), len(names)] == [True, 2]
-    assert not look(desk)
-
-
-def test_many_short_ones_are_taken_in_at_once(desk, taken, monkeypatch):
-    there, names = taken
-    there += [entry('1', 'ada'), entry('2', 'bob'), entry('3', 'zoe')]
-    monkeypatch.setattr(reception, 'BUDGET_SEC', 60.0)
-    assert look(desk)
-    assert names == ['1', '2', '3']
-
-
-def test_who_hands_in_much_waits_for_who_hands_in_something(desk, taken, monkeypatch):
-    there, names = taken
-    monkeypatch.setattr(reception, 'BUDGET_SEC', 0.0)
-    there += [entry(f'mallory {number}', 'mallory', number) for number in range(1, 5)]
-    there += [entry('ada', 'ada', 10), entry('bob', 'bob', 11)]
-    while look(desk):
-        pass
-    assert names[:3] == ['mallory 1', 'ada', 'bob']
-    assert names[3:] == ['mallory 2', 'mallory 3', 'mallory 4']
-
-
-def test_new_owners_keep_nobody_waiting_who_came_before_them(desk, taken, monkeypatch):
-    """Where names alone tell whose an entry is, anybody can have many."""
-    there, names = taken
-    monkeypatch.setattr(reception, 'BUDGET_SEC', 0.0)
-    there.append(entry('ada 1', 'ada', 1))
-    look(desk)
-    there.append(entry('ada 2', 'ada', time.time()))
-    there += [entry(f'{n}', f'mallory{n}', time.time() + 1) for n in range(3)]
-    look(desk)
-    assert names == ['ada 1', 'ada 2']
-
-
-def test_whose_many_files_take_long_to_look_at_keeps_nobody_from_being_seen(
-    inbound, at_once, monkeypatch
-):
-    """Neither with what is new nor with what was seen, and all of it comes in the end."""
-    monkeypatch.setattr(rounds_module, 'MOST_FILES_AT_ONCE', 30)
-    for number in range(20):
-        folder = inbound / f'eve+00_toy+{number:02}'
-        folder.mkdir()
-        for name in range(20):
-            (folder / f'{name}.py').touch()
-        (inbound / f'eve_{number:02}').mkdir()
-    (inbound / 'zoe+00_toy+1').mkdir()
-    rounds, seen, looked_at = Rounds(), {}, []
-    tree = inbound_module._tree
-
-    def counted(folder, name, status):
-        for each in tree(folder, name, status):
-            looked_at.append(name)
-            yield each
-
-    monkeypatch.setattr(inbound_module, '_tree', counted)
-    found = [each.name for each in new_entries(inbound, seen, rounds)]
-    assert 'zoe+00_toy+1' in found
-    assert rounds.is_under_way
-    for _ in range(60):
-        looked_at.clear()
-        seen |= {each.key: each.fingerprint for each in new_entries(inbound, seen, rounds)}
-        assert len(looked_at) <= 30 + 21
-    assert len(seen) == 41
-    assert not list(new_entries(inbound, seen, rounds))
-    assert not rounds.is_under_way
-
-
 def test_once_ends_when_all_was_looked_at(course, inbound, at_once, monkeypatch):
     monkeypatch.setattr(rounds_module, 'MOST_FILES_AT_ONCE', 1)
     for name in ('a', 'b', 'c'):
         (inbound / name).mkdir()
     assert serve_here(course, inbound) == []
-    hand_in(course, inbound, 'zoe')
+    put_there(course, inbound, 'zoe')
     assert any('graded: 00_toy of zoe' in line for line in serve_here(course, inbound))
 
 
@@ -482,47 +323,3 @@ def test_a_status_page_is_written_of_any_reason(course):
         write_status_page(course, queue)
         queue.update(*stored)
         assert [each.reason for each in queue.find(REFUSED)] == ['x\\xff \\ud800']
-
-
-def test_the_many_entries_of_one_hide_nobodys_that_waits_for_a_person(course, inbound, at_once):
-    (inbound / 'honest_00_tyo.ipynb').write_text('{}')
-    for number in range(SHOWN + 5):
-        (inbound / f'mallory{number}_nothing.ipynb').write_text('{}')
-    serve_here(course, inbound)
-    (inbound / 'zoe_nothing.ipynb').write_text('{}')
-    serve_here(course, inbound)
-    with queue_to_read(course.gradebook) as queue:
-        assert any('honest_00_tyo' in line for line in status_lines(course, queue))
-        page = write_status_page(course, queue).read_text(encoding='utf-8')
-    assert '7 more before these: ./course serve --status' in page
-
-
-@pytest.mark.parametrize(('limit', 'most'), [('MOST_KEPT', 2), ('MOST_KEPT_BYTES', 50_000)])
-def test_nobody_fills_the_disk_by_handing_in(course, inbound, at_once, monkeypatch, limit, most):
-    """What is left out lies where it was handed in, and counts for nobody else."""
-    monkeypatch.setattr(intake, limit, most)
-    notebook = answered(course, RIGHT)
-    for number in range(4):
-        notebook.cells[-1].source = f'{number}' * 15_000
-        (inbound / f'mallory_{TOY}.ipynb').write_text(nbformat.writes(notebook))
-        serve_here(course, inbound)
-    (inbound / f'zoe_{TOY}.ipynb').write_text(nbformat.writes(notebook))
-    serve_here(course, inbound)
-    found = arrivals(course)
-    assert [each.student_id for each in found if each.state == GRADED][-1] == 'zoe'
-    (refused,) = (each for each in found if each.state == REFUSED)
-    assert 'submissions for 00_toy of mallory are kept, in ' in refused.reason
-    assert f'nobody needs from gradebook/submitted_before/mallory/{TOY}' in refused.reason
-    kept = course.folder('submitted_before', 'mallory', TOY)
-    assert 1 <= len(list(kept.iterdir())) <= 2
-    shutil.rmtree(kept)
-    (inbound / f'mallory_{TOY}.ipynb').touch()
-    serve_here(course, inbound)
-    assert not [each for each in arrivals(course) if each.state == REFUSED]
-
-
-def test_what_is_refused_again_and_again_is_listed_once(course, inbound, at_once):
-    for number in range(3):
-        (inbound / 'mallory_nothing.ipynb').write_text('{}' + ' ' * number)
-        serve_here(course, inbound)
-    assert len(arrivals(course)) == 1

@@ -39,7 +39,8 @@ STARTING_FILES = frozenset(
     executables execute grade gradebook imports
     interrupt isolation isolation_everywhere kernels kernel_messages kernel_starts
     lesson_own_program lessons_run
-    live_answers live_camera live_classroom live_domain live_interrupts live_kernel
+    live_answers live_camera live_classroom live_domain live_interrupts
+    live_kernel live_kernel_ends
     live_lessons live_neighbours
     live_qos_pairs live_refusals live_runner live_sliders live_target logs main
     manual_grading nbgrader_commands nbgrader_contract nodes ordinary_events package
@@ -48,8 +49,9 @@ STARTING_FILES = frozenset(
     ros2_discovery ros2_graph ros2_interfaces ros2_main ros2_notebook ros2_real ros2_run
     ros2_service ros2_shell ros2_streams same_scores survival synthetic_class temporary_folders
     validate validate_forks validate_server workers workspace_terminal
-    serving
-    checks_action_servers checks_actions checks_actions_nowhere checks_actions_not_stopped
+    serving serving_ends
+    checks_action_servers checks_action_servers_wrong
+    checks_actions checks_actions_absent checks_actions_nowhere checks_actions_not_stopped
     checks_actions_wrong live_destroying ros2_param
     live_packages package_grading
     checks_player checks_waiting_clients checks_wrong_clients command_line lean_imports

@@ -1,0 +1,271 @@
+"""A node that sends goals and is wrong in one thing is told the cause."""
+
+import threading
+
+import pytest
+import rclpy
+from goal_clients import WORDS, MoveArmClient, check_cancels, check_outcomes
+from my_robot_basics.checks import CheckFailed, served_action
+from nodes.running import STOPS
+from rclpy.action import ActionClient
+
+from arm_interfaces.action import MoveArm
+
+
+@pytest.fixture
+def impatient(monkeypatch):
+    """Wait for what does not come no longer than it takes to be sure."""
+    monkeypatch.setattr(served_action, 'REPLY_SEC', 2.0)
+
+
+# --- wrong outcomes ------------------------------------------------------------------------------
+
+
+class AlwaysSucceeded(MoveArmClient):
+    def ended(self, future):
+        self.goal_handle = None
+        self.tell('succeeded')
+
+
+class IgnoresRejection(MoveArmClient):
+    def answered(self, future):
+        if future.result().accepted:
+            super().answered(future)
+
+
+class AsksTheRejectedOne(MoveArmClient):
+    def answered(self, future):
+        future.result().get_result_async().add_done_callback(self.ended)
+
+    def ended(self, future):
+        self.tell(WORDS.get(future.result().status, 'aborted'))
+
+
+class TellsAtOnce(MoveArmClient):
+    def answered(self, future):
+        self.tell('succeeded' if future.result().accepted else 'rejected')
+        self.goal_handle = future.result()
+
+
+class Numbers(MoveArmClient):
+    def ended(self, future):
+        self.tell(str(future.result().status))
+
+
+class Capitals(MoveArmClient):
+    def tell(self, word):
+        super().tell(word.upper())
+
+
+class NoResult(MoveArmClient):
+    def answered(self, future):
+        if not future.result().accepted:
+            self.tell('rejected')
+
+
+class Degrees(MoveArmClient):
+    def send(self, pose):
+        pose.position = [57.29577951 * each for each in pose.position]
+        super().send(pose)
+
+
+class OtherSpeed(MoveArmClient):
+    def send(self, pose):
+        goal = MoveArm.Goal(position=pose.position, speed=1.0)
+        self.client.send_goal_async(goal).add_done_callback(self.answered)
+
+
+class Raises(MoveArmClient):
+    def ended(self, future):
+        self.tell(WORDS[future.result().status_of_the_goal])
+
+
+class SendsAndWaits(MoveArmClient):
+    def send(self, pose):
+        future = self.client.send_goal_async(MoveArm.Goal(position=pose.position, speed=0.5))
+        rclpy.spin_until_future_complete(self, future, timeout_sec=20.0)
+        self.answered(future)
+
+
+class Sleeps(MoveArmClient):
+    def send(self, pose):
+        future = self.client.send_goal_async(MoveArm.Goal(position=pose.position, speed=0.5))
+        is_over = threading.Event()
+        STOPS.append(is_over.set)
+        while not future.done() and not is_over.wait(0.05):
+            pass
+
+
+class OtherAction(MoveArmClient):
+    def __init__(self):
+        super().__init__()
+        self.client.destroy()
+        self.client = ActionClient(self, MoveArm, '/move_it')
+
+
+class NeverSends(MoveArmClient):
+    def send(self, pose):
+        pass
+
+
+class WaitsForTheLost(MoveArmClient):
+    """One goal after the other, and the first one was sent to nobody."""
+
+    def __init__(self):
+        super().__init__()
+        self.poses = []
+
+    def send(self, pose):
+        self.poses.append(pose)
+        if len(self.poses) == 1:
+            super().send(pose)
+
+    def tell(self, word):
+        super().tell(word)
+        self.poses.pop(0)
+        if self.poses:
+            super().send(self.poses[0])
+
+
+IN_CALLBACK = 'it waits inside a callback, and no answer is delivered meanwhile: use send_goal_asy'
+
+WRONG_OUTCOMES = [
+    (
+        AlwaysSucceeded,
+        r"expected 'aborted' on .*saw 'succeeded': publish the outcome when the res",
+    ),
+    (
+        IgnoresRejection,
+        "expected 'rejected' on .*saw none.*: a goal that is not accepted has no r",
+    ),
+    (
+        AsksTheRejectedOne,
+        "expected 'rejected' on .*saw 'aborted': a goal that is not accepted has",
+    ),
+    (TellsAtOnce, "no outcome while the goal has not ended, saw 'succeeded': publish the outcome"),
+    (Numbers, "expected 'succeeded' on .*saw '4': publish the word for the status, not its num"),
+    (Capitals, "expected 'succeeded' on .*saw 'SUCCEEDED': write the word in lower case"),
+    (
+        NoResult,
+        "expected 'succeeded' on .*saw none.*: publish the outcome when the result is ther",
+    ),
+    (Degrees, 'put the positions of the pose into goal.position, as they are: in radians'),
+    (OtherSpeed, 'saw .*speed=1.0.*: give each goal the speed that the task names'),
+    (Raises, r"expected 'succeeded' on .*its callback raised AttributeError.*; fix that first"),
+    (SendsAndWaits, IN_CALLBACK),
+    (Sleeps, IN_CALLBACK),
+    (OtherAction, '/move_arm_client uses /move_it, so compare the spelling'),
+    (NeverSends, r'expected a goal .*saw none.*: call send_goal_async\(goal\) for each message'),
+    (WaitsForTheLost, 'a goal that is sent while there is no server never gets an answer'),
+]
+
+
+@pytest.mark.parametrize(('node_class', 'message'), WRONG_OUTCOMES)
+@pytest.mark.usefixtures('impatient')
+def test_a_wrong_outcome_is_named(run, node_class, message):
+    run(node_class)
+    with pytest.raises(CheckFailed, match=message):
+        check_outcomes()
+
+
+# --- wrong at obstacles --------------------------------------------------------------------------
+
+
+class CancelsForFalse(MoveArmClient):
+    def obstacle(self, message):
+        message.data = True
+        super().obstacle(message)
+
+
+class CancelsByTheClock(MoveArmClient):
+    """Cancels each goal some time after it was accepted, whatever is on `/obstacle`."""
+
+    def answered(self, future):
+        super().answered(future)
+        if future.result().accepted:
+            timer = threading.Timer(1.0, future.result().cancel_goal_async)
+            timer.start()
+            STOPS.append(timer.cancel)
+
+    def obstacle(self, message):
+        pass
+
+
+class RemembersTheObstacle(MoveArmClient):
+    is_there = False
+
+    def answered(self, future):
+        super().answered(future)
+        if future.result().accepted and self.is_there:
+            future.result().cancel_goal_async()
+
+    def obstacle(self, message):
+        self.is_there = message.data
+        super().obstacle(message)
+
+
+class NeverCancels(MoveArmClient):
+    def obstacle(self, message):
+        pass
+
+
+class HasNoHandleYet(MoveArmClient):
+    def obstacle(self, message):
+        if message.data:
+            self.goal_handle.cancel_goal_async()
+
+
+class TellsBeforeTheServer(MoveArmClient):
+    def obstacle(self, message):
+        if message.data and self.goal_handle is not None:
+            self.goal_handle.cancel_goal_async()
+            self.tell('canceled')
+
+
+class KeepsTheRejectedOne(MoveArmClient):
+    def answered(self, future):
+        super().answered(future)
+        self.goal_handle = future.result()
+
+
+class WritesTwoLs(MoveArmClient):
+    def tell(self, word):
+        super().tell('cancelled' if word == 'canceled' else word)
+
+
+class BlindToObstacles(MoveArmClient):
+    def create_subscription(self, type_, name, *arguments):
+        name = '/obstacles' if name == '/obstacle' else name
+        return super().create_subscription(type_, name, *arguments)
+
+
+WRONG_CANCELS = [
+    (
+        CancelsForFalse,
+        'no request to cancel the goal for False .*: look at message.data: only Tru',
+    ),
+    (CancelsByTheClock, 'no request to cancel .*, saw one'),
+    (
+        RemembersTheObstacle,
+        'after True .*: an obstacle cancels the goal that moves the arm then, and no',
+    ),
+    (
+        NeverCancels,
+        r'expected a request to cancel .*saw none.*: call cancel_goal_async\(\) of the',
+    ),
+    (HasNoHandleYet, "AttributeError: 'NoneType' object has no attribute 'cancel_goal_async'"),
+    (TellsBeforeTheServer, "no outcome while the server has not said.*, saw 'canceled': publish"),
+    (KeepsTheRejectedOne, r'expected a request to cancel .*saw none'),
+    (WritesTwoLs, "expected 'canceled' on .*saw 'cancelled': write canceled with one l"),
+    (BlindToObstacles, '/move_arm_client uses /obstacles, so compare the spelling'),
+]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(('node_class', 'message'), WRONG_CANCELS)
+@pytest.mark.usefixtures('impatient')
+def test_a_wrong_cancel_is_named_and_outcomes_are_right(run, node_class, message):
+    run(node_class)
+    check_outcomes()
+    with pytest.raises(CheckFailed, match=message):
+        check_cancels()

@@ -1,0 +1,60 @@
+"""No server of an action, or one too many: it is looked for, and told where it is."""
+
+import pytest
+from my_robot_basics.checks import CheckFailed, action, awaited_servers, moves
+from nodes.running import imported
+from rclpy.action import ActionServer
+from rclpy.node import Node
+from std_srvs.srv import Trigger
+
+from arm_interfaces.action import MoveArm
+
+MoveArmServer = imported('move_arm_server').MoveArmServer
+
+
+@pytest.fixture
+def impatient(monkeypatch):
+    """Wait for what does not come no longer than it takes to be sure."""
+    monkeypatch.setattr(awaited_servers, 'SERVER_SEC', 1.0)
+
+
+class Elsewhere(Node):
+    def __init__(self, name='/move_it', type_=MoveArm, *, node_name='move_arm_server'):
+        super().__init__(node_name)
+        if type_ is MoveArm:
+            ActionServer(self, type_, name, print)
+        else:
+            self.create_service(type_, name, print)
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'message'),
+    [
+        (
+            (),
+            'a server of the action /move_arm, saw none.*: /move_arm_server uses /move_it, so co',
+        ),
+        (('~/move_arm',), 'saw none.*/move_arm_server uses /move_arm_server/move_arm'),
+        (('/unlike',), r'/move_arm_server runs, so look at the action name in ActionServer\(…\)'),
+        (('/move_arm', Trigger), r'runs, so look at the action name in ActionServer\(…\)'),
+    ],
+)
+@pytest.mark.usefixtures('impatient')
+def test_a_missing_server_is_looked_for(run, arguments, message):
+    run(Elsewhere, *arguments)
+    with pytest.raises(CheckFailed, match=message):
+        action('/move_arm', MoveArm).send_goal(moves.goal((0.5, 0.2)))
+
+
+@pytest.mark.usefixtures('impatient')
+def test_two_servers_are_one_too_many(run):
+    run(MoveArmServer, key='one')
+    run(Elsewhere, '/move_arm', node_name='another', key='two')
+    with pytest.raises(CheckFailed, match=r'one server of the action /move_arm, saw 2 \(/anoth'):
+        action('/move_arm', MoveArm).send_goal(moves.goal((0.5, 0.2)))
+
+
+@pytest.mark.usefixtures('impatient')
+def test_without_a_node_the_cell_that_starts_it_is_named():
+    with pytest.raises(CheckFailed, match='the node is not running, so run the cell that starts'):
+        action('/move_arm', MoveArm).send_goal(moves.goal((0.5, 0.2)))

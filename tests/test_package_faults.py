@@ -1,0 +1,117 @@
+"""What is wrong with a package, told in words: its build, its installation, its end."""
+
+import signal
+import sys
+import types
+
+import pytest
+from my_robot_basics.exchange.endings import RACE, is_clean
+from my_robot_basics.live import executables
+from my_robot_basics.live.install_faults import fault_in_install
+from my_robot_basics.live.package_faults import fault_in_words
+from my_robot_basics.session import package_files
+from package_maker import NODE, PACKAGE, make_package
+
+
+def ended(code, *lines):
+    process = types.SimpleNamespace(
+        code=code, lines=['Traceback (most recent call last):', *lines]
+    )
+    return executables.how_it_ended(types.SimpleNamespace(process=process), signal.SIGINT)
+
+
+def test_a_race_of_rclpy_is_told_as_the_clean_end_that_it_is():
+    assert ended(1, f'rclpy._rclpy_pybind11.RCLError: {RACE}') == ended(0)
+    assert 'not cleanly (exit code 1, with KeyboardInterrupt)' in ended(1, 'KeyboardInterrupt')
+
+
+def test_try_shutdown_alone_may_meet_that_race_twice():
+    first, last = 'Traceback (most recent call last):', f'rclpy._rclpy_pybind11.RCLError: {RACE}'
+    once_too_often = [first, '    rclpy.shutdown()', last]
+    assert is_clean(1, once_too_often)
+    assert not is_clean(1, once_too_often, is_second=True)
+    assert is_clean(1, [first, '    rclpy.try_shutdown()', last], is_second=True)
+
+
+def test_of_many_lines_the_error_is_told():
+    words = (
+        'Starting >>> greeter\n--- stderr: greeter\nTraceback (most recent call last):\n'
+        '  File "<string>", line 1, in <module>\n'
+        '  File "/x/ros_ws/.packages/greeter/setup.py", line 7, in <module>\n'
+        "NameError: name 'nmae' is not defined\n---\nFailed   <<< greeter [0.5s, exited with 1]\n"
+    )
+    assert fault_in_words(PACKAGE, 1, words) == (
+        "colcon does not build greeter: greeter/setup.py, line 7: NameError: name 'nmae' is not "
+        'defined: fix that, and build again'
+    )
+    words = (
+        'Traceback (most recent call last):\n  File "<string>", line 1, in <module>\n'
+        '  File "/x/setuptools/_distutils/core.py", line 268, in run_setup\n    exec(code, g)\n'
+        '  File "<string>", line 3, in <module>\n'
+        "ModuleNotFoundError: No module named 'setuptool'\n"
+        '--- stderr: greeter\nTraceback (most recent call last):\n'
+        '  File "/x/colcon_core/executor/__init__.py", line 91, in __call__\n'
+        "subprocess.CalledProcessError: Command '['python', '-c', 'import sys; …\n"
+    )
+    assert 'greeter: setup.py, line 3: ModuleNotFoundError: No' in fault_in_words(
+        'greeter', 1, words
+    )
+    assert 'ended by SIGKILL' in fault_in_words(PACKAGE, -9, '')
+
+
+def installed(tmp_path, entry):
+    """An installed package with one entry point, as setuptools writes it."""
+    prefix = tmp_path / 'prefix'
+    site = next((prefix / 'lib').glob('python*/site-packages'), None)
+    if site is None:
+        site = prefix / 'lib/python{}.{}/site-packages'.format(*sys.version_info)
+        marker = prefix / 'share/ament_index/resource_index/packages/greeter'
+        for path in (site / 'greeter.egg-info/x', site / 'greeter/x', marker):
+            path.parent.mkdir(parents=True, exist_ok=True)
+        marker.touch()
+        (prefix / 'lib/greeter').mkdir()
+    (site / 'greeter.egg-info/entry_points.txt').write_text(f'[console_scripts]\n{entry}\n')
+    return prefix, site
+
+
+@pytest.mark.parametrize(
+    ('entry', 'module', 'words'),
+    [
+        ('greet = greeter.greet:main', NODE, ''),
+        ('greet = greeter.greet:mian', NODE, 'greeter/greet.py has no function mian'),
+        ('greet = greeter.greet', NODE, 'names no function: write a colon and the function'),
+        ('greet = greeter.greet.main', NODE, 'after the module, greeter.MODULE:main'),
+        ('greet = greeter.greet:main', 'def main(:', 'greeter/greet.py is not valid Python (line'),
+        ('greet = greeter.greet:main', None, 'greeter/greet.py was not installed, and greet'),
+        ('greet = grete.greet:main', NODE, 'and there is no package grete: correct it'),
+        ('greet = a b c', NODE, 'has no executable: name one in entry_points'),
+    ],
+)
+def test_an_entry_point_that_leads_nowhere_is_named(tmp_path, entry, module, words):
+    files = package_files.read(make_package(tmp_path))
+    prefix, site = installed(tmp_path, entry)
+    if module is not None:
+        (site / 'greeter/greet.py').write_text(module)
+    said = fault_in_install(PACKAGE, prefix, files)
+    assert (words in said) if words else (said == '')
+
+
+@pytest.mark.parametrize(
+    ('line', 'words'),
+    [
+        ('#!python', "greet begins with '#!python', and there is no such program"),
+        ('#!/nowhere/python3 -I', 'cannot start it: name a function in entry_points of setup.py'),
+        ('#! /usr/bin/env python3', ''),
+        (f'#!{sys.executable}', ''),
+        ('#!', ''),
+        ('x', ''),
+    ],
+)
+def test_a_script_that_linux_cannot_start_is_named(tmp_path, line, words):
+    files = package_files.read(make_package(tmp_path))
+    prefix, site = installed(tmp_path, 'greet = greeter.greet:main')
+    (site / 'greeter/greet.py').write_text(NODE)
+    (prefix / 'lib/greeter/a_folder').mkdir()
+    (prefix / 'lib/greeter/greet').write_text(f'{line}\nmain()\n')
+    said = fault_in_install(PACKAGE, prefix, files)
+    assert (words in said) if words else (said == '')

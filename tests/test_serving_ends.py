@@ -1,0 +1,145 @@
+"""Whatever ends `./course serve`, or runs beside it, nothing is lost or graded otherwise."""
+
+import random
+import signal
+import sqlite3
+import subprocess
+import time
+from contextlib import closing
+from pathlib import Path
+
+import nbformat
+import pytest
+import serving_desk
+from course_maker import TOY, answered, released_course
+from serving_desk import RIGHT, WRONG, exchange_in, grade_here, hand_in, page_of
+
+from grader.grading import REPLACED as REPLACED_MEANWHILE
+from grader.serving.queue import (
+    FAILED,
+    GRADED,
+    REFUSED,
+    REPLACED,
+    WAITING,
+    queue_to_read,
+)
+from grader.storage.records import records
+
+
+@pytest.fixture
+def inbound(tmp_path):
+    return exchange_in(tmp_path)
+
+
+def killed_rounds(course, inbound, rounds, chance):
+    """Serve under load, and SIGKILL it at random moments; then serve to the end."""
+    command = serving_desk.command(course, inbound)
+    students, number = ['ada', 'bob', 'zoe'], 0
+    latest = {}
+    for _ in range(rounds):
+        for student in students:
+            number += 1
+            secret = f'{number:04}'
+            answer = f'# {chance.uniform(0, 0.3):.2f} s\n' + chance.choice([RIGHT, WRONG])
+            latest[student] = (answer, secret)
+            folder = inbound / f'{student}+{TOY}+2026-01-01 10:00:00.0 UTC+x{number}'
+            folder.mkdir()
+            (folder / f'{TOY}.ipynb').write_text(nbformat.writes(answered(course, answer)))
+            (folder / 'timestamp.txt').write_text('2026-01-01 10:00:00.0 UTC')
+            (folder / 'submission_secret.txt').write_text(secret)
+            folder.chmod(0o777)
+        process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+        for line in process.stdout:  # killed once it is at work: not by the time it has started
+            if 'taken in' in line:
+                break
+        time.sleep(chance.uniform(0, 1.5))
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+        process.stdout.close()
+        for page in (inbound.parent / 'feedback').glob('*.html'):
+            assert page.read_text().rstrip().endswith('</html>'), 'half a page'
+    end = subprocess.run([*command, '--once'], capture_output=True, text=True, timeout=300)
+    assert end.returncode == 0, end.stderr
+    return number, latest
+
+
+def same_as_undisturbed(course, inbound, handed_in, latest):
+    """Nothing is lost, nothing is graded otherwise than an undisturbed run does it."""
+    with queue_to_read(course.gradebook) as queue:
+        arrivals = queue.find(GRADED, REPLACED, WAITING, REFUSED, FAILED, 'grading')
+    assert len(arrivals) == len({each.entry for each in arrivals}) == handed_in
+    assert {each.state for each in arrivals} <= {GRADED, REPLACED}
+    with closing(sqlite3.connect(course.database)) as database:
+        assert database.execute('PRAGMA integrity_check').fetchone() == ('ok',)
+    kept = {
+        path.read_bytes()
+        for pattern in ('submitted/*/*/*.ipynb', 'submitted_before/*/*/*/submitted/*.ipynb')
+        for path in course.gradebook.glob(pattern)
+    }
+    for path in inbound.glob('*/*.ipynb'):
+        assert path.read_bytes() in kept, f'{path} is lost'
+    scores = {r.student_id: r.score for r in records(course) if r.grade_id == 'double-check'}
+    for student, (answer, secret) in latest.items():
+        assert scores[student] == float('2 * x' in answer)
+        assert page_of(inbound, secret).exists()
+    for each in arrivals:
+        secret = (inbound / each.entry / 'submission_secret.txt').read_text()
+        answer = (inbound / each.entry / f'{TOY}.ipynb').read_text()
+        if each.state == GRADED:
+            assert each.score == 3.0 * ('2 * x' in answer)
+            assert page_of(inbound, secret).read_text().rstrip().endswith('</html>')
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize('rounds', [2, 20])
+def test_killed_at_random_moments_it_loses_nothing(rounds, tmp_path, inbound):
+    course = released_course(tmp_path / 'course')
+    handed_in, latest = killed_rounds(course, inbound, rounds, random.Random(rounds))
+    same_as_undisturbed(course, inbound, handed_in, latest)
+
+
+@pytest.mark.slow
+def test_grade_may_run_beside_it(tmp_path, inbound):
+    course = released_course(tmp_path / 'course')
+    process = subprocess.Popen(
+        serving_desk.command(course, inbound), stdout=subprocess.PIPE, text=True
+    )
+    latest, others = {}, []
+    try:
+        for number in range(1, 4):
+            for student in ('ada', 'bob'):
+                answer = f'# {number / 20:.2f} s\n{RIGHT if number % 2 else WRONG}'
+                secret = f'{student}{number}'
+                hand_in(course, inbound, student, answer, number=number, secret=secret)
+                latest[student] = answer, secret
+        deadline = time.monotonic() + 300
+        while not any(course.gradebook.glob('submitted/*/*/*.ipynb')):
+            assert time.monotonic() < deadline
+            time.sleep(0.05)
+        while not all(page_of(inbound, secret).exists() for _, secret in latest.values()):
+            assert time.monotonic() < deadline
+            assert process.poll() is None
+            others += grade_here(course)
+    finally:
+        process.terminate()
+        process.wait(timeout=60)
+        process.stdout.close()
+    assert others
+    refused = {row.reason for row in others if not row.stored}
+    assert refused <= {f'not graded, the grader failed: {REPLACED_MEANWHILE}'}
+    same_as_undisturbed(course, inbound, 6, latest)
+
+
+@pytest.mark.slow
+def test_sigterm_ends_it_and_the_next_one_goes_on(tmp_path, inbound):
+    course = released_course(tmp_path / 'course')
+    hand_in(course, inbound, 'ada', f'# 600 s\n{RIGHT}')
+    command = serving_desk.command(course, inbound)
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+    assert 'taken in' in process.stdout.readline()
+    process.terminate()
+    assert process.wait(timeout=60) == 128 + signal.SIGTERM
+    process.stdout.close()
+    with queue_to_read(course.gradebook) as queue:
+        assert len(queue.find(WAITING, 'grading')) == 1
+    assert Path(course.gradebook / 'arrived').is_dir()
