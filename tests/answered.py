@@ -1,5 +1,6 @@
 """Released lessons as students hand them in: with the solutions' answers, or with others."""
 
+import os
 from pathlib import Path
 
 import nbformat
@@ -7,6 +8,14 @@ from nbformat import NotebookNode
 
 ROOT = Path(__file__).parents[1]
 LESSONS = sorted(path.stem for path in ROOT.glob('notebooks/[0-9]*/*.ipynb'))
+
+
+NOT_A_STUDENTS = ('PYTEST_', 'COV_', 'MY_ROBOT_BASICS_', 'ROS_', 'RCUTILS_', 'FASTRTPS_', 'JPY_')
+
+
+def students_environment() -> dict[str, str]:
+    """Return this process's environment without what a session of tests sets."""
+    return {name: v for name, v in os.environ.items() if not name.startswith(NOT_A_STUDENTS)}
 
 
 def read(folder: str, lesson: str) -> NotebookNode:

@@ -1,7 +1,6 @@
 """JupyterLab of `./course lab`, and a lesson in it: what tests with a browser share."""
 
 import json
-import os
 import re
 import shutil
 import socket
@@ -13,6 +12,7 @@ import urllib.request
 from pathlib import Path
 
 import nbformat
+from answered import students_environment
 from chromium import LONG
 from playwright.sync_api import expect
 
@@ -40,8 +40,6 @@ class Lab:
         # neither what this user's own JupyterLab remembers, nor what a test session sets
         names = ['CONFIG', 'DATA', 'RUNTIME']
         mine = {f'JUPYTER_{name}_DIR': str(folder / name) for name in names}
-        not_a_students = ('PYTEST_', 'COV_', 'MY_ROBOT_BASICS_', 'ROS_')
-        clean = {k: v for k, v in os.environ.items() if not k.startswith(not_a_students)}
         options = ['--no-browser', '--expose-app-in-browser', '--ServerApp.port_retries=0']
         options += [
             f'--port={self.address.rpartition(":")[2]}',
@@ -51,7 +49,7 @@ class Lab:
         with self.log.open('w') as log:
             self.server = subprocess.Popen(
                 [ROOT / 'course', 'lab', self.folder, *options, *arguments],
-                env=clean | mine,
+                env=students_environment() | mine,
                 stdin=subprocess.DEVNULL,
                 stdout=log,
                 stderr=subprocess.STDOUT,

@@ -2,9 +2,9 @@
 
 import pytest
 from IPython.core.interactiveshell import InteractiveShell
+from made_recordings import every, joint_state, recording
 from my_robot_basics.checks import CheckFailed, pictures
 from my_robot_basics.feedback import errors
-from test_checks_recording import every, joint_state, recording
 
 PNG = b'\x89PNG\r\n\x1a\n'
 

@@ -13,6 +13,7 @@ from course_maker import TOY, answered, executed, submit, toy_lesson, write_sour
 from nbgrader.api import Gradebook
 from sqlalchemy import event
 from sqlalchemy.engine import Engine
+from stored_grades import RIGHT, grade, graded_with
 
 from grader.common.errors import CourseError
 from grader.course import Course
@@ -27,29 +28,12 @@ from grader.storage.records import records, verdicts
 from grader.storage.registering import register
 from grader.storage.submission_rows import SubmissionRows
 
-RIGHT = 'def double(x):\n    return 2 * x'
-
 
 @pytest.fixture
 def course(released, tmp_path):
     """The released lesson with a gradebook of its own, in which nothing is graded."""
     shutil.copytree(released.gradebook, tmp_path / 'gradebook')  # making a database takes long
     return Course(root=released.root, gradebook=tmp_path / 'gradebook')
-
-
-def grade(course, student, reasons, *, notebook=None, **answer):
-    submit(course, student, notebook or answered(course, RIGHT, **answer))
-    return store(course, *graded_with(course, student, reasons))
-
-
-def graded_with(course, student, reasons=None):
-    folder = course.folder('submitted', student, TOY)
-    if not folder.exists():
-        submit(course, student, answered(course, RIGHT))
-    submission = read_submission(folder, student_id=student, assignment=TOY)
-    register(course, TOY)
-    restored = restore(submission.notebook, course.template(TOY)).notebook
-    return submission, executed(prepare(course, TOY, restored), reasons or {})
 
 
 def by_cell(course, student):

@@ -105,6 +105,20 @@ def test_what_students_get_needs_no_grader():
     assert [m for m in ours for other, _ in imported(m) if other.startswith('grader')] == []
 
 
+def test_a_file_of_tests_takes_nothing_from_another_one():
+    """What several need is in a helper, tests/lab_browser.py say, or a fixture of conftest.py."""
+    helpers = {path.stem for path in (ROOT / 'tests').glob('*.py')}
+    tests = {name for name in helpers if name.startswith('test_')}
+    taken = [
+        (name, node.module)
+        for name in sorted(helpers)
+        for node in ast.walk(ast.parse((ROOT / 'tests' / f'{name}.py').read_text('utf-8')))
+        if isinstance(node, ast.ImportFrom) and node.module in tests
+    ]
+    assert len(tests) > 200
+    assert taken == []
+
+
 MOST_LINES = 200
 
 

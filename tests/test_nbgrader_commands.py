@@ -10,8 +10,8 @@ from pathlib import Path
 import nbformat
 import pytest
 from course_maker import TOY, answered, make_course, submit
+from hostile_papers import STOPS_DATEUTIL
 from nbformat import NotebookNode
-from test_dates import STOPS_DATEUTIL
 
 from grader.__main__ import main
 from grader.authoring.release import release

@@ -12,7 +12,7 @@ from nbgrader.api import Gradebook, MissingEntry
 from nbgrader.nbgraderformat import MetadataValidator, ValidationError
 from sqlalchemy import event, text
 from sqlalchemy.engine import Engine
-from test_gradebook import RIGHT, grade
+from stored_grades import RIGHT, grade
 from traitlets.config import Config
 
 from grader.authoring.release_passes import CODE_STUB, PASSES

@@ -9,6 +9,7 @@ import time
 import nbformat
 import pytest
 from course_maker import PIXEL
+from hostile_papers import CODE, ONE_MEGABYTE, notebook_text
 from nbformat.v4 import new_code_cell, new_notebook
 
 from grader.common.errors import CourseError, UnreadableSubmission
@@ -22,11 +23,6 @@ from grader.notebook.submission import (
 )
 
 NAME = '03_publisher.ipynb'
-CODE = {'cell_type': 'code', 'source': 'x = 1', 'metadata': {}, 'outputs': []}
-
-
-def notebook_text(*cells, **more):
-    return json.dumps({'nbformat': 4, 'nbformat_minor': 5, 'metadata': {}, 'cells': cells} | more)
 
 
 @pytest.fixture
@@ -184,19 +180,6 @@ def test_nothing_of_a_notebook_is_parsed_in_this_process(read, monkeypatch):
     assert read(notebook_text(CODE)).cells[0].source == 'x = 1'
     with pytest.raises(AssertionError):
         raw_notebook.read('here')
-
-
-LARGE = ','.join(['{"cells":[{}]}'] * 60_000)
-ONE_MEGABYTE = {
-    'objects': f'{{"nbformat": 4, "cells": [{",".join(["{}"] * 333_000)}]}}',
-    'worksheets': f'{{"nbformat": 3, "worksheets": [{LARGE}]}}',
-    'outputs': notebook_text(CODE | {'outputs': [{'output_type': 'x'}] * 30_000}),
-    'ids that are all one': notebook_text(*[CODE | {'id': 'a' * 64}] * MAX_CELLS),
-    'lists in lists': notebook_text(CODE, metadata=[json.loads('[' * 90 + ']' * 90)] * 5_000),
-    'long floats': notebook_text(CODE)[:-1] + f', "x": [{",".join(["1." + "7" * 700] * 1_400)}]}}',
-    'backslashes': notebook_text(CODE | {'source': '\\' * 400_000}),
-    'lines without a character': notebook_text(CODE | {'source': [''] * 240_000}),
-}
 
 
 @pytest.mark.parametrize('content', ONE_MEGABYTE.values(), ids=ONE_MEGABYTE)

@@ -5,11 +5,10 @@ import time
 import nbformat
 import pytest
 from course_maker import TOY, make_course, submit
+from hostile_papers import ONE_MEGABYTE, STOPS_DATEUTIL
 from nbformat.v4 import new_notebook
 from nbgrader.converters import Autograde
 from nbgrader.coursedir import CourseDirectory
-from test_dates import STOPS_DATEUTIL
-from test_submission import ONE_MEGABYTE
 from traitlets.config.loader import PyFileConfigLoader
 
 from grader.autograde.submitted_files import AutogradeExporter, existing_timestamp

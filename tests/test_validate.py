@@ -2,7 +2,6 @@
 
 import contextlib
 import json
-import os
 import re
 import shutil
 import signal
@@ -13,10 +12,8 @@ from pathlib import Path
 import nbformat
 import psutil
 import pytest
-from answered import ROOT, answered, read
+from answered import ROOT, answered, read, students_environment
 from nbformat.v4 import new_code_cell
-
-NOT_A_STUDENTS = ('PYTEST_', 'COV_', 'MY_ROBOT_BASICS_', 'ROS_', 'RCUTILS_', 'FASTRTPS_', 'JPY_')
 
 NODE = """
 class KinematicsPublisher(Node):
@@ -48,7 +45,7 @@ LOSE_POINTS = {
 
 
 def command(path, *options):
-    clean = {k: v for k, v in os.environ.items() if not k.startswith(NOT_A_STUDENTS)}
+    clean = students_environment()
     run = [sys.executable, '-P', '-m', 'my_robot_basics.validate', *options, str(path)]
     return subprocess.run(run, env=clean, capture_output=True, text=True, check=False)
 
@@ -224,7 +221,7 @@ def test_a_students_workspace_is_left_alone_whatever_runs(tmp_path):
     right = next(c for c in read('solutions', '03_publisher').cells if c.id == 'five_hz')
     make = f'make_workspace()\nopen({str(tmp_path / "ran")!r}, "w").close()\n'
     path = answered('03_publisher', tmp_path, five_hz=f'{make}{right.source}')
-    clean = {k: v for k, v in os.environ.items() if not k.startswith(NOT_A_STUDENTS)}
+    clean = students_environment()
     subprocess.run(
         [sys.executable, '-P', '-m', 'my_robot_basics.validate', str(path)],
         env=clean | {'MY_ROBOT_BASICS_WORKSPACE': str(tmp_path / 'ros_ws')},
@@ -312,7 +309,7 @@ def test_a_notebook_that_was_damaged_is_validated_as_far_as_it_can_be(tmp_path, 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM], ids=str)
 def test_who_stops_it_ends_all_that_it_began(tmp_path, number):
     path = answered('02_joint_state', tmp_path, to_joint_state='import time; time.sleep(600)')
-    clean = {k: v for k, v in os.environ.items() if not k.startswith(NOT_A_STUDENTS)}
+    clean = students_environment()
     run = [sys.executable, '-P', '-m', 'my_robot_basics.validate', '--json', str(path)]
     with subprocess.Popen(run, env=clean, stdout=subprocess.PIPE, text=True) as process:
         while 'running your cells' not in process.stdout.readline():

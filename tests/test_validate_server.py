@@ -1,7 +1,6 @@
 """The address behind the Validate button: lines as they come, and a server that goes on."""
 
 import json
-import os
 import shutil
 import socket
 import subprocess
@@ -13,8 +12,7 @@ import urllib.request
 
 import psutil
 import pytest
-from answered import ROOT, answered
-from test_validate import NOT_A_STUDENTS
+from answered import ROOT, answered, students_environment
 
 TOKEN = 'a-token-of-this-test'
 LONG_SEC = 120.0
@@ -28,7 +26,7 @@ class Server:
             free.bind(('127.0.0.1', 0))
             port = free.getsockname()[1]
         self.address = f'http://127.0.0.1:{port}'
-        clean = {k: v for k, v in os.environ.items() if not k.startswith(NOT_A_STUDENTS)}
+        clean = students_environment()
         mine = {f'JUPYTER_{n}_DIR': str(folder.parent / n) for n in ('CONFIG', 'DATA', 'RUNTIME')}
         options = ['--ServerApp.port_retries=0', '--allow-root', '--no-browser']
         options += [f'--ServerApp.port={port}', f'--IdentityProvider.token={TOKEN}']
