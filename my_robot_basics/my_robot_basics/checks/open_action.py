@@ -5,7 +5,7 @@ from typing import Any, NoReturn
 from rclpy.task import Future
 
 from my_robot_basics.checks.action_ends import TERMINAL, ActionEnds, SentGoal
-from my_robot_basics.checks.awaited_servers import SERVER_SEC, wait_for_server
+from my_robot_basics.checks.awaited_servers import SERVER_SEC, expect_type, wait_for_server
 from my_robot_basics.checks.callbacks import CallbackErrors
 from my_robot_basics.checks.goal_answers import (
     GoalAnswers,
@@ -16,7 +16,6 @@ from my_robot_basics.checks.goal_answers import (
 from my_robot_basics.checks.parameter_services import nodes_with_services
 from my_robot_basics.checks.server_log import ServerLog
 from my_robot_basics.checks.services import answers_parameters, wait_for_all
-from my_robot_basics.exchange.values import type_name
 from my_robot_basics.feedback.errors import expect, fail
 from my_robot_basics.feedback.hidden import theirs
 from my_robot_basics.graph import actions
@@ -168,15 +167,7 @@ class OpenAction:
                 hint=actions.take(self.watcher.node).why_none(self.name, maker='ActionServer'),
                 doubt=none.doubt,
             )
-        wanted = type_name(self.type)
-        types = sorted({each for types in found.values() for each in types})
-        expect(
-            types == [wanted],
-            expected=f'a server of {self.name} for {wanted}',
-            seen=f'one for {theirs(" and ".join(types))}',
-            hint='compare the type in ActionServer(…)',
-            cause=f'{self.name} has another type',
-        )
+        expect_type(self.name, self.type, found, maker='ActionServer')
         self.expect_alone()
         return next(iter(found))
 

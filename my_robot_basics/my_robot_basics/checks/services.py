@@ -8,10 +8,9 @@ from rcl_interfaces.srv import GetParameters
 from rclpy.qos import QoSProfile
 from rclpy.task import Future
 
-from my_robot_basics.checks.awaited_servers import SERVER_SEC, wait_for_server
+from my_robot_basics.checks.awaited_servers import SERVER_SEC, expect_type, wait_for_server
 from my_robot_basics.checks.callbacks import CallbackErrors
 from my_robot_basics.exchange import node_troubles
-from my_robot_basics.exchange.values import type_name
 from my_robot_basics.feedback.errors import expect, fail
 from my_robot_basics.feedback.hidden import theirs
 from my_robot_basics.graph import familiar, graphs, services
@@ -84,15 +83,7 @@ class Service:
                 hint=services.take(watcher.node).why_none(self.name, maker='create_service'),
                 doubt=none.doubt,
             )
-        wanted = type_name(self.type)
-        types = sorted({each for types in found.values() for each in types})
-        expect(
-            types == [wanted],
-            expected=f'a server of {self.name} for {wanted}',
-            seen=f'one for {theirs(" and ".join(types))}',
-            hint='compare the type in create_service(…)',
-            cause=f'{self.name} has another type',
-        )
+        expect_type(self.name, self.type, found, maker='create_service')
         known = ('service', self.name), {**found}
         if not familiar.is_known(watcher.context, *known):
             watcher.spin_for(graphs.NEWCOMER_SEC)

@@ -1,8 +1,6 @@
 """What a command line makes of a node, as rcl itself reads it: nothing is started."""
 
-import os
-from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,8 +19,8 @@ from my_robot_basics.ros2.command_line import (
     CommandLine,
 )
 from my_robot_basics.session import classroom
+from my_robot_basics.session.environment import set_meanwhile
 
-_RANGE = 'ROS_AUTOMATIC_DISCOVERY_RANGE'
 _REFUSED = (RuntimeError, ValueError, ParameterException)
 """What rclpy raises for names, rules and parameters that are none."""
 
@@ -82,15 +80,6 @@ def started_node(
         context.shutdown()
 
 
-@contextmanager
-def _met_by_nobody() -> Iterator[None]:
+def _met_by_nobody() -> AbstractContextManager[None]:
     """Participants that are made meanwhile neither find others, nor are found."""
-    former = os.environ.get(_RANGE)
-    os.environ[_RANGE] = 'OFF'
-    try:
-        yield
-    finally:
-        if former is None:
-            del os.environ[_RANGE]
-        else:
-            os.environ[_RANGE] = former
+    return set_meanwhile('ROS_AUTOMATIC_DISCOVERY_RANGE', 'OFF')

@@ -1,9 +1,8 @@
 """A check's own ROS node: it lives for one check, and no student code can reach it."""
 
-import os
 import time
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, nullcontext
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from typing import Self
 
 from rclpy.node import Node
@@ -16,6 +15,7 @@ from my_robot_basics.graph.lean_executor import LeanExecutor
 from my_robot_basics.graph.snapshot import GraphSnapshot
 from my_robot_basics.graph.unheeded import Unheeded
 from my_robot_basics.session import classroom, interactions
+from my_robot_basics.session.environment import set_meanwhile
 from my_robot_basics.session.pressure import free_turns
 
 TRANSPORTS = 'FASTDDS_BUILTIN_TRANSPORTS'
@@ -28,18 +28,9 @@ COUNT_EVERY_SEC = 0.5
 LOOK_EVERY_SEC = 0.05
 
 
-@contextmanager
-def _only_shared_memory() -> Iterator[None]:
+def _only_shared_memory() -> AbstractContextManager[None]:
     """Participants that are made meanwhile have no socket: a room's memory is no other room's."""
-    former = os.environ.get(TRANSPORTS)
-    os.environ[TRANSPORTS] = 'SHM'
-    try:
-        yield
-    finally:
-        if former is None:
-            del os.environ[TRANSPORTS]
-        else:
-            os.environ[TRANSPORTS] = former
+    return set_meanwhile(TRANSPORTS, 'SHM')
 
 
 class Watcher:

@@ -1,7 +1,6 @@
 """The way to a notebook's cells; outside a notebook kernel, to stdout."""
 
 import itertools
-import os
 import threading
 import time
 from collections.abc import Callable
@@ -13,6 +12,7 @@ from my_robot_basics.language.speaking import language_here
 from my_robot_basics.live.log_lines import CONSOLE_FORMAT, LogRecord
 from my_robot_basics.live.stdout_tap import StdoutTap
 from my_robot_basics.session import kernel
+from my_robot_basics.session.environment import set_meanwhile
 
 PAUSE_SEC = 0.25
 """Between two updates: a flood of messages must not become a flood of displays."""
@@ -38,13 +38,9 @@ def open_tap() -> None:
 
 def _mark_log_records() -> None:
     """Set the ROS logger up, with a mark behind each record, unless it has been set up before."""
-    name, former = 'RCUTILS_CONSOLE_OUTPUT_FORMAT', os.environ.get('RCUTILS_CONSOLE_OUTPUT_FORMAT')
-    os.environ[name] = CONSOLE_FORMAT
-    rclpy.logging.initialize()
-    # programs that the notebook starts write to people
-    del os.environ[name]
-    if former is not None:
-        os.environ[name] = former
+    # not for longer: programs that the notebook starts write to people
+    with set_meanwhile('RCUTILS_CONSOLE_OUTPUT_FORMAT', CONSOLE_FORMAT):
+        rclpy.logging.initialize()
 
 
 def leave() -> None:
