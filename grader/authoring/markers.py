@@ -26,7 +26,7 @@ class _Region:
 
 REGIONS = (
     _Region('SOLUTION', "the answer's last line", 'solution', 'Autograded answer'),
-    _Region('HIDDEN TESTS', 'the last hidden line', 'grade', 'Autograder tests'),
+    _Region('HIDDEN TESTS', 'the last hidden line', 'grade', 'Autograded tests'),
     _Region('MARK SCHEME', 'its last line'),
 )
 

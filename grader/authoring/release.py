@@ -16,11 +16,10 @@ from nbformat import NotebookNode
 from grader.authoring.demo_outputs import Sanitize, clean_source, keep_outputs, read_sanitizer
 from grader.authoring.edition_files import write_editions
 from grader.authoring.editions import editions
-from grader.authoring.exercise_cells import outside_of_exercises
 from grader.authoring.index import write_pages
 from grader.authoring.leaks import files_in, leaks_of
-from grader.authoring.markers import marker_faults
 from grader.authoring.release_passes import METADATA
+from grader.authoring.source_faults import refuse_faulty
 from grader.authoring.typed_answers import keep_work
 from grader.common.errors import CourseError
 from grader.common.files import write_whole
@@ -98,9 +97,7 @@ def _build(course: Course, assignment: str, folder: Path) -> Path:
     names = course.assignments() if assignment == '*' else [assignment]
     if not names:
         raise CourseError(f'there is no assignment in {course.root / "solutions"}')
-    # our own words first: nbgrader's name neither the lesson nor the cell
-    if faults := [fault for name in names for fault in _source_faults(course, name)]:
-        raise CourseError('; '.join(faults))
+    refuse_faulty(course, names)
     command = [
         *(sys.executable, '-m', 'nbgrader', 'generate_assignment', assignment, '--no-db'),
         f'--CourseDirectory.root={course.root}',
@@ -118,13 +115,6 @@ def _build(course: Course, assignment: str, folder: Path) -> Path:
             shutil.rmtree(folder / name / package, ignore_errors=True)
     write_pages(course, folder, metadata=METADATA)
     return folder
-
-
-def _source_faults(course: Course, name: str) -> Iterator[str]:
-    """Yield why a lesson can't be released, each with the cell and what to add."""
-    source = course.source(name)
-    for fault in (*marker_faults(source), *outside_of_exercises(source)):
-        yield f'{_source_name(name)} cannot be released: {fault}'
 
 
 def _keep_outputs(course: Course, built: Path, *, fresh: bool = False) -> Iterator[str]:

@@ -19,7 +19,9 @@ SAVE_CELLS = 'nbgrader.preprocessors.SaveCells'
 def tidied(course: Course, assignment: str) -> NotebookNode:
     """Return a lesson as the gradebook keeps it. Raises CourseError where it can't be released."""
     from grader.authoring.release_passes import PASSES  # nbconvert: only where it has to be made
+    from grader.authoring.source_faults import refuse_faulty
 
+    refuse_faulty(course, [assignment])
     passes = PASSES[: PASSES.index(SAVE_CELLS)]
     return apply(passes, course.source(assignment), resources_of(course, assignment))
 

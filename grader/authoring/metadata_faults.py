@@ -1,0 +1,71 @@
+"""Whether the graded cells of a lesson have what nbgrader wants to know of each.
+
+nbgrader refuses such a lesson, too: as metadata that may be corrupted, without the cell.
+"""
+
+import ast
+import re
+from collections.abc import Iterator
+
+from my_robot_basics.validate.cells import role
+from nbformat import NotebookNode
+
+SCHEMA = 3
+"""The version of the metadata that nbgrader 0.9 reads and writes."""
+_ID = re.compile(r'[a-zA-Z0-9_\-]+')
+_TYPES = ('grade', 'solution', 'locked', 'task')
+"""A cell with any of these has a type in Create Assignment."""
+
+
+def metadata_faults(notebook: NotebookNode) -> Iterator[str]:
+    """Yield what is wrong with each cell that has a type in Create Assignment, and what to do."""
+    ids = set()
+    for number, cell in enumerate(notebook.cells, 1):
+        marks = cell.metadata.get('nbgrader', {})
+        if not any(marks.get(each) for each in _TYPES):
+            continue
+        name = marks.get('grade_id') or ''
+        shown = f'the cell `{name}`' if name else f'cell {number} of the notebook'
+        if marks.get('schema_version') != SCHEMA:
+            yield (
+                f'{shown} is of another version of nbgrader:'
+                ' .venv/bin/nbgrader update solutions brings it up to date'
+            )
+        if not _ID.fullmatch(name):
+            yield (
+                f'{shown} needs an ID in Create Assignment: letters, digits, - and _,'
+                ' which no other cell has'
+            )
+        elif name in ids:
+            yield (
+                f'two cells have the ID `{name}`: give the second one another in Create Assignment'
+            )
+        ids.add(name)
+        for fault in _faults(cell):
+            yield f'{shown} {fault}'
+
+
+def _faults(cell: NotebookNode) -> Iterator[str]:
+    marks = cell.metadata.nbgrader
+    if (marks.get('grade') or marks.get('task')) and not _counts(marks.get('points')):
+        yield 'has no points: write a number from 0 on into Points in Create Assignment'
+    if cell.cell_type == 'markdown' and not marks.get('task'):
+        if marks.get('grade') and not marks.get('solution'):
+            yield (
+                'is a check, and a text: make it a code cell, or give it the type'
+                " 'Manually graded answer' in Create Assignment"
+            )
+        elif marks.get('solution') and not marks.get('grade'):
+            yield (
+                'is an answer in words, which no check can grade: give it the type'
+                " 'Manually graded answer' in Create Assignment, with points"
+            )
+    if cell.cell_type == 'code' and role(cell) == 'grade':
+        try:
+            ast.parse(cell.source)
+        except SyntaxError as error:
+            yield f'is a check that is no Python: line {error.lineno}: {error.msg}; correct it'
+
+
+def _counts(points: object) -> bool:
+    return not isinstance(points, bool) and isinstance(points, int | float) and points >= 0

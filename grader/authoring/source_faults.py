@@ -1,0 +1,27 @@
+"""Why a lesson in solutions/ can't be released, or graded, in the words of its author."""
+
+from collections.abc import Iterable, Iterator
+
+from grader.authoring.exercise_cells import outside_of_exercises
+from grader.authoring.markers import marker_faults
+from grader.authoring.metadata_faults import metadata_faults
+from grader.common.errors import CourseError
+from grader.course import Course
+
+
+def refuse_faulty(course: Course, assignments: Iterable[str]) -> None:
+    """Raise CourseError with each lesson and cell that has a fault, and what to do about it.
+
+    nbgrader's own words name neither the lesson nor the cell.
+    """
+    if faults := [fault for name in assignments for fault in _faults(course, name)]:
+        raise CourseError('; '.join(faults))
+
+
+def _faults(course: Course, name: str) -> Iterator[str]:
+    source = course.source(name)
+    where = f'solutions/{name}/{name}.ipynb'
+    for find in (metadata_faults, marker_faults, outside_of_exercises):
+        if faults := [*find(source)]:
+            yield from (f'{where} cannot be released: {fault}' for fault in faults)
+            return  # an answer without its type leaves its checks without an exercise

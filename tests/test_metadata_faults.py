@@ -1,0 +1,78 @@
+"""What an author forgets in Create Assignment is named with its cell, before nbgrader sees it."""
+
+import re
+
+import pytest
+from course_maker import TOY, make_course, toy_lesson, write_source
+
+from grader.authoring.metadata_faults import metadata_faults
+from grader.authoring.release import release
+from grader.common.errors import CourseError
+from grader.storage.registering import register
+
+FAULTS = {
+    'no id': (
+        {'grade_id': ''},
+        'cell 8 of the notebook needs an ID in Create Assignment: letters, digits, - and _, which'
+        ' no other cell has',
+    ),
+    'an id with a space': (
+        {'grade_id': 'more numbers'},
+        'the cell `more numbers` needs an ID in Create Assignment: letters, digits, - and _, which'
+        ' no other cell has',
+    ),
+    'the id of another': (
+        {'grade_id': 'double-check'},
+        'two cells have the ID `double-check`: give the second one another in Create Assignment',
+    ),
+    'no points': (
+        {'points': None},
+        'the cell `double-hidden` has no points: write a number from 0 on into Points in Create'
+        ' Assignment',
+    ),
+    'less than no points': (
+        {'points': -1},
+        'the cell `double-hidden` has no points: write a number from 0 on into Points in Create'
+        ' Assignment',
+    ),
+    'old metadata': (
+        {'schema_version': 2},
+        'the cell `double-hidden` is of another version of nbgrader: .venv/bin/nbgrader update'
+        ' solutions brings it up to date',
+    ),
+}
+
+
+@pytest.mark.parametrize(('marks', 'fault'), FAULTS.values(), ids=FAULTS)
+def test_what_is_wrong_in_create_assignment_is_named_with_what_to_do(marks, fault):
+    lesson = toy_lesson()
+    assert list(metadata_faults(lesson)) == []
+    lesson.cells[7].metadata.nbgrader.update(marks)
+    assert list(metadata_faults(lesson)) == [fault]
+
+
+def test_a_check_that_is_a_text_and_an_answer_in_words_without_points_are_named():
+    lesson = toy_lesson()
+    lesson.cells[7].cell_type = 'markdown'
+    lesson.cells[8].metadata.nbgrader.grade = False
+    as_check, as_answer = metadata_faults(lesson)
+    assert as_check.startswith('the cell `double-hidden` is a check, and a text: make it a code')
+    assert as_answer.startswith('the cell `explain` is an answer in words, which no check can')
+
+
+def test_a_check_that_is_no_python_is_named_with_its_line():
+    lesson = toy_lesson()
+    lesson.cells[6].source += '\nif seen =='
+    [fault] = metadata_faults(lesson)
+    assert re.match(r'the cell `double-check` is a check that is no Python: line 5: \w', fault)
+
+
+@pytest.mark.parametrize('use', [release, lambda course: register(course, TOY)])
+def test_with_and_without_a_gradebook_the_lesson_and_its_cell_are_named(use, tmp_path):
+    lesson = toy_lesson()
+    del lesson.cells[4].metadata['nbgrader']
+    course = make_course(tmp_path / 'course')
+    write_source(course, lesson)
+    said = f'solutions/{TOY}/{TOY}.ipynb cannot be released: the cell `double`, line 3: '
+    with pytest.raises(CourseError, match=f'^{re.escape(said)}'):
+        use(course)
