@@ -56,6 +56,7 @@ c.Autograde.exclude_overwriting = solved_packages
 c.Autograde.pre_convert_hook = 'grader.storage.gradebook.register_before_autograde'
 c.GenerateFeedback.preprocessors = list(FEEDBACK_PASSES)
 c.GenerateFeedback.exporter_class = 'grader.report.feedback.FeedbackPage'
+c.ExportApp.plugin_class = 'grader.export.nbgrader_export.CsvExport'
 
 # the formgrader shows what students wrote: nothing of it may run there
 c.HTMLExporter.sanitize_html = True

@@ -121,6 +121,6 @@ def test_what_a_date_changes_is_counted_by_the_next_grading(course, capsys):
     course.folder('submitted', 'ada', TOY).mkdir(parents=True)
     assert due(course, TOY, '2026-12-01') == 0
     last = capsys.readouterr().out.splitlines()[-1]
-    assert last == 'Next: ./course grade, which brings scores and the formgrader up to date'
+    assert last == 'Next: ./course scores, ./course feedback or ./course grade: each counts it'
     assert due(course) == 0
     assert 'Next: ' not in capsys.readouterr().out

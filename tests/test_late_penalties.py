@@ -1,5 +1,9 @@
+import csv
+import io
 import re
 import shutil
+import subprocess
+import sys
 from datetime import datetime
 from pathlib import Path
 
@@ -200,3 +204,56 @@ def test_the_example_of_the_document_is_understood():
     assert (found.per_day, found.at_most, found.grace_minutes) == (0.1, 0.5, 15)
     limits = found.resubmissions
     assert (limits.per_hour, limits.in_total) == (6, 30)
+
+
+def given(course):
+    return {row.student_id: row.score for row in records(course) if not row.max_score}
+
+
+def test_a_date_that_is_set_later_counts_in_the_next_table(course):
+    grade(course, 'bob', '2026-01-11 22:00:00 UTC')
+    grade(course, 'ada', '2026-01-11 22:00:00 UTC')
+    _, late = RULES.split('[late]')
+    (course.gradebook / FILE).write_text(f'[late]{late}')
+    assert given(course) == {}
+    (course.gradebook / FILE).write_text(RULES)
+    assert given(course) == {'bob': -0.3}  # ada has an extension
+    (course.gradebook / FILE).write_text(RULES.replace('01-10', '01-11').replace('01-12', '01-13'))
+    assert given(course) == {}
+    (course.gradebook / FILE).write_text(f'[due]\n{TOY} = 2026-01-10T22:59:00Z\n[late]{late}')
+    assert given(course) == {'ada': -0.3, 'bob': -0.3}
+    (course.gradebook / FILE).write_text('')
+    assert given(course) == {}
+
+
+def exported(course, *arguments):
+    """Let nbgrader's own command write its table; return its rows, or what it said."""
+    run = subprocess.run(
+        [
+            *(sys.executable, '-P', '-m', 'nbgrader', 'export', '--to', 'export.csv', *arguments),
+            f'--CourseDirectory.db_url={course.db_url}',
+        ],
+        cwd=course.root,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    if run.returncode:
+        return run.stderr
+    text = (course.root / 'export.csv').read_text(encoding='utf-8-sig')
+    return {row['student_id']: row for row in csv.DictReader(io.StringIO(text))}
+
+
+@pytest.mark.starts
+def test_nbgraders_own_table_has_the_penalty_of_today_and_a_name_with_a_comma(course):
+    (course.gradebook / FILE).write_text(RULES)
+    grade(course, 'Lovelace, Ada', '2026-01-13 22:58:00 UTC')
+    grade(course, 'bob', '2026-01-10 22:58:00 UTC')
+    give_by_hand(course, 'Lovelace, Ada', 2.0)
+    rows = exported(course)
+    assert [*rows] == ['Lovelace, Ada', 'bob']
+    wanted = {'raw_score': '5.0', 'late_submission_penalty': '1.5', 'score': '3.5'}
+    assert wanted.items() <= rows['Lovelace, Ada'].items()
+    assert [*exported(course, '--student', "['bob']")] == ['bob']
+    (course.gradebook / FILE).write_text('[late]\nper_day = 2\n')
+    assert 'per_day = 2 is out of range: see the example in docs/' in exported(course)

@@ -87,9 +87,9 @@ def run_due(course: 'Course', asked: argparse.Namespace) -> int:
         set_due(course, asked.assignment, when, student_id=asked.student)
     for line in (*describe_deadlines(course), *extended_for_nobody(course)):
         print(line)
-    # what a date changes is counted there, without running anything again
+    # what a date changes is counted by each of them, without running anything again
     if asked.assignment and any(course.folder('submitted', '', '').glob(f'*/{asked.assignment}')):
-        print('Next: ./course grade, which brings scores and the formgrader up to date')
+        print('Next: ./course scores, ./course feedback or ./course grade: each counts it')
     return 0
 
 

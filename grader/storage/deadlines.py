@@ -4,7 +4,7 @@ import math
 import tomllib
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 from grader.common.errors import CourseError
@@ -31,6 +31,12 @@ class Deadlines:
     at_most: float = 1.0
     grace_minutes: float = 0.0
     resubmissions: ResubmissionRules = field(default_factory=ResubmissionRules)
+
+    def extension(self, assignment: str, student_id: str) -> timedelta | None:
+        """Return how much later than others a student may hand in; None where it is not later."""
+        due = self.due.get(assignment)
+        until = self.extended.get((assignment, student_id))
+        return until - due if due and until and until > due else None
 
     def penalty(self, score: float, seconds_late: float) -> float | None:
         """Return what lateness takes from a score; None where it takes nothing."""

@@ -1,11 +1,11 @@
 """Tell nbgrader's database what is due when."""
 
 from collections.abc import Iterator
-from datetime import timedelta
+from datetime import datetime, timedelta
 from pathlib import Path
 
 from nbgrader.api import Assignment, Gradebook, SubmittedAssignment, SubmittedNotebook
-from sqlalchemy import bindparam, select
+from sqlalchemy import bindparam, or_, select
 from sqlalchemy.orm import contains_eager, joinedload
 
 from grader.course import Course
@@ -32,9 +32,26 @@ _LATE = (
         contains_eager(SubmittedAssignment.assignment),
         joinedload(SubmittedAssignment.notebooks).undefer(SubmittedNotebook.score),
     )
-    .where(SubmittedAssignment.timestamp > Assignment.duedate)
+    .where(
+        or_(
+            SubmittedAssignment.timestamp > Assignment.duedate,
+            SubmittedAssignment.notebooks.any(SubmittedNotebook.late_submission_penalty > 0),
+        )
+    )
 )
-"""Those in time by an extension are among them."""
+"""Those that are or were late; those in time by an extension are among them."""
+_EXTENDED = (
+    select(SubmittedAssignment)
+    .join(SubmittedAssignment.assignment)
+    .options(contains_eager(SubmittedAssignment.assignment))
+    .where(
+        or_(
+            SubmittedAssignment.extension.is_not(None),
+            SubmittedAssignment.student_id.in_(bindparam('extended', expanding=True)),
+        )
+    )
+)
+"""Those with an extension, in the database or in the file."""
 
 
 def tell_what_is_due(gradebook: Path, db_url: str, assignment: str, student_id: str) -> bool:
@@ -44,40 +61,53 @@ def tell_what_is_due(gradebook: Path, db_url: str, assignment: str, student_id: 
         whose = {'assignment': assignment, 'student': student_id}
         submission = book.db.execute(_SUBMISSION, whose).unique().scalar_one()
         if found:  # else whatever nbgrader was told stays
-            due = found.due.get(assignment)
-            extension = None
-            if due:
-                later = found.extended.get((assignment, student_id), due)
-                extension = max(later - due, timedelta())
-            submission.assignment.duedate = due
-            submission.extension = extension or None
+            submission.assignment.duedate = found.due.get(assignment)
+            submission.extension = found.extension(assignment, student_id)
             book.db.commit()
         was_late = any(each.late_submission_penalty for each in submission.notebooks)
         return was_late or submission.total_seconds_late > 0
 
 
 def recount_late_penalties(course: Course) -> None:
-    """Take the share of what a person has given meanwhile, too: nbgrader counts at grading alone.
+    """Count today's dates and rules, and points given by hand: nbgrader does so at grading alone.
 
-    Dates stay those of the latest grading.
+    Where there is no file, dates stay those that nbgrader was told.
     """
-    rules = deadlines(course.gradebook) or Deadlines()
+    found = deadlines(course.gradebook)
     with connected(course.db_url) as book:
-        if not any(_outdated(book, rules)):
+        if not any(_moved(book, found)) and not any(_outdated(book, found)):
             return
     with gradebook_lock(course.gradebook), connected(course.db_url) as book:
-        for notebook, penalty in _outdated(book, rules):
+        for row, column, when in [*_moved(book, found)]:
+            setattr(row, column, when)
+        book.db.flush()  # before it is asked who is late
+        for notebook, penalty in _outdated(book, found):
             notebook.late_submission_penalty = penalty
         book.db.commit()
 
 
+def _moved(
+    book: Gradebook, found: Deadlines | None
+) -> Iterator[tuple[Assignment | SubmittedAssignment, str, datetime | timedelta | None]]:
+    """Find what has another date than the file says: the row, its column, and the file's date."""
+    if not found:
+        return
+    for assignment in book.assignments:
+        if assignment.duedate != (due := found.due.get(assignment.name)):
+            yield assignment, 'duedate', due
+    extended = sorted({student for _, student in found.extended})
+    for submission in book.db.execute(_EXTENDED, {'extended': extended}).scalars().all():
+        extension = found.extension(submission.assignment.name, submission.student_id)
+        if submission.extension != extension:
+            yield submission, 'extension', extension
+
+
 def _outdated(
-    book: Gradebook, rules: Deadlines
+    book: Gradebook, found: Deadlines | None
 ) -> Iterator[tuple[SubmittedNotebook, float | None]]:
-    """Find late notebooks whose penalty is not that of their score, and what it should be."""
+    """Find notebooks whose penalty is not that of their score, and what it should be."""
+    rules = found or Deadlines()
     for late in book.db.execute(_LATE).unique().scalars().all():
-        if late.total_seconds_late <= 0:
-            continue
         for notebook in late.notebooks:
             penalty = rules.penalty(notebook.score, late.total_seconds_late)
             if penalty is not None:

@@ -1,0 +1,83 @@
+"""What `nbgrader export` writes here: nbgrader's own columns, with what counts today."""
+
+from pathlib import Path
+
+from nbgrader.api import Assignment, Gradebook, MissingEntry, Student
+from nbgrader.plugins import ExportPlugin
+
+from grader.common.db_url import gradebook_of
+from grader.common.errors import CourseError
+from grader.common.files import write_whole
+from grader.common.points import added_up
+from grader.common.text import spreadsheet_table
+from grader.course import Course
+from grader.storage.lateness import recount_late_penalties
+
+COLUMNS = (
+    'assignment',
+    'duedate',
+    'timestamp',
+    'student_id',
+    'last_name',
+    'first_name',
+    'email',
+    'raw_score',
+    'late_submission_penalty',
+    'score',
+    'max_score',
+)
+
+
+class CsvExport(ExportPlugin):
+    """nbgrader's table, in the place of its CsvExportPlugin.
+
+    That one writes the late penalties of the latest grading, and no quotes: a name with a comma in
+    it moves all that follows into the next column.
+    """
+
+    def export(self, gradebook: Gradebook) -> None:
+        """Write the table into the file of `--to`, or grades.csv."""
+        directories = self.parent.coursedir
+        root = Path(directories.root)
+        try:
+            recount_late_penalties(Course(root, gradebook_of(directories.db_url, root)))
+        except CourseError as problem:
+            raise SystemExit(f'course: {problem}') from None
+        path = Path(self.to or 'grades.csv')
+        assignments = {str(each) for each in self.assignment}
+        students = {str(each) for each in self.student}
+        rows = [
+            _row(gradebook, assignment, student)
+            for assignment in gradebook.assignments
+            if not assignments or assignment.name in assignments
+            for student in gradebook.students
+            if not students or student.id in students
+        ]
+        write_whole(path, spreadsheet_table([COLUMNS, *rows]))
+        self.log.info('%s: %d rows', path, len(rows))
+
+
+def _row(gradebook: Gradebook, assignment: Assignment, student: Student) -> list[object]:
+    """Return what one student has in one assignment: zeros where nothing was handed in."""
+    timestamp, score, penalty = None, 0.0, 0.0
+    try:
+        submission = gradebook.find_submission(assignment.name, student.id)
+    except MissingEntry:
+        pass
+    else:
+        timestamp, score = submission.timestamp, submission.score
+        penalty = submission.late_submission_penalty
+    values = [
+        assignment.name,
+        assignment.duedate,
+        timestamp,
+        student.id,
+        student.last_name,
+        student.first_name,
+        student.email,
+        score,
+        penalty,
+        max(0.0, added_up([score, -penalty])),
+        assignment.max_score,
+    ]
+    return ['' if value is None else value for value in values]
