@@ -50,7 +50,20 @@ def what_differs(others: Sequence[Any], sent: Any, fields: Sequence[str] = ()) -
     """Which fields (of these, or of all) differ while others are right, as a clause; or ''."""
     names = fields or tuple(sent.get_fields_and_field_types())
     for received in others:
-        wrong = [name for name in names if getattr(received, name) != getattr(sent, name)]
+        wrong = _differing(names, received, sent)
         if 0 < len(wrong) < len(names):
-            return f'; not the same: {", ".join(wrong)}'
+            inner = (_inside(name, getattr(received, name), getattr(sent, name)) for name in wrong)
+            return f'; not the same: {", ".join(inner)}'
     return ''
+
+
+def _differing(names: Sequence[str], received: Any, sent: Any) -> list[str]:
+    return [name for name in names if getattr(received, name) != getattr(sent, name)]
+
+
+def _inside(name: str, received: Any, sent: Any) -> str:
+    """The field of that name, or the one in it that alone differs: header.frame_id."""
+    if not hasattr(sent, 'get_fields_and_field_types'):
+        return name
+    wrong = _differing(tuple(sent.get_fields_and_field_types()), received, sent)
+    return f'{name}.{wrong[0]}' if len(wrong) == 1 else name

@@ -57,10 +57,10 @@ class Relay:
         """Each message that is offered with that profile on `source` comes out on `to`, once.
 
         Nothing else does, and its `fields` are the same. `make_message` makes each another one;
-        some are sent twice, or with zeros, negative and large numbers. The first is sent again and
-        again until it comes out. Then each of a hundred in a row (fewer where that takes long) has
-        to come out before the next one, and once; so have one after a pause, and two right after
-        each other. No callback raises.
+        some are sent twice, with zeros, negative or large numbers, or without velocities. The
+        first is sent again and again until it comes out. Then each of a hundred in a row (fewer
+        where that takes long) has to come out before the next one, and once; so have one after a
+        pause, and two right after each other. No callback raises.
         """
         make_message = filled(make_message)
         with Watcher(shared=True) as watcher:
