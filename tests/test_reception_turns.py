@@ -14,12 +14,15 @@ from grader.serving import desk as desk_module
 from grader.serving import inbound as inbound_module
 from grader.serving import intake, reception
 from grader.serving import rounds as rounds_module
+from grader.serving import serve as serve_module
 from grader.serving.desk import Desk
 from grader.serving.inbound import Entry, new_entries
 from grader.serving.queue import (
     GRADED,
+    GRADING,
     REFUSED,
     REPLACED,
+    Arrival,
     opened_queue,
     queue_to_read,
 )
@@ -221,3 +224,36 @@ def test_what_is_refused_again_and_again_is_listed_once(course, inbound, at_once
         (inbound / 'mallory_nothing.ipynb').write_text('{}' + ' ' * number)
         serve_here(course, inbound)
     assert len(arrivals(course)) == 1
+
+
+def test_what_is_refused_is_listed_until_it_is_gone_and_looked_into_where_it_comes_back(
+    course, inbound, at_once
+):
+    refused = inbound / 'mallory_nothing.ipynb'
+    refused.write_text('{}')
+    (inbound / 'eve_nothing.ipynb').write_text('{}')
+    serve_here(course, inbound)
+    refused.rename(inbound.parent / refused.name)
+    assert 'gone, so it is listed no more: mallory_nothing.ipynb' in serve_here(course, inbound)
+    assert [each.entry for each in arrivals(course)] == ['eve_nothing.ipynb']
+    (inbound.parent / refused.name).rename(refused)
+    serve_here(course, inbound)
+    assert len(arrivals(course)) == 2
+
+
+def test_a_file_that_is_gone_takes_no_grade_with_it(course, inbound, at_once):
+    (inbound / f'zoe_{TOY}.ipynb').write_text(nbformat.writes(answered(course, RIGHT)))
+    serve_here(course, inbound)
+    (inbound / f'zoe_{TOY}.ipynb').unlink()
+    serve_here(course, inbound)
+    assert [each.state for each in arrivals(course)] == [GRADED]
+
+
+def test_what_a_killed_process_was_grading_is_not_said_to_be_graded_just_now(course):
+    with opened_queue(course.gradebook) as queue:
+        queue.add(f'zoe_{TOY}', '1', [Arrival(0, f'zoe_{TOY}', 1.0, GRADING, 'zoe', TOY)])
+        said = list(status_lines(course, queue))
+        assert './course serve FOLDER grades what has come in since' in said[0]
+        assert 'Not graded to the end: the next ./course serve does it' in said
+        with serve_module.only_one(course):
+            assert 'Being graded' in list(status_lines(course, queue))

@@ -72,10 +72,7 @@ class Queue:
         """
         added = []
         with self._database:
-            self._database.execute(
-                "DELETE FROM arrivals WHERE entry = ? AND state = ? AND student_id = ''",
-                (entry, REFUSED),
-            )
+            self._withdraw(entry)
             for each in arrivals:
                 marks = ', '.join('?' * (len(_COLUMNS) - 1))
                 cursor = self._database.execute(
@@ -85,6 +82,18 @@ class Queue:
                 added.append(replace(each, number=cursor.lastrowid or 0))
             self._database.execute('REPLACE INTO seen VALUES (?, ?)', (entry, fingerprint))
         return added
+
+    def forget(self, entry: str) -> None:
+        """Say no more of an entry as a whole; whatever has its name is looked into again."""
+        with self._database:
+            self._withdraw(entry)
+            self._database.execute('DELETE FROM seen WHERE entry = ?', (entry,))
+
+    def _withdraw(self, entry: str) -> None:
+        self._database.execute(
+            "DELETE FROM arrivals WHERE entry = ? AND state = ? AND student_id = ''",
+            (entry, REFUSED),
+        )
 
     def update(self, *arrivals: Arrival) -> None:
         """Note what has become of arrivals, of all of them or of none."""

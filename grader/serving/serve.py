@@ -12,6 +12,7 @@ from grader.common.errors import CourseError
 from grader.course import Course
 from grader.grading import Grading
 from grader.serving.desk import Desk, begin_turns, finish_done, keep_replaced
+from grader.serving.gone import Gone
 from grader.serving.intake import tidy
 from grader.serving.queue import Queue, opened_queue
 from grader.serving.reception import look
@@ -53,9 +54,10 @@ def serve(
         tidy(course, queue)
         grading = Grading(course, backend, isolated, trust_students=trust_students)
         desk = Desk(course, queue, grading, inbound, feedback, say, seen=queue.seen())
+        gone = Gone(desk)
         while True:
             events = [look(desk), begin_turns(desk), finish_done(desk), keep_replaced(desk)]
-            if any(events):
+            if any([*events, gone.forget()]):
                 changed(queue)
             elif desk.rounds.is_under_way:
                 continue

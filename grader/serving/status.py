@@ -23,6 +23,8 @@ FOR_A_PERSON = REFUSED, FAILED
 """… On a terminal, all of these are shown: nobody's many entries hide another's."""
 LAST = 200
 """So many of the last gradings tell how long one takes."""
+_BEING_GRADED = 'Being graded'
+_ENDED = 'Not graded to the end: the next ./course serve does it'
 _PAGE = """<!doctype html>
 <html lang="en"><head><meta charset="utf-8"><title>./course serve</title>
 <meta http-equiv="refresh" content="5"><meta name="color-scheme" content="light dark">
@@ -46,7 +48,7 @@ def sections(
     counts = queue.counts()
     yield _summary(done, counts), []
     for state, heading in (
-        (GRADING, 'Being graded'),
+        (GRADING, _BEING_GRADED),
         (WAITING, 'Waiting'),
         (REFUSED, 'Not taken: a person should look'),
         (FAILED, 'Not graded: ./course grade tries again'),
@@ -66,9 +68,13 @@ def sections(
 
 def status_lines(course: Course, queue: Queue | None) -> Iterator[str]:
     """Yield the lines of `./course serve --status`."""
-    yield f'./course serve {"runs" if _is_served(course) else "does not run"}.'
+    runs = _is_served(course)
+    if runs:
+        yield './course serve runs.'
+    else:
+        yield './course serve does not run: ./course serve FOLDER grades what has come in since.'
     for heading, lines in sections(course, queue, time.time(), shows_all=True) if queue else ():
-        yield heading
+        yield _ENDED if heading == _BEING_GRADED and not runs else heading
         yield from (f'  {printable(line)}' for line in lines)
 
 
