@@ -31,7 +31,7 @@ def main(arguments: list[str] | None = None) -> int:
         ),
     )
     about = in_language_here('a saved notebook of the course')
-    parser.add_argument('notebook', type=Path, help=about)
+    parser.add_argument('notebook', type=Path, metavar='NOTEBOOK', help=about)
     about = in_language_here('write a line of JSON for each step and the report')
     parser.add_argument('--json', action='store_true', help=about)
     options = parser.parse_args(arguments)
