@@ -154,5 +154,7 @@ def test_each_picture_is_in_the_repository_once(name):
 
 @pytest.mark.parametrize('name', Course().assignments())
 def test_each_picture_is_there_in_each_edition(name):
-    for path in (ROOT / 'notebooks').glob(f'**/{name}.ipynb'):
+    editions = [*(ROOT / 'notebooks').glob(f'**/{name}.ipynb')]
+    assert len(editions) == 2
+    for path in editions:
         assert 'src=\\"a picture\\"' not in path.read_text(encoding='utf-8'), path

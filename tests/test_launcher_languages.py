@@ -153,8 +153,9 @@ def test_without_a_language_pack_menus_are_english(with_pack, language):
 
 
 def test_each_language_of_the_course_has_a_language_pack():
-    for folder in (ROOT / 'notebooks').glob('*/index.ipynb'):
-        language = folder.parent.name
+    languages = [path.parent.name for path in (ROOT / 'notebooks').glob('*/index.ipynb')]
+    assert 'zh_CN' in languages
+    for language in languages:
         assert jupyterlab_settings(Environment(ROOT), language) != ROOT / '.jupyterlab'
         from jupyterlab_server.translation_utils import get_language_packs
 
