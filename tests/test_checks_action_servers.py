@@ -78,14 +78,6 @@ class Blocks(Awaits):
         return future.done()
 
 
-class WaitsForTheServer(MoveArmClient):
-    """Waits in the callback until there is one, and for no answer."""
-
-    def send(self, pose):
-        self.client.wait_for_server()
-        super().send(pose)
-
-
 class Queue(MoveArmClient):
     """A timer that works off what arrived."""
 
@@ -114,7 +106,6 @@ RIGHT = [
     Lambdas,
     Awaits,
     Blocks,
-    WaitsForTheServer,
     Queue,
     RepublishesFeedback,
 ]

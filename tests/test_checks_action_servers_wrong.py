@@ -108,6 +108,14 @@ class NeverSends(MoveArmClient):
         pass
 
 
+class WaitsForTheServer(MoveArmClient):
+    """Waits in the callback until there is one, and for no answer."""
+
+    def send(self, pose):
+        self.client.wait_for_server()
+        super().send(pose)
+
+
 class WaitsForTheLost(MoveArmClient):
     """One goal after the other, and the first one was sent to nobody."""
 
@@ -156,6 +164,10 @@ WRONG_OUTCOMES = [
     (Sleeps, IN_CALLBACK),
     (OtherAction, '/move_arm_client uses /move_it, so compare the spelling'),
     (NeverSends, r'expected a goal .*saw none.*: call send_goal_async\(goal\) for each message'),
+    (
+        WaitsForTheServer,
+        'a node that goes on with its work while there is no server .*: look at server_is_ready',
+    ),
     (WaitsForTheLost, 'a goal that is sent while there is no server never gets an answer'),
 ]
 
