@@ -81,7 +81,7 @@ def test_a_right_answer_passes_and_what_is_still_open_is_said(tmp_path):
     names = checks_of(report)
     assert [check['outcome'] for check in names.values()] == ['passed'] * 3
     assert names['joint_names']['title'] == 'name holds joint1 and joint2, in this order'
-    assert (names['joint_names']['is_partly_hidden'], names['joint_names']['points']) == (True, 1)
+    assert (names['joint_names']['is_partly_hidden'], names['joint_names']['points']) == (False, 1)
     assert names['radians']['is_partly_hidden']
     assert 'HIDDEN' not in names['radians']['source']
     assert progress[0] == 'to_joint_state: starting two kernels'
