@@ -102,5 +102,11 @@ def test_each_verb_has_a_function_that_can_be_imported():
     assert all(callable(parser.get_default('run')) for parser in choices.values())
 
 
+def test_the_help_of_a_verb_says_what_it_does(capsys):
+    with pytest.raises(SystemExit):
+        make_parser().parse_args(['due', '--help'])
+    assert '\n\nList due dates, or set one.\n\n' in capsys.readouterr().out
+
+
 def test_the_platforms_on_the_command_line_are_those_that_have_a_table():
     assert list(PLATFORMS) == sorted(TABLES)

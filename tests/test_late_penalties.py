@@ -240,7 +240,7 @@ def exported(course, *arguments):
     )
     if run.returncode:
         return run.stderr
-    text = (course.root / 'export.csv').read_text(encoding='utf-8-sig')
+    text = (course.root / 'export.csv').read_text(encoding='utf-8')
     return {row['student_id']: row for row in csv.DictReader(io.StringIO(text))}
 
 

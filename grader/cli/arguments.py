@@ -18,7 +18,11 @@ def make_parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog='./course', description='Release, grade, tell.')
     subparsers = parser.add_subparsers(required=True, metavar='VERB', parser_class=VerbParser)
 
-    verb = subparsers.add_parser('release', help="make the students' notebooks/ from solutions/")
+    def add(name: str, *, help: str) -> argparse.ArgumentParser:
+        description = f'{help[0].upper()}{help[1:]}.'
+        return subparsers.add_parser(name, help=help, description=description)
+
+    verb = add('release', help="make the students' notebooks/ from solutions/")
     verb.add_argument('assignment', nargs='?', metavar='ASSIGNMENT', help='only this one')
     verb.add_argument(
         '--fresh-outputs',
@@ -28,7 +32,7 @@ def make_parser() -> argparse.ArgumentParser:
     )
     verb.set_defaults(run=verbs.run_release)
 
-    verb = subparsers.add_parser('bundle', help='make the zip that students get')
+    verb = add('bundle', help='make the zip that students get')
     verb.add_argument(
         'file',
         nargs='?',
@@ -39,12 +43,10 @@ def make_parser() -> argparse.ArgumentParser:
     )
     verb.set_defaults(run=verbs.run_bundle)
 
-    verb = subparsers.add_parser(
-        'translate', help='bring the catalogues of other languages up to date'
-    )
+    verb = add('translate', help='bring the catalogues of other languages up to date')
     verb.set_defaults(run=verbs.run_translate)
 
-    verb = subparsers.add_parser('collect', help='collect a folder or an archive of submissions')
+    verb = add('collect', help='collect a folder or an archive of submissions')
     text = 'what came in: notebooks named STUDENT_ASSIGNMENT.ipynb, or as a platform names them'
     verb.add_argument('source', type=Path, metavar='FOLDER|ZIP|TAR', help=text)
     verb.add_argument(
@@ -54,7 +56,7 @@ def make_parser() -> argparse.ArgumentParser:
     )
     verb.set_defaults(run=verbs.run_collect)
 
-    verb = subparsers.add_parser('due', help='list due dates, or set one')
+    verb = add('due', help='list due dates, or set one')
     verb.add_argument('assignment', nargs='?', metavar='ASSIGNMENT', help='whose date to set')
     verb.add_argument(
         'when',
@@ -66,7 +68,7 @@ def make_parser() -> argparse.ArgumentParser:
     verb.add_argument('--student', metavar='ID', help='extend it for this student alone')
     verb.set_defaults(run=verbs.run_due)
 
-    verb = subparsers.add_parser('grade', help='grade what is in gradebook/submitted/')
+    verb = add('grade', help='grade what is in gradebook/submitted/')
     verb.add_argument('assignment', nargs='?', metavar='ASSIGNMENT', help='only this one')
     verb.add_argument('--student', metavar='ID', help='only this student')
     verb.add_argument(
@@ -102,7 +104,7 @@ def make_parser() -> argparse.ArgumentParser:
     verb.add_argument('--language', choices=known, default=ENGLISH, help=text)
     verb.set_defaults(run=verbs.run_grade, begin=verbs.begin_grade)
 
-    verb = subparsers.add_parser('serve', help='grade what is handed in, as soon as it is')
+    verb = add('serve', help='grade what is handed in, as soon as it is')
     verb.add_argument(
         'folder',
         nargs='?',
@@ -118,7 +120,7 @@ def make_parser() -> argparse.ArgumentParser:
     verb.add_argument('--trust-students', action='store_true', help='as for grade')
     verb.set_defaults(run=verbs.run_serve)
 
-    verb = subparsers.add_parser('scores', help='write gradebook/scores.csv')
+    verb = add('scores', help='write gradebook/scores.csv')
     verb.add_argument(
         'assignment',
         nargs='?',
@@ -150,7 +152,7 @@ def make_parser() -> argparse.ArgumentParser:
     )
     verb.set_defaults(run=verbs.run_scores)
 
-    verb = subparsers.add_parser('feedback', help='write a page of feedback for each submission')
+    verb = add('feedback', help='write a page of feedback for each submission')
     verb.add_argument(
         '--zip',
         choices=['moodle'],
@@ -158,7 +160,7 @@ def make_parser() -> argparse.ArgumentParser:
     )
     verb.set_defaults(run=verbs.run_feedback)
 
-    verb = subparsers.add_parser('solutions', help='write the answers, for after the deadline')
+    verb = add('solutions', help='write the answers, for after the deadline')
     verb.add_argument('assignment', nargs='?', metavar='ASSIGNMENT', help='only this one')
     verb.add_argument(
         '--early', action='store_true', help='even if somebody may still submit (./course due)'
@@ -173,5 +175,5 @@ def make_parser() -> argparse.ArgumentParser:
             'show what isolates student code on this machine, and what is missing',
         ),
     ):
-        subparsers.add_parser(name, help=text).set_defaults(run=run)
+        add(name, help=text).set_defaults(run=run)
     return parser

@@ -9,7 +9,7 @@ from grader.common.db_url import gradebook_of
 from grader.common.errors import CourseError
 from grader.common.files import write_whole
 from grader.common.points import added_up
-from grader.common.text import spreadsheet_table
+from grader.common.text import BYTE_ORDER_MARK, spreadsheet_table
 from grader.course import Course
 from grader.storage.lateness import recount_late_penalties
 
@@ -53,7 +53,8 @@ class CsvExport(ExportPlugin):
             for student in gradebook.students
             if not students or student.id in students
         ]
-        write_whole(path, spreadsheet_table([COLUMNS, *rows]))
+        # programs read this one, and know its first column by nbgrader's name for it
+        write_whole(path, spreadsheet_table([COLUMNS, *rows]).removeprefix(BYTE_ORDER_MARK))
         self.log.info('%s: %d rows', path, len(rows))
 
 

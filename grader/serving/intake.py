@@ -28,7 +28,7 @@ MOST_WAITING = 50
 MOST_KEPT, MOST_KEPT_BYTES = 1_000, 1_000_000_000
 """Of one student and lesson, those that wait and what became of earlier ones included: no program
 that hands in all night fills the disk, on which all others' work lies."""
-MAX_REASON = 300
+MAX_REASON = 500
 
 
 def take_in(course: Course, queue: Queue, inbound: Path, entry: Entry) -> list[Arrival]:

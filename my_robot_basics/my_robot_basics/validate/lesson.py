@@ -59,7 +59,10 @@ def _read(path: Path) -> NotebookNode:
     try:
         return nbformat.read(path, as_version=4)
     except OSError as error:
-        raise CourseError(f'{path} cannot be read: {error.strerror}') from None
+        raise CourseError(
+            f'{path} cannot be read: {error.strerror}; name the file of a notebook, '
+            'such as notebooks/03_publisher/03_publisher.ipynb'
+        ) from None
     except (nbformat.reader.NotJSONError, nbformat.ValidationError, ValueError) as error:
         why = str(error).splitlines()[0][:200]
         raise CourseError(
