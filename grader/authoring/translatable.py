@@ -20,8 +20,8 @@ from grader.course import Course
 Texts = dict[str, list[str]]
 """Where each English text of a part stands, in the order in which they are read."""
 
-IN_WORDS: tuple[str, ...] = ('background', 'camera', 'commands', 'copies', 'course_nodes')
-IN_WORDS += ('definition_view', 'executables', 'install_faults')
+IN_WORDS: tuple[str, ...] = ('action_types', 'background', 'camera', 'commands', 'copies')
+IN_WORDS += ('course_nodes', 'definition_view', 'executables', 'install_faults')
 IN_WORDS += ('entry_points', 'exercise', 'package_build', 'package_faults', 'packages')
 IN_WORDS += ('node_file', 'panel', 'program', 'refusals', 'runner', 'sliders', 'spinning')
 IN_WORDS += ('unknown_robot', 'waiting', 'workspace')

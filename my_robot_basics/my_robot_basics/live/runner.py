@@ -11,6 +11,7 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions, uninstall_signal_handlers
 
 from my_robot_basics.live import (
+    action_types,
     child_loggers,
     commands,
     executables,
@@ -182,6 +183,7 @@ def set_up() -> int:
                 spinning.help_in_cells()
         harmless_errors.hide()
         thread_pools.let_threads_begin()
+        action_types.expect_action_types()
         child_loggers.remember_child_loggers()
         atexit.register(_leave_nothing, os.getpid())
     return domain_id

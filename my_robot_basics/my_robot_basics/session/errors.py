@@ -49,5 +49,9 @@ class NotRunnable(LiveError):
     """`run`, `run_answer` or `wait_until` was given something that it cannot start or call."""
 
 
+class WrongType(LiveError, TypeError):
+    """rclpy was given a type of another kind than it expects, where it would crash."""
+
+
 class WaitTimeout(LiveError, TimeoutError):
     """What a cell waited for did not happen in time."""
