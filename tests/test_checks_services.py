@@ -301,6 +301,24 @@ def test_a_missing_server_is_looked_for(run, arguments, message):
         check_answers()
 
 
+class OnATopic(Node):
+    """Subscribes to the requests of a service: rclpy takes their type for that of a message."""
+
+    def __init__(self):
+        super().__init__('ik_service')
+        self.create_subscription(SolveIK.Request, '/solve_ik', print, 10)
+
+
+@pytest.mark.usefixtures('impatient')
+def test_a_topic_in_place_of_a_service_is_named(run):
+    run(OnATopic)
+    words = (
+        r'/ik_service has a topic of this name.*: call create_service\(…\) in place of create_sub'
+    )
+    with pytest.raises(CheckFailed, match=words):
+        check_answers()
+
+
 @pytest.mark.usefixtures('impatient')
 def test_two_servers_are_one_too_many(run):
     run(IKService, key='one')

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from rclpy.node import Node
 
 from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.graph.graphs import full_name, publisher_infos, subscription_infos
 from my_robot_basics.graph.snapshot import NOT_RUNNING, similar
 from my_robot_basics.graph.watcher import HIDDEN
 
@@ -28,6 +29,8 @@ class ServiceGraph:
     """Service name to full node name to the types that the node serves it with."""
     clients: dict[str, dict[str, tuple[str, ...]]]
     """The same of those that ask."""
+    node: Node
+    """The node that has seen them, to be asked about a topic of that name."""
 
     def why_none(self, name: str, *, maker: str) -> str:
         """What to try where nobody is at that end of a service: one clause.
@@ -36,15 +39,23 @@ class ServiceGraph:
         """
         is_served = maker in ('create_service', 'ActionServer')
         ends = self.servers if is_served else self.clients
+        kind = 'action' if maker.startswith('Action') else 'service'
         if not self.node_names:
             return NOT_RUNNING
+        find, mistaken_maker = publisher_infos, 'create_publisher'
+        if is_served:
+            find, mistaken_maker = subscription_infos, 'create_subscription'
+        if mistaken := sorted({full_name(info) for info in find(self.node, name)}):
+            return (
+                f'{theirs(", ".join(mistaken))} has a topic of this name, and no {kind}: '
+                f'call {maker}(…) in place of {mistaken_maker}(…)'
+            )
         if near := similar(name, [each for each in ends if each != name]):
             uses = theirs(f'{", ".join(ends[near])} uses {near}')
             if any(near == f'{node.rpartition("/")[0]}{name}' for node in ends[near]):
                 return f"{uses}: a name without a leading / is relative to its node's namespace"
             return f'{uses}, so compare the spelling'
         runs = theirs(', '.join(self.node_names))
-        kind = 'action' if maker.startswith('Action') else 'service'
         return f'{runs} runs, so look at the {kind} name in {maker}(…) and that the node calls it'
 
 
@@ -74,4 +85,4 @@ def take_ends(node: Node, look_up_servers: LookUp, look_up_clients: LookUp) -> S
                 if service_name.rpartition('/')[2] not in OF_EVERY_NODE:
                     ends.setdefault(service_name, {})[full_name] = tuple(types)
     names = tuple(sorted({f'{namespace.rstrip("/")}/{name}' for name, namespace in nodes}))
-    return ServiceGraph(names, servers, clients)
+    return ServiceGraph(names, servers, clients, node)
