@@ -144,7 +144,7 @@ def test_an_attack_earns_what_its_honest_work_does(graded, name):
     outcomes = {v.outcome for v in said.values() if 'outcome' in v}
     assert outcomes <= {'passed', 'failed'}, graded.rows[name].reason
     assert stored.score == earns(name), said
-    assert stored.score >= FULL[TOY] or graded.rows[name].reason
+    assert stored.score >= FULL[assignment_of(name)] or graded.rows[name].reason
 
 
 @pytest.mark.parametrize('name', NAMES)
