@@ -1,5 +1,6 @@
 """A node that is still on the graph when its program has ended: who is to blame for that."""
 
+import signal
 from types import SimpleNamespace
 
 import pytest
@@ -23,3 +24,27 @@ def test_what_answers_no_more_may_be_a_name_alone(monkeypatch, answers, free_sec
     with pytest.raises(CheckFailed, match='/greeter to be gone from the graph') as raised:
         program._expect_gone()
     assert raised.type is doubt
+
+
+@pytest.mark.parametrize(
+    ('code', 'words'),
+    [
+        (-signal.SIGSEGV, 'ended by SIGSEGV: rclpy crashes so where an ActionClient or ActionS'),
+        (-signal.SIGKILL, "ended by SIGKILL: run it with run_executable('greeter', 'greet')"),
+        (1, "exit code 1: run it with run_executable('greeter', 'greet')"),
+    ],
+)
+def test_a_program_that_crashed_is_told_what_it_may_have_done(monkeypatch, code, words):
+    program = RunningExecutable('greeter', 'greet', ())
+    monkeypatch.setattr(program, '_state', lambda: (code, ''))
+    with pytest.raises(CheckFailed) as raised:
+        program._fail_ended('the node /greeter of greet')
+    assert f'saw it has ended: {words}' in str(raised.value)
+
+
+@pytest.mark.parametrize(('code', 'hint'), [(-signal.SIGSEGV, 'rclpy crashes'), (1, 'catch')])
+def test_a_crash_is_no_unclean_end(monkeypatch, code, hint):
+    program = RunningExecutable('greeter', 'greet', ())
+    monkeypatch.setattr(program, '_state', lambda: (code, ''))
+    with pytest.raises(CheckFailed, match=f': {hint}'):
+        program._expect_code(0, hint='catch KeyboardInterrupt')

@@ -147,7 +147,7 @@ OF_CHECKS = {
     "it has ended: exit code 1, ModuleNotFoundError: No module named 'x'": (
         "它已经结束：退出码 1，ModuleNotFoundError: No module named 'x'"
     ),
-    'it has ended: ended by signal 9': '它已经结束：被信号 9 结束',
+    'it has ended: ended by SIGKILL': '它已经结束：被 SIGKILL 结束',
     'it succeeded too soon': '太早就变为 succeeded',
     'it aborted in the end': '最后变为 aborted',
     'it accepted in 10 s': '10 s 之后状态为 accepted',

@@ -10,7 +10,7 @@ from typing import Any, NoReturn, Self
 
 from my_robot_basics.checks import polite_end, spinning
 from my_robot_basics.checks.doubts import doubt_after
-from my_robot_basics.checks.package_words import has_ended, how, last_words, text_in
+from my_robot_basics.checks.package_words import has_ended, how, last_words, text_in, why_crashed
 from my_robot_basics.checks.services import answers_parameters
 from my_robot_basics.exchange import student
 from my_robot_basics.exchange.endings import is_clean
@@ -145,6 +145,7 @@ class RunningExecutable:
         wanted_end = f'{self.executable} to end with exit code {wanted}'
         seen = ', '.join(filter(None, (how(code), last_words(said))))
         cause = f'{self.executable} does not end cleanly'
+        hint = why_crashed(code) or hint
         expect(code == wanted, expected=wanted_end, seen=seen, hint=hint, cause=cause)
 
     def _expect_gone(self) -> None:
@@ -163,10 +164,12 @@ class RunningExecutable:
             )
 
     def _fail_ended(self, expected: str) -> NoReturn:
+        code, said = self._state()
+        run_it = f"run it with run_executable('{self.package}', '{self.executable}') and read why"
         fail(
             expected=expected,
-            seen=has_ended(*self._state()),
-            hint=f"run it with run_executable('{self.package}', '{self.executable}') and read why",
+            seen=has_ended(code, said),
+            hint=why_crashed(code) or run_it,
             cause=f'{self.executable} ends by itself',
         )
 

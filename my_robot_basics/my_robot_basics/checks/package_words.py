@@ -1,9 +1,10 @@
 """What the student's room says of a program, as a part of a sentence."""
 
+import signal
 from collections.abc import Mapping
 from typing import Any
 
-from my_robot_basics.exchange.endings import error_in
+from my_robot_basics.exchange.endings import error_in, signal_name
 from my_robot_basics.feedback.errors import shorten
 from my_robot_basics.feedback.hidden import theirs
 from my_robot_basics.feedback.python_errors import what_to_do
@@ -19,7 +20,17 @@ def how(code: int | None) -> str:
     """How a program has ended, by its exit code."""
     if code is None:
         return 'it runs'
-    return f'exit code {code}' if code >= 0 else f'ended by signal {-code}'
+    return f'exit code {code}' if code >= 0 else f'ended by {signal_name(-code)}'
+
+
+def why_crashed(code: int | None) -> str:
+    """What a program that Linux has ended for a wrong access to memory may have done; or ''."""
+    if code != -signal.SIGSEGV:
+        return ''
+    return (
+        'rclpy crashes so where an ActionClient or ActionServer gets a type that is no action, so '
+        'look at each, and give it one such as MoveArm, and no part of it'
+    )
 
 
 def has_ended(code: int | None, said: str) -> str:
