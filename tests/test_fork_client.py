@@ -332,9 +332,7 @@ def test_a_room_ends_with_its_kernel(loop, code):
     linger = "import subprocess; subprocess.Popen(['sleep', '4243'], start_new_session=True)"
     loop.run(kernel.run(linger, timeout_sec=60.0))
     run = loop.run(kernel.run(f'{code}\nwhile True: pass', timeout_sec=5.0))
-    lives = (
-        '-1' in code
-    )  # Linux spares the process that calls, which loops until it is interrupted
+    lives = '-1' in code  # Linux spares the process that calls: its loop is interrupted
     assert (run.died, kernel.alive, run.timed_out) == (not lives, lives, lives)
     loop.run(kernel.stop())
     deadline = time.monotonic() + 60
