@@ -9,7 +9,9 @@ from pathlib import Path
 
 import pytest
 from course_maker import TOY, answered, executed, submit
-from nbgrader.api import Gradebook
+from nbgrader.api import Gradebook, SubmittedAssignment, SubmittedNotebook
+from sqlalchemy import event
+from sqlalchemy.engine import Engine
 
 from grader.common.errors import CourseError
 from grader.course import ROOT, Course
@@ -27,8 +29,10 @@ from grader.storage.deadlines import (
     read_deadlines,
 )
 from grader.storage.gradebook import store
+from grader.storage.lateness import recount_late_penalties
 from grader.storage.pipeline import prepare
 from grader.storage.records import records
+from grader.storage.registering import register
 
 RULES = f"""
 [due]
@@ -257,3 +261,37 @@ def test_nbgraders_own_table_has_the_penalty_of_today_and_a_name_with_a_comma(co
     assert [*exported(course, '--student', "['bob']")] == ['bob']
     (course.gradebook / FILE).write_text('[late]\nper_day = 2\n')
     assert 'per_day = 2 is out of range: see the example in docs/' in exported(course)
+
+
+def steps_of_a_recount(course, students):
+    """Let so many hand in, all in time; return how many hundred steps SQLite makes of a look."""
+    with Gradebook(course.db_url) as book:
+        notebook = book.find_notebook(TOY, TOY)
+        for number in students:
+            submission = SubmittedAssignment(
+                student=book.add_student(f'student_{number}'),
+                assignment=notebook.assignment,
+                timestamp=datetime(2026, 1, 1),
+            )
+            book.db.add(SubmittedNotebook(assignment=submission, notebook=notebook))
+        book.db.commit()
+    steps = []
+
+    def count(connection, _):
+        connection.set_progress_handler(lambda: steps.append(1), 100)
+
+    event.listen(Engine, 'connect', count)
+    try:
+        recount_late_penalties(course)
+    finally:
+        event.remove(Engine, 'connect', count)
+    return len(steps)
+
+
+def test_a_look_at_a_class_four_times_as_large_costs_no_more_than_that(course):
+    (course.gradebook / FILE).write_text(RULES)
+    register(course, TOY)
+    recount_late_penalties(course)  # the date is new
+    few = steps_of_a_recount(course, range(50))
+    many = steps_of_a_recount(course, range(50, 200))
+    assert 0 < few <= many <= 6 * few

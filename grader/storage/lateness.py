@@ -35,11 +35,18 @@ _LATE = (
     .where(
         or_(
             SubmittedAssignment.timestamp > Assignment.duedate,
-            SubmittedAssignment.notebooks.any(SubmittedNotebook.late_submission_penalty > 0),
+            SubmittedAssignment.id.in_(
+                select(SubmittedNotebook.assignment_id).where(
+                    SubmittedNotebook.late_submission_penalty > 0
+                )
+            ),
         )
     )
 )
-"""Those that are or were late; those in time by an extension are among them."""
+"""Those that are or were late; those in time by an extension are among them.
+
+Who was late is asked once: nbgrader has no index by which to ask it of each submission.
+"""
 _EXTENDED = (
     select(SubmittedAssignment)
     .join(SubmittedAssignment.assignment)
