@@ -1,11 +1,16 @@
 """Say no more of what was refused and is gone from the inbound folder: somebody saw to it."""
 
 import os
+import time
 
 from grader.common.text import printable
 from grader.serving.desk import Desk
 from grader.serving.inbound import key_of
 from grader.serving.queue import REFUSED
+
+SETTLED_NS = 5_000_000_000
+"""A folder that has changed so lately may change again without another time: some file systems
+count in seconds."""
 
 
 class Gone:
@@ -18,17 +23,20 @@ class Gone:
     def forget(self) -> bool:
         """Take them out of the queue; return whether there were any.
 
-        Should one come back, it is looked into again. Raises OSError where the folder is gone.
+        Should one come back, it is looked into again: a network's file system may show nothing for
+        a moment. One of which some was taken in is not, unless it has changed: what it holds would
+        be handed in twice. Raises OSError where the folder is gone.
         """
         desk = self._desk
         changed_ns = os.stat(desk.inbound).st_mtime_ns
         if changed_ns == self._changed_ns:
             return False
-        self._changed_ns = changed_ns
+        is_settled = abs(time.time_ns() - changed_ns) > SETTLED_NS
+        self._changed_ns = changed_ns if is_settled else -1
         there = {key_of(name) for name in os.listdir(desk.inbound)}
         refused = {each.entry for each in desk.queue.find(REFUSED) if not each.student_id}
         for entry in sorted(refused - there):
-            desk.queue.forget(entry)
-            desk.seen.pop(entry, None)
+            if desk.queue.forget(entry):
+                desk.seen.pop(entry, None)
             desk.say(printable(f'gone, so it is listed no more: {entry}'))
         return bool(refused - there)

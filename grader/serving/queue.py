@@ -83,11 +83,19 @@ class Queue:
             self._database.execute('REPLACE INTO seen VALUES (?, ?)', (entry, fingerprint))
         return added
 
-    def forget(self, entry: str) -> None:
-        """Say no more of an entry as a whole; whatever has its name is looked into again."""
+    def forget(self, entry: str) -> bool:
+        """Say no more of an entry as a whole; return whether it is new, should it come back.
+
+        One of which submissions were taken in is not: they would be handed in once more.
+        """
         with self._database:
             self._withdraw(entry)
-            self._database.execute('DELETE FROM seen WHERE entry = ?', (entry,))
+            forgotten = self._database.execute(
+                'DELETE FROM seen WHERE entry = :entry'
+                ' AND NOT EXISTS (SELECT 1 FROM arrivals WHERE entry = :entry)',
+                {'entry': entry},
+            )
+        return forgotten.rowcount > 0
 
     def _withdraw(self, entry: str) -> None:
         self._database.execute(
