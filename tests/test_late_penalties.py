@@ -232,20 +232,27 @@ def test_a_date_that_is_set_later_counts_in_the_next_table(course):
 
 def exported(course, *arguments):
     """Let nbgrader's own command write its table; return its rows, or what it said."""
-    run = subprocess.run(
+    run = nbgrader_export(course, '--to', 'export.csv', *arguments)
+    if run.returncode:
+        return run.stderr
+    return table((course.root / 'export.csv').read_text(encoding='utf-8'))
+
+
+def table(text):
+    return {row['student_id']: row for row in csv.DictReader(io.StringIO(text))}
+
+
+def nbgrader_export(course, *arguments, db_url=None):
+    return subprocess.run(
         [
-            *(sys.executable, '-P', '-m', 'nbgrader', 'export', '--to', 'export.csv', *arguments),
-            f'--CourseDirectory.db_url={course.db_url}',
+            *(sys.executable, '-P', '-m', 'nbgrader', 'export', *arguments),
+            f'--CourseDirectory.db_url={db_url or course.db_url}',
         ],
         cwd=course.root,
         capture_output=True,
         text=True,
         check=False,
     )
-    if run.returncode:
-        return run.stderr
-    text = (course.root / 'export.csv').read_text(encoding='utf-8')
-    return {row['student_id']: row for row in csv.DictReader(io.StringIO(text))}
 
 
 @pytest.mark.starts
@@ -261,6 +268,36 @@ def test_nbgraders_own_table_has_the_penalty_of_today_and_a_name_with_a_comma(co
     assert [*exported(course, '--student', "['bob']")] == ['bob']
     (course.gradebook / FILE).write_text('[late]\nper_day = 2\n')
     assert 'per_day = 2 is out of range: see the example in docs/' in exported(course)
+
+
+@pytest.mark.starts
+def test_nbgraders_own_table_goes_through_a_link_and_says_where_it_cannot(course, tmp_path):
+    """As to /dev/stdout: root would put a file in its place."""
+    grade(course, 'bob', None)
+    link, target = tmp_path / 'link.csv', tmp_path / 'target.csv'
+    link.symlink_to(target)
+    assert nbgrader_export(course, '--to', str(link)).returncode == 0
+    assert link.is_symlink()
+    assert [*table(target.read_text(encoding='utf-8'))] == ['bob']
+    run = nbgrader_export(course, '--to', str(tmp_path / 'none' / 'x.csv'))
+    assert run.stderr.splitlines()[-1].endswith(
+        'x.csv cannot be written: No such file or directory; name another file with --to'
+    )
+
+
+@pytest.mark.starts
+def test_a_backup_is_exported_as_it_is_and_nothing_is_put_beside_it(course, tmp_path):
+    (course.gradebook / FILE).write_text(RULES)
+    grade(course, 'bob', '2026-01-13 22:58:00 UTC')
+    backup = tmp_path / 'backups' / '2026-01-14.db'
+    backup.parent.mkdir()
+    shutil.copy(course.database, backup)
+    (backup.parent / FILE).write_text('')
+    run = nbgrader_export(course, '--to', 'backup.csv', db_url=f'sqlite:///{backup}')
+    assert run.returncode == 0, run.stderr
+    rows = table((course.root / 'backup.csv').read_text(encoding='utf-8'))
+    assert rows['bob']['late_submission_penalty'] == '0.9'
+    assert sorted(each.name for each in backup.parent.iterdir()) == [backup.name, FILE]
 
 
 def steps_of_a_recount(course, students):

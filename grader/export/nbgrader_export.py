@@ -37,10 +37,8 @@ class CsvExport(ExportPlugin):
 
     def export(self, gradebook: Gradebook) -> None:
         """Write the table into the file of `--to`, or grades.csv."""
-        directories = self.parent.coursedir
-        root = Path(directories.root)
         try:
-            recount_late_penalties(Course(root, gradebook_of(directories.db_url, root)))
+            self._recount()
         except CourseError as problem:
             raise SystemExit(f'course: {problem}') from None
         path = Path(self.to or 'grades.csv')
@@ -54,8 +52,27 @@ class CsvExport(ExportPlugin):
             if not students or student.id in students
         ]
         # programs read this one, and know its first column by nbgrader's name for it
-        write_whole(path, spreadsheet_table([COLUMNS, *rows]).removeprefix(BYTE_ORDER_MARK))
+        table = spreadsheet_table([COLUMNS, *rows]).removeprefix(BYTE_ORDER_MARK)
+        try:
+            if path.is_symlink() or (path.exists() and not path.is_file()):
+                path.write_text(
+                    table, encoding='utf-8', newline=''
+                )  # /dev/stdout stays what it is
+            else:
+                write_whole(path, table)
+        except OSError as error:
+            raise SystemExit(
+                f'course: {path} cannot be written: {error.strerror}; name another file with --to'
+            ) from None
         self.log.info('%s: %d rows', path, len(rows))
+
+    def _recount(self) -> None:
+        directories = self.parent.coursedir
+        root = Path(directories.root)
+        course = Course(root, gradebook_of(directories.db_url, root))
+        # another database, such as a backup of it, is shown as it is
+        if directories.db_url.split('?')[0] == course.db_url.split('?')[0]:
+            recount_late_penalties(course)
 
 
 def _row(gradebook: Gradebook, assignment: Assignment, student: Student) -> list[object]:
