@@ -50,9 +50,15 @@ class Asker:
         raise ParameterNotDeclaredException('rate_hz')
 
 
+class AskerNode(Asker):
+    def get_logger(self, text):
+        pass
+
+
 NAMES = {
     **{'time': time, 'math': math, 'inspect': inspect, 'np': np, 'rclpy': rclpy},
     **{'FloatingPointRange': FloatingPointRange, 'Asker': Asker},
+    **{'AskerNode': AskerNode, 'Node': Node},
     **{'JointState': JointState, 'Parameter': Parameter, 'SolveIK': SolveIK},
 }
 """What the lines of code may use."""
@@ -120,6 +126,11 @@ def error_of(code, **names):
             'Asker().get_logger()',
             ', so give your method another name: `Node` already has a method',
         ),
+        (
+            'AskerNode().get_logger()',
+            ', so give your method another name: `Node` already has a method',
+        ),
+        ('Node.get_logger(None, 1)', ''),
         ('rclpy.Future().done(1)', ''),
         ('1.0 / "5.0"', ', so leave out the quotes around a number, or convert a text to one wi'),
         ('1 + "5"', ''),

@@ -29,7 +29,7 @@ BY_WORDS = (
         'an attribute of this name',
     ),
     Case(
-        pattern=rf'(?<!Node)\.(?:{OWN_METHODS})\(\) (?:takes|missing) '
+        pattern=rf'(?<!\bNode)\.(?:{OWN_METHODS})\(\) (?:takes|missing) '
         r"|no attribute '(?:info|warn|warning|error|debug|fatal)'.*self\.get_logger\(\)"
         r"|'NoneType' object has no attribute 'now'.*self\.get_clock\(\)",
         to_do=', so give your method another name: `Node` already has a method of this name, '
