@@ -4,6 +4,8 @@ import re
 
 import pytest
 from course_maker import TOY, make_course, toy_lesson, write_source
+from nbformat import from_dict
+from nbgrader.nbgraderformat import MetadataValidator, SchemaTooOldError, ValidationError
 
 from grader.authoring.metadata_faults import metadata_faults
 from grader.authoring.release import release
@@ -32,8 +34,18 @@ FAULTS = {
     ),
     'less than no points': (
         {'points': -1},
-        'the cell `double-hidden` has no points: write a number from 0 on into Points in Create'
+        'the cell `double-hidden` has -1 points: write a number from 0 on into Points in Create'
         ' Assignment',
+    ),
+    'a task in code': (
+        {'task': True},
+        'the cell `double-hidden` is a task, and code: make it a markdown cell, or choose another'
+        ' type for it',
+    ),
+    'an id that is a number': (
+        {'grade_id': 5},
+        'the cell `5` needs an ID in Create Assignment: letters, digits, - and _, which no other'
+        ' cell has',
     ),
     'old metadata': (
         {'schema_version': 2},
@@ -49,6 +61,25 @@ def test_what_is_wrong_in_create_assignment_is_named_with_what_to_do(marks, faul
     assert list(metadata_faults(lesson)) == []
     lesson.cells[7].metadata.nbgrader.update(marks)
     assert list(metadata_faults(lesson)) == [fault]
+
+
+@pytest.mark.parametrize(
+    ('marks', 'fault'),
+    [
+        ({}, 'cell 1 of the notebook is of another version of nbgrader: '),
+        (
+            {'schema_version': 3, 'grade': False, 'locked': False},
+            "cell 1 of the notebook lacks 'solution': choose its type anew in Create Assignment",
+        ),
+    ],
+)
+def test_what_nbgrader_refuses_in_a_cell_without_a_type_is_named(marks, fault):
+    lesson = toy_lesson()
+    lesson.cells[0].metadata['nbgrader'] = from_dict(marks)
+    with pytest.raises((SchemaTooOldError, ValidationError)):
+        MetadataValidator().validate_nb(lesson)
+    [said] = metadata_faults(lesson)
+    assert said.startswith(fault)
 
 
 def test_a_check_that_is_a_text_and_an_answer_in_words_without_points_are_named():

@@ -15,23 +15,29 @@ SCHEMA = 3
 _ID = re.compile(r'[a-zA-Z0-9_\-]+')
 _TYPES = ('grade', 'solution', 'locked', 'task')
 """A cell with any of these has a type in Create Assignment."""
+_NEEDED = ('grade', 'solution', 'locked')
+"""What nbgrader looks for in its metadata of each cell, even of one that has no type."""
 
 
 def metadata_faults(notebook: NotebookNode) -> Iterator[str]:
-    """Yield what is wrong with each cell that has a type in Create Assignment, and what to do."""
+    """Yield what is wrong with each cell that nbgrader's metadata speak of, and what to do."""
     ids = set()
     for number, cell in enumerate(notebook.cells, 1):
-        marks = cell.metadata.get('nbgrader', {})
-        if not any(marks.get(each) for each in _TYPES):
+        if 'nbgrader' not in cell.metadata:
             continue
-        name = marks.get('grade_id') or ''
+        marks = cell.metadata.nbgrader
+        name = str(marks.get('grade_id') or '')
         shown = f'the cell `{name}`' if name else f'cell {number} of the notebook'
         if marks.get('schema_version') != SCHEMA:
             yield (
                 f'{shown} is of another version of nbgrader:'
                 ' .venv/bin/nbgrader update solutions brings it up to date'
             )
-        if not _ID.fullmatch(name):
+        elif lacking := [each for each in _NEEDED if each not in marks]:
+            yield f'{shown} lacks {lacking[0]!r}: choose its type anew in Create Assignment'
+        if not any(marks.get(each) for each in _TYPES):
+            continue
+        if not _ID.fullmatch(name) or name != marks.get('grade_id'):
             yield (
                 f'{shown} needs an ID in Create Assignment: letters, digits, - and _,'
                 ' which no other cell has'
@@ -47,8 +53,12 @@ def metadata_faults(notebook: NotebookNode) -> Iterator[str]:
 
 def _faults(cell: NotebookNode) -> Iterator[str]:
     marks = cell.metadata.nbgrader
-    if (marks.get('grade') or marks.get('task')) and not _counts(marks.get('points')):
-        yield 'has no points: write a number from 0 on into Points in Create Assignment'
+    points = marks.get('points')
+    if (marks.get('grade') or marks.get('task')) and not _counts(points):
+        has = 'no' if points is None else repr(points)
+        yield f'has {has} points: write a number from 0 on into Points in Create Assignment'
+    if marks.get('task') and cell.cell_type != 'markdown':
+        yield 'is a task, and code: make it a markdown cell, or choose another type for it'
     if cell.cell_type == 'markdown' and not marks.get('task'):
         if marks.get('grade') and not marks.get('solution'):
             yield (
