@@ -1,6 +1,7 @@
 """What `run` says to what it cannot run, and that nothing of it stays behind."""
 
 import math
+from functools import cached_property
 
 import pytest
 from my_robot_basics.live import run, stop
@@ -87,7 +88,15 @@ class MixedIn(Mixin, Node):
         super().__init__('mixed_in')
 
 
-@pytest.mark.parametrize(('NodeClass', 'name'), [(Handles, 'handle'), (MixedIn, 'timers')])
+class Static(Node):
+    @staticmethod
+    def guards():
+        return []
+
+
+@pytest.mark.parametrize(
+    ('NodeClass', 'name'), [(Handles, 'handle'), (MixedIn, 'timers'), (Static, 'guards')]
+)
 def test_a_method_in_place_of_a_property_of_node_is_named(NodeClass, name):
     words = f'expected {NodeClass.__name__} to have no method `{name}`, saw one: .* another name'
     with pytest.raises(NotRunnable, match=words):
@@ -112,13 +121,17 @@ def test_what_rclpys_own_constructor_raised_is_told():
 
 
 class Allowed(Node):
-    """What a node spins with: a name that executors leave alone, a method that Node has, too."""
+    """It spins: with a name that executors leave alone, a property, a method that Node has."""
 
     def __init__(self):
         super().__init__('allowed')
         self.is_destroyed = False
 
     def publishers(self):
+        return []
+
+    @cached_property
+    def waitables(self):
         return []
 
     def destroy_node(self):

@@ -1,7 +1,7 @@
 """What `run` says to what it cannot run."""
 
 import inspect
-from types import ModuleType
+from types import FunctionType, ModuleType
 
 from rclpy.node import Node
 
@@ -10,6 +10,8 @@ from my_robot_basics.session.errors import NotRunnable
 _OWN = sorted(n for n in dir(Node) if isinstance(vars(Node).get(n), property))
 _UNUSED = 'publishers'
 """That one no executor looks at: a node spins without it."""
+_METHODS = (FunctionType, staticmethod, classmethod)
+"""… and with a property of its own, cached or not, or another value in its place."""
 
 
 def expect_runnable(NodeClass: object) -> None:
@@ -23,7 +25,7 @@ def expect_runnable(NodeClass: object) -> None:
     hidden = (
         name
         for name in _OWN
-        if name != _UNUSED and inspect.isroutine(inspect.getattr_static(NodeClass, name))
+        if name != _UNUSED and isinstance(inspect.getattr_static(NodeClass, name), _METHODS)
     )
     if name := next(hidden, ''):
         raise NotRunnable(
