@@ -303,6 +303,6 @@ def test_what_a_killed_process_was_grading_is_not_said_to_be_graded_just_now(cou
         queue.add(f'zoe_{TOY}', '1', [Arrival(0, f'zoe_{TOY}', 1.0, GRADING, 'zoe', TOY)])
         said = list(status_lines(course, queue))
         assert './course serve FOLDER grades what has come in since' in said[0]
-        assert 'Not graded to the end: the next ./course serve does it' in said
+        assert 'Not graded to the end: the next ./course serve grades it' in said
         with serve_module.only_one(course):
             assert 'Being graded' in list(status_lines(course, queue))

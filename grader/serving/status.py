@@ -24,7 +24,7 @@ FOR_A_PERSON = REFUSED, FAILED
 LAST = 200
 """So many of the last gradings tell how long one takes."""
 _BEING_GRADED = 'Being graded'
-_ENDED = 'Not graded to the end: the next ./course serve does it'
+_ENDED = 'Not graded to the end: the next ./course serve grades it'
 _PAGE = """<!doctype html>
 <html lang="en"><head><meta charset="utf-8"><title>./course serve</title>
 <meta http-equiv="refresh" content="5"><meta name="color-scheme" content="light dark">
