@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from datetime import datetime, timedelta
 from pathlib import Path
 
-from nbgrader.api import Assignment, Gradebook, SubmittedAssignment, SubmittedNotebook
-from sqlalchemy import bindparam, or_, select
+from nbgrader.api import Assignment, Grade, Gradebook, SubmittedAssignment, SubmittedNotebook
+from sqlalchemy import bindparam, func, or_, select
 from sqlalchemy.orm import contains_eager, joinedload
 
 from grader.course import Course
@@ -30,7 +30,7 @@ _LATE = (
     .join(SubmittedAssignment.assignment)
     .options(
         contains_eager(SubmittedAssignment.assignment),
-        joinedload(SubmittedAssignment.notebooks).undefer(SubmittedNotebook.score),
+        joinedload(SubmittedAssignment.notebooks),
     )
     .where(
         or_(
@@ -45,8 +45,10 @@ _LATE = (
 )
 """Those that are or were late; those in time by an extension are among them.
 
-Who was late is asked once: nbgrader has no index by which to ask it of each submission.
+Who was late is asked once, and so are all scores: nbgrader has no index by which to ask them of
+each submission.
 """
+_SCORES = select(Grade.notebook_id, func.sum(Grade.score)).group_by(Grade.notebook_id)
 _EXTENDED = (
     select(SubmittedAssignment)
     .join(SubmittedAssignment.assignment)
@@ -114,10 +116,13 @@ def _outdated(
 ) -> Iterator[tuple[SubmittedNotebook, float | None]]:
     """Find notebooks whose penalty is not that of their score, and what it should be."""
     rules = found or Deadlines()
-    for late in book.db.execute(_LATE).unique().scalars().all():
+    found_late = book.db.execute(_LATE).unique().scalars().all()
+    scores = dict(book.db.execute(_SCORES).tuples().all()) if found_late else {}
+    for late in found_late:
         for notebook in late.notebooks:
-            penalty = rules.penalty(notebook.score, late.total_seconds_late)
+            score = scores.get(notebook.id, 0.0)
+            penalty = rules.penalty(score, late.total_seconds_late)
             if penalty is not None:
-                penalty = min(penalty, notebook.score)
+                penalty = min(penalty, score)
             if penalty != notebook.late_submission_penalty:
                 yield notebook, penalty
