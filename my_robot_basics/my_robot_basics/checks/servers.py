@@ -11,6 +11,7 @@ from my_robot_basics.checks import heartbeat
 from my_robot_basics.checks.callbacks import CallbackErrors
 from my_robot_basics.checks.holding_server import HoldingServer
 from my_robot_basics.checks.recorder import Recorder
+from my_robot_basics.checks.recording import Recording
 from my_robot_basics.checks.responses import Made, MadeOf, of_none, wait_for_owed
 from my_robot_basics.checks.shown import shown
 from my_robot_basics.checks.sole_server import expect_no_other, wait_until_known
@@ -87,7 +88,7 @@ class Server(HoldingServer):
         self._publisher.publish(message)
 
     def wait_for_repeated(self) -> None:
-        """Wait for requests that are owed: a server that leaves would take the answer with it."""
+        """Wait for owed requests: a server that leaves would take the answer with it."""
         wait_for_owed(self._watcher, self.requests, len(self.published))
 
     def stop(self) -> None:
@@ -116,9 +117,8 @@ class Server(HoldingServer):
                 self.publish(message)
         others = self.requests[before:]
         if not (others and self._goes_on()):  # who waits may only now ask for what came before
-            hint = self._client().why_not_asked(
-                asked_on=self.asked_on, was_away=1 < self.starts != self._known_starts
-            )
+            was_away = 1 < self.starts != self._known_starts
+            hint = self._client().why_not_asked(asked_on=self.asked_on, was_away=was_away)
         fail(
             expected=f'a request to {self.name} for the message on {self.asked_on}',
             seen=shown(others[-1]) if others else f'none in {TIMEOUT_SEC:g} s',
@@ -167,9 +167,9 @@ class Server(HoldingServer):
         )
         self._raised.expect_none()
 
-    def expect_rate(self, hz: float) -> None:
-        """The node counts `hz` times a second on `alive`: see `heartbeat.expect_rate`."""
-        heartbeat.expect_rate(self._watcher, self._beats, hz)
+    def record_count(self) -> Recording | None:
+        """Record the count on `alive`, as time passes for the node: see `heartbeat.record`."""
+        return heartbeat.record(self._watcher, self._beats)
 
     def expect_alive(self, meanwhile: str, message: Any) -> None:
         """The node goes on counting on `alive`, though `message` is published: see `Heartbeat`.
