@@ -55,9 +55,8 @@ class CsvExport(ExportPlugin):
         table = spreadsheet_table([COLUMNS, *rows]).removeprefix(BYTE_ORDER_MARK)
         try:
             if path.is_symlink() or (path.exists() and not path.is_file()):
-                path.write_text(
-                    table, encoding='utf-8', newline=''
-                )  # /dev/stdout stays what it is
+                # such as /dev/stdout, which stays what it is
+                path.write_text(table, encoding='utf-8', newline='')
             else:
                 write_whole(path, table)
         except OSError as error:
