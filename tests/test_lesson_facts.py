@@ -51,6 +51,16 @@ def test_run_and_spin_use_a_single_threaded_executor():
     assert done.stdout.splitlines()[-1].split()[-2:] == ['SingleThreadedExecutor'] * 2
 
 
+@pytest.mark.starts
+@pytest.mark.parametrize('calls', [1, 2])
+def test_a_second_init_of_a_program_raises_a_runtime_error(calls):
+    """Lesson 3."""
+    code = 'import rclpy\n' + calls * 'rclpy.init()\n' + "print('went on')"
+    done = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True)
+    assert ('went on' in done.stdout) == (calls == 1)
+    assert ('\nRuntimeError: ' in done.stderr) == (calls == 2)
+
+
 BLOCKING = """
 import time
 from threading import Thread
