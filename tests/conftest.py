@@ -304,10 +304,18 @@ def course(released: 'Course', tmp_path: Path) -> 'Course':
 
 @pytest.fixture
 def came_in(tmp_path: Path) -> Path:
-    """The folder that `./course collect` takes submissions from."""
+    """The folder that `./course collect` or `./course serve` takes submissions from."""
     folder = tmp_path / 'came in'
     folder.mkdir()
     return folder
+
+
+@pytest.fixture
+def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever lies in the folder of `./course serve` is whole."""
+    from grader.serving import inbound  # not before: most serve nothing
+
+    monkeypatch.setattr(inbound, 'QUIET_SEC', -1.0)
 
 
 @pytest.fixture

@@ -46,7 +46,10 @@ def hand_in(
     secret: str = 'aa',
 ) -> Path:
     """Put a submission there as `nbgrader submit` does; return its folder."""
-    folder = inbound / f'{student}+{TOY}+2026-01-01 10:00:0{number}.000000 UTC+x{number}'
+    minutes, seconds = divmod(number, 60)
+    folder = (
+        inbound / f'{student}+{TOY}+2026-01-01 10:{minutes:02}:{seconds:02}.000000 UTC+x{number}'
+    )
     folder.mkdir()
     (folder / f'{TOY}.ipynb').write_text(nbformat.writes(answered(course, answer)))
     (folder / 'timestamp.txt').write_text('2000-01-01 10:00:00.000000 UTC')

@@ -8,11 +8,10 @@ import time
 from contextlib import closing
 from pathlib import Path
 
-import nbformat
 import pytest
 import serving_desk
-from course_maker import TOY, answered, released_course
-from serving_desk import RIGHT, WRONG, exchange_in, grade_here, hand_in, page_of
+from course_maker import TOY, released_course
+from serving_desk import RIGHT, WRONG, exchange_in, grade_here, hand_in, page_of, serve_here
 
 from grader.grading import REPLACED as REPLACED_MEANWHILE
 from grader.serving.queue import (
@@ -42,12 +41,7 @@ def killed_rounds(course, inbound, rounds, chance):
             secret = f'{number:04}'
             answer = f'# {chance.uniform(0, 0.3):.2f} s\n' + chance.choice([RIGHT, WRONG])
             latest[student] = (answer, secret)
-            folder = inbound / f'{student}+{TOY}+2026-01-01 10:00:00.0 UTC+x{number}'
-            folder.mkdir()
-            (folder / f'{TOY}.ipynb').write_text(nbformat.writes(answered(course, answer)))
-            (folder / 'timestamp.txt').write_text('2026-01-01 10:00:00.0 UTC')
-            (folder / 'submission_secret.txt').write_text(secret)
-            folder.chmod(0o777)
+            hand_in(course, inbound, student, answer, number=number, secret=secret)
         process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
         for line in process.stdout:  # killed once it is at work: not by the time it has started
             if 'taken in' in line:
@@ -124,6 +118,7 @@ def test_grade_may_run_beside_it(tmp_path, inbound):
         process.terminate()
         process.wait(timeout=60)
         process.stdout.close()
+    serve_here(course, inbound)  # what came in before another one may not have been looked at yet
     assert others
     refused = {row.reason for row in others if not row.stored}
     assert refused <= {f'not graded, the grader failed: {REPLACED_MEANWHILE}'}
