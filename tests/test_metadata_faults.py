@@ -37,6 +37,11 @@ FAULTS = {
         'the cell `double-hidden` has -1 points: write a number from 0 on into Points in Create'
         ' Assignment',
     ),
+    'points that are no number': (
+        {'points': True},
+        'the cell `double-hidden` has True points: write a number from 0 on into Points in Create'
+        ' Assignment',
+    ),
     'a task in code': (
         {'task': True},
         'the cell `double-hidden` is a task, and code: make it a markdown cell, or choose another'
