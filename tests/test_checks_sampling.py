@@ -181,7 +181,7 @@ def test_who_works_for_longer_than_a_period_has_no_rate_on_the_robots_clock(monk
         return on_wall(*args, why=why, **options)
 
     monkeypatch.setattr(wall_recording, 'wall', wall)
-    with running('overruns'), pytest.raises(CheckFailed, match=r'expected 5\.0 Hz, saw [34]\.'):
+    with running('overruns'), pytest.raises(CheckFailed, match=r'expected 5\.0 Hz, saw [1-4]\.'):
         topic(TOPIC).record().assert_rate(hz=5.0)
     assert reasons[0] == driven_topic.OVERRUNS
 
