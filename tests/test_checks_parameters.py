@@ -11,6 +11,7 @@ from my_robot_basics.checks import (
     topic,
 )
 from my_robot_basics.checks.inconclusive import Inconclusive
+from my_robot_basics.checks.parameter_refusals import fail_refused
 from my_robot_basics.checks.parameters import NodeParameters
 from my_robot_basics.checks.rate_parameters import RateParameter
 from nodes.running import imported
@@ -216,3 +217,10 @@ def test_parameters_are_read_and_set(run):
     assert (taken.successful, refused.successful) == (True, False)
     assert refused.reason == 'rate_hz is from 1 to 50'
     assert parameters.get('rate_hz') == 7.0
+
+
+@pytest.mark.parametrize(('type_name', 'default'), [('INTEGER', '5'), ('STRING', "'5.0'")])
+def test_a_default_of_another_type_is_named(type_name, default):
+    said = f"Wrong parameter type, expected 'Type.{type_name}' got 'Type.DOUBLE'"
+    with pytest.raises(CheckFailed, match=f'declare it with 5.0, not {default}$'):
+        fail_refused('rate_hz', 5.0, SetParametersResult(successful=False, reason=said))

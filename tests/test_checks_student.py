@@ -320,6 +320,24 @@ def test_a_stamp_that_is_no_message_is_told_what_makes_one(monkeypatch):
     assert what_raised(['/any']).endswith('so make a stamp of the time with .to_msg()')
 
 
+@pytest.mark.parametrize(
+    ('called', 'advice'),
+    [
+        ('int', 'so give a method by its name'),
+        ('rclpy._rclpy_pybind11.Node', 'so give your method'),
+    ],
+)
+def test_what_is_no_function_is_told_of_and_a_name_of_node_s_is_told_alone(
+    monkeypatch, called, advice
+):
+    said = f"TypeError: '{called}' object is not callable"
+    monkeypatch.setattr(node_troubles, 'last_raised', lambda name: said)
+    monkeypatch.setattr(node_troubles, 'unpublished_field', lambda name: ('', ''))
+    why = what_raised(['/any'])
+    assert advice in why
+    assert why.count(', so ') == 1
+
+
 def test_a_field_of_another_type_is_told_from_what_rclpy_says_of_it(monkeypatch):
     said = 'TypeError: bad argument type for built-in operation (line 3)'
     monkeypatch.setattr(node_troubles, 'last_raised', lambda name: said)
