@@ -270,8 +270,9 @@ def test_it_ends_when_nobody_reads_any_more(words):
 
 
 def test_head_gets_its_lines():
+    # with its type it waits for a publisher: without, a busy machine may show none in time
     done = subprocess.run(
-        f'"{SCRIPT}" topic echo {TOPIC} | head -3',
+        f'"{SCRIPT}" topic echo {TOPIC} sensor_msgs/msg/JointState | head -3',
         shell=True,
         capture_output=True,
         encoding='utf-8',
