@@ -20,6 +20,7 @@ from my_robot_basics.checks.clock import SimulatedClock
 from my_robot_basics.checks.driven_topic import DrivenTopic
 from my_robot_basics.checks.inconclusive import Inconclusive
 from my_robot_basics.checks.recorder import Recorder
+from my_robot_basics.feedback.errors import Starved
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
 from nodes.running import running
@@ -173,7 +174,9 @@ def test_who_ignores_the_clock_goes_on_while_it_stands_still(ignores, sent_sec):
         driven._hold(0.1)
 
 
-def test_who_works_for_longer_than_a_period_has_no_rate_on_the_robots_clock(monkeypatch):
+@pytest.fixture
+def reasons(monkeypatch):
+    """Why recordings were made on the wall clock."""
     reasons, on_wall = [], wall_recording.wall
 
     def wall(*args, why=None, **options):
@@ -181,15 +184,19 @@ def test_who_works_for_longer_than_a_period_has_no_rate_on_the_robots_clock(monk
         return on_wall(*args, why=why, **options)
 
     monkeypatch.setattr(wall_recording, 'wall', wall)
+    return reasons
+
+
+def test_who_works_for_longer_than_a_period_has_no_rate_on_the_robots_clock(reasons):
     with running('overruns'), pytest.raises(CheckFailed, match=r'expected 5\.0 Hz, saw [1-4]\.'):
         topic(TOPIC).record().assert_rate(hz=5.0)
     assert reasons[0] == driven_topic.OVERRUNS
 
 
 @pytest.mark.usefixtures('patient')
-def test_the_clock_stands_still_before_finer_steps_prove_what_coarser_ones_do_not(held):
+def test_the_clock_stands_still_before_finer_steps_prove_what_coarser_ones_do_not(held, reasons):
     with running('looks_too_early'):
-        assert topic(TOPIC).record(seconds=10.0).clock == 'simulated'
+        assert (topic(TOPIC).record(seconds=10.0).clock, reasons) == ('simulated', [])
     assert held == [driven_topic.SETTLE_SEC, 1.0]
 
 
@@ -227,7 +234,10 @@ IGNORES = (
 def test_honest_nodes_that_are_no_plain_timers_pass(capfd, node, out):
     with running(node):
         recording = topic(TOPIC).record()
-        recording.assert_rate(hz=5.0)
+        try:
+            recording.assert_rate(hz=5.0)
+        except Starved:  # on the wall clock, a busy machine is a doubt: grading looks again
+            assert out == IGNORES
     assert capfd.readouterr() == (out, '')
 
 
