@@ -19,7 +19,8 @@ from grader.grading import SubmissionOutcome
 from grader.judging.execute import Execution
 from grader.notebook.restore import KEY
 from grader.serving.exchange import feedback_folder
-from grader.serving.queue import FAILED, GRADED, REFUSED, WAITING, Arrival, queue_to_read
+from grader.serving.queue import FAILED, GRADED, REFUSED, WAITING, Arrival
+from grader.serving.queue_file import queue_to_read
 from grader.serving.serve import serve
 from grader.serving.status import write_status_page
 from grader.storage import reuse

@@ -22,13 +22,8 @@ from grader.serving import rounds as rounds_module
 from grader.serving import serve as serve_module
 from grader.serving.desk import Desk
 from grader.serving.inbound import new_entries
-from grader.serving.queue import (
-    FAILED,
-    GRADED,
-    REFUSED,
-    Arrival,
-    opened_queue,
-)
+from grader.serving.queue import FAILED, GRADED, REFUSED, Arrival
+from grader.serving.queue_file import opened_queue
 from grader.serving.reception import look
 from grader.serving.status import write_status_page
 
@@ -260,7 +255,7 @@ def test_what_is_yet_to_be_kept_is_kept_by_the_next_process(course, inbound, at_
         (inbound / f'zoe_{TOY}.ipynb').write_text(
             nbformat.writes(answered(course, f'# {number}\n{RIGHT}'))
         )
-        with opened_queue(course.gradebook) as queue:
+        with opened_queue(course.gradebook, inbound) as queue:
             look(Desk(course, queue, None, inbound, None, print, queue.seen(), exporter=None))
         time.sleep(0.02)
     with monkeypatch.context() as patch:
@@ -309,8 +304,8 @@ def test_whose_an_entry_is_the_user_tells_and_else_its_name(inbound, at_once):
     assert os.geteuid() or owners['eve+00_toy'] == 'user 4001'
 
 
-def test_a_status_page_is_written_of_any_reason(course):
-    with opened_queue(course.gradebook) as queue:
+def test_a_status_page_is_written_of_any_reason(course, inbound):
+    with opened_queue(course.gradebook, inbound) as queue:
         stored = queue.add('a', 'b', [Arrival(0, 'a', 0.0, REFUSED, reason='x\udcff \ud800')])
         write_status_page(course, queue)
         queue.update(*stored)

@@ -1,6 +1,5 @@
 """Who hands in much, or again and again, keeps nobody waiting and hides nobody."""
 
-import os
 import shutil
 import time
 from datetime import UTC, datetime
@@ -12,23 +11,14 @@ from course_maker import TOY, answered, with_own_database
 from serving_desk import RIGHT, arrivals, put_there, serve_here
 
 from grader.serving import desk as desk_module
-from grader.serving import gone as gone_module
 from grader.serving import inbound as inbound_module
 from grader.serving import intake, reception
 from grader.serving import rounds as rounds_module
 from grader.serving import serve as serve_module
 from grader.serving.desk import Desk
-from grader.serving.gone import Gone
 from grader.serving.inbound import Entry, new_entries
-from grader.serving.queue import (
-    GRADED,
-    GRADING,
-    REFUSED,
-    REPLACED,
-    Arrival,
-    opened_queue,
-    queue_to_read,
-)
+from grader.serving.queue import GRADED, GRADING, REFUSED, REPLACED, Arrival
+from grader.serving.queue_file import opened_queue, queue_to_read
 from grader.serving.reception import look
 from grader.serving.rounds import Rounds
 from grader.serving.status import SHOWN, status_lines, write_status_page
@@ -81,7 +71,7 @@ def entry(name, owner, changed=0):
 
 @pytest.fixture
 def desk(course, inbound):
-    with opened_queue(course.gradebook) as queue:
+    with opened_queue(course.gradebook, inbound) as queue:
         grading = SimpleNamespace(backend=SimpleNamespace(capacity=1))
         yield Desk(course, queue, grading, inbound, None, lambda line: None, exporter=None)
 
@@ -221,77 +211,8 @@ def test_what_is_refused_again_and_again_is_listed_once(course, inbound, at_once
     assert len(arrivals(course)) == 1
 
 
-def test_what_is_refused_is_listed_until_it_is_gone_and_looked_into_where_it_comes_back(
-    course, inbound, at_once
-):
-    refused = inbound / 'mallory_nothing.ipynb'
-    refused.write_text('{}')
-    (inbound / 'eve_nothing.ipynb').write_text('{}')
-    serve_here(course, inbound)
-    refused.rename(inbound.parent / refused.name)
-    assert 'gone, so it is listed no more: mallory_nothing.ipynb' in serve_here(course, inbound)
-    assert [each.entry for each in arrivals(course)] == ['eve_nothing.ipynb']
-    (inbound.parent / refused.name).rename(refused)
-    serve_here(course, inbound)
-    assert len(arrivals(course)) == 2
-
-
-@pytest.fixture
-def refused_here(course, inbound):
-    """What looks for entries that are gone, and notes one that was refused, or so in part."""
-    with opened_queue(course.gradebook) as queue:
-        seen = {}
-        desk = SimpleNamespace(inbound=inbound, queue=queue, seen=seen, say=lambda line: None)
-
-        def refused(name, *taken):
-            (inbound / name).touch()
-            rows = [Arrival(0, name, 1.0, GRADED, student, TOY) for student in taken]
-            queue.add(name, '1', [*rows, Arrival(0, name, 1.0, REFUSED, reason='no work')])
-            seen[name] = '1'
-
-        yield Gone(desk), refused
-
-
-def test_what_was_taken_in_in_part_is_not_handed_in_again_where_it_comes_back(
-    inbound, refused_here, course
-):
-    """As after a moment in which a network's file system shows nothing."""
-    gone, refused = refused_here
-    refused('all.zip', 'zoe')
-    refused('nothing.zip')
-    for each in inbound.iterdir():
-        each.unlink()
-    assert gone.forget()
-    assert [each.entry for each in arrivals(course)] == ['all.zip']
-    with queue_to_read(course.gradebook) as queue:
-        assert queue.seen() == {'all.zip': '1'}
-
-
-def test_what_is_gone_in_the_same_second_as_another_is_not_missed(
-    inbound, refused_here, monkeypatch
-):
-    """Some file systems count the time of a change in seconds."""
-    monkeypatch.setattr(gone_module, 'SETTLED_NS', 10**15)  # however long this test takes
-    gone, refused = refused_here
-    refused('one.zip')
-    refused('other.zip')
-    now = time.time_ns()
-    for name in 'one.zip', 'other.zip':
-        (inbound / name).unlink()
-        os.utime(inbound, ns=(now, now))
-        assert gone.forget()
-
-
-def test_a_file_that_is_gone_takes_no_grade_with_it(course, inbound, at_once):
-    (inbound / f'zoe_{TOY}.ipynb').write_text(nbformat.writes(answered(course, RIGHT)))
-    serve_here(course, inbound)
-    (inbound / f'zoe_{TOY}.ipynb').unlink()
-    serve_here(course, inbound)
-    assert [each.state for each in arrivals(course)] == [GRADED]
-
-
-def test_what_a_killed_process_was_grading_is_not_said_to_be_graded_just_now(course):
-    with opened_queue(course.gradebook) as queue:
+def test_what_a_killed_process_was_grading_is_not_said_to_be_graded_just_now(course, inbound):
+    with opened_queue(course.gradebook, inbound) as queue:
         queue.add(f'zoe_{TOY}', '1', [Arrival(0, f'zoe_{TOY}', 1.0, GRADING, 'zoe', TOY)])
         said = list(status_lines(course, queue))
         assert './course serve FOLDER grades what has come in since' in said[0]

@@ -32,16 +32,8 @@ from grader.serving import desk as desk_module
 from grader.serving import intake
 from grader.serving.desk import Desk, begin_turns
 from grader.serving.inbound import new_entries
-from grader.serving.queue import (
-    FAILED,
-    GRADED,
-    REFUSED,
-    REPLACED,
-    WAITING,
-    Arrival,
-    opened_queue,
-    queue_to_read,
-)
+from grader.serving.queue import FAILED, GRADED, REFUSED, REPLACED, WAITING, Arrival
+from grader.serving.queue_file import opened_queue, queue_to_read
 from grader.serving.serve import only_one
 from grader.storage.records import graded_notebook, records
 
@@ -235,7 +227,7 @@ def test_one_of_a_student_s_is_begun_at_a_time_though_there_is_room(course, tmp_
         Arrival(0, who, at, WAITING, who, lesson) for at, (who, lesson) in enumerate(handed_in)
     ]
     grading = SimpleNamespace(backend=SimpleNamespace(capacity=4))
-    with opened_queue(course.gradebook) as queue:
+    with opened_queue(course.gradebook, tmp_path) as queue:
         queue.add('all of them', '', arrivals)
         desk = Desk(course, queue, grading, tmp_path, None, print, exporter=None)
         assert begin_turns(desk)

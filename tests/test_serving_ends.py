@@ -14,14 +14,8 @@ from course_maker import TOY, released_course
 from serving_desk import RIGHT, WRONG, exchange_in, grade_here, hand_in, page_of, serve_here
 
 from grader.grading import REPLACED as REPLACED_MEANWHILE
-from grader.serving.queue import (
-    FAILED,
-    GRADED,
-    REFUSED,
-    REPLACED,
-    WAITING,
-    queue_to_read,
-)
+from grader.serving.queue import FAILED, GRADED, REFUSED, REPLACED, WAITING
+from grader.serving.queue_file import queue_to_read
 from grader.storage.records import records
 
 

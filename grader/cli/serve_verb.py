@@ -6,7 +6,7 @@ from datetime import datetime
 from grader.common.errors import CourseError
 from grader.course import Course
 from grader.serving.exchange import feedback_folder
-from grader.serving.queue import queue_to_read
+from grader.serving.queue_file import queue_to_read
 from grader.serving.serve import serve
 from grader.serving.status import status_lines, write_status_page
 from grader.workers.workers import Workers

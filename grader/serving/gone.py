@@ -6,7 +6,6 @@ import time
 from grader.common.text import printable
 from grader.serving.desk import Desk
 from grader.serving.inbound import key_of
-from grader.serving.queue import REFUSED
 
 SETTLED_NS = 5_000_000_000
 """A folder that has changed so lately may change again without another time: some file systems
@@ -34,7 +33,7 @@ class Gone:
         is_settled = abs(time.time_ns() - changed_ns) > SETTLED_NS
         self._changed_ns = changed_ns if is_settled else -1
         there = {key_of(name) for name in os.listdir(desk.inbound)}
-        refused = {each.entry for each in desk.queue.find(REFUSED) if not each.student_id}
+        refused = desk.queue.refused_entries()
         for entry in sorted(refused - there):
             if desk.queue.forget(entry):
                 desk.seen.pop(entry, None)

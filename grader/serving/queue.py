@@ -1,14 +1,11 @@
 """What was handed in and what became of it: a table that survives the end of any process."""
 
 import sqlite3
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import closing, contextmanager
+from collections.abc import Iterable, Mapping
 from dataclasses import astuple, dataclass, fields, replace
-from pathlib import Path
 
 from grader.common.text import storable
 
-FILE = 'serve.db'
 WAITING, GRADING, GRADED = 'waiting', 'grading', 'graded'
 KEEPING, REPLACED, REFUSED, FAILED = 'being kept', 'replaced', 'refused', 'failed'
 """What became of an arrival; what is refused or has failed waits for a person.
@@ -44,26 +41,37 @@ class Arrival:
         return self.student_id, self.assignment
 
 
-_COLUMNS = tuple(field.name for field in fields(Arrival))
-_SCHEMA = f"""
-    CREATE TABLE IF NOT EXISTS seen (entry TEXT PRIMARY KEY, fingerprint TEXT NOT NULL);
-    CREATE TABLE IF NOT EXISTS arrivals (
-        number INTEGER PRIMARY KEY AUTOINCREMENT, {', '.join(_COLUMNS[1:])});
-    CREATE INDEX IF NOT EXISTS states ON arrivals (state);
-    CREATE INDEX IF NOT EXISTS entries ON arrivals (entry);
-    CREATE INDEX IF NOT EXISTS students ON arrivals (student_id, assignment);
-"""
+COLUMNS = tuple(field.name for field in fields(Arrival))
 
 
 class Queue:
-    """The table of one gradebook; one process writes into it, and any number read."""
+    """The table of one gradebook; one process writes into it, and any number read.
 
-    def __init__(self, database: sqlite3.Connection) -> None:
+    Who writes takes in from one inbound folder: what is said of entries of others stays as it is.
+    """
+
+    def __init__(self, database: sqlite3.Connection, inbound: str = '') -> None:
         self._database = database
+        self._inbound = inbound
 
     def seen(self) -> dict[str, str]:
-        """Return the fingerprint of each entry that was looked into."""
-        return dict(self._database.execute('SELECT entry, fingerprint FROM seen'))
+        """Return the fingerprint of each entry that was looked into: the folder's own counts most.
+
+        One of another folder is of use if both are the same, mounted twice.
+        """
+        return dict(
+            self._database.execute(
+                'SELECT entry, fingerprint FROM looked_into ORDER BY inbound = ?', (self._inbound,)
+            )
+        )
+
+    def refused_entries(self) -> set[str]:
+        """Return the entries of the folder of which something is refused that is nobody's."""
+        rows = self._database.execute(
+            "SELECT entry FROM arrivals WHERE inbound = ? AND state = ? AND student_id = ''",
+            (self._inbound, REFUSED),
+        )
+        return {entry for (entry,) in rows}
 
     def add(self, entry: str, fingerprint: str, arrivals: Iterable[Arrival]) -> list[Arrival]:
         """Note what an entry held, all of it or nothing; return it with its numbers.
@@ -74,13 +82,15 @@ class Queue:
         with self._database:
             self._withdraw(entry)
             for each in arrivals:
-                marks = ', '.join('?' * (len(_COLUMNS) - 1))
+                marks = ', '.join('?' * len(COLUMNS))
                 cursor = self._database.execute(
-                    f'INSERT INTO arrivals ({", ".join(_COLUMNS[1:])}) VALUES ({marks})',
-                    _values(each),
+                    f'INSERT INTO arrivals ({", ".join(COLUMNS[1:])}, inbound) VALUES ({marks})',
+                    (*_values(each), self._inbound),
                 )
                 added.append(replace(each, number=cursor.lastrowid or 0))
-            self._database.execute('REPLACE INTO seen VALUES (?, ?)', (entry, fingerprint))
+            self._database.execute(
+                'REPLACE INTO looked_into VALUES (?, ?, ?)', (self._inbound, entry, fingerprint)
+            )
         return added
 
     def forget(self, entry: str) -> bool:
@@ -91,21 +101,23 @@ class Queue:
         with self._database:
             self._withdraw(entry)
             forgotten = self._database.execute(
-                'DELETE FROM seen WHERE entry = :entry'
-                ' AND NOT EXISTS (SELECT 1 FROM arrivals WHERE entry = :entry)',
-                {'entry': entry},
+                'DELETE FROM looked_into WHERE inbound = :inbound AND entry = :entry'
+                ' AND NOT EXISTS'
+                ' (SELECT 1 FROM arrivals WHERE inbound = :inbound AND entry = :entry)',
+                {'inbound': self._inbound, 'entry': entry},
             )
         return forgotten.rowcount > 0
 
     def _withdraw(self, entry: str) -> None:
         self._database.execute(
-            "DELETE FROM arrivals WHERE entry = ? AND state = ? AND student_id = ''",
-            (entry, REFUSED),
+            'DELETE FROM arrivals WHERE inbound = ? AND entry = ? AND state = ?'
+            " AND student_id = ''",
+            (self._inbound, entry, REFUSED),
         )
 
     def update(self, *arrivals: Arrival) -> None:
         """Note what has become of arrivals, of all of them or of none."""
-        assigned = ', '.join(f'{name} = ?' for name in _COLUMNS[1:])
+        assigned = ', '.join(f'{name} = ?' for name in COLUMNS[1:])
         with self._database:
             self._database.executemany(
                 f'UPDATE arrivals SET {assigned} WHERE number = ?',
@@ -123,7 +135,7 @@ class Queue:
         """Return the arrivals in some states, in their order; perhaps only the `last` ones."""
         marks = ', '.join('?' * len(states))
         rows = self._database.execute(
-            f'SELECT {", ".join(_COLUMNS)} FROM arrivals WHERE state IN ({marks}) '
+            f'SELECT {", ".join(COLUMNS)} FROM arrivals WHERE state IN ({marks}) '
             'ORDER BY number DESC LIMIT ?',
             (*states, -1 if last is None else last),
         )
@@ -149,24 +161,3 @@ class Queue:
 def _values(arrival: Arrival) -> list[object]:
     """Return what a row holds: text of strangers, in names and reasons, is made storable."""
     return [storable(each) if isinstance(each, str) else each for each in astuple(arrival)[1:]]
-
-
-@contextmanager
-def opened_queue(gradebook: Path) -> Iterator[Queue]:
-    """Open the queue of a gradebook; make it where there is none."""
-    gradebook.mkdir(parents=True, exist_ok=True)
-    with closing(sqlite3.connect(gradebook / FILE, timeout=60)) as database:
-        database.execute('PRAGMA synchronous = FULL')  # after a power cut, too
-        database.executescript(_SCHEMA)
-        yield Queue(database)
-
-
-@contextmanager
-def queue_to_read(gradebook: Path) -> Iterator[Queue | None]:
-    """Open the queue of a gradebook to look at it alone; None where there is none."""
-    if not (gradebook / FILE).exists():
-        yield None
-        return
-    address = f'{(gradebook / FILE).resolve().as_uri()}?mode=ro'
-    with closing(sqlite3.connect(address, uri=True, timeout=60)) as database:
-        yield Queue(database)

@@ -14,7 +14,8 @@ from grader.grading import Grading
 from grader.serving.desk import Desk, begin_turns, finish_done, keep_replaced
 from grader.serving.gone import Gone
 from grader.serving.intake import tidy
-from grader.serving.queue import Queue, opened_queue
+from grader.serving.queue import Queue
+from grader.serving.queue_file import opened_queue
 from grader.serving.reception import look
 from grader.storage.backups import bring_in_order
 from grader.storage.database import one_engine
@@ -45,7 +46,7 @@ def serve(
     with (
         only_one(course),
         backend,
-        opened_queue(course.gradebook) as queue,
+        opened_queue(course.gradebook, inbound) as queue,
         one_engine(course.db_url),
     ):
         isolated = backend.require_isolation(trust_students=trust_students)

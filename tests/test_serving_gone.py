@@ -1,0 +1,169 @@
+"""What is said of entries of inbound folders: until they are gone, of each folder for itself."""
+
+import os
+import sqlite3
+import time
+from contextlib import closing
+from types import SimpleNamespace
+
+import nbformat
+import pytest
+from course_maker import TOY, answered, with_own_database
+from serving_desk import RIGHT, arrivals, put_there, serve_here
+
+from grader.serving import gone as gone_module
+from grader.serving.gone import Gone
+from grader.serving.queue import GRADED, REFUSED, REPLACED, Arrival
+from grader.serving.queue_file import FILE, opened_queue, queue_to_read
+
+
+@pytest.fixture
+def course(released, tmp_path):
+    return with_own_database(released, tmp_path)
+
+
+@pytest.fixture
+def inbound(came_in):
+    return came_in
+
+
+def test_what_is_refused_is_listed_until_it_is_gone_and_looked_into_where_it_comes_back(
+    course, inbound, at_once
+):
+    refused = inbound / 'mallory_nothing.ipynb'
+    refused.write_text('{}')
+    (inbound / 'eve_nothing.ipynb').write_text('{}')
+    serve_here(course, inbound)
+    refused.rename(inbound.parent / refused.name)
+    assert 'gone, so it is listed no more: mallory_nothing.ipynb' in serve_here(course, inbound)
+    assert [each.entry for each in arrivals(course)] == ['eve_nothing.ipynb']
+    (inbound.parent / refused.name).rename(refused)
+    serve_here(course, inbound)
+    assert len(arrivals(course)) == 2
+
+
+@pytest.fixture
+def refused_here(course, inbound):
+    """What looks for entries that are gone, and notes one that was refused, or so in part."""
+    with opened_queue(course.gradebook, inbound) as queue:
+        seen = {}
+        desk = SimpleNamespace(inbound=inbound, queue=queue, seen=seen, say=lambda line: None)
+
+        def refused(name, *taken):
+            (inbound / name).touch()
+            rows = [Arrival(0, name, 1.0, GRADED, student, TOY) for student in taken]
+            queue.add(name, '1', [*rows, Arrival(0, name, 1.0, REFUSED, reason='no work')])
+            seen[name] = '1'
+
+        yield Gone(desk), refused
+
+
+def test_what_was_taken_in_in_part_is_not_handed_in_again_where_it_comes_back(
+    inbound, refused_here, course
+):
+    """As after a moment in which a network's file system shows nothing."""
+    gone, refused = refused_here
+    refused('all.zip', 'zoe')
+    refused('nothing.zip')
+    for each in inbound.iterdir():
+        each.unlink()
+    assert gone.forget()
+    assert [each.entry for each in arrivals(course)] == ['all.zip']
+    with opened_queue(course.gradebook, inbound) as queue:
+        assert queue.seen() == {'all.zip': '1'}
+
+
+def test_what_is_gone_in_the_same_second_as_another_is_not_missed(
+    inbound, refused_here, monkeypatch
+):
+    """Some file systems count the time of a change in seconds."""
+    monkeypatch.setattr(gone_module, 'SETTLED_NS', 10**15)  # however long this test takes
+    gone, refused = refused_here
+    refused('one.zip')
+    refused('other.zip')
+    now = time.time_ns()
+    for name in 'one.zip', 'other.zip':
+        (inbound / name).unlink()
+        os.utime(inbound, ns=(now, now))
+        assert gone.forget()
+
+
+def test_a_file_that_is_gone_takes_no_grade_with_it(course, inbound, at_once):
+    (inbound / f'zoe_{TOY}.ipynb').write_text(nbformat.writes(answered(course, RIGHT)))
+    serve_here(course, inbound)
+    (inbound / f'zoe_{TOY}.ipynb').unlink()
+    serve_here(course, inbound)
+    assert [each.state for each in arrivals(course)] == [GRADED]
+
+
+@pytest.fixture
+def other(inbound):
+    folder = inbound.with_name('came in elsewhere')
+    folder.mkdir()
+    return folder
+
+
+def listed(course):
+    return sorted(each.entry for each in arrivals(course))
+
+
+def test_entries_of_one_folder_are_listed_while_another_is_served(course, inbound, other, at_once):
+    (inbound / 'of both.ipynb').write_text('{}')
+    (inbound / 'of one.ipynb').write_text('{}')
+    (other / 'of both.ipynb').write_text('{ }')
+    serve_here(course, inbound)
+    said = serve_here(course, other)
+    assert [line.partition(': ')[0] for line in said] == ['not taken, look at it']
+    (other / 'of both.ipynb').unlink()
+    assert serve_here(course, other) == ['gone, so it is listed no more: of both.ipynb']
+    assert listed(course) == ['of both.ipynb', 'of one.ipynb']
+    assert serve_here(course, inbound) == []
+
+
+def test_a_folder_with_names_of_another_is_taken_in_once(course, inbound, other, at_once):
+    for folder in inbound, other, inbound, other:
+        if not (folder / 'zoe').exists():
+            put_there(course, folder, 'zoe')
+        serve_here(course, folder)
+    with queue_to_read(course.gradebook) as queue:
+        assert len(queue.find(GRADED, REPLACED)) == 2
+
+
+def test_what_came_into_a_folder_that_has_moved_is_not_taken_in_again(
+    course, inbound, other, at_once
+):
+    put_there(course, inbound, 'zoe')
+    for name in 'nothing.ipynb', 'gone.ipynb':
+        (inbound / name).write_text('{}')
+    serve_here(course, inbound)
+    other.rmdir()
+    inbound.rename(other)
+    (other / 'gone.ipynb').unlink()
+    assert serve_here(course, other) == ['gone, so it is listed no more: gone.ipynb']
+    assert listed(course) == ['nothing.ipynb', 'zoe']
+
+
+def test_a_folder_that_is_mounted_twice_is_one(course, inbound, other):
+    with opened_queue(course.gradebook, inbound) as queue:
+        queue.add('zoe', 'same files', [])
+        queue.add('ada', 'before', [])
+    with opened_queue(course.gradebook, other) as queue:
+        queue.add('ada', 'after', [])
+        assert queue.seen() == {'zoe': 'same files', 'ada': 'after'}
+
+
+def test_a_queue_of_the_time_before_it_knew_folders_is_gone_on_with(course, inbound, at_once):
+    put_there(course, inbound, 'zoe')
+    (inbound / 'nothing.ipynb').write_text('{}')
+    serve_here(course, inbound)
+    with closing(sqlite3.connect(course.gradebook / FILE)) as database, database:
+        database.executescript("""
+            CREATE TABLE seen (entry TEXT PRIMARY KEY, fingerprint TEXT NOT NULL);
+            INSERT INTO seen SELECT entry, fingerprint FROM looked_into;
+            DROP TABLE looked_into;
+            ALTER TABLE arrivals DROP COLUMN inbound;
+        """)
+    assert listed(course) == ['nothing.ipynb', 'zoe']  # as ./course serve --status does
+    (inbound / 'nothing.ipynb').unlink()
+    assert serve_here(course, inbound) == ['gone, so it is listed no more: nothing.ipynb']
+    assert listed(course) == ['zoe']
