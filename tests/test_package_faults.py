@@ -5,7 +5,7 @@ import sys
 import types
 
 import pytest
-from my_robot_basics.exchange.endings import RACE, is_clean
+from my_robot_basics.exchange.endings import RACE, is_clean, why_crashed
 from my_robot_basics.live import executables
 from my_robot_basics.live.install_faults import fault_in_install
 from my_robot_basics.live.package_faults import fault_in_words
@@ -23,6 +23,15 @@ def ended(code, *lines):
 def test_a_race_of_rclpy_is_told_as_the_clean_end_that_it_is():
     assert ended(1, f'rclpy._rclpy_pybind11.RCLError: {RACE}') == ended(0)
     assert 'not cleanly (exit code 1, with KeyboardInterrupt)' in ended(1, 'KeyboardInterrupt')
+
+
+def test_of_a_crash_in_a_notebook_the_likely_cause_is_told_as_in_feedback():
+    process = types.SimpleNamespace(code=-signal.SIGSEGV, lines=[])
+    said = executables.how_it_ended(types.SimpleNamespace(process=process), None)
+    assert said == f'had ended by itself (by SIGSEGV): {why_crashed(-signal.SIGSEGV)}'
+    process.code = -signal.SIGRTMIN - 1  # it has no name
+    said = executables.how_it_ended(types.SimpleNamespace(process=process), None)
+    assert said == f'had ended by itself (by signal {signal.SIGRTMIN + 1})'
 
 
 def test_try_shutdown_alone_may_meet_that_race_twice():

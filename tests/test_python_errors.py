@@ -2,6 +2,7 @@
 
 import inspect
 import math
+import random
 import re
 import time
 
@@ -56,7 +57,7 @@ class AskerNode(Asker):
 
 
 NAMES = {
-    **{'time': time, 'math': math, 'inspect': inspect, 'np': np, 'rclpy': rclpy},
+    **{'time': time, 'random': random, 'math': math, 'inspect': inspect, 'np': np, 'rclpy': rclpy},
     **{'FloatingPointRange': FloatingPointRange, 'Asker': Asker},
     **{'AskerNode': AskerNode, 'Node': Node},
     **{'JointState': JointState, 'Parameter': Parameter, 'SolveIK': SolveIK},
@@ -132,6 +133,8 @@ def error_of(code, **names):
         ),
         ('Node.get_logger(None, 1)', ''),
         ('rclpy.Future().done(1)', ''),
+        ('random.uniform(1, 2, 3)', ''),
+        ('random.uniform()', ''),
         ('1.0 / "5.0"', ', so leave out the quotes around a number, or convert a text to one wi'),
         ('1 + "5"', ''),
         (

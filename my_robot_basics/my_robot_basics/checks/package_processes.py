@@ -10,10 +10,10 @@ from typing import Any, NoReturn, Self
 
 from my_robot_basics.checks import polite_end, spinning
 from my_robot_basics.checks.doubts import doubt_after
-from my_robot_basics.checks.package_words import has_ended, how, last_words, text_in, why_crashed
+from my_robot_basics.checks.package_words import has_ended, how, last_words, text_in
 from my_robot_basics.checks.services import answers_parameters
 from my_robot_basics.exchange import student
-from my_robot_basics.exchange.endings import is_clean
+from my_robot_basics.exchange.endings import is_clean, why_crashed
 from my_robot_basics.feedback.errors import Starved, expect, fail, shorten
 from my_robot_basics.feedback.hidden import theirs
 from my_robot_basics.graph import graphs

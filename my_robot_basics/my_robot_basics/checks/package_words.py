@@ -1,6 +1,5 @@
 """What the student's room says of a program, as a part of a sentence."""
 
-import signal
 from collections.abc import Mapping
 from typing import Any
 
@@ -21,16 +20,6 @@ def how(code: int | None) -> str:
     if code is None:
         return 'it runs'
     return f'exit code {code}' if code >= 0 else f'ended by {signal_name(-code)}'
-
-
-def why_crashed(code: int | None) -> str:
-    """What a program that Linux has ended for a wrong access to memory may have done; or ''."""
-    if code != -signal.SIGSEGV:
-        return ''
-    return (
-        'rclpy crashes so where an ActionClient or ActionServer gets a type that is no action, so '
-        'look at each, and give it one such as MoveArm, and no part of it'
-    )
 
 
 def has_ended(code: int | None, said: str) -> str:

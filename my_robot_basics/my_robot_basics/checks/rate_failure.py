@@ -24,7 +24,8 @@ def fail_rate(recording: 'Recording', hz: float) -> NoReturn:
     seen, cause, hint = _explanation(recording, hz, over)
     picture = pictures.arrivals(recording, hz=hz)
     doubt = Starved if starved.may_be(recording, hz) else CheckFailed
-    fail(expected=_hz(hz), seen=seen, hint=hint, cause=cause, picture=picture, doubt=doubt)
+    expected = f'{_rounded(hz)} Hz on {recording.topic_name}'
+    fail(expected=expected, seen=seen, hint=hint, cause=cause, picture=picture, doubt=doubt)
 
 
 def _explanation(recording: 'Recording', hz: float, over: str) -> tuple[str, str, str]:
@@ -89,5 +90,9 @@ def _measured_hz(recording: 'Recording', hz: float) -> float:
 
 
 def _hz(rate_hz: float) -> str:
+    return f'{_rounded(rate_hz)} Hz'
+
+
+def _rounded(rate_hz: float) -> str:
     rounded = round(rate_hz, 2)
-    return f'{rounded:.1f} Hz' if rounded == round(rounded, 1) else f'{rounded:.2f} Hz'
+    return f'{rounded:.1f}' if rounded == round(rounded, 1) else f'{rounded:.2f}'

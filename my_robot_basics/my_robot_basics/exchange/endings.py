@@ -29,6 +29,16 @@ def error_in(lines: Sequence[str]) -> str:
     return next(errors, 'a traceback')
 
 
+def why_crashed(code: int | None) -> str:
+    """What a program that Linux has ended for a wrong access to memory may have done; or ''."""
+    if code != -signal.SIGSEGV:
+        return ''
+    return (
+        'rclpy crashes so where an ActionClient or ActionServer gets a type that is no action, so '
+        'look at each, and give it one such as MoveArm, and no part of it'
+    )
+
+
 def signal_name(number: int) -> str:
     """What a signal is called: SIGINT, say."""
     try:

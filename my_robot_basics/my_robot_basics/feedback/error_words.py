@@ -134,7 +134,7 @@ BY_WORDS = (
         to_do=', so go through the list: for each in the_list',
     ),
     Case(
-        pattern=r'\w\.\w+\(\) missing \d+ required positional argument',
+        pattern=r'(?<=\w)(?<!\bRandom)\.\w+\(\) missing \d+ required positional argument',
         to_do=', so give a callback by its name, without parentheses',
     ),
     Case(

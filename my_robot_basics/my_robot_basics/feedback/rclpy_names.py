@@ -12,6 +12,6 @@ OWN_METHODS = (
 """Those of its methods that a student may define by chance."""
 CLASSES = (
     'Node|Publisher|Client|Service|Subscription|Timer|Clock|Time|Duration|Future|RcutilsLogger'
-    '|Parameter|Action(?:Client|Server)|(?:Client|Server)GoalHandle'
+    '|Parameter|Action(?:Client|Server)|(?:Client|Server)GoalHandle|Random'
 )
-"""Classes whose methods no student has written."""
+"""Classes whose methods no student has written; `random.uniform` is one of Random's."""

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from my_robot_basics.exchange.endings import error_in, is_clean
+from my_robot_basics.exchange.endings import error_in, is_clean, signal_name, why_crashed
 from my_robot_basics.live import notebook
 from my_robot_basics.live.package_build import executables_of, prefix_of
 from my_robot_basics.live.panel import Panel, PanelEntry
@@ -90,11 +90,12 @@ def stop_started(*, package: str = '', name: str = '', by_notebook_alone: bool =
 def how_it_ended(each: Executable, took: signal.Signals | None) -> str:
     """Say how one has ended, and whether that is how a node should."""
     code, last = each.process.code, error_in([*each.process.lines])
+    why = why_crashed(code)
     if took is None:
         if code == 0:
             return 'had ended by itself (exit code 0)'
-        if last:
-            return f'had ended by itself ({_how(code)}): {last}'
+        if last or why:
+            return f'had ended by itself ({_how(code)}): {why or last}'
         return f'had ended by itself ({_how(code)})'
     if took is signal.SIGINT and is_clean(code, [*each.process.lines]):
         return 'ended cleanly after SIGINT'  # not its code: see RACE in endings.py
@@ -154,5 +155,5 @@ def _first(name: str, folder: Path) -> str:
 
 def _how(code: int | None) -> str:
     if code is not None and code < 0:
-        return f'by {signal.Signals(-code).name}'
+        return f'by {signal_name(-code)}'
     return f'exit code {code}'
