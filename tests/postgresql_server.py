@@ -3,17 +3,25 @@
 Its programs are those of Debian's package postgresql.
 """
 
+import itertools
 import os
 import pwd
 import shutil
 import socket
 import subprocess
+import sys
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import psycopg
 import pytest
+from course_maker import released_course
 from psycopg import sql
+
+from grader.course import Course
+from grader.storage.database import transaction
 
 PASSWORD = 'a-Pass_w0rd-that-no-line-may-have'
 USER = 'grader'
@@ -35,6 +43,7 @@ class Server:
     def __init__(self) -> None:
         """Make a cluster in a folder of its own, and start it."""
         self.programs = programs()
+        self.numbers = itertools.count()
         self.folder = Path(tempfile.mkdtemp(prefix='postgresql-', dir='/tmp'))
         self.who = {}
         if os.geteuid() == 0:  # the server refuses to run as root
@@ -102,6 +111,10 @@ class Server:
             autocommit=True,
         )
 
+    def fresh(self) -> str:
+        """Make an empty database that has no other test's name; return its address."""
+        return self.make(f'course_{next(self.numbers)}')
+
     def make(self, database: str, owner: str = USER, encoding: str = 'UTF8') -> str:
         """Make a database; return its address, with the password."""
         with self.administrator() as connection:
@@ -114,6 +127,41 @@ class Server:
 
     def address(self, database: str, password: str = PASSWORD) -> str:
         return f'postgresql://{USER}:{password}@127.0.0.1:{self.port}/{database}'
+
+
+@contextmanager
+def running() -> Iterator[Server]:
+    """Give a server, which is gone at the end."""
+    server = Server()
+    try:
+        yield server
+    finally:
+        server.end()
+
+
+def released_in(server: Server, root: Path) -> Course:
+    """Return a course with one released lesson, whose gradebook is in PostgreSQL and empty."""
+    course = released_course(root)
+    course.database.unlink()
+    use(course.gradebook, server.fresh())
+    return course
+
+
+def students_in(course: Course) -> list[str]:
+    """Return the students that the database knows, sorted."""
+    with transaction(course.db_url) as book:
+        return sorted(student.id for student in book.students)
+
+
+def nbgrader(course: Course, *arguments: str) -> subprocess.CompletedProcess:
+    """Run a command of nbgrader's own in the course's folder."""
+    return subprocess.run(
+        [sys.executable, '-P', '-m', 'nbgrader', *arguments],
+        cwd=course.root,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
 
 
 def use(gradebook: Path, url: str) -> None:
