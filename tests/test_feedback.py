@@ -1,5 +1,6 @@
 import base64
 import re
+import shutil
 import time
 from html import unescape
 
@@ -15,6 +16,7 @@ from grader.notebook.submission import read_submission
 from grader.report import feedback as module
 from grader.report import page_parts
 from grader.report.feedback import write_feedback
+from grader.storage.database import connected
 from grader.storage.gradebook import store
 from grader.storage.pipeline import prepare, prepared_template, unanswered
 from grader.storage.registering import register
@@ -255,6 +257,23 @@ def test_a_page_that_can_t_be_made_at_all_costs_no_other(course, monkeypatch):
     assert f'{TOY} of eve has no page of feedback: it takes too much\\x1b[2J memory' in said
     assert {page.parts[-3] for page in pages} >= {'zoe'}
     assert 'eve' not in {page.parts[-3] for page in pages}
+
+
+def test_who_is_in_the_database_no_longer_has_no_page_and_costs_no_other(course):
+    feedback(course, 'leaves', answered(course, RIGHT))
+    with connected(course.db_url) as book:
+        book.remove_student('leaves')
+    said = []
+    pages = write_feedback(course, say=said.append)
+    assert pages
+    assert course.folder('feedback', 'leaves', TOY) / f'{TOY}.html' not in pages
+    folder = course.folder('autograded', 'leaves', TOY)
+    assert said == [
+        f'{TOY} of leaves has no page of feedback: the database has no scores of it. ./course '
+        'grade --student leaves grades it again; if it is not to count any more, remove '
+        f'{folder}'
+    ]
+    shutil.rmtree(folder)
 
 
 def test_what_nbgrader_needs_to_release_a_page_lies_beside_it(course):

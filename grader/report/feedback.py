@@ -7,7 +7,6 @@ from pathlib import Path
 
 from nbconvert.exporters import Exporter
 from nbformat import NotebookNode
-from nbgrader.preprocessors import ClearHiddenTests, GetGrades
 from traitlets.config import Config
 
 from grader.common.errors import DamagedResult
@@ -16,64 +15,18 @@ from grader.common.futures import run_ahead
 from grader.common.parsing import AT_ONCE, Limits, ParsingFailed, call_off, parse
 from grader.common.text import printable
 from grader.course import Course
-from grader.notebook.restore import KEY, grade_id
 from grader.notebook.submission import SECRET, TIMESTAMP
-from grader.storage.database import connected, has_database, one_engine
+from grader.storage.database import has_database, one_engine
 from grader.storage.gradebook import recover
-from grader.storage.held_scores import held_score
 from grader.storage.lateness import recount_late_penalties
 from grader.storage.pipeline import resources_of
 from grader.storage.records import graded_notebook
-from grader.storage.submission_rows import SubmissionRows
 
 ABOUT = ('student', 'assignment', 'score', 'max_score', 'late_penalty')
 LIMITS = Limits(cpu_sec=10)
 """An ordinary page takes a tenth of a second of processor time."""
-FEEDBACK_PASSES = ('grader.report.feedback.GatherVerdicts',)
+FEEDBACK_PASSES = ('grader.report.gather_verdicts.GatherVerdicts',)
 """What nbgrader does with a graded notebook before it shows it."""
-
-
-class GatherVerdicts(GetGrades):
-    """Put scores and comments into the notebook, and take hidden tests and tracebacks out."""
-
-    def preprocess(self, nb: NotebookNode, resources: dict) -> tuple[NotebookNode, dict]:
-        """Do as nbgrader does, which asks the database for each cell."""
-        at = resources['nbgrader']
-        self.notebook_id, self.assignment_id = at['notebook'], at['assignment']
-        self.student_id = at['student']
-        whose = self.student_id, self.assignment_id
-        with connected(at['db_url']) as book:
-            submission = book.find_submission(self.assignment_id, self.student_id)
-            self.gradebook = SubmissionRows(book, submission, self.notebook_id)
-            for index, cell in enumerate(nb.cells):
-                self.preprocess_cell(cell, resources, index)
-            held = held_score(book, *whose)
-        assert held is not None  # it was found above
-        if held.late:
-            self.log.info('Late submission penalty: %s', held.late)
-        at |= {'score': held.score, 'max_score': held.max_score, 'late_penalty': held.late}
-        return nb, resources
-
-    def preprocess_cell(
-        self, cell: NotebookNode, resources: dict, index: int
-    ) -> tuple[NotebookNode, dict]:
-        """Make one cell ready to be shown."""
-        cell, resources = super().preprocess_cell(cell, resources, index)
-        if cell.metadata.get('nbgrader', {}).get('grade') and cell.cell_type == 'code':
-            cell, resources = ClearHiddenTests().preprocess_cell(cell, resources, index)
-            for output in cell.outputs:
-                if output.output_type == 'error':
-                    output.traceback = [output.evalue]
-        return cell, resources
-
-    def _get_score(self, cell: NotebookNode, resources: dict) -> None:
-        super()._get_score(cell, resources)
-        grade = self.gradebook.find_grade(
-            grade_id(cell), self.notebook_id, self.assignment_id, self.student_id
-        )
-        verdict = cell.metadata.setdefault(KEY, NotebookNode())
-        verdict.by_hand = grade.manual_score is not None
-        verdict.waits = grade.auto_score is None and not verdict.by_hand
 
 
 class FeedbackPage(Exporter):

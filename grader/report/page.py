@@ -33,7 +33,7 @@ _ENTITY = re.compile(r'&(#\d+|#x[0-9a-f]+|\w+);?', re.IGNORECASE)
 def page(as_json: dict, about: dict, plain: str = '') -> str:
     """Return the page; `about` is nbgrader's: student, assignment, score, max_score, late_penalty.
 
-    Grade cells hold what students may see, and scores: see feedback.GatherVerdicts. `plain` says
+    Grade cells hold what students may see, and scores: see gather_verdicts.py. `plain` says
     why text and code are shown as they were typed. All of it is JSON.
     """
     notebook = nbformat.from_dict(as_json)

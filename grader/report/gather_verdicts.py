@@ -1,0 +1,70 @@
+"""The pass that brings the gradebook's scores and comments into a graded notebook."""
+
+from nbformat import NotebookNode
+from nbgrader.api import MissingEntry
+from nbgrader.preprocessors import ClearHiddenTests, GetGrades
+
+from grader.common.errors import DamagedResult
+from grader.course import Course
+from grader.notebook.restore import KEY, grade_id
+from grader.storage.database import connected
+from grader.storage.held_scores import held_score
+from grader.storage.submission_rows import SubmissionRows
+
+
+class GatherVerdicts(GetGrades):
+    """Put scores and comments into the notebook, and take hidden tests and tracebacks out."""
+
+    def preprocess(self, nb: NotebookNode, resources: dict) -> tuple[NotebookNode, dict]:
+        """Do as nbgrader does, which asks the database for each cell.
+
+        Raises DamagedResult where the database holds nothing of the submission.
+        """
+        at = resources['nbgrader']
+        self.notebook_id, self.assignment_id = at['notebook'], at['assignment']
+        self.student_id = at['student']
+        whose = self.student_id, self.assignment_id
+        with connected(at['db_url']) as book:
+            try:
+                submission = book.find_submission(self.assignment_id, self.student_id)
+            except MissingEntry:
+                raise DamagedResult(_unknown(*whose, resources)) from None
+            self.gradebook = SubmissionRows(book, submission, self.notebook_id)
+            for index, cell in enumerate(nb.cells):
+                self.preprocess_cell(cell, resources, index)
+            held = held_score(book, *whose)
+        assert held is not None  # it was found above
+        if held.late:
+            self.log.info('Late submission penalty: %s', held.late)
+        at |= {'score': held.score, 'max_score': held.max_score, 'late_penalty': held.late}
+        return nb, resources
+
+    def preprocess_cell(
+        self, cell: NotebookNode, resources: dict, index: int
+    ) -> tuple[NotebookNode, dict]:
+        """Make one cell ready to be shown."""
+        cell, resources = super().preprocess_cell(cell, resources, index)
+        if cell.metadata.get('nbgrader', {}).get('grade') and cell.cell_type == 'code':
+            cell, resources = ClearHiddenTests().preprocess_cell(cell, resources, index)
+            for output in cell.outputs:
+                if output.output_type == 'error':
+                    output.traceback = [output.evalue]
+        return cell, resources
+
+    def _get_score(self, cell: NotebookNode, resources: dict) -> None:
+        super()._get_score(cell, resources)
+        grade = self.gradebook.find_grade(
+            grade_id(cell), self.notebook_id, self.assignment_id, self.student_id
+        )
+        verdict = cell.metadata.setdefault(KEY, NotebookNode())
+        verdict.by_hand = grade.manual_score is not None
+        verdict.waits = grade.auto_score is None and not verdict.by_hand
+
+
+def _unknown(student: str, assignment: str, resources: dict) -> str:
+    """Say what to do about a graded notebook whose scores are not there, or no longer."""
+    folder = Course.of_nbgrader(resources).folder('autograded', student, assignment)
+    return (
+        f'the database has no scores of it. ./course grade --student {student} grades it again; '
+        f'if it is not to count any more, remove {folder}'
+    )
