@@ -11,6 +11,7 @@ import pytest
 import serving_desk
 from course_maker import TOY, answered, with_own_database
 from serving_desk import RIGHT, arrivals, put_there, serve_here
+from sqlalchemy.exc import DataError, OperationalError
 
 from grader.collect.archive_entries import MAX_PARTS
 from grader.common.errors import GradebookError
@@ -248,6 +249,29 @@ def test_whatever_goes_wrong_later_costs_only_one(
     assert all(line == printable(line) for line in said)
     assert 'Traceback' in caplog.text
     assert serve_here(course, inbound) == []
+
+
+@pytest.mark.parametrize('error', [DataError, OperationalError])
+def test_what_the_database_can_not_do_for_anybody_is_nobody_s_fault(
+    course, inbound, at_once, monkeypatch, error
+):
+    """Those who hand in again have their former score kept: their work waits for the database."""
+    put_there(course, inbound, 'zoe')
+
+    def fails(*_):
+        raise error('SELECT 1', {}, Exception('the server is gone'))
+
+    with monkeypatch.context() as patch:
+        patch.setattr(desk_module, 'put_in_place', fails)
+        if error is OperationalError:
+            with pytest.raises(OperationalError):
+                serve_here(course, inbound)
+        else:
+            serve_here(course, inbound)
+    said = serve_here(course, inbound)
+    states = [each.state for each in arrivals(course)]
+    assert states == [GRADED if error is OperationalError else REFUSED]
+    assert bool(said) == (error is OperationalError)
 
 
 def test_what_is_yet_to_be_kept_is_kept_by_the_next_process(course, inbound, at_once, monkeypatch):

@@ -3,6 +3,8 @@
 import logging
 import sqlite3
 
+from sqlalchemy.exc import DataError, DBAPIError, IntegrityError
+
 from grader.common.errors import (
     MACHINE_FULL,
     CourseError,
@@ -19,6 +21,8 @@ def meets_all(error: Exception) -> bool:
     """Whether the next one would meet it, too: of the disk, the gradebook or the course."""
     if isinstance(error, OSError):
         return error.errno in MACHINE_FULL
+    if isinstance(error, DBAPIError):  # what SQLite or PostgreSQL says, as SQLAlchemy tells it
+        return not isinstance(error, DataError | IntegrityError)
     return isinstance(error, CourseError | sqlite3.Error) and not isinstance(error, _OF_ONE)
 
 
