@@ -56,6 +56,13 @@ def with_own_database(released: Course, folder: Path) -> Course:
     return Course(root=released.root, gradebook=gradebook)
 
 
+def add_lesson(course: Course, name: str) -> None:
+    """Make one more lesson of the same cells, which the gradebook knows and nobody has got."""
+    shutil.copytree(course.source_path(TOY).parent, course.root / 'solutions' / name)
+    (course.root / 'solutions' / name / f'{TOY}.ipynb').rename(course.source_path(name))
+    register(course, name)
+
+
 def write_source(course: Course, lesson: NotebookNode) -> None:
     path = course.source_path(TOY)
     path.parent.mkdir(parents=True, exist_ok=True)

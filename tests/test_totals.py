@@ -1,9 +1,12 @@
 import csv
+import shutil
 
 import pytest
-from course_maker import TOY, answered, executed, released_course, submit
+from course_maker import TOY, add_lesson, answered, executed, released_course, submit
+from stored_grades import grade
 
 from grader.__main__ import main
+from grader.export.scores import write_scores
 from grader.export.totals import add_up, as_csv, write_totals
 from grader.notebook.restore import restore
 from grader.notebook.submission import read_submission
@@ -72,3 +75,26 @@ def test_the_totals_are_those_of_the_gradebook(course, capsys):
 
 def test_a_gradebook_without_students_gives_an_empty_table(course):
     assert len(write_totals(course).read_text(encoding='utf-8-sig').splitlines()) == 1
+
+
+def heads_of(course):
+    assert main(['scores', '--totals'], course=course) == 0
+    path = course.gradebook / 'totals.csv'
+    return next(csv.reader(path.read_text(encoding='utf-8-sig').splitlines()))[1:-1]
+
+
+def test_a_lesson_that_is_withdrawn_counts_only_where_somebody_has_a_score(course, capsys):
+    grade(course, 'ada', {})
+    add_lesson(course, '01_more')
+    assert heads_of(course) == [f'{TOY} (of 5)', '01_more (of 5)', 'total (of 10)']
+    shutil.rmtree(course.root / 'solutions' / '01_more')
+    assert heads_of(course) == [f'{TOY} (of 5)', 'total (of 5)']
+    assert '01_more' not in write_scores(course).read_text(encoding='utf-8')
+    assert 'no longer' not in capsys.readouterr().err
+    add_lesson(course, '01_more')
+    shutil.rmtree(course.root / 'solutions' / TOY)
+    assert heads_of(course) == [f'{TOY} (of 5)', '01_more (of 5)', 'total (of 10)']
+    assert capsys.readouterr().err == (
+        f'{TOY} is in solutions/ no longer, and its 1 scores still count. To delete them: '
+        f'.venv/bin/nbgrader db assignment remove {TOY} --force\n'
+    )

@@ -11,7 +11,8 @@ from grader.course import Course
 from grader.export.scores import write_scores
 from grader.export.totals import write_totals
 from grader.passback.write import write_feedback_archives, write_platform_scores
-from grader.storage.database import has_database, wait_until_free
+from grader.storage.database import connected, has_database, wait_until_free
+from grader.storage.registering import withdrawn
 
 
 def run_scores(course: Course, asked: argparse.Namespace) -> int:
@@ -32,6 +33,7 @@ def run_scores(course: Course, asked: argparse.Namespace) -> int:
         _print_paths(paths)
     else:
         print(write_totals(course) if asked.totals else write_scores(course))
+        _say_what_is_withdrawn(course)
     _say_what_comes_first(course)
     return 0
 
@@ -58,6 +60,19 @@ def run_feedback(course: Course, asked: argparse.Namespace) -> int:
         _print_paths(write_feedback_archives(course, _say_line))
     _say_what_comes_first(course)
     return 0
+
+
+def _say_what_is_withdrawn(course: Course) -> None:
+    """Name lessons that solutions/ has no longer, and whose scores count all the same."""
+    with connected(course.db_url) as book:
+        found = withdrawn(course, book)
+    for name, number in sorted(found.items()):
+        if number:
+            print(
+                f'{name} is in solutions/ no longer, and its {number} scores still count. To '
+                f'delete them: .venv/bin/nbgrader db assignment remove {name} --force',
+                file=sys.stderr,
+            )
 
 
 def _print_paths(paths: Sequence[Path]) -> None:

@@ -27,6 +27,7 @@ from grader.notebook.restore import KEY, grade_id
 from grader.storage.database import connected
 from grader.storage.gradebook import opened, waits_for_a_person
 from grader.storage.lesson_checksums import checksums
+from grader.storage.registering import withdrawn
 
 MOST_ASKED = 500
 """Of so many students a database is asked at once; all of them have a limit."""
@@ -52,7 +53,8 @@ class CellScore:
 def records(course: Course, *, only: Collection[tuple[str, str]] | None = None) -> list[CellScore]:
     """Return all graded cells of all students, in a stable order; registers what is new.
 
-    `only` asks for some submissions that were graded, as pairs of student and assignment.
+    A lesson that solutions/ has no longer is left out, unless somebody has a score for it. `only`
+    asks for some submissions that were graded, as pairs of student and assignment.
     """
     with opened(course) if only is None else connected(course.db_url) as book:
         cells_of = _cells_of(course, book, only)
@@ -73,16 +75,18 @@ def _cells_of(
     course: Course, book: Gradebook, only: Collection[tuple[str, str]] | None
 ) -> dict[str, list[GradeCell]]:
     """Return the graded cells of each assignment that is asked for, in the lesson's order."""
-    names = sorted(name for [name] in book.db.execute(select(Assignment.name)))
-    if only is not None:
-        names = sorted({assignment for _, assignment in only}.intersection(names))
+    names = {name for [name] in book.db.execute(select(Assignment.name))}
+    if only is None:
+        names -= {name for name, number in withdrawn(course, book).items() if not number}
+    else:
+        names &= {assignment for _, assignment in only}
     asked = (
         select(Assignment.name, GradeCell)
         .join(Notebook, GradeCell.notebook_id == Notebook.id)
         .join(Assignment, Notebook.assignment_id == Assignment.id)
-        .where(Assignment.name.in_(names))
+        .where(Assignment.name.in_(sorted(names)))
     )
-    found: dict[str, list[GradeCell]] = {name: [] for name in names}
+    found: dict[str, list[GradeCell]] = {name: [] for name in sorted(names)}
     for name, cell in book.db.execute(asked):
         found[name].append(cell)
     return {name: sorted(cells, key=_place_in(course, name)) for name, cells in found.items()}

@@ -1,7 +1,14 @@
 """Tell nbgrader's database what an assignment consists of."""
 
-from nbgrader.api import Assignment, Gradebook, MissingEntry, Notebook, SourceCell
-from sqlalchemy import select
+from nbgrader.api import (
+    Assignment,
+    Gradebook,
+    MissingEntry,
+    Notebook,
+    SourceCell,
+    SubmittedAssignment,
+)
+from sqlalchemy import func, select
 
 from grader.common.errors import CourseError
 from grader.course import Course
@@ -57,6 +64,20 @@ def register_all(course: Course) -> None:
     for assignment, cells in wanted.items():
         if known.get(assignment) != cells:
             register(course, assignment)
+
+
+def withdrawn(course: Course, book: Gradebook) -> dict[str, int]:
+    """Return what solutions/ has no longer and the database still knows, by name.
+
+    With how many submissions of it are graded.
+    """
+    asked = (
+        select(Assignment.name, func.count(SubmittedAssignment.id))
+        .outerjoin(SubmittedAssignment, SubmittedAssignment.assignment_id == Assignment.id)
+        .group_by(Assignment.name)
+    )
+    known = course.assignments()
+    return {name: number for name, number in book.db.execute(asked) if name not in known}
 
 
 def _checksums_in(book: Gradebook, assignment: str) -> dict[str, str] | None:
