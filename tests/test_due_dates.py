@@ -1,6 +1,6 @@
 import os
 import time
-from datetime import datetime, timedelta, timezone
+from datetime import UTC, datetime, timedelta, timezone
 
 import pytest
 from course_maker import TOY, make_course
@@ -36,6 +36,21 @@ def due(course, *arguments):
 def test_a_date_is_its_end_and_a_time_without_a_zone_is_ours(course, text, hour, offset_hours):
     zone = timezone(timedelta(hours=offset_hours))
     assert local_time(text) == datetime(2026, 11, 30, *hour, tzinfo=zone)
+
+
+@pytest.mark.parametrize(
+    ('text', 'utc'),
+    [
+        ('2026-03-29 02:30', (3, 29, 1, 30)),  # no clock shows it: 02:30 CET is 03:30 CEST
+        ('2026-10-25 02:30', (10, 25, 1, 30)),  # it comes twice
+        ('2026-10-25 02:30+02:00', (10, 25, 0, 30)),
+        ('2026-10-25', (10, 25, 22, 59)),
+    ],
+)
+def test_a_time_in_the_night_of_summer_time_is_the_later_of_two(course, monkeypatch, text, utc):
+    monkeypatch.setenv('TZ', 'Europe/Berlin')
+    time.tzset()
+    assert local_time(text) == datetime(2026, *utc, tzinfo=UTC)
 
 
 def test_a_due_date_an_extension_and_their_end(course, capsys):
