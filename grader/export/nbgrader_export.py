@@ -1,5 +1,6 @@
 """What `nbgrader export` writes here: nbgrader's own columns, with what counts today."""
 
+from datetime import datetime
 from pathlib import Path
 
 from nbgrader.api import Assignment, Gradebook, MissingEntry, Student
@@ -46,9 +47,9 @@ class CsvExport(ExportPlugin):
         students = {str(each) for each in self.student}
         rows = [
             _row(gradebook, assignment, student)
-            for assignment in gradebook.assignments
+            for assignment in sorted(gradebook.assignments, key=_when_due)
             if not assignments or assignment.name in assignments
-            for student in gradebook.students
+            for student in sorted(gradebook.students, key=_named)
             if not students or student.id in students
         ]
         # programs read this one, and know its first column by nbgrader's name for it
@@ -72,6 +73,19 @@ class CsvExport(ExportPlugin):
         # another database, such as a backup of it, is shown as it is
         if directories.db_url.split('?')[0] == course.db_url.split('?')[0]:
             recount_late_penalties(course)
+
+
+def _when_due(assignment: Assignment) -> tuple[bool, datetime, str]:
+    """Return a sort key: nbgrader's order in SQLite, where what has no date comes first.
+
+    PostgreSQL puts that last, compares names by its locale, and keeps no order of equal ones.
+    """
+    due = assignment.duedate
+    return due is not None, due or datetime.min, assignment.name
+
+
+def _named(student: Student) -> tuple[str, str, str]:
+    return student.last_name or '', student.first_name or '', student.id
 
 
 def _row(gradebook: Gradebook, assignment: Assignment, student: Student) -> list[object]:
