@@ -22,6 +22,7 @@ from grader.common.errors import GradebookError
 from grader.course import Course
 from grader.storage import failures
 from grader.storage.database import in_sentences, wait_until_free
+from grader.storage.postgresql import make_tables
 from grader.storage.records import records
 from grader.storage.registering import register
 
@@ -203,6 +204,13 @@ def not_its_owner(server, course):
     use(course.gradebook, server.make(f'theirs_{os.getpid()}', owner='administrator'))
 
 
+def tables_of_another(server, course):
+    name = f'tables_{os.getpid()}'
+    url = server.make(name).replace(f'{USER}:', 'administrator:')
+    make_tables(url.replace('postgresql:', 'postgresql+psycopg:'))
+    use(course.gradebook, server.address(name))
+
+
 def another_encoding(server, course):
     use(course.gradebook, server.make(f'latin_{os.getpid()}', encoding='LATIN1'))
 
@@ -224,6 +232,7 @@ def limit_connections(server, most):
         (wrong_password, 'refuses the login (password authentication failed'),
         (no_database, 'does not exist on that server. Make one'),
         (not_its_owner, 'OWNER TO USER'),
+        (tables_of_another, 'and its tables (docs/postgresql.md, Rights)'),
         (another_encoding, 'has the encoding LATIN1'),
     ],
 )

@@ -51,7 +51,8 @@ _FAULTS = (
         ('42501', '25006'),
         'permission denied',
         '{where} refuses to be written to ({cause}). Let its user own it, as the administrator: '
-        'ALTER DATABASE "{name}" OWNER TO USER; ' + AGAIN,
+        'ALTER DATABASE "{name}" OWNER TO USER, and its tables (docs/postgresql.md, Rights); '
+        + AGAIN,
     ),
     _Fault(
         ('53100', '53200'),
@@ -172,7 +173,10 @@ def _connection(db_url: str) -> Iterator[Connection]:
 
 
 def _has_tables(connection: Connection) -> bool:
-    return connection.execute(text("SELECT to_regclass('alembic_version')")).scalar() is not None
+    there = connection.execute(text("SELECT to_regclass('alembic_version')")).scalar() is not None
+    if there:  # those of another user can not be used
+        connection.execute(text('SELECT 1 FROM alembic_version'))
+    return there
 
 
 def _fault_of(error: DBAPIError) -> _Fault | None:
