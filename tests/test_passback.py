@@ -212,6 +212,15 @@ def test_two_rows_of_one_name_or_two_students_of_one_row_are_left_to_a_person(
             ['Student,ID,Section,03_publisher (7)', 'Points Possible,,,10', 'Ada,18151,,'],
             '03_publisher (7) gives 10 points in Canvas and 5 here',
         ),
+        (
+            'canvas',  # saved by a spreadsheet with commas in numbers
+            [
+                'Student;ID;Section;03_publisher (7)',
+                'Points Possible;;;10,00',
+                'Ada;18151;;',
+            ],
+            '03_publisher (7) gives 10 points in Canvas and 5 here',
+        ),
     ],
 )
 def test_a_roster_that_does_not_fit_is_refused_in_a_sentence(

@@ -78,7 +78,7 @@ def _check_points(column: str, scores: AssignmentScores, roster: Roster) -> None
     given = [row.get(column, '') for row in roster.rows if POINTS in row[STUDENT]]
     for text in given:
         try:
-            most = float(text)
+            most = float(text.replace(',', '.'))
         except ValueError:  # no number, as for a column that is new
             continue
         for each in scores.final[:1]:
