@@ -24,6 +24,20 @@ def test_an_angle_that_grows_and_grows_is_told_from_degrees(angle, seen):
         made.assert_positions_rad(low=LOW, high=HIGH)
 
 
+def test_a_border_is_taken_as_it_is_often_written():
+    right_angle = math.pi / 2
+    for angle in right_angle, 1.5708, 1.571, -1.571:
+        made = recording(
+            message=lambda time_sec, at=angle: joint_state(time_sec, position=[at, 0])
+        )
+        made.assert_positions_rad(low=LOW, high=HIGH)
+    beyond = recording(message=lambda time_sec: joint_state(time_sec, position=[1.58, 0]))
+    with pytest.raises(
+        CheckFailed, match=r'\(-1.571 to 1.571, .*saw \(1.58, 0\): keep each joint'
+    ):
+        beyond.assert_positions_rad(low=LOW, high=HIGH)
+
+
 def swapped(time_sec):
     return joint_state(time_sec, name=['joint2', 'joint1'], position=[2.0, 1.5])
 
@@ -45,6 +59,7 @@ MESSAGES = {
     'degrees': ({'position': [23.4, -67.8]}, r'saw \(23.4, -67.8\), which looks like degrees'),
     'more than degrees': ({'position': [1340.7, -3884.7]}, r'too large .*: call radians\(\)'),
     'out of range': ({'position': [0.1, 200.0]}, 'keep each joint within its range'),
+    'a whole turn in radians': ({'position': [4.5, 6.2]}, 'keep each joint within its range'),
     'not a number': ({'position': [math.nan, 0.0]}, r'saw \(nan, 0\)'),
     'no position': ({'position': []}, 'expected 2 positions in each message, saw 0'),
     'three positions': ({'position': [0.0] * 3}, 'saw 3'),

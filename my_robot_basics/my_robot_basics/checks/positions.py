@@ -8,7 +8,8 @@ from typing import Any
 from my_robot_basics.checks import pictures
 from my_robot_basics.feedback.errors import expect, fail
 
-ANGLE_SLACK_RAD = 1e-6
+ANGLE_SLACK_RAD = 1e-3
+"""π / 2 is often written as 1.571, as it is shown here, too."""
 WHOLE_TURN_DEG = 360.0
 FEWEST_STEPS = 8
 """So many in a row that go the same way are no chance."""
@@ -42,7 +43,7 @@ def _fail_position(
     of_degrees = [[math.degrees(bound) for bound in bounds] for bounds in degrees]
     shown = ', '.join(f'{angle:.4g}' for angle in pose)
     picture = None
-    # half a turn is the most that an angle in radians is likely to be, and a whole one in degrees
+    # an angle in radians is likely to be a whole turn at most, as one in degrees is
     largest = max(abs(angle) for each in poses for angle in each)
     if _grow(poses, low, high):
         seen = f'({shown}), further out with each message'
@@ -50,7 +51,7 @@ def _fail_position(
             'turn back at the end of the range, or use math.sin; and convert with'
             ' math.radians(…) what is in degrees'
         )
-    elif largest > math.pi and all(_within(each, *degrees) for each in poses):
+    elif largest > math.tau and all(_within(each, *degrees) for each in poses):
         seen, hint = f'({shown}), which looks like degrees', 'convert with math.radians(…)'
         picture = pictures.misread(pose)
     elif largest > WHOLE_TURN_DEG and all(_within(each, *of_degrees) for each in poses):
