@@ -22,6 +22,7 @@ def test_an_angle_is_what_it_is_whole_turns_aside(number, is_near):
         ((), 'print(…) does not reach the log'),
         ([round(angle) for angle in WANTED], 'two decimals or more'),
         ([round(angle, 1) for angle in WANTED], 'two decimals or more'),
+        ([int(angle) for angle in WANTED], 'two decimals or more'),
         ([angle + 0.05 for angle in WANTED], 'close, and not right'),
         ([math.radians(angle) for angle in WANTED], 'these are radians'),
         ([round(math.radians(angle), 2) for angle in WANTED], 'these are radians'),

@@ -285,3 +285,55 @@ def test_angles_for_a_target_out_of_reach_are_a_failure():
         ask(log, Point(x=3.0, y=3.0))
         with pytest.raises(CheckFailed, match=r'expected no angles from .* return from'):
             log.expect_warning(no_angles=[45.0])
+
+
+class SkipsEqual(IKSolver):
+    last = None
+
+    def solve(self, point):
+        if point != self.last:
+            super().solve(point)
+        self.last = point
+
+
+@pytest.mark.slow
+def test_a_target_that_is_equal_to_the_one_before_is_one_more_target():
+    live.run(SkipsEqual)
+    try:
+        with rosout('ik_solver_node') as log:
+            ask(log, TARGET)
+            log.expect_angles(ANGLES)
+            ask(log, TARGET)
+            with pytest.raises(CheckFailed, match='also one that is equal to the target before'):
+                log.expect_angles(ANGLES, free_sec=1.0)
+            ask(log, TOO_FAR)
+            log.expect_warning()
+            ask(log, TOO_FAR)
+            with pytest.raises(CheckFailed, match='also one that is equal to the target before'):
+                log.expect_warning(free_sec=1.0)
+    finally:
+        live.stop()
+
+
+class LogsInOneLine(IKSolver):
+    def solve(self, point):
+        try:
+            text, say = str(inverse_kinematics(point.x, point.y)), self.get_logger().info
+        except ValueError as error:
+            text, say = str(error), self.get_logger().warning
+        say(text)
+
+
+@pytest.mark.slow
+def test_one_line_for_two_levels_is_told_from_an_error_of_ik():
+    live.run(LogsInOneLine)
+    words = 'severity cannot be changed between calls.*, so log each level in a line of its own'
+    try:
+        with rosout('ik_solver_node') as log:
+            ask(log, TARGET)
+            log.expect_angles(ANGLES)
+            ask(log, TOO_FAR)
+            with pytest.raises(CheckFailed, match=words):
+                log.expect_warning(free_sec=1.0)
+    finally:
+        live.stop()

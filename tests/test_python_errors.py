@@ -112,6 +112,10 @@ def error_of(code, **names):
         ('rclpy.Future().result.reachable', ', so call it, with parentheses behind its name'),
         ('[].name', ', so go through the list: for each in the_list'),
         ('Asker().judge()', ', so give a callback by its name, without parentheses'),
+        (
+            'rclpy.logging.get_logger("a").info("%.2f", 1.0)',
+            ', so log a text: put the value into ',
+        ),
         ('SolveIK.Request(1.0, 2.0)', ', so write each field with its name, such as SolveIK.Req'),
         ('SolveIK.Request().x', ', so look its fields up with ros2 interface show'),
         ('Asker().describe()', ', so put the range into a list, and that into a descriptor: Para'),
@@ -167,6 +171,17 @@ def test_an_answer_that_is_not_there_yet_is_told_by_the_students_line():
     said = "AttributeError: 'NoneType' object has no attribute 'reachable' (line 15, in receive: "
     assert 'add_done_callback' in what_to_do(f'{said}if future.result().reachable:)')
     assert what_to_do(f'{said}if answer.reachable:)') == ''
+
+
+def test_a_loop_over_the_keys_of_a_dict_is_told_by_the_students_line():
+    said = 'ValueError: too many values to unpack (expected 2) (line 12, in solve: for a, b in '
+    assert what_to_do(f'{said}solutions:)') == ', so go through .items() of a dict'
+    assert what_to_do(f'{said}solutions.items():)') == ''
+
+
+def test_an_iterator_that_has_ended_is_told_by_what_a_coroutine_makes_of_it():
+    said = 'RuntimeError: coroutine raised StopIteration'
+    assert what_to_do(said) == ', so begin anew where next(…) finds no more'
 
 
 LETTERS = ', so write a name of letters from a to z, digits'

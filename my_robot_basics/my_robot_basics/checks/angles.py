@@ -6,6 +6,10 @@ from collections.abc import Sequence
 WITHIN_DEG = 0.01
 ROUNDED_DEG = 0.5
 """Angles that were rounded are no further off, in whole degrees or in hundredths of a radian."""
+DECIMALS = 'log the angles with two decimals or more'
+ONE_LATE = 'each answer is one target late: use the point that the callback is given, at once'
+EARLIER = 'these are the angles of an earlier target: use the point that the callback is given'
+AGAIN = 'answer each target, also one that is equal to the target before'
 HOW = '(print(…) does not reach the log, nor does a logger of another name)'
 
 IN_REACH = (
@@ -39,8 +43,10 @@ def what_to_try(wanted: Sequence[float], numbers: Sequence[float]) -> str:
     if not missing(wanted, numbers, ROUNDED_DEG):
         close = [n for n in numbers if any(near(a, n, ROUNDED_DEG) for a in wanted)]
         if all(number == round(number, 1) for number in close):
-            return 'log the angles with two decimals or more'
+            return DECIMALS
         return 'the angles are close, and not right: add nothing to them, and round nothing before'
+    if not missing([math.trunc(angle) for angle in wanted], numbers):
+        return DECIMALS
     if not missing(wanted, [math.degrees(number) for number in numbers], ROUNDED_DEG):
         return 'these are radians, so log them with math.degrees(…)'
     absent = missing(wanted, numbers)

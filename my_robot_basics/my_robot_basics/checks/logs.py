@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Self
 
 from my_robot_basics.checks import angles, answers, pairing
-from my_robot_basics.checks.angles import IN_REACH
+from my_robot_basics.checks.angles import HOW, IN_REACH
 from my_robot_basics.checks.node_log import NodeLog
 from my_robot_basics.feedback.errors import fail
 from my_robot_basics.graph.raised import what_stopped
@@ -16,8 +16,6 @@ WARNED_SEC = 0.1
 ANSWER_SEC, ONCE_MORE_SEC = 3.0, 1.5
 """How long to wait for the answer to a target, and to one that is sent a second time, of time that
 was free."""
-ONE_LATE = 'each answer is one target late: use the point that the callback is given, at once'
-EARLIER = 'these are the angles of an earlier target: use the point that the callback is given'
 WARN_ONLY = 'warn only when inverse_kinematics(x, y) raises ValueError'
 INFO_FOR_ANGLES = 'log angles with self.get_logger().info(…), and ' + WARN_ONLY
 
@@ -163,7 +161,7 @@ class Log(NodeLog):
         self.ask(*self._asked)
         is_late = self.wait_for_answer(is_answered, free_sec=ONCE_MORE_SEC)
         self._since_ns = since_ns
-        return ONE_LATE if is_late else ''
+        return angles.ONE_LATE if is_late else ''
 
     def _why_unanswered(self, wanted: Sequence[float]) -> str:
         why = '' if self.has('INFO') else what_stopped([self.node_name])
@@ -172,7 +170,9 @@ class Log(NodeLog):
         if unreadable := answers.why_unreadable(wanted, self.texts('INFO')):
             return unreadable
         if self._answer and not angles.missing(self._answer, self.numbers()):
-            return EARLIER
+            return angles.EARLIER
+        if self.asked_again and not self.records:
+            return angles.AGAIN
         if self.has('INFO') or not self.has('WARN'):
             return angles.what_to_try(wanted, self.numbers())
         elsewhere = not angles.missing(wanted, self.numbers('WARN'), angles.ROUNDED_DEG)
@@ -180,13 +180,13 @@ class Log(NodeLog):
 
     def _why_unwarned(self) -> str:
         why = what_stopped([self.node_name])
-        if why and 'ValueError' not in why:
+        if why and ('ValueError' not in why or 'severity' in why):
             return f'{why}; fix that first'
         if self.records:
             return 'a target out of reach needs the level WARN: self.get_logger().warning(…)'
-        return (
-            f'catch ValueError each time and log it with self.get_logger().warning(…) {angles.HOW}'
-        )
+        if self.asked_again:
+            return angles.AGAIN
+        return f'catch ValueError each time and log it with self.get_logger().warning(…) {HOW}'
 
     def _expect_no_table(self) -> None:
         count = len(set(self.numbers()))

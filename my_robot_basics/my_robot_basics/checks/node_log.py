@@ -52,6 +52,8 @@ class NodeLog:
         self._publishers: dict[str, Publisher] = {}
         self._asked: tuple[str, Any] | None = None
         """The topic and the target that was sent last."""
+        self.asked_again = False
+        """Whether that is equal to the one before."""
 
     def __enter__(self) -> Self:
         """Subscribe and wait for the node. Raises CheckFailed when it does not come."""
@@ -82,6 +84,7 @@ class NodeLog:
             publisher = Topic(topic_name).meet(self._watcher, type(message))
             self._publishers[topic_name] = publisher
         self.mark()
+        self.asked_again = self._asked == (topic_name, message)
         self._asked = topic_name, message
         self._publishers[topic_name].publish(message)
 

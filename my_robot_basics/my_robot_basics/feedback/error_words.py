@@ -67,7 +67,7 @@ BY_WORDS = (
         'a whole number',
     ),
     Case(
-        pattern=r'rclpy_logging_rcutils_log\(\): incompatible',
+        pattern=r'rclpy_logging_rcutils_log\(\): incompatible|RcutilsLogger\.\w+\(\) takes 2',
         to_do=', so log a text: put the value into an f-string',
     ),
     Case(
@@ -111,6 +111,9 @@ BY_WORDS = (
         pattern="'float' object is not iterable",
         to_do=', so write a list, in square brackets, where several numbers are wanted',
     ),
+    Case(pattern='severity cannot be changed', to_do=', so log each level in a line of its own'),
+    Case(pattern='raised StopIteration', to_do=', so begin anew where next(…) finds no more'),
+    Case(pattern=r'too many values .* in \w+:\)', to_do=', so go through .items() of a dict'),
     Case(pattern="'await' outside async function", to_do=', so begin its function with async def'),
     Case(
         pattern=r"operand type\(s\) for \S+: .*'Parameter'",
