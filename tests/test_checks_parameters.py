@@ -27,6 +27,7 @@ def look_at_the_rate():
     rate = rate_parameter('/adjustable_publisher', 'rate_hz', topic_name=TOPIC)
     rate.expect_default(5.0)
     rate.expect_follows(10.0, 2.5)
+    rate.expect_follows(8.0, beside_another=True)
 
 
 def look_at_refusals():
@@ -81,6 +82,8 @@ OF_THE_RATE = [
     (adjustable.OneBehind, 'saw 5 Hz, the value before: while add_on_set_parameters_callback '
      'decides, get_parameter still returns the old value'),
     (adjustable.Integer, 'a parameter has the type of its default value: declare it with 5.0'),
+    (adjustable.ChangesByTheFirst, 'expected 8 Hz after use_sim_time and rate_hz were set in one '
+     'step, saw 2.5 Hz as before: your callback gets a list of all'),
     (adjustable.AnotherDefault, 'expected rate_hz = 5.0, saw 1.0: declare it with its default'),
 ]  # fmt: skip
 OF_REFUSALS = [
@@ -91,6 +94,9 @@ OF_REFUSALS = [
         adjustable.Corrects,
         r'saw it was taken, and rate_hz is [\d.]+ in the end: do not correct the value',
     ),
+    (adjustable.JudgesTheFirst, 'expected use_sim_time and rate_hz = 60, set in one step, to be'),
+    (adjustable.SaysYesTooSoon, 'it was taken: your callback gets a list of all that is set in'),
+    (adjustable.KeepsTheLastWord, 'expected rate_hz = 60 and use_sim_time, set in one step, to'),
     (adjustable.RefusesTheLimits, 'the limits themselves are allowed'),
     (adjustable.DividesFirst, 'ZeroDivisionError'),
     (adjustable.LetsNaNThrough, 'expected rate_hz = nan to be refused, saw it was taken: NaN is'),
@@ -144,6 +150,9 @@ class OldTimers:
             if name == 'rate_hz' and value > 0.0 and (is_taken or self.of_any):
                 self.timers_hz.append(value)
         return results
+
+    def set_beside_another(self, name, value, *, is_first=False):
+        return self.set(name, value)[0]
 
 
 def test_timers_that_run_on_are_no_mistake_with_refusals(monkeypatch):

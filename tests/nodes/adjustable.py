@@ -186,6 +186,29 @@ class Corrects(Adjustable):
         ]
 
 
+class JudgesTheFirst(ChangesAfterwards):
+    def judge(self, parameters):
+        return super().judge(parameters[:1])
+
+
+class SaysYesTooSoon(ChangesAfterwards):
+    def judge(self, parameters):
+        for parameter in parameters:
+            return super().judge([parameter])
+
+
+class KeepsTheLastWord(ChangesAfterwards):
+    def judge(self, parameters):
+        for parameter in parameters:
+            result = super().judge([parameter])
+        return result
+
+
+class ChangesByTheFirst(ChangesAfterwards):
+    def take(self, parameters):
+        super().take(parameters[:1])
+
+
 class LetsNaNThrough(ReadsInEachTick):
     descriptor = ParameterDescriptor()
 

@@ -20,12 +20,13 @@ _IS_TEXT = "expected 'Type.STRING'"
 
 
 def expect_all_refused(
-    parameters: NodeParameters, name: str, kept_hz: float, tried: Sequence[float]
+    parameters: NodeParameters, name: str, kept_hz: float, rates_hz: Sequence[float]
 ) -> None:
     """Each of these values is refused, with a reason, and the parameter keeps its value.
 
     Raises CheckFailed.
     """
+    tried = in_its_type(parameters, name, rates_hz, kept_hz)
     results = parameters.set(name, *tried)
     value = parameters.get(name)
     is_one_of_them = any(value == each or _are_nan(value, each) for each in (kept_hz, *tried))
@@ -105,6 +106,16 @@ def _expect_refused(
         hint="tell why: SetParametersResult(successful=False, reason='…')",
         cause='a value is refused without a reason',
     )
+
+
+def in_its_type(
+    parameters: NodeParameters, name: str, rates_hz: Sequence[float], kept_hz: float = math.inf
+) -> list[float]:
+    """As integers, where the parameter is one; those above kept_hz are rounded up."""
+    if isinstance(parameters.get(name), int):
+        numbers = filter(math.isfinite, rates_hz)
+        return [math.ceil(hz) if hz > kept_hz else int(hz) for hz in numbers]
+    return [*rates_hz]
 
 
 def _are_nan(*values: object) -> bool:

@@ -5,7 +5,12 @@ from dataclasses import dataclass
 from typing import Any, NoReturn
 
 from rcl_interfaces.msg import SetParametersResult
-from rcl_interfaces.srv import GetParameters, ListParameters, SetParameters
+from rcl_interfaces.srv import (
+    GetParameters,
+    ListParameters,
+    SetParameters,
+    SetParametersAtomically,
+)
 from rclpy.client import Client
 from rclpy.parameter import Parameter, parameter_value_to_python
 
@@ -95,6 +100,24 @@ class NodeParameters:
         )
         return results
 
+    def set_beside_another(
+        self, name: str, value: Any, *, is_first: bool = False
+    ) -> SetParametersResult:
+        """Set a parameter and, in the same step, use_sim_time to what it is; what the node says.
+
+        A callback of the node gets both in one list; `is_first`: that one before use_sim_time.
+        """
+        own = Parameter(name, value=value).to_parameter_msg()
+        same = Parameter('use_sim_time', value=self.get('use_sim_time')).to_parameter_msg()
+        Request = SetParametersAtomically.Request
+        result: SetParametersResult = self._call(
+            'set_parameters_atomically',
+            SetParametersAtomically,
+            Request(parameters=[own, same] if is_first else [same, own]),
+            greeting=Request(parameters=[same]),  # of an empty list, callbacks would be called
+        ).result
+        return result
+
     def _fail_undeclared(self, name: str) -> NoReturn:
         request = ListParameters.Request()
         names = self._call('list_parameters', ListParameters, request).result.names
@@ -106,8 +129,11 @@ class NodeParameters:
             cause=f'{name} is not declared',
         )
 
-    def _call(self, service_name: str, type_: type, request: Any) -> Any:
-        """What the node answers. Raises CheckFailed where it does not, with the reason."""
+    def _call(self, service_name: str, type_: type, request: Any, *, greeting: Any = None) -> Any:
+        """What the node answers. Raises CheckFailed where it does not, with the reason.
+
+        `greeting` is a request that changes nothing, where an empty one is none.
+        """
         with Watcher(shared=True) as watcher:
             client = watcher.node.create_client(type_, f'{self.node_name}/{service_name}')
             if not watcher.spin_until_free(client.service_is_ready, free_sec=SERVICES_SEC):
@@ -119,7 +145,7 @@ class NodeParameters:
                 )
             errors = CallbackErrors([self.node_name])
             asked = None
-            if self._is_met(watcher, client, type(request)):
+            if self._is_met(watcher, client, greeting or type(request)()):
                 asked = client.call_async(request)
                 wait_for_all(watcher, [asked], gives_up=lambda: bool(errors.hint()))
             if asked is None or not asked.done():
@@ -132,13 +158,13 @@ class NodeParameters:
             errors.expect_none()
             return asked.result()
 
-    def _is_met(self, watcher: Watcher, client: Client, Request: type) -> bool:
+    def _is_met(self, watcher: Watcher, client: Client, greeting: Any) -> bool:
         """Ask for nothing, until there is an answer; whether there is one.
 
         A server drops its answer to a client that it has not met, although that one has met it.
         """
         for _ in range(MEETINGS):
-            asked = client.call_async(Request())
+            asked = client.call_async(greeting)
             if watcher.spin_until_free(asked.done, free_sec=MEETING_SEC):
                 return True
         return False

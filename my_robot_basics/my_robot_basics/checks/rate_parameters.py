@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NoReturn
 
+from my_robot_basics.checks import one_step
 from my_robot_basics.checks import parameter_refusals as refusals
 from my_robot_basics.checks.parameters import NodeParameters, node_parameters
 from my_robot_basics.checks.rate_failure import TOO_FAST_TIMES
@@ -60,7 +61,7 @@ class RateParameter:
 
     def expect_takes(self, *rates_hz: float) -> None:
         """Each of these rates can be set; the last one is the value of the parameter then."""
-        tried = self._in_its_type(rates_hz)
+        tried = refusals.in_its_type(self.parameters, self.name, rates_hz)
         for rate_hz, result in zip(tried, self.parameters.set(self.name, *tried), strict=True):
             if not result.successful:
                 refusals.fail_refused(self.name, rate_hz, result)
@@ -73,16 +74,21 @@ class RateParameter:
             cause=f'{self.name} has another value than the one that was set',
         )
 
-    def expect_follows(self, *rates_hz: float) -> None:
-        """The node publishes so often once the parameter is set, to one after the other."""
+    def expect_follows(self, *rates_hz: float, beside_another: bool = False) -> None:
+        """The node publishes so often once the parameter is set, alone or `beside_another` one."""
         refusals.expect_leaves_others_alone(self.parameters, self.name)
         for rate_hz in rates_hz:
             before_hz = self.parameters.get_number(self.name)
-            self.expect_takes(rate_hz)
+            if beside_another:
+                one_step.expect_taken(self.parameters, self.name, rate_hz)
+            else:
+                self.expect_takes(rate_hz)
             recording = self._record(rate_hz)
             try:
                 recording.assert_rate(rate_hz)
             except CheckFailed as failed:
+                if beside_another and _are_near(recording.rate_hz, before_hz):
+                    one_step.fail_unchanged(self.name, before_hz, rate_hz, doubt=type(failed))
                 self._explain(failed, recording, before_hz, rate_hz)
 
     def expect_refuses(self, *rates_hz: float) -> None:
@@ -95,6 +101,7 @@ class RateParameter:
         numbers = sorted(filter(math.isfinite, rates_hz), reverse=True)
         if numbers:
             self._expect_stays(kept_hz, numbers)
+            one_step.expect_refused(self.parameters, self.name, kept_hz, numbers[0])
         for no_number in (hz for hz in rates_hz if not math.isfinite(hz)):
             self._expect_refused(kept_hz, [no_number])
 
@@ -128,8 +135,7 @@ class RateParameter:
         return _are_near(self._measure(kept_hz)[0], seen_hz, part=UNCHANGED_PART)
 
     def _expect_refused(self, kept_hz: float, rates_hz: Sequence[float]) -> None:
-        tried = self._in_its_type(rates_hz, kept_hz)
-        refusals.expect_all_refused(self.parameters, self.name, kept_hz, tried)
+        refusals.expect_all_refused(self.parameters, self.name, kept_hz, rates_hz)
 
     def _explain(
         self, failed: CheckFailed, recording: Recording, before_hz: float, now_hz: float
@@ -173,13 +179,6 @@ class RateParameter:
         self.expect_takes(another_hz)
         seen_hz, _ = self._measure(now_hz)
         return _are_near(seen_hz, now_hz)
-
-    def _in_its_type(self, rates_hz: Sequence[float], kept_hz: float = math.inf) -> list[float]:
-        """As integers, where the parameter is one; those above kept_hz are rounded up."""
-        if isinstance(self.parameters.get(self.name), int):
-            numbers = filter(math.isfinite, rates_hz)
-            return [math.ceil(hz) if hz > kept_hz else int(hz) for hz in numbers]
-        return [*rates_hz]
 
     def _record(self, rate_hz: float) -> Recording:
         """A recording of messages that are to come so often."""

@@ -1,0 +1,48 @@
+"""A parameter that is set in one step with another one: a callback gets both in one list."""
+
+from typing import NoReturn
+
+from my_robot_basics.checks.parameter_refusals import fail_refused, in_its_type
+from my_robot_basics.checks.parameters import NodeParameters
+from my_robot_basics.feedback.errors import CheckFailed, expect, fail
+
+
+def expect_refused(parameters: NodeParameters, name: str, kept_hz: float, rate_hz: float) -> None:
+    """This value is refused beside use_sim_time, too, whichever of both comes first.
+
+    Who leaves it out of the list before that takes none, either. Raises CheckFailed.
+    """
+    [value] = in_its_type(parameters, name, [rate_hz], kept_hz)
+    for is_first in (False, True):
+        parameters.set_beside_another(name, value, is_first=is_first)
+        both = f'{name} = {value:g}', 'use_sim_time'
+        first, second = both if is_first else reversed(both)
+        expect(
+            parameters.get(name) == kept_hz,
+            expected=f'{first} and {second}, set in one step, to be refused because of {name}',
+            seen='it was taken',
+            hint='your callback gets a list of all that is set in one step: go through all of it, '
+            'refuse if any value is wrong, and say yes after the loop',
+            cause='a value outside the limits is taken beside another parameter',
+        )
+
+
+def expect_taken(parameters: NodeParameters, name: str, rate_hz: float) -> None:
+    """This value is taken beside use_sim_time, and after it, too. Raises CheckFailed."""
+    [value] = in_its_type(parameters, name, [rate_hz])
+    result = parameters.set_beside_another(name, value)
+    if not result.successful:
+        fail_refused(name, value, result)
+
+
+def fail_unchanged(
+    name: str, seen_hz: float, now_hz: float, *, doubt: type[CheckFailed]
+) -> NoReturn:
+    """Raise CheckFailed, for a rate that stays what it was where both were set."""
+    fail(
+        expected=f'{now_hz:g} Hz after use_sim_time and {name} were set in one step',
+        seen=f'{seen_hz:.3g} Hz as before',
+        hint='your callback gets a list of all that is set in one step: go through all of it',
+        cause=f'the rate does not follow {name} beside another parameter',
+        doubt=doubt,
+    )
