@@ -256,3 +256,61 @@ RIGHT += (
         ),
     ),
 )
+
+RIGHT += (
+    Change(
+        'sleeps_after_the_report',
+        swap(
+            PLAYER,
+            ('import rclpy\n', 'import time\n\nimport rclpy\n'),
+            ('        rclpy.spin(player)', '        while True:\n            time.sleep(0.1)'),
+        ),
+    ),
+    Change(
+        'client_for_each_target',
+        swap(
+            PLAYER,
+            (
+                '        answer = self.wait_for(self.solver.call',
+                "        solver = self.create_client(SolveIK, '/solve_ik')\n"
+                '        solver.wait_for_service()\n'
+                '        answer = self.wait_for(solver.call',
+            ),
+        ),
+    ),
+    Change(
+        'threads_of_an_executor',
+        swap(
+            PLAYER,
+            (
+                'import ExternalShutdownException\n',
+                'import ExternalShutdownException, MultiThreadedExecutor\n',
+            ),
+            (
+                "        super().__init__('arm_player')\n",
+                "        super().__init__('arm_player')\n"
+                '        self.threads = MultiThreadedExecutor()\n',
+            ),
+            ('complete(self, future)', 'complete(self, future, self.threads)'),
+        ),
+    ),
+    Change(
+        'waits_in_a_loop',
+        swap(
+            PLAYER,
+            (
+                '        self.solver.wait_for_service()\n',
+                '        while not self.solver.wait_for_service(timeout_sec=1.0):\n'
+                "            self.get_logger().info('no solver yet')\n",
+            ),
+        ),
+    ),
+    Change(
+        'report_as_json',
+        swap(
+            PLAYER,
+            ('import rclpy\n', 'import json\n\nimport rclpy\n'),
+            ("' '.join(words)", 'json.dumps(words)'),
+        ),
+    ),
+)

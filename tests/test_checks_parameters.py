@@ -27,7 +27,7 @@ def look_at_the_rate():
     rate = rate_parameter('/adjustable_publisher', 'rate_hz', topic_name=TOPIC)
     rate.expect_default(5.0)
     rate.expect_follows(10.0, 2.5)
-    rate.expect_follows(8.0, beside_another=True)
+    rate.expect_follows(4.0, beside_another=True)
 
 
 def look_at_refusals():
@@ -82,7 +82,7 @@ OF_THE_RATE = [
     (adjustable.OneBehind, 'saw 5 Hz, the value before: while add_on_set_parameters_callback '
      'decides, get_parameter still returns the old value'),
     (adjustable.Integer, 'a parameter has the type of its default value: declare it with 5.0'),
-    (adjustable.ChangesByTheFirst, 'expected 8 Hz after use_sim_time and rate_hz were set in one '
+    (adjustable.ChangesByTheFirst, 'expected 4 Hz after use_sim_time and rate_hz were set in one '
      'step, saw 2.5 Hz as before: your callback gets a list of all'),
     (adjustable.AnotherDefault, 'expected rate_hz = 5.0, saw 1.0: declare it with its default'),
 ]  # fmt: skip

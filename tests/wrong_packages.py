@@ -327,6 +327,110 @@ WRONG += (
 )
 
 
+WRONG += (
+    Change(
+        'asks_for_each_point_once',
+        swap(
+            PLAYER,
+            (
+                "        super().__init__('arm_player')\n",
+                "        super().__init__('arm_player')\n        self.answers = {}\n",
+            ),
+            (
+                'answer = self.wait_for(self.solver.call_async('
+                'SolveIK.Request(target=Point(x=x, y=y))))\n',
+                'if (x, y) not in self.answers:\n'
+                '            asked = SolveIK.Request(target=Point(x=x, y=y))\n'
+                '            self.answers[x, y] = self.wait_for(self.solver.call_async(asked))\n'
+                '        answer = self.answers[x, y]\n',
+            ),
+        ),
+        (1, 2, 0),
+        {'arm_player_plays': 'ask for each target of the list'},
+    ),
+    Change(
+        'sends_a_goal_for_an_unreachable_target',
+        swap(
+            PLAYER,
+            (
+                "            return 'unreachable'\n",
+                '            home = MoveArm.Goal(position=[0.0, 0.0], speed=0.5)\n'
+                '            self.wait_for(self.arm.send_goal_async(home))\n'
+                "            return 'unreachable'\n",
+            ),
+        ),
+        (1, 2, 0),
+        {'arm_player_plays': 'send no goal where response.reachable is False'},
+    ),
+    Change(
+        'waits_for_a_second_at_most',
+        swap(
+            PLAYER,
+            ('self.solver.wait_for_service()', 'self.solver.wait_for_service(timeout_sec=1.0)'),
+            ('self.arm.wait_for_server()', 'self.arm.wait_for_server(timeout_sec=1.0)'),
+        ),
+        (1, 2, 0),
+        {'arm_player_plays': r'wait until there is a server|wait for both servers first'},
+    ),
+    Change(
+        'sees_for_itself_what_is_reachable',
+        swap(PLAYER, ('if not answer.reachable', 'if not 0.2 <= (x * x + y * y) ** 0.5 <= 1.8')),
+        (1, 2, 0),
+        {'arm_player_plays': 'where response.reachable is False'},
+    ),
+    Change(
+        'tries_a_canceled_goal_again',
+        swap(
+            PLAYER,
+            (
+                'return ENDS[self.wait_for(goal_handle.get_result_async()).status]',
+                'word = ENDS[self.wait_for(goal_handle.get_result_async()).status]\n'
+                "        return self.visit(x, y) if word == 'canceled' else word",
+            ),
+        ),
+        (1, 2, 0),
+        {'arm_player_plays': 'note its status and go on'},
+    ),
+)
+
+_NO_NUMBER = """        if request.target.x != request.target.x:
+            response.reachable = True
+            return response
+"""
+_BELOW = """        if request.target.y < 0.0:
+            response.message = 'below the table'
+            return response
+"""
+_SOLVES = '        try:\n            solutions'
+_IN_DEGREES = (
+    '        joint1, joint2 = (math.degrees(angle) for angle in goal.position)\n'
+    '        if not (abs(joint1) <= 90.0 and abs(joint2) <= 120.0 and'
+)
+_IN_RADIANS = (
+    '        joint1, joint2 = goal.position\n'
+    '        if not (abs(joint1) <= 1.5 and abs(joint2) <= 2.0 and'
+)
+
+WRONG += tuple(
+    Change(f'driver_{name}', swap(DRIVER, pair), (1, 0, 4), {'package_runs': says})
+    for name, pair, says in (
+        ('takes_no_speed', ('goal.speed > 0.0', 'goal.speed >= 0.0'), 'speed is not above 0'),
+        ('rounds_the_limits', (_IN_DEGREES, _IN_RADIANS), 'accepted|limit'),
+        ('reaches_nan', (_SOLVES, _NO_NUMBER + _SOLVES), 'NaN is called reachable'),
+        ('reaches_nothing_below', (_SOLVES, _BELOW + _SOLVES), 'within reach is called unreach'),
+        ('has_one_speed', ('/ goal_handle.request.speed', '/ 0.1'), 'speed'),
+        (
+            'minds_z',
+            (
+                'inverse_kinematics(request.target.x, request.target.y)',
+                'inverse_kinematics(request.target.x, request.target.y + request.target.z)',
+            ),
+            'elbow_up is wrong|z does not matter|called unreachable',
+        ),
+    )
+)
+
+
 def _shell_script(files: Files) -> None:
     """`lib/arm_player/arm_driver` is a script that does nothing, and never ends."""
     files['scripts/arm_driver'] = '#!/bin/sh\ntrap "" INT TERM\nwhile :; do sleep 1; done\n'

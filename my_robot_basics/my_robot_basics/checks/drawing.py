@@ -6,7 +6,7 @@ from typing import NoReturn, Self
 
 from my_robot_basics.checks import drawing_hints
 from my_robot_basics.checks.packages import RunningExecutable, package
-from my_robot_basics.checks.player_meeting import ALONE_SEC, NAME, PlayerMeeting
+from my_robot_basics.checks.player_meeting import LATER_SEC, NAME, PlayerMeeting
 from my_robot_basics.checks.player_report import PlayerReport
 from my_robot_basics.checks.player_servers import (
     MOVE_ARM,
@@ -63,7 +63,7 @@ class Drawing:
         self._meeting.wait_for_clients()
         if arm_first:
             self._servers.start_arm()
-            self._comes(lambda: False, free_sec=ALONE_SEC)
+            self._comes(lambda: False, free_sec=LATER_SEC)
         else:
             self._meeting.expect_not_asked_yet(self._servers.solver)
         self._servers.start()
@@ -137,9 +137,11 @@ class Drawing:
                 cause=f'{SOLVE_IK} is asked for something else',
             )
         if not servers.was_asked(number):
-            if servers.times_before(number) and self._report.is_there():
+            goes_on = self._report.is_there() or len(servers.goals) > self._goals
+            if servers.times_before(number) and goes_on:
                 self._fail_not_again(wanted)
-            before, skipped = self._before(number), servers.was_skipped(number)
+            before = self._targets[number - 1][0] if number else ''
+            skipped = servers.was_skipped(number)
             hint = drawing_hints.why_not_asked(self._watcher, before, was_skipped=skipped)
             cause = 'a target is skipped' if skipped else drawing_hints.stops(before)
             self._meeting.fail_silent(expected=wanted, hint=hint, cause=cause)
@@ -187,13 +189,11 @@ class Drawing:
     def _fail_not_again(self, wanted: str) -> NoReturn:
         fail(
             expected=f'{wanted} once more: it is listed twice',
-            seen='the report',
-            hint='visit each target of the list, also one that you have visited before',
-            cause='a target that is listed twice is visited once',
+            seen='the report' if self._report.is_there() else 'a goal',
+            hint='ask for each target of the list, and visit it, also one that you have visited '
+            'before',
+            cause='a target that is listed twice is asked for once',
         )
-
-    def _before(self, number: int) -> str:
-        return self._targets[number - 1][0] if number else ''
 
 
 def _rounded(position: Sequence[float]) -> list[float]:

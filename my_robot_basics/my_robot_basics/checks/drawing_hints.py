@@ -20,6 +20,8 @@ _AFTER = {
     'aborted': 'a goal that was aborted has a result, too: note its status and go on',
 }
 
+_NONE_THERE = 'send no goal where response.reachable is False: it has no angles'
+
 
 def why_no_client(watcher: Watcher) -> str:
     """Why nobody asks `/solve_ik`."""
@@ -73,7 +75,7 @@ def why_no_report(watcher: Watcher) -> str:
 def why_other_goal(servers: PlayerServers, number: int, seen: Sequence[float]) -> str:
     """Why the position of a goal is not that of a target."""
     if not seen:
-        return 'send no goal where response.reachable is False: it has no angles'
+        return _NONE_THERE
     _, x, y = servers.targets[number]
     answer = servers.solver.answer(request(x, y))
     if is_near(seen, answer.elbow_down):
@@ -87,6 +89,8 @@ def why_other_goal(servers: PlayerServers, number: int, seen: Sequence[float]) -
         return 'this target has had its goal: send one for each target, whatever became of it'
     if others:
         return 'keep to the order of the targets, and leave none out'
+    if number and servers.targets[number - 1][0] == 'unreachable':
+        return _NONE_THERE
     return joints.why_off(list(seen[:4]), [math.degrees(angle) for angle in answer.elbow_up])
 
 

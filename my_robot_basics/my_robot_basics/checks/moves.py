@@ -60,6 +60,7 @@ def choose_wrong(numbers: random.Random) -> list[MoveArm.Goal]:
         goal((*inside, numbers.uniform(-0.5, 0.5))),
         goal((math.nan, inside[1])),
         goal((inside[0], math.nan)),
+        goal(inside, speed=0.0),
         goal(inside, speed=-numbers.uniform(0.1, 1.0)),
         goal(inside, speed=math.nan),
     ]

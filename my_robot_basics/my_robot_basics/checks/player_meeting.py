@@ -21,6 +21,8 @@ SECOND_SEC = 1.0
 ALONE_SEC = 0.8
 """How long who does not wait for `/move_arm` may take to ask the solver: rclpy's wait_for_service
 looks each 0.25 s."""
+LATER_SEC = 1.5
+"""So much later does `/solve_ik` come than `/move_arm`: some wait for a second at most."""
 
 
 @dataclass(frozen=True)
