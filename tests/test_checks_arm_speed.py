@@ -17,13 +17,13 @@ MINUTE = (1.2, -0.6)
 SPEED = 0.02
 
 
-def judge(seconds, *, speed=SPEED, reported=(), is_driven=True, stalled_sec=0.0):
+def judge(seconds, *, speed=SPEED, reported=(), is_driven=True, stalled_sec=0.0, lost_sec=0.0):
     """What comes of a move that took so long, in finer steps, too; `reported` are (s, rad)."""
     arm = SimpleNamespace(
         start=(0.0, 0.0),
         time=SimpleNamespace(is_driven=is_driven, at_ns=lambda sent_ns: sent_ns),
         seconds=lambda sent: seconds,
-        lost_sec=0.0,
+        lost_sec=lost_sec,
         stalled_sec=lambda: stalled_sec,
         doubt=lambda: Starved if stalled_sec else CheckFailed,
         why_too_soon=lambda sent: '',
@@ -57,6 +57,11 @@ def _slow_in_finer_steps_too(monkeypatch):
 @pytest.mark.parametrize('seconds', [58.9, 60.0, 61.2])
 def test_two_percent_are_right(seconds):
     judge(seconds)
+
+
+@pytest.mark.parametrize('seconds', [61.5, 58.8])
+def test_what_a_coarse_step_may_have_cost_makes_no_move_too_fast(seconds):
+    judge(seconds, lost_sec=0.25)
 
 
 @pytest.mark.parametrize(

@@ -40,7 +40,9 @@ def expect_speed(arm: WatchedArm, sent: SentGoal, position: Pose) -> None:
     The feedback on it, where it can be right, tells the speed better than one step of the server.
     """
     wanted_sec = far_rad(arm.start, position) / sent.goal.speed
-    seconds = arm.seconds(sent) - arm.lost_sec
+    seconds = arm.seconds(sent)
+    # feedback that a busy machine delays looks like a step that was lost, and makes no move faster
+    seconds -= min(arm.lost_sec, max(0.0, seconds - wanted_sec))
     told = reported_speed(arm, sent, position)
     least, most = PLAUSIBLE
     tells = least <= told.rad_per_sec / sent.goal.speed <= most
