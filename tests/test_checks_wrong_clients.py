@@ -92,7 +92,9 @@ class CountsSlowly(IKClient):
 
 def test_a_count_that_is_slow_is_no_count_that_stands_still(run):
     run(CountsSlowly)
-    with pytest.raises(CheckFailed, match=r'expected 10.0 Hz on /ik_client/alive, saw .* 1 / rate'):
+    with pytest.raises(
+        CheckFailed, match=r'expected 10.0 Hz on /ik_client/alive, saw .* 1 / rate'
+    ):
         check_never_blocks()
 
 
