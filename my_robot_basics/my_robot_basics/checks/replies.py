@@ -9,6 +9,7 @@ from sensor_msgs.msg import JointState
 from arm_interfaces.action import MoveArm
 from my_robot_basics.checks import joints
 from my_robot_basics.checks.absent_servers import publish_in_vain
+from my_robot_basics.checks.half_way import half_way
 from my_robot_basics.checks.scripted_action import Ending, ReceivedGoal
 from my_robot_basics.checks.served_action import ServedAction
 from my_robot_basics.checks.unasked_cancels import (
@@ -129,7 +130,7 @@ def expect_cancel_in_spite_of_a_second_goal(
 
 def ask(server: ServedAction, position: Pose, *, accepts: bool = True) -> ReceivedGoal:
     """The goal that the client sends for a position. Raises CheckFailed."""
-    server.accepts = accepts
+    server.accepts, server.reports = accepts, half_way
 
     def is_it(request: MoveArm.Goal) -> bool:
         return _is_near(request.position, position) and abs(request.speed - SPEED) < EXACT

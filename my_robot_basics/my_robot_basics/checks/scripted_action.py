@@ -9,10 +9,13 @@ from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.action.server import ServerGoalHandle
 from rclpy.node import Node
 from rclpy.task import Future
+from rclpy.timer import Timer
 
 from my_robot_basics.checks.sending import wait_for_readers
 
 Ending = Literal['succeeded', 'aborted', 'canceled']
+REPORT_SEC = 0.1
+"""Feedback on a goal comes so often."""
 SERVICES = 'send_goal', 'get_result', 'cancel_goal'
 """What an action's server answers to."""
 
@@ -53,9 +56,12 @@ class ScriptedActionServer:
         """Whether it accepts that one."""
         self.cancels = True
         """Whether it accepts a request to cancel."""
+        self.reports: Callable[[Any], Any] | None = None
+        """The feedback on a goal that has not ended, made of its message; None: there is none."""
         self.starts = 0
         """How often it was started."""
         self._node = node
+        self._timer: Timer | None = None
         self._server: ActionServer | None = None
         self._services = [f'{name}/_action/{end}' for end in SERVICES]
         self._executed: list[ReceivedGoal] = []
@@ -72,6 +78,8 @@ class ScriptedActionServer:
             handle_accepted_callback=self._take,
         )
         self._handles: dict[bytes, ReceivedGoal] = {}
+        self._moving: list[ServerGoalHandle] = []
+        self._timer = self._node.create_timer(REPORT_SEC, self._report)
         self.starts += 1
 
     def is_there(self) -> bool:
@@ -80,7 +88,8 @@ class ScriptedActionServer:
 
     def stop(self) -> None:
         """Be absent."""
-        if self._server is not None:
+        if self._server is not None and self._timer is not None:
+            self._node.destroy_timer(self._timer)
             self._server.destroy()
             self._server = None
 
@@ -105,7 +114,9 @@ class ScriptedActionServer:
 
     async def _execute(self, handle: ServerGoalHandle) -> Any:
         received = self._handles[bytes(handle.goal_id.uuid)]
+        self._moving.append(handle)
         ending = await received.end
+        self._moving.remove(handle)
         wait_for_readers(self._node, self._services)
         if ending == 'succeeded':
             handle.succeed()
@@ -114,6 +125,11 @@ class ScriptedActionServer:
         else:
             handle.canceled()
         return self.type.Result()  # type: ignore[attr-defined]
+
+    def _report(self) -> None:
+        if self.reports is not None:
+            for handle in self._moving:
+                handle.publish_feedback(self.reports(handle.request))
 
     def _cancel(self, handle: ServerGoalHandle) -> CancelResponse:
         self._handles[bytes(handle.goal_id.uuid)].cancels.append(time.time_ns())

@@ -10,7 +10,7 @@ CAUSE = 'a goal is cancelled without an obstacle'
 def expect_none_for_earlier(server: ServedAction, goal: ReceivedGoal) -> None:
     """No request comes to cancel a goal because of an obstacle before it. Raises CheckFailed."""
     expect(
-        not server.is_cancelled(goal, soon=True),
+        not server.is_cancelled(goal, soon=False),
         expected=f'no request to cancel a goal that came after True on {server.cancelled_on}',
         seen='one',
         hint='an obstacle cancels the goal that moves the arm then, and no later one',
