@@ -31,3 +31,33 @@ def test_a_slow_arm_follows_the_clock_with_which_it_stands_still(
     arm = SimpleNamespace(time=Clock(told, comes))
     sent = SimpleNamespace(feedback_count=lambda: len(told))
     assert arm_looks._moves_with_clock(arm, sent, (1.0, -0.5)) == follows
+
+
+@pytest.mark.parametrize(
+    ('gone', 'moves_on'),
+    [
+        ([0.1, 0.2, 0.3, 0.4, 0.5], True),
+        ([0.1, 0.2, 0.3, 0.4], False),
+        ([0.0, 0.0, 0.4, 0.4, 0.4, 0.4], False),
+        ([0.0] * 9, False),
+        ([], False),
+    ],
+    ids=['at each step', 'too few', 'a late clock', 'stands still', 'says nothing'],
+)
+def test_an_arm_that_moves_on_while_its_clock_stands_still_knows_the_wall_clock_alone(
+    gone, moves_on
+):
+    told = []
+
+    def let_it_report(done, *, free_sec):
+        assert not done()
+        assert free_sec > 0.0
+        told.extend((0, SimpleNamespace(position=[each, 0.0])) for each in gone)
+
+    arm = SimpleNamespace(
+        server=SimpleNamespace(watcher=SimpleNamespace(spin_until_free=let_it_report))
+    )
+    sent = SimpleNamespace(
+        is_over=lambda: False, feedback=lambda: told, feedback_count=lambda: len(told)
+    )
+    assert arm_looks._moves_on(arm, sent) == moves_on

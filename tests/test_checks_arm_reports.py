@@ -2,7 +2,9 @@
 
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
+from my_robot_basics.checks.arm_remaining import expect_remaining
 from my_robot_basics.checks.arm_reports import MoveReport
 from my_robot_basics.checks.robot_time import WallTime
 from my_robot_basics.checks.watched_arm import WatchedArm
@@ -80,3 +82,39 @@ def test_a_busy_machine_may_be_to_blame_for_an_unsteady_move_be_it_too_fast(
     with pytest.raises(CheckFailed) as error:
         report([part**2 for part in parts], times, Wall(stalled_share)).expect_steady()
     assert type(error.value) is failure
+
+
+def test_feedback_that_stops_before_the_end_has_a_pause():
+    times, parts = evenly(2.0)
+    half = len(times) // 2
+    reported = report(parts[:half], times[:half], DRIVEN)
+    reported.sent.over_ns = lambda: round(2e9)
+    with pytest.raises(CheckFailed, match=r'a pause of 1\.0 s'):
+        reported.expect_enough()
+
+
+WAYS = np.array([[-0.1, 0.3], [-0.2, 0.6], [-0.3, 0.9]])
+END_BELOW = -0.4, 1.2
+
+
+@pytest.mark.parametrize(
+    ('told', 'hint'),
+    [
+        ([0.9, 0.6, 0.3], ''),
+        ([0.902, 0.598, 0.302], ''),
+        ([0.908, 0.6, 0.3], ''),
+        ([0.905, 0.605, 0.305], 'behind the step'),
+        ([-0.9, -0.6, -0.3], 'it is a distance'),
+        ([0.3, 0.2, 0.1], 'it is of the one joint'),
+        ([1.2, 0.8, 0.4], 'not the sum'),
+        ([0.5, 0.5, 0.5], 'compute it from the goal'),
+    ],
+)
+def test_what_is_left_is_that_of_the_joint_that_is_farthest_away(told, hint):
+    found = ''
+    try:
+        expect_remaining(np.array(told), WAYS, start=(0.0, 0.0), end=END_BELOW)
+    except CheckFailed as failure:
+        found = str(failure)
+    assert hint in found
+    assert bool(found) == bool(hint)

@@ -43,6 +43,8 @@ class FollowedClock(Enum):
     WALL = auto()
     BOTH = auto()
     """It waits on its node's clock, and computes with the wall clock."""
+    WALL_ALONE = auto()
+    """It waits and computes on the wall clock: it moves on while that of its node stands still."""
 
 
 @dataclass

@@ -6,6 +6,7 @@ does one that waits on its node's clock and computes with another one, which is 
 
 import math
 from collections.abc import Callable
+from itertools import pairwise
 from typing import TypeVar
 
 from rcl_interfaces.srv import GetParameters
@@ -39,6 +40,9 @@ WALL_SEC = 2.0
 HOLD_SEC, APART_SEC = 0.4, 0.2
 """How long the clock stands still before a server that ignores it is known, or computes with the
 wall clock: then where it says that the arm is differs by more than the second."""
+STEPS, STEPS_SEC = 4, 1.0
+"""So many steps in which the arm goes farther meanwhile prove that it knows the wall clock alone,
+and so long they are waited for, of time that was free."""
 _clocks: dict[Identity, FollowedClock] = {}
 """The servers that were seen to follow a driven clock: the next grade cell asks the same one."""
 
@@ -62,7 +66,7 @@ def look(action: Action, body: Callable[[WatchedArm], T], *, start: Pose) -> T:
                         action.known.longest_sec = BUSY_SEC
                         bring(on_wall, start)
         on_wall.time = WallTime(server.watcher)
-        on_wall.has_two_clocks = clock == FollowedClock.BOTH
+        on_wall.computes_on_wall = clock in (FollowedClock.BOTH, FollowedClock.WALL_ALONE)
         try:
             return body(on_wall)
         finally:
@@ -139,7 +143,7 @@ def _waits_on(arm: WatchedArm) -> FollowedClock:
         sent = driven.send(probe)
         driven.time.hold(HOLD_SEC)
         if sent.is_over() or sent.feedback_count() > 1:
-            return FollowedClock.WALL
+            return FollowedClock.WALL_ALONE if _moves_on(driven, sent) else FollowedClock.WALL
         ends = driven.time.wait(sent.is_over, seconds=CLOCK_PROBE_MOST_SEC)
         if is_of_wall_time(driven, sent, probe.position, apart_sec=APART_SEC):
             return FollowedClock.BOTH
@@ -152,6 +156,20 @@ def _waits_on(arm: WatchedArm) -> FollowedClock:
         return _driven(arm.server, waits, arm.start)
     except Inconclusive:
         return FollowedClock.WALL
+
+
+def _moves_on(arm: WatchedArm, sent: SentGoal) -> bool:
+    """Whether the arm moves on, by its feedback, while the robot's clock stands still.
+
+    A node that gets the clock late jumps once; each of STEPS steps farther is none of its clock.
+    """
+    first = sent.feedback_count()
+    arm.server.watcher.spin_until_free(
+        lambda: sent.is_over() or sent.feedback_count() - first > STEPS, free_sec=STEPS_SEC
+    )
+    told = [message.position for _, message in sent.feedback()[first:]]
+    steps = [abs(b[0] - a[0]) for a, b in pairwise(told) if a and b]
+    return len(steps) >= STEPS and min(steps) > 0.0
 
 
 def _moves_with_clock(arm: WatchedArm, sent: SentGoal, position: Pose) -> bool:

@@ -1,8 +1,10 @@
 """An arm that is on its way, and slow: that costs the points of its speed, and no others."""
 
+import math
 import time
 
 from my_robot_basics.checks.action_ends import SentGoal
+from my_robot_basics.checks.arm_results import expect_there
 from my_robot_basics.checks.clock import SimulatedClock
 from my_robot_basics.checks.inconclusive import Inconclusive
 from my_robot_basics.checks.robot_time import DrivenTime
@@ -30,6 +32,8 @@ CALM = 0.5
 """Speed, in rad/s, for a server that rejects HASTE: another check is about that."""
 TELLS_SEC = 0.5
 """Of a clock that is driven in haste: then feedback tells whether the arm goes by it."""
+ASIDE_RAD = 0.3
+"""So far from a position is another one."""
 SOON_SEC = 1.0
 """A move in haste that is on its way after that is a slow one."""
 SLOW_SEC = 20.0
@@ -53,8 +57,18 @@ def is_under_way(arm: WatchedArm, sent: SentGoal, position: Pose) -> bool:
 
 
 def bring(arm: WatchedArm, position: Pose) -> None:
-    """Bring the arm to a position (rad), in haste if the server takes it. Raises CheckFailed."""
-    _reach(arm, arm.send(goal(position, speed=HASTE), goal(position, speed=CALM)), position)
+    """Bring the arm to a position (rad), in haste if the server takes it. Raises CheckFailed.
+
+    It is there then, as far as its result and its feedback tell.
+    """
+    hasty, calm = goal(position, speed=HASTE), goal(position, speed=CALM)
+    aside = goal([each - math.copysign(ASIDE_RAD, each) for each in position], speed=HASTE)
+    sent = arm.send(hasty, calm, aside)
+    if sent.goal is aside:  # it rejects a goal to where it is: another check is about that
+        _reach(arm, sent, aside.position)
+        sent = arm.send(hasty, calm)
+    _reach(arm, sent, position)
+    expect_there(sent, position)
 
 
 def bring_in_haste(arm: WatchedArm, position: Pose) -> None:

@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 
 from my_robot_basics.checks.action_ends import SentGoal
-from my_robot_basics.checks.arm_moves import is_near, why_aborted
+from my_robot_basics.checks.arm_results import is_near, why_aborted
 from my_robot_basics.checks.joints import SWAPPED
 from my_robot_basics.checks.watched_arm import Pose, WatchedArm
 from my_robot_basics.feedback.errors import fail, shorten
@@ -89,9 +89,18 @@ def expect_begins_at(arm: WatchedArm, stopped: Pose, moved: SentGoal, *, former:
     late_sec = arm.seconds_since_sent(moved, moved.feedback()[0][0])
     near_rad += max(0.0, late_sec - FIRST_SEC) * moved.goal.speed
     if len(after[0]) == len(stopped) and not is_near(after[0], stopped, near_rad):
+        hint = (
+            'a move begins where the arm was stopped: remember its position in each step, and let '
+            'nothing move it after canceled()'
+        )
+        if is_near(after[0], moved.goal.position):
+            hint = (
+                'it is there at once: a move begins where the arm was stopped, and takes its time '
+                'from there, whichever way it goes'
+            )
         fail(
             expected=f'the next move to begin at {[round(each, 3) for each in stopped]}',
             seen=f'{[round(each, 3) for each in after[0]]}',
-            hint='a move begins where the arm was stopped: remember its position in each step',
+            hint=hint,
             cause='the next move begins elsewhere',
         )

@@ -30,8 +30,9 @@ __all__ = [
     'goal',
 ]
 
-BEYOND_RAD = 0.03
-"""So far beyond a limit are goals that are wrong, or within it, if they are right."""
+BEYOND_RAD = 0.01
+"""So far beyond a limit are goals that are wrong, and hardly farther, or within it, if they are
+right: limits that were rounded to hundredths of a radian are right, and 1.6 is not."""
 
 
 def choose(numbers: random.Random, *, farther: int = 1, sign: int = 1) -> tuple[float, float]:
@@ -51,7 +52,7 @@ def choose_wrong(numbers: random.Random) -> list[MoveArm.Goal]:
     """
     inside = choose(numbers)
     first, second = LIMITS_RAD
-    beyond = numbers.uniform(BEYOND_RAD, 0.3)
+    beyond = BEYOND_RAD * numbers.uniform(1.0, 2.0)
     wrong = [
         *(goal((sign * (first + beyond), inside[1])) for sign in (-1, 1)),
         *(goal((inside[0], sign * (second + beyond))) for sign in (-1, 1)),

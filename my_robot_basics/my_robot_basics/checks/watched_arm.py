@@ -5,9 +5,11 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from rclpy.qos import ReliabilityPolicy
+
 from arm_interfaces.action import MoveArm
 from my_robot_basics.checks.accepted_goals import accepted, ends_too_soon
-from my_robot_basics.checks.action_ends import SentGoal
+from my_robot_basics.checks.action_ends import TERMINAL, SentGoal
 from my_robot_basics.checks.open_action import OpenAction
 from my_robot_basics.checks.robot_time import DrivenTime, WallTime
 from my_robot_basics.checks.waits_in_vain import is_in_vain
@@ -59,8 +61,8 @@ class WatchedArm:
     """No move takes longer, and each another part of it."""
     lost_sec: float = 0.0
     """So much longer the last move took because of a step of the clock that was too coarse."""
-    has_two_clocks: bool = False
-    """Whether the server waits on its node's clock, and computes with the wall clock."""
+    computes_on_wall: bool = False
+    """Whether the server computes with the wall clock, whichever it waits on."""
 
     def goal(self, position: Pose, *, speed: float) -> MoveArm.Goal:
         """A goal with that speed, or with a higher one where the move has to be short.
@@ -80,7 +82,9 @@ class WatchedArm:
 
     def seconds(self, sent: SentGoal) -> float:
         """How long a goal that is over has taken, in seconds of this time."""
-        began_ns = sent.statuses()[0][0] if sent.statuses() else sent.sent_ns
+        # of several statuses in a moment, the last one alone may arrive
+        told = [at_ns for at_ns, status in sent.statuses() if status not in TERMINAL]
+        began_ns = told[0] if told else sent.sent_ns
         over_ns = self.time.at_ns(sent.over_ns()) if sent.over_ns() else self.time.now_ns()
         return (over_ns - self.time.at_ns(began_ns)) / 1e9
 
@@ -104,7 +108,20 @@ class WatchedArm:
     def why_no_feedback(self, sent: SentGoal) -> str:
         """Why there may be no feedback on a goal that is over, where that is known; or ''."""
         raised = self.server.raised.hint() or self.server.log.raised(since_ns=sent.sent_ns)
-        return raised or self.why_too_soon(sent)
+        return raised or self._why_unreliable() or self.why_too_soon(sent)
+
+    def _why_unreliable(self) -> str:
+        """What to try where its feedback has a QoS with which none arrives; or ''."""
+        node, name = self.server.watcher.node, f'{self.server.name}/_action/feedback'
+        offered = {
+            info.qos_profile.reliability for info in node.get_publishers_info_by_topic(name)
+        }
+        if offered <= {ReliabilityPolicy.RELIABLE}:
+            return ''
+        return (
+            'the feedback is BEST_EFFORT, and an ActionClient asks for RELIABLE: leave '
+            'feedback_pub_qos_profile out'
+        )
 
     def has_result(self, sent: SentGoal) -> bool:
         """Whether the result comes, now that the goal is over."""
