@@ -118,3 +118,10 @@ def test_what_is_left_is_that_of_the_joint_that_is_farthest_away(told, hint):
         found = str(failure)
     assert hint in found
     assert bool(found) == bool(hint)
+
+
+def test_what_one_joint_or_the_largest_difference_has_to_go_is_not_told_apart_by_guessing():
+    with pytest.raises(CheckFailed, match='of the joint that is farthest away, whichever way'):
+        expect_remaining(
+            np.array([0.3, 0.2, 0.1]), -WAYS, start=(0.0, 0.0), end=[-each for each in END_BELOW]
+        )

@@ -9,6 +9,11 @@ from my_robot_basics.feedback.errors import fail
 OFF_RAD, MOSTLY_OFF_RAD = 0.01, 0.003
 """So far off may a message be, and half of them: what was left a step before is off each time."""
 ALIKE_RAD = 0.02
+SIGNED = 'it is a distance: take the size of each difference, abs(…)'
+LARGEST = (
+    'it is of the joint that is farthest away, whichever way that goes: take the size of each '
+    'difference, abs(…)'
+)
 
 
 def expect_remaining(
@@ -29,9 +34,7 @@ def expect_remaining(
         'it is 0 all the time: fill in feedback.remaining': np.zeros(len(left)),
         'it is in radians, too': np.degrees(wanted),
         'it is of the one joint that is farthest away, not the sum': left.sum(axis=1),
-        'it is a distance: take the size of each difference, abs(…)': np.where(
-            told < 0.0, told, ways.max(axis=1)
-        ),
+        SIGNED if told.min() < 0.0 else LARGEST: np.where(told < 0.0, told, ways.max(axis=1)),
         'it is of the one joint that is farthest away': left.min(axis=1),
         'it is an angle, not the distance of both': np.hypot(*left.T),
         'it is what is left, not what is done': np.abs(positions - np.array(start)).max(axis=1),
