@@ -4,11 +4,16 @@ from types import SimpleNamespace
 
 import pytest
 from my_robot_basics.checks import callbacks
-from my_robot_basics.graph import graphs
+from my_robot_basics.graph import actions, graphs, services
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session import classroom
+from rclpy.action import ActionServer
 from rclpy.context import Context
 from rclpy.node import Node
+from std_srvs.srv import Trigger
+
+from arm_interfaces.action import MoveArm
+from arm_interfaces.srv import SolveIK
 
 
 @pytest.fixture
@@ -33,6 +38,50 @@ def test_a_name_without_a_node_is_gone(monkeypatch, node):
         assert comes(lambda: not graphs.is_gone(watcher, '/speaker'))
         node.destroy_node()
         assert comes(lambda: graphs.is_gone(watcher, '/speaker'))
+
+
+@pytest.fixture
+def namesakes():
+    """Two nodes of one name, in participants of their own."""
+    contexts = [Context(), Context()]
+    for context in contexts:
+        context.init(domain_id=classroom.enter())
+    nodes = [Node('namesake', context=context) for context in contexts]
+    yield nodes
+    for node, context in zip(nodes, contexts, strict=True):
+        node.destroy_node()
+        context.try_shutdown()
+
+
+@pytest.mark.starts
+def test_what_a_node_serves_is_found_though_another_of_its_name_has_nothing(namesakes):
+    """As a node that has ended and stays on the graph: asked for what a node has, rmw looks into
+    one of that name alone.
+    """
+    first, second = namesakes
+    made = [first.create_service(SolveIK, '/solve_ik', lambda request, response: response)]
+    made += [first.create_client(Trigger, '/ask')]
+    made += [second.create_service(Trigger, '/tell', lambda request, response: response)]
+    made += [ActionServer(second, MoveArm, '/move_arm', lambda handle: MoveArm.Result())]
+    with Watcher() as watcher:
+
+        def ends():
+            found, moves = services.take(watcher.node), actions.take(watcher.node)
+            own = {name: each for name, each in found.servers.items() if '/_' not in name}
+            return own, found.clients, moves.servers
+
+        wanted = (
+            {
+                '/solve_ik': {'/namesake': ('arm_interfaces/srv/SolveIK',)},
+                '/tell': {'/namesake': ('std_srvs/srv/Trigger',)},
+            },
+            {'/ask': {'/namesake': ('std_srvs/srv/Trigger',)}},
+            {'/move_arm': {'/namesake': ('arm_interfaces/action/MoveArm',)}},
+        )
+        watcher.spin_until(lambda: ends() == wanted, timeout_sec=30.0)
+        assert ends() == wanted
+    for each in made:
+        each.destroy()
 
 
 @pytest.mark.parametrize(

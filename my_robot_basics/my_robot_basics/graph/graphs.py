@@ -62,14 +62,26 @@ def take(watcher: Watcher) -> GraphSnapshot:
     return last
 
 
-def publisher_infos(node: Node, topic_name: str) -> list[TopicEndpointInfo]:
-    """The endpoints that publish on a topic; those of nodes of the course are left out."""
-    return [info for info in node.get_publishers_info_by_topic(topic_name) if not _hidden(info)]
+def publisher_infos(
+    node: Node, topic_name: str, *, is_dds: bool = False
+) -> list[TopicEndpointInfo]:
+    """The endpoints that publish on a topic; those of nodes of the course are left out.
+
+    `is_dds`: the name is that of DDS, which for a service ROS makes of its own.
+    """
+    found = node.get_publishers_info_by_topic(topic_name, no_mangle=is_dds)
+    return [info for info in found if not _hidden(info)]
 
 
-def subscription_infos(node: Node, topic_name: str) -> list[TopicEndpointInfo]:
-    """The endpoints that subscribe to a topic; those of nodes of the course are left out."""
-    return [info for info in node.get_subscriptions_info_by_topic(topic_name) if not _hidden(info)]
+def subscription_infos(
+    node: Node, topic_name: str, *, is_dds: bool = False
+) -> list[TopicEndpointInfo]:
+    """The endpoints that subscribe to a topic; those of nodes of the course are left out.
+
+    `is_dds`: the name is that of DDS, which for a service ROS makes of its own.
+    """
+    found = node.get_subscriptions_info_by_topic(topic_name, no_mangle=is_dds)
+    return [info for info in found if not _hidden(info)]
 
 
 def full_name(info: TopicEndpointInfo) -> str:

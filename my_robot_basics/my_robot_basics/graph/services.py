@@ -1,12 +1,17 @@
 """Services on the graph: which nodes serve one, which ask, and with which type."""
 
-from collections.abc import Callable
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from rclpy.node import Node
 
 from my_robot_basics.feedback.hidden import theirs
-from my_robot_basics.graph.graphs import full_name, publisher_infos, subscription_infos
+from my_robot_basics.graph.graphs import (
+    UNKNOWN,
+    full_name,
+    publisher_infos,
+    subscription_infos,
+)
 from my_robot_basics.graph.snapshot import NOT_RUNNING, similar
 from my_robot_basics.graph.watcher import HIDDEN
 
@@ -15,8 +20,6 @@ OF_EVERY_NODE = frozenset(
     set_parameters_atomically get_type_description""".split()  # noqa: SIM905
 )
 """The services that every node has, by the last part of their names."""
-LookUp = Callable[[str, str], list[tuple[str, list[str]]]]
-"""What a node of that name and namespace has at one end: names, each with its types."""
 
 
 @dataclass(frozen=True)
@@ -61,28 +64,37 @@ class ServiceGraph:
 
 def take(node: Node) -> ServiceGraph:
     """The services as a node sees them now."""
-    ends = node.get_service_names_and_types_by_node, node.get_client_names_and_types_by_node
-    return take_ends(node, *ends)
+    names = [name for name, _ in node.get_service_names_and_types()]
+    own = [name for name in names if name.rpartition('/')[2] not in OF_EVERY_NODE]
+    return take_ends(node, {name: name for name in own})
 
 
-def take_ends(node: Node, look_up_servers: LookUp, look_up_clients: LookUp) -> ServiceGraph:
-    """What these find for each node that a node sees now."""
-    nodes = [
-        (name, namespace)
-        for name, namespace in node.get_node_names_and_namespaces()
-        if not name.startswith(HIDDEN)
-    ]
+def take_ends(node: Node, requests: Mapping[str, str]) -> ServiceGraph:
+    """Who is at the ends of services, by name, or of actions, with the service that asks first.
+
+    By the endpoints of its requests: what a node of some name has cannot be asked, because one
+    that has ended may stay on the graph under the name of one that runs, and have nothing.
+    """
     servers: dict[str, dict[str, tuple[str, ...]]] = {}
     clients: dict[str, dict[str, tuple[str, ...]]] = {}
-    for name, namespace in nodes:
-        full_name = f'{namespace.rstrip("/")}/{name}'
-        for ends, look_up in ((servers, look_up_servers), (clients, look_up_clients)):
-            try:
-                found = look_up(name, namespace)
-            except RuntimeError:  # it has gone meanwhile
-                continue
-            for service_name, types in found:
-                if service_name.rpartition('/')[2] not in OF_EVERY_NODE:
-                    ends.setdefault(service_name, {})[full_name] = tuple(types)
-    names = tuple(sorted({f'{namespace.rstrip("/")}/{name}' for name, namespace in nodes}))
-    return ServiceGraph(names, servers, clients, node)
+    for name, asks in requests.items():
+        for ends, find in ((servers, subscription_infos), (clients, publisher_infos)):
+            for info in find(node, f'rq{asks}Request', is_dds=True):
+                if info.node_name != UNKNOWN:
+                    types = ends.setdefault(name, {})
+                    whose, type_ = full_name(info), _type_of(info.topic_type)
+                    types[whose] = tuple(sorted({*types.get(whose, ()), type_}))
+    names = {
+        f'{namespace.rstrip("/")}/{name}'
+        for name, namespace in node.get_node_names_and_namespaces()
+        if not name.startswith(HIDDEN)
+    }
+    return ServiceGraph(tuple(sorted(names)), servers, clients, node)
+
+
+def _type_of(dds_type: str) -> str:
+    """What ROS calls the type of an interface whose requests have this type in DDS."""
+    package, *kinds, name = dds_type.split('::')
+    if not kinds:
+        return dds_type  # of no program of ROS
+    return f'{package}/{kinds[0]}/{name.removesuffix("_Request_").removesuffix("_SendGoal")}'
