@@ -187,6 +187,7 @@ def reasons(monkeypatch):
     return reasons
 
 
+@pytest.mark.usefixtures('patient')
 def test_who_works_for_longer_than_a_period_has_no_rate_on_the_robots_clock(reasons):
     wanted = rf'expected 5\.0 Hz on {TOPIC}, saw [1-4]\.'
     with running('overruns'), pytest.raises(CheckFailed, match=wanted):

@@ -9,7 +9,7 @@ from my_robot_basics.checks.arm_results import (
     expect_result,
     expect_succeeded,
     is_near,
-    why_not,
+    why_no_success,
 )
 from my_robot_basics.checks.arm_speed import FROM_HERE, expect_no_slow_move, expect_speed
 from my_robot_basics.checks.robot_time import DUE_SEC, DrivenTime
@@ -123,7 +123,7 @@ def _expect_stays(arm: WatchedArm, *, speed: float, is_there: bool) -> None:
         fail(
             expected='a goal to where the arm is already to be succeeded',
             seen=f'it {sent.status}',
-            hint=f'the arm is there already, and so is at the goal: {why_not(arm, sent)}',
+            hint=f'the arm is there already, and so is at the goal: {why_no_success(arm, sent)}',
             cause=f'a goal to where the arm is already is {sent.status}',
         )
     expect_arrived(sent, arm.start, start=arm.start)

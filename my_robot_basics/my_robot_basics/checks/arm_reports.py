@@ -20,8 +20,7 @@ LARGEST_GAP_SEC = 0.35
 """More between two messages is a pause."""
 FLOOD_HZ = 500.0
 NO_WAIT = (
-    'no step of the loop waits, and most of the feedback is lost: write `await sleep(self, …)`, '
-    'with await'
+    'no step of the loop waits, and most of the feedback is lost: write `await sleep(self, …)`'
 )
 FEWEST = 5
 ON_LINE_RAD = 0.01

@@ -12,8 +12,8 @@ WITHIN_RAD = 0.005
 """An arm that is so near has arrived."""
 ELSEWHERE = 'put in the positions of both joints, in radians'
 NOT_THERE = (
-    'let the last step end at the goal, and not before it or beyond it (part = min(1.0, …)), and '
-    'call succeed() then'
+    'let the last step end at the goal, and not before it or beyond it (`part = min(1.0, …)`), '
+    'and call succeed() then'
 )
 ASIDE_RAD = 0.05
 """One that is so far away is elsewhere. …"""
@@ -28,7 +28,7 @@ def expect_succeeded(arm: WatchedArm, sent: SentGoal) -> None:
         fail(
             expected='the goal to be succeeded at its end',
             seen=f'it {sent.status}',
-            hint=why_not(arm, sent),
+            hint=why_no_success(arm, sent),
             cause=f'a goal that was reached is {sent.status}',
         )
 
@@ -57,7 +57,7 @@ def why_aborted(arm: WatchedArm, sent: SentGoal, *, instead: str) -> str:
     return f'call goal_handle.{instead}(), and not abort()'
 
 
-def why_not(arm: WatchedArm, sent: SentGoal) -> str:
+def why_no_success(arm: WatchedArm, sent: SentGoal) -> str:
     """What to try where a goal that was reached has not succeeded."""
     if sent.status == 'aborted':
         return why_aborted(arm, sent, instead='succeed')
