@@ -8,12 +8,17 @@ from rclpy.qos import QoSProfile
 
 from my_robot_basics.graph import graphs
 from my_robot_basics.graph.message_info import with_info
+from my_robot_basics.graph.qos_compatibility import incompatible
 from my_robot_basics.graph.watcher import Watcher
 
 MOST_AT_ONCE = 10_000
 """A node that publishes on and on may be quicker than we are."""
 _NO_EVENTS = SubscriptionEventCallbacks(use_default_callbacks=False)
 """Each look of an executor costs more for every event; nobody waits for these."""
+
+
+TOLD = {'RELIABILITY', 'DURABILITY'}
+"""What a profile says that names no more: what it leaves out is no request."""
 
 
 class Recorder:
@@ -26,6 +31,7 @@ class Recorder:
         self.type = type_
         self.received: list[tuple[Any, int]] = []
         self._node = watcher.node
+        self._qos_profile = qos_profile
         self._subscription = self._node.create_subscription(
             type_,
             topic_name,
@@ -36,8 +42,12 @@ class Recorder:
         self._publishers: tuple[str, ...] = ()
 
     def is_connected(self) -> bool:
-        """Whether a publisher has been met."""
-        return self._subscription.get_publisher_count() > 0
+        """Whether a publisher has been met, or those that are there offer too little to be met."""
+        if self._subscription.get_publisher_count() > 0:
+            return True
+        infos = graphs.publisher_infos(self._node, self.topic_name)
+        gaps = [incompatible(info.qos_profile, self._qos_profile) for info in infos]
+        return bool(gaps) and all(TOLD & each.keys() for each in gaps)
 
     def publishers(self) -> tuple[str, ...]:
         """Full names of the nodes that publish on the topic, one for each publisher.
