@@ -25,6 +25,7 @@ from tests import ordinary, preloaded, tiers  # also where nbval runs with this 
 
 if TYPE_CHECKING:
     from grading_kernels import Spares
+    from postgresql_server import Server
 
     from grader.course import Course
     from grader.kernels.kernels import GradingKernel
@@ -308,6 +309,15 @@ def came_in(tmp_path: Path) -> Path:
     folder = tmp_path / 'came in'
     folder.mkdir()
     return folder
+
+
+@pytest.fixture(scope='module')
+def postgresql() -> 'Iterator[Server]':
+    """A server of Debian's package, for the tests of one module."""
+    from postgresql_server import running  # not before: most need no database
+
+    with running() as server:
+        yield server
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import threading
 
 import pytest
 from course_maker import TOY, answered, submit
-from postgresql_server import PASSWORD, nbgrader, released_in, running, students_in, use
+from postgresql_server import PASSWORD, nbgrader, released_in, students_in, use
 from sample_class import FOLDER, hand_in
 
 from grader.__main__ import main
@@ -20,20 +20,14 @@ pytestmark = [pytest.mark.slow, pytest.mark.starts]
 NAMES = sorted(path.stem for path in FOLDER.glob('*.ipynb'))
 
 
-@pytest.fixture(scope='module')
-def server():
-    with running() as server:
-        yield server
+@pytest.fixture
+def url(postgresql):
+    return postgresql.fresh()
 
 
 @pytest.fixture
-def url(server):
-    return server.fresh()
-
-
-@pytest.fixture
-def course(tmp_path, server):
-    return released_in(server, tmp_path / 'course')
+def course(tmp_path, postgresql):
+    return released_in(postgresql, tmp_path / 'course')
 
 
 def without_words(table):
@@ -67,7 +61,7 @@ def test_the_sample_class_gets_the_same_scores_check_by_check(tmp_path, url, cap
     assert PASSWORD not in ''.join(capsys.readouterr())
 
 
-def test_the_tables_are_those_of_sqlite_and_made_by_one_of_several(course, tmp_path, server):
+def test_the_tables_are_those_of_sqlite_and_made_by_one_of_several(course, tmp_path, postgresql):
     started = [threading.Thread(target=make_database, args=[course]) for _ in range(4)]
     for each in started:
         each.start()

@@ -5,7 +5,7 @@ import subprocess
 
 import pytest
 from course_maker import TOY
-from postgresql_server import PASSWORD, released_in, running, students_in
+from postgresql_server import PASSWORD, released_in, students_in
 
 from grader.storage.backups import back_up
 from grader.storage.database import transaction
@@ -14,15 +14,9 @@ from grader.storage.registering import register
 pytestmark = [pytest.mark.slow, pytest.mark.starts]
 
 
-@pytest.fixture(scope='module')
-def server():
-    with running() as server:
-        yield server
-
-
 @pytest.fixture
-def course(tmp_path, server):
-    return released_in(server, tmp_path / 'course')
+def course(tmp_path, postgresql):
+    return released_in(postgresql, tmp_path / 'course')
 
 
 def address_of(course):
@@ -30,7 +24,7 @@ def address_of(course):
     return course.db_url.replace('+psycopg', '').partition('?')[0]
 
 
-def test_a_dump_is_made_once_for_each_state_and_brings_it_back(course, server):
+def test_a_dump_is_made_once_for_each_state_and_brings_it_back(course, postgresql):
     assert back_up(course) is None  # there is nothing yet
     register(course, TOY)
     with transaction(course.db_url) as book:
@@ -49,7 +43,7 @@ def test_a_dump_is_made_once_for_each_state_and_brings_it_back(course, server):
         '--single-transaction',
         f'--dbname={address_of(course)}',
     ]
-    subprocess.run([server.programs / restore[0], *restore[1:], first], check=True)
+    subprocess.run([postgresql.programs / restore[0], *restore[1:], first], check=True)
     assert students_in(course) == ['ada']
     assert not register(course, TOY)
     assert back_up(course) not in (first, second)

@@ -6,7 +6,7 @@ import pytest
 import serving_desk
 from course_maker import TOY, add_lesson, answered, released_course, submit
 from nbgrader.api import Gradebook
-from postgresql_server import nbgrader, released_in, running, students_in
+from postgresql_server import nbgrader, released_in, students_in
 from sqlalchemy.exc import OperationalError
 
 from grader.__main__ import main
@@ -37,23 +37,17 @@ WRONG = ('Zed', 'éva')
 SECRET = 'ab' * 32
 
 
-@pytest.fixture(scope='module')
-def server():
-    with running() as server:
-        yield server
+@pytest.fixture
+def course(tmp_path, postgresql):
+    return released_in(postgresql, tmp_path / 'course')
 
 
 @pytest.fixture
-def course(tmp_path, server):
-    return released_in(server, tmp_path / 'course')
-
-
-@pytest.fixture
-def both(tmp_path, server):
+def both(tmp_path, postgresql):
     """Two courses with the same class: one in SQLite, and one in PostgreSQL."""
     courses = [
         released_course(tmp_path / 'sqlite'),
-        released_in(server, tmp_path / 'postgresql'),
+        released_in(postgresql, tmp_path / 'postgresql'),
     ]
     for course in courses:
         (course.gradebook / 'course_secret').write_text(SECRET)
@@ -181,7 +175,7 @@ def test_a_student_who_leaves_and_a_lesson_that_is_withdrawn_cost_nobody_else(bo
     assert TOY not in journey.file('gradebook/totals.csv')
 
 
-def test_a_backup_is_restored_as_the_page_says(course, server, capfd):
+def test_a_backup_is_restored_as_the_page_says(course, postgresql, capfd):
     for student in ('ada', 'bob'):
         hand_in(course, student, None)
     serving_desk.grade_here(course)
@@ -195,7 +189,7 @@ def test_a_backup_is_restored_as_the_page_says(course, server, capfd):
     restore = ['pg_restore', '--clean', '--if-exists', '--single-transaction']
     address = course.db_url.replace('+psycopg', '').partition('?')[0]
     done = subprocess.run(
-        [server.programs / restore[0], *restore[1:], f'--dbname={address}', dump], check=False
+        [postgresql.programs / restore[0], *restore[1:], f'--dbname={address}', dump], check=False
     )
     assert done.returncode == 0
     assert write_totals(course).read_bytes() == totals
@@ -211,7 +205,7 @@ def test_a_backup_is_restored_as_the_page_says(course, server, capfd):
 
 
 def test_who_hands_in_again_while_the_server_is_away_is_graded_later(
-    course, server, tmp_path, monkeypatch
+    course, postgresql, tmp_path, monkeypatch
 ):
     inbound = serving_desk.exchange_in(tmp_path)
     serving_desk.hand_in(course, inbound, 'ada', serving_desk.WRONG)
@@ -220,14 +214,14 @@ def test_who_hands_in_again_while_the_server_is_away_is_graded_later(
     put = desk.put_in_place
 
     def when_it_is_away(*given):
-        server.stop()
+        postgresql.stop()
         return put(*given)
 
     with monkeypatch.context() as patch:
         patch.setattr(desk, 'put_in_place', when_it_is_away)
         with pytest.raises(OperationalError):
             serving_desk.serve_here(course, inbound)
-    server.start()
+    postgresql.start()
     said = serving_desk.serve_here(course, inbound)
     assert [each.partition(':')[0] for each in said] == ['graded']
     assert [each.state for each in serving_desk.arrivals(course)] == [GRADED, GRADED]

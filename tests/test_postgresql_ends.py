@@ -15,7 +15,7 @@ import psycopg
 import pytest
 import survivor
 from course_maker import TOY, answered, released_course, submit
-from postgresql_server import PASSWORD, USER, nbgrader, released_in, running, use
+from postgresql_server import PASSWORD, USER, nbgrader, released_in, use
 
 from grader.__main__ import main
 from grader.common.errors import GradebookError
@@ -36,15 +36,9 @@ GRADES = """
 KILLS = 12
 
 
-@pytest.fixture(scope='module')
-def server():
-    with running() as server:
-        yield server
-
-
 @pytest.fixture
-def course(tmp_path, server):
-    return released_in(server, tmp_path / 'course')
+def course(tmp_path, postgresql):
+    return released_in(postgresql, tmp_path / 'course')
 
 
 @pytest.fixture(scope='module')
@@ -96,12 +90,12 @@ def autograded(course):
 
 @pytest.mark.timeout(3600)
 def test_a_server_that_crashes_in_the_middle_loses_nothing_and_the_run_goes_on(
-    handed_in, grade, server, tmp_path
+    handed_in, grade, postgresql, tmp_path
 ):
     numbers = itertools.count()
 
     def fresh():
-        return in_gradebook(handed_in, tmp_path / f'g{next(numbers)}', server.fresh())
+        return in_gradebook(handed_in, tmp_path / f'g{next(numbers)}', postgresql.fresh())
 
     def in_database(course):
         found = defaultdict(set)
@@ -119,7 +113,7 @@ def test_a_server_that_crashes_in_the_middle_loses_nothing_and_the_run_goes_on(
     wanted, rows, files = in_database(whole), records(whole), autograded(whole)
     assert {row.student_id for row in rows} == {'ada', 'bob', 'zoe', '李雷'}
     chance = random.Random(7)
-    crash = functools.partial(crashed, server.programs, server.data, server.who)
+    crash = functools.partial(crashed, postgresql.programs, postgresql.data, postgresql.who)
     ended = []
     for kill in range(KILLS):
         course = fresh()
@@ -132,7 +126,7 @@ def test_a_server_that_crashes_in_the_middle_loses_nothing_and_the_run_goes_on(
         assert 'not graded' not in said  # nobody is given up
         assert status == 0 or 'does not answer' in said, said
         assert status == 0 or 'run the same command again: it goes on' in said, said
-        server.start()
+        postgresql.start()
         for student, grades in in_database(course).items():
             assert grades == wanted[student]  # all of a submission, or none of it
         before = autograded(course)
@@ -153,14 +147,14 @@ def crashed(programs, data, who):
     subprocess.run(stop, cwd='/', check=True, stdout=subprocess.DEVNULL, **who)
 
 
-def test_a_server_that_is_started_again_meanwhile_is_waited_for(course, server):
+def test_a_server_that_is_started_again_meanwhile_is_waited_for(course, postgresql):
     register(course, TOY)
-    server.stop()
+    postgresql.stop()
     said = []
 
     def say(line):
         said.append(line)
-        threading.Thread(target=server.start).start()
+        threading.Thread(target=postgresql.start).start()
 
     wait_until_free(course, say)
     assert len(said) == 1
@@ -170,16 +164,18 @@ def test_a_server_that_is_started_again_meanwhile_is_waited_for(course, server):
     assert len(said) == 1
 
 
-def test_waiting_ends_and_what_waiting_does_not_help_is_told_at_once(course, server, monkeypatch):
+def test_waiting_ends_and_what_waiting_does_not_help_is_told_at_once(
+    course, postgresql, monkeypatch
+):
     monkeypatch.setattr('grader.storage.failures.TIMEOUT_SEC', 0.3)
-    server.stop()
+    postgresql.stop()
     said = []
     with pytest.raises(GradebookError, match='does not answer'), in_sentences(course):
         wait_until_free(course, said.append)
-    server.start()
+    postgresql.start()
     assert len(said) == 1
     monkeypatch.setattr('grader.storage.failures.TIMEOUT_SEC', 1e6)
-    use(course.gradebook, server.address('no_such'))
+    use(course.gradebook, postgresql.address('no_such'))
     with pytest.raises(GradebookError, match='createdb'), in_sentences(course):
         wait_until_free(course, pytest.fail)
 
@@ -187,40 +183,40 @@ def test_waiting_ends_and_what_waiting_does_not_help_is_told_at_once(course, ser
 VERBS = (['grade'], ['scores'], ['scores', '--totals'], ['feedback'], ['release'])
 
 
-def away(server, course):
-    server.stop()
+def away(postgresql, course):
+    postgresql.stop()
 
 
-def wrong_password(server, course):
+def wrong_password(postgresql, course):
     name = course.db_url.partition('?')[0].rpartition('/')[2]
-    use(course.gradebook, server.address(name, password=f'not-{PASSWORD}'))
+    use(course.gradebook, postgresql.address(name, password=f'not-{PASSWORD}'))
 
 
-def no_database(server, course):
-    use(course.gradebook, server.address('no_such'))
+def no_database(postgresql, course):
+    use(course.gradebook, postgresql.address('no_such'))
 
 
-def not_its_owner(server, course):
-    use(course.gradebook, server.make(f'theirs_{os.getpid()}', owner='administrator'))
+def not_its_owner(postgresql, course):
+    use(course.gradebook, postgresql.make(f'theirs_{os.getpid()}', owner='administrator'))
 
 
-def tables_of_another(server, course):
+def tables_of_another(postgresql, course):
     name = f'tables_{os.getpid()}'
-    url = server.make(name).replace(f'{USER}:', 'administrator:')
+    url = postgresql.make(name).replace(f'{USER}:', 'administrator:')
     make_tables(url.replace('postgresql:', 'postgresql+psycopg:'))
-    use(course.gradebook, server.address(name))
+    use(course.gradebook, postgresql.address(name))
 
 
-def another_encoding(server, course):
-    use(course.gradebook, server.make(f'latin_{os.getpid()}', encoding='LATIN1'))
+def another_encoding(postgresql, course):
+    use(course.gradebook, postgresql.make(f'latin_{os.getpid()}', encoding='LATIN1'))
 
 
-def full(server, course):
-    limit_connections(server, 0)
+def full(postgresql, course):
+    limit_connections(postgresql, 0)
 
 
-def limit_connections(server, most):
-    with server.administrator() as connection:
+def limit_connections(postgresql, most):
+    with postgresql.administrator() as connection:
         connection.execute(f'ALTER ROLE {USER} CONNECTION LIMIT {most}')
 
 
@@ -236,9 +232,9 @@ def limit_connections(server, most):
         (another_encoding, 'has the encoding LATIN1'),
     ],
 )
-def test_what_is_wrong_is_told_in_a_sentence_by_each_verb(course, server, fault, words, capfd):
+def test_what_is_wrong_is_told_in_a_sentence_by_each_verb(course, postgresql, fault, words, capfd):
     submit(course, 'ada', answered(course, 'def double(x):\n    return 2 * x'))
-    fault(server, course)
+    fault(postgresql, course)
     try:
         told = {}
         for verb in VERBS:
@@ -248,9 +244,9 @@ def test_what_is_wrong_is_told_in_a_sentence_by_each_verb(course, server, fault,
         told['nbgrader export'] = run.returncode, run.stderr
     finally:
         if fault is away:
-            server.start()
+            postgresql.start()
         if fault is full:
-            limit_connections(server, -1)
+            limit_connections(postgresql, -1)
     for verb, (status, said) in told.items():
         if fault in (not_its_owner, another_encoding) and verb in ('release', 'feedback'):
             continue  # they find nothing in it yet, and write nothing into it
