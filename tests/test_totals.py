@@ -95,6 +95,6 @@ def test_a_lesson_that_is_withdrawn_counts_only_where_somebody_has_a_score(cours
     shutil.rmtree(course.root / 'solutions' / TOY)
     assert heads_of(course) == [f'{TOY} (of 5)', '01_more (of 5)', 'total (of 10)']
     assert capsys.readouterr().err == (
-        f'{TOY} is in solutions/ no longer, and its 1 scores still count. To delete them: '
-        f'.venv/bin/nbgrader db assignment remove {TOY} --force\n'
+        f'{TOY} is in solutions/ no longer, and still counts, with the scores of 1 student. To '
+        f'delete them: .venv/bin/nbgrader db assignment remove {TOY} --force\n'
     )

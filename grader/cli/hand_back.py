@@ -69,8 +69,9 @@ def _say_what_is_withdrawn(course: Course) -> None:
     for name, number in sorted(found.items()):
         if number:
             print(
-                f'{name} is in solutions/ no longer, and its {number} scores still count. To '
-                f'delete them: .venv/bin/nbgrader db assignment remove {name} --force',
+                f'{name} is in solutions/ no longer, and still counts, with the scores of '
+                f'{number} student{"s"[: number != 1]}. To delete them: '
+                f'.venv/bin/nbgrader db assignment remove {name} --force',
                 file=sys.stderr,
             )
 
