@@ -7,6 +7,7 @@ import time
 
 import pytest
 import rclpy
+from my_robot_basics.session import classroom
 from my_robot_basics.session.neighbours import Neighbours, nodes_here
 from rclpy.context import Context
 from rclpy.node import Node
@@ -77,3 +78,27 @@ def test_who_was_killed_is_no_neighbour_any_more():
         assert not neighbours.have('/talker')
     finally:
         neighbours.leave()
+
+
+@pytest.mark.starts
+def test_a_name_that_stays_without_a_node_is_no_neighbour(monkeypatch):
+    """As where the last message of a participant is handled after its end: once, 7 tests of
+    `run` failed because a node of another process, long gone, was said to run.
+    """
+    names = Node.get_node_names_and_namespaces
+    monkeypatch.setattr(
+        Node, 'get_node_names_and_namespaces', lambda self: [*names(self), ('ghost', '/')]
+    )
+    context = Context()
+    context.init(domain_id=classroom.enter())
+    node = Node('talker', context=context, start_parameter_services=False)
+    neighbours = Neighbours()
+    neighbours.meet()
+    try:
+        while not neighbours._is_announced('/talker'):
+            time.sleep(0.01)
+        assert not neighbours.have('/ghost')
+    finally:
+        neighbours.leave()
+        node.destroy_node()
+        context.try_shutdown()

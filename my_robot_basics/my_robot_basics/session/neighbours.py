@@ -62,11 +62,20 @@ class Neighbours:
         return False
 
     def _is_announced(self, name: str) -> bool:
+        """Whether the graph has the name, and the publisher that each running node has.
+
+        A name alone is no node: rmw keeps it for ever if it handles a participant's last message
+        after its end.
+        """
         assert self._observer is not None  # it has met them
-        return name in {
+        names = {
             f'{namespace.rstrip("/")}/{node_name}'
             for node_name, namespace in self._observer.get_node_names_and_namespaces()
         }
+        return name in names and any(
+            name == f'{info.node_namespace.rstrip("/")}/{info.node_name}'
+            for info in self._observer.get_publishers_info_by_topic('/parameter_events')
+        )
 
 
 def destroy_orphans() -> None:
