@@ -172,7 +172,7 @@ WRONG = [
         r'compare both angles with their limits, radians\(90\) and radians\(120\)',
     ),
     (NoLimits, 'rejects', 'reject a goal whose speed is not above 0'),
-    (LimitsTheWrongWayRound, 'rejects', 'each comparison with NaN is False, so ask what is right'),
+    (LimitsTheWrongWayRound, 'rejects', 'every comparison with NaN is False, so check for what'),
     (LooksBeforeItCounts, 'rejects', 'its callback raised IndexError.*; fix that first'),
     (LocksItself, 'rejects', 'and let a goal that you reject change nothing in the node'),
     (TakesTwo, 'rejects', 'remember that the arm moves, and return GoalResponse.REJECT'),

@@ -220,7 +220,11 @@ WRONG = [
     (TellsDegrees, 'feedback', 'these are degrees: all positions of MoveArm are in radians'),
     (TellsTheGoal, 'feedback', 'feedback holds the same position all the time'),
     (TellsNoPosition, 'feedback', r'saw \[\]: put one position for each joint into feedback.pos'),
-    (TellsTheSum, 'feedback', 'it is of the one joint that is farthest away, not the sum'),
+    (
+        TellsTheSum,
+        'feedback',
+        'it is the distance of the one joint that is farthest away, not the sum',
+    ),
     (TellsNoRemaining, 'feedback', 'it is 0 all the time: fill in feedback.remaining'),
     (OneJointLate, 'feedback', 'move both joints by the same part of their ways, so that they ar'),
     (Accelerates, 'feedback', 'move at one speed from start to goal, and publish each position'),

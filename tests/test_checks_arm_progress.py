@@ -61,6 +61,6 @@ def test_too_little_feedback_and_none_of_two_joints_tell_nothing():
 def test_who_rejects_haste_is_told_so_where_each_speed_has_to_be_accepted(monkeypatch):
     arm = SimpleNamespace(send=lambda first, other: SimpleNamespace(goal=other))
     monkeypatch.setattr(arm_refusals, 'look', lambda action, body, start: body(arm))
-    wanted = 'it rejected, and one at 0.5 rad/s accepted: each speed above 0 is right'
+    wanted = 'it rejected, and one at 0.5 rad/s accepted: every speed above 0 is allowed'
     with pytest.raises(CheckFailed, match=wanted):
         arm_refusals.expect_accepts(None, GOAL)

@@ -105,7 +105,7 @@ END_BELOW = -0.4, 1.2
         ([0.908, 0.6, 0.3], ''),
         ([0.905, 0.605, 0.305], 'behind the step'),
         ([-0.9, -0.6, -0.3], 'it is a distance'),
-        ([0.3, 0.2, 0.1], 'it is of the one joint'),
+        ([0.3, 0.2, 0.1], 'it is the distance of the one joint'),
         ([1.2, 0.8, 0.4], 'not the sum'),
         ([0.5, 0.5, 0.5], 'compute it from the goal'),
     ],
@@ -121,7 +121,7 @@ def test_what_is_left_is_that_of_the_joint_that_is_farthest_away(told, hint):
 
 
 def test_what_one_joint_or_the_largest_difference_has_to_go_is_not_told_apart_by_guessing():
-    with pytest.raises(CheckFailed, match='of the joint that is farthest away, whichever way'):
+    with pytest.raises(CheckFailed, match='of the joint that is farthest away, in either'):
         expect_remaining(
             np.array([0.3, 0.2, 0.1]), -WAYS, start=(0.0, 0.0), end=[-each for each in END_BELOW]
         )

@@ -206,18 +206,18 @@ WRONG = {
     'another default': (turns('50.0]', '51.0]'), 'another default value'),
     'a default that nobody wants': (
         count('success', 'success true'),
-        'nobody has asked for a def',
+        'the table asks for no def',
     ),
     'a default of one zero for any number': (
         count('each_second', 'each_second [0]'),
-        'nobody has asked for a default value of each_second',
+        'the table asks for no default value of each_second',
     ),
     'another constant': (turns('MOTOR2=1', 'MOTOR2=2'), 'the constant MOTOR2 has another value'),
     'missing': (count('Turns total\n', ''), 'the response has no total'),
     'misspelt': (count('each_second', 'every_second'), 'is it called every_second?'),
     'too much': (
         count('bool success', 'bool success\nint32 more'),
-        'more, which nobody has asked',
+        'more, which the table does not',
     ),
     'in the other part': (
         {'count_turns_srv': COUNT_TURNS.replace('uint8 motor\n', '') + 'uint8 motor\n'},

@@ -29,7 +29,7 @@ def test_what_answers_no_more_may_be_a_name_alone(monkeypatch, answers, free_sec
 @pytest.mark.parametrize(
     ('code', 'words'),
     [
-        (-signal.SIGSEGV, 'ended by SIGSEGV: rclpy crashes so where an ActionClient or ActionS'),
+        (-signal.SIGSEGV, 'ended by SIGSEGV: rclpy crashes like this if an ActionClient or Act'),
         (-signal.SIGKILL, "ended by SIGKILL: run it with run_executable('greeter', 'greet')"),
         (1, "exit code 1: run it with run_executable('greeter', 'greet')"),
     ],

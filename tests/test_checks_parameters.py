@@ -89,17 +89,23 @@ OF_THE_RATE = [
 OF_REFUSALS = [
     (adjustable.SetsThoughRefusing, 'change the timer only if none is refused'),
     (adjustable.GivesNoReason, 'expected a reason why rate_hz = 60 is refused, saw none: tell'),
-    (adjustable.TakesAll, 'expected rate_hz = 60 to be refused, saw it was taken: return Set'),
+    (adjustable.TakesAll, 'expected rate_hz = 60 to be refused, saw it was accepted: return Set'),
     (
         adjustable.Corrects,
-        r'saw it was taken, and rate_hz is [\d.]+ in the end: do not correct the value',
+        r'saw it was accepted, and rate_hz is [\d.]+ in the end: do not correct the value',
     ),
     (adjustable.JudgesTheFirst, 'expected use_sim_time and rate_hz = 60, set in one step, to be'),
-    (adjustable.SaysYesTooSoon, 'it was taken: your callback gets a list of all that is set in'),
+    (
+        adjustable.SaysYesTooSoon,
+        'it was accepted: your callback gets a list of all that is set in',
+    ),
     (adjustable.KeepsTheLastWord, 'expected rate_hz = 60 and use_sim_time, set in one step, to'),
     (adjustable.RefusesTheLimits, 'the limits themselves are allowed'),
     (adjustable.DividesFirst, 'ZeroDivisionError'),
-    (adjustable.LetsNaNThrough, 'expected rate_hz = nan to be refused, saw it was taken: NaN is'),
+    (
+        adjustable.LetsNaNThrough,
+        'expected rate_hz = nan to be refused, saw it was accepted: NaN is',
+    ),
 ]
 OF_BOTH = [
     (adjustable.NotDeclared, "expected the parameter rate_hz of /adjustable_publisher, saw rate: "
@@ -186,7 +192,7 @@ def test_what_keeps_all_from_working_fails_both(run, NodeClass, words):
 
 def test_a_callback_that_judges_other_parameters_is_told_so(run):
     run(adjustable.RefusesOthers)
-    words = 'use_sim_time, another parameter, to be set, .* judge those whose name is'
+    words = 'use_sim_time, another parameter, to be set, .* check only those whose name is'
     with pytest.raises(CheckFailed, match=words):
         look_at_the_rate()
 

@@ -91,10 +91,10 @@ def test_what_is_added_to_a_text_is_added_each_time(checked, tmp_path):
     [
         ('', 'does not appear to be JSON'),
         ('{', 'does not appear to be JSON'),
-        ('[]', "other types than those of one .'list' object has no attribute"),
+        ('[]', "other types than those of a notebook .'list' object has no attribute"),
         ('[' * 100_000, 'RecursionError|maximum recursion depth'),
         (lesson().replace('"nbformat_minor": 5', '"nbformat_minor": "x"'), r'\(AssertionError\)$'),
-        (lesson(metadata=[]), r'its parts are of other types than those of one \(.+\)$'),
+        (lesson(metadata=[]), r'its parts have other types than those of a notebook \(.+\)$'),
         (lesson(execution_count='x'), r"'x' is not .* \(at cells\.0\.execution_count\)"),
         (lesson(nonsense=1), r"\('nonsense' was unexpected\) \(at cells\.0\)"),
         (

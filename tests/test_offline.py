@@ -143,7 +143,7 @@ def test_a_folder_that_is_not_there_is_told_in_one_sentence():
     )
     assert run.returncode == 1
     assert run.stderr == (
-        "course: --offline wants the folder that ./course wheels made, and '/nowhere' is none.\n"
+        "course: --offline needs a folder that ./course wheels made, and '/nowhere' is not one.\n"
     )
 
 

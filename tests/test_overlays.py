@@ -238,7 +238,7 @@ def test_another_type_than_the_courses(built):
         each['hash_string'] = 'RIHS01_' + 64 * '0'
     file.write_text(json.dumps(described))
     said = runs_but_says(built)
-    assert said.startswith('has another srv/SolveIK.srv than the course, so that nodes that use ')
+    assert said.startswith('has another srv/SolveIK.srv than the course, so nodes that use it ')
     assert f'(./course workspace --refresh {NAME})' in said
 
 
@@ -256,7 +256,7 @@ def test_a_folder_that_is_gone(built):
     shutil.rmtree(built.workspace / 'install')
     sentence = (
         f'{built.prefix} is gone, and this terminal still looks for its package there: build the '
-        'package again, or open a new terminal, which takes that of the course if there is one'
+        "package again, or open a new terminal, which uses the course's package if there is one"
     )
     imported = built.python(f'import {NAME}; print({NAME}.__file__)')
     assert imported.stdout.strip().startswith(sys.prefix)

@@ -104,7 +104,7 @@ def error_of(code, **names):
         ('JointState.header.stamp = 1', ', so make an object of the class with parentheses, such'),
         ('JointState().position[0] = 1.0', ', so assign the whole list, [one, two], or append to'),
         ('JointState().name[0] = "a"', ', so assign the whole list, [one, two], or append to it'),
-        ('JointState(position=0.5)', ', so write a list, in square brackets, where several numbe'),
+        ('JointState(position=0.5)', ', so write a list, in square brackets, if several numbe'),
         ('math.radians([1, 2])', ', so convert each number by itself: [radians(angle) for angle '),
         ('1.0 / Parameter("hz", value=5.0)', ', so take the value out of the parameter with .val'),
         ('def f():\n    await g()', ', so begin its function with async def'),
@@ -124,7 +124,7 @@ def error_of(code, **names):
         ('inspect.signature(max)', ', so put it into a function of your own, such as'),
         (
             'with None:\n    pass',
-            ', so call rclpy.init() in a line of its own: no with takes what',
+            ', so call rclpy.init() in a line of its own: `with` cannot',
         ),
         ('Asker().solve(1, 2)', ', so write a parameter for each of them into its def, such as '),
         (
@@ -181,7 +181,7 @@ def test_a_loop_over_the_keys_of_a_dict_is_told_by_the_students_line():
 
 def test_an_iterator_that_has_ended_is_told_by_what_a_coroutine_makes_of_it():
     said = 'RuntimeError: coroutine raised StopIteration'
-    assert what_to_do(said) == ', so begin anew where next(…) finds no more'
+    assert what_to_do(said) == ', so start again when next(…) finds no more'
 
 
 LETTERS = ', so write a name of letters from a to z, digits'

@@ -246,7 +246,7 @@ OF_STUDENTS = {
         '`f(1)`，看看是在哪里'
     ),
     "expected `f(1)` to return, saw it raised `TypeError: 'float' object is not iterable`, so "
-    'write a list, in square brackets, where several numbers are wanted: call `f(1)` in a cell of '
+    'write a list, in square brackets, if several numbers are needed: call `f(1)` in a cell of '
     'your own to see where': (
         "预期：`f(1)` 会返回；实际：它抛出了 `TypeError: 'float' object is not iterable`，"
         '需要多个数的地方，请写成列表，用方括号括起来。在你自己的单元格里调用 '

@@ -360,7 +360,7 @@ WRONG += (
             ),
         ),
         (1, 2, 0),
-        {'arm_player_plays': 'send no goal where response.reachable is False'},
+        {'arm_player_plays': 'send no goal if response.reachable is False'},
     ),
     Change(
         'waits_for_a_second_at_most',

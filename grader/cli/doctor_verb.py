@@ -1,4 +1,4 @@
-"""What `./course doctor` prints: what keeps student code in, and whose nodes meet whose."""
+"""What `./course doctor` prints: what isolates student code, and whose nodes can reach whose."""
 
 import argparse
 

@@ -192,7 +192,7 @@ def _expect_valid(notebook: NotebookNode, asked: NotebookNode) -> None:
 
 
 def _refuse_constant(name: str) -> float:
-    raise ValueError(f'{name} is no number of JSON')
+    raise ValueError(f'{name} is not a number of JSON')
 
 
 def _first_line(error: Exception) -> str:

@@ -58,9 +58,12 @@ class Ending:
         if name in _OWN:
             return (
                 Responsibility.DOUBTFUL,
-                f'{name} ended it, which Linux sends for what a process does',
+                f'{name} ended it, a signal that Linux sends because of what a process did',
             )
-        return Responsibility.NOT_SHOWN, f'{name} ended it, and nothing in its room had sent that'
+        return (
+            Responsibility.NOT_SHOWN,
+            f'{name} ended it, and no process in its room had sent that signal',
+        )
 
 
 def whose_memory(memory: MemoryEvents) -> tuple[Responsibility, str]:

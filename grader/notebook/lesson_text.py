@@ -47,7 +47,7 @@ def _packed(text: str, gradebook: Path) -> bytes:
         where = f' (at {place})' if place else ''
         raise ValueError(f'{_line(error)}{where}') from None
     except (AssertionError, AttributeError, RecursionError, TypeError) as error:
-        said = f'its parts are of other types than those of one ({_line(error)})'
+        said = f'its parts have other types than those of a notebook ({_line(error)})'
         raise ValueError(said) from None
     return pickle.dumps(notebook, pickle.HIGHEST_PROTOCOL)
 

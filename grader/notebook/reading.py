@@ -86,7 +86,7 @@ def read_notebook(path: Path) -> NotebookNode:
             'JupyterLab, save, and submit again.'
         ) from None
     for error in _READ.iter_errors(said):
-        raise CourseError(f'what read {path.name} came to no notebook: {error.json_path}')
+        raise CourseError(f'what read {path.name} gave no notebook: {error.json_path}')
     if problem := said.get('problem'):
         raise UnreadableSubmission(problem)
     metadata = {KEY: {LANGUAGE: said[LANGUAGE]}} if LANGUAGE in said else {}

@@ -142,8 +142,8 @@ def _python_files(folder: Path) -> tuple[list[Path], list[str]]:
         elif problem_of_id(path.name):  # what is said there is said of names of students
             notes.append(
                 f'the file `{name}` was left out: its name begins with a dot, is longer than '
-                f'{MAX_ID_CHARACTERS} characters or {MAX_ID_BYTES} bytes, or holds some that can '
-                'not be shown, or one of < > "'
+                f'{MAX_ID_CHARACTERS} characters or {MAX_ID_BYTES} bytes, or has '
+                'characters that cannot be shown, or one of < > "'
             )
         elif size <= left and len(taken) < MAX_PYTHON_FILES:
             taken.append(path)

@@ -55,7 +55,7 @@ def what_to_try(wanted: Sequence[float], numbers: Sequence[float]) -> str:
         return 'x and y are swapped: call inverse_kinematics(x, y) with x first'
     if not missing([angle + 180.0 for angle in absent], numbers):
         if not set(absent) & set(wanted[::2]):
-            return 'θ2 is half a turn off: it is 0° where the arm is stretched, and not 180°'
+            return 'θ2 is half a turn off: it is 0° when the arm is stretched, and not 180°'
         return 'θ1 is half a turn off: atan2(y, x) knows the quadrant, atan(y / x) does not'
     if not missing([-angle for angle in wanted], numbers):
         return 'all angles are mirrored, so look at the sign of y'

@@ -63,7 +63,7 @@ def places_of(text: str) -> list[tuple[float, int, int]]:
 def why_unreadable(wanted: Sequence[float], texts: Sequence[str]) -> str:
     """Advice for texts without the wanted angles: what stands there for a number, or ''."""
     if any(_NAN.search(text) for text in texts):
-        return 'an angle is nan, which is no number, so check how it is computed'
+        return 'an angle is nan, which is not a number, so check how it is computed'
     if any(_BRACES.search(text) for text in texts):
         return 'put an f before the quotation mark: Python then puts the value there'
     pointed = [number for text in texts for number in numbers_of(_DECIMAL_COMMA.sub('.', text))]

@@ -91,7 +91,7 @@ def expect_late_cancel(action: Action, position: Pose, *, start: Pose = (0.0, 0.
             sent.status == ended,
             expected=f'a goal that is over to stay {ended}',
             seen=f'it {sent.status} after a late request to cancel',
-            hint='a goal has one end: leave it alone afterwards',
+            hint='a goal ends only once: change nothing about it afterwards',
             cause='a late request to cancel changes a goal',
         )
         back, arm.start = arm.start, tuple(position)

@@ -131,7 +131,8 @@ def _expect_stays(arm: WatchedArm, *, speed: float, is_there: bool) -> None:
         not is_late,
         expected='a goal to where the arm is already to end at once',
         seen=f'it {sent.status} after {arm.seconds(sent):.1f} s',
-        hint='a way of 0 rad takes no time: give a move no least time, and wait for nothing else',
+        hint='a move of 0 rad takes no time: set no minimum time for a move, and wait for '
+        'nothing else',
         cause='a goal to where the arm is already does not end at once',
     )
 

@@ -78,7 +78,7 @@ def bring_in_haste(arm: WatchedArm, position: Pose) -> None:
         sent.goal.speed == HASTE,
         expected=f'a goal at {HASTE:g} rad/s to be accepted',
         seen=f'it rejected, and one at {CALM:g} rad/s accepted',
-        hint='each speed above 0 is right: ask for goal.speed > 0, and nothing else',
+        hint='every speed above 0 is allowed: check goal.speed > 0, and nothing else',
         cause='a goal with a high speed is rejected',
     )
     _reach(arm, sent, position)

@@ -116,12 +116,15 @@ def _why_wrong(wrong: MoveArm.Goal) -> str:
     if len(wrong.position) != len(LIMITS_RAD):
         return 'a goal has two angles: look at len(goal.position)'
     if not all(map(math.isfinite, [*wrong.position, wrong.speed])):
-        return 'each comparison with NaN is False, so ask what is right: `goal.speed > 0`, say'
+        return (
+            'every comparison with NaN is False, so check for what is allowed, such as '
+            '`goal.speed > 0`'
+        )
     if wrong.speed <= 0.0:
         return 'reject a goal whose speed is not above 0'
     if all(angle <= limit for angle, limit in zip(wrong.position, LIMITS_RAD, strict=True)):
         return (
-            'the limits hold on both sides: compare the size of each angle, abs(…), with its '
+            'there is a limit on both sides: compare the size of each angle, abs(…), with its '
             'limit in radians'
         )
     return (

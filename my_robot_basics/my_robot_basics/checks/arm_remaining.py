@@ -11,8 +11,8 @@ OFF_RAD, MOSTLY_OFF_RAD = 0.01, 0.003
 ALIKE_RAD = 0.02
 SIGNED = 'it is a distance: take the size of each difference, abs(…)'
 LARGEST = (
-    'it is of the joint that is farthest away, whichever way that goes: take the size of each '
-    'difference, abs(…)'
+    'it is the distance of the joint that is farthest away, in either direction: take the size '
+    'of each difference, abs(…)'
 )
 
 
@@ -33,9 +33,9 @@ def expect_remaining(
         'it is what is left behind the step: compute it from the new position': wanted,
         'it is 0 all the time: fill in feedback.remaining': np.zeros(len(left)),
         'it is in radians, too': np.degrees(wanted),
-        'it is of the one joint that is farthest away, not the sum': left.sum(axis=1),
+        'it is the distance of the one joint that is farthest away, not the sum': left.sum(axis=1),
         SIGNED if told.min() < 0.0 else LARGEST: np.where(told < 0.0, told, ways.max(axis=1)),
-        'it is of the one joint that is farthest away': left.min(axis=1),
+        'it is the distance of the one joint that is farthest away': left.min(axis=1),
         'it is an angle, not the distance of both': np.hypot(*left.T),
         'it is what is left, not what is done': np.abs(positions - np.array(start)).max(axis=1),
     }

@@ -51,8 +51,8 @@ def why_aborted(arm: WatchedArm, sent: SentGoal, *, instead: str) -> str:
         return raised
     if log.was_not_set(since_ns=sent.sent_ns):
         return (
-            f'call goal_handle.{instead}() before the execute callback returns: rclpy takes a '
-            'goal whose state nobody has set for aborted'
+            f'call goal_handle.{instead}() before the execute callback returns: rclpy aborts a '
+            'goal whose state nobody has set'
         )
     return f'call goal_handle.{instead}(), and not abort()'
 

@@ -22,7 +22,7 @@ def wrong_names(found: Definition, wanted: Sequence[Sequence[str]], kind: str) -
     for part, names, here in zip(SECTIONS[kind], wanted, found.sections, strict=True):
         for name in here:
             if name not in asked:
-                faults.append(f'{part} has {shorten(name, 40)}, which nobody has asked for')
+                faults.append(f'{part} has {shorten(name, 40)}, which the table does not ask for')
             elif name not in names and name in _all(found, but=here):
                 faults.append(f'{name} is in {part}, too')
     return faults
@@ -76,7 +76,7 @@ def _difference(found: DefinedMember, wanted: DefinedMember) -> str:
         is_as_ever = _is_zero(found.value) and _is_array(found.type) in ('', 'fixed')
         if is_as_ever or found.value == []:
             return ''
-        return f'nobody has asked for a default value of {name}'
+        return f'the table asks for no default value of {name}'
     if found.value is None:
         return f'{name} has no default value: write it after the name, without ='
     return f'{name} has another default value than the table says'

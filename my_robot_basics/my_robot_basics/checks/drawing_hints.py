@@ -14,13 +14,13 @@ from my_robot_basics.graph.watcher import Watcher
 
 NODE = '/arm_player'
 _AFTER = {
-    'unreachable': 'where response.reachable is False, note it and go on with the next target',
+    'unreachable': 'if response.reachable is False, note it and go on with the next target',
     'rejected': 'a goal that is not accepted has no result: note that, and go on with the next',
     'canceled': 'a goal that was canceled has a result, too: note its status and go on',
     'aborted': 'a goal that was aborted has a result, too: note its status and go on',
 }
 
-_NONE_THERE = 'send no goal where response.reachable is False: it has no angles'
+_NONE_THERE = 'send no goal if response.reachable is False: it has no angles'
 
 
 def why_no_client(watcher: Watcher) -> str:

@@ -79,8 +79,8 @@ def expect_no_others(server: Server) -> None:
             times <= targets.count(target),
             expected='the pose of each target once',
             seen=f'one {times} times',
-            hint='ask once for each target, when it arrives, and in no timer; publish each answer '
-            'once',
+            hint='ask once for each target, when it arrives, and not in a timer; publish each '
+            'answer once',
             cause='a pose is published again and again',
         )
 

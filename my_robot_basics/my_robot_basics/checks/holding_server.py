@@ -93,6 +93,6 @@ class HoldingServer:
             count < too_many,
             expected=f'a request to {self.name} for each message',
             seen=seen,
-            hint='ask once in the callback, in no loop and no timer of its own',
+            hint='ask once in the callback, not in a loop or a timer',
             cause=f'{self.name} is asked again and again',
         )

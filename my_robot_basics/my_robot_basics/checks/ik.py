@@ -164,7 +164,7 @@ def expect_no_answer(server: Server, x: float, y: float) -> None:
     def why_wrong(message: Any) -> str:
         if server.made.was_sent_before(asked_ns, message):
             return why_other(server, message)
-        return 'publish only where response.reachable is True'
+        return 'publish only if response.reachable is True'
 
     server.expect_nothing(made_of=is_elbow_up, hint=why_wrong)
 

@@ -41,7 +41,7 @@ def node_command(name: str, node_name: str) -> 'NodeCommand':
             expected=f'`{name}` to be one command line that starts {_EXECUTABLE}',
             seen=theirs(shorten(error.seen)),
             hint=error.hint,
-            cause=f'`{name}` is no command line',
+            cause=f'`{name}` is not a command line',
         )
     return NodeCommand(line, node_name)
 

@@ -20,10 +20,10 @@ def expect_refused(parameters: NodeParameters, name: str, kept_hz: float, rate_h
         expect(
             parameters.get(name) == kept_hz,
             expected=f'{first} and {second}, set in one step, to be refused because of {name}',
-            seen='it was taken',
+            seen='it was accepted',
             hint='your callback gets a list of all that is set in one step: go through all of it, '
-            'refuse if any value is wrong, and say yes after the loop',
-            cause='a value outside the limits is taken beside another parameter',
+            'refuse if any value is wrong, and accept after the loop',
+            cause='a value outside the limits is accepted beside another parameter',
         )
 
 

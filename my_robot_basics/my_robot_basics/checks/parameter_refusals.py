@@ -37,7 +37,7 @@ def expect_all_refused(
         value == kept_hz,
         expected=f'{name} = {kept_hz:g}, as before',
         seen=theirs(shorten(repr(value))),
-        hint='change nothing where you refuse a value',
+        hint='change nothing when you refuse a value',
         cause=f'{name} is changed by a value that was refused',
     )
 
@@ -55,7 +55,7 @@ def expect_leaves_others_alone(parameters: NodeParameters, name: str) -> None:
         fail(
             expected='use_sim_time, another parameter, to be set',
             seen=f'it refused: {theirs(shorten(result.reason))}',
-            hint='your callback gets each parameter that is set: judge those whose name is '
+            hint='your callback gets each parameter that is set: check only those whose name is '
             f"'{name}'",
             cause='your callback refuses other parameters',
         )
@@ -87,17 +87,17 @@ def _expect_refused(
         how = f'do not correct the value, {how}'
     if is_nan:
         how = (
-            'NaN is no number, and < and > are never true of it: ask whether a value is within '
-            'the limits, and refuse what is not'
+            'NaN is not a number, and comparing it with < or > always gives False: check whether '
+            'a value is within the limits, and refuse it if not'
         )
     expect(
         not result.successful,
         expected=f'{name} = {value:g} to be refused',
-        seen=f'it was taken, and {name} is {corrected:g} in the end'
+        seen=f'it was accepted, and {name} is {corrected:g} in the end'
         if is_corrected
-        else 'it was taken',
+        else 'it was accepted',
         hint=how,
-        cause='NaN is taken' if is_nan else 'a value outside the limits is taken',
+        cause='NaN is accepted' if is_nan else 'a value outside the limits is accepted',
     )
     expect(
         bool(result.reason.strip()),
@@ -148,7 +148,7 @@ def fail_refused(name: str, value: float, result: SetParametersResult) -> NoRetu
         expected=f'{name} = {value!r} to be set',
         seen=f'it refused: {theirs(shorten(result.reason))}',
         hint=hint,
-        cause=f'{name} is no double' if is_type else 'a value within the limits is refused',
+        cause=f'{name} is not a double' if is_type else 'a value within the limits is refused',
     )
 
 

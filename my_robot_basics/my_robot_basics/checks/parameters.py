@@ -82,7 +82,7 @@ class NodeParameters:
             expected=f'{name} to be a number',
             seen=theirs(shorten(repr(value))),
             hint='declare it with a number as its default, and change its type nowhere',
-            cause=f'{name} is no number',
+            cause=f'{name} is not a number',
         )
         return float(value)
 

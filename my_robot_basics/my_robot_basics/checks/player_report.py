@@ -58,7 +58,8 @@ class PlayerReport:
             not self.has_come_twice(),
             expected=f'one message on {TOPIC}',
             seen=f'{len(self._messages())}',
-            hint='publish the report once: who joins late receives it from the publisher, too',
+            hint='publish the report once: late-joining subscriptions receive it from the '
+            'publisher, too',
             cause='the report is published again',
         )
 

@@ -115,7 +115,7 @@ class PlayerServers(ScriptedActionServer):
             len(self.goals) < MOST_GOALS,
             expected=f'a goal for {MOVE_ARM} for each target',
             seen=f'{MOST_GOALS} of them',
-            hint='send one goal for each target, in no endless loop',
+            hint='send one goal for each target, not in an endless loop',
             cause=f'{MOVE_ARM} is sent goals again and again',
         )
         return super()._judge(request)

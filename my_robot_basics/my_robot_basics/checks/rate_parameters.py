@@ -68,9 +68,9 @@ class RateParameter:
         value = self.parameters.get(self.name)
         expect(
             value == tried[-1],
-            expected=f'{self.name} = {tried[-1]:g}, which the node has taken',
+            expected=f'{self.name} = {tried[-1]:g}, which the node has accepted',
             seen=theirs(shorten(repr(value))),
-            hint='take the value as it is, or refuse it',
+            hint='accept the value as it is, or refuse it',
             cause=f'{self.name} has another value than the one that was set',
         )
 

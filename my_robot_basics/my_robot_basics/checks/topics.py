@@ -126,7 +126,7 @@ class Topic(TopicEndpoints):
                 fail(
                     expected='one message for each that your node receives',
                     seen=f'{times} messages',
-                    hint='publish once in each call of the callback, and in no timer',
+                    hint='publish once in each call of the callback, and not in a timer',
                 )
             return found()[0]
 

@@ -34,8 +34,8 @@ def why_crashed(code: int | None) -> str:
     if code != -signal.SIGSEGV:
         return ''
     return (
-        'rclpy crashes so where an ActionClient or ActionServer gets a type that is no action, so '
-        'look at each, and give it one such as MoveArm, and no part of it'
+        'rclpy crashes like this if an ActionClient or ActionServer gets a type that is not an '
+        'action, so look at each, and give it one such as MoveArm, and no part of it'
     )
 
 

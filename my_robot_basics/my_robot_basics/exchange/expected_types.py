@@ -46,7 +46,7 @@ def kind_of(body: str) -> str:
 
 def _other_type(found: object, wanted: tuple[type, ...]) -> str:
     if isinstance(found, str) and str not in wanted:
-        return 'a text in quotes is no other value, even if it reads like one'
+        return 'a text in quotes is always a text, even if it looks like another value'
     if dict in wanted:
         return 'write a dict, {key: value, …}, with the keys of the answer cell'
     if bool in wanted:

@@ -109,10 +109,10 @@ BY_WORDS = (
     ),
     Case(
         pattern="'float' object is not iterable",
-        to_do=', so write a list, in square brackets, where several numbers are wanted',
+        to_do=', so write a list, in square brackets, if several numbers are needed',
     ),
     Case(pattern='severity cannot be changed', to_do=', so log each level in a line of its own'),
-    Case(pattern='raised StopIteration', to_do=', so begin anew where next(…) finds no more'),
+    Case(pattern='raised StopIteration', to_do=', so start again when next(…) finds no more'),
     Case(pattern=r'too many values .* in \w+:\)', to_do=', so go through .items() of a dict'),
     Case(pattern="'await' outside async function", to_do=', so begin its function with async def'),
     Case(
@@ -168,7 +168,7 @@ BY_WORDS = (
     ),
     Case(
         pattern="'NoneType' object does not support the context manager",
-        to_do=', so call rclpy.init() in a line of its own: no with takes what it returns',
+        to_do=', so call rclpy.init() in a line of its own: `with` cannot use what it returns',
     ),
     Case(
         pattern=rf'\b(?!(?:{CLASSES})\b)\w+\.(?!__)\w+\(\) takes \d+ positional arguments? but',

@@ -81,9 +81,9 @@ class Overlay:
             ours, theirs = (_type_hashes(Path(root, name)) for root in (sys.prefix, self.prefix))
             if ours and ours != theirs:
                 return (
-                    f'{self.package} in {self.prefix} has another {file} than the course, so that '
-                    'nodes that use it do not meet those that use the one of the course: go on '
-                    'with it if that is what you want, or take the file of the course '
+                    f'{self.package} in {self.prefix} has another {file} than the course, so '
+                    "nodes that use it cannot communicate with nodes that use the course's: keep "
+                    'it if that is what you want, or take the file of the course '
                     f'(./course workspace --refresh {self.package}) and build again'
                 )
         return ''
@@ -133,7 +133,7 @@ def gone(prefix: Path) -> str:
     """What to say of a folder that a terminal has sourced, and that is no longer there."""
     return (
         f'{prefix} is gone, and this terminal still looks for its package there: build the '
-        'package again, or open a new terminal, which takes that of the course if there is one'
+        "package again, or open a new terminal, which uses the course's package if there is one"
     )
 
 

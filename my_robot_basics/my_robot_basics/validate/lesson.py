@@ -107,7 +107,7 @@ def _one_for_each_id(cells: list[NotebookNode], notes: list[str]) -> list[Notebo
             notes.append(f'the answer cell `{name}` came in parts: they are joined')
             first[name].source += '\n\n' + cell.source
         else:
-            notes.append(f'the cell `{name}` is there twice: one counts')
+            notes.append(f'the cell `{name}` is there twice: only one counts')
     return kept
 
 

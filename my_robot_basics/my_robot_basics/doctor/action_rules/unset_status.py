@@ -13,7 +13,7 @@ def examine(evidence: ActionEvidence) -> Iterator[Finding]:
             title='nobody has set how the goal ended',
             expected=f'the execute callback of {node_name} to call succeed(), canceled() or'
             ' abort() before it returns',
-            seen='it returned without, a moment ago: rclpy takes such a goal for aborted',
+            seen='it returned without, a moment ago: rclpy aborts such a goal',
             fix='call it when the goal is reached, before the callback returns',
             code='goal_handle.succeed()',
             broken=tuple(end for end in evidence.servers if end.node_name == node_name),
