@@ -5,6 +5,7 @@ import math
 import pytest
 from my_robot_basics.checks import CheckFailed, joints
 from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64MultiArray
 
 POSE_DEG = 30.0, -90.0
 RIGHT = joints.in_radians(POSE_DEG)
@@ -13,6 +14,13 @@ NAMES = ['joint1', 'joint2']
 
 def message(*position, name=NAMES):
     return JointState(name=name, position=position)
+
+
+def test_a_message_of_another_type_is_no_pose_and_is_told_so():
+    wrong = Float64MultiArray(data=[0.5236, -1.5708])
+    assert joints.pose(wrong) == {}
+    assert joints.shown(wrong) == 'a message of the type Float64MultiArray'
+    assert joints.why_wrong(wrong, POSE_DEG, others_right=True) == joints.OTHER_TYPE
 
 
 def test_joints_agree_in_any_order():

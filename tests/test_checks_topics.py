@@ -10,7 +10,7 @@ from functools import partial
 
 import pytest
 from builtin_interfaces.msg import Time
-from geometry_msgs.msg import Point
+from geometry_msgs.msg import Point, PointStamped
 from my_robot_basics.checks import (
     CheckFailed,
     graph,
@@ -241,6 +241,14 @@ def test_a_question_to_a_subscription_for_another_type_says_so(run):
         topic('/question').publish(JointState(), timeout_sec=0.5)
     assert 'a subscription on /question for JointState, saw none' in str(failed.value)
     assert 'one is there for geometry_msgs/msg/Point' in str(failed.value)
+
+
+def test_an_answer_of_another_type_says_so(run):
+    """Its fields would be looked for in vain."""
+    run(Echo, 10)
+    words = 'expected PointStamped messages on /answer, saw JointState: compare the message type'
+    with pytest.raises(CheckFailed, match=words):
+        topic('/answer').wait_for(lambda message: message.point.x == 0.5, type_=PointStamped)
 
 
 @pytest.mark.slow

@@ -3,6 +3,8 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from std_msgs.msg import String
+
 from my_robot_basics.checks.served_action import ServedAction
 from my_robot_basics.checks.topics import Topic
 from my_robot_basics.feedback.errors import expect
@@ -20,7 +22,7 @@ def action_server(
     The student's node sends a goal for each message on the topic `asked_on`, asks to cancel it for
     True on `cancelled_on`, and publishes on `to` (String) how it ended. Without `starts`, the
     server is absent until `server.start()`. Raises CheckFailed where nobody publishes on `to`,
-    or another node serves.
+    or anything but a String, or another node serves.
 
         with action_server('/move_arm', MoveArm, asked_on='/goal_pose',
                            to='/move_arm_client/outcome', cancelled_on='/obstacle') as server:
@@ -30,7 +32,7 @@ def action_server(
             server.expect_outcome('succeeded')
     """
     with Watcher(shared=True) as watcher:
-        outcomes = Topic(to).listen(watcher)
+        outcomes = Topic(to).listen(watcher, type_=String)
         others = actions.take(watcher.node).servers.get(name, {})
         expect(
             not others,

@@ -4,6 +4,8 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+from sensor_msgs.msg import JointState
+
 from arm_interfaces.srv import SolveIK
 from my_robot_basics.checks import joints
 from my_robot_basics.checks.servers import Server
@@ -88,6 +90,8 @@ def expect_no_others(server: Server) -> None:
 def why_other(server: Server, message: Any) -> str:
     """What is wrong with a message that is made of no response, or of one that has its message."""
     seen = joints.pose(message)
+    if not isinstance(message, JointState):
+        return joints.OTHER_TYPE
     if any(_agree(seen, response.elbow_down) for response in server.sent):
         return 'this is elbow_down: publish the angles of response.elbow_up alone'
     if any(_agree(seen, solve(asked).elbow_up) for asked in server.requests):
@@ -96,7 +100,7 @@ def why_other(server: Server, message: Any) -> str:
 
 
 def is_elbow_up(message: Any, response: Any) -> bool:
-    """Whether a JointState is the elbow-up pose of a response."""
+    """Whether a message is the elbow-up pose of a response."""
     return _agree(joints.pose(message), response.elbow_up)
 
 

@@ -3,6 +3,7 @@
 import math
 import random
 from collections.abc import Sequence
+from typing import Any
 
 from sensor_msgs.msg import JointState
 
@@ -13,6 +14,7 @@ MOST_JOINTS = 100
 """What has more is no pose of an arm, and is not looked at."""
 CLOSE_RAD = 0.02
 """A pose that was rounded to two decimals is no further off."""
+OTHER_TYPE = 'publish a JointState there: compare the message type in create_publisher(…)'
 SWAPPED = 'the joints are swapped: θ1 belongs to joint1, and comes first'
 CONVERT = 'convert both angles with radians(), θ1 for joint1, θ2 for joint2'
 """What to try where nobody knows what a pose is instead. …"""
@@ -28,12 +30,14 @@ def make(numbers: random.Random, *names: str) -> JointState:
     return JointState(name=[*names], position=[numbers.uniform(-1.5, 1.5) for _ in names])
 
 
-def pose(message: JointState) -> dict[str, float]:
+def pose(message: Any) -> dict[str, float]:
     """Return each joint's position, to four decimals.
 
-    Nothing where names and positions differ in number, a name is there twice, or there are too
-    many.
+    Nothing where names and positions differ in number, a name is there twice, there are too many,
+    or it is no JointState.
     """
+    if not isinstance(message, JointState):
+        return {}
     if len(message.name) != len(message.position) or len(message.name) > MOST_JOINTS:
         return {}
     if len({*message.name}) != len(message.name):
@@ -50,8 +54,10 @@ def agree(seen: dict[str, float], right: dict[str, float], within_rad: float = E
     )
 
 
-def shown(message: JointState) -> dict[str, float] | str:
+def shown(message: Any) -> dict[str, float] | str:
     """What the feedback shows of a message."""
+    if not isinstance(message, JointState):
+        return f'a message of the type {type(message).__name__}'
     names, positions = len(message.name), len(message.position)
     return pose(message) or f'{positions} positions with {names} names'
 
@@ -80,13 +86,13 @@ def expect_radians(
     )
 
 
-def why_wrong(
-    message: JointState, pose_deg: Sequence[float], *, others_right: bool = False
-) -> str:
+def why_wrong(message: Any, pose_deg: Sequence[float], *, others_right: bool = False) -> str:
     """Advice for a message that is not that pose; it names the cause, and none of the angles.
 
     `others_right`: whether another pose has come out as it should.
     """
+    if not isinstance(message, JointState):
+        return OTHER_TYPE
     seen, right = pose(message), in_radians(pose_deg)
     if len(message.name) == len(right) and _adds_to_others(list(message.position), pose_deg):
         return why_off(list(message.position), pose_deg, others_right=others_right)

@@ -5,6 +5,8 @@ import random
 from dataclasses import dataclass
 from typing import Any
 
+from sensor_msgs.msg import JointState
+
 from my_robot_basics.checks import remap_hints
 from my_robot_basics.checks.parameters import NodeParameters
 from my_robot_basics.checks.started_node import StartedNode, started_node
@@ -175,6 +177,7 @@ class NodeCommand:
             expected=f'a pose of the seed {seed} on {topic_name}',
             seen=lambda message: f'the pose {[round(angle, 3) for angle in message.position]}',
             hint='the node takes its seed when it starts: give it in the command line',
+            type_=JointState,
         )
 
 

@@ -54,12 +54,16 @@ class TopicEndpoints:
         return any(info.qos_profile.reliability == ReliabilityPolicy.BEST_EFFORT for info in infos)
 
     def listen(
-        self, watcher: Watcher, *, take: Callable[[Watcher], GraphSnapshot] = graphs.take
+        self,
+        watcher: Watcher,
+        *,
+        type_: type | None = None,
+        take: Callable[[Watcher], GraphSnapshot] = graphs.take,
     ) -> Recorder:
         """Subscribe with the publishers' own type and QoS; wait for them first.
 
         `take` gives the graph where a missing publisher is looked for. Raises CheckFailed when
-        there is no publisher, or no one type.
+        there is no publisher, or no one type, or another than `type_`, if that is given.
         """
         timeout_sec = self.timeout_for(watcher, PUBLISHER_SEC, end='publishers')
         if not graphs.wait_for_publisher(watcher, self.name, timeout_sec=timeout_sec):
@@ -69,6 +73,13 @@ class TopicEndpoints:
                 hint=take(watcher).why_no_message(self.name),
             )
         message_type = self._message_type(watcher)
+        if type_ is not None and message_type is not type_:
+            fail(
+                expected=f'{type_.__name__} messages on {self.name}',
+                seen=message_type.__name__,
+                hint='compare the message type in create_publisher(…)',
+                cause=f'the messages on {self.name} have another type',
+            )
         offers = graphs.publisher_infos(watcher.node, self.name)
         reliable = all(
             offer.qos_profile.reliability == ReliabilityPolicy.RELIABLE for offer in offers

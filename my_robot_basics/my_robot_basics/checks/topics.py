@@ -73,6 +73,7 @@ class Topic(TopicEndpoints):
         hint: str | Callable[[Any], str] = 'print what your node publishes and compare',
         never: Callable[[Any], object] | None = None,
         once: bool = False,
+        type_: type | None = None,
     ) -> Any:
         """The first message for which the predicate holds (the first of all without one).
 
@@ -82,10 +83,11 @@ class Topic(TopicEndpoints):
         gives the `hint` (on that one, if it is a function); so it does where one comes for which
         `never` holds, alone or beside the right one: nothing that comes later changes that. With
         `once`, any second message fails, too, in words for a node that publishes once for each
-        message: so publish one message in `after`.
+        message: so publish one message in `after`. Other types than `type_` fail; without it, the
+        functions get messages of any standard type.
         """
         with Watcher(shared=True) as watcher:
-            recorder = self.listen(watcher)
+            recorder = self.listen(watcher, type_=type_)
             if after is not None:
                 after()
 
