@@ -4,6 +4,7 @@ import pytest
 from grade_cell import grade_cell
 from my_robot_basics.checks import CheckFailed, topic
 from my_robot_basics.graph import graphs, watcher
+from my_robot_basics.graph.rmw import LatchedSubscription
 from my_robot_basics.graph.watcher import Watcher
 from rclpy.node import Node
 from std_msgs.msg import Empty, String
@@ -64,6 +65,29 @@ def test_a_name_that_is_no_text_fails_a_check(node, monkeypatch):
     monkeypatch.setattr(Node, 'get_topic_names_and_types', look_up)
     with pytest.raises(CheckFailed, match='names and types on the graph that are text, saw bytes'):
         topic('/talk').wait_for()
+
+
+@pytest.mark.parametrize(
+    'dds_name',
+    ['rt/no name', 'rq/no name/set_parametersRequest'],
+    ids=['of a topic', 'of a service'],
+)
+def test_a_name_that_ros_refuses_fails_a_check(node, dds_name):
+    """DDS allows it, and rclpy raises where it is asked about such a topic or service."""
+    node.create_publisher(String, '/talk', 1)
+    interface = 'SetParameters_Request' if dds_name.startswith('rq/') else 'ParameterEvent'
+    kind = 'srv' if dds_name.startswith('rq/') else 'msg'
+    made = LatchedSubscription(
+        node, dds_name, package='rcl_interfaces', kind=kind, message_name=interface
+    )
+    with pytest.raises(CheckFailed, match="names on the graph that ROS allows, saw '/no name"):
+        topic('/talk').record(seconds=2.0)
+    made.close()
+
+
+def test_a_mistake_of_a_check_is_no_name_on_the_graph(node):
+    with pytest.raises(ValueError, match='wrong'), Watcher():
+        raise ValueError('wrong')
 
 
 def test_a_look_asks_for_no_event_that_nobody_waits_for():

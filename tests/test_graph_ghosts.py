@@ -85,6 +85,27 @@ def test_what_a_node_serves_is_found_though_another_of_its_name_has_nothing(name
 
 
 @pytest.mark.parametrize(
+    ('dds_type', 'type_'),
+    [
+        ('arm_interfaces::srv::dds_::SolveIK_Request_', 'arm_interfaces/srv/SolveIK'),
+        (
+            'arm_interfaces::action::dds_::MoveArm_SendGoal_Request_',
+            'arm_interfaces/action/MoveArm',
+        ),
+        *[(each, each) for each in ('', 'word', 'dds_::Word_', '::')],
+    ],
+)
+def test_a_type_that_no_program_of_ros_has_is_named_as_dds_does(monkeypatch, dds_type, type_):
+    """Any text may be the type of a reader of requests."""
+    info = SimpleNamespace(node_name='a', node_namespace='/', topic_type=dds_type)
+    monkeypatch.setattr(services, 'subscription_infos', lambda node, name, is_dds: [info])
+    monkeypatch.setattr(services, 'publisher_infos', lambda node, name, is_dds: [])
+    node = SimpleNamespace(get_node_names_and_namespaces=lambda: [])
+    found = services.take_ends(node, {'/solve_ik': '/solve_ik'})
+    assert found.servers == {'/solve_ik': {'/a': (type_,)}}
+
+
+@pytest.mark.parametrize(
     ('names', 'publishers', 'is_gone'),
     [(['/a'], ['/a'], False), (['/a'], ['/b'], True), (['/b'], ['/a'], True), ([], [], True)],
     ids=['a node', 'a name alone', 'a publisher alone', 'neither'],

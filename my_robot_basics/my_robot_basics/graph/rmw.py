@@ -16,13 +16,16 @@ class LatchedSubscription:
     Raises RuntimeError if rmw does not let it subscribe.
     """
 
-    def __init__(self, node: Node, topic_name: str, *, package: str, message_name: str) -> None:
+    def __init__(
+        self, node: Node, topic_name: str, *, package: str, message_name: str, kind: str = 'msg'
+    ) -> None:
+        """`kind` of interface: 'msg', or 'srv' for a request or response."""
         self._rmw = _functions()
         self._node = self._rmw.rcl_node_get_rmw_handle(node.handle.pointer)
         self._bytes = _Bytes()
         allocator = self._rmw.rcutils_get_default_allocator()
         self._rmw.rcutils_uint8_array_init(self._bytes, 0, allocator)
-        type_support = _type_support(package, message_name)
+        type_support = _type_support(package, kind, message_name)
         self._subscription = self._rmw.rmw_create_subscription(
             self._node, type_support, topic_name.encode(), _LATCHED, _Options()
         )
@@ -122,9 +125,9 @@ def _functions() -> ctypes.CDLL:
     return library
 
 
-def _type_support(package: str, name: str) -> int:
+def _type_support(package: str, kind: str, name: str) -> int:
     library = ctypes.CDLL(f'lib{package}__rosidl_typesupport_c.so')
     prefix = 'rosidl_typesupport_c__get_message_type_support_handle'
-    get = library[f'{prefix}__{package}__msg__{name}']
+    get = library[f'{prefix}__{package}__{kind}__{name}']
     get.restype = ctypes.c_void_p
     return get()

@@ -94,7 +94,8 @@ def take_ends(node: Node, requests: Mapping[str, str]) -> ServiceGraph:
 
 def _type_of(dds_type: str) -> str:
     """What ROS calls the type of an interface whose requests have this type in DDS."""
-    package, *kinds, name = dds_type.split('::')
-    if not kinds:
+    parts = dds_type.split('::')
+    if len(parts) < 3:
         return dds_type  # of no program of ROS
-    return f'{package}/{kinds[0]}/{name.removesuffix("_Request_").removesuffix("_SendGoal")}'
+    package, kind, *_, name = parts
+    return f'{package}/{kind}/{name.removesuffix("_Request_").removesuffix("_SendGoal")}'

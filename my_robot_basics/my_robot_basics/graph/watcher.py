@@ -5,14 +5,16 @@ from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from typing import Self
 
+from rclpy.exceptions import NameValidationException
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
-from my_robot_basics.feedback.errors import fail
-from my_robot_basics.feedback.hidden import is_in_test_room
+from my_robot_basics.feedback.errors import fail, shorten
+from my_robot_basics.feedback.hidden import is_in_test_room, theirs
 from my_robot_basics.graph.cell_context import context_of_cell, new_context
 from my_robot_basics.graph.lean_executor import LeanExecutor
 from my_robot_basics.graph.snapshot import GraphSnapshot
+from my_robot_basics.graph.strange_names import strange_name
 from my_robot_basics.graph.unheeded import Unheeded
 from my_robot_basics.session import classroom, interactions
 from my_robot_basics.session.environment import set_meanwhile
@@ -24,6 +26,9 @@ HIDDEN = '_'
 MOST_ENDPOINTS = 1_000
 """Publishers, subscriptions and services in a domain: thirty nodes have some 400. With many
 thousands, no look at the graph comes to an end."""
+BY_RCLPY = 'make nodes, topics and services with rclpy alone, by names of ASCII letters'
+_REFUSES = ValueError, NameValidationException
+"""What rclpy raises where it is asked about a name that nobody can have given with it."""
 COUNT_EVERY_SEC = 0.5
 LOOK_EVERY_SEC = 0.05
 
@@ -78,6 +83,7 @@ class Watcher:
 
     def __exit__(self, _: object, error: BaseException | None, __: object) -> None:
         """Leave it, with all that was made here. Raises CheckFailed where it could not be read."""
+        refused = strange_name(self.node) if isinstance(error, _REFUSES) else ''
         self._executor.shutdown()
         for node in self._nodes:
             node.destroy_node()
@@ -88,7 +94,13 @@ class Watcher:
             fail(
                 expected='names and types on the graph that are text',
                 seen='bytes that are not UTF-8',
-                hint='make nodes, topics and services with rclpy alone, by names of ASCII letters',
+                hint=BY_RCLPY,
+            )
+        if refused:
+            fail(
+                expected='names on the graph that ROS allows',
+                seen=theirs(shorten(repr(refused))),
+                hint=BY_RCLPY,
             )
 
     def add_node(self, name: str, *, namespace: str = '', cli_args: Sequence[str] = ()) -> Node:

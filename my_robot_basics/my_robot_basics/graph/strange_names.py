@@ -1,0 +1,30 @@
+"""Names on the graph that DDS allows and ROS does not: rclpy refuses to be asked about them."""
+
+from collections.abc import Iterator
+
+from rclpy.exceptions import NameValidationException
+from rclpy.node import Node
+from rclpy.validate_full_topic_name import validate_full_topic_name
+
+
+def strange_name(node: Node) -> str:
+    """Return one that the node sees now; '' where there is none, or names are no text."""
+    try:
+        return next((name for name in _names(node) if not _is_allowed(name)), '')
+    except UnicodeDecodeError:
+        return ''
+
+
+def _names(node: Node) -> Iterator[str]:
+    """Yield the full names of topics, services and nodes, which are formed alike."""
+    for look_up in node.get_topic_names_and_types, node.get_service_names_and_types:
+        yield from (name for name, _ in look_up())
+    for name, namespace in node.get_node_names_and_namespaces():
+        yield f'{namespace.rstrip("/")}/{name}'
+
+
+def _is_allowed(name: str) -> bool:
+    try:
+        return validate_full_topic_name(name)
+    except NameValidationException:
+        return False

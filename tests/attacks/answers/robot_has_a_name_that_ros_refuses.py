@@ -1,0 +1,12 @@
+"""Publishes nothing, and subscribes by DDS to a topic with a name about which rclpy raises."""
+
+from my_robot_basics.graph.rmw import LatchedSubscription
+
+
+class KinematicsPublisher(KinematicsPublisher):
+    def __init__(self):
+        super().__init__()
+        self.destroy_timer(self.timer)
+        self.kept = LatchedSubscription(
+            self, 'rt/no name!', package='std_msgs', message_name='Empty'
+        )
