@@ -23,6 +23,8 @@ DEPTH = 1000
 NODE_SEC = 10.0
 GONE_SEC = 1.0
 """How long a node that is there may be missing on the graph."""
+MOST_CHARACTERS = 200_000
+"""What a node may log for one target: all of it is read again with each line that comes."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +50,7 @@ class NodeLog:
         self.node_name = f'/{node_name.strip("/")}'
         self._received: list[tuple[int, Record]] = []
         self._watcher = Watcher()
-        self._since_ns = 0
+        self._since_ns = self._characters = 0
         self._publishers: dict[str, Publisher] = {}
         self._asked: tuple[str, Any] | None = None
         """The topic and the target that was sent last."""
@@ -73,7 +75,7 @@ class NodeLog:
 
     def mark(self) -> None:
         """Let only records count that are logged from now on."""
-        self._since_ns = time.time_ns()
+        self._since_ns, self._characters = time.time_ns(), 0
 
     def ask(self, topic_name: str, message: Any) -> None:
         """Publish a target, of which the records since then are to tell.
@@ -144,7 +146,20 @@ class NodeLog:
     def _receive(self, message: LogMessage, info: dict) -> None:
         if message.name == self._logger or message.name.startswith(f'{self._logger}.'):
             level = LEVELS.get(message.level, str(message.level))
-            self._received.append((info['source_timestamp'], Record(level, message.msg)))
+            sent_ns = info['source_timestamp']
+            self._received.append((sent_ns, Record(level, message.msg)))
+            if sent_ns > self._since_ns > 0:
+                self._expect_few_characters(len(message.msg))
+
+    def _expect_few_characters(self, more: int) -> None:
+        self._characters += more
+        expect(
+            self._characters <= MOST_CHARACTERS,
+            expected=f'the answer to one target in the log of {self.node_name}',
+            seen=f'{self._characters:,} characters',
+            hint='log the solutions of each target, in a line or a few',
+            cause=f'over {MOST_CHARACTERS:,} characters for one target',
+        )
 
     def _why_absent(self, others: Sequence[str]) -> str:
         if not others:

@@ -14,6 +14,8 @@ from my_robot_basics.graph.watcher import Watcher
 
 DEPTH = 100
 MOST_LINES = 1000
+MOST_CHARACTERS = 1000
+"""What is kept of a line: a sentence tells less."""
 LOG_SEC = 0.5
 """How long a line may come behind what it explains, of time that was free."""
 _RAISED = 'Error raised in execute callback: '
@@ -61,4 +63,4 @@ class ServerLog:
     def _receive(self, message: Any, info: dict) -> None:
         is_ours = message.name == self._logger or message.name.startswith(f'{self._logger}.')
         if is_ours and any(part in message.msg for part in (_RAISED, _NOT_SET, _NO_RESPONSE)):
-            self._lines.append((info['source_timestamp'], message.msg))
+            self._lines.append((info['source_timestamp'], message.msg[:MOST_CHARACTERS]))
