@@ -11,7 +11,7 @@ from my_robot_basics.checks import (
     topic,
 )
 from my_robot_basics.checks.inconclusive import Inconclusive
-from my_robot_basics.checks.parameter_refusals import fail_refused
+from my_robot_basics.checks.parameter_refusals import expect_all_refused, fail_refused
 from my_robot_basics.checks.parameters import NodeParameters
 from my_robot_basics.checks.rate_parameters import RateParameter
 from nodes.running import imported
@@ -159,6 +159,17 @@ class OldTimers:
 
     def set_beside_another(self, name, value, *, is_first=False):
         return self.set(name, value)[0]
+
+
+def test_a_rate_that_is_a_text_once_a_value_was_refused_is_told(monkeypatch):
+    told = iter([5.0, 'a text'])
+    refused = SetParametersResult(successful=False, reason='no')
+    monkeypatch.setattr(NodeParameters, 'get', lambda self, name: next(told))
+    monkeypatch.setattr(
+        NodeParameters, 'set', lambda self, name, *values: [refused for _ in values]
+    )
+    with pytest.raises(CheckFailed, match="expected rate_hz to be a number, saw 'a text'"):
+        expect_all_refused(NodeParameters('/node'), 'rate_hz', 5.0, [60.0])
 
 
 def test_timers_that_run_on_are_no_mistake_with_refusals(monkeypatch):

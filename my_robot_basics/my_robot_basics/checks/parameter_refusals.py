@@ -28,7 +28,7 @@ def expect_all_refused(
     """
     tried = in_its_type(parameters, name, rates_hz, kept_hz)
     results = parameters.set(name, *tried)
-    value = parameters.get(name)
+    value = parameters.get_number(name)
     is_one_of_them = any(value == each or _are_nan(value, each) for each in (kept_hz, *tried))
     corrected = None if is_one_of_them else value
     for each, result in zip(tried, results, strict=True):
