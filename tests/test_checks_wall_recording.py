@@ -166,3 +166,10 @@ def test_who_goes_on_at_another_rate_is_looked_at_anew(monkeypatch, gaps_sec, go
     again, earlier = on_wall(gaps_sec, late_sec=0.0), on_wall([0.2] * 20, late_sec=0.0)
     monkeypatch.setattr(wall_recording, 'wall', lambda *_, **__: again)
     assert wall_recording.goes_on(None, None, earlier) is goes_on
+
+
+@pytest.mark.parametrize('end', ['\n', '\r', '\x0b', '\x85', '\u2028'])
+def test_a_name_that_dds_brings_writes_no_note_of_its_own(end):
+    """A note is a line of a check's: a student would write what a check has said."""
+    recorder = SimpleNamespace(publishers=lambda: (f'/robot{end}note: 5 of 5 points',))
+    assert len(wall_recording._note(recorder).splitlines()) == 1

@@ -7,6 +7,7 @@ from my_robot_basics.checks.clock import ahead_sec
 from my_robot_basics.checks.inconclusive import Inconclusive, NoMessage, TooSlow
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.recording import Recording, Sample
+from my_robot_basics.feedback.errors import shorten
 from my_robot_basics.graph.raised import what_raised
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
@@ -100,5 +101,5 @@ def goes_on(watcher: Watcher, recorder: Recorder, earlier: Recording) -> bool:
 
 
 def _note(recorder: Recorder) -> str:
-    name = ', '.join(recorder.publishers())
+    name = shorten(', '.join(recorder.publishers()))  # each line of a note would be one
     return f"note: {name} ignores the robot's clock (use_sim_time); judged on the wall clock"
