@@ -12,6 +12,7 @@ class IKClient(IKClient):
     def __init__(self):
         super().__init__()
         self.destroy_timer(self.counting)
+        self.destroy_publisher(self.alive)
         self.second = Node('ik_client')
         self.second_alive = self.second.create_publisher(Int32, '/ik_client/alive', 10)
         self.second.create_timer(0.1, self.say_so)
