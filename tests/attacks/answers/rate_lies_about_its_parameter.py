@@ -1,7 +1,12 @@
 # earns 1
 """Has services of its own for parameters: whatever is set was set, and nothing changes."""
 
-from rcl_interfaces.srv import GetParameters, ListParameters, SetParameters
+from rcl_interfaces.srv import (
+    GetParameters,
+    ListParameters,
+    SetParameters,
+    SetParametersAtomically,
+)
 from rclpy.parameter import parameter_value_to_python
 
 
@@ -12,6 +17,7 @@ class AdjustablePublisher(AdjustablePublisher):
         kinds = {
             'get_parameters': (GetParameters, self.tell),
             'set_parameters': (SetParameters, self.take),
+            'set_parameters_atomically': (SetParametersAtomically, self.take_all),
             'list_parameters': (ListParameters, lambda request, response: response),
         }
         for name, (kind, callback) in kinds.items():
@@ -29,4 +35,12 @@ class AdjustablePublisher(AdjustablePublisher):
             if is_right:
                 self.told[parameter.name] = parameter.value
             response.results.append(SetParametersResult(successful=is_right, reason='use 1 to 50'))
+        return response
+
+    def take_all(self, request, response):
+        before = dict(self.told)
+        results = self.take(request, SetParameters.Response()).results
+        response.result = min(results, key=lambda result: result.successful)
+        if not response.result.successful:
+            self.told = before
         return response
