@@ -227,7 +227,7 @@ REFUSED_WRONG = [
     (AcceptsNaN, r'expected reachable to be False for \(nan, 0\.5\), saw True'),
     (LeavesAngles, r'expected no angles for \(2\.5, 0\), saw 2: leave elbow_up'),
     (SaysNothing, r'expected a message that says why .*saw none: set response\.message'),
-    (Raises, r'expected an answer, saw none: its callback raised ValueError.*so fix that'),
+    (Raises, r'expected an answer, saw none: its callback raised ValueError.*; fix that first'),
 ]
 
 
