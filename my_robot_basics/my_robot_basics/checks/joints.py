@@ -77,11 +77,11 @@ def expect_radians(
 
     `others_right`: whether another pose has come out as it should.
     """
-    seen, right = [round(each, 4) for each in position], list(in_radians(pose_deg).values())
+    right = list(in_radians(pose_deg).values())
     expect(
-        _are_near(seen, right),
+        _are_near(position, [math.radians(angle) for angle in pose_deg]),  # both not rounded
         expected=f'{right} rad for {tuple(pose_deg)} degrees',
-        seen=f'{seen}',
+        seen=f'{[round(each, 4) for each in position]}',
         hint=why_off(list(position), pose_deg, others_right=others_right),
     )
 

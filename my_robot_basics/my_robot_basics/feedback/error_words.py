@@ -145,7 +145,7 @@ BY_WORDS = (
         to_do=', so write each field with its name, such as SolveIK.Request(target=point)',
     ),
     Case(
-        pattern="_(?:Request|Response|Goal|Result|Feedback)' object has no attribute",
+        pattern="(?:_(?:Request|Response|Goal|Result|Feedback)|JointState)' object has no attr",
         to_do=', so look its fields up with ros2 interface show',
     ),
     Case(
