@@ -50,7 +50,7 @@ class RaisesInAnswer(IKClient):
 WRONG = [
     (ForwardsNothing, 'saw none in 1.5 s: publish when the answer is there'),
     (ElbowDown, 'this is elbow_down: publish the angles of response.elbow_up'),
-    (Degrees, 'these are degrees: convert both with radians'),
+    (Degrees, 'these are degrees: publish the angles of response.elbow_up as they are'),
     (AsksForAnother, 'a request to /solve_ik for the message on /target_point, saw arm_interf'),
     (AsksNobody, 'saw none in 1.5 s: call self.client.call_async'),
     (RaisesInAnswer, "saw none in 1.5 s: its callback raised AttributeError.*'elbow'"),

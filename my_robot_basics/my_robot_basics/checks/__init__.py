@@ -16,6 +16,7 @@ without an error has passed.
 - a node that a command line starts: `node_command(name, node_name)`
 - a package of the student's, built and run: `package(name)`
 - a node's log: `rosout(node_name)`
+- a node's name: `expect_node(name)`
 - nodes, publishers and subscriptions: `graph()`
 - predictions: `Predictions`
 - texts of .msg, .srv and .action files: `Definitions`
@@ -35,6 +36,7 @@ _HOMES = {
     'node_command': 'checks.node_commands',
     'package': 'checks.packages',
     'rosout': 'checks.logs',
+    'expect_node': 'checks.node_names',
     'node_parameters': 'checks.parameters',
     'rate_parameter': 'checks.rate_parameters',
     'graph': 'graph.graphs',

@@ -15,6 +15,7 @@ from my_robot_basics.feedback.errors import expect
 EACH_TARGET = (
     'ask for each target, also for one that comes while the answer to another is not there yet'
 )
+AS_IT_IS = 'publish the angles of response.elbow_up as they are: they are in radians'
 EACH_ANSWER = (
     'publish for each answer, though two requests are under way at once: add_done_callback for '
     'each future, or a list that keeps all of them'
@@ -48,10 +49,10 @@ def _expect_pose(
             return EACH_ANSWER if was_asked else EACH_TARGET
         # nobody knows of which target it was made
         reasons = [_why_wrong(server, message, request(*each)) for each in [(x, y), *beside]]
-        return next((each for each in reasons if each != joints.CONVERT), joints.CONVERT)
+        return next((each for each in reasons if each != AS_IT_IS), AS_IT_IS)
 
     server.expect(
-        lambda message: joints.agree(joints.pose(message), right),
+        lambda message: _is_pose(joints.pose(message), right),
         expected=f'the elbow-up pose {right}',
         hint=why_wrong,
         cause='a target is left without its pose' if beside else '',
@@ -64,7 +65,11 @@ def _why_wrong(server: Server, message: Any, asked: SolveIK.Request) -> str:
         return 'this is elbow_down: publish the angles of response.elbow_up'
     if _agree(seen, solve(asked).elbow_up):
         return 'publish the angles of the response, not a solution of your own'
-    return joints.why_wrong(message, _degrees(response.elbow_up))
+    why = joints.why_wrong(message, _degrees(response.elbow_up))
+    if why.startswith('these are degrees'):
+        return 'these are degrees: publish the angles of response.elbow_up as they are, in radians'
+    # a client has nothing to convert
+    return AS_IT_IS if 'radians()' in why else why
 
 
 def expect_no_others(server: Server) -> None:
@@ -106,7 +111,12 @@ def is_elbow_up(message: Any, response: Any) -> bool:
 
 def _agree(seen: dict[str, float], position: Sequence[float]) -> bool:
     right = joints.in_radians(_degrees(position))
-    return bool(right) and joints.agree(seen, right)
+    return bool(right) and _is_pose(seen, right)
+
+
+def _is_pose(seen: dict[str, float], right: dict[str, float]) -> bool:
+    """Whether these joints, and no others, are where they should be."""
+    return seen.keys() == right.keys() and joints.agree(seen, right)
 
 
 def _degrees(position: Sequence[float]) -> list[float]:

@@ -1,13 +1,13 @@
 """What `/solve_ik` is to answer, and what is wrong with what it does; in radians."""
 
+import itertools
 import math
 import time
-from collections.abc import Sequence
 from typing import Any
 
 from geometry_msgs.msg import Point
 
-from my_robot_basics.checks import joints
+from my_robot_basics.checks.branches import DOWN, UP, in_radians, is_pose, why_off
 from my_robot_basics.checks.elbow_up import (
     expect_each_elbow_up,
     expect_elbow_up,
@@ -20,26 +20,27 @@ from my_robot_basics.checks.servers import Server
 from my_robot_basics.checks.services import Service
 from my_robot_basics.checks.solutions import is_for, request, solve
 from my_robot_basics.feedback.errors import expect, fail, shorten
+from my_robot_basics.session.pressure import Stopwatch
 from my_robot_basics.two_link_kinematics import inverse_kinematics
 
 __all__ = ['expect_elbow_up', 'request', 'solve']
 
-UP, DOWN = 'elbow_up', 'elbow_down'
 MOST_ANGLES = 20
 """What is looked at of a branch, which has two: a response may have millions."""
 COUNT_HZ = 10.0
 """How often a client's count, given by its skeleton, goes on."""
-HIGH_M = 0.7
-"""The z of some targets: the arm moves in a plane."""
+HEIGHTS_M = 0.0, 0.7, -0.7
+"""The z of targets, one after the other: the arm moves in a plane."""
 
 
 def expect_solutions(service: Service, *targets: tuple[float, float]) -> None:
     """Each target, asked for at once with the others, is answered with both branches in radians.
 
-    Targets are (x, y) in metres and within reach; each second one is asked for with a z, which
+    Targets are (x, y) in metres and within reach; two of three are asked for with a z, which
     does not matter. Raises CheckFailed.
     """
-    asked = [request(x, y, z=HIGH_M * (i % 2)) for i, (x, y) in enumerate(targets)]
+    heights_m = itertools.cycle(HEIGHTS_M)
+    asked = [request(x, y, z=z) for (x, y), z in zip(targets, heights_m, strict=False)]
     for each, response in zip(asked, service.call_all(*asked), strict=True):
         if why := _why_wrong(response, each.target):
             at_zero = request(each.target.x, each.target.y)
@@ -64,11 +65,12 @@ def _why_wrong(response: Any, target: Point) -> dict[str, Any]:
     branches_deg = inverse_kinematics(target.x, target.y)
     for branch, other in ((UP, DOWN), (DOWN, UP)):
         position = list(getattr(response, branch)[:MOST_ANGLES])
-        if not _is_pose(position, branches_deg[branch]):
+        if not is_pose(position, branches_deg[branch]):
+            rad = in_radians(branches_deg[branch])
             return {
-                'expected': f'{branch} of {_rad(branches_deg[branch])} rad for {where}',
+                'expected': f'{branch} of {rad} rad for {where}',
                 'seen': shorten([round(angle, 4) for angle in position]),
-                'hint': _why_off(position, branches_deg, branch, other),
+                'hint': why_off(position, target, branch, other),
                 'cause': f'{branch} is wrong',
             }
     return {}
@@ -114,21 +116,26 @@ def expect_answer(server: Server, x: float, y: float) -> None:
     expect_elbow_up(server, x, y)
 
 
-def expect_never_blocks(server: Server, *targets: tuple[float, float]) -> None:
+def expect_never_blocks(
+    server: Server, *targets: tuple[float, float], slow_sec: float = 0.0
+) -> None:
     """The client goes on while the server takes its time, and while there is none.
 
     It counts at COUNT_HZ, and answers each of three targets, within reach, that it is asked for
-    while there is a server: two while the first answer is not there, and the third when the
-    server has come back. Raises CheckFailed.
+    while there is a server: two while the first answer is not there, for `slow_sec` or more, and
+    the third when the server has come back. Raises CheckFailed.
     """
     first, second, third = targets
     if count := server.record_count():  # one that is slow would seem to stand still
         count.assert_rate(COUNT_HZ)
     server.hold()
+    watch = Stopwatch()
     ask(server, *first)
     # no request is expected yet: a client that keeps targets asks for one after the other
     server.expect_alive('the server takes its time', Point(x=second[0], y=second[1]))
     expect_no_others(server)
+    while watch.wall_sec() < slow_sec:  # a client that gives up must not have the answer by then
+        server.expect_nothing(made_of=is_elbow_up, hint=lambda each: why_other(server, each))
     server.release()
     expect_each_elbow_up(server, first, second)
     _let_all_be_answered(server)
@@ -164,33 +171,10 @@ def expect_no_answer(server: Server, x: float, y: float) -> None:
     def why_wrong(message: Any) -> str:
         if server.made.was_sent_before(asked_ns, message):
             return why_other(server, message)
+        if any(is_elbow_up(message, response) for response in server.sent):
+            return (
+                'publish only if response.reachable is True, and each answer once, not in a timer'
+            )
         return 'publish only if response.reachable is True'
 
     server.expect_nothing(made_of=is_elbow_up, hint=why_wrong)
-
-
-def _is_pose(position: Sequence[float], pose_deg: Sequence[float]) -> bool:
-    """Whether each joint is there, whole turns aside, as in lesson 4's log."""
-    right = [math.radians(angle) for angle in pose_deg]
-    return (
-        len(position) == len(right)
-        and all(map(math.isfinite, position))
-        and all(
-            abs(math.remainder(a - b, math.tau)) < joints.EXACT_RAD
-            for a, b in zip(position, right, strict=True)
-        )
-    )
-
-
-def _why_off(
-    position: Sequence[float], branches_deg: dict[str, tuple], branch: str, other: str
-) -> str:
-    if not position:
-        return f'fill in both branches: response.{branch} is empty'
-    if _is_pose(position, branches_deg[other]):
-        return f'this is {other}: the two branches are swapped, or one is in both'
-    return joints.why_off(list(position), branches_deg[branch])
-
-
-def _rad(pose_deg: Sequence[float]) -> list[float]:
-    return [round(math.radians(angle), 4) for angle in pose_deg]

@@ -25,8 +25,7 @@ TIMEOUT_SEC = 4.0
 QUIET_SEC = 0.5
 """How long to listen for what must not come."""
 AGAIN_SEC = 0.5
-"""A client that has only just met the server may lose a request: until one has arrived, the
-message that leads to it is published again after so long."""
+"""Until a request arrives, its message is sent again so often: a new client may lose one."""
 Hint = Callable[[Any], str]
 
 
@@ -194,7 +193,8 @@ class Server(HoldingServer):
 
     def _client(self) -> WaitingClient:
         goes_on = partial(self._goes_on, lambda: self.publish(self.published[-1]))
-        return WaitingClient(self._watcher, self.name, self.type, self._raised, goes_on)
+        seen = self._watcher, self.name, self.type, self._raised
+        return WaitingClient(*seen, goes_on, has_lost=self.starts > 1)
 
     def _goes_on(self, send: Callable[[], None] = lambda: None) -> bool:
         return heartbeat.Heartbeat(self._watcher, self._beats).goes_on(send)

@@ -9,6 +9,11 @@ from my_robot_basics.feedback.hidden import theirs
 from my_robot_basics.graph import services
 from my_robot_basics.graph.watcher import Watcher
 
+WAITS_FOR_LOST = (
+    'a request that is sent while there is no server never gets an answer, so let no later target '
+    'wait for it: look at service_is_ready() before you ask'
+)
+
 
 def waits_for_answer(name: str) -> str:
     """The node has asked, and nothing else of it runs until it has the answer."""
@@ -39,6 +44,8 @@ class WaitingClient:
     raised: CallbackErrors
     goes_on: Callable[[], bool]
     """Whether nothing holds it up, though it is asked once more."""
+    has_lost: bool = False
+    """Whether there was no server for a while, in which a request of its was lost."""
 
     def why_not_asked(self, *, asked_on: str, was_away: bool) -> str:
         """What to try where no request comes.
@@ -58,10 +65,7 @@ class WaitingClient:
         if not self.goes_on():
             return waits_for_server(self.name)
         if was_away:
-            return (
-                'a request that is sent while there is no server never gets an answer, so let no '
-                'later target wait for it: look at service_is_ready() before you ask'
-            )
+            return WAITS_FOR_LOST
         return f'call self.client.call_async(request) for each message on {asked_on}'
 
     def why_not_published(self) -> str:
@@ -71,6 +75,8 @@ class WaitingClient:
             return raised
         if not self.goes_on():
             return waits_for_answer(self.name)
+        if self.has_lost and not raised:
+            return WAITS_FOR_LOST
         return raised or (
             'publish when the answer is there, however late it comes, in the function that '
             'add_done_callback calls (call and spin_until_future_complete get no answer inside a '

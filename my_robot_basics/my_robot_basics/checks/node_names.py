@@ -1,0 +1,28 @@
+"""The name of the student's node, which launch files and other people look for."""
+
+from my_robot_basics.feedback.errors import expect
+from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.graph.graphs import node_names
+from my_robot_basics.graph.watcher import Watcher
+
+NAME_SEC = 1.0
+"""How long to look for a name, of time that was free: one check or more has met the node."""
+
+
+def expect_node(name: str) -> None:
+    """A node of that name runs, in any namespace. Raises CheckFailed.
+
+    Call it once a check has met an end of the node: then its name is known, too.
+    """
+
+    def runs() -> bool:
+        return any(each.rpartition('/')[2] == name for each in node_names(watcher.node))
+
+    with Watcher(shared=True) as watcher:
+        expect(
+            watcher.spin_until_free(runs, free_sec=NAME_SEC),
+            expected=f'a node named {name}',
+            seen=theirs(', '.join(sorted({*node_names(watcher.node)}))) or 'none',
+            hint=f"write `super().__init__('{name}')`, with this name",
+            cause='the node has another name',
+        )
