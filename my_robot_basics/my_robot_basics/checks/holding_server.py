@@ -79,6 +79,10 @@ class HoldingServer:
         """Whether an answer is kept back."""
         return bool(self._held)
 
+    def holds_many(self) -> bool:
+        """Whether so many answers are kept back that a client which asks again needs them soon."""
+        return len(self._held) >= MOST_HELD // 2
+
     def _send(self, send: Callable[[Any, Any], None], response: Any, header: Any) -> None:
         self.sent.append(response)
         send_until_met(lambda: send(response, header))
