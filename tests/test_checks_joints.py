@@ -3,6 +3,7 @@
 import math
 
 import pytest
+from geometry_msgs.msg import Point
 from my_robot_basics.checks import CheckFailed, joints
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
@@ -105,3 +106,10 @@ def test_a_position_that_is_not_there_or_no_number_is_wrong(position, advice):
     with pytest.raises(CheckFailed, match=advice):
         joints.expect_radians(position, POSE_DEG)
     joints.expect_radians([math.radians(angle) for angle in POSE_DEG], POSE_DEG)
+
+
+def test_a_message_of_another_type_is_no_pose():
+    point = Point(x=0.5)
+    assert joints.pose(point) == {}
+    assert joints.shown(point) == 'a Point'
+    assert joints.why_wrong(point, (30.0, 45.0)).startswith('publish a JointState there')

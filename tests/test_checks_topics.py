@@ -11,6 +11,7 @@ from functools import partial
 import pytest
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import Point, PointStamped
+from grade_cell import grade_cell
 from my_robot_basics.checks import (
     CheckFailed,
     graph,
@@ -350,6 +351,73 @@ def test_an_answer_that_is_repeated_by_a_timer_is_told(run):
             once=True,
             after=lambda: topic('/question').publish(Point(x=0.5)),
         )
+
+
+class TalksBefore(Echo):
+    """Publishes until the first question comes"""
+
+    def __init__(self, *args):
+        super().__init__(*args)
+        self.waiting = self.create_timer(0.1, lambda: self.publisher.publish(JointState()))
+
+    def answer(self, question):
+        self.waiting.cancel()
+        super().answer(question)
+
+
+@pytest.mark.slow
+def test_what_comes_before_anything_was_asked_is_told(run):
+    run(TalksBefore, 10)
+    with pytest.raises(CheckFailed, match='saw messages before it has received any: publish once'):
+        topic('/answer').wait_for(
+            lambda message: message.position[0] == 0.5,
+            once=True,
+            after=lambda: topic('/question').publish(Point(x=0.5)),
+        )
+
+
+class AnswersEachOther(Echo):
+    """Leaves out each second question"""
+
+    is_next = False
+
+    def answer(self, question):
+        self.is_next = not self.is_next
+        if self.is_next:
+            super().answer(question)
+
+
+class AnswersTheOneBefore(Echo):
+    before = None
+
+    def answer(self, question):
+        if self.before is not None:
+            super().answer(self.before)
+        self.before = question
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ('node_class', 'reason'),
+    [
+        (AnswersEachOther, 'others answered, and this one not: publish in every call'),
+        (AnswersTheOneBefore, 'the first one only when a second was sent: publish what you make'),
+    ],
+)
+def test_who_leaves_out_each_other_is_told_from_who_answers_the_one_before(
+    run, monkeypatch, node_class, reason
+):
+    def ask_twice():
+        for _ in range(2):
+            topic('/answer').wait_for(
+                once=True,
+                timeout_sec=1.0,
+                after=lambda: topic('/question').publish(Point(x=0.5)),
+            )
+
+    run(node_class, 10)
+    with grade_cell(monkeypatch), pytest.raises(CheckFailed, match=reason):
+        ask_twice()
 
 
 @pytest.mark.slow
