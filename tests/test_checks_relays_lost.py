@@ -56,6 +56,13 @@ class DropsLargeOnes(Counts):
         return received[-1:] if max(received[-1].position) < 2000.0 else []
 
 
+class FillsInTheFrame(Counts):
+    def chosen(self, received):
+        header = received[-1].header
+        header.frame_id = header.frame_id or 'base_link'
+        return received[-1:]
+
+
 class ZipsAllLists(Counts):
     def chosen(self, received):
         last = received[-1]
@@ -96,6 +103,30 @@ class Doubles(Counts):
         return received[-1:] * 2
 
 
+class DoublesEachHundredth(Counts):
+    def chosen(self, received):
+        return received[-1:] * (1 if len(received) % 100 else 2)
+
+
+class RepeatsTheLast(Counts):
+    """Once more where nothing has come for so long"""
+
+    def chosen(self, received):
+        if not hasattr(self, 'idle'):
+            self.idle = self.create_timer(0.4, lambda: self.publish_last())
+        self.idle.reset()
+        return received[-1:]
+
+    def changed(self, publish):
+        receive = super().changed(publish)
+
+        def keep(message):
+            self.publish_last = lambda: publish(message)
+            receive(message)
+
+        return keep
+
+
 class SwapsPairs(Counts):
     def chosen(self, received):
         return [] if len(received) % 2 else received[:-3:-1]
@@ -117,12 +148,17 @@ def all_the_time(monkeypatch):
         (DropsZeros, 'not republished: those with zeros, or empty: publish in every call'),
         (DropsNegativeOnes, 'not republished: those with negative numbers: publish in every call'),
         (DropsLargeOnes, 'not republished: those with large numbers: publish in every call'),
+        (
+            FillsInTheFrame,
+            'those without a stamp and a frame: publish in every call of the callback',
+        ),
         (ZipsAllLists, 'not republished: those without velocities and efforts: publish in every'),
         (DropsWhatComesSoon, 'saw messages that are not republished'),
         (DropsAfterAPause, 'not republished when it is the first after a pause: publish'),
         (Lags, 'is republished only when the next one arrives: publish the message'),
         (SwapsPairs, 'saw a message that is republished only when the next one arrives'),
         (Doubles, 'a message that is republished 2 times: subscribe once'),
+        (RepeatsTheLast, r'a message that is republished [2-5] times: subscribe once'),
     ],
 )
 def test_each_message_comes_out_at_once_and_once(run, all_the_time, node_class, reason):
@@ -192,6 +228,14 @@ def leisurely(monkeypatch):
 def test_every_hundredth_message_is_missed_where_the_machine_is_quick(run):
     run(DropsEveryHundredth)
     with pytest.raises(CheckFailed, match='saw messages that are not republished'):
+        check_delivery()
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures('leisurely')
+def test_every_hundredth_message_is_one_too_many_where_the_machine_is_quick(run):
+    run(DoublesEachHundredth)
+    with pytest.raises(CheckFailed, match='a message that is republished 2 times: subscribe once'):
         check_delivery()
 
 

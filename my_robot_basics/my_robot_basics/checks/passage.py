@@ -31,8 +31,6 @@ FLOOD = 50
 fault: …"""
 MOST_PUSHED_OUT = 20
 """… So many such losses are no coincidence, either."""
-FEWEST_COPIES = 2
-"""Messages of which there are copies."""
 FEWEST_INVENTED = 3
 """Messages that nobody sent: one or two may have been on their way before the check listened."""
 RECENT = 20
@@ -69,7 +67,7 @@ class Passage:
         self._own: set[Any] = set()
         """What of each message that was published here."""
         self._others: list[tuple[Any, int]] = []
-        self._slowest_sec = 0.0
+        self._pushed_out, self._slowest_sec = 0, 0.0
         self._watch, self._began_ns = Stopwatch(), time.time_ns()
 
     def carry(self, messages: Iterator[Sent]) -> RelayFaults:
@@ -77,7 +75,7 @@ class Passage:
 
         The others of a flood may push one out of a queue: such a loss counts for nothing.
         """
-        late = in_a_row = pushed_out = 0
+        late = in_a_row = 0
         row = Stopwatch()
         while in_a_row < fewest_in_a_row(row) and late < MOST_LATE:
             # a node that swaps two has one in time, and none in a row
@@ -86,8 +84,8 @@ class Passage:
             others, sent = len(self._others), next(messages)
             if self._send(sent):
                 in_a_row += 1
-            elif len(self._others) - others >= FLOOD and pushed_out < MOST_PUSHED_OUT:
-                pushed_out += 1
+            elif len(self._others) - others >= FLOOD and self._pushed_out < MOST_PUSHED_OUT:
+                self._pushed_out += 1
                 self._waiting.remove(sent)
             # in a queue of depth 1, the next would push it out
             elif self._wait_for(sent, free_sec=ON_TIME_SEC):
@@ -95,15 +93,20 @@ class Passage:
             else:
                 late, in_a_row, row = late + 1, 0, Stopwatch()
         self._watcher.spin_for(QUIET_SEC)
-        self._take()
-        doubled = [number for number in self._copies if number > 1]
-        copies = min(doubled) if len(doubled) >= FEWEST_COPIES else 1
+        copies = self.copies()
         is_enough = in_a_row >= fewest_in_a_row(row) or len(self._waiting) < FEWEST_LOST
         if late < MOST_LATE and is_enough:
             return RelayFaults(copies=copies)
         return RelayFaults(
             late=late, lost=tuple(sent.kind for sent in self._waiting), copies=copies
         )
+
+    def copies(self) -> int:
+        """How often each message came out so far: more than once, if one did."""
+        self._take()
+        doubled = [number for number in self._copies if number > 1]
+        # one that was pushed out of a queue may have come after all, equal to another
+        return min(doubled) if len(doubled) > bool(self._pushed_out) else 1
 
     def invents(self, sent: Sequence[tuple[Any, int]]) -> bool:
         """Whether messages came out that are not among those that anybody `sent`, with the time.

@@ -34,9 +34,12 @@ class RelayFaults:
             kinds = set(self.lost)
             if len(self.lost) >= FEWEST_OF_A_KIND and len(kinds) == 1 and PLAIN not in kinds:
                 return f'messages that are not republished: those {kinds.pop()}', (
-                    f'{CALLBACK}, whatever the message holds'
+                    f'{CALLBACK}, and the message as it is, whatever it holds'
                 )
-            return 'messages that are not republished', f'{CALLBACK}: some messages are left out'
+            return (
+                'messages that are not republished',
+                f'{CALLBACK}: some messages are left out, or changed',
+            )
         if self.late:
             return 'a message that is republished only when the next one arrives', (
                 'publish the message that your callback is given, not the one before'

@@ -130,6 +130,8 @@ class Relay:
                 'a message that is not republished when it is the first after a pause',
                 raised.why(watcher) or 'publish in every call of the callback, whenever it comes',
             )
+        if (copies := passage.copies()) > 1:
+            self._fail(*RelayFaults(copies=copies).fault())
         familiar.remember(*seen)
         if passage.loses_one_of_two(messages):
             self._fail(

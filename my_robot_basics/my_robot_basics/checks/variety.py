@@ -11,7 +11,9 @@ PLAIN, AGAIN = '', 'equal to the one before'
 ZERO, NEGATIVE, LARGE = 'with zeros, or empty', 'with negative numbers', 'with large numbers'
 BARE = 'without velocities and efforts'
 """As the arm of the lessons sends them: a node that zips all four lists makes nothing of them."""
-BLOCK = (PLAIN, BARE, AGAIN, ZERO, NEGATIVE, LARGE)
+UNSTAMPED = 'without a stamp and a frame'
+"""As a node sends them that forgets both: lesson 7 has one."""
+BLOCK = (PLAIN, BARE, UNSTAMPED, AGAIN, ZERO, NEGATIVE, LARGE)
 """What each so many messages are, in an order that differs each time: a node that counts messages
 meets every kind."""
 LARGE_FACTOR = 100.0
@@ -38,7 +40,9 @@ def varied(make_message: Callable[[], Any]) -> Iterator[Sent]:
                 yield Sent(message, PLAIN)
                 yield Sent(message, AGAIN)
             else:
-                yield Sent(changed(make_message(), kind), kind)
+                made = make_message()
+                message = changed(made, kind)
+                yield Sent(message, PLAIN if message == made else kind)
 
 
 def filled(make_message: Callable[[], Any]) -> Callable[[], Any]:
@@ -66,9 +70,11 @@ def filled(make_message: Callable[[], Any]) -> Callable[[], Any]:
 def changed(message: Any, kind: str) -> Any:
     """A copy with its numbers changed; a text is left out where numbers are to be zeros.
 
-    What is BARE has only the numbers that every sensor sends.
+    What is BARE has only the numbers that every sensor sends, what is UNSTAMPED no header.
     """
     message = copy.deepcopy(message)
+    if kind == UNSTAMPED and hasattr(message, 'header'):
+        message.header = type(message.header)()
     for field in message.get_fields_and_field_types():
         value = getattr(message, field)
         if field in UNMEASURED and kind == BARE:
