@@ -140,7 +140,7 @@ class Topic(TopicEndpoints):
             not recorder.received,
             expected='one message for each that your node receives',
             seen='messages before it has received any',
-            hint='publish once in each call of the callback, and in no timer',
+            hint='publish once in each call of the callback, and not in a timer',
         )
 
     def _expect_answer(
