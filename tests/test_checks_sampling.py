@@ -62,6 +62,13 @@ def test_a_timer_that_leaves_every_twentieth_out_fails_without_another_look(monk
         topic(TOPIC).record(seconds=60.0).assert_rate(hz=5.0)
 
 
+@pytest.mark.usefixtures('patient')
+def test_a_thread_that_was_late_once_has_not_ended():
+    """Its messages end in the recording, and go on behind it: a busy machine does that."""
+    with running('late_thread'):
+        topic(TOPIC).record(seconds=10.0).assert_rate(hz=5.0)
+
+
 @pytest.mark.slow
 @pytest.mark.usefixtures('patient')
 def test_on_a_busy_machine_the_clock_is_driven_for_a_shorter_time(monkeypatch):

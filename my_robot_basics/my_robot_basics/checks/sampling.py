@@ -97,8 +97,8 @@ def _sampled(topic: DrivenTopic, *, seconds: float, step_sec: float) -> Recordin
         )
         if rates.leaves_out(recording):
             return recording
-        if not rates.is_even(recording):
-            return Uneven(recording)
+        if recording.is_over or not rates.is_even(recording):
+            return Uneven(recording)  # should it go on, a thread was late
         proof = prove(topic, recording)
         if proof is None:
             topic.expect_follows()  # a thread may publish on the wall clock beside a timer
