@@ -111,5 +111,5 @@ def test_a_position_that_is_not_there_or_no_number_is_wrong(position, advice):
 def test_a_message_of_another_type_is_no_pose():
     point = Point(x=0.5)
     assert joints.pose(point) == {}
-    assert joints.shown(point) == 'a Point'
+    assert joints.shown(point) == 'a message of the type Point'
     assert joints.why_wrong(point, (30.0, 45.0)).startswith('publish a JointState there')

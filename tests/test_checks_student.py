@@ -84,7 +84,7 @@ FAILURES = {
     'exits': (exiting, 'expected `f(2)` to return, saw SystemExit: 3: call'),
     'forgot return': (lambda x: print('!'), 'expected `f(2)` to return a value, saw None: end'),
     'int for a bool': (lambda x: 1, 'a bool, saw an int (1): write True or False, or a c'),
-    'text for a bool': (lambda x: 'True', "saw a str ('True'): a text in quotes is no other"),
+    'text for a bool': (lambda x: 'True', "saw a str ('True'): a text in quotes is always a text"),
     'a generator': (lambda x: iter([]), 'to return a bool, saw a list_iterator: return plain'),
     'a generator within': (lambda x: {'a': iter([])}, 'bool, saw a list_iterator in it'),
     'a complex number of NumPy': (lambda x: np.complex128(1), 'a bool, saw a numpy complex128: '),

@@ -23,7 +23,7 @@ DEPTH = 1000
 NODE_SEC = 10.0
 GONE_SEC = 1.0
 """How long a node that is there may be missing on the graph."""
-MOST_CHARACTERS = 200_000
+MOST_CHARACTERS = 400_000
 """What a node may log for one target: all of it is read again with each line that comes."""
 
 
