@@ -1,4 +1,4 @@
-"""Whether a client goes on with its work while there is no server for what it is to ask."""
+"""Whether an action client goes on with its work while there is no server for it."""
 
 from typing import Any
 
@@ -14,21 +14,23 @@ from my_robot_basics.feedback.errors import CheckFailed, fail
 from my_robot_basics.session.pressure import Stopwatch
 
 AWAY_SEC, MOST_SEC = 3.0, 4.5
-"""How long an answer of the client may take, of time that was free, and of the wall clock. A wait
-of two seconds is always shorter, and one of five is always longer. …"""
+"""How long the client may take to answer, in seconds of free time (`Stopwatch.free_sec`) and of
+wall time. A callback that waits 2 s always passes, and one that waits 5 s always fails."""
 FIRST_SEC, LOOK_SEC = 0.5, 0.1
-"""… Where none has come after the first, the notebook tells what its callback does."""
+"""After FIRST_SEC without an answer, the notebook is asked which line the callback is at; then
+the check looks for the answer every LOOK_SEC."""
 TIMES = 3
-"""So often it is asked: a message that has arrived is dealt with between two answers."""
+"""How many requests the client has to answer: it handles the message between two of them."""
 ARRIVED_SEC = 2.0
+"""How long to wait until DDS acknowledges the message."""
 WAITS = 'wait', 'sleep', 'spin'
-"""A callback that stands in such a line does not wait for a processor."""
+"""A callback at a line with one of these words waits by itself, and not for a processor."""
 
 
 def publish_in_vain(server: ServedAction, message: Any) -> None:
-    """Publish a message while there is no server: the client waits for none. Raises CheckFailed.
+    """Publish a message while there is no server, and expect that the client does not block.
 
-    It is asked for its parameters meanwhile, if it has told them before.
+    It has to answer parameter requests meanwhile, if it did before. Raises CheckFailed.
     """
     node = server.watcher.node
     clients = {

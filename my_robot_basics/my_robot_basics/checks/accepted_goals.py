@@ -8,9 +8,10 @@ from my_robot_basics.feedback.errors import fail
 
 
 def accepted(server: OpenAction, wanted: MoveArm.Goal, *others: MoveArm.Goal) -> SentGoal:
-    """Send a goal that has to be accepted, or one of the others, where it is not.
+    """Send a goal that has to be accepted; if it is rejected, try the `others` in their order.
 
-    Raises CheckFailed with the reason why the first one is rejected.
+    Return the goal that was accepted. If none was, raise CheckFailed with the reason why the
+    first one was rejected.
     """
     former = server.accepted[-1] if server.accepted else None
     before = server.answers()
@@ -32,7 +33,7 @@ def accepted(server: OpenAction, wanted: MoveArm.Goal, *others: MoveArm.Goal) ->
 
 
 def ends_too_soon() -> str:
-    """What to try where the arm moves on after the server has told how the goal ended."""
+    """Advice if the arm moves on after the server has published how the goal ended."""
     return (
         'the arm moves on after the goal has ended: call goal_handle.succeed() when the arm is '
         'there, after the loop that moves it'
@@ -51,7 +52,7 @@ def _why_rejected(
             'an earlier goal was accepted, and has not ended: its execute callback has to return, '
             'and a handle_accepted_callback calls goal_handle.execute()'
         )
-    if former is None and server.ends.feedback.received:  # of a goal that an earlier cell sent
+    if former is None and server.ends.feedback.received:  # for a goal from an earlier cell
         return ends_too_soon()
     if former is not None and any(0 < former.over_ns() < at_ns for at_ns, _ in former.feedback()):
         return ends_too_soon()

@@ -1,4 +1,4 @@
-"""The check's ends of an action: what is sent to its server, and all that the server says."""
+"""The check's own action client, which keeps all that the action server publishes."""
 
 import time
 import uuid
@@ -14,7 +14,7 @@ from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.graph.watcher import Watcher
 
 DEPTH = 5000
-"""Queue of the feedback: more messages than any move can bring."""
+"""Depth of the feedback's queue: more messages than any move publishes."""
 STATUS_NAMES = {
     GoalStatus.STATUS_UNKNOWN: 'unknown',
     GoalStatus.STATUS_ACCEPTED: 'accepted',
@@ -25,11 +25,11 @@ STATUS_NAMES = {
     GoalStatus.STATUS_ABORTED: 'aborted',
 }
 TERMINAL = 'succeeded', 'canceled', 'aborted'
-"""A goal of these is over."""
+"""Names of the statuses with which a goal has ended."""
 
 
 class SentGoal:
-    """A goal that a check has sent, and what came of it so far."""
+    """A goal that a check has sent, with the answer, the statuses, the feedback and the result."""
 
     def __init__(
         self, goal: Any, goal_id: UUID, ends: 'ActionEnds', ask_for_result: Callable[[], Future]
@@ -43,16 +43,16 @@ class SentGoal:
         self._received_before = len(ends.feedback.received)
         self._result: Future | None = None
         self.answer: Future = Future()
-        """The server's answer to it; set by the code that sends it."""
+        """The server's answer to the goal; set by the code that sends the goal."""
 
     @property
     def is_accepted(self) -> bool:
-        """Whether the server has accepted it; False where it has not answered."""
+        """Whether the server has accepted the goal; False if it has not answered yet."""
         return bool(self.answer.done() and self.answer.result().accepted)
 
     @property
     def status(self) -> str:
-        """The last one that the server published, or that of the result; '' for none."""
+        """The last status that was published, or that of the result; '' if there is none yet."""
         if self.has_result():
             return STATUS_NAMES.get(self._response().status, 'unknown')
         statuses = self.statuses()
@@ -60,7 +60,7 @@ class SentGoal:
 
     @property
     def result(self) -> Any:
-        """The result's message, or None."""
+        """The result's message, or None if it was not received yet."""
         return self._response().result if self.has_result() else None
 
     def ask_for_result(self) -> None:
@@ -72,7 +72,7 @@ class SentGoal:
         return self._result is not None and self._result.done()
 
     def is_answered(self) -> bool:
-        """Whether the result was received, or whoever sent the goal is gone."""
+        """Whether the result was received, or the client that sent the goal has left."""
         return self.has_result() or self._ends.is_gone
 
     def is_over(self) -> bool:
@@ -80,11 +80,11 @@ class SentGoal:
         return self.status in TERMINAL or self.has_result()
 
     def statuses(self) -> list[tuple[int, str]]:
-        """Each other status that was published, and when: wall time in ns."""
+        """Each change of the status as (wall time in ns when it was published, name)."""
         return self._ends.statuses_of(self.id)
 
     def feedback(self) -> list[tuple[int, Any]]:
-        """The feedback so far, and when it was sent: wall time in ns."""
+        """The feedback on this goal so far, as (wall time in ns when it was sent, message)."""
         return [
             (sent_ns, message.feedback)
             for message, sent_ns in self._ends.feedback.received
@@ -92,11 +92,11 @@ class SentGoal:
         ]
 
     def feedback_count(self) -> int:
-        """How much feedback of the action has come since the goal was sent; quick to tell."""
+        """How many feedback messages came since the goal was sent, whatever their goal; fast."""
         return len(self._ends.feedback.received) - self._received_before
 
     def over_ns(self) -> int:
-        """When the server said that it was over: wall time in ns; 0 where it has not."""
+        """When the server published a terminal status: wall time in ns; 0 if it has not yet."""
         return next((at for at, name in self.statuses() if name in TERMINAL), 0)
 
     def _response(self) -> Any:
@@ -105,10 +105,10 @@ class SentGoal:
 
 
 class ActionEnds:
-    """Three clients and two subscriptions: what makes an action client."""
+    """The parts of an action client: three service clients and two subscriptions."""
 
     def __init__(self, watcher: Watcher, name: str, type_: type) -> None:
-        """Nothing is sent yet; wait for `is_connected`."""
+        """Make them; before you send a goal, wait for `is_connected`."""
         self.is_gone = False
         self._node = watcher.node
         impl = type_.Impl  # type: ignore[attr-defined]
@@ -138,7 +138,7 @@ class ActionEnds:
         self._statuses: dict[bytes, list[tuple[int, str]]] = {}
 
     def statuses_of(self, goal_id: UUID) -> list[tuple[int, str]]:
-        """Each other status of a goal that was published, and when: wall time in ns."""
+        """Each change of a goal's status as (wall time in ns when it was published, name)."""
         new, self._read = self.statuses.received[self._read :], len(self.statuses.received)
         for message, sent_ns in new:
             for each in message.status_list:
@@ -149,12 +149,12 @@ class ActionEnds:
         return self._statuses.get(bytes(goal_id.uuid), [])
 
     def is_connected(self) -> bool:
-        """Whether all five ends have met a server."""
+        """Whether all three clients and both subscriptions have discovered a server."""
         ready = all(client.service_is_ready() for client in self._clients.values())
         return ready and self.feedback.is_connected() and self.statuses.is_connected()
 
     def send(self, goal: Any) -> SentGoal:
-        """Send a goal; it does not wait for the answer."""
+        """Send a goal and return at once, before the answer comes."""
         goal_id = UUID(uuid=list(uuid.uuid4().bytes))
         sent = SentGoal(goal, goal_id, self, lambda: self._ask_for_result(goal_id))
         request = self._impl.SendGoalService.Request(goal_id=goal_id, goal=goal)
@@ -162,22 +162,22 @@ class ActionEnds:
         return sent
 
     def cancel(self, sent: SentGoal) -> Future:
-        """Ask to cancel a goal; the answer is a CancelGoal.Response."""
+        """Send a request to cancel a goal; the future's result is a CancelGoal.Response."""
         return self._cancel(GoalInfo(goal_id=sent.id))
 
     def cancel_all(self) -> Future:
-        """Ask to cancel every goal of the server."""
+        """Send a request to cancel every goal of the server."""
         return self._cancel(GoalInfo())
 
     def has_active(self) -> bool:
-        """Whether a goal of anybody's is not over, as the server last said."""
+        """Whether any client's goal has not ended, by the last status message."""
         received = self.statuses.messages()
         return bool(received) and any(
             STATUS_NAMES.get(each.status) not in TERMINAL for each in received[-1].status_list
         )
 
     def leave(self) -> None:
-        """Be gone, as a client that has crashed."""
+        """Destroy the clients and subscriptions, as if this client had crashed."""
         self.is_gone = True
         for client in self._clients.values():
             self._node.destroy_client(client)

@@ -1,4 +1,4 @@
-"""The check's own server of an action, for a node of the student's that sends it goals."""
+"""The check's own action server, for a student's node that sends goals to it."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -17,12 +17,12 @@ from my_robot_basics.graph.watcher import Watcher
 def action_server(
     name: str, type_: type, *, asked_on: str, to: str, cancelled_on: str, starts: bool = True
 ) -> Iterator[ServedAction]:
-    """The check's own server of an action, for the duration of a with statement.
+    """Run the check's own action server for the duration of a `with` statement.
 
-    The student's node sends a goal for each message on the topic `asked_on`, asks to cancel it for
-    True on `cancelled_on`, and publishes on `to` (String) how it ended. Without `starts`, the
-    server is absent until `server.start()`. Raises CheckFailed where nobody publishes on `to`,
-    or anything but a String, or another node serves.
+    The student's node has to send a goal for each message on the topic `asked_on`, to request its
+    cancellation when True arrives on `cancelled_on`, and to publish on `to` (String) how it ended.
+    With `starts=False`, there is no server until `server.start()`. Raises CheckFailed if no node
+    publishes on `to`, if its type is not String, or if another node serves the action.
 
         with action_server('/move_arm', MoveArm, asked_on='/goal_pose',
                            to='/move_arm_client/outcome', cancelled_on='/obstacle') as server:

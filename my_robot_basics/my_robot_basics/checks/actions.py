@@ -1,4 +1,4 @@
-"""An action as a check sees it: send its server a goal, and say why no answer comes."""
+"""An action that a student's node serves: send it a goal, and explain why no answer comes."""
 
 import math
 from collections.abc import Iterator
@@ -12,11 +12,11 @@ from my_robot_basics.feedback.errors import CheckFailed
 from my_robot_basics.graph.watcher import Watcher
 
 RESULT_SEC = 10.0
-"""How long `send_goal` waits for the end of a goal, of time that was free."""
+"""How long `send_goal` waits for the end of a goal, in seconds of free time."""
 
 
 def action(name: str, type_: type) -> 'Action':
-    """The action of that (absolute) name and type, to be sent goals.
+    """Return the action with that absolute name and type, to send goals to its server.
 
     `outcome = action('/move_arm', MoveArm).send_goal(MoveArm.Goal(position=[0.5, 0.2]))`
     """
@@ -30,49 +30,50 @@ class Outcome:
     status: str
     """'rejected', 'succeeded', 'canceled' or 'aborted'."""
     result: Any
-    """The result's message; None where it was rejected."""
+    """The result's message; None if the goal was rejected."""
     feedback: tuple[Any, ...]
-    """The feedback's messages."""
+    """The feedback messages, in order."""
 
 
 class FollowedClock(Enum):
-    """Which clock a server follows."""
+    """Which clock an action server sleeps on and computes with."""
 
     DRIVEN = auto()
-    """That of its node, which a check drives."""
+    """The clock of its node, which a check drives."""
     WALL = auto()
     BOTH = auto()
-    """It waits on its node's clock, and computes with the wall clock."""
+    """It sleeps on its node's clock, but computes positions with the wall clock."""
     WALL_ALONE = auto()
-    """It waits and computes on the wall clock: it moves on while that of its node stands still."""
+    """It sleeps on and computes with the wall clock: it moves while its node's clock is held."""
 
 
 @dataclass
 class Known:
-    """What need not be found out once more."""
+    """What was found out about the servers of an action, so that it is not measured again."""
 
     clocks: dict[str, FollowedClock] = field(default_factory=dict)
-    """Of each node that served the action, which clock it follows."""
+    """The clock that a server follows, by the full name of its node."""
     longest_sec: float = math.inf
-    """For how long of the robot's time the machine can drive that clock."""
+    """The longest move, in seconds of the robot's time, for which the clock can be driven."""
 
 
 @dataclass(frozen=True)
 class Action:
-    """What a check may do with an action that the student's node serves."""
+    """An action that the student's node serves."""
 
     name: str
-    """Absolute: '/move_arm'."""
+    """The absolute name, such as '/move_arm'."""
     type: type
     """Its class, such as `arm_interfaces.action.MoveArm`."""
     known: Known = field(default_factory=Known, compare=False, repr=False)
-    """What looks at it have shown so far."""
+    """What earlier checks have found out about it."""
 
     def send_goal(self, goal: Any, *, cancel_after_sec: float | None = None) -> Outcome:
-        """Send a goal, ask to cancel it after a while of wall time, and wait for its end.
+        """Send a goal, wait for its end, and return how it ended.
 
-        Raises CheckFailed where there is no server, one of another type, or more than one; and
-        where no answer comes, or no end in RESULT_SEC of time that was free, with the reason.
+        `cancel_after_sec`: after how long to request its cancellation, in seconds of wall time.
+        Raises CheckFailed, with the reason, if there is no server, one of another type, or more
+        than one, if no answer comes, or if the goal does not end in RESULT_SEC of free time.
         """
         with self.opened() as server:
             sent = server.send(goal)
@@ -92,13 +93,13 @@ class Action:
 
     @contextmanager
     def opened(self) -> Iterator[OpenAction]:
-        """Meet the server, and see that no goal of earlier is left. Raises CheckFailed."""
+        """Connect to the server, and expect that no earlier goal is left. Raises CheckFailed."""
         with Watcher(shared=True) as watcher:
             server = OpenAction(watcher, self.name, self.type)
             server.meet()
             try:
                 yield server
             except CheckFailed:
-                server.expect_alone()  # of two, nobody knows which one fails
+                server.expect_alone()  # if there are two, either may have failed
                 raise
             server.expect_alone()

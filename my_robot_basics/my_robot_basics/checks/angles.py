@@ -1,11 +1,11 @@
-"""Angles among the numbers of a log: which are there, and what to say where some are missing."""
+"""Angles among the numbers of a log: which ones are missing, and advice about that."""
 
 import math
 from collections.abc import Sequence
 
 WITHIN_DEG = 0.01
 ROUNDED_DEG = 0.5
-"""Angles that were rounded are no further off, in whole degrees or in hundredths of a radian."""
+"""How far off an angle is at most if rounded to whole degrees, or to hundredths of a radian."""
 DECIMALS = 'log the angles with two decimals or more'
 ONE_LATE = 'each answer is one target late: use the point that the callback is given, at once'
 EARLIER = 'these are the angles of an earlier target: use the point that the callback is given'
@@ -16,27 +16,27 @@ IN_REACH = (
     '; for a target in reach it does not, so give it x and y alone, and keep other lines out of'
     ' that `try`'
 )
-"""Behind when to warn, where a node has only warned: another ValueError may have been caught."""
+"""Added to the advice when to warn, if a node only warned: it may catch another ValueError."""
 
 
 def near(angle_deg: float, number: float, within_deg: float = WITHIN_DEG) -> bool:
-    """Whether a number is that angle, whole turns aside."""
+    """Whether a number is that angle, in degrees; a difference of whole turns does not count."""
     off = (angle_deg - number + 180.0) % 360.0 - 180.0
-    # a text of two decimals is no better than half a unit of the last one
+    # a rounded number may be off by exactly the limit: leave room for floating-point errors
     return abs(off) <= within_deg + 1e-9
 
 
 def missing(
     wanted: Sequence[float], numbers: Sequence[float], within_deg: float = WITHIN_DEG
 ) -> list[float]:
-    """Those of the wanted angles that no number is near to."""
+    """The wanted angles that are not among the numbers."""
     return [a for a in wanted if not any(near(a, n, within_deg) for n in numbers)]
 
 
 def what_to_try(wanted: Sequence[float], numbers: Sequence[float]) -> str:
-    """Advice for a log that lacks some of the wanted angles, by what it holds instead.
+    """Advice for a log that lacks some of the wanted angles, from the numbers that it has instead.
 
-    It names the cause, and none of the angles.
+    It names the cause, but never an angle.
     """
     if not numbers:
         return f'log every solution for each target, with self.get_logger().info(…) {HOW}'
@@ -51,7 +51,7 @@ def what_to_try(wanted: Sequence[float], numbers: Sequence[float]) -> str:
         return 'these are radians, so log them with math.degrees(…)'
     absent = missing(wanted, numbers)
     if not missing([90.0 - angle for angle in absent], numbers):
-        # mirrored in the line x = y, and the branches change places with it
+        # the pose is mirrored in the line x = y, and so the two branches are swapped, too
         return 'x and y are swapped: call inverse_kinematics(x, y) with x first'
     if not missing([angle + 180.0 for angle in absent], numbers):
         if not set(absent) & set(wanted[::2]):

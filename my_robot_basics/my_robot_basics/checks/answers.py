@@ -1,4 +1,4 @@
-"""What the lines of a log say about IK: the numbers in them, and which lines hold angles."""
+"""Log lines of an IK node: the numbers in them, and which lines hold angles."""
 
 import itertools
 import re
@@ -7,29 +7,29 @@ from collections.abc import Iterable, Sequence
 from my_robot_basics.checks import angles
 
 MOST_NUMBERS = 1_000
-"""Different numbers that one target may bring: with many thousands, some are always right."""
+"""How many different numbers a node may log for one target: of many thousands, some match."""
 _NUMBER = re.compile(r'([±∓]|\+/[-−]|[-−]/\+)?([-−+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?)')
 _NAN = re.compile(r'\bnan\b', re.IGNORECASE)
 _BRACES = re.compile(r'\{[A-Za-z_][^{}]*\}')
-"""What an f-string without its f leaves as it is; a dict begins with a quote."""
+"""A `{name}` that is left in a text if an f-string lacks its f; a dict begins with a quote."""
 _DECIMAL_COMMA = re.compile(r'(?<=\d),(?=\d)')
 _HYPHEN = re.compile(r'(?<=\w)[-−](?=[-−+]?\d)')
-"""One that parts a number from what it is called: theta1-65.92."""
+"""A hyphen between a name and its number, as in theta1-65.92."""
 _WITH_DECIMALS = re.compile(r'\d+\.\d+')
 _ELBOWS_DEG = (0.0, 180.0)
-"""Elbow angles of an arm that is stretched, or folded, towards a target out of reach."""
+"""θ2 of a stretched and of a folded arm, which a node may compute for a target out of reach."""
 
 
 class Forms:
-    """What the texts for targets in reach look like: those that hold angles, and the others."""
+    """The forms of the texts for targets in reach: those with angles, and the others."""
 
     def __init__(self) -> None:
-        """No text was seen yet."""
+        """Start without any form."""
         self._answers: set[str] = set()
         self._others: set[str] = set()
 
     def learn(self, wanted: Iterable[float], texts: Iterable[str]) -> None:
-        """See all texts for one target; a form of both kinds tells nothing."""
+        """Learn from all texts for one target; a form both with and without angles is left out."""
         wanted, texts = list(wanted), {*texts}
         held = {text for text in texts if holds_any(wanted, text)}
         answers, others = ({form_of(text) for text in each} for each in (held, texts - held))
@@ -37,21 +37,21 @@ class Forms:
         self._others |= others - answers
 
     def is_answer(self, text: str) -> bool:
-        """Whether a text with other numbers held angles."""
+        """Whether a text of the same form held angles."""
         return form_of(text) in self._answers
 
     def is_other(self, text: str) -> bool:
-        """Whether a text with other numbers came beside the angles, and held none."""
+        """Whether a text of the same form was logged beside the angles, and held none."""
         return form_of(text) in self._others
 
 
 def numbers_of(text: str) -> list[float]:
-    """All numbers in a text, in order; ±1.5 stands for two, and so do +/-1.5 and ∓1.5."""
+    """All numbers in a text, in order; ±1.5, +/-1.5 and ∓1.5 are two numbers each."""
     return [number for number, _, _ in places_of(text)]
 
 
 def places_of(text: str) -> list[tuple[float, int, int]]:
-    """All numbers in a text, each with where it begins and ends."""
+    """All numbers in a text, each with the indices of its start and end."""
     found = []
     for match in _NUMBER.finditer(text):
         number = float(match[2].replace('−', '-'))
@@ -61,7 +61,7 @@ def places_of(text: str) -> list[tuple[float, int, int]]:
 
 
 def why_unreadable(wanted: Sequence[float], texts: Sequence[str]) -> str:
-    """Advice for texts without the wanted angles: what stands there for a number, or ''."""
+    """Advice if the angles are missing because they are not written as numbers; else ''."""
     if any(_NAN.search(text) for text in texts):
         return 'an angle is nan, which is not a number, so check how it is computed'
     if any(_BRACES.search(text) for text in texts):
@@ -76,7 +76,7 @@ def why_unreadable(wanted: Sequence[float], texts: Sequence[str]) -> str:
 
 
 def form_of(text: str) -> str:
-    """A text without what differs from target to target: its numbers."""
+    """A text with # for each number, which alone differs from target to target."""
     return _NUMBER.sub('#', text)
 
 
@@ -86,20 +86,20 @@ def holds_any(wanted: Iterable[float], text: str) -> bool:
 
 
 def stands_for_angles(bearings_deg: Iterable[float], text: str) -> bool:
-    """Whether a text has what a node without a solution gives for one: zeros, or a stretched arm.
+    """Whether a text has what a node logs in place of a solution: zeros, or a stretched arm.
 
-    Zeros are two numbers or more, with decimals, and no others beside them.
+    Zeros count if they are two or more, with decimals, and the only numbers with decimals.
     """
     found = [float(number) for number in _WITH_DECIMALS.findall(text)]
     return (len(found) > 1 and not any(found)) or has_stretched(bearings_deg, text)
 
 
 def has_stretched(bearings_deg: Iterable[float], text: str) -> bool:
-    """Whether a text holds a bearing as θ1, with the θ2 of a stretched or folded arm beside it.
+    """Whether a text holds a bearing as θ1, next to the θ2 of a stretched or folded arm.
 
-    A bearing alone is no answer: a node that logs each target may well log it.
+    A bearing alone does not count: a node that logs each target may log its bearing, too.
     """
-    # 0 without decimals counts something
+    # a 0 without decimals is not an angle: it may count something
     found = [number for _, number in _NUMBER.findall(text) if '.' in number]
     numbers = [float(number.replace('−', '-')) for number in found]
     beside = [*itertools.pairwise(numbers), *zip(numbers[1:], numbers, strict=False)]

@@ -1,4 +1,4 @@
-"""Whether a cancelled goal stops the arm behind `/move_arm`, and leaves it ready for the next."""
+"""Whether a cancelled goal of `/move_arm` stops the arm, and leaves it ready for the next goal."""
 
 import time
 from typing import Any, NoReturn
@@ -17,17 +17,17 @@ from my_robot_basics.feedback.errors import CheckFailed, expect, fail
 
 STOP_SEC = 0.2
 SLACK_SEC, WALL_SLACK_SEC = 0.06, 0.15
-"""A step of the clock; what a thread may be late on the wall clock."""
+"""Added to STOP_SEC: a step of the driven clock; how late a thread may be on the wall clock."""
 REST_SEC, WALL_REST_SEC = 2.0, 0.6
-"""An arm that goes on behind the end of its goal is elsewhere by then."""
+"""How long to wait after a cancelled goal: an arm that moves on is elsewhere by then."""
 NEXT_SPEED, NEXT_LEAST_RAD = 0.4, 0.1
 EARLY_PART = 0.6
-"""A move that is over sooner was stopped."""
+"""A move that ends before this part of its time was stopped."""
 MOST_TIMES, MORE_SEC = 3.0, 1.0
 ANSWER_SEC = 5.0
-"""How long the answer may take of a server that gives it at the end of the move alone."""
+"""How long to wait for the answer of a server that gives it only when the move has ended."""
 TENTHS, TENTH_NS = 8, 100_000_000
-"""A node that has published feedback in so many tenths of a second had turns to answer, too."""
+"""A node that published feedback in so many tenths of a second had time to answer, too."""
 
 
 def expect_cancels(
@@ -38,10 +38,10 @@ def expect_cancels(
     start: Pose = (0.0, 0.0),
     after: float = 0.4,
 ) -> None:
-    """A goal that is cancelled after that part of its move stops the arm within 0.2 s, on the way.
+    """Cancel a goal after the part `after` of its move, and expect the arm to stop within 0.2 s.
 
-    It is canceled, its result holds where the arm is, and the next move begins there, and is not
-    stopped. Raises CheckFailed.
+    Its status has to be canceled, its result has to hold where the arm stopped, and the next move
+    has to begin there and must not be stopped, too. Raises CheckFailed.
     """
 
     def stops(arm: WatchedArm) -> None:
@@ -65,7 +65,7 @@ def expect_cancels(
             expect_on_the_way(arm, sent, position, start=began)
             arm.start = tuple(stopped)
         moved = _expect_moves_on(arm, began, former=sent if stopped else None)
-        # a server that fills in no result at all is told so by the check of those
+        # if the next result is empty, too, another check reports that
         if not stopped and moved.result is not None and moved.result.position:
             expect_on_the_way(arm, sent, position, start=began)
 
@@ -73,7 +73,7 @@ def expect_cancels(
 
 
 def expect_late_cancel(action: Action, position: Pose, *, start: Pose = (0.0, 0.0)) -> None:
-    """A request to cancel that comes after the end changes nothing, not for the next goal either.
+    """Expect that a request to cancel after a goal's end changes neither it nor the next goal.
 
     Raises CheckFailed.
     """
@@ -101,7 +101,7 @@ def expect_late_cancel(action: Action, position: Pose, *, start: Pose = (0.0, 0.
 
 
 def _cancel(arm: WatchedArm, sent: SentGoal, *, wanted_sec: float) -> None:
-    """Ask to cancel: it is accepted, and the goal is over in time. Raises CheckFailed."""
+    """Cancel a goal: the request is accepted and the goal ends in time. Raises CheckFailed."""
     began_ns = arm.time.now_ns()
     asked_ns, asked = time.time_ns(), arm.server.ends.cancel(sent)
     arm.server.watcher.spin_until_free(asked.done, free_sec=ANSWER_SEC)
@@ -141,9 +141,9 @@ def _fail_without_end(arm: WatchedArm, sent: SentGoal, most_sec: float) -> NoRet
 
 
 def _went_on_without_answer(sent: SentGoal, asked_ns: int) -> bool:
-    """Whether feedback on the goal came for long after a request, which waited for its end.
+    """Whether the server published feedback for long after a request that it did not answer.
 
-    Then the node had turns enough, however busy the machine was.
+    Then the node had enough processor time to answer, however busy the machine was.
     """
     since = [sent_ns - asked_ns for sent_ns, _ in sent.feedback()]
     return len({each // TENTH_NS for each in since if each > 0}) >= TENTHS
@@ -170,7 +170,7 @@ def _fail_refused(arm: WatchedArm, response: Any, *, was_over: bool, went_on: bo
 def _expect_moves_on(
     arm: WatchedArm, position: Pose, *, former: SentGoal | None = None
 ) -> SentGoal:
-    """The next goal is accepted, begins where the `former` was stopped, and is not stopped."""
+    """Send the next goal: it is accepted, begins where `former` stopped, and is not stopped."""
     far = max(far_rad(arm.start, position), NEXT_LEAST_RAD)
     sent = accepted(arm.server, goal(position, speed=max(NEXT_SPEED, far / 2.0)))
     wanted_sec = far / sent.goal.speed
@@ -189,7 +189,7 @@ def _expect_moves_on(
         and sent.result is not None
         and is_near(list(sent.result.position), position)
     ):
-        return sent  # it is there, so nobody has stopped it: another check is about its speed
+        return sent  # it has arrived, so it was not stopped: another check is about its speed
     expect(
         sent.status != 'canceled' and not is_early,
         expected='the next goal to be reached',

@@ -1,7 +1,8 @@
-"""Look at a server of `/move_arm` on the robot's clock, or on the wall clock if it ignores that.
+"""Watch a server of `/move_arm` on the robot's clock, or on the wall clock if it ignores that.
 
-A server that sleeps on wall time, or lets nothing else run meanwhile, gets short moves there. So
-does one that waits on its node's clock and computes with another one, which is a mistake.
+A server is watched on the wall clock, with short moves, if it sleeps on wall time or blocks its
+other callbacks during a move; also if it sleeps on its node's clock but computes with the wall
+clock, which is a mistake.
 """
 
 import math
@@ -28,30 +29,30 @@ from my_robot_basics.feedback.hidden import is_advice
 T = TypeVar('T')
 
 PROBE_RAD, PROBE_SEC = 0.4, 0.6
-"""A move on the wall clock. …"""
+"""A probe: a short move on the wall clock, by so many radians, in so many seconds."""
 PROBE_ASK_SEC = 0.1
-"""… So long after its start, the node is asked something else."""
+"""How long after the start of the probe the node is asked for a parameter, in seconds."""
 CLOCK_PROBE_SEC, CLOCK_PROBE_MOST_SEC = 2.0, 6.0
-"""A move on the robot's clock, and what it may take at most."""
+"""How long a probe is to take on the robot's clock, and may take at most, in seconds of it."""
 BUSY_SEC = 6.0
-"""How long a move takes at most on the robot's clock where the machine is too busy for more; …"""
+"""The longest move on the robot's clock, in seconds, if the machine is too busy to drive more."""
 WALL_SEC = 2.0
-"""… And on the wall clock."""
+"""The longest move on the wall clock, in seconds."""
 HOLD_SEC, APART_SEC = 0.4, 0.2
-"""How long the clock stands still before a server that ignores it is known, or computes with the
-wall clock: then where it says that the arm is differs by more than the second."""
+"""How long the clock is held to see whether a server ignores it, in seconds of wall time. Then a
+server that reports positions over APART_SEC off its own clock computes with the wall clock."""
 STEPS, STEPS_SEC = 4, 1.0
-"""So many steps in which the arm goes farther meanwhile prove that it knows the wall clock alone,
-and so long they are waited for, of time that was free."""
+"""If the arm moves on in each of STEPS steps while the robot's clock is held, the server uses the
+wall clock alone. The check waits for these steps for STEPS_SEC of free time."""
 _clocks: dict[Identity, FollowedClock] = {}
-"""The servers that were seen to follow a driven clock: the next grade cell asks the same one."""
+"""The clock that each server follows, for the next grade cell, which checks the same server."""
 
 
 def look(action: Action, body: Callable[[WatchedArm], T], *, start: Pose) -> T:
-    """What `body` makes of the server, with the arm at `start`. Raises what it raises.
+    """Return what `body` returns for the server, with the arm at `start` (rad).
 
-    On the robot's clock where the node follows it; else, or if that clock can't be driven, on the
-    wall clock.
+    `body` runs on the robot's clock if the node follows it; else, or if that clock can't be
+    driven, on the wall clock. Raises what `body` raises.
     """
     with action.opened() as server:
         on_wall = WatchedArm(server, WallTime(server.watcher), tuple(start), WALL_SEC)
@@ -90,11 +91,11 @@ def _driven(
 
 
 def _clock(action: Action, arm: WatchedArm) -> FollowedClock:
-    """Which clock the node follows; found out once for each server."""
+    """Which clock the server follows; measured once for each server."""
     server, name, clocks = arm.server.identity(), arm.server.node_name, action.known.clocks
     if name not in clocks:
         clocks[name] = _clocks.get(server) or _seen_clock(arm)
-    # that of the wall looks so on a busy machine, too: the grader asks again
+    # on a busy machine, any clock may look like the wall clock: the grader measures again
     if clocks[name] != FollowedClock.WALL or is_advice():
         _clocks[server] = clocks[name]
     return clocks[name]
@@ -109,16 +110,16 @@ def _seen_clock(arm: WatchedArm) -> FollowedClock:
 
 
 def _probe(arm: WatchedArm, seconds: float) -> MoveArm.Goal:
-    """A goal that takes so long, towards the middle."""
+    """A goal that moves joint1 towards 0, and takes so many seconds."""
     first, *others = arm.start
     first += PROBE_RAD if first < 0.0 else -PROBE_RAD
     return goal([first, *others], speed=PROBE_RAD / seconds)
 
 
 def _answers_while_it_moves(arm: WatchedArm) -> bool:
-    """Whether the node answers other questions in the midst of a move.
+    """Whether the node answers a parameter request during a move.
 
-    One that does not has no turn for `/clock`: asleep on it, it would never wake up.
+    If not, it does not receive `/clock` either: if it slept on that clock, it would never wake up.
     """
     watcher = arm.server.watcher
     asks = watcher.node.create_client(GetParameters, f'{arm.server.node_name}/get_parameters')
@@ -135,7 +136,7 @@ def _answers_while_it_moves(arm: WatchedArm) -> bool:
 
 
 def _waits_on(arm: WatchedArm) -> FollowedClock:
-    """Whether a move stands still while the robot's clock does, and goes on with it."""
+    """Hold the robot's clock during a move, then drive it: which clock does the move follow?"""
 
     def waits(driven: WatchedArm) -> FollowedClock:
         assert isinstance(driven.time, DrivenTime)
@@ -161,7 +162,7 @@ def _waits_on(arm: WatchedArm) -> FollowedClock:
 def _moves_on(arm: WatchedArm, sent: SentGoal) -> bool:
     """Whether the arm moves on, by its feedback, while the robot's clock stands still.
 
-    A node that gets the clock late jumps once; each of STEPS steps farther is none of its clock.
+    A node that receives `/clock` late may jump once; STEPS steps in a row show another clock.
     """
     first = sent.feedback_count()
     arm.server.watcher.spin_until_free(
@@ -173,7 +174,7 @@ def _moves_on(arm: WatchedArm, sent: SentGoal) -> bool:
 
 
 def _moves_with_clock(arm: WatchedArm, sent: SentGoal, position: Pose) -> bool:
-    """Whether a slow arm, which moved while the clock did, stands still once it does so again."""
+    """Whether a slow arm, which moved while the clock was driven, stops when it is held again."""
     if not is_under_way(arm, sent, position):
         return False
     count = sent.feedback_count()

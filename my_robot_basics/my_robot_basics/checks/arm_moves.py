@@ -1,4 +1,4 @@
-"""Whether the arm behind `/move_arm` gets where it is sent, at the speed asked for."""
+"""Whether a goal of `/move_arm` brings the arm to its position, at the requested speed."""
 
 from my_robot_basics.checks.action_ends import ActionEnds, SentGoal
 from my_robot_basics.checks.actions import Action
@@ -17,24 +17,24 @@ from my_robot_basics.checks.watched_arm import HASTE_SEC, Pose, WatchedArm, far_
 from my_robot_basics.feedback.errors import expect, fail
 
 MOST_TIMES = 3.0
-"""A move is waited for so many times as long as it is to take."""
+"""A check waits for the end of a move so many times as long as the move should take."""
 MORE_SEC = 1.0
-"""… And so much longer."""
+"""How many seconds longer it waits than MOST_TIMES says."""
 AT_ONCE_SEC = 0.3
-"""A goal that is there takes no longer; two steps may be 0.2 s."""
+"""How long a goal to where the arm is may take: two steps of a server may take 0.2 s."""
 MEET_SEC = 2.0
-"""How long a second client may take to meet the server."""
+"""How long a second client may take to discover the server, in seconds."""
 LEAVES_SPEED = 0.5
-"""Of a move whose client leaves, in rad/s."""
+"""Speed of a move whose client leaves, in rad/s."""
 
 
 def expect_reaches(
     action: Action, position: Pose, *, speed: float, start: Pose = (0.0, 0.0)
 ) -> None:
-    """The arm goes from `start` to a position (rad) at that speed (rad/s), and the goal succeeds.
+    """Send the arm from `start` to a position (rad) at a speed (rad/s); the goal has to succeed.
 
-    The result holds the position. So does that of a goal to where the arm is then. Raises
-    CheckFailed.
+    The result has to hold the position. Goals to where the arm is then have to succeed, too, at
+    once and with the same result. Raises CheckFailed.
     """
 
     def arrives(arm: WatchedArm) -> None:
@@ -48,16 +48,16 @@ def expect_reaches(
             cause='the time that has passed is that of another clock',
         )
         arm.start = tuple(position)
-        for is_there in False, True:  # the first one may have a way to go that is due to rounding
+        for is_there in False, True:  # rounding may leave the first one a short way to go
             _expect_stays(arm, speed=speed, is_there=is_there)
 
     look(action, arrives, start=start)
 
 
 def expect_serves_on(action: Action, position: Pose, *, start: Pose = (0.0, 0.0)) -> None:
-    """A client sends a goal and vanishes; the next client's goal is served all the same.
+    """Send a goal from a client that leaves; the server has to serve the next client's goal.
 
-    It is the only move of the exercise that has to be so fast. Raises CheckFailed.
+    No other move of the exercise is checked at so high a speed. Raises CheckFailed.
     """
 
     def serves_on(arm: WatchedArm) -> None:
@@ -83,7 +83,7 @@ def expect_serves_on(action: Action, position: Pose, *, start: Pose = (0.0, 0.0)
 
 
 def _arrive(arm: WatchedArm, position: Pose, *, speed: float) -> SentGoal:
-    """Send the arm there; the goal, which has succeeded. Raises CheckFailed."""
+    """Send the arm there, and return the goal, which has succeeded. Raises CheckFailed."""
     sent = arm.send(arm.goal(position, speed=speed))
     wanted_sec = far_rad(arm.start, position) / sent.goal.speed
     most_sec = MOST_TIMES * wanted_sec + MORE_SEC
@@ -100,7 +100,7 @@ def _arrive(arm: WatchedArm, position: Pose, *, speed: float) -> SentGoal:
 
 
 def _expect_stays(arm: WatchedArm, *, speed: float, is_there: bool) -> None:
-    """A goal to where the arm was sent succeeds, at once if it `is_there`. Raises CheckFailed."""
+    """Send a goal to where the arm is; it succeeds, at once if `is_there`. Raises CheckFailed."""
     sent = arm.server.send(goal(arm.start, speed=speed))
     expect(
         sent.is_accepted,
@@ -138,9 +138,10 @@ def _expect_stays(arm: WatchedArm, *, speed: float, is_there: bool) -> None:
 
 
 def _ends_at_once(arm: WatchedArm, sent: SentGoal) -> bool:
-    """Whether a goal ends within some steps of a server that takes ten a second.
+    """Whether a goal ends within AT_ONCE_SEC of the robot's time.
 
-    A thread gets its turn after each tick. The wall clock tells less, if the machine is busy.
+    After each tick, a thread of the node gets DUE_SEC of free time to act. On the wall clock, the
+    result is always True: a busy machine may delay the end.
     """
     if not isinstance(arm.time, DrivenTime):
         return True

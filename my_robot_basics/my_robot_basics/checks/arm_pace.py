@@ -1,6 +1,6 @@
-"""Drive a long move in coarse steps of the clock, where its server keeps pace with them.
+"""Drive a long move in coarse steps of the clock, if its server keeps pace with them.
 
-A server that computes the position from its clock does; one that adds up steps falls behind.
+A server that computes the position from its clock keeps pace; one that adds up steps falls behind.
 """
 
 from my_robot_basics.checks.action_ends import SentGoal
@@ -9,22 +9,24 @@ from my_robot_basics.checks.slow_moves import wait_unless_it_crawls
 from my_robot_basics.checks.watched_arm import Pose, WatchedArm, far_rad
 
 COARSE_NS = 250_000_000
+"""How far a coarse step moves the clock."""
 LONG_SEC = 8.0
-"""Only longer moves are worth it."""
+"""Only moves that take longer are driven in coarse steps."""
 BEGIN_SEC, END_SEC, END_PART = 1.0, 1.0, 0.03
-"""The begin is driven in fine steps, and so much before the end, or that part of the move."""
+"""How many seconds at the begin and at the end of a move are driven in fine steps; at the end, it
+is at least END_PART of the move."""
 BEHIND_SEC = 0.1
-"""A server that falls behind by more in one coarse step gets fine ones."""
+"""If a server falls behind by more than this in one coarse step, it gets fine ones."""
 REPORT_SEC = 0.2
-"""The next feedback has come by then."""
+"""How long the next feedback may take, in seconds of the robot's time."""
 TELLS_PART = 0.25
-"""After that part of a long move, its feedback tells whether the arm crawls."""
+"""After this part of a long move, its feedback shows whether the arm is far too slow."""
 
 
 def wait_for_end(arm: WatchedArm, sent: SentGoal, position: Pose, *, seconds: float) -> bool:
-    """Wait so many seconds of the arm's time for the end of a goal; whether it has come.
+    """Wait for the end of a goal, `seconds` of the arm's time; return whether it came.
 
-    `arm.lost_sec` says then how far the server fell behind because of a step that was too coarse.
+    Then `arm.lost_sec` is how far the server fell behind because of a step that was too coarse.
     """
     arm.lost_sec = 0.0
     wanted_sec = far_rad(arm.start, position) / sent.goal.speed
@@ -52,7 +54,7 @@ def wait_for_end(arm: WatchedArm, sent: SentGoal, position: Pose, *, seconds: fl
 
 
 def _keeps_pace(arm: WatchedArm, time: DrivenTime, sent: SentGoal, position: Pose) -> bool:
-    """Whether the feedback behind one coarse step is as far on as the clock."""
+    """Whether the feedback after one coarse step has advanced as far as the clock."""
     before = _last_report(arm, sent, position)
     if before is None:
         return False
@@ -71,7 +73,7 @@ def _keeps_pace(arm: WatchedArm, time: DrivenTime, sent: SentGoal, position: Pos
 
 
 def _last_report(arm: WatchedArm, sent: SentGoal, position: Pose) -> tuple[float, float] | None:
-    """When the last feedback came, in s, and how far the faster joint had gone then, in rad."""
+    """When the last feedback was sent, in s, and how far the faster joint had gone, in rad."""
     found = sent.feedback()
     if not found or len(found[-1][1].position) != len(position):
         return None

@@ -1,4 +1,4 @@
-"""An arm that is on its way, and slow: that costs the points of its speed, and no others."""
+"""An arm that moves too slowly: this costs only the points for its speed."""
 
 import math
 import time
@@ -23,27 +23,27 @@ from my_robot_basics.feedback.errors import expect
 
 BY_TIME = "in each step, move by speed × the time that passed, on the node's own clock"
 FEWEST = 4
-"""So many messages of feedback show a move. …"""
+"""How many feedback messages are needed to tell that the arm moves."""
 LATER_PART = 0.25
-"""… The later half of them covers this part of the way; in a steady move, half of it. …"""
+"""The later half of the messages has to cover this part of the way; steady moves cover half."""
 LATEST_SEC = 1.5
-"""… And the last one is no older."""
+"""How old the last message may be, in seconds of the arm's time."""
 CALM = 0.5
-"""Speed, in rad/s, for a server that rejects HASTE: another check is about that."""
+"""Speed, in rad/s, for a server that rejects goals at HASTE: another check is about that."""
 TELLS_SEC = 0.5
-"""Of a clock that is driven in haste: then feedback tells whether the arm goes by it."""
+"""How long to drive the clock in haste until feedback shows whether the arm follows it."""
 ASIDE_RAD = 0.3
-"""So far from a position is another one."""
+"""How far, in rad, a goal is moved aside so that it is certainly another position."""
 SOON_SEC = 1.0
-"""A move in haste that is on its way after that is a slow one."""
+"""A move at HASTE that has not ended after so many seconds is a slow one."""
 SLOW_SEC = 20.0
-"""What it may still take on the wall clock."""
+"""How many seconds more a slow move may take on the wall clock."""
 
 
 def is_under_way(arm: WatchedArm, sent: SentGoal, position: Pose) -> bool:
-    """Whether the feedback on a goal tells of an arm that moves on, and is not there yet.
+    """Whether the feedback on a goal shows an arm that still moves towards its position.
 
-    An arm that slows down all the time never gets there.
+    False for an arm that slows down all the time, because it never arrives.
     """
     reports = sent.feedback()
     if sent.is_over() or len(reports) < FEWEST:
@@ -57,14 +57,14 @@ def is_under_way(arm: WatchedArm, sent: SentGoal, position: Pose) -> bool:
 
 
 def bring(arm: WatchedArm, position: Pose) -> None:
-    """Bring the arm to a position (rad), in haste if the server takes it. Raises CheckFailed.
+    """Bring the arm to a position (rad), at HASTE if the server accepts that speed.
 
-    It is there then, as far as its result and its feedback tell.
+    Raises CheckFailed if its result and its feedback say that the arm is not there then.
     """
     hasty, calm = goal(position, speed=HASTE), goal(position, speed=CALM)
     aside = goal([each - math.copysign(ASIDE_RAD, each) for each in position], speed=HASTE)
     sent = arm.send(hasty, calm, aside)
-    if sent.goal is aside:  # it rejects a goal to where it is: another check is about that
+    if sent.goal is aside:  # a goal to where the arm is was rejected: another check reports that
         _reach(arm, sent, aside.position)
         sent = arm.send(hasty, calm)
     _reach(arm, sent, position)
@@ -109,9 +109,9 @@ def _wait_longer(arm: WatchedArm, sent: SentGoal, position: Pose) -> None:
 
 
 def wait_for_probe(arm: WatchedArm, sent: SentGoal, position: Pose, *, is_free: bool) -> None:
-    """Wait for the end of a short move that a check has sent, and not in vain if that is long.
+    """Wait for the end of a probe, but not if its feedback shows that it takes too long.
 
-    `is_free`: the node answers other questions meanwhile, so that its clock may be driven.
+    `is_free`: whether the node answers requests during the move, so that its clock can be driven.
     """
     if arm.time.wait(sent.is_over, seconds=SOON_SEC):
         return
@@ -122,7 +122,7 @@ def wait_for_probe(arm: WatchedArm, sent: SentGoal, position: Pose, *, is_free: 
 
 
 def _drives_on(arm: WatchedArm, sent: SentGoal) -> bool:
-    """Whether the robot's clock, driven in haste, brings a move to its end."""
+    """Drive the robot's clock in haste; return whether that brings a move to its end."""
     if isinstance(arm.time, DrivenTime):
         return arm.time.push(sent.is_over, free_sec=SETTLE_SEC)
     watcher, name = arm.server.watcher, arm.server.node_name

@@ -1,4 +1,4 @@
-"""Which goals `/move_arm` accepts: possible ones, one at a time."""
+"""Which goals `/move_arm` accepts: those within the limits, and one at a time."""
 
 import math
 
@@ -13,19 +13,19 @@ from my_robot_basics.checks.watched_arm import Pose, WatchedArm, far_rad, goal
 from my_robot_basics.feedback.errors import expect, fail
 
 LIMITS_RAD = math.radians(90.0), math.radians(120.0)
-"""Of joint1 and joint2, on both sides."""
+"""The largest angle of joint1 and of joint2, in either direction."""
 TOO_MANY_SPEED = 0.2
-"""Of a move in which a second goal comes, in rad/s."""
+"""Speed of a move during which a second goal is sent, in rad/s."""
 BEFORE_PART = 0.3
-"""It comes after this part of the move."""
+"""After which part of the first move the second goal is sent."""
 EARLY_PART = 0.8
-"""A move that is over sooner was stopped."""
+"""A move that ends before this part of its time was stopped."""
 MOST_TIMES, MORE_SEC = 3.0, 1.0
 CLIENT_SEC = 2.0
 
 
 def expect_rejects(action: Action, *goals: MoveArm.Goal) -> None:
-    """Each goal is rejected. Raises CheckFailed."""
+    """Expect each goal to be rejected. Raises CheckFailed."""
     with action.opened() as server:
         for wrong in goals:
             sent = server.send(wrong)
@@ -41,7 +41,7 @@ def expect_rejects(action: Action, *goals: MoveArm.Goal) -> None:
 
 
 def expect_accepts(action: Action, *positions: Pose) -> None:
-    """Goals with these positions (rad) are accepted, one after the other. Raises CheckFailed."""
+    """Expect goals to these positions (rad) to be accepted, in this order. Raises CheckFailed."""
 
     def accepts(arm: WatchedArm) -> None:
         for position in positions:
@@ -53,9 +53,10 @@ def expect_accepts(action: Action, *positions: Pose) -> None:
 def expect_one_at_a_time(
     action: Action, first: Pose, second: Pose, *, start: Pose = (0.0, 0.0)
 ) -> None:
-    """While the arm moves, another client's goal is rejected; the move goes on; then it is free.
+    """Expect the server to reject another client's goal while the arm moves to `first`.
 
-    Positions are in rad. Raises CheckFailed.
+    The move has to go on, and after it the server has to accept a goal to `second`. Positions are
+    in rad. Raises CheckFailed.
     """
 
     def refuses(arm: WatchedArm) -> None:
@@ -67,7 +68,7 @@ def expect_one_at_a_time(
         arm.time.let_pass(moving.is_over, seconds=BEFORE_PART * wanted_sec)
         for position in second, first:
             too_many = server.send(goal(position, speed=TOO_MANY_SPEED), ends=other)
-            # a server that lets nothing else run meanwhile answers when the arm is at rest
+            # a server that blocks its other callbacks during a move answers only after it
             if moving.is_over():
                 break
             expect(
@@ -99,7 +100,7 @@ def expect_one_at_a_time(
         )
         arm.settle()
         accepted(server, goal(second, speed=TOO_MANY_SPEED))
-        arm.settle()  # a server that cannot be cancelled would still move when it is asked next
+        arm.settle()  # else a server without cancellation would still move at the next check
 
     look(action, refuses, start=start)
 

@@ -1,4 +1,4 @@
-"""Whether the feedback of `/move_arm` tells what is left of the way."""
+"""Whether the feedback of `/move_arm` says how far the arm still has to go."""
 
 from collections.abc import Sequence
 
@@ -7,8 +7,10 @@ import numpy as np
 from my_robot_basics.feedback.errors import fail
 
 OFF_RAD, MOSTLY_OFF_RAD = 0.01, 0.003
-"""So far off may a message be, and half of them: what was left a step before is off each time."""
+"""How far off each message may be, and their median: `remaining` of the step before is off in
+each message."""
 ALIKE_RAD = 0.02
+"""How near all messages have to be to what a mistake would publish."""
 SIGNED = 'it is a distance: take the size of each difference, abs(…)'
 LARGEST = (
     'it is the distance of the joint that is farthest away, in either direction: take the size '
@@ -19,9 +21,10 @@ LARGEST = (
 def expect_remaining(
     told: np.ndarray, positions: np.ndarray, *, start: Sequence[float], end: Sequence[float]
 ) -> None:
-    """It is what the joint that is farthest away has still to go, in rad. Raises CheckFailed.
+    """Expect `remaining` to be what the joint that is farthest away still has to go, in rad.
 
-    `told`: `remaining` of each message; `positions`: those of the joints in each, in rad.
+    `told`: `remaining` of each message; `positions`: the joints' positions in each message, in
+    rad. Raises CheckFailed.
     """
     ways = np.array(end) - positions
     left = np.abs(ways)

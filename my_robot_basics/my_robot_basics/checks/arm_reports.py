@@ -1,4 +1,4 @@
-"""Whether the feedback of `/move_arm` tells where the arm is."""
+"""Whether the feedback of `/move_arm` says where the arm is."""
 
 import math
 from collections.abc import Sequence
@@ -17,7 +17,7 @@ from my_robot_basics.feedback.errors import fail
 
 WANTED_HZ, LEAST_HZ = 10.0, 9.5
 LARGEST_GAP_SEC = 0.35
-"""More between two messages is a pause."""
+"""A longer gap between two messages is a pause."""
 FLOOD_HZ = 500.0
 NO_WAIT = (
     'no step of the loop waits, and most of the feedback is lost: write `await sleep(self, …)`'
@@ -25,16 +25,17 @@ NO_WAIT = (
 FEWEST = 5
 ON_LINE_RAD = 0.01
 PROGRESS_PART = 0.06
-"""How much of the way the arm may be ahead of a steady move, or behind it."""
+"""How far the arm may be ahead of a steady move or behind it, as a part of the way."""
 MOST_TIMES = 3.0
 
 
 def expect_feedback(
     action: Action, position: Pose, *, speed: float, start: Pose = (0.0, 0.0)
 ) -> None:
-    """Feedback tells at 10 Hz or more where the arm is on its way from `start` to a position.
+    """Send the arm from `start` to a position (rad), and check the feedback on this move.
 
-    That is a straight line, in rad. Raises CheckFailed.
+    At 10 Hz or more, it has to hold where the arm is, on a straight line between the two, and how
+    far it still has to go. Raises CheckFailed.
     """
 
     def reports(arm: WatchedArm) -> None:
@@ -60,13 +61,13 @@ class MoveReport:
     end: tuple[float, ...]
 
     def __post_init__(self) -> None:
-        """Take what has come."""
+        """Keep the messages that were received so far, and their times."""
         found = self.sent.feedback()
         self.times = np.array([self.arm.time.at_ns(sent_ns) / 1e9 for sent_ns, _ in found])
         self.messages = [message for _, message in found]
 
     def expect_enough(self) -> None:
-        """There is feedback, at 10 Hz or more, without pauses."""
+        """Expect feedback at 10 Hz or more, without pauses. Raises CheckFailed."""
         count = len(self.messages)
         if not count:
             why = self.arm.why_no_feedback(self.sent)
@@ -100,7 +101,7 @@ class MoveReport:
             )
 
     def expect_positions(self) -> None:
-        """Each holds the positions of both joints, in radians."""
+        """Expect the positions of both joints in each message, in radians. Raises CheckFailed."""
         for message in self.messages:
             seen = list(message.position)
             if len(seen) != len(self.end) or not all(map(math.isfinite, seen)):
@@ -113,7 +114,7 @@ class MoveReport:
             self._fail_position(last, hint, 'angles in radians')
 
     def expect_line(self) -> None:
-        """All positions are on the straight line from where the arm was to the goal."""
+        """Expect all positions on the line from `arm.start` to the goal. Raises CheckFailed."""
         positions = self._positions()
         if np.ptp(positions, axis=0).max() < ON_LINE_RAD:
             hint = 'feedback holds the same position all the time: put in where the arm is now'
@@ -129,7 +130,7 @@ class MoveReport:
         self._fail_position(positions[int(off.argmax())], hint, 'positions on a straight line')
 
     def expect_steady(self) -> None:
-        """The arm moves steadily along it, as time passes."""
+        """Expect the arm to move along the line at one speed. Raises CheckFailed."""
         parts = self._parts(self._positions())
         on_the_way = parts < 1.0 - 1e-6
         times, parts = self.times[on_the_way], parts[on_the_way]
@@ -143,12 +144,12 @@ class MoveReport:
             self._fail_steady('move at one speed from start to goal, and publish each position')
 
     def expect_remaining(self) -> None:
-        """`remaining` is what the joint that is farthest away has still to go, in rad."""
+        """Expect the right `remaining` in each message. Raises CheckFailed."""
         told = np.array([message.remaining for message in self.messages])
         expect_remaining(told, self._positions(), start=self.arm.start, end=self.end)
 
     def _rate_hz(self, seconds: float) -> float:
-        """Of the whole move; on the wall clock that which was meant, however late it was."""
+        """The rate of the feedback; on the wall clock, the one of the loop without its delays."""
         if not self.arm.time.is_driven:
             return 1.0 / max(periods.meant(self.times), 1e-9)
         count = len(self.times)
@@ -163,7 +164,7 @@ class MoveReport:
         return np.asarray((positions[:, joint] - self.arm.start[joint]) / ways[joint])
 
     def _off_line(self, positions: np.ndarray, start: Sequence[float]) -> np.ndarray:
-        """How far each position is from the line, in rad."""
+        """How far each position is from the line that begins at `start`, in rad."""
         begin, ways = np.array(start), np.array(self.end) - np.array(start)
         joint = int(np.abs(ways).argmax())
         parts = np.clip((positions[:, joint] - begin[joint]) / ways[joint], 0.0, 1.0)
@@ -183,5 +184,5 @@ class MoveReport:
             seen='others',
             hint=hint,
             cause='feedback.position is wrong',
-            doubt=self.arm.doubt(),  # be the move too fast: steady it is all the same
+            doubt=self.arm.doubt(),  # a move that is too fast has to be steady, too
         )

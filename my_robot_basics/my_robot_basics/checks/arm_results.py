@@ -1,4 +1,4 @@
-"""What the end of a goal of `/move_arm` tells: its status, and the position in its result."""
+"""How a goal of `/move_arm` ended: its status, and the position in its result."""
 
 import math
 from collections.abc import Sequence
@@ -9,20 +9,20 @@ from my_robot_basics.checks.watched_arm import Pose, WatchedArm
 from my_robot_basics.feedback.errors import expect, fail, shorten
 
 WITHIN_RAD = 0.005
-"""An arm that is so near has arrived."""
+"""An arm that is as near as this to its goal has arrived."""
 ELSEWHERE = 'put in the positions of both joints, in radians'
 NOT_THERE = (
     'let the last step end at the goal, and not before it or beyond it (`part = min(1.0, …)`), '
     'and call succeed() then'
 )
 ASIDE_RAD = 0.05
-"""One that is so far away is elsewhere. …"""
+"""An arm that is farther than this from its goal is elsewhere."""
 CLOSE_RAD = 0.6
-"""… And one that is no farther was not told so in degrees."""
+"""A position that is no farther off than this is not a mistake of units, such as degrees."""
 
 
 def expect_succeeded(arm: WatchedArm, sent: SentGoal) -> None:
-    """A goal that was reached has succeeded, and has a result. Raises CheckFailed."""
+    """Expect a goal that was reached to succeed, with a result. Raises CheckFailed."""
     expect_result(arm, sent)
     if sent.status != 'succeeded':
         fail(
@@ -34,7 +34,7 @@ def expect_succeeded(arm: WatchedArm, sent: SentGoal) -> None:
 
 
 def expect_result(arm: WatchedArm, sent: SentGoal) -> None:
-    """The result of a goal that is over arrives. Raises CheckFailed."""
+    """Expect the result of a goal that has ended to arrive. Raises CheckFailed."""
     expect(
         arm.has_result(sent),
         expected='a result',
@@ -45,7 +45,7 @@ def expect_result(arm: WatchedArm, sent: SentGoal) -> None:
 
 
 def why_aborted(arm: WatchedArm, sent: SentGoal, *, instead: str) -> str:
-    """What to try where a goal was aborted; `instead` is the call that is missing."""
+    """Advice if a goal was aborted; `instead`: the method that should have been called."""
     log = arm.server.log
     if raised := log.raised(since_ns=sent.sent_ns):
         return raised
@@ -58,14 +58,14 @@ def why_aborted(arm: WatchedArm, sent: SentGoal, *, instead: str) -> str:
 
 
 def why_no_success(arm: WatchedArm, sent: SentGoal) -> str:
-    """What to try where a goal that was reached has not succeeded."""
+    """Advice if a goal that was reached has not succeeded."""
     if sent.status == 'aborted':
         return why_aborted(arm, sent, instead='succeed')
     return 'call goal_handle.succeed() when the arm is there'
 
 
 def expect_arrived(sent: SentGoal, position: Pose, *, start: Pose) -> None:
-    """The result holds that position. Raises CheckFailed."""
+    """Expect the result to hold that position (rad). Raises CheckFailed."""
     seen = list(sent.result.position)
     if not is_near(seen, position):
         fail(
@@ -77,9 +77,9 @@ def expect_arrived(sent: SentGoal, position: Pose, *, start: Pose) -> None:
 
 
 def expect_there(sent: SentGoal, position: Pose) -> None:
-    """A result, and the feedback if there is any, do not say that the arm is elsewhere.
+    """Raise CheckFailed if a goal succeeded, but its result says that the arm is elsewhere.
 
-    Raises CheckFailed.
+    A result that the last feedback contradicts is no evidence, and does not raise.
     """
     told = [list(message.position) for _, message in sent.feedback()]
     seen = list(sent.result.position) if sent.result is not None else []
@@ -97,14 +97,14 @@ def expect_there(sent: SentGoal, position: Pose) -> None:
 
 
 def is_near(seen: Sequence[float], wanted: Pose, within_rad: float = WITHIN_RAD) -> bool:
-    """Whether all joints are there."""
+    """Whether each joint is within `within_rad` of the wanted position."""
     return len(seen) == len(wanted) and all(
         abs(a - b) <= within_rad for a, b in zip(seen, wanted, strict=True)
     )
 
 
 def why_off(seen: Sequence[float], wanted: Pose, *, start: Pose) -> str:
-    """What to try where a position is another one than wanted."""
+    """Advice for a position that is not the wanted one."""
     if not seen:
         return 'fill in the position: MoveArm.Result(position=…)'
     if is_near(seen, start):

@@ -1,4 +1,4 @@
-"""Whether a move took as long as it should, whatever the server waits for between its steps."""
+"""Whether a move took as long as it should, however long the server's steps are."""
 
 import math
 from typing import NoReturn
@@ -12,36 +12,39 @@ from my_robot_basics.feedback.errors import CheckFailed, fail
 
 TOLERANCE, WALL_TOLERANCE = 0.02, 0.05
 SLACK_SEC = 0.12
-"""So much more or less is one step of the server's, and one of the clock."""
+"""By how much a move may be longer or shorter: a step of the server, and one of the clock."""
 TOLD_WALL_TOLERANCE, STEP_LATE_SEC = 0.03, 0.0015
-"""What feedback tells on the wall clock; each step of a loop that adds them up is so late."""
+"""Tolerance of the feedback's speed on the wall clock; how late each sleep may end in a loop that
+adds up steps."""
 FAR_PART = 0.12
-"""A busy machine makes feedback tell no speed that is so far off."""
+"""A busy machine does not make the feedback's speed wrong by more than this part."""
 PLAUSIBLE = 0.8, 1.25
-"""Feedback that tells another speed is itself wrong: the time alone counts then."""
+"""If the feedback's speed is outside these parts of the requested one, the feedback is wrong, and
+only the time of the move counts."""
 FINEST = 0.0005, 0.45
-"""A step of the clock, and for how long the arm moves, in seconds: a server whose sleeps are no
-multiple of the clock's steps sleeps longer than it means to, and less so with finer ones. …"""
+"""The step of the clock and the time of the move, in seconds, of a second look: a server whose
+sleep is not a multiple of the clock's step sleeps too long, but less so with finer steps."""
 FINER = 0.002, 4.0
-"""… Where too little feedback tells the speed in that time, the move has to be longer."""
+"""The same with a longer move, if too little feedback comes in the time of FINEST."""
 SLOW_PART = 0.5
-"""If the feedback tells a speed so much lower, no busy machine is the cause."""
+"""If the feedback shows less than this part of the speed, a busy machine is not the cause."""
 MOST_TIMES = 3.0
 JUMP_SEC = 0.3
-"""An arm that takes no longer does not move at a speed: it jumps."""
+"""If a move takes no longer than this, the arm jumps to its goal."""
 ALIKE = 0.03
-"""So near is a wrong speed to the one that a mistake makes."""
+"""How near a wrong speed has to be to that of a known mistake, as a part of it."""
 FROM_HERE = 'start from where the arm is, at each goal'
 
 
 def expect_speed(arm: WatchedArm, sent: SentGoal, position: Pose) -> None:
-    """A goal that was reached has taken as long as its speed asks for. Raises CheckFailed.
+    """Expect a goal that was reached to have taken as long as its speed requires.
 
-    The feedback on it, where it can be right, tells the speed better than one step of the server.
+    If its feedback is plausible, it shows the speed more exactly than the time of the move, which
+    may be off by a step of the server. Raises CheckFailed.
     """
     wanted_sec = far_rad(arm.start, position) / sent.goal.speed
     seconds = arm.seconds(sent)
-    # feedback that a busy machine delays looks like a step that was lost, and makes no move faster
+    # late feedback on a busy machine may look like a lost step: it must not make a move too fast
     seconds -= min(arm.lost_sec, max(0.0, seconds - wanted_sec))
     told = reported_speed(arm, sent, position)
     least, most = PLAUSIBLE
@@ -64,9 +67,9 @@ def expect_speed(arm: WatchedArm, sent: SentGoal, position: Pose) -> None:
 
 
 def expect_no_slow_move(arm: WatchedArm, sent: SentGoal, position: Pose) -> None:
-    """A goal that has not ended in time is not one of an arm that is slow, by its feedback.
+    """Raise CheckFailed if a goal has not ended in time because the arm is slow.
 
-    Raises CheckFailed.
+    The arm is slow if its feedback shows that it moves on, at less than SLOW_PART of its speed.
     """
     told = reported_speed(arm, sent, position).rad_per_sec
     if told and told < SLOW_PART * sent.goal.speed and is_under_way(arm, sent, position):
@@ -81,9 +84,9 @@ def expect_no_slow_move(arm: WatchedArm, sent: SentGoal, position: Pose) -> None
 
 
 def _is_proven(told: ReportedSpeed, sent: SentGoal, wanted_sec: float, seconds: float) -> bool:
-    """Whether feedback and end agree on another speed, so that no busy machine has made it.
+    """Whether feedback and time agree on a wrong speed, so that a busy machine is not the cause.
 
-    It slows a loop down that adds up steps, and makes no move faster.
+    That is never proven of a loop that adds up steps, because a busy machine slows it down.
     """
     if not told.rad_per_sec or told.step_sec:
         return False
@@ -93,7 +96,7 @@ def _is_proven(told: ReportedSpeed, sent: SentGoal, wanted_sec: float, seconds: 
 
 
 def _is_right(arm: WatchedArm, told: ReportedSpeed, speed: float) -> bool:
-    """Whether the speed is right by what the feedback tells."""
+    """Whether the feedback's speed is the requested one."""
     times = told.rad_per_sec / speed
     tolerance = TOLERANCE if arm.time.is_driven else TOLD_WALL_TOLERANCE
     late = STEP_LATE_SEC / told.step_sec if told.step_sec else 0.0
@@ -114,7 +117,7 @@ def _is_right_in_finer_steps(arm: WatchedArm, sent: SentGoal, position: Pose) ->
 
 
 def _slowness(arm: WatchedArm, position: Pose, *, seconds: float) -> float:
-    """How many times as long as it should a move takes that should take so many seconds."""
+    """Make a move that should take `seconds`: how many times as long it takes."""
     sent = arm.send(arm.goal(position, speed=far_rad(arm.start, position) / seconds))
     if not arm.time.wait(sent.is_over, seconds=MOST_TIMES * seconds):
         return MOST_TIMES
@@ -147,7 +150,7 @@ def _fail_speed(
 
 
 def _why_speed(arm: WatchedArm, position: Pose, product: float, *, seconds: float) -> str:
-    """What to try; `product` is the time that it took times the speed asked for, in rad."""
+    """Advice; `product`: the time of the move × the requested speed, in rad."""
     ways = [abs(b - a) for a, b in zip(arm.start, position, strict=True)]
     causes = {
         math.radians(max(ways)): 'the speed is in rad/s already, as the positions are in rad',

@@ -1,4 +1,4 @@
-"""What becomes of a goal of `/move_arm` that was cancelled: its status and its result."""
+"""How a cancelled goal of `/move_arm` ended: its status, its result, and the next move."""
 
 import math
 from collections.abc import Sequence
@@ -11,11 +11,11 @@ from my_robot_basics.feedback.errors import fail, shorten
 
 ON_LINE, NEAR_RAD = 0.05, 0.02
 FIRST_SEC = 0.3
-"""The first feedback comes so long after the begin of a move, at the latest."""
+"""When the first feedback comes at the latest, in seconds after the begin of a move."""
 
 
 def expect_canceled(arm: WatchedArm, sent: SentGoal) -> None:
-    """Its status is canceled. Raises CheckFailed."""
+    """Expect the status canceled. Raises CheckFailed."""
     if sent.status == 'canceled':
         return
     hint = 'the arm was stopped: call goal_handle.canceled(), not succeed()'
@@ -30,7 +30,7 @@ def expect_canceled(arm: WatchedArm, sent: SentGoal) -> None:
 
 
 def expect_on_the_way(arm: WatchedArm, sent: SentGoal, position: Pose, *, start: Pose) -> None:
-    """Its result holds a position between start and goal. Raises CheckFailed."""
+    """Expect a position between `start` and the goal in the result. Raises CheckFailed."""
     seen = list(sent.result.position)
     hint = ''
     if not seen:
@@ -57,7 +57,7 @@ def expect_on_the_way(arm: WatchedArm, sent: SentGoal, position: Pose, *, start:
 
 
 def _is_between(seen: Sequence[float], start: Pose, goal: Pose) -> bool:
-    """Whether each joint is on its way, and the one that has farthest to go is not at its end."""
+    """Whether each joint is on its way, and the one with the longest way at neither end of it."""
     ways = [b - a for a, b in zip(start, goal, strict=True)]
     parts = [(each - a) / way for each, a, way in zip(seen, start, ways, strict=True) if way]
     joint = max(range(len(ways)), key=lambda number: abs(ways[number]))
@@ -76,16 +76,16 @@ def _why_at_the_goal(sent: SentGoal, position: Pose) -> str:
 
 
 def expect_begins_at(arm: WatchedArm, stopped: Pose, moved: SentGoal, *, former: SentGoal) -> None:
-    """The feedback of a move begins where the one before was stopped. Raises CheckFailed.
+    """Expect the feedback on `moved` to begin where the goal before it, `former`, was stopped.
 
-    Where the feedback on that one tells something else, this tells nothing.
+    Nothing is checked if the last feedback on `former` is not near `stopped`. Raises CheckFailed.
     """
     before = [list(message.position) for _, message in former.feedback()]
     after = [list(message.position) for _, message in moved.feedback()]
     near_rad = FIRST_SEC * max(former.goal.speed, moved.goal.speed) + NEAR_RAD
     if not before or not after or not is_near(before[-1], stopped, near_rad):
         return
-    # the arm has moved meanwhile, since the goal was sent at the earliest
+    # the arm may have moved since the goal was sent
     late_sec = arm.seconds_since_sent(moved, moved.feedback()[0][0])
     near_rad += max(0.0, late_sec - FIRST_SEC) * moved.goal.speed
     if len(after[0]) == len(stopped) and not is_near(after[0], stopped, near_rad):

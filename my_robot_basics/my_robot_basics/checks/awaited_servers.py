@@ -1,4 +1,4 @@
-"""How long a check waits for a server to appear, and what it makes of one that does not."""
+"""Wait for a server to appear, and judge whether a missing one is the student's fault."""
 
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
@@ -12,26 +12,27 @@ from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
 
 SERVER_SEC = 10.0
-"""How long to wait, of time that was free: a program that was started just now may have had no
-processor."""
+"""How long to wait for a server, in seconds of free time: a program that was just started may have
+got no processor yet."""
 
 
 @dataclass(frozen=True)
 class NoServer:
-    """No server has come."""
+    """What is known about a server that did not appear."""
 
     seen: str
-    """How long nothing was seen, in words."""
+    """How long the check waited in vain, in words."""
     doubt: type[CheckFailed]
-    """What to raise: the machine may be to blame."""
+    """What to raise: Starved if the machine may be to blame, else CheckFailed."""
 
 
 def expect_type(
     name: str, type_: type, found: Mapping[str, Collection[str]], *, maker: str
 ) -> None:
-    """The servers of a name that were found, types by node, are of one type. Raises CheckFailed.
+    """Expect all servers of a name to have the type `type_`. Raises CheckFailed.
 
-    `maker`: the function or class of rclpy with which a node makes such a server.
+    `found`: the servers' types by node name; `maker`: the function or class of rclpy with which a
+    node makes such a server.
     """
     wanted = type_name(type_)
     types = sorted({each for types in found.values() for each in types})
@@ -45,9 +46,9 @@ def expect_type(
 
 
 def wait_for_server(watcher: Watcher, is_there: Callable[[], bool]) -> NoServer | None:
-    """Wait for a server, and not for long where the notebook says that none can come.
+    """Wait for a server, but only SETTLED_SEC if the notebook says that none can appear.
 
-    None where it is there.
+    Return None if it appeared.
     """
     if graphs.is_settled(watcher):
         timeout_sec, doubt = graphs.SETTLED_SEC, CheckFailed

@@ -1,4 +1,4 @@
-"""Questions to nodes that are answered when they have dealt with what came before them."""
+"""Parameter requests to nodes: an answer shows that a node has handled what came before."""
 
 import statistics
 import time
@@ -14,19 +14,22 @@ from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
 
 NOTHING = GetParameters.Request()
-"""A question about no parameter: the answer is all that counts."""
+"""A request for no parameter: only the answer's arrival counts."""
 PROMPT_SEC = 0.01
-"""How long a message may take that is due: then a question is asked."""
+"""How long to wait for a message that is due, before a request is sent instead."""
 SLOWEST_BARRIER_SEC = 0.5
+"""How long `acknowledge` waits for answers, in seconds of free time."""
 SLOWEST_MEDIAN_SEC = 0.02
+"""How long answers may take in the median, in seconds of free time."""
 MEDIAN_EVERY = 40
+"""How many answers come between two looks at their median."""
 
 
 class Barriers:
-    """The parameter services of some nodes, and how long they take to answer."""
+    """Clients of the parameter services of nodes, which measure how long the answers take."""
 
     def __init__(self, watcher: Watcher) -> None:
-        """No node is asked yet."""
+        """Start without a node; call `add` for each."""
         self._watcher = watcher
         self._clients: dict[str, Client] = {}
         self._unheeded: dict[str, Client] = {}
@@ -35,11 +38,11 @@ class Barriers:
         self._next_median = MEDIAN_EVERY
 
     def __len__(self) -> int:
-        """How many nodes there are."""
+        """How many nodes are asked."""
         return len(self._clients)
 
     def add(self, name: str) -> tuple[Client, Client]:
-        """Prepare to ask the node of that full name, by two clients."""
+        """Make and return two clients of the node with that full name; nothing is asked yet."""
         node, service = self._watcher.node, f'{name}/get_parameters'
         self._clients[name] = node.create_client(GetParameters, service)
         self._unheeded[name] = node.create_client(
@@ -48,18 +51,18 @@ class Barriers:
         return self._clients[name], self._unheeded[name]
 
     def keep(self, names: Iterable[str]) -> None:
-        """Ask only these from now on."""
+        """Ask only the nodes with these names from now on."""
         self._clients = {name: self._clients[name] for name in names}
         self._unheeded = {name: self._unheeded[name] for name in self._clients}
 
     def ask(self, names: Iterable[str] | None = None) -> dict[str, Future]:
-        """Ask each node, or these, for its `use_sim_time`; the futures by the nodes' names."""
+        """Request `use_sim_time` of these nodes, or of all; return the futures by node name."""
         request = GetParameters.Request(names=['use_sim_time'])
         asked = self._clients if names is None else names
         return {name: self._clients[name].call_async(request) for name in asked}
 
     def wait_for(self, until: Callable[[], bool]) -> bool:
-        """Whether `until()` is true soon, which tells of a sole node what an answer would."""
+        """Wait PROMPT_SEC for `until()`: with a single node, it shows the same as an answer."""
         start = time.monotonic()
         is_true = len(self) == 1 and self._watcher.spin_until(until, timeout_sec=PROMPT_SEC)
         if is_true:
@@ -67,14 +70,14 @@ class Barriers:
         return is_true
 
     def acknowledge(self, questions: int) -> None:
-        """Wait until every node has answered so many questions. Raises TooSlow.
+        """Send each node so many requests, and wait for the last answers. Raises TooSlow.
 
-        They are answered one after the other, so that the last answer tells of all.
+        A node answers one after the other, so that its last answer shows that it answered all.
         """
         start = time.monotonic()
         for _ in range(questions - 1):
             for client in self._unheeded.values():
-                # no future is made for an answer that nobody takes
+                # only the last answer is read: the others need no future
                 with client.handle:
                     client.handle.send_request(NOTHING)
         asked = [client.call_async(NOTHING) for client in self._clients.values()]
@@ -83,13 +86,13 @@ class Barriers:
         ):
             raise TooSlow('a node did not answer in time')
         self._took_sec.append(time.monotonic() - start)
-        # over all of them: on a busy machine everybody is slow for a moment
+        # the median of all answers: on a busy machine, each node is slow for a moment
         if len(self._took_sec) >= self._next_median:
             self._next_median = len(self._took_sec) + MEDIAN_EVERY
             if self._usual_sec() > SLOWEST_MEDIAN_SEC:
                 raise TooSlow('a node answers too slowly')
 
     def _usual_sec(self) -> float:
-        """What a node usually takes to answer, of time that was free."""
+        """The median of the answers' times, in seconds of free time."""
         free_share = self._watch.free_sec() / self._watch.wall_sec()
         return statistics.median(self._took_sec) * free_share

@@ -1,4 +1,4 @@
-"""A branch of the IK, as `/solve_ik` answers with it, and what is wrong with another one."""
+"""A branch of the inverse kinematics in a response of `/solve_ik`, and what is wrong with it."""
 
 import math
 from collections.abc import Sequence
@@ -12,7 +12,7 @@ UP, DOWN = 'elbow_up', 'elbow_down'
 
 
 def is_pose(position: Sequence[float], pose_deg: Sequence[float]) -> bool:
-    """Whether each joint is there, in radians, whole turns aside, as in lesson 4's log."""
+    """Whether a position (rad) is that pose; whole turns don't matter, as in lesson 4's log."""
     right = [math.radians(angle) for angle in pose_deg]
     return (
         len(position) == len(right)
@@ -25,7 +25,7 @@ def is_pose(position: Sequence[float], pose_deg: Sequence[float]) -> bool:
 
 
 def why_off(position: Sequence[float], target: Point, branch: str, other: str) -> str:
-    """Advice for a position that is not that branch for the target, which is within reach."""
+    """Advice for a position that is not that `branch` of a target within reach."""
     right_deg = inverse_kinematics(target.x, target.y)
     if not position:
         return f'fill in both branches: response.{branch} is empty'

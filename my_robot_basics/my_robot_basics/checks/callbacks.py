@@ -1,4 +1,4 @@
-"""What the callbacks of a node raised: `rclpy.spin` would have ended there."""
+"""Exceptions that a node's callbacks raised: each would have ended `rclpy.spin`."""
 
 from collections.abc import Callable, Iterable
 
@@ -12,26 +12,26 @@ ENDED = (
     'the node has ended: leave rclpy.shutdown(), destroy_node() and exit() out of its callbacks'
 )
 GONE_SEC = 0.2
-"""How long the graph may take to tell that a node has ended."""
+"""How long the graph may take to show that a node has ended, in seconds of free time."""
 
 
 class CallbackErrors:
-    """The exceptions of nodes' callbacks since this was made, where live spins them."""
+    """The exceptions in callbacks since this object was made, of nodes that `live` spins."""
 
     def __init__(self, node_names: Iterable[str]) -> None:
         """`node_names`: the nodes' full names."""
         self._before = {name: node_troubles.times_raised(name) for name in node_names}
 
     def hint(self) -> str:
-        """A clause that names one of them, and what to do; or ''."""
+        """A clause that names one of the exceptions, and what to do; '' if there is none."""
         names = [n for n, times in self._before.items() if node_troubles.times_raised(n) > times]
         raised = what_raised(names)
         return fix_first(raised) if raised else ''
 
     def hint_or_thread(self) -> str:
-        """The same; or a clause on what a thread of the notebook's own raised, or ''.
+        """As `hint`; else a clause on what a thread of the notebook raised; or ''.
 
-        It tells where to look, where something is missing: a thread may end without any harm.
+        Use it only if something is missing: an exception in a thread may do no harm.
         """
         if raised := self.hint():
             return raised
@@ -39,7 +39,7 @@ class CallbackErrors:
         return f'{stopped}; fix that first' if stopped else ''
 
     def why(self, watcher: Watcher) -> str:
-        """As `hint`; else a clause on one that does not return, or on a node that ended; or ''."""
+        """As `hint`; else a clause on a callback that does not return, or an ended node; or ''."""
         if raised := self.hint():
             return raised
         if stopped := what_stopped(self._before):
@@ -52,18 +52,18 @@ class CallbackErrors:
         return lambda: any(graphs.is_gone(watcher, name) for name in self._before)
 
     def expect_none(self) -> None:
-        """Raise CheckFailed where there was one."""
+        """Raise CheckFailed if a callback raised an exception."""
         if hint := self.hint():
             _fail(hint)
 
 
 def fix_first(raised: str) -> str:
-    """A clause on what a callback raised, and why nothing else is told before that is fixed."""
+    """A clause on what a callback raised, and why the student has to fix that first."""
     return f'{raised}; fix that first: rclpy.spin would have ended there'
 
 
 def expect_none_so_far(node_names: Iterable[str]) -> None:
-    """No callback of the nodes has raised since they were started. Raises CheckFailed."""
+    """Raise CheckFailed if a callback of the nodes raised since they were started."""
     if raised := what_raised(node_names):
         _fail(fix_first(raised))
 

@@ -1,7 +1,7 @@
-"""The robot's clock in the hands of a check: switch nodes to it, hold it, step it, give it back.
+"""The robot's clock, driven by a check: switch nodes to `/clock`, hold it, step it, switch back.
 
-`/clock` moves one acknowledged tick at a time, so that what a timer does is exact however
-loaded the machine is. A node that doesn't follow raises Inconclusive, and wall time decides.
+`/clock` moves one acknowledged tick at a time, so that timers fire exactly, however busy the
+machine is. If a node doesn't follow, Inconclusive is raised, and the wall clock decides.
 """
 
 import bisect
@@ -29,35 +29,35 @@ from my_robot_basics.checks.parameter_services import (
 from my_robot_basics.graph.watcher import Watcher
 
 FIRST_ANSWER_SEC = 1.0
-"""What a node may take to answer, of time that was free: an honest node on a busy machine is
-slow, too."""
+"""How long a node may take to answer at first, in seconds of free time: on a busy machine, a right
+node is slow, too."""
 RESTORE_SEC = 10.0
 LONG_SEC = 3.0
-"""Of time that was free: whoever needs more to be driven is slow. A tick of some rclpy nodes with
+"""A node that needs more free time than this to be driven is slow: a tick of some rclpy nodes with
 several threads takes 7 ms."""
 HELD_EVERY_SEC = 0.02
 _NO_EVENTS = PublisherEventCallbacks(use_default_callbacks=False)
-"""Each look of an executor costs more for every event; nobody waits for these."""
+"""No event handlers: each would slow down every pass of the executor, and none is needed."""
 _latest_ns = 0
-"""What `/clock` showed last: a node that waits for a time would else wait for it once more."""
+"""The latest time on `/clock`: if a clock began earlier, nodes would wait for a time again."""
 
 
 def ahead_sec() -> float:
-    """How far what `/clock` showed last is ahead of the wall clock, in seconds; 0 where not.
+    """How far the latest time on `/clock` is ahead of the wall clock, in seconds; 0 if it is not.
 
-    So long is a node silent, back on wall time, that remembers when it published last.
+    Back on wall time, a node that remembers when it published last is silent for so long.
     """
     return max(0.0, (_latest_ns - time.time_ns()) / 1e9)
 
 
 class SimulatedClock:
-    """A context manager that holds `/clock` for the nodes on the graph that let it.
+    """A context manager that publishes `/clock` for the nodes that accept `use_sim_time`.
 
-    On leaving, whatever happened, each node gets its former `use_sim_time` back.
+    At the end, even after an exception, each node gets its former `use_sim_time` back.
     """
 
     def __init__(self, watcher: Watcher, *, needed: set[str]) -> None:
-        """`needed`: full names of the nodes without which the look is inconclusive."""
+        """`needed`: full names of the nodes that have to follow, or Inconclusive is raised."""
         self._watcher = watcher
         self._needed = needed
         self._budget = ClockBudget()
@@ -69,7 +69,7 @@ class SimulatedClock:
         self.now_ns = 0
 
     def __enter__(self) -> Self:
-        """Switch the nodes to `/clock`, which starts no earlier than now. Raises Inconclusive."""
+        """Switch the nodes to `/clock`, which begins no earlier than now. Raises Inconclusive."""
         node = self._watcher.node
         if why := why_not_driven(node):
             raise Inconclusive(why)
@@ -85,22 +85,22 @@ class SimulatedClock:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Switch them back."""
+        """Switch the nodes back to their former clocks."""
         self._restore()
 
     def hold(self, seconds: float) -> None:
-        """Let the clock stand still for `seconds` of wall time, saying so all the while."""
+        """Hold the clock for `seconds` of wall time, and publish the same time again and again."""
         end = time.monotonic() + seconds
         while (left := end - time.monotonic()) > 0.0:
             self._publish()
             self._watcher.spin_for(min(left, HELD_EVERY_SEC))
 
     def tick(self, step_ns: int, *, until: Callable[[], bool] | None = None) -> None:
-        """Move the clock and wait until every node has dealt with it. Raises Inconclusive.
+        """Move the clock and wait until every node has handled the tick. Raises Inconclusive.
 
         A node's executor takes the tick in one pass and fires its timers in the next, and it
-        answers one question a pass: the second answer tells that both are over. So does, of a
-        sole node, what its timer brings: where `until()` is true soon, nobody is asked.
+        answers one request per pass: the second answer shows that both are over. With a single
+        node, so does the message of its timer: if `until()` is true soon, no request is sent.
         """
         self.show(self.now_ns + step_ns)
         if until is None or not self._barriers.wait_for(until):
@@ -108,19 +108,19 @@ class SimulatedClock:
         self._expect_time_left()
 
     def show(self, time_ns: int) -> None:
-        """Move the clock to a time, and wait for nobody."""
+        """Move the clock to a time, and do not wait for the nodes."""
         self.now_ns = time_ns
         self._tick_ns.append(time_ns)
         self._tick_wall_ns.append(time.time_ns())
         self._publish()
 
     def time_ns(self, wall_ns: int) -> int:
-        """What `/clock` showed at a wall time (a message's source timestamp), in ns; 0 before."""
+        """What `/clock` showed at a wall time (a source timestamp), in ns; 0 before it began."""
         tick = bisect.bisect_right(self._tick_wall_ns, wall_ns) - 1
         return self._tick_ns[tick] if tick >= 0 else 0
 
     def takes_long(self) -> bool:
-        """Whether a shorter recording will do: the node is slow, or half of the time is gone."""
+        """Whether to record less: the node is slow, or half of the budget is used."""
         if self._budget.wall_sec() <= LONG_SEC:
             return False
         return self._budget.free_sec() > LONG_SEC or self._budget.is_used(0.5)
@@ -136,11 +136,11 @@ class SimulatedClock:
         self._publisher.publish(Clock(clock=Time(nanoseconds=self.now_ns).to_msg()))
 
     def acknowledge(self, questions: int = 2) -> None:
-        """Wait until every node has answered so many questions. Raises Inconclusive."""
+        """Wait until every node has answered so many requests. Raises Inconclusive."""
         self._barriers.acknowledge(questions)
 
     def _switch(self) -> None:
-        """Turn `use_sim_time` on for every node that answers, and start `/clock` at wall time."""
+        """Turn `use_sim_time` on for every node that answers, and begin to publish `/clock`."""
         node = self._watcher.node
         self._watcher.spin_until_free(
             lambda: self._needed <= nodes_with_services(node), free_sec=FIRST_ANSWER_SEC
@@ -183,13 +183,13 @@ class SimulatedClock:
         global _latest_ns
         _latest_ns = max(_latest_ns, self.now_ns)
         former, self._former = self._former, {}
-        # back to wall time first: rcl leaves a timer that is due this very moment where it is, and
-        # in the future of wall time it would be silent until that has come
+        # back to wall time first: rcl does not change the next call of a timer that is due at this
+        # very moment, so that a call ahead of wall time would come only at that time
         self.now_ns = time.time_ns()
         self._publish()
         asked = _all_done(self._barriers.ask(former).values())
         self._watcher.spin_until(asked, timeout_sec=SLOWEST_BARRIER_SEC)
-        # a busy node gets its time: left on a clock that nobody drives, it would be frozen
+        # wait long for a busy node: on a clock that is not driven any more, it would stand still
         restored = set_use_sim_time(self._setters, former)
         self._watcher.spin_until(_all_done(restored.values()), timeout_sec=RESTORE_SEC)
         self._watcher.node.destroy_publisher(self._publisher)

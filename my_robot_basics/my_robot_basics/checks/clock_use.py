@@ -11,21 +11,21 @@ _are_left_alone = False
 
 
 def leave_alone() -> None:
-    """Drive no clock from now on: a node may take a change of its clock amiss."""
+    """Drive no clock from now on: some nodes fail when their clock changes."""
     global _are_left_alone
     _are_left_alone = True
 
 
 def are_left_alone() -> bool:
-    """Whether no clock is driven."""
+    """Whether `leave_alone` was called."""
     return _are_left_alone
 
 
 def why_not_driven(node: Node) -> str:
-    """Why no clock can be driven, a clause; or ''.
+    """Why no clock can be driven, as a clause; '' if one can.
 
-    A node that was on two clocks is silent for as long as the other one was ahead. So the notebook
-    is asked, too, which knows of a publisher before the graph does.
+    A node that receives two clocks is silent for as long as one is ahead of the other. So the
+    notebook is asked, too: it knows its own publishers before they are in the graph.
     """
     if _are_left_alone:
         return LEFT_ALONE

@@ -1,4 +1,4 @@
-"""How a definition differs from what it is to be: names first, then types, arrays and values."""
+"""How a definition differs from the right one: names first, then types, arrays and values."""
 
 import difflib
 from collections.abc import Sequence
@@ -8,11 +8,11 @@ from my_robot_basics.feedback.errors import shorten
 from my_robot_basics.ros2.definitions import SECTIONS, DefinedMember, Definition
 
 _SAME = {'char': 'uint8'}
-"""Names of one and the same type, since ROS 2."""
+"""In ROS 2, these are two names of one type."""
 
 
 def wrong_names(found: Definition, wanted: Sequence[Sequence[str]], kind: str) -> list[str]:
-    """Which fields and constants are missing, in another part, or too many; a clause for each."""
+    """A clause for each field or constant that is missing, in the wrong part, or not wanted."""
     faults = []
     for part, names, here in zip(SECTIONS[kind], wanted, found.sections, strict=True):
         for name in names:
@@ -47,7 +47,7 @@ def _all(found: Definition, but: object = None) -> list[str]:
 
 
 def differences(found: Definition, wanted: Definition, kind: str) -> list[str]:
-    """What is not as it is to be; a clause for each."""
+    """A clause for each difference between a definition and the wanted one."""
     names = [list(here) for here in wanted.sections]
     if faults := wrong_names(found, names, kind):
         return faults
@@ -72,7 +72,7 @@ def _difference(found: DefinedMember, wanted: DefinedMember) -> str:
     if wanted.is_constant:
         return f'the constant {name} has another value than the table says'
     if wanted.value is None:
-        # what rosidl writes into a field without a default value, too
+        # such a default changes nothing: rosidl fills in the same without it
         is_as_ever = _is_zero(found.value) and _is_array(found.type) in ('', 'fixed')
         if is_as_ever or found.value == []:
             return ''
@@ -83,7 +83,7 @@ def _difference(found: DefinedMember, wanted: DefinedMember) -> str:
 
 
 def _type_difference(name: str, found: Any, wanted: Any) -> str:
-    """The same for the two types of that name; of constants they are names."""
+    """A clause on how two types differ, or ''; the type of a constant is a string."""
     one, other = (_base(type_) for type_ in (found, wanted))
     if one != other:
         return f'{name} is of type {shorten(one, 60)}: {_about_types(one, other)}'
@@ -144,7 +144,7 @@ def _base(type_: Any) -> str:
 
 
 def _is_array(type_: Any) -> str:
-    """Which kind of array it is; '' for none."""
+    """'fixed', 'bounded' or 'unbounded'; '' if the type is not an array."""
     if isinstance(type_, str) or not type_.is_array:
         return ''
     if type_.array_size is None:

@@ -1,4 +1,4 @@
-"""Interface definitions that a notebook holds as texts, held against what they are to define."""
+"""Interface definitions that a notebook holds as texts, compared with the right ones."""
 
 from collections.abc import Mapping
 from pathlib import PurePosixPath
@@ -10,13 +10,13 @@ from my_robot_basics.feedback.hidden import is_quiet, said_in_full, tell_failed_
 from my_robot_basics.ros2.definitions import Definition, read_definition
 
 TO_SHOW: tuple[str, ...] = ('in `{name}`, {faults}',)
-"""How the faults of a text are told."""
+"""How a message lists the faults of a text."""
 MOST_FAULTS = 3
-"""Of a text that are told at once: more than that nobody fixes in one go."""
+"""How many faults of a text a message lists; students do not fix more at once."""
 
 
 class Definitions:
-    """Texts of a notebook, by name, that are files of one package.
+    """Variables of a notebook whose values are the texts of one package's interface files.
 
     ```python
     texts = Definitions('motor_interfaces', motor_msg='msg/Motor.msg')
@@ -25,12 +25,12 @@ class Definitions:
     texts.conclude({'motor_msg': 2.0})
     ```
 
-    All is collected, and told at the end. Each text counts for itself, so that a fault in one
-    costs nothing of the others.
+    `conclude` reports all faults together. Each text has its own points, so that a fault in one
+    costs no points of the others.
     """
 
     def __init__(self, package: str, **files: str) -> None:
-        """Ask for the texts; each is to be the file of its name in that package."""
+        """Read the texts from the notebook; `files`: the path in the package, by variable name."""
         self._package = package
         self._files = {name: PurePosixPath(file) for name, file in files.items()}
         self._own_types = frozenset(
@@ -43,9 +43,9 @@ class Definitions:
         self._texts = {name: self._read(name) for name in files}
 
     def expect_names(self, **names: str) -> None:
-        """Each text has these fields and constants, and no others; with --- between its parts.
+        """Expect each text to have exactly these fields and constants, with --- between its parts.
 
-        What rosidl refuses in a text is told first.
+        If rosidl rejects a text, only this is reported about it.
         """
         for text, wanted in names.items():
             found = self._texts[text]
@@ -54,7 +54,7 @@ class Definitions:
                 self._add(text, found.faults or wrong_names(found, parts, self._kind(text)))
 
     def expect_definitions(self, **definitions: str) -> None:
-        """Each text defines the same as that one, in any order within a part.
+        """Expect each text to define the same as the given one, in any order within a part.
 
         Types, arrays, constants and default values are compared; comments are not.
         """
@@ -67,9 +67,10 @@ class Definitions:
                 self._add(text, found.faults or differences(found, wanted, self._kind(text)))
 
     def conclude(self, points: Mapping[str, float]) -> None:
-        """Tell what is wrong in each text. Raises CheckFailed where anything is.
+        """Raise CheckFailed if a text is wrong; the message says what is wrong in each.
 
-        `points` says what each text is worth that has been compared, once all have been.
+        `points`: what each text is worth. Right texts earn their points only if all texts have
+        been compared by `expect_definitions`.
         """
         wrong = [name for name, faults in self._faults.items() if faults]
         if not wrong:
@@ -85,7 +86,7 @@ class Definitions:
         seen = f'something else in {shown}'
         if earned:
             seen = f'something else in {shown}, which leaves {earned:g} of {most:g} points'
-        # it tells the table of the task, and the student's own text: there is no other input
+        # the message quotes only the task's table and the student's text, no hidden input
         with said_in_full():
             fail(
                 expected='each text to define what its table says',

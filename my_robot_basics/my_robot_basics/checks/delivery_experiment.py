@@ -1,9 +1,9 @@
-"""A small world of the check's own, in which a situation is run to see what really arrives.
+"""Run publishers and subscriptions of the check's own, to see which messages really arrive.
 
-Publishers and subscriptions are in two participants, as in two processes. That a message does not
-arrive is never concluded from silence. Next to each endpoint stands a control endpoint, made after
-it: DDS tells of endpoints in the order in which they are made, so where the control endpoints have
-met, the endpoints have met, too, or never will. And a mark that is published last arrives last.
+They are in two participants, as in two processes. A check never concludes from silence that a
+message does not arrive. After each endpoint, it makes a control endpoint. DDS announces endpoints
+in the order in which they are made: once the control endpoints have matched, the endpoints have
+matched, too, or never will. And a mark that is published last arrives last.
 """
 
 import re
@@ -18,26 +18,26 @@ from std_msgs.msg import String
 from my_robot_basics.graph.watcher import Watcher
 
 DEPTH = 10
-"""The queue depth that the lessons use; all else is rclpy's default QoS."""
+"""The queue depth in the lessons; the rest of the QoS profile is rclpy's default."""
 TIMEOUT_SEC = 10.0
 
 
 class DidNotRun(RuntimeError):
-    """The check's own nodes could not run a situation: no verdict follows from it."""
+    """The check's own nodes did not discover each other in time, so there is no verdict."""
 
 
 @contextmanager
 def watchers() -> Iterator[tuple[Watcher, Watcher]]:
-    """The two participants of stages, which no process of a student's can reach."""
+    """Two participants for stages; in the test's room, no student's process can reach them."""
     with Watcher(apart=True) as senders, Watcher(apart=True) as receivers:
         yield senders, receivers
 
 
 class Stage:
-    """Makes the endpoints of one situation, on topics whose names nobody else knows."""
+    """The publishers and subscriptions of one situation, on topics with names of their own."""
 
     def __init__(self, senders: Watcher, receivers: Watcher) -> None:
-        """Use two participants, which may have been used for other stages."""
+        """Use the two participants of `watchers`, which other stages may have used before."""
         self._senders, self._receivers = senders, receivers
         self._token = uuid.uuid4().hex
         self._messages = 0
@@ -48,7 +48,7 @@ class Stage:
     def publisher(
         self, topic_name: str, *, namespace: str = '', remap: str = '', type_: type = String
     ) -> 'StagePublisher':
-        """A publisher on a node of its own; `remap` is a rule like `pose:=/shown_pose`."""
+        """Make a publisher on a new node; `remap` is a rule like `pose:=/shown_pose`."""
         rule = ':='.join(self._own(name) for name in remap.split(':='))
         node = self._senders.add_node(
             'publisher', namespace=namespace, cli_args=['--ros-args', '-r', rule] if remap else ()
@@ -59,18 +59,18 @@ class Stage:
     def subscription(
         self, topic_name: str, *, namespace: str = '', type_: type = String
     ) -> 'StageSubscription':
-        """A subscription on a node of its own."""
+        """Make a subscription on a new node."""
         node = self._receivers.add_node('subscription', namespace=namespace)
         self.subscriptions.append(StageSubscription(self, node, self._own(topic_name), type_))
         return self.subscriptions[-1]
 
     def message(self, type_: type) -> Any:
-        """A message that differs from all others of this stage; `type_` has one field, data."""
+        """Make a message unlike all others of this stage; `type_` must have one field, data."""
         self._messages += 1
         return type_(data=type(type_().data)(self._messages))
 
     def settle(self) -> None:
-        """Wait until all that will ever meet have met. Raises DidNotRun."""
+        """Wait until all endpoints that can match have matched. Raises DidNotRun."""
         self.wait(
             lambda: (
                 {end.control.get_subscription_count() for end in self.publishers}
@@ -89,7 +89,7 @@ class Stage:
             )
 
     def _own(self, name: str) -> str:
-        """The same name in every respect that counts, but hidden, and used by nobody else."""
+        """The same name with a hidden last part that only this stage uses."""
         return re.sub(r'\w+$', lambda last: f'_{last[0]}_{self._token}', name)
 
 
@@ -132,7 +132,7 @@ class StageSubscription:
         )
 
     def received(self, *messages: Any) -> bool:
-        """Whether all these messages have arrived, once nothing can be on its way any more."""
+        """Whether all these messages arrived, after waiting for all that are on their way."""
         self._stage.settle()
         marks = [publisher.mark() for publisher in self._stage.publishers]
         matches = self._subscription.get_publisher_count()

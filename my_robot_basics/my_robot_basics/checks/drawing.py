@@ -1,4 +1,4 @@
-"""A run of `arm_player` beside the check's own servers, looked at target by target."""
+"""A run of `arm_player` with the check's own servers, checked target by target."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -20,16 +20,16 @@ from my_robot_basics.feedback.errors import expect, fail, shorten
 from my_robot_basics.graph.watcher import Watcher
 
 SPEED = 0.5
-"""What each goal is to ask for, in rad/s."""
+"""The speed that each goal has to request, in rad/s."""
 SPEED_NEAR = 1e-6
 REPLY_SEC = 4.0
-"""How long to wait for a request or a goal, of time that was free."""
+"""How long to wait for a request or a goal, in seconds of free time."""
 QUIET_SEC = 0.2
-"""How long to listen for what must not come while a goal has not ended."""
+"""How long to wait for what must not come, such as a second report, in seconds of free time."""
 
 
 class Drawing:
-    """The player, started with these targets, the servers, and its report."""
+    """The player that was started with these targets, the check's servers, and the report."""
 
     def __init__(
         self, watcher: Watcher, process: RunningExecutable, targets: Sequence[Target]
@@ -40,12 +40,12 @@ class Drawing:
         self._report = PlayerReport(watcher)
         self._comes = watcher.spin_until_free
         self._goals = 0
-        """How many goals there are to be so far."""
+        """How many goals the player should have sent so far."""
 
     @classmethod
     @contextmanager
     def opened(cls, watcher: Watcher, targets: Sequence[Target]) -> Iterator[Self]:
-        """Start the player; there is no server yet. Raises CheckFailed where it does not start."""
+        """Start the player, without servers yet. Raises CheckFailed if it does not start."""
         numbers = [number for _, x, y in targets for number in (x, y)]
         with package(NAME).run(NAME, parameters={'targets': numbers}) as process:
             drawing = cls(watcher, process, targets)
@@ -55,10 +55,10 @@ class Drawing:
                 drawing._servers.stop()
 
     def expect_waits_for_both(self, *, arm_first: bool) -> None:
-        """It asks `/solve_ik` for nothing while there is no `/move_arm`; then serve that, too.
+        """Expect no request to `/solve_ik` while there is no `/move_arm`, then start both servers.
 
-        `arm_first`: it is the other way round. What it asks for too soon is lost, and waited for
-        by `expect_visit`. Raises CheckFailed.
+        `arm_first`: start `/move_arm` first instead. Then a request that is sent too early is
+        lost, and `expect_visit` waits for it in vain. Raises CheckFailed.
         """
         self._meeting.wait_for_clients()
         if arm_first:
@@ -69,9 +69,9 @@ class Drawing:
         self._servers.start()
 
     def expect_visit(self, number: int, *, goal_sec: float) -> None:
-        """The player asks for a target, and sends its goal; that ends as its word says.
+        """Expect a request for a target and its goal; end the goal as the target's word says.
 
-        It ends after so long, of time that was free, and nothing comes before. Raises CheckFailed.
+        The goal takes `goal_sec` of free time, and nothing may come before. Raises CheckFailed.
         """
         word = self._targets[number][0]
         self._expect_asked(number)
@@ -90,7 +90,7 @@ class Drawing:
             goal.finish('succeeded' if word == 'succeeded' else 'aborted')
 
     def expect_end(self) -> None:
-        """The report comes, with a word for each target, and is kept; no goal was too many.
+        """Expect one report, kept for late subscribers, with each target's word; no more goals.
 
         Raises CheckFailed.
         """
@@ -109,16 +109,16 @@ class Drawing:
         self._meeting.expect_alone(own=1)
 
     def expect_clean_end(self, *, after_report: bool = False) -> None:
-        """It asks for its first target, gets no answer yet, and ends cleanly on SIGINT.
+        """Expect it to end cleanly on SIGINT, while it waits for the answer to its first request.
 
-        Or `after_report`, if there is one. Raises CheckFailed.
+        `after_report`: send SIGINT after the report instead, if one comes. Raises CheckFailed.
         """
         self._process.expect_node(f'/{NAME}')
         if not after_report:
             self._servers.solver.hold()
         self._meeting.wait_for_clients()
         self._servers.start()
-        self._expect_asked(0)  # earlier, as it makes its node, rclpy itself prints a traceback
+        self._expect_asked(0)  # if SIGINT comes earlier, rclpy itself prints a traceback
         if not after_report or self._comes(self._report.is_there, free_sec=REPLY_SEC):
             self._process.expect_clean_end()
 

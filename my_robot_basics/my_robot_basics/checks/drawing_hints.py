@@ -1,4 +1,4 @@
-"""Why `arm_player` does not ask, sends no goal, or another one: one clause each."""
+"""Why a request, goal or report of `arm_player` is missing or wrong: one clause each."""
 
 import math
 from collections.abc import Sequence
@@ -24,14 +24,15 @@ _NONE_THERE = 'send no goal if response.reachable is False: it has no angles'
 
 
 def why_no_client(watcher: Watcher) -> str:
-    """Why nobody asks `/solve_ik`."""
+    """Why `/solve_ik` has no client."""
     return services.take(watcher.node).why_none(SOLVE_IK, maker='create_client')
 
 
 def why_not_asked(watcher: Watcher, word_before: str, *, was_skipped: bool) -> str:
-    """Why no request comes for a target; that before it ended so ('' for the first).
+    """Why no request comes for a target.
 
-    It was skipped where one came for a later target.
+    `word_before`: how the target before it ended, '' for the first one; `was_skipped`: whether a
+    request for a later target came.
     """
     if was_skipped:
         return 'visit those of the parameter targets, in their order, and leave none out'
@@ -48,7 +49,7 @@ def why_not_asked(watcher: Watcher, word_before: str, *, was_skipped: bool) -> s
 
 
 def stops(word_before: str) -> str:
-    """What is wrong, in a few words, where no request comes after a target that ended so."""
+    """The cause, in a few words, if no request comes after a target that ended like this."""
     return (
         f'{NODE} stops after a target that is {word_before}'
         if word_before
@@ -57,7 +58,7 @@ def stops(word_before: str) -> str:
 
 
 def why_no_goal(watcher: Watcher) -> str:
-    """Why no goal comes, though a target was answered."""
+    """Why no goal comes, although a request was answered."""
     if not answers_parameters(watcher, NODE):
         return waits_for_answer(SOLVE_IK)
     ends = actions.take(watcher.node)
@@ -67,7 +68,7 @@ def why_no_goal(watcher: Watcher) -> str:
 
 
 def why_no_report(watcher: Watcher) -> str:
-    """Why nothing comes at the end."""
+    """Why no report comes at the end."""
     is_free = answers_parameters(watcher, NODE)
     return 'publish it when the last target is done' if is_free else WAITS
 
