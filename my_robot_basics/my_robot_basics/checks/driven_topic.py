@@ -1,4 +1,4 @@
-"""A topic on the clock that a check drives: tick until a message comes, see that it follows."""
+"""A topic on a driven clock: tick until a message comes, and see that the node follows."""
 
 import statistics
 import time
@@ -13,58 +13,60 @@ from my_robot_basics.checks.wall_recording import IGNORES
 from my_robot_basics.graph.watcher import Watcher
 
 SETTLE_SEC = 0.05
-"""So long does the clock stand still first: a message may be under way."""
+"""How long the clock is held at first, in wall time: a message may still be on its way."""
 FIRST_MESSAGE_SEC = 20.0
+"""How long to tick until a message comes, in seconds of the robot's time."""
 SUSPICIOUS_TICKS = 30
-"""A tick takes a millisecond or two: of a node that ignores the clock, messages are far apart."""
+"""So many ticks without a message may mean that a node ignores the clock: a tick takes only a
+millisecond or two of wall time."""
 PATIENT_SEC = 0.002
-"""What a thread that sleeps on the clock takes to wake up and to publish."""
+"""How long a thread that sleeps on the clock may take to wake up and to publish."""
 OVERRUNS = 'its callback takes longer than its period'
 
 
 class _Tick(NamedTuple):
-    """One tick, as it went."""
+    """What happened in one tick."""
 
     took_sec: float
-    """Of wall time."""
+    """How long the tick took, in wall time."""
     messages: int
     was_due: bool
-    """Whether a message was: what its callback does after it is in the time of the next tick."""
+    """Whether a message was due: the rest of its callback then takes time of the next tick."""
 
 
 class DrivenTopic:
-    """What is received while the clock is driven.
+    """Receives the messages of a topic while the clock is driven.
 
-    A node that ignores the clock goes on while that stands still. A plain timer, whose messages
-    come as the ticks do, is not asked to prove that it stands still, too.
+    A node that ignores the clock still publishes while the clock is held. A plain timer, whose
+    messages come in step with the ticks, is not checked for that.
     """
 
     def __init__(
         self, watcher: Watcher, recorder: Recorder, clock: SimulatedClock, *, hold_sec: float
     ) -> None:
-        """`hold_sec`: how long the clock stands still to see whether messages do."""
+        """`hold_sec`: how long to hold the clock to see whether messages stop, in wall time."""
         self.recorder, self.clock = recorder, clock
         self._watcher, self._hold_sec = watcher, hold_sec
         self._has_stood = False
         self._patient_sec = 0.0
         self._due: DueTicks | None = DueTicks()
-        """None where each tick asks: its callbacks take long, or threads publish."""
+        """None if each tick is acknowledged: callbacks take long, or threads publish."""
         self._ticks: list[_Tick] = []
         self._hold(SETTLE_SEC)
 
     def expect_follows(self) -> None:
-        """Let the clock stand still, once. Raises Inconclusive where messages go on."""
+        """Hold the clock, in the first call only. Raises Inconclusive if messages still come."""
         if not self._has_stood:
             self._has_stood = True
             self._hold(self._hold_sec)
 
     def wait_for_threads(self) -> None:
-        """Wait a little after each tick from now on: a thread of the node acknowledges none."""
+        """From now on, wait PATIENT_SEC after each tick: a thread does not acknowledge ticks."""
         self._patient_sec = PATIENT_SEC
         self._due = None
 
     def tick(self, step_ns: int) -> None:
-        """Move the clock, and receive what that brings. Raises Inconclusive."""
+        """Move the clock, and receive what the node publishes then. Raises Inconclusive."""
         received = self.recorder.received
         before, start = len(received), time.monotonic()
         is_due = self._due is not None and self._due.is_next(step_ns)
@@ -80,14 +82,14 @@ class DrivenTopic:
             self._due.note(step_ns, messages=messages, took_sec=took_sec)
 
     def expect_keeps_up(self, ticks: int, step_ns: int) -> None:
-        """In the last ticks, callbacks that publish took less than a period. Raises Inconclusive.
+        """Raise Inconclusive if callbacks took longer than a period in the last ticks.
 
-        How busy the machine is makes all ticks slow: only what a message adds to one counts.
+        A busy machine makes all ticks slow: so only the time counts that a message adds to a tick.
         """
         last = self._ticks[-ticks:]
         if any(tick.was_due for tick in last):
             if sum(tick.took_sec for tick in last) > QUICK_PART * ticks * step_ns / 1e9:
-                self._due = None  # the next ones tell
+                self._due = None  # so the next ticks are acknowledged, and show more
             return
         with_one = [tick.took_sec for tick in last if tick.messages]
         without = [tick.took_sec for tick in last if not tick.messages]
@@ -97,7 +99,7 @@ class DrivenTopic:
                 raise Inconclusive(OVERRUNS)
 
     def tick_to_message(self, step_ns: int) -> int:
-        """Tick until a message arrives; how many ticks it took. Raises Inconclusive."""
+        """Tick until a message arrives; return how many ticks that took. Raises Inconclusive."""
         before = len(self.recorder.received)
         for ticks in range(1, round(FIRST_MESSAGE_SEC * 1e9 / step_ns) + 1):
             self.tick(step_ns)
@@ -108,9 +110,10 @@ class DrivenTopic:
         raise NoMessage(f"no message arrived in {FIRST_MESSAGE_SEC:g} s of the robot's time")
 
     def _hold(self, seconds: float) -> None:
-        """Let the clock stand still. Raises Inconclusive where messages go on all the same.
+        """Hold the clock. Raises Inconclusive if messages still come.
 
-        A callback may send several, and a thread that is late has some to send at first.
+        Messages in the first half don't count: a thread may be late. Nor do several at once from
+        one callback.
         """
         since_ns = time.time_ns()
         late_ns = since_ns + round(seconds * 1e9 / 2)

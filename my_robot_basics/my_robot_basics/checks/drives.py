@@ -1,4 +1,4 @@
-"""Drive the robot's clock while a topic is recorded: by steps that skip nothing, and by others."""
+"""Drive the robot's clock while a topic is recorded, and prove the period with other steps."""
 
 from my_robot_basics.checks import rates
 from my_robot_basics.checks.driven_topic import DrivenTopic
@@ -6,31 +6,32 @@ from my_robot_basics.checks.inconclusive import NoMessage
 from my_robot_basics.checks.recording import Recording, Sample
 
 SECONDS_ENOUGH = 10.0
-"""Where that takes long, so much is a recording, too."""
+"""If driving the clock takes long, a recording of so many seconds is enough."""
 FINER = (1.0, 0.5, 0.1, 0.05, 0.01)
-"""Steps of the clock, as parts of the one asked for, tried until messages skip a tick.
+"""Steps of the clock to try, as parts of the given step, until some ticks bring no message.
 
-Each is a multiple of all finer ones: of a node that looks at the clock every 10 ms, steps of 20 ms
-and their proof of 4 ms would make 60 ms of 50."""
+Each is a multiple of all finer ones. Steps of 20 ms, and of 4 ms in the proof, would both turn a
+period of 50 ms into 60 ms if a node looks at the clock every 10 ms."""
 FINE_PARTS, FINER_PARTS, COARSE_TIMES = 2.5, 5, 5
-"""The proof takes steps so many times as fine as the recording's, or as coarse …"""
+"""The proof's step is the recording's, divided by one of the first two or times the third."""
 TWO_STEPS_PARTS = 2.75
-"""… Two of the recording's are no multiple of these: a node that looks whether 0.17 s have
-passed publishes each 0.2 s with steps of 0.1 s, and of 0.04 s …"""
+"""The divisor if the period is two of the recording's steps, which are no multiple of such a step.
+A node that looks whether 0.17 s have passed publishes every 0.2 s, with steps of 0.1 s and of
+0.04 s alike."""
 FINER_BELOW_SEC = 0.05
-"""… and finer ones below this, or 10 ms would be no multiple of them, either."""
+"""For a step below this, the divisor is FINER_PARTS: 10 ms are a multiple of such steps, too."""
 PROOF_STEPS = 30
-"""… for at least so many of the recording's steps, or of the coarse ones. …"""
+"""The least length of a proof: so many of the recording's steps, or so many coarse steps."""
 COARSE_STEPS = 4
-"""… Coarse ones take a slow timer less time; so many of them fit in its period at least."""
+"""Coarse steps are faster. They are used if at least so many of them fit in the period."""
 KEEPS_UP_EVERY = 20
-"""Ticks that tell whether a callback takes longer than its period."""
+"""How many ticks are between two looks whether a callback takes longer than its period."""
 
 
 def drive(topic: DrivenTopic, *, seconds: float, step_sec: float) -> Recording:
-    """Record `seconds`, or until there are FEWEST messages. Raises Inconclusive.
+    """Record `seconds`, or longer until there are FEWEST messages. Raises Inconclusive.
 
-    Where that takes long, it leaves the proof its time and records less.
+    If driving the clock takes long, record less, so that there is time for the proof.
     """
     step_ns, start_ns = _find_step(topic, step_sec=step_sec)
     received, clock = topic.recorder.received, topic.clock
@@ -47,7 +48,7 @@ def drive(topic: DrivenTopic, *, seconds: float, step_sec: float) -> Recording:
 
 
 def _recorded(topic: DrivenTopic, *, start_ns: int, step_ns: int) -> Recording:
-    """What was received on the robot's clock since a message."""
+    """What was received since `start_ns` of the robot's time."""
     recorder, clock = topic.recorder, topic.clock
     samples = [
         Sample(message, (clock.time_ns(sent_ns) - start_ns) / 1e9, sent_ns / 1e9)
@@ -66,10 +67,10 @@ def _recorded(topic: DrivenTopic, *, start_ns: int, step_ns: int) -> Recording:
 
 
 def _find_step(topic: DrivenTopic, *, step_sec: float) -> tuple[int, int]:
-    """A step that skips no period of the timer, and the time of the message to begin at.
+    """Find a step below the timer's period; return it, and the time of a message to begin at.
 
-    A timer fires once a tick at most, so messages in two ticks running ask for a finer step. With
-    a period of 1.25 ticks, one gap of four has two: no two such gaps follow each other.
+    A timer fires at most once in a tick, so messages in two ticks in a row call for a finer step.
+    With a period of 1.25 ticks, every fourth gap has two ticks, but never two gaps in a row.
     """
     for part in FINER:
         step_ns = round(step_sec * part * 1e9)
@@ -83,8 +84,8 @@ def _find_step(topic: DrivenTopic, *, step_sec: float) -> tuple[int, int]:
 def prove(topic: DrivenTopic, recording: Recording) -> Recording | None:
     """A recording with other steps that shows the same period, or None. Raises Inconclusive.
 
-    A timer fires once a tick at most. One that is faster than the ticks, and publishes every so
-    many calls, shows a period that the steps have made.
+    A timer fires at most once in a tick. If a timer is faster than the ticks and publishes at
+    every n-th call, the period depends on the steps.
     """
     step_ns = round(recording.step_sec * 1e9)
     parts: float = FINER_PARTS

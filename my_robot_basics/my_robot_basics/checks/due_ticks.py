@@ -3,31 +3,31 @@
 from collections import deque
 
 ALIKE = 3
-"""So many messages running, each as many ticks after the one before, tell when one is due …"""
+"""After so many messages in a row at equal distances in ticks, the next tick with one is known."""
 QUICK_PART = 0.5
-"""… where the tick of each took less than this part of a period: nothing was left to be done."""
+"""A message counts if its tick took less than this part of a period: its callback is short."""
 
 
 class DueTicks:
-    """Learns from the ticks of a clock; one with a message that was due may go unasked.
+    """Learns from the ticks of a clock in which of them a message is due.
 
-    A message tells that its tick has fired the timer. Between two of them are ticks in which none
-    is due: whatever else the timers bring comes to light in these.
+    In such a tick, the node is not asked: the message shows that the timer has fired. It is asked
+    in the ticks between two messages, which show whatever else the timers do.
     """
 
     def __init__(self) -> None:
         self._step_ns = 0
         self._gaps: deque[int] = deque(maxlen=ALIKE)
         self._since = 0
-        """Ticks since the last message."""
+        """How many ticks there were since the last message."""
 
     def is_next(self, step_ns: int) -> bool:
-        """Whether a tick of that step would bring a message."""
+        """Whether a message is due in the next tick, if it has that step."""
         is_known = step_ns == self._step_ns and len(self._gaps) == ALIKE
         return is_known and {*self._gaps} == {self._since + 1} != {1}
 
     def note(self, step_ns: int, *, messages: int, took_sec: float) -> None:
-        """Learn from a tick, how many messages came in it, and how long it took."""
+        """Learn from a tick: how many messages came in it, and how long it took in wall time."""
         if step_ns != self._step_ns:
             self._step_ns = step_ns
             self._gaps.clear()

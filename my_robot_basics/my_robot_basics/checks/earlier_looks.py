@@ -1,9 +1,9 @@
-"""What was recorded last: the next check of the exercise need not record the same once more.
+"""Keep the last recording, so that the next check of the exercise need not record again.
 
-In the test's room alone, where no cell of the student's runs between two checks, and only while
-no check does more than listen. It serves those that ask for no more of the robot's time, unless
-the messages had ended, or it was only a makeshift on a busy machine. A look on the wall clock is
-as long for all, and yet whoever asks for more looks again: whether the node goes on.
+This is done only in the test's room, where no student's cell runs between two checks, and only
+while checks only subscribe. A recording serves checks that want no more of the robot's time,
+unless the messages had ended, or a busy machine forced the check onto the wall clock. On the wall
+clock, all recordings are equally long; a check that wants more looks whether the node goes on.
 """
 
 from collections.abc import Callable
@@ -19,18 +19,18 @@ from my_robot_basics.session import interactions
 
 @dataclass(frozen=True)
 class Wanted:
-    """What a check asks for."""
+    """The recording that a check wants."""
 
     topic_name: str
     seconds: float
-    """Of the robot's time."""
+    """How long, in the robot's time."""
     step_sec: float
-    """Of its clock."""
+    """The step of the robot's clock."""
 
 
 @dataclass(frozen=True)
 class Look:
-    """A recording, and what spoke against the robot's clock."""
+    """A recording, and why it was not made on the robot's clock, if it was not."""
 
     recording: Recording
     why: Inconclusive | None
@@ -47,10 +47,10 @@ _last: _Kept | None = None
 
 
 def look_once(wanted: Wanted, look: Callable[[Look | None], Look]) -> Look:
-    """What `look` finds, or what the last one has found, if that tells as much.
+    """Return the last look if it serves `wanted`, else what `look` returns.
 
-    `look` is given the last one where that was on the wall clock, and shorter than is wanted.
-    Raises CheckFailed where there is nothing to record, once more in the same words.
+    `look` gets the last look if that was on the wall clock and shorter than wanted, else None.
+    Raises CheckFailed if there is nothing to record; the next time in the same words.
     """
     global _last
     if _last is not None and _serves(_last, wanted):
@@ -59,7 +59,7 @@ def look_once(wanted: Wanted, look: Callable[[Look | None], Look]) -> Look:
     try:
         found = look(earlier)
     except CheckFailed as failure:
-        # one of another class says that the answer may not be to blame: rooms are made anew
+        # other classes say that the answer may not be the cause: then new rooms take a second look
         if type(failure) is CheckFailed and failure.repeat is not None:
             _last = _Kept(wanted, failure, interactions.count())
         raise
@@ -94,7 +94,7 @@ def _is_whole(recording: Recording) -> bool:
 
 def _again(look: Look | CheckFailed, seconds: float) -> Look:
     if isinstance(look, CheckFailed):
-        assert look.repeat is not None  # no other is kept
+        assert look.repeat is not None  # look_once keeps only failures that can be repeated
         look.repeat()
     if look.recording.clock == 'wall':
         return look
@@ -102,7 +102,7 @@ def _again(look: Look | CheckFailed, seconds: float) -> Look:
 
 
 def _beginning(recording: Recording, seconds: float) -> Recording:
-    """The first `seconds` of a recording, or its first messages where they take longer."""
+    """The first `seconds` of a recording, or its first FEWEST messages if these take longer."""
     messages = recording.messages
     inside = sum(sample.time_sec <= seconds for sample in messages)
     kept = messages[: max(inside, rates.FEWEST)]

@@ -23,14 +23,14 @@ EACH_ANSWER = (
 
 
 def expect_elbow_up(server: Server, x: float, y: float) -> None:
-    """The client publishes the elbow-up pose that the server answers for a target."""
+    """Expect the client to publish the elbow-up pose in the server's response for a target."""
     expect_each_elbow_up(server, (x, y))
 
 
 def expect_each_elbow_up(server: Server, *targets: tuple[float, float]) -> None:
-    """The client publishes the elbow-up pose of each target, (x, y) in metres, in any order.
+    """Expect the client to publish the elbow-up pose of each target, in any order, and no more.
 
-    Raises CheckFailed.
+    Targets are (x, y) in metres. Raises CheckFailed.
     """
     for target in targets:
         _expect_pose(server, *target, beside=[each for each in targets if each != target])
@@ -40,14 +40,14 @@ def expect_each_elbow_up(server: Server, *targets: tuple[float, float]) -> None:
 def _expect_pose(
     server: Server, x: float, y: float, *, beside: Sequence[tuple[float, float]]
 ) -> None:
-    """The pose of one target comes, and perhaps before it those of the targets `beside` it."""
+    """Expect the pose of one target; those of the targets `beside` it may come before it."""
     right = joints.in_radians(_degrees(server.answer(request(x, y)).elbow_up))
 
     def why_wrong(message: Any) -> str:
         if any(is_elbow_up(message, server.answer(request(*other))) for other in beside):
             was_asked = any(is_for(asked, x, y) for asked in server.requests)
             return EACH_ANSWER if was_asked else EACH_TARGET
-        # nobody knows of which target it was made
+        # it is unknown for which target the message is
         reasons = [_why_wrong(server, message, request(*each)) for each in [(x, y), *beside]]
         return next((each for each in reasons if each != AS_IT_IS), AS_IT_IS)
 
@@ -68,14 +68,14 @@ def _why_wrong(server: Server, message: Any, asked: SolveIK.Request) -> str:
     why = joints.why_wrong(message, _degrees(response.elbow_up))
     if why.startswith('these are degrees'):
         return 'these are degrees: publish the angles of response.elbow_up as they are, in radians'
-    # a client has nothing to convert
+    # the response is in radians: a client converts nothing
     return AS_IT_IS if 'radians()' in why else why
 
 
 def expect_no_others(server: Server) -> None:
-    """What the client has published are the elbow-up poses of responses, each of another one.
+    """Expect that the client has published only elbow-up poses of responses, one for each.
 
-    None comes more often than its target did. Raises CheckFailed.
+    No pose may come more often than its target was published. Raises CheckFailed.
     """
     server.made.expect_no_others(is_elbow_up, hint=lambda message: why_other(server, message))
     messages, targets = server.made.messages(), [(each.x, each.y) for each in server.published]
@@ -93,7 +93,7 @@ def expect_no_others(server: Server) -> None:
 
 
 def why_other(server: Server, message: Any) -> str:
-    """What is wrong with a message that is made of no response, or of one that has its message."""
+    """Advice for a message that belongs to no response, or that comes a second time."""
     seen = joints.pose(message)
     if not isinstance(message, JointState):
         return joints.OTHER_TYPE
@@ -115,7 +115,7 @@ def _agree(seen: dict[str, float], position: Sequence[float]) -> bool:
 
 
 def _is_pose(seen: dict[str, float], right: dict[str, float]) -> bool:
-    """Whether these joints, and no others, are where they should be."""
+    """Whether a message has exactly the right joints, each at its right position."""
     return seen.keys() == right.keys() and joints.agree(seen, right)
 
 

@@ -1,20 +1,20 @@
-"""How many messages in a row have to come out of a node."""
+"""How many messages in a row a relaying node has to republish."""
 
 from my_robot_basics.session.pressure import Stopwatch
 
 TIMES = 120
-"""Messages in a row that have to come out: one that is left out each hundredth time is among
-them. …"""
+"""How many messages in a row are always enough: they show it if every hundredth is left out."""
 FEWEST = 24
-"""… So many will do after SOME_SEC, …"""
+"""How many are enough after SOME_SEC of wall time."""
 SOME_SEC = 2.5
 FEWEST_SLOW = 12
-"""… So many of a slow node or machine will do after LONG_SEC: that finds each eleventh, too."""
+"""How many are enough after LONG_SEC, for a slow node or machine: this shows if every eleventh is
+left out."""
 LONG_SEC = 4.0
 
 
 def fewest_in_a_row(row: Stopwatch) -> int:
-    """How many messages in a row are enough after so long."""
+    """How many messages in a row are enough; `row`: the time since the row began."""
     wall_sec = row.wall_sec()
     if wall_sec < SOME_SEC:
         return TIMES

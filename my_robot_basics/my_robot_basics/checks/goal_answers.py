@@ -1,34 +1,34 @@
-"""How an action server has answered the goals of checks, in this grade cell or an earlier one."""
+"""How an action server answered the goals of checks, in this grade cell and earlier ones."""
 
 from dataclasses import dataclass, replace
 
 Identity = tuple[tuple[int, ...], ...]
-"""What no other server has, whatever its name: `OpenAction.identity`."""
+"""Identifies a server, even among servers of the same name: see `OpenAction.identity`."""
 _answers: dict[Identity, 'GoalAnswers'] = {}
 
 
 @dataclass(frozen=True)
 class GoalAnswers:
-    """The answers of one server so far."""
+    """What is known of the answers of one server."""
 
     accepted_ns: int = 0
-    """When the last goal was sent that it has accepted: wall time in ns; 0: none."""
+    """When the last goal that it accepted was sent: wall time in ns; 0 if it accepted none."""
     has_rejected_last: bool = False
-    """Whether it has rejected the last goal of all."""
+    """Whether it rejected the last goal."""
     why_rejected: str = ''
-    """What a check said when it rejected a goal that was right; '' if it accepted one since.
+    """The advice of a check when a right goal was rejected; '' if one was accepted since.
 
-    A server that locks itself rejects all that come: the first time tells why.
+    A server that never becomes ready again rejects all later goals: the first rejection shows why.
     """
 
 
 def answers_of(server: Identity) -> GoalAnswers:
-    """What is known of a server."""
+    """The answers of a server so far."""
     return _answers.get(server, GoalAnswers())
 
 
 def note_answer(server: Identity, *, sent_ns: int, is_accepted: bool) -> None:
-    """Note its answer to a goal that was sent at that wall time."""
+    """Note the answer to a goal that was sent at `sent_ns` (wall time)."""
     if is_accepted:
         _answers[server] = GoalAnswers(sent_ns)
     else:
@@ -36,5 +36,5 @@ def note_answer(server: Identity, *, sent_ns: int, is_accepted: bool) -> None:
 
 
 def note_why_rejected(server: Identity, why: str) -> None:
-    """Note what was said of a goal that it has rejected, and had to accept."""
+    """Note a check's advice about a goal that was rejected but had to be accepted."""
     _answers[server] = replace(answers_of(server), why_rejected=why)

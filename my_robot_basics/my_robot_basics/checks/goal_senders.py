@@ -1,4 +1,4 @@
-"""Why a node sends no goal, or makes nothing of how one ended: one clause each."""
+"""Why a node sends no goal, or publishes nothing when one has ended: one clause each."""
 
 from collections.abc import Collection
 
@@ -25,9 +25,9 @@ def why_no_goal(
     asked_on: str,
     was_away: bool,
 ) -> str:
-    """What to try where no goal comes for a message on `asked_on`.
+    """Advice if no goal comes for a message on the topic `asked_on`.
 
-    `was_away`: there was no server when a message came before.
+    `was_away`: whether there was no server when an earlier message came.
     """
     if hint := raised.hint_or_thread():
         return hint
@@ -54,7 +54,7 @@ def why_no_goal(
 def why_silent(
     watcher: Watcher, hint: str, *, node_names: Collection[str], raised: CallbackErrors
 ) -> str:
-    """What to try where nothing comes of an answer; `hint` is for one that waits for nothing."""
+    """Advice if a node does nothing after an answer; `hint` is the one if it does not block."""
     if why := raised.hint_or_thread():
         return why
     is_free = all(answers_parameters(watcher, name) for name in set(node_names))

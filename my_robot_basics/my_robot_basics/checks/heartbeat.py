@@ -1,8 +1,8 @@
-"""Whether a node goes on while something else takes its time, by a topic on which it counts.
+"""Whether a node keeps running while it waits for something, by a topic on which it counts.
 
-A machine that is short of time is no node that waits. Time that was free tells the two apart, and
-so does a silence in which the notebook answers many questions and that does not end. A long pause
-that ends, with no free time in it, is a doubt.
+A node may be silent because it blocks, or because the machine is busy. It blocks if it is silent
+in enough free time, or if its silence does not end while the notebook answers many requests. If a
+long pause without free time ends, the result is in doubt.
 """
 
 from collections.abc import Callable, Sequence
@@ -18,60 +18,62 @@ from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
 
 BEATS, SPAN_SEC = 12, 1.2
-"""So many, in no less time, are enough: a node that counts ahead has to go on then; …"""
+"""How many beats are enough, and in how many seconds at least: a node that publishes counts ahead
+of time runs out of them by then."""
 STILL_SEC = 0.8
-"""… a silence is so long, of time that was free, and …"""
+"""How long a silence is at least, in seconds of free time."""
 LOOKS = 8
-"""… holds so many questions that the notebook answered. …"""
+"""How many requests the notebook answers during a silence, at least."""
 BUSY_SEC, BUSY_LOOKS = 10.0, 40
-"""… If no time is free, a silence is so long, and holds so many. …"""
+"""The same two limits if there is no free time, the first in seconds of wall time."""
 LONG_SEC, LONG_LOOKS = 2.5, 10
-"""… A pause that ends after so much of both is a doubt, …"""
+"""A pause that ends after so many seconds of wall time and so many answers is in doubt."""
 MOST_TIMES = 4.0
-"""… unless it is less than so many times as long as another one after it."""
+"""Such a pause is fine if it is less than so many times as long as a pause after it."""
 LOOK_SEC = 0.1
+"""How long to wait for a beat before the notebook is asked again, in seconds."""
 COUNTS_SEC, RATE_SEC = 2.0, 2.0
-"""A count that goes on at all shows it in so much time that was free. Its rate is measured over so
-many seconds of the robot's time."""
+"""How long to wait for a first beat, in seconds of free time; how long to measure the rate, in
+seconds of the robot's time."""
 ROUND, ROUNDS = 4, 3
-"""A round of beats begins with a message: the first two pauses show what the node makes of it, and
-those behind show the machine. So many rounds, in which …"""
+"""How many pauses a round has, and how many rounds there are. A round begins with a message to the
+node: its first two pauses show whether that blocks the node, and the others show the machine."""
 STALL_SEC, STALL_TIMES = 0.4, 2.0
-"""… each message holds it up for so long, and for so many times as long as any other pause, mean
-that it waits a while each time, in a callback, if …"""
+"""A callback blocks if, in each round, the longer of the first two pauses has at least so many
+seconds, and is at least so many times as long as every pause that shows the machine."""
 PERIOD_SEC, STALL_FREE_SEC = 0.1, 0.4
-"""… so much of these pauses, without a period of each, was free, or …"""
+"""This is sure if these pauses, less a period each, have STALL_FREE_SEC of free time together."""
 SURE_SEC, SURE_TIMES = 0.8, 4.0
-"""… each was so long: a message takes a node some time, too, and a busy machine makes that longer,
-but not as long as this."""
+"""It is also sure with these limits in place of STALL_SEC and STALL_TIMES: a busy machine does not
+make the time that a node needs for a message so long. Else, it is in doubt."""
 
 
 @dataclass(frozen=True)
 class _Pause:
-    """The time before a beat, or until enough is known without one."""
+    """The time until a beat, or until the silence has lasted long enough."""
 
     sec: float
     free_sec: float
-    """How much of it was free."""
+    """How many seconds of it were free time."""
     is_over: bool
     """Whether the beat has come."""
     is_long: bool
-    """Whether it may have been a silence."""
+    """Whether it is long enough to be in doubt."""
 
 
 class Heartbeat:
-    """A topic on which a node counts at 10 Hz while it is alive."""
+    """A topic on which a node counts at 10 Hz while it does not block; each message is a beat."""
 
     def __init__(self, watcher: Watcher, recorder: Recorder) -> None:
         self._watcher, self._recorder = watcher, recorder
         self.doubt: type[CheckFailed] = CheckFailed
-        """What to raise if it does not go on: Starved if the machine may be to blame."""
+        """What to raise if `goes_on` is False: Starved if the machine may be to blame."""
 
     def goes_on(self, send: Callable[[], None] = lambda: None) -> bool:
-        """Whether it counts now, without a silence.
+        """Whether the node counts now, without a silence.
 
-        `send()` sends the node a message, after a beat: again only if that seems to hold it up,
-        because each may keep a thread of the node for good.
+        `send()` sends the node a message, after a beat. It is called again only if the message
+        before seems to block the node, because each may block a thread of the node for ever.
         """
         watch, pauses, sent = Stopwatch(), [self._pause()], 0
         while pauses[-1].is_over and (len(pauses) <= BEATS or watch.wall_sec() < SPAN_SEC):
@@ -90,16 +92,16 @@ class Heartbeat:
         return not long or self._is_usual(max(long))
 
     def _is_usual(self, sec: float) -> bool:
-        """Whether a long pause is explained by those that come later."""
+        """Whether later pauses are nearly as long as a long one: then the machine explains it."""
         later = [self._pause() for _ in range(BEATS)]
         if not all(each.is_over for each in later):
             return False
-        # a machine that was short of time then may have enough of it now
+        # the machine may have been busier during the long pause than it is now
         self.doubt = Starved
         return sec < MOST_TIMES * max(each.sec for each in later)
 
     def _pause(self) -> _Pause:
-        """Wait for a beat, no longer than until it is known that this is a silence."""
+        """Wait for a beat, or until this is a silence."""
         before, watch, looks = len(self._recorder.received), Stopwatch(), 0
         while True:
             is_over = self._watcher.spin_until(
@@ -112,16 +114,16 @@ class Heartbeat:
             if is_over or is_silence:
                 is_long = looks >= LONG_LOOKS and sec >= LONG_SEC
                 return _Pause(sec, free_sec, is_over=is_over, is_long=is_long)
-            # what comes while the notebook is asked is received by the next spin
+            # a beat that comes during this request is received by the next spin
             wait_for_turn()
             looks += 1
 
 
 def record(watcher: Watcher, beats: Recorder) -> Recording | None:
-    """Record a count for RATE_SEC of the robot's time, in which timers of the node run.
+    """Record a count for RATE_SEC of the robot's time.
 
-    Return None for a count that stands still, or whose node has raised: checks behind this one
-    tell what the node waits for, and what it raised.
+    Return None if the count stands still, or if a callback of its node has raised: later checks
+    report what the node waits for, and what it raised.
     """
     before = len(beats.received)
     counts = watcher.spin_until_free(lambda: len(beats.received) > before, free_sec=COUNTS_SEC)
@@ -133,7 +135,7 @@ def record(watcher: Watcher, beats: Recorder) -> Recording | None:
 def _stalls(
     pauses: Sequence[_Pause], least_sec: float = STALL_SEC, times: float = STALL_TIMES
 ) -> bool:
-    """Whether the message of each round so far held the node up for a while."""
+    """Whether the message of each round so far blocked the node; see STALL_SEC."""
     longest, others = _by_round(pauses)
     shortest = min((each.sec for each in longest), default=least_sec)
     return shortest >= least_sec and shortest >= times * max(
@@ -142,13 +144,13 @@ def _stalls(
 
 
 def _is_sure(pauses: Sequence[_Pause]) -> bool:
-    """Whether a machine that is short of time is no reason why messages held the node up."""
+    """Whether the pauses of a node that stalls cannot come from a busy machine; see SURE_SEC."""
     free_sec = sum(max(0.0, each.free_sec - PERIOD_SEC) for each in _by_round(pauses)[0])
     return free_sec >= STALL_FREE_SEC or _stalls(pauses, SURE_SEC, SURE_TIMES)
 
 
 def _by_round(pauses: Sequence[_Pause]) -> tuple[list[_Pause], list[_Pause]]:
-    """The longest pause after each round's message, and those that show the machine."""
+    """The longer of each round's first two pauses, and the pauses that show the machine."""
     rounds = [pauses[first : first + ROUND] for first in range(0, len(pauses), ROUND)]
     longest = [max(round_[:2], key=lambda each: each.sec) for round_ in rounds]
     return longest, [each for round_ in rounds for each in round_[2:]]

@@ -1,4 +1,4 @@
-"""A server whose answers can be held back, and which can be absent for a while."""
+"""A service server that can hold its responses back, and can be absent for a while."""
 
 from collections.abc import Callable
 from typing import Any
@@ -10,12 +10,12 @@ from my_robot_basics.checks.sending import send_until_met
 from my_robot_basics.feedback.errors import expect
 
 MOST_REQUESTS, MOST_HELD = 500, 10
-"""A client that asks once for each message comes to a few. Of more answers at once than its queue
-has room for, it would lose some, by chance."""
+"""How many requests are too many, and how many responses may be sent at once. A right client sends
+a few requests. If more responses came at once than fit into its queue, it might lose some."""
 
 
 class HoldingServer:
-    """Serves as soon as `start` was called, on a node that somebody else spins."""
+    """A service server on a node that its owner spins; it serves once `start` was called."""
 
     def __init__(
         self, node: Node, *, name: str, type_: type, answer: Callable[[Any], Any]
@@ -23,18 +23,18 @@ class HoldingServer:
         """`answer(request)` returns the response."""
         self.name, self.type, self.answer = name, type_, answer
         self.requests: list[Any] = []
-        """All that it was asked, in order; MOST_REQUESTS of them raise CheckFailed."""
+        """All requests in order; the one that makes them MOST_REQUESTS raises CheckFailed."""
         self.sent: list[Any] = []
-        """All responses that have left."""
+        """All responses that were sent, in order."""
         self.starts = 0
-        """How often it was started."""
+        """How often `start` was called."""
         self._node = node
         self._service: Service | None = None
         self._holds = False
         self._held: list[tuple[Callable[[Any, Any], None], Any, Any]] = []
 
     def start(self) -> None:
-        """Serve again, after `stop`."""
+        """Begin to serve, for the first time or after `stop`."""
         service = self._node.create_service(self.type, self.name, self._take)
         send = service.send_response
 
@@ -50,7 +50,7 @@ class HoldingServer:
         self.starts += 1
 
     def stop(self) -> None:
-        """Be absent: a request that comes now is lost, and so is one that has no answer yet."""
+        """Stop serving: requests that have no response yet are lost, and so are those to come."""
         if self._service is not None:
             self._node.destroy_service(self._service)
             self._service = None
@@ -61,13 +61,13 @@ class HoldingServer:
         return self._service is not None
 
     def hold(self) -> None:
-        """Take requests, and keep the answers until `release`."""
+        """From now on, take requests, but hold the responses back until `release`."""
         self._holds = True
 
     def release(self, *, reverse: bool = False) -> None:
-        """Send the answers that were kept, with `reverse` the last one first; hold no longer.
+        """Send the responses that were held back, with `reverse` the last one first.
 
-        Raises CheckFailed where there are more than MOST_HELD.
+        From now on, hold nothing back. Raises CheckFailed if there are more than MOST_HELD.
         """
         self._holds = False
         self._expect_few(len(self._held), MOST_HELD + 1, f'more than {MOST_HELD} at once')
@@ -76,11 +76,11 @@ class HoldingServer:
         self._held = []
 
     def holds_any(self) -> bool:
-        """Whether an answer is kept back."""
+        """Whether a response is held back."""
         return bool(self._held)
 
     def holds_many(self) -> bool:
-        """Whether so many answers are kept back that a client which asks again needs them soon."""
+        """Whether a client repeats its request, and nearly MOST_HELD responses are held back."""
         return len(self._held) >= MOST_HELD // 2
 
     def _send(self, send: Callable[[Any, Any], None], response: Any, header: Any) -> None:

@@ -1,4 +1,4 @@
-"""What `/solve_ik` is to answer, and what is wrong with what it does; in radians."""
+"""Checks of a server of `/solve_ik` and of its clients; angles are in radians."""
 
 import itertools
 import math
@@ -26,18 +26,18 @@ from my_robot_basics.two_link_kinematics import inverse_kinematics
 __all__ = ['expect_elbow_up', 'request', 'solve']
 
 MOST_ANGLES = 20
-"""What is looked at of a branch, which has two: a response may have millions."""
+"""How many angles of a branch are looked at: it should have two, but may have millions."""
 COUNT_HZ = 10.0
-"""How often a client's count, given by its skeleton, goes on."""
+"""The rate of a client's count, which the exercise provides."""
 HEIGHTS_M = 0.0, 0.7, -0.7
-"""The z of targets, one after the other: the arm moves in a plane."""
+"""The z of targets, in turn: it does not matter, because the arm moves in a plane."""
 
 
 def expect_solutions(service: Service, *targets: tuple[float, float]) -> None:
-    """Each target, asked for at once with the others, is answered with both branches in radians.
+    """Call the service for all targets at once, and expect both branches of each, in radians.
 
-    Targets are (x, y) in metres and within reach; two of three are asked for with a z, which
-    does not matter. Raises CheckFailed.
+    Targets are (x, y) in metres and within reach; two of three requests have a z, which does not
+    matter. Raises CheckFailed.
     """
     heights_m = itertools.cycle(HEIGHTS_M)
     asked = [request(x, y, z=z) for (x, y), z in zip(targets, heights_m, strict=False)]
@@ -50,7 +50,7 @@ def expect_solutions(service: Service, *targets: tuple[float, float]) -> None:
 
 
 def _why_wrong(response: Any, target: Point) -> dict[str, Any]:
-    """What is wrong with the response to a target within reach, as `fail` takes it; or nothing."""
+    """Arguments for `fail` if the response to a target within reach is wrong; else empty."""
     where = f'the target ({target.x:g}, {target.y:g})'
     if target.z:
         where = f'the target ({target.x:g}, {target.y:g}) with z = {target.z:g}'
@@ -77,9 +77,9 @@ def _why_wrong(response: Any, target: Point) -> dict[str, Any]:
 
 
 def expect_refusals(service: Service, *targets: tuple[float, float]) -> None:
-    """Each target, out of reach or no number, is answered: not reachable, no angles, a message.
+    """Expect a response to each target that says not reachable, without angles, with a message.
 
-    Raises CheckFailed.
+    Targets are (x, y) in metres, out of reach or NaN. Raises CheckFailed.
     """
     for x, y in targets:
         response = service.call(request(x, y))
@@ -111,7 +111,7 @@ def expect_refusals(service: Service, *targets: tuple[float, float]) -> None:
 
 
 def expect_answer(server: Server, x: float, y: float) -> None:
-    """The client asks for a target, and publishes its elbow-up pose. Raises CheckFailed."""
+    """Expect the client to request a target and publish its elbow-up pose. Raises CheckFailed."""
     ask(server, x, y)
     expect_elbow_up(server, x, y)
 
@@ -119,22 +119,22 @@ def expect_answer(server: Server, x: float, y: float) -> None:
 def expect_never_blocks(
     server: Server, *targets: tuple[float, float], slow_sec: float = 0.0
 ) -> None:
-    """The client goes on while the server takes its time, and while there is none.
+    """Expect the client to keep running while it waits for a response, and without a server.
 
-    It counts at COUNT_HZ, and answers each of three targets, within reach, that it is asked for
-    while there is a server: two while the first answer is not there, for `slow_sec` or more, and
-    the third when the server has come back. Raises CheckFailed.
+    It has to count at COUNT_HZ, and to publish the poses of three targets within reach. The first
+    two arrive while responses are held back, for `slow_sec` or more, and the third when the server
+    has come back. Raises CheckFailed.
     """
     first, second, third = targets
-    if count := server.record_count():  # one that is slow would seem to stand still
+    if count := server.record_count():  # a slow count would seem to stand still
         count.assert_rate(COUNT_HZ)
     server.hold()
     watch = Stopwatch()
     ask(server, *first)
-    # no request is expected yet: a client that keeps targets asks for one after the other
+    # a request for the second may come later: a client may ask for one target after the other
     server.expect_alive('the server takes its time', Point(x=second[0], y=second[1]))
     expect_no_others(server)
-    # a client that gives up must not have the answer by then; one that asks again may
+    # let a client with a timeout give up, but send soon if it repeats its request
     while watch.wall_sec() < slow_sec and not server.holds_many():
         server.expect_nothing(made_of=is_elbow_up, hint=lambda each: why_other(server, each))
     server.release()
@@ -144,18 +144,18 @@ def expect_never_blocks(
     server.expect_alive('there is no server', Point(x=first[0], y=first[1]))
     server.start()
     expect_answer(server, *third)
-    _let_all_be_answered(server)  # that of before, too, where it was kept
+    _let_all_be_answered(server)  # also the target without server, if the client kept it
     expect_no_others(server)
 
 
 def _let_all_be_answered(server: Server) -> None:
-    """Wait until the client has what it asked for: what was lost is waited for without end."""
+    """Wait until the client got all responses: it would wait for a lost one for ever."""
     server.wait_for_repeated()
     server.made.wait_for_rest(is_elbow_up, leads=lambda response: response.reachable)
 
 
 def ask(server: Server, x: float, y: float) -> None:
-    """The client asks for a target."""
+    """Publish a target, and expect the client to request it. Raises CheckFailed."""
     server.ask(
         Point(x=x, y=y),
         is_it=lambda asked: is_for(asked, x, y),
@@ -164,7 +164,10 @@ def ask(server: Server, x: float, y: float) -> None:
 
 
 def expect_no_answer(server: Server, x: float, y: float) -> None:
-    """The client asks for a target out of reach, and publishes nothing. Raises CheckFailed."""
+    """Expect the client to request a target out of reach, but publish nothing for it.
+
+    Raises CheckFailed.
+    """
     expect_no_others(server)
     asked_ns = time.time_ns()
     ask(server, x, y)

@@ -1,13 +1,13 @@
-"""Why a look on the robot's clock proves nothing."""
+"""Exceptions that say why a recording on the robot's clock proves nothing."""
 
 
 class Inconclusive(Exception):
-    """The simulated look proves nothing; the message is a clause that says why."""
+    """The robot's clock proves nothing about this node; the message is a clause that says why."""
 
 
 class NoMessage(Inconclusive):
-    """No message came for as long as one is waited for."""
+    """No message came in the time for which a check waits."""
 
 
 class TooSlow(Inconclusive):
-    """There was no time for it: the node is slow, or the machine."""
+    """Driving the clock took too long: the node or the machine is too slow."""

@@ -1,4 +1,4 @@
-"""The joints of a JointState by name, and what to say where they are not as asked for."""
+"""The joints of a JointState by name, and advice if they are not as they should be."""
 
 import math
 import random
@@ -11,18 +11,18 @@ from my_robot_basics.feedback.errors import expect
 
 EXACT_RAD = 2e-4
 MOST_JOINTS = 100
-"""What has more is no pose of an arm, and is not looked at."""
+"""A message with more joints is not a pose of the arm, and is not looked at."""
 CLOSE_RAD = 0.02
-"""A pose that was rounded to two decimals is no further off."""
+"""A pose that is no farther off than this may have been rounded to two decimals."""
 OTHER_TYPE = 'publish a JointState there: compare the message type in create_publisher(…)'
 SWAPPED = 'the joints are swapped: θ1 belongs to joint1, and comes first'
 CONVERT = 'convert both angles with radians(), θ1 for joint1, θ2 for joint2'
-"""What to try where nobody knows what a pose is instead. …"""
+"""Advice for a pose that does not look like a known mistake."""
 CONVERT_EACH = (
     'other angles came out right: convert each with radians(), whatever its sign or size, and keep'
     ' nothing of those before'
 )
-"""… And where another pose was right."""
+"""The same if another pose was right."""
 
 
 def make(numbers: random.Random, *names: str) -> JointState:
@@ -33,8 +33,8 @@ def make(numbers: random.Random, *names: str) -> JointState:
 def pose(message: Any) -> dict[str, float]:
     """Return each joint's position, to four decimals.
 
-    Nothing where names and positions differ in number, a name is there twice, there are too many,
-    or it is no JointState.
+    Return {} if it is not a JointState, the numbers of names and positions differ, a name comes
+    twice, or there are more than MOST_JOINTS.
     """
     if not isinstance(message, JointState):
         return {}
@@ -47,7 +47,7 @@ def pose(message: Any) -> dict[str, float]:
 
 
 def agree(seen: dict[str, float], right: dict[str, float], within_rad: float = EXACT_RAD) -> bool:
-    """Whether each joint of `right` is there, and where it should be."""
+    """Whether `seen` has each joint of `right`, at the same position within `within_rad`."""
     return all(
         joint in seen and abs(seen[joint] - position) < within_rad
         for joint, position in right.items()
@@ -55,7 +55,7 @@ def agree(seen: dict[str, float], right: dict[str, float], within_rad: float = E
 
 
 def shown(message: Any) -> dict[str, float] | str:
-    """What the feedback shows of a message."""
+    """What the feedback page shows of a message."""
     if not isinstance(message, JointState):
         return f'a message of the type {type(message).__name__}'
     names, positions = len(message.name), len(message.position)
@@ -63,7 +63,7 @@ def shown(message: Any) -> dict[str, float] | str:
 
 
 def in_radians(pose_deg: Sequence[float]) -> dict[str, float]:
-    """The position of joint1 and joint2 for a pose in degrees, to four decimals."""
+    """The positions of joint1 and joint2, in rad to four decimals, for a pose in degrees."""
     return {
         f'joint{number}': round(math.radians(angle), 4)
         for number, angle in enumerate(pose_deg, start=1)
@@ -73,13 +73,13 @@ def in_radians(pose_deg: Sequence[float]) -> dict[str, float]:
 def expect_radians(
     position: Sequence[float], pose_deg: Sequence[float], *, others_right: bool = False
 ) -> None:
-    """The positions are these angles in radians, in this order. Raises CheckFailed.
+    """Expect the positions to be the angles of `pose_deg` in radians, in this order.
 
-    `others_right`: whether another pose has come out as it should.
+    `others_right`: whether the result for another pose was right. Raises CheckFailed.
     """
     right = list(in_radians(pose_deg).values())
     expect(
-        _are_near(position, [math.radians(angle) for angle in pose_deg]),  # both not rounded
+        _are_near(position, [math.radians(angle) for angle in pose_deg]),  # both unrounded
         expected=f'{right} rad for {tuple(pose_deg)} degrees',
         seen=f'{[round(each, 4) for each in position]}',
         hint=why_off(list(position), pose_deg, others_right=others_right),
@@ -87,9 +87,9 @@ def expect_radians(
 
 
 def why_wrong(message: Any, pose_deg: Sequence[float], *, others_right: bool = False) -> str:
-    """Advice for a message that is not that pose; it names the cause, and none of the angles.
+    """Advice for a message that is not that pose; it names the cause, but never an angle.
 
-    `others_right`: whether another pose has come out as it should.
+    `others_right`: whether the result for another pose was right.
     """
     if not isinstance(message, JointState):
         return OTHER_TYPE
@@ -104,7 +104,7 @@ def why_wrong(message: Any, pose_deg: Sequence[float], *, others_right: bool = F
 def why_off(
     seen: Sequence[float], pose_deg: Sequence[float], *, others_right: bool = False
 ) -> str:
-    """Advice for positions in radians that are not this pose, by what they are instead."""
+    """Advice for positions that should be this pose in radians, by the mistake they look like."""
     right = [math.radians(angle) for angle in pose_deg]
     if len(seen) > len(right) and len(seen) % len(right) == 0:
         return 'it adds to the positions of the call before: make a new message and list each time'
@@ -141,7 +141,7 @@ def why_off(
 
 
 def _adds_to_others(position: Sequence[float], pose_deg: Sequence[float]) -> bool:
-    """Whether this pose stands behind others: neither zeros nor its own angles, in any unit."""
+    """Whether other poses precede this one: neither zeros nor its own angles, in rad or degrees."""
     right = [math.radians(angle) for angle in pose_deg]
     others, last = position[: -len(right)], position[-len(right) :]
     own = 0.0, *right, *pose_deg
@@ -156,7 +156,7 @@ def _adds_to_others(position: Sequence[float], pose_deg: Sequence[float]) -> boo
 def _are_near(
     seen: Sequence[float], wanted: Sequence[float], within_rad: float = EXACT_RAD
 ) -> bool:
-    # a NaN is near nothing
+    # False for NaN: each comparison with NaN is False
     return len(seen) == len(wanted) and all(
         abs(a - b) < within_rad for a, b in zip(seen, wanted, strict=True)
     )

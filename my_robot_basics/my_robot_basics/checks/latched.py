@@ -1,4 +1,4 @@
-"""Messages that are published before anybody subscribes, and kept for late joiners."""
+"""Messages that are published before discovery, and kept for late-joining subscribers."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -13,17 +13,18 @@ LATCHED = QoSProfile(
     depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL
 )
 MOST_PARTICIPANTS = 100
-"""How often to try to publish before discovery is done; most often the first time will do."""
+"""How often to try to publish before discovery is done; mostly, the first try succeeds."""
 
 
 @contextmanager
 def published_before_discovery(
     topic_name: str, make_message: Callable[[], Any]
 ) -> Iterator[tuple[Any, Publisher]]:
-    """Yield a message that was published when its publisher's participant knew of nobody.
+    """Yield a message, and its publisher, which published it before it discovered a subscription.
 
-    The participant stays, to be met. Where discovery was faster, all begins again: a node that had
-    met the publisher before it spoke gets the message without having asked for it.
+    The participant stays for subscribers to discover. If discovery was faster than the message,
+    try again with a new participant: a node that had already matched the publisher would receive
+    the message even without TRANSIENT_LOCAL.
     """
     for _ in range(MOST_PARTICIPANTS):
         with Watcher() as stranger:

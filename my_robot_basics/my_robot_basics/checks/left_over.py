@@ -1,4 +1,4 @@
-"""Whether a server answers one request with what it has filled in for the one before."""
+"""Whether a server responds with the angles that it filled in for the request before."""
 
 import math
 
@@ -6,14 +6,14 @@ from my_robot_basics.checks.services import Service
 from my_robot_basics.checks.solutions import request, solve
 
 BEFORE = (0.7, 0.9), (-1.1, 0.4)
-"""Two targets within reach, in metres: one might be that which a server always gives."""
+"""Two targets within reach, in metres: a server might always respond with the angles of one."""
 NEAR_RAD = 1e-3
 
 
 def why_left_over(service: Service, x: float, y: float) -> str:
-    """Advice where a target out of reach is answered with the angles of the one before; else ''.
+    """Advice if a target out of reach gets the angles of the target before; else ''.
 
-    Raises CheckFailed where the service does not answer.
+    Raises CheckFailed if the service does not answer.
     """
     for before in BEFORE:
         service.call(request(*before))

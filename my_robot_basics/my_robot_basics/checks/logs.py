@@ -1,4 +1,4 @@
-"""What a node logs, as everybody else on the robot can read it: the topic /rosout."""
+"""What a node logs, as all nodes can read it: the topic /rosout."""
 
 from collections.abc import Callable, Iterable, Sequence
 from typing import Self
@@ -10,18 +10,18 @@ from my_robot_basics.feedback.errors import fail
 from my_robot_basics.graph.raised import what_stopped
 
 EXTRA_SEC = 0.3
-"""How long angles may come behind a warning …"""
+"""How long after a warning angles may still come, in seconds."""
 WARNED_SEC = 0.1
-"""… And a warning behind the angles: a later one is found with the next target."""
+"""How long after the angles a warning may come; the next target's check finds a later one."""
 ANSWER_SEC, ONCE_MORE_SEC = 3.0, 1.5
-"""How long to wait for the answer to a target, and to one that is sent a second time, of time that
-was free."""
+"""How long to wait for the answer to a target, and to a target that is sent a second time, in
+seconds of free time."""
 WARN_ONLY = 'warn only when inverse_kinematics(x, y) raises ValueError'
 INFO_FOR_ANGLES = 'log angles with self.get_logger().info(…), and ' + WARN_ONLY
 
 
 def rosout(node_name: str) -> 'Log':
-    """The log of a node and of its logger's children, to be opened by a `with` statement.
+    """Return the log of a node and of its logger's children, for use in a `with` statement.
 
     ```python
     with rosout('ik_solver_node') as log:
@@ -36,7 +36,7 @@ class Log(NodeLog):
     """What a check may expect of one node's log, in a `with` statement."""
 
     def __init__(self, node_name: str) -> None:
-        """Use `with rosout(node_name) as log`; listening begins with the `with` statement."""
+        """Use `with rosout(node_name) as log`; the `with` statement subscribes to /rosout."""
         super().__init__(node_name)
         self._forms = answers.Forms()
         self._answer: list[float] = []
@@ -49,9 +49,9 @@ class Log(NodeLog):
         target: Sequence[float] = (),
         may_lag: bool = False,
     ) -> bool:
-        """INFO records hold both angles of each solution, each θ1 with its own θ2, where in pairs.
+        """Expect both angles of each solution in INFO records; in pairs, each θ1 with its own θ2.
 
-        The rest is as `expect_angles` says.
+        All else is as in `expect_angles`.
         """
         angles_deg = [angle for pair in solutions for angle in pair]
         had_warning = self.expect_angles(angles_deg, target=target, may_lag=may_lag)
@@ -73,12 +73,12 @@ class Log(NodeLog):
         free_sec: float = ANSWER_SEC,
         may_lag: bool = False,
     ) -> bool:
-        """INFO records hold every one of these angles, on any number of lines; no WARN is there.
+        """Expect all these angles in INFO records, on any number of lines, and no WARN record.
 
         Other numbers don't matter, up to a thousand, nor do whole turns. Raises CheckFailed after
         `free_sec` of free time; it names the `target` (m) that has these angles. With `may_lag`,
-        a WARN before the answer may be about the target before, which a timer has taken up once
-        more; returns whether there was one.
+        a WARN before the answer is allowed: it may be about the target before, which a timer has
+        handled once more. Returns whether there was one.
         """
         wanted = list(angles_deg)
 
@@ -98,7 +98,7 @@ class Log(NodeLog):
                 cause='the INFO log lacks the angles of a target in reach',
             )
         before = self.count('WARN') if may_lag else 0
-        # a warning may come just behind the answer
+        # a warning may come just after the answer
         if self.wait_for(lambda log: log.count('WARN') > before, timeout_sec=WARNED_SEC):
             fail(
                 expected=f'no warning from {self.node_name} for {what}, which is in reach',
@@ -114,12 +114,12 @@ class Log(NodeLog):
     def expect_warning(
         self, *, no_angles: Iterable[float] = (), free_sec: float = ANSWER_SEC
     ) -> None:
-        """At least one WARN record comes, and no INFO record with angles.
+        """Expect at least one WARN record, and no INFO record with angles.
 
-        That is one that looks like those which held the angles of a target in reach, and has
-        other numbers; once the warning is there, these very angles, too; and zeros alone, or one
-        of `no_angles` beside the θ2 of a stretched or folded arm, unless a target in reach had the
-        same beside its angles. Raises CheckFailed after `free_sec` of free time.
+        A record has angles if it looks like those with angles of a target in reach, with other
+        numbers; after the warning, also with the same angles. Zeros count, too, and one of
+        `no_angles` beside the θ2 of a stretched or folded arm, unless such a record came beside
+        the angles of a target in reach. Raises CheckFailed after `free_sec` of free time.
         """
         bearings = list(no_angles)
         if not self.wait_for_answer(lambda log: log.has('WARN'), free_sec=free_sec):
@@ -142,7 +142,7 @@ class Log(NodeLog):
                 for number, text in enumerate(texts)
             )
 
-        # angles may come just behind the warning, and a second one, which answers no later target
+        # angles may come just after the warning, or a second one, which answers no later target
         if self.wait_for(has_angles, timeout_sec=EXTRA_SEC):
             fail(
                 expected=f'no angles from {self.node_name} for a target out of reach',
@@ -154,7 +154,7 @@ class Log(NodeLog):
         self._raised.expect_none()
 
     def _why_late(self, is_answered: Callable[[Self], bool]) -> str:
-        """Send the target once more; a node that answers only now answers the one before."""
+        """Send the target again: if its answer comes only now, each answer is one target late."""
         if self._asked is None or not self.has('INFO'):
             return ''
         since_ns = self._since_ns

@@ -1,4 +1,4 @@
-"""Look at what a topic carries: on the robot's clock, or else on the wall clock, and again."""
+"""Record a topic on the robot's clock, or else on the wall clock, and once more if in doubt."""
 
 import time
 from dataclasses import replace
@@ -17,19 +17,19 @@ from my_robot_basics.graph.raised import what_raised
 from my_robot_basics.graph.watcher import Watcher
 
 LATE_SEC = 0.02
-"""A machine that keeps a check waiting so long may make an honest node miss a period."""
+"""A machine that delays a check by so much may also make a right node miss a period."""
 LATE_LOOKS = 2
-"""How many more recordings such a machine gets."""
+"""How many more recordings are made on such a machine."""
 VALIDATE_SEC = 28.0
-"""How long a recording may take with all other looks at it: *Validate* gives a cell 30 s …"""
+"""How long all looks of one recording may take together: *Validate* gives a cell 30 s."""
 GRADING_SEC = 60.0
-"""… and the grader 150 s, for two recordings at most."""
+"""The same in the grader, which gives a cell 150 s, for at most two recordings."""
 BEFORE_SEC = 0.5
-"""How long to listen for a message before a node's clock is touched."""
+"""How long to wait for a message before the node's clock is changed, in seconds of free time."""
 
 
 def record(topic: TopicEndpoints, wanted: Wanted, *, hold_sec: float) -> Recording:
-    """What the topic carries; see `Topic.record`. Raises CheckFailed."""
+    """Record the topic; see `Topic.record`. Raises CheckFailed."""
     start = time.monotonic()
     look = look_once(wanted, lambda earlier: _look(topic, wanted, hold_sec, earlier))
     left_sec = _looks_sec() - (time.monotonic() - start)
@@ -77,7 +77,7 @@ def _to_look_again(
     topic: TopicEndpoints, look: Look, *, left_sec: float, late_looks: int
 ) -> Recording:
     def look_again(seconds: float) -> Recording:
-        # it may have to wait as long for the message to begin at
+        # twice: waiting for the message at which it begins may take as long
         if left_sec < 2.0 * seconds + wall_recording.remembers_sec(look.why):
             raise CheckFailed('there is no time for another look')
         start = time.monotonic()
@@ -106,7 +106,7 @@ def _fail_ended(recorder: Recorder) -> NoReturn:
 
 
 def _expect_ends_by_itself(recorder: Recorder) -> None:
-    """A node that went silent has raised something, or the change of its clock ended it."""
+    """Raise Disturbed if a node became silent on the robot's clock, and raised no exception."""
     expect(
         bool(what_raised(recorder.publishers())),
         expected=f'messages on {recorder.topic_name}',
