@@ -41,6 +41,7 @@ class FollowedClock(Enum):
     DRIVEN = auto()
     """The clock of its node, which a check drives."""
     WALL = auto()
+    """The wall clock, or a clock that a check can't drive during a move."""
     BOTH = auto()
     """It sleeps on its node's clock, but computes positions with the wall clock."""
     WALL_ALONE = auto()

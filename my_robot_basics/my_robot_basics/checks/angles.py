@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 
 WITHIN_DEG = 0.01
+"""How far off a logged angle may be."""
 ROUNDED_DEG = 0.5
 """How far off an angle is at most if rounded to whole degrees, or to hundredths of a radian."""
 DECIMALS = 'log the angles with two decimals or more'

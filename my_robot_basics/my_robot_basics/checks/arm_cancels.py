@@ -141,7 +141,7 @@ def _fail_without_end(arm: WatchedArm, sent: SentGoal, most_sec: float) -> NoRet
 
 
 def _went_on_without_answer(sent: SentGoal, asked_ns: int) -> bool:
-    """Whether the server published feedback for long after a request that it did not answer.
+    """Whether feedback came for long after a request to cancel that was not answered meanwhile.
 
     Then the node had enough processor time to answer, however busy the machine was.
     """

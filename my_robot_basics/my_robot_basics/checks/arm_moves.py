@@ -33,8 +33,8 @@ def expect_reaches(
 ) -> None:
     """Send the arm from `start` to a position (rad) at a speed (rad/s); the goal has to succeed.
 
-    The result has to hold the position. Goals to where the arm is then have to succeed, too, at
-    once and with the same result. Raises CheckFailed.
+    The result has to hold the position. Two goals to where the arm is then have to succeed,
+    too, the second one at once. Raises CheckFailed.
     """
 
     def arrives(arm: WatchedArm) -> None:

@@ -13,8 +13,8 @@ COARSE_NS = 250_000_000
 LONG_SEC = 8.0
 """Only moves that take longer are driven in coarse steps."""
 BEGIN_SEC, END_SEC, END_PART = 1.0, 1.0, 0.03
-"""How many seconds at the begin and at the end of a move are driven in fine steps; at the end, it
-is at least END_PART of the move."""
+"""How many seconds at the start and at the end of a move are driven in fine steps; at the end, at
+least END_PART of the move."""
 BEHIND_SEC = 0.1
 """If a server falls behind by more than this in one coarse step, it gets fine ones."""
 REPORT_SEC = 0.2

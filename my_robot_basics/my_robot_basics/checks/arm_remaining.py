@@ -7,8 +7,8 @@ import numpy as np
 from my_robot_basics.feedback.errors import fail
 
 OFF_RAD, MOSTLY_OFF_RAD = 0.01, 0.003
-"""How far off each message may be, and their median: `remaining` of the step before is off in
-each message."""
+"""How far off a message may be, and the median of all: if each has the value of the step before,
+the median is off, too."""
 ALIKE_RAD = 0.02
 """How near all messages have to be to what a mistake would publish."""
 SIGNED = 'it is a distance: take the size of each difference, abs(…)'

@@ -19,11 +19,13 @@ WANTED_HZ, LEAST_HZ = 10.0, 9.5
 LARGEST_GAP_SEC = 0.35
 """A longer gap between two messages is a pause."""
 FLOOD_HZ = 500.0
+"""Feedback at a higher rate comes from a loop that does not wait."""
 NO_WAIT = (
     'no step of the loop waits, and most of the feedback is lost: write `await sleep(self, …)`'
 )
 FEWEST = 5
 ON_LINE_RAD = 0.01
+"""How far a position may be off the straight line."""
 PROGRESS_PART = 0.06
 """How far the arm may be ahead of a steady move or behind it, as a part of the way."""
 MOST_TIMES = 3.0

@@ -11,6 +11,7 @@ from my_robot_basics.checks.watched_arm import Pose, WatchedArm, far_rad
 from my_robot_basics.feedback.errors import CheckFailed, fail
 
 TOLERANCE, WALL_TOLERANCE = 0.02, 0.05
+"""How far off the time of a move may be, as a part of it; the same on the wall clock."""
 SLACK_SEC = 0.12
 """By how much a move may be longer or shorter: a step of the server, and one of the clock."""
 TOLD_WALL_TOLERANCE, STEP_LATE_SEC = 0.03, 0.0015

@@ -10,8 +10,9 @@ from my_robot_basics.checks.watched_arm import Pose, WatchedArm
 from my_robot_basics.feedback.errors import fail, shorten
 
 ON_LINE, NEAR_RAD = 0.05, 0.02
+"""How far a joint may be beyond its way, as a part of it; how near the next move has to begin."""
 FIRST_SEC = 0.3
-"""When the first feedback comes at the latest, in seconds after the begin of a move."""
+"""When the first feedback comes at the latest, in seconds after the start of a move."""
 
 
 def expect_canceled(arm: WatchedArm, sent: SentGoal) -> None:

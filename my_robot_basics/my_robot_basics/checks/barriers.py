@@ -62,7 +62,7 @@ class Barriers:
         return {name: self._clients[name].call_async(request) for name in asked}
 
     def wait_for(self, until: Callable[[], bool]) -> bool:
-        """Wait PROMPT_SEC for `until()`: with a single node, it shows the same as an answer."""
+        """Whether `until()` is true within PROMPT_SEC, which replaces a single node's answer."""
         start = time.monotonic()
         is_true = len(self) == 1 and self._watcher.spin_until(until, timeout_sec=PROMPT_SEC)
         if is_true:

@@ -29,8 +29,8 @@ from my_robot_basics.checks.parameter_services import (
 from my_robot_basics.graph.watcher import Watcher
 
 FIRST_ANSWER_SEC = 1.0
-"""How long a node may take to answer at first, in seconds of free time: on a busy machine, a right
-node is slow, too."""
+"""How long a node may take to answer at first, in seconds of free time: on a busy machine, even a
+correct node is slow."""
 RESTORE_SEC = 10.0
 LONG_SEC = 3.0
 """A node that needs more free time than this to be driven is slow: a tick of some rclpy nodes with

@@ -14,15 +14,15 @@ class ClockBudget:
     """The time since this object was made, compared with how long the clock may be driven."""
 
     def __init__(self) -> None:
-        """Begin to measure."""
+        """Start to measure."""
         self._watch = Stopwatch()
 
     def free_sec(self) -> float:
-        """Seconds since the begin in which no process had to wait for a processor."""
+        """Seconds since the start in which no process had to wait for a processor."""
         return self._watch.free_sec()
 
     def wall_sec(self) -> float:
-        """Seconds of wall time since the begin."""
+        """Seconds of wall time since the start."""
         return self._watch.wall_sec()
 
     def is_used(self, part: float) -> bool:

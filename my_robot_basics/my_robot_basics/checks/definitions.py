@@ -69,7 +69,7 @@ class Definitions:
     def conclude(self, points: Mapping[str, float]) -> None:
         """Raise CheckFailed if a text is wrong; the message says what is wrong in each.
 
-        `points`: what each text is worth. Right texts earn their points only if all texts have
+        `points`: what each text is worth. Correct texts earn their points only if all texts have
         been compared by `expect_definitions`.
         """
         wrong = [name for name, faults in self._faults.items() if faults]

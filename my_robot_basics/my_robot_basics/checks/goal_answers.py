@@ -16,7 +16,7 @@ class GoalAnswers:
     has_rejected_last: bool = False
     """Whether it rejected the last goal."""
     why_rejected: str = ''
-    """The advice of a check when a right goal was rejected; '' if one was accepted since.
+    """The advice of a check when a valid goal was rejected; '' if one was accepted since.
 
     A server that never becomes ready again rejects all later goals: the first rejection shows why.
     """

@@ -10,8 +10,8 @@ from my_robot_basics.checks.sending import send_until_met
 from my_robot_basics.feedback.errors import expect
 
 MOST_REQUESTS, MOST_HELD = 500, 10
-"""How many requests are too many, and how many responses may be sent at once. A right client sends
-a few requests. If more responses came at once than fit into its queue, it might lose some."""
+"""How many requests are too many, and how many responses may be sent at once. A correct client has
+a few requests; if it got more responses at once than fit into its queue, it might lose some."""
 
 
 class HoldingServer:

@@ -10,6 +10,7 @@ from sensor_msgs.msg import JointState
 from my_robot_basics.feedback.errors import expect
 
 EXACT_RAD = 2e-4
+"""How far off a position may be: some are rounded to four decimals."""
 MOST_JOINTS = 100
 """A message with more joints is not a pose of the arm, and is not looked at."""
 CLOSE_RAD = 0.02
@@ -141,7 +142,7 @@ def why_off(
 
 
 def _adds_to_others(position: Sequence[float], pose_deg: Sequence[float]) -> bool:
-    """Whether other poses precede this one: neither zeros nor its own angles, in rad or degrees."""
+    """Whether other poses precede this one: neither zeros nor its own angles, in any unit."""
     right = [math.radians(angle) for angle in pose_deg]
     others, last = position[: -len(right)], position[-len(right) :]
     own = 0.0, *right, *pose_deg

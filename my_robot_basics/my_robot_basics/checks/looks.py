@@ -17,7 +17,7 @@ from my_robot_basics.graph.raised import what_raised
 from my_robot_basics.graph.watcher import Watcher
 
 LATE_SEC = 0.02
-"""A machine that delays a check by so much may also make a right node miss a period."""
+"""A machine that delays a check by so much may also make a correct node miss a period."""
 LATE_LOOKS = 2
 """How many more recordings are made on such a machine."""
 VALIDATE_SEC = 28.0
