@@ -91,8 +91,8 @@ def _arrive(arm: WatchedArm, position: Pose, *, speed: float) -> SentGoal:
         expect_no_slow_move(arm, sent, position)
         arm.server.fail_without_end(
             sent,
-            it=f'it {sent.status} in {most_sec:.0f} s of a move that takes a third',
-            none=f'none in {most_sec:.0f} s of a move that takes a third',
+            it=f'it {sent.status} in {most_sec:.0f} s, for a move of {wanted_sec:.1f} s',
+            none=f'none in {most_sec:.0f} s, for a move of {wanted_sec:.1f} s',
         )
     expect_succeeded(arm, sent)
     expect_arrived(sent, position, start=arm.start)
@@ -114,14 +114,14 @@ def _expect_stays(arm: WatchedArm, *, speed: float, is_there: bool) -> None:
         moves = any(not is_near(message.position, arm.start) for _, message in sent.feedback())
         fail(
             expected='a goal to where the arm is already to end at once',
-            seen=f'none in {HASTE_SEC:g} s',
+            seen=f'no end in {HASTE_SEC:g} s',
             hint=FROM_HERE if moves else arm.server.why_no_end(sent),
             cause='a goal to where the arm is already does not end',
         )
     expect_result(arm, sent)
     if sent.status != 'succeeded':
         fail(
-            expected='a goal to where the arm is already to be succeeded',
+            expected='a goal to where the arm is already to succeed',
             seen=f'it {sent.status}',
             hint=f'the arm is there already, and so is at the goal: {why_no_success(arm, sent)}',
             cause=f'a goal to where the arm is already is {sent.status}',
