@@ -31,14 +31,14 @@ __all__ = [
 ]
 
 BEYOND_RAD = 0.01
-"""So far beyond a limit are goals that are wrong, and hardly farther, or within it, if they are
-right: limits that were rounded to hundredths of a radian are right, and 1.6 is not."""
+"""Wrong goals are once to twice this far beyond a limit, right ones at most this far within it. So
+a node may round its limits to hundredths of a radian (1.57), but not to tenths (1.6)."""
 
 
 def choose(numbers: random.Random, *, farther: int = 1, sign: int = 1) -> tuple[float, float]:
-    """A position with that joint on that side, so that two with different signs are far apart.
+    """Choose a position; two positions that differ in `sign` are far apart.
 
-    `farther`: 1 or 2, the joint that moves more than the other one does, and not in proportion.
+    `farther` (1 or 2) is the joint whose angle is larger than the other's; `sign` is its sign.
     """
     far = round(sign * numbers.uniform(0.7, 1.4), 3)
     near = round(numbers.choice((-1, 1)) * numbers.uniform(0.15, 0.6), 3)
@@ -46,9 +46,9 @@ def choose(numbers: random.Random, *, farther: int = 1, sign: int = 1) -> tuple[
 
 
 def choose_wrong(numbers: random.Random) -> list[MoveArm.Goal]:
-    """Goals to be rejected: out of range, with another number of angles, with NaN, and too slow.
+    """Choose goals that the server must reject, each with exactly one fault.
 
-    Each is wrong in one way alone.
+    The faults: out of range, a wrong number of angles, NaN, and a speed that is not above 0.
     """
     inside = choose(numbers)
     first, second = LIMITS_RAD

@@ -20,20 +20,21 @@ from my_robot_basics.ros2 import command_line
 from my_robot_basics.ros2.command_line import OPTIONS_OF_FILES, CommandLine
 
 NODE_SEC = 4.0
-"""How long the node of a command may take to appear, of time that was free: the cell that starts
-it has waited before."""
+"""How long a command's node may take to appear, in seconds of free time. It is short because the
+cell that starts the node has waited for it before."""
 MOST_POSES = 3_600
-"""An hour of poses: which of them is first seen depends on when somebody looks."""
+"""An hour of poses at 1 Hz: how far the node has come when the check receives one is unknown."""
 _OF_ALL = '/rosout', '/parameter_events'
 """The topics on which each node publishes."""
 _PACKAGE, _EXECUTABLE = 'my_robot_basics', 'kinematics_publisher'
 
 
 def node_command(name: str, node_name: str) -> 'NodeCommand':
-    """The node of that full name, which the text of that name in the notebook is to start.
+    """The node `node_name` (a full name), which the notebook's variable `name` should start.
 
-    The text is one command line for `kinematics_publisher`, as `run_commands` takes it. Raises
-    CheckFailed where it is none. Read all command lines first: where one is none, none is started.
+    The variable holds one command line for `kinematics_publisher`, as `run_commands` takes it.
+    Raises CheckFailed if it does not. Call this for all variables before other checks, because
+    `run_commands` starts no node if one command line is wrong.
     """
     text = student.value(name, type=str)
     try:
@@ -50,20 +51,20 @@ def node_command(name: str, node_name: str) -> 'NodeCommand':
 
 @dataclass(frozen=True)
 class NodeCommand:
-    """What a check may say about the node of a command line."""
+    """The assertions of a check about the node that a command line starts."""
 
     line: CommandLine
     node_name: str
-    """Full: '/left/arm'."""
+    """The full name, such as '/left/arm'."""
 
     def expect_publishes(self, topic_name: str, *, instead_of: str) -> None:
-        """There is one such node; it, and nobody else, publishes on that topic.
+        """Exactly one node has this name, and it is the only publisher on that topic.
 
-        `instead_of` is the topic that the program has without a rule. Raises CheckFailed.
+        `instead_of` is the topic that the program uses without a remap rule. Raises CheckFailed.
         """
         self._expect_node()
         with Watcher(shared=True) as watcher:
-            # a busy machine may tell of a node long before its publishers
+            # on a busy machine, a node may be discovered long before its publishers
             watcher.spin_until_free(lambda: self._publishes(watcher), free_sec=NODE_SEC)
             graphs.wait_for_publisher(watcher, topic_name, timeout_sec=1.0)
             snapshot = graphs.take(watcher)
@@ -93,7 +94,7 @@ class NodeCommand:
         return any(self.node_name in nodes for name, nodes in names.items() if name not in _OF_ALL)
 
     def _expect_of_the_command(self, topic_name: str, *, instead_of: str) -> None:
-        """The command line brings that node and that topic: no other node will do for it."""
+        """The command line itself gives that node and topic; another node cannot stand in."""
         started = self._started(topic_name=instead_of)
         expect(
             started is not None and started.name == self.node_name,
@@ -144,7 +145,7 @@ class NodeCommand:
         )
 
     def expect_parameter(self, name: str, value: Any) -> None:
-        """A parameter of it has that value."""
+        """The node's parameter `name` has that value. Raises CheckFailed."""
         seen = NodeParameters(self.node_name).get(name)
         expect(
             seen == value,
@@ -165,7 +166,10 @@ class NodeCommand:
         )
 
     def expect_poses(self, topic_name: str, *, seed: int) -> None:
-        """The poses on that topic are those of `kinematics_publisher` with that seed."""
+        """A pose on that topic is one that `kinematics_publisher` publishes with that seed.
+
+        Raises CheckFailed.
+        """
         numbers = random.Random(seed)
         poses = {
             (math.radians(numbers.uniform(-90.0, 90.0)), math.radians(numbers.uniform(-120, 120)))

@@ -1,4 +1,4 @@
-"""The log of one node: what it says on /rosout since a moment."""
+"""The log of one node: its records on /rosout since a given time."""
 
 import time
 from collections.abc import Callable, Sequence
@@ -22,9 +22,9 @@ LEVELS = {10: 'DEBUG', 20: 'INFO', 30: 'WARN', 40: 'ERROR', 50: 'FATAL'}
 DEPTH = 1000
 NODE_SEC = 10.0
 GONE_SEC = 1.0
-"""How long a node that is there may be missing on the graph."""
+"""How long a running node may be missing from the graph, in seconds of wall time."""
 MOST_CHARACTERS = 400_000
-"""What a node may log for one target: all of it is read again with each line that comes."""
+"""How much a node may log for one target: each new record makes the check read all of it again."""
 
 
 @dataclass(frozen=True)
@@ -34,18 +34,18 @@ class Record:
     level: str
     """'DEBUG', 'INFO', 'WARN', 'ERROR' or 'FATAL'."""
     text: str
-    """As the node logged it, without time and logger's name."""
+    """The message as the node logged it, without the time and the logger's name."""
 
 
 class NodeLog:
-    """A context manager that listens to one node's log.
+    """A context manager that subscribes to one node's log.
 
-    Only records that were logged since `mark()` count (at first, since it began to listen):
-    /rosout is latched, and would otherwise bring answers to older questions.
+    Only records logged since the last `mark()` count; entering the `with` block sets the first
+    one. /rosout is latched, so older records arrive, too: they answer earlier targets.
     """
 
     def __init__(self, node_name: str) -> None:
-        """Use `with rosout(node_name) as log`; listening begins with the `with` statement."""
+        """Use `with rosout(node_name) as log`; the `with` statement subscribes to /rosout."""
         self._logger = node_name.strip('/').replace('/', '.')
         self.node_name = f'/{node_name.strip("/")}'
         self._received: list[tuple[int, Record]] = []
@@ -53,12 +53,12 @@ class NodeLog:
         self._since_ns = self._characters = 0
         self._publishers: dict[str, Publisher] = {}
         self._asked: tuple[str, Any] | None = None
-        """The topic and the target that was sent last."""
+        """The topic and the message of the last `ask`."""
         self.asked_again = False
-        """Whether that is equal to the one before."""
+        """Whether the last `ask` had the same topic and message as the one before it."""
 
     def __enter__(self) -> Self:
-        """Subscribe and wait for the node. Raises CheckFailed when it does not come."""
+        """Subscribe and wait for the node. Raises CheckFailed if it does not appear."""
         self._watcher.__enter__()
         try:
             self._meet()
@@ -70,17 +70,17 @@ class NodeLog:
         return self
 
     def __exit__(self, kind: object, error: BaseException | None, traceback: object) -> None:
-        """Stop listening."""
+        """Destroy the subscription."""
         self._watcher.__exit__(kind, error, traceback)
 
     def mark(self) -> None:
-        """Let only records count that are logged from now on."""
+        """Count only records that are logged from now on."""
         self._since_ns, self._characters = time.time_ns(), 0
 
     def ask(self, topic_name: str, message: Any) -> None:
-        """Publish a target, of which the records since then are to tell.
+        """Set the mark, then publish a target: `records` should answer this target only.
 
-        Raises CheckFailed where nobody subscribes to the topic.
+        Raises CheckFailed if the topic has no subscription.
         """
         if topic_name not in self._publishers:
             publisher = Topic(topic_name).meet(self._watcher, type(message))
@@ -92,20 +92,23 @@ class NodeLog:
 
     @property
     def records(self) -> tuple[Record, ...]:
-        """The records that were received since the mark, oldest first."""
+        """The records that were logged since the mark, oldest first."""
         return tuple(record for sent_ns, record in self._received if sent_ns > self._since_ns)
 
     def numbers(self, level: str = 'INFO', *, since: int = 0) -> tuple[float, ...]:
-        """All numbers in the records of a level since the mark, in order; or `since` its n-th."""
+        """All numbers in the records of a level since the mark, in order.
+
+        `since`: how many of these records to skip.
+        """
         texts = self.texts(level)[since:]
         return tuple(number for text in texts for number in answers.numbers_of(text))
 
     def wait_for(self, done: Callable[[Self], bool], *, timeout_sec: float = 5.0) -> bool:
-        """Listen until `done(log)`, at most `timeout_sec`; whether it came to that."""
+        """Spin until `done(log)` or for `timeout_sec` of wall time; return whether it is done."""
         return self._watcher.spin_until(lambda: done(self), timeout_sec=timeout_sec)
 
     def wait_for_answer(self, done: Callable[[Self], bool], *, free_sec: float) -> bool:
-        """Listen until `done(log)`, at most `free_sec` of time that was free; whether it did."""
+        """Spin until `done(log)` or for `free_sec` of free time; return whether it is done."""
         return self._watcher.spin_until_free(lambda: done(self), free_sec=free_sec)
 
     def _meet(self) -> None:
@@ -130,7 +133,7 @@ class NodeLog:
             )
 
     def expect_node(self) -> None:
-        """The node is still there. Raises CheckFailed."""
+        """The node still runs. Raises CheckFailed."""
         expect(
             self._watcher.spin_until(self._is_there, timeout_sec=GONE_SEC),
             expected=f'{self.node_name} to go on after each target',
@@ -182,7 +185,7 @@ class NodeLog:
         return sum(record.level == level for record in self.records)
 
     def shown(self, level: str) -> str:
-        """What to show of a level: its texts, or what came instead."""
+        """What to show of a level: its texts, or the records of other levels if it has none."""
         if texts := self.texts(level):
             return f"'{shorten(' | '.join(texts))}'"
         others = ' | '.join(f'{record.level} {record.text}' for record in self.records)

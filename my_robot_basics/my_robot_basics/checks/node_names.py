@@ -1,4 +1,4 @@
-"""The name of the student's node, which launch files and other people look for."""
+"""The name of the student's node: launch files and other nodes depend on it."""
 
 from my_robot_basics.feedback.errors import expect
 from my_robot_basics.feedback.hidden import theirs
@@ -6,13 +6,14 @@ from my_robot_basics.graph.graphs import node_names
 from my_robot_basics.graph.watcher import Watcher
 
 NAME_SEC = 1.0
-"""How long to look for a name, of time that was free: one check or more has met the node."""
+"""How long to look for a name, in seconds of free time. It is short because an earlier check has
+already discovered the node."""
 
 
 def expect_node(name: str) -> None:
     """A node of that name runs, in any namespace. Raises CheckFailed.
 
-    Call it once a check has met an end of the node: then its name is known, too.
+    Call it after a check that has discovered an endpoint of the node.
     """
 
     def runs() -> bool:

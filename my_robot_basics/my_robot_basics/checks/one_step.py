@@ -1,4 +1,4 @@
-"""A parameter that is set in one step with another one: a callback gets both in one list."""
+"""A parameter that is set together with another one: the node's callback gets both in one list."""
 
 from typing import NoReturn
 
@@ -8,9 +8,10 @@ from my_robot_basics.feedback.errors import CheckFailed, expect, fail
 
 
 def expect_refused(parameters: NodeParameters, name: str, kept_hz: float, rate_hz: float) -> None:
-    """This value is refused beside use_sim_time, too, whichever of both comes first.
+    """The node refuses this value, too, if it is set atomically with use_sim_time.
 
-    Who leaves it out of the list before that takes none, either. Raises CheckFailed.
+    Both orders in the list are tried. Afterwards the parameter must still be `kept_hz`. Raises
+    CheckFailed.
     """
     [value] = in_its_type(parameters, name, [rate_hz], kept_hz)
     for is_first in (False, True):
@@ -28,7 +29,7 @@ def expect_refused(parameters: NodeParameters, name: str, kept_hz: float, rate_h
 
 
 def expect_taken(parameters: NodeParameters, name: str, rate_hz: float) -> None:
-    """This value is taken beside use_sim_time, and after it, too. Raises CheckFailed."""
+    """The node accepts this value behind use_sim_time in one list. Raises CheckFailed."""
     [value] = in_its_type(parameters, name, [rate_hz])
     result = parameters.set_beside_another(name, value)
     if not result.successful:
@@ -38,7 +39,7 @@ def expect_taken(parameters: NodeParameters, name: str, rate_hz: float) -> None:
 def fail_unchanged(
     name: str, seen_hz: float, now_hz: float, *, doubt: type[CheckFailed]
 ) -> NoReturn:
-    """Raise CheckFailed, for a rate that stays what it was where both were set."""
+    """Raise CheckFailed: the rate did not change when both parameters were set in one step."""
     fail(
         expected=f'{now_hz:g} Hz after use_sim_time and {name} were set in one step',
         seen=f'{seen_hz:.3g} Hz as before',

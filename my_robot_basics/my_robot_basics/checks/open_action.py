@@ -1,4 +1,4 @@
-"""The server of an action, met by a check: send goals, and say why no answer comes."""
+"""A check's client of an action server: it sends goals and explains why no answer comes."""
 
 from typing import Any, NoReturn
 
@@ -22,11 +22,13 @@ from my_robot_basics.graph import actions
 from my_robot_basics.graph.watcher import Watcher
 
 REST_SEC = 2.5
-"""How long to wait for the end of goals of earlier, and once more when they are cancelled."""
+"""How long to wait until earlier goals end, and again after canceling them, in s of free time."""
 SERVED_SEC, NEW_SEC = 2.0, 0.1
-"""How long the status of earlier goals may take to come, and where nobody knows of any."""
+"""How long to wait for the status array, in seconds of free time: SERVED_SEC if the server has
+accepted goals of earlier checks, otherwise NEW_SEC."""
 RETURN_SEC = 0.2
-"""How long an execute callback may take to return when it has told how the goal ends."""
+"""How long an execute callback may take to return once the goal's status is terminal, in seconds
+of free time."""
 BLOCKED = (
     "the execute callback keeps the node's only thread: wait with `await sleep(self, …)` in place "
     'of time.sleep(…) or rate.sleep(), or use a MultiThreadedExecutor'
@@ -34,17 +36,17 @@ BLOCKED = (
 
 
 class OpenAction:
-    """The server of an action, met by a watcher, while a check lasts."""
+    """The client of one action server, for the duration of a check."""
 
     def __init__(self, watcher: Watcher, name: str, type_: type) -> None:
-        """Nobody is met yet."""
+        """Create the client; `meet` waits for the server."""
         self.watcher, self.name, self.type = watcher, name, type_
         self.ends = ActionEnds(watcher, name, type_)
         self.node_name = ''  # the full name of the server's node
         self.accepted: list[SentGoal] = []  # the last one last
 
     def meet(self) -> None:
-        """Wait for the one server, and for the end of goals of earlier. Raises CheckFailed."""
+        """Wait for the only server, and until its earlier goals end. Raises CheckFailed."""
         self.node_name = self._find()
         self.raised = CallbackErrors([self.node_name])
         self.log = ServerLog(self.watcher, self.node_name)
@@ -60,25 +62,25 @@ class OpenAction:
             self._wait_for_rest()
 
     def has_active(self) -> bool:
-        """Whether a goal is not over that was accepted here, or one of anybody's, as it says."""
+        """Whether a goal has not ended: one accepted here, or one that the server reports."""
         return self.ends.has_active() or not all(map(self._is_over, self.accepted))
 
     def wait_for_returns(self) -> None:
-        """Wait for the results of goals that are over: a server is free when it has sent them."""
+        """Wait for the results of accepted goals: a server that has sent them is free again."""
         self.watcher.spin_until_free(
             lambda: all(sent.is_answered() for sent in self.accepted), free_sec=RETURN_SEC
         )
 
     def _is_over(self, sent: SentGoal) -> bool:
-        # its own client may have left
+        # the client that sent it may be closed: then only the status topic tells
         return sent.is_over() or any(s in TERMINAL for _, s in self.ends.statuses_of(sent.id))
 
     def answers(self) -> GoalAnswers:
-        """How it has answered so far, also to earlier checks."""
+        """How the server has answered so far, including its answers to earlier checks."""
         return answers_of(self.identity())
 
     def expect_alone(self) -> None:
-        """No other server of the action is there by now. Raises CheckFailed."""
+        """The action has no second server at this time. Raises CheckFailed."""
         count = self.watcher.node.count_services(f'{self.name}/_action/send_goal')
         names = ', '.join(sorted(actions.take(self.watcher.node).servers.get(self.name, {})))
         expect(
@@ -92,14 +94,14 @@ class OpenAction:
         )
 
     def identity(self) -> Identity:
-        """What no other server has, whatever its name."""
+        """The GIDs of the feedback publishers: no other server has them, whatever its name."""
         infos = self.watcher.node.get_publishers_info_by_topic(f'{self.name}/_action/feedback')
         return tuple(sorted(tuple(info.endpoint_gid) for info in infos))
 
     def send(self, goal: Any, *, ends: ActionEnds | None = None) -> SentGoal:
-        """Send a goal and wait for the answer, and ask for the result where it is accepted.
+        """Send a goal, wait for the response, and request the result if the goal is accepted.
 
-        Raises CheckFailed where no answer comes, with the reason.
+        Raises CheckFailed with the reason if no response comes.
         """
         sent = (ends or self.ends).send(goal)
         self.answer_to(sent.answer, what='the goal')
@@ -110,7 +112,7 @@ class OpenAction:
         return sent
 
     def answer_to(self, asked: Future, *, what: str) -> Any:
-        """The answer to what was asked. Raises CheckFailed where none comes, with the reason."""
+        """Wait for the response `asked`. Raises CheckFailed with the reason if none comes."""
         if not wait_for_all(self.watcher, [asked], gives_up=lambda: bool(self.raised.hint())):
             fail(
                 expected=f'an answer to {what}',
@@ -121,9 +123,10 @@ class OpenAction:
         return asked.result()
 
     def fail_without_end(self, sent: SentGoal, *, it: str, none: str, hint: str = '') -> NoReturn:
-        """A goal has not ended: `it` says so with its status, `none` where it has none.
+        """Raise CheckFailed with the reason: a goal has not ended.
 
-        Raises CheckFailed with the reason, and with what to try, if the caller knows.
+        The message shows `it` if the goal has a status, otherwise `none`. `hint` says what to try,
+        if the caller knows; otherwise `why_no_end` does.
         """
         fail(
             expected='the goal to end',
@@ -133,7 +136,7 @@ class OpenAction:
         )
 
     def why_no_end(self, sent: SentGoal) -> str:
-        """What to try where an accepted goal does not end, or has no result."""
+        """What to try if an accepted goal does not end, or has no result."""
         if hint := self.raised.hint() or self.log.raised(since_ns=sent.sent_ns):
             if sent.status in TERMINAL:
                 return 'end the execute callback with `return MoveArm.Result(…)`, in each branch'
@@ -172,7 +175,7 @@ class OpenAction:
         return next(iter(found))
 
     def _is_blocked(self) -> bool:
-        """Whether the node answers no question while a goal moves, and could answer."""
+        """Whether a goal is active and the node's parameter services exist but do not answer."""
         name = self.node_name
         can_answer = name in nodes_with_services(self.watcher.node)
         return self.has_active() and can_answer and not answers_parameters(self.watcher, name)

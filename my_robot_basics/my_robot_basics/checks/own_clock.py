@@ -1,6 +1,6 @@
-"""Whether stamps are the time of the node's own clock, or of the computer's, which shows the same.
+"""Whether stamps come from the node's clock or from the computer's: usually both show one time.
 
-The node's clock is moved ahead, and its stamps must follow.
+The check moves the node's clock ahead, and the node's stamps must follow.
 """
 
 import time
@@ -23,18 +23,18 @@ from my_robot_basics.graph.message_info import with_info
 from my_robot_basics.graph.watcher import Watcher
 
 AHEAD_SEC = 5.0
-"""How far the node's clock is moved: no honest stamp is so late."""
+"""How far the node's clock is moved ahead: a right stamp is never late by half of this."""
 PROOFS = 3
-"""Messages that show whose clock it is."""
+"""How many messages are enough to decide which clock the stamps come from."""
 PROOF_SEC = 2.0
-"""How long to wait for them at most; a timer of the node's clock gets as much of its time."""
+"""How long to wait for PROOFS messages at most; the node's clock moves on by as much meanwhile."""
 PROOF_STEP_SEC = 0.05
 EXACT_NS = 1000
-"""A stamp that went through a float is off by less."""
+"""A stamp that was converted to a float and back differs by less than this."""
 SETTLE_SEC = 0.5
-"""How long a node may take to follow where nothing tells that it has."""
+"""How long to wait for a node to process a clock tick that it cannot confirm (wall time)."""
 ATTEMPTS = 3
-"""How often to try where the clock could not be driven: a busy machine may be slow just now."""
+"""How often to try if the clock could not be driven: a busy machine may be slow at first."""
 EXPECTED = "stamps of the node's clock at publication"
 COMPUTERS = "they are the time of the computer's clock"
 HOW = 'set message.header.stamp = self.get_clock().now().to_msg() before each publish'
@@ -42,9 +42,9 @@ WHY = "it differs from the computer's clock when a simulation, or this check, dr
 
 
 def expect_to_follow(topic_name: str, type_: type, publishers: Collection[str]) -> None:
-    """Move the nodes' clock ahead: stamps that stay behind fail.
+    """Move the nodes' clock ahead. Raises CheckFailed if the stamps do not follow.
 
-    Nothing follows where the nodes do not let it be moved, or publish nothing meanwhile.
+    It passes if the nodes' clock cannot be moved, or if they publish nothing meanwhile.
     """
     for _ in range(0 if are_left_alone() else ATTEMPTS):
         try:
@@ -53,16 +53,16 @@ def expect_to_follow(topic_name: str, type_: type, publishers: Collection[str]) 
             seen = _while_ahead_inside(topic_name, type_, publishers)
             if seen is None:
                 continue
-        # each is off the computer's clock by as much as the node's is, or by nothing
+        # a stamp is AHEAD_SEC ahead if it is from the node's clock, 0 s if from the computer's
         if seen and all(abs(ahead) < AHEAD_SEC / 2 for ahead in seen):
             fail_computer()
         return
 
 
 def _while_ahead(topic_name: str, type_: type, publishers: Collection[str]) -> list[float]:
-    """How far stamps are ahead of the computer's clock, in seconds, while the nodes' clock is.
+    """How many seconds stamps are ahead of the computer's clock while the nodes' clock is ahead.
 
-    Those that this clock has shown are left out.
+    Stamps equal to a time that `/clock` has shown are left out: they are right.
     """
     with Watcher(listens=True) as watcher:
         proofs = _receive_stamps(watcher, topic_name, type_)
@@ -82,11 +82,11 @@ def _while_ahead(topic_name: str, type_: type, publishers: Collection[str]) -> l
 def _while_ahead_inside(
     topic_name: str, type_: type, publishers: Collection[str]
 ) -> list[float] | None:
-    """The same for nodes without parameter services, which their own process can switch.
+    """The same for nodes without parameter services: their process sets use_sim_time itself.
 
-    With them all others of that process: a publisher may belong to one node, and the stamps come
-    from the clock of another one. None where a publisher's node does not let it. Nothing tells
-    when a node has dealt with a tick: it gets wall time.
+    It sets it for all nodes on the graph: a publisher's stamps may come from another node's clock.
+    Returns None if a publisher's node cannot be switched. A node cannot confirm that it has
+    processed a tick, so it gets wall time for that.
     """
     with Watcher(listens=True) as watcher:
         if watcher.node.get_publishers_info_by_topic('/clock'):
@@ -103,7 +103,7 @@ def _while_ahead_inside(
             shown_ns += _tick_ahead(watcher, clock, seconds=PROOF_SEC)
             return _ahead_sec(proofs(since_ns), shown_ns)
         finally:
-            # on wall time, or a timer would wait until that has come
+            # show the wall time again: else a timer would wait until it reaches the time ahead
             clock.publish(Clock(clock=Time(nanoseconds=time.time_ns()).to_msg()))
             watcher.spin_for(SETTLE_SEC)
             for name, value in former.items():
@@ -112,7 +112,7 @@ def _while_ahead_inside(
 
 
 def _tick_ahead(watcher: Watcher, clock: Publisher, *, seconds: float) -> list[int]:
-    """Move the clock on for so long; return what it has shown, in ns."""
+    """Publish a clock that is AHEAD_SEC ahead for `seconds`; return its times, in ns."""
     shown_ns = []
     for _ in range(round(seconds / PROOF_STEP_SEC)):
         shown_ns.append(time.time_ns() + round(AHEAD_SEC * 1e9))
@@ -122,9 +122,10 @@ def _tick_ahead(watcher: Watcher, clock: Publisher, *, seconds: float) -> list[i
 
 
 def _ahead_sec(stamps: Sequence[tuple[int, int]], shown_ns: Sequence[int]) -> list[float]:
-    """How far stamps are ahead of when they were sent, except those that `/clock` has shown.
+    """How far stamps are ahead of the time they were sent, except those that `/clock` has shown.
 
-    While a callback works, its node's clock stands still, and the computer's comes after it.
+    Those are exempt because a node's simulated clock stands still while its callback runs, and the
+    computer's clock catches up.
     """
     return [
         (stamp_ns - sent_ns) / 1e9
@@ -136,7 +137,10 @@ def _ahead_sec(stamps: Sequence[tuple[int, int]], shown_ns: Sequence[int]) -> li
 def _receive_stamps(
     watcher: Watcher, topic_name: str, type_: type
 ) -> Callable[[int], list[tuple[int, int]]]:
-    """Listen; what is returned gives each stamp since a wall time, and when it was sent, in ns."""
+    """Subscribe; the function returned gives (stamp, send time) of messages sent since a time.
+
+    All times are in ns; send times and that time are wall time.
+    """
     received: list[tuple[int, int]] = []
 
     def receive(message: Any, info: dict) -> None:
@@ -148,7 +152,7 @@ def _receive_stamps(
 
 
 def nanoseconds(stamp: TimeMessage) -> int:
-    """A stamp exactly: as seconds since the epoch, two less than 240 ns apart would be one."""
+    """A stamp as an exact integer: a float of seconds since the epoch resolves only 240 ns."""
     return stamp.sec * 10**9 + stamp.nanosec
 
 

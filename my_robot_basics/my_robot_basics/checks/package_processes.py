@@ -1,6 +1,6 @@
 """An executable that a check has started in the student's room: a process, and a node over DDS.
 
-That room says whether the process runs and how it ended: a claim. The node is seen over DDS.
+Whether the process runs and how it ended is only that room's claim. DDS shows the node itself.
 """
 
 import time
@@ -21,13 +21,13 @@ from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
 
 NODE_SEC = 10.0
-"""How long an executable may take until its node is there, of time that was free."""
+"""How long an executable's node may take to appear, in seconds of free time."""
 END_SEC = 5.0
-"""How long it may take to end after SIGINT, of time that was free: ros2 launch waits as long."""
+"""How long a process may take to end after SIGINT, in s of free time, as with ros2 launch."""
 GONE_SEC = 8.0
-"""How long its node may be on the graph afterwards: a lease of 5 s, and more."""
+"""How long its node may stay on the graph, in s of free time: DDS's lease of 5 s and a margin."""
 ASK_EVERY_SEC, ASK_END_EVERY_SEC = 0.3, 0.05
-"""How often the notebook is asked whether it has ended, and where it is about to."""
+"""How often to ask the notebook whether the process has ended: normally, and if it should end."""
 AT_ONCE = 'let no callback and no loop go on for long, and do not catch KeyboardInterrupt there'
 CLEANLY = (
     'in main, catch KeyboardInterrupt and ExternalShutdownException around rclpy.spin, and call '
@@ -39,17 +39,17 @@ class RunningExecutable:
     """One process of the student's package, inside a `with`."""
 
     def __init__(self, package: str, executable: str, arguments: tuple[str, ...]) -> None:
-        """Prepare what is started when the `with` begins."""
+        """Prepare the process; the `with` statement starts it."""
         self.package, self.executable, self.arguments = package, executable, arguments
         self._is_second = False
         self._number: int | None = None
         self._nodes: list[str] = []
         self._next_question, self._ask_every_sec = 0.0, ASK_EVERY_SEC
         self._watcher: Watcher
-        """There while it runs: what was never seen on the graph can't be seen to leave it."""
+        """Exists as long as the process: only a node that was discovered can be seen to leave."""
 
     def __enter__(self) -> Self:
-        """Start it. Raises CheckFailed where it can't be."""
+        """Start the process. Raises CheckFailed if that fails."""
         told = self._ask('start', self.executable, list(self.arguments))
         number = told.get('number')
         if type(number) is not int:
@@ -65,13 +65,13 @@ class RunningExecutable:
         return self
 
     def __exit__(self, *error: Any) -> None:
-        """End it, if it still runs; that is no verdict."""
+        """End the process if it still runs; this affects no verdict."""
         send = partial(self._ask, 'signal', self._number)
         polite_end.end(send, lambda: self._ask('state', self._number).get('code') is not None)
         self._watcher.__exit__(*error)
 
     def expect_node(self, node_name: str) -> None:
-        """A node of that full name, '/arm_driver', comes up. Raises CheckFailed."""
+        """A node of that full name, such as '/arm_driver', appears. Raises CheckFailed."""
         watcher, watch = self._watcher, Stopwatch()
 
         def is_there() -> bool:
@@ -94,20 +94,23 @@ class RunningExecutable:
         self._nodes.append(node_name)
 
     def expect_running(self) -> None:
-        """It has not ended. Raises CheckFailed, with what it printed last."""
+        """The process still runs. Otherwise raises CheckFailed with the last line it printed."""
         if self._state()[0] is not None:
             self._fail_ended(f'{self.executable} to go on running')
 
     def expect_end(self, *, code: int = 0, within_sec: float = 10.0) -> None:
-        """It ends by itself with that exit code, in so much time that was free."""
+        """The process ends by itself with that exit code, within `within_sec` s of free time.
+
+        Raises CheckFailed.
+        """
         wanted = f'{self.executable} to end by itself'
         self._wait_for_end(wanted, within_sec, hint='let main return when it is done')
         self._expect_code(code, hint='let main return without an exception when it is done')
 
     def expect_clean_end(self) -> None:
-        """It ends after SIGINT, as after Ctrl-C: with exit code 0, and its nodes are gone.
+        """The process ends after SIGINT (Ctrl-C) with exit code 0, and its nodes disappear.
 
-        Raises CheckFailed: what it printed last, or that it goes on.
+        Raises CheckFailed: the process still runs, or with its exit code and the last line.
         """
         self.expect_running()
         spinning.wait_until_they_spin(self._watcher, self._nodes)
@@ -121,7 +124,7 @@ class RunningExecutable:
             self._expect_clean_second_end()
 
     def _expect_clean_second_end(self) -> None:
-        """Start it anew, and end it: whoever had bad luck once has none now."""
+        """End a second process: rclpy's race at shutdown excuses an exit code 1 only once."""
         with RunningExecutable(self.package, self.executable, self.arguments) as second:
             second._is_second = True
             for name in self._nodes:
@@ -174,14 +177,14 @@ class RunningExecutable:
         )
 
     def _has_ended(self) -> bool:
-        """Whether it has; asked now and then."""
+        """Whether the process has ended; asks the notebook at most once per interval."""
         if time.monotonic() < self._next_question:
             return False
         self._next_question = time.monotonic() + self._ask_every_sec
         return self._state()[0] is not None
 
     def _state(self) -> tuple[int | None, str]:
-        """Its exit code, None while it runs, and the last lines that it has printed."""
+        """The exit code (None while the process runs) and the last lines that it printed."""
         told = self._ask('state', self._number)
         code = told.get('code')
         if type(code) is not int and 'code' not in told:

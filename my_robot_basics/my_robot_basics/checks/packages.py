@@ -1,4 +1,4 @@
-"""A ROS package that a student has handed in: was it built, and what do its executables do?"""
+"""A ROS package that a student has submitted: whether it was built, and what its nodes do."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -11,28 +11,28 @@ from my_robot_basics.feedback.errors import fail, shorten
 from my_robot_basics.feedback.hidden import theirs
 
 MOST_REASON = 400
-"""Characters of what is wrong with a package: a path, a line of Python, and what to do."""
+"""How many characters of an error to show: enough for a path, a line of Python, and a hint."""
 
 
 def package(name: str) -> 'Package':
     """The package in the folder of that name beside the notebook.
 
-    A locked cell of the exercise calls `build_package(name)`. Raises nothing by itself.
+    A locked cell of the exercise must have called `build_package(name)`. Raises nothing.
     """
     return Package(name)
 
 
 @dataclass(frozen=True)
 class Package:
-    """What a check may say about a package."""
+    """The assertions of a check about a package."""
 
     name: str
 
     def expect_built(self, *, executables: Sequence[str] = ()) -> None:
-        """It was built by colcon, and `ros2 run` finds these executables in it.
+        """Colcon has built the package, and `ros2 run` finds these executables in it.
 
-        Raises CheckFailed with what is wrong: a file that is missing, a line of setup.py, a module
-        that entry_points name and that is not there.
+        Raises CheckFailed with what is wrong: a missing file, a line of setup.py, or a module that
+        entry_points name but that does not exist.
         """
         told = student.ask_package(self.name, 'built')
         if told.get('found') is not True:
@@ -69,8 +69,8 @@ class Package:
     ) -> RunningExecutable:
         """Start an executable as `ros2 run` does, in the student's room, until the `with` ends.
 
-        `parameters` become `-p name:=value`, `rules` are remap rules: `{'__ns': '/left'}`. What
-        the student had started of the package with `run_executable` is stopped first.
+        `parameters` become `-p name:=value`. `rules` are remap rules, such as `{'__ns': '/left'}`.
+        Processes that the student started from the package with `run_executable` end first.
         """
         words = [*arguments]
         if parameters or rules:
@@ -89,7 +89,7 @@ def _how_it_went(status: object) -> str:
 
 
 def _as_yaml(value: Any) -> str:
-    """A value as the parser of parameters reads it. Raises TypeError for what is no parameter."""
+    """A value as rcl's parameter parser reads it. Raises TypeError for an unsupported type."""
     if isinstance(value, bool):
         return 'true' if value else 'false'
     if isinstance(value, int | float):

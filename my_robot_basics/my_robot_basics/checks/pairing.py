@@ -1,4 +1,4 @@
-"""Which θ1 and θ2 a log puts together: by a line, or by what it calls them."""
+"""Which θ1 and θ2 a log puts together: on one line, or with one word."""
 
 import itertools
 import re
@@ -11,10 +11,11 @@ from my_robot_basics.checks import angles, answers
 Solutions = Sequence[tuple[float, float]]
 """θ1 and θ2 of each branch, in degrees."""
 Label = tuple[int, int]
-"""Branch and joint."""
+"""The indices of the branch and the joint."""
 
 _SET = re.compile(r'\{[^{}()\[\],:]*(?:,[^{}()\[\],:]*){2,}\}')
-"""A set as Python shows it, in no order; one of two numbers may well be a pair."""
+"""A set of at least three items as Python prints it, unordered. Two items may be meant as a pair,
+so a set of two does not match."""
 _WORD = re.compile(r'[^\W_]+')
 _DECIMAL = re.compile(r'\d+\.\d+')
 
@@ -23,16 +24,15 @@ class _Angle(NamedTuple):
     label: Label
     number: float
     words: set[str]
-    """What the line calls it."""
+    """The words beside the number on its line."""
 
 
 def are_mixed_up(solutions: Solutions, texts: Iterable[str]) -> bool:
-    """Whether θ1 of one branch plainly stands with θ2 of the other one.
+    """Whether the log clearly puts θ1 of one branch together with θ2 of the other one.
 
-    So it does where a word that no others have, a branch's name, say, joins the two; on two lines
-    with one angle of each joint; and alternating, where one line holds all four. Words that join
-    right pairs accuse nobody, nor does a set, a sorted row, or another number that happens to be
-    one of the angles.
+    Three forms count: a word that only these two angles have (such as a branch's name); two lines
+    with one angle of each joint; and one line on which the four angles alternate. Not counted are
+    words that join a right pair, a set, a sorted list, and a number that is an angle by chance.
     """
     parts = [part for text in texts for part in _SET.sub(' ', text).splitlines()]
     lines = [line for part in parts if (line := _angles(solutions, part))]
@@ -54,7 +54,7 @@ def are_mixed_up(solutions: Solutions, texts: Iterable[str]) -> bool:
 
 
 def _angles(solutions: Solutions, line: str) -> list[_Angle]:
-    """Each number of a line that is one angle, and no other, of the solutions."""
+    """Each number of a line that is near exactly one angle of the solutions."""
     found = []
     for number, start, end in answers.places_of(line):
         labels = [
@@ -72,12 +72,12 @@ def _angles(solutions: Solutions, line: str) -> list[_Angle]:
     if len(found) == 1:
         words = [words[0] | words[1]]
     elif not words[0]:
-        words = words[1:]  # behind each: 65.92° (θ1, up)
+        words = words[1:]  # the words follow their number: 65.92° (θ1, up)
     return [_Angle(*each[:2], words[place]) for place, each in enumerate(found)]
 
 
 def _joined_by_words(lines: Sequence[Sequence[_Angle]]) -> set[frozenset[Label]]:
-    """The pairs, of an angle of each joint, that have a word for themselves."""
+    """The pairs of one angle of each joint that share a word which no other angle has."""
     called: defaultdict[str, set[Label]] = defaultdict(set)
     for angle in itertools.chain.from_iterable(lines):
         for word in angle.words:
@@ -99,7 +99,7 @@ def _is_right(pair: Iterable[Label]) -> bool:
 
 
 def _are_by_turns(line: Sequence[_Angle]) -> bool:
-    """Whether four angles, the first of each, alternate between θ1 and θ2, in wrong pairs."""
+    """Whether the four angles, without repetitions, alternate between θ1 and θ2 in wrong pairs."""
     labels = list(dict.fromkeys(angle.label for angle in line))
     joints = [joint for _, joint in labels]
     return joints in ([0, 1, 0, 1], [1, 0, 1, 0]) and _is_wrong(labels[:2])

@@ -1,23 +1,27 @@
-"""Two messages in quick succession: how many such pairs tell that a node keeps only the latest."""
+"""Pairs of messages in quick succession: how many show that a node keeps only the latest one."""
 
 from dataclasses import dataclass, field
 
 from my_robot_basics.session.pressure import Stopwatch
 
 GAP_SEC = 0.01
-"""Two messages so near to each other: a node that keeps only the latest for a timer loses one."""
+"""The time between the two messages of a pair. A node that keeps only the latest message until its
+timer fires republishes one of them only."""
 MOST_GAP_SEC, MOST_APART = 0.015, 20
-"""A busy machine lets more time pass between them: so many such pairs prove nothing. …"""
+"""A pair proves nothing if a busy machine sent its messages more than MOST_GAP_SEC apart. The
+first MOST_APART such pairs are ignored; later ones count."""
 MOST_OUT_SEC = 0.1
-"""… Nor do those that come out so far apart: a slow timer published between the two."""
+"""A pair proves nothing, either, if its messages come out further apart than this: a slow timer
+may have fired between them."""
 WHOLE, MOST_SPLIT = 2, 6
-"""So many pairs have to come out, before so many did not: a queue of depth 1 may lose one. On a
-busy machine it loses many, and some come out: each that does is worth so many that do not."""
+"""A node is right if WHOLE pairs come out whole before MOST_SPLIT are split: a right node with a
+queue of depth 1 may lose a message. It loses many on a busy machine: there, each whole pair
+outweighs MOST_SPLIT split ones."""
 
 
 @dataclass
 class Pairs:
-    """What became of the pairs so far."""
+    """The results of the pairs so far."""
 
     whole: int = 0
     split: int = 0
@@ -25,7 +29,10 @@ class Pairs:
     watch: Stopwatch = field(default_factory=Stopwatch)
 
     def count(self, *, is_whole: bool, gap_sec: float, out_sec: float = 0.0) -> None:
-        """Count one more, with so much time between its two messages, in and out."""
+        """Count one more pair.
+
+        `gap_sec` is the time between sending its messages, `out_sec` between receiving them.
+        """
         is_apart = gap_sec > MOST_GAP_SEC or out_sec > MOST_OUT_SEC
         if not is_whole:
             self.split += 1
@@ -35,12 +42,12 @@ class Pairs:
             self.whole += 1
 
     def tell(self) -> bool | None:
-        """Whether mostly one of two alone comes out; None where more pairs have to tell."""
+        """Whether mostly only one message of a pair comes out; None if more pairs are needed."""
         if self.whole >= WHOLE + self.split // MOST_SPLIT:
             return False
         most_split = MOST_SPLIT * (WHOLE + self.whole if self.watch.is_busy() else 1)
         return True if self.split >= most_split else None
 
     def tell_at_last(self) -> bool:
-        """The same where there is no time for more."""
+        """The same if there is no time for more pairs."""
         return self.split >= MOST_SPLIT and self.whole < WHOLE

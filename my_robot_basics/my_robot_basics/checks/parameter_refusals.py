@@ -1,4 +1,4 @@
-"""What a node answers where somebody sets a parameter: taken, or refused for a reason."""
+"""What a node answers when a parameter is set: it accepts the value, or gives a reason."""
 
 import math
 from collections.abc import Sequence
@@ -11,18 +11,18 @@ from my_robot_basics.feedback.errors import expect, fail, shorten
 from my_robot_basics.feedback.hidden import theirs
 
 _NO_RESULT = 'Callback returned an invalid type'
-"""rclpy's words, where a callback returns no SetParametersResult."""
+"""rclpy's reason if a callback does not return a SetParametersResult."""
 _READ_ONLY = 'read-only'
-"""What is in it, where one is declared as read-only."""
+"""rclpy's reason contains this if the parameter is declared as read-only."""
 _OF_ANOTHER_TYPE = 'Wrong parameter type'
-"""How rclpy's reason begins, where a parameter is declared with another type."""
+"""rclpy's reason begins with this if the parameter is declared with another type."""
 _IS_TEXT = "expected 'Type.STRING'"
 
 
 def expect_all_refused(
     parameters: NodeParameters, name: str, kept_hz: float, rates_hz: Sequence[float]
 ) -> None:
-    """Each of these values is refused, with a reason, and the parameter keeps its value.
+    """The node refuses each of these values with a reason, and the parameter stays `kept_hz`.
 
     Raises CheckFailed.
     """
@@ -43,9 +43,9 @@ def expect_all_refused(
 
 
 def expect_leaves_others_alone(parameters: NodeParameters, name: str) -> None:
-    """A callback gets each parameter that is set: also the one that says which clock.
+    """The node's callback accepts parameters other than `name`: use_sim_time can still be set.
 
-    Raises CheckFailed where that cannot be set.
+    Raises CheckFailed if use_sim_time cannot be set to the value that it has.
     """
     [result] = parameters.set('use_sim_time', parameters.get('use_sim_time'))
     if not result.successful:
@@ -62,7 +62,7 @@ def expect_leaves_others_alone(parameters: NodeParameters, name: str) -> None:
 
 
 def _expect_yes_where_nothing_changes(name: str, result: SetParametersResult) -> None:
-    """The value that a parameter has is taken, or refused with a reason. Raises CheckFailed."""
+    """The node accepts a parameter's present value, or gives a reason. Raises CheckFailed."""
     expect(
         result.successful or bool(result.reason.strip()),
         expected=f'{name} to be set to the value that it has',
@@ -76,10 +76,10 @@ def _expect_yes_where_nothing_changes(name: str, result: SetParametersResult) ->
 def _expect_refused(
     name: str, value: float, result: SetParametersResult, *, corrected: float | None
 ) -> None:
-    """A value was refused, with a reason. Raises CheckFailed.
+    """The node refused a value with a reason. Raises CheckFailed.
 
-    `corrected` is what the parameter has now, if that is neither a value that was set nor the one
-    before.
+    `corrected` is the parameter's value now if it is neither one of the values that the check set
+    nor the earlier value; otherwise None.
     """
     is_corrected, is_nan = corrected is not None, math.isnan(value)
     how = "return SetParametersResult(successful=False, reason='…') for it"
@@ -111,7 +111,10 @@ def _expect_refused(
 def in_its_type(
     parameters: NodeParameters, name: str, rates_hz: Sequence[float], kept_hz: float = math.inf
 ) -> list[float]:
-    """As integers, where the parameter is one; those above kept_hz are rounded up."""
+    """The rates as integers if the parameter is an integer; those above kept_hz are rounded up.
+
+    An integer parameter cannot hold inf and NaN, so these are left out then.
+    """
     if isinstance(parameters.get(name), int):
         numbers = filter(math.isfinite, rates_hz)
         return [math.ceil(hz) if hz > kept_hz else int(hz) for hz in numbers]
@@ -123,7 +126,7 @@ def _are_nan(*values: object) -> bool:
 
 
 def fail_refused(name: str, value: float, result: SetParametersResult) -> NoReturn:
-    """Raise CheckFailed, for a value that had to be taken."""
+    """Raise CheckFailed: the node refused a value that it must accept."""
     expect_a_result(result)
     expect(
         bool(result.reason.strip()),
@@ -153,7 +156,7 @@ def fail_refused(name: str, value: float, result: SetParametersResult) -> NoRetu
 
 
 def expect_a_result(result: SetParametersResult) -> None:
-    """The callback of the node returned a SetParametersResult. Raises CheckFailed."""
+    """The node's callback returned a SetParametersResult. Raises CheckFailed."""
     expect(
         result.reason != _NO_RESULT,
         expected='a SetParametersResult from your callback',

@@ -1,4 +1,4 @@
-"""A node's parameters as a check sees them: ask for them and set them, as `ros2 param` does."""
+"""A node's parameters for a check: get and set them, as `ros2 param` does."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -22,19 +22,20 @@ from my_robot_basics.graph import graphs
 from my_robot_basics.graph.watcher import Watcher
 
 NODE_SEC = 10.0
-"""How long to wait for a node; less where the notebook says that none can come."""
+"""How long to wait for a node; less if the notebook reports that no new node can appear."""
 SERVICES_SEC = 4.0
-"""How long the services of a node that is there may take to appear, of time that was free."""
+"""How long the services of a running node may take to appear, in seconds of free time."""
 MEETINGS, MEETING_SEC = 4, 1.0
-"""How often a node is asked for nothing, and how long for each answer, of time that was free."""
+"""How often to send an empty request at most, and how long to wait for each response, in seconds
+of free time: see `NodeParameters._is_met`."""
 _LEAVE_SERVICES = 'leave the parameter services to rclpy, and make none of your own'
 _OF_EVERY_NODE = ('use_sim_time', 'start_type_description_service')
 
 
 def node_parameters(node_name: str) -> 'NodeParameters':
-    """The parameters of the node of that full name: `node_parameters('/arm').get('rate_hz')`.
+    """The parameters of a node, by its full name: `node_parameters('/arm').get('rate_hz')`.
 
-    Raises CheckFailed where there is no such node.
+    Raises CheckFailed if there is no such node.
     """
     with Watcher(shared=True) as watcher:
         timeout_sec = graphs.SETTLED_SEC if graphs.is_settled(watcher, node_name) else NODE_SEC
@@ -53,13 +54,13 @@ def node_parameters(node_name: str) -> 'NodeParameters':
 
 @dataclass(frozen=True)
 class NodeParameters:
-    """What a check may do with the parameters of a node; each call goes over its services."""
+    """Gets and sets the parameters of a node; each call uses the node's parameter services."""
 
     node_name: str
-    """Full: '/adjustable_publisher'."""
+    """The full name, such as '/adjustable_publisher'."""
 
     def get(self, name: str) -> Any:
-        """The value of a parameter, as Python has it. Raises CheckFailed where it has none."""
+        """The value of a parameter, as a Python object. Raises CheckFailed if it is undeclared."""
         request = GetParameters.Request(names=[name])
         values = self._call('get_parameters', GetParameters, request).values
         if not values:
@@ -75,7 +76,7 @@ class NodeParameters:
         return parameter_value_to_python(values[0])
 
     def get_number(self, name: str) -> float:
-        """The value of a parameter that is to be a number. Raises CheckFailed for any other."""
+        """The value of a parameter as a float. Raises CheckFailed if it is not a number."""
         value = self.get(name)
         expect(
             isinstance(value, int | float) and not isinstance(value, bool),
@@ -87,7 +88,7 @@ class NodeParameters:
         return float(value)
 
     def set(self, name: str, *values: Any) -> Sequence[SetParametersResult]:
-        """Set a parameter to each of these values, one after the other; what the node says."""
+        """Set a parameter to each of these values, one after the other; return the results."""
         parameters = [Parameter(name, value=value).to_parameter_msg() for value in values]
         request = SetParameters.Request(parameters=parameters)
         results = self._call('set_parameters', SetParameters, request).results
@@ -103,9 +104,9 @@ class NodeParameters:
     def set_beside_another(
         self, name: str, value: Any, *, is_first: bool = False
     ) -> SetParametersResult:
-        """Set a parameter and, in the same step, use_sim_time to what it is; what the node says.
+        """Set a parameter and, atomically, use_sim_time to its present value; return the result.
 
-        A callback of the node gets both in one list; `is_first`: that one before use_sim_time.
+        The node's callback gets both in one list: `name` is first if `is_first`, otherwise second.
         """
         own = Parameter(name, value=value).to_parameter_msg()
         same = Parameter('use_sim_time', value=self.get('use_sim_time')).to_parameter_msg()
@@ -114,7 +115,7 @@ class NodeParameters:
             'set_parameters_atomically',
             SetParametersAtomically,
             Request(parameters=[own, same] if is_first else [same, own]),
-            greeting=Request(parameters=[same]),  # of an empty list, callbacks would be called
+            greeting=Request(parameters=[same]),  # an empty list would call the callback, too
         ).result
         return result
 
@@ -130,9 +131,9 @@ class NodeParameters:
         )
 
     def _call(self, service_name: str, type_: type, request: Any, *, greeting: Any = None) -> Any:
-        """What the node answers. Raises CheckFailed where it does not, with the reason.
+        """Call a service; return the response. Raises CheckFailed with the reason if none comes.
 
-        `greeting` is a request that changes nothing, where an empty one is none.
+        `greeting` is a request that changes nothing, if an empty request would change something.
         """
         with Watcher(shared=True) as watcher:
             client = watcher.node.create_client(type_, f'{self.node_name}/{service_name}')
@@ -159,9 +160,10 @@ class NodeParameters:
             return asked.result()
 
     def _is_met(self, watcher: Watcher, client: Client, greeting: Any) -> bool:
-        """Ask for nothing, until there is an answer; whether there is one.
+        """Send requests that change nothing until one is answered; return whether one was.
 
-        A server drops its answer to a client that it has not met, although that one has met it.
+        Discovery is not symmetric: a client may know a server that does not know the client yet,
+        and then the server drops its response.
         """
         for _ in range(MEETINGS):
             asked = client.call_async(greeting)

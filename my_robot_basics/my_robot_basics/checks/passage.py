@@ -1,4 +1,4 @@
-"""What becomes of messages that go through a node one at a time: each comes out at once, once."""
+"""Send messages through a node one at a time: each must come out immediately, exactly once."""
 
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -13,28 +13,28 @@ from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
 
 ON_TIME_SEC = 1.0
-"""How long a message may take. A node that republishes by a timer is in time, too."""
+"""How long a message may take, in s of free time: enough for a node that republishes by timer."""
 TIMEOUT_FACTOR, LEAST_SEC = 10.0, 0.2
-"""Once some came out, so many times as long as the slowest of them, and that, tell that a machine
-is busy, a queue has overflowed, or a message is late: that one has ON_TIME_SEC more."""
+"""Once one came out, the first timeout is TIMEOUT_FACTOR times the slowest so far, at least
+LEAST_SEC. After that `carry` asks whether a flood explains the delay; if not, ON_TIME_SEC more."""
 QUIET_SEC = 0.1
 """How long to listen for a second copy."""
 MOST_SEC, LAST_SEC = 12.0, 20.0
-"""After so long, of wall time, what was seen decides, and then pairs and pauses end, too:
-*Validate* gives a cell 30 s."""
+"""After MOST_SEC of wall time, `carry` decides on what it has seen; after LAST_SEC, so do the
+tests with pairs and pauses. *Validate* gives a cell 30 s."""
 FEWEST_LOST = 2
-"""So many that never came out are no coincidence if later ones did."""
+"""This many messages that never came out are no coincidence if later ones did."""
 MOST_LATE = 4
-"""So many tell enough: each is waited for, and a BEST_EFFORT end may lose one now and then."""
+"""This many late messages decide; a BEST_EFFORT endpoint may lose fewer without a fault."""
 FLOOD = 50
-"""With so many messages of others while one is waited for, the queue overflows without anybody's
-fault: …"""
+"""If others publish this many messages while `carry` waits for one, a queue overflows, and the
+loss is not the node's fault."""
 MOST_PUSHED_OUT = 20
-"""… So many such losses are no coincidence, either."""
+"""At most this many losses are excused by a FLOOD; more are no coincidence."""
 FEWEST_INVENTED = 3
-"""Messages that nobody sent: one or two may have been on their way before the check listened."""
+"""This many messages that nobody sent are a fault. Fewer may be older than the subscription."""
 RECENT = 20
-"""A copy is one of so many that came out last."""
+"""A message counts as a copy if it equals one of the last RECENT that came out."""
 PAUSE_SEC = 1.1
 PAUSES = 3
 
@@ -51,10 +51,10 @@ class Passage:
         what: Callable[[Any], Any],
         earlier: Any = None,
     ) -> None:
-        """`what(message)` is the same of two messages that are one. Only what comes now counts.
+        """`what(message)` is equal for equal messages. Only messages received from now on count.
 
-        Of the `earlier` message, which was sent again and again, a slow node may still have some
-        in its queue: they come out before all others.
+        `earlier` is a message that was sent repeatedly before: a slow node may have more of it in
+        its queue, and these come out before all others.
         """
         self._watcher, self._recorder = watcher, recorder
         self._publish, self._what = publish, what
@@ -63,22 +63,22 @@ class Passage:
         self._waiting: list[Sent] = []
         self._out: list[tuple[Sent, int]] = []
         self._copies: list[int] = []
-        """How often each of those came out."""
+        """How often each message of `_out` came out."""
         self._own: set[Any] = set()
-        """What of each message that was published here."""
+        """`what(message)` of each message that was published here."""
         self._others: list[tuple[Any, int]] = []
         self._pushed_out, self._slowest_sec = 0, 0.0
         self._watch, self._began_ns = Stopwatch(), time.time_ns()
 
     def carry(self, messages: Iterator[Sent]) -> RelayFaults:
-        """Publish each once the one before has come out or is late, until enough came in a row.
+        """Publish each message once the one before came out or is late, until enough in a row did.
 
-        The others of a flood may push one out of a queue: such a loss counts for nothing.
+        A loss does not count if a flood of others' messages may have pushed it out of a queue.
         """
         late = in_a_row = 0
         row = Stopwatch()
         while in_a_row < fewest_in_a_row(row) and late < MOST_LATE:
-            # a node that swaps two has one in time, and none in a row
+            # a node that swaps two messages has one in time, but never two in a row
             if in_a_row > 1 and self._is_over(MOST_SEC):
                 break
             others, sent = len(self._others), next(messages)
@@ -102,17 +102,17 @@ class Passage:
         )
 
     def copies(self) -> int:
-        """How often each message came out so far: more than once, if one did."""
+        """How often repeated messages came out so far (the least of them); 1 if none repeats."""
         self._take()
         doubled = [number for number in self._copies if number > 1]
-        # one that was pushed out of a queue may have come after all, equal to another
+        # a message that counts as pushed out may still come, and looks like a copy of its equal
         return min(doubled) if len(doubled) > bool(self._pushed_out) else 1
 
     def invents(self, sent: Sequence[tuple[Any, int]]) -> bool:
-        """Whether messages came out that are not among those that anybody `sent`, with the time.
+        """Whether messages came out that nobody sent. `sent`: all messages and their send times.
 
-        What another publisher sent before the first that was received here is not known: that
-        comes within ON_TIME_SEC, or nobody else publishes.
+        What another publisher sent before its first message in `sent` is unknown. So messages
+        count only after that one, or after ON_TIME_SEC if that is sooner.
         """
         known = {self._what(message) for message, _ in sent}
         of_others_ns = (ns for message, ns in sent if self._what(message) not in self._own)
@@ -126,7 +126,7 @@ class Passage:
         return len(invented) >= FEWEST_INVENTED
 
     def loses_one_of_two(self, messages: Iterator[Sent]) -> bool:
-        """Whether of two messages in quick succession mostly one alone comes out."""
+        """Whether mostly only one of two messages in quick succession comes out."""
         pairs = Pairs()
         while (told := pairs.tell()) is None and not self._is_over(LAST_SEC):
             first, gap = next(messages), Stopwatch()
@@ -140,7 +140,7 @@ class Passage:
         return pairs.tell_at_last() if told is None else told
 
     def loses_after_a_pause(self, messages: Iterator[Sent]) -> bool:
-        """Whether a message that comes after a pause never comes out."""
+        """Whether the first message after a pause is lost each time."""
         for number in range(PAUSES):
             if number >= FEWEST_LOST and self._is_over(LAST_SEC):
                 break
@@ -153,7 +153,7 @@ class Passage:
         return self._watch.wall_sec() >= most_sec
 
     def _send(self, sent: Sent) -> bool:
-        """Publish it; whether it has come out in time."""
+        """Publish a message; return whether it came out in time."""
         self._waiting.append(sent)
         self._let_in(sent)
         timeout_sec, watch = ON_TIME_SEC, Stopwatch()
@@ -165,7 +165,7 @@ class Passage:
         return True
 
     def _wait_for(self, sent: Sent, *, free_sec: float) -> bool:
-        """Wait until it has come out, for so much time that was free; whether it has."""
+        """Wait up to `free_sec` of free time for a message; return whether it came out."""
 
         def is_out() -> bool:
             self._take()
@@ -178,7 +178,7 @@ class Passage:
         self._publish(sent.message)
 
     def _take(self) -> None:
-        """Sort what was received: the first of those that are waited for, a copy, or another's."""
+        """Sort received messages: one that is waited for, a copy, or another publisher's."""
         received = self._recorder.received[self._seen :]
         self._seen += len(received)
         for message, sent_ns in received:

@@ -15,7 +15,7 @@ from my_robot_basics.session.pressure import Stopwatch
 
 NAME = 'arm_player'  # of the package, of the executable and of the node
 MEET_SEC = 8.0
-"""How long the clients of a program that was just started may take, of time that was free. …"""
+"""How long the clients of a program that was just started may take, of free time. …"""
 SECOND_SEC = 1.0
 """… A client that is made only when it is needed is not waited for longer."""
 ALONE_SEC = 0.8
@@ -35,7 +35,7 @@ class PlayerMeeting:
     def wait_for_clients(self) -> None:
         """Wait for its clients, before there is a server: none of them asks one it has not met.
 
-        Raises CheckFailed where none comes, or somebody else serves.
+        Raises CheckFailed if none comes, or somebody else serves.
         """
         count = self.watcher.node.count_clients
         self.expect_alone(own=0)

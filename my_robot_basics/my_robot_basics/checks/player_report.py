@@ -17,7 +17,7 @@ from my_robot_basics.graph.watcher import Watcher
 TOPIC = '/arm_player/done'
 TYPE = 'std_msgs/msg/String'
 LATE_SEC = 4.0
-"""How long a report may take to reach who joins late, of time that was free."""
+"""How long a report may take to reach who joins late, of free time."""
 DEPTH = 100
 ANY = QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT)
 LATCHED = QoSProfile(depth=DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL)

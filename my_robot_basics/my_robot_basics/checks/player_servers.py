@@ -24,7 +24,7 @@ L1_M = 1.3
 NEAR_RAD = 1e-6
 MOST_GOALS = 500
 CANCEL_SEC = 4.0
-"""How long a request to cancel may take, of time that was free."""
+"""How long a request to cancel may take, of free time."""
 
 
 class PlayerServers(ScriptedActionServer):

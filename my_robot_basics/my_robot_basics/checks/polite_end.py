@@ -9,7 +9,7 @@ from collections.abc import Callable
 from my_robot_basics.session.pressure import Stopwatch
 
 LEAVE_SEC, MOST_SEC = 2.0, 6.0
-"""How long it may take, of time that was free, and at most."""
+"""How long it may take, of free time, and at most."""
 LOOK_EVERY_SEC = 0.05
 
 

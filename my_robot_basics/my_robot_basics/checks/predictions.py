@@ -60,7 +60,7 @@ class Predictions:
                     self._failed_already |= not is_quiet()
 
     def conclude(self, points: Mapping[int, float]) -> None:
-        """Name each prediction that was wrong, and why. Raises CheckFailed where there are any.
+        """Name each prediction that was wrong, and why. Raises CheckFailed if there are any.
 
         `points` are those that so many right predictions, or more, leave, once all have run. A
         coin must not earn any to speak of.

@@ -28,7 +28,7 @@ ANOTHER_HZ = (4.0, 20.0, 8.0)
 def rate_parameter(node_name: str, name: str, *, topic_name: str) -> 'RateParameter':
     """The parameter of that node, in Hz, which is to set how often it publishes on the topic.
 
-    Raises CheckFailed where there is no such node.
+    Raises CheckFailed if there is no such node.
     """
     return RateParameter(node_parameters(node_name), name, topic_name)
 

@@ -174,7 +174,7 @@ class RelayEndpoints:
         )
 
     def _graph_without_publisher(self, watcher: Watcher) -> GraphSnapshot:
-        """The graph where nobody publishes on `to`. Raises CheckFailed where that says why."""
+        """The graph where nobody publishes on `to`. Raises CheckFailed if that says why."""
         graph = self._graph(watcher)
         listeners = sorted({*graph.subscriptions(self.source)})
         if listeners and graph.publishes_nothing(listeners) and not what_raised(listeners):

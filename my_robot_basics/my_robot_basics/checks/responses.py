@@ -12,7 +12,7 @@ from my_robot_basics.graph.watcher import Watcher
 MadeOf = Callable[[Any, Any], bool]
 """Whether a message is made of a response."""
 OWED_SEC = 0.5
-"""How long a node may take to ask or to publish what it owes, of time that was free."""
+"""How long a node may take to ask or to publish what it owes, of free time."""
 
 
 def of_none(_message: Any, _response: Any) -> bool:

@@ -9,7 +9,7 @@ from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
 
 DUE_SEC = 0.05
-"""How long to wait, of time that was free, for what a thread of the node is to do in a tick."""
+"""How long to wait, of free time, for what a thread of the node is to do in a tick."""
 MOST_FAILED_WAITS = 5
 PUSH_NS, LONGEST_PUSH_NS = 500_000_000, 16_000_000_000
 PUSH_SEC = 0.001

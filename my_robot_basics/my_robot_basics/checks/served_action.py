@@ -17,7 +17,7 @@ from my_robot_basics.feedback.hidden import theirs
 from my_robot_basics.graph.watcher import Watcher
 
 REPLY_SEC = 4.0
-"""How long to wait for a goal, a request to cancel or an outcome, of time that was free."""
+"""How long to wait for a goal, a request to cancel or an outcome, of free time."""
 QUIET_SEC, SOON_SEC, MORE_SEC = 0.5, 0.25, 0.05
 """How long to listen for what must not come, for what a node that has dealt with all that came
 must not publish, and for more of a callback that has published."""

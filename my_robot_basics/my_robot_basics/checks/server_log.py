@@ -17,7 +17,7 @@ MOST_LINES = 1000
 MOST_CHARACTERS = 1000
 """What is kept of a line: a sentence tells less."""
 LOG_SEC = 0.5
-"""How long a line may come behind what it explains, of time that was free."""
+"""How long a line may come behind what it explains, of free time."""
 _RAISED = 'Error raised in execute callback: '
 _NOT_SET = 'Goal state not set'
 _NO_RESPONSE = 'did not return a GoalResponse'

@@ -21,7 +21,7 @@ from my_robot_basics.feedback.errors import expect, fail
 from my_robot_basics.graph.watcher import Watcher
 
 TIMEOUT_SEC = 4.0
-"""How long to wait for a request or an answer, of time that was free."""
+"""How long to wait for a request or an answer, of free time."""
 QUIET_SEC = 0.5
 """How long to listen for what must not come."""
 AGAIN_SEC = 0.5
@@ -100,7 +100,7 @@ class Server(HoldingServer):
     ) -> Any:
         """Publish a message on `asked_on`; the request that it leads to, for which `is_it` holds.
 
-        Raises CheckFailed where none comes in TIMEOUT_SEC of time that was free, with the reason.
+        Raises CheckFailed if none comes in TIMEOUT_SEC of free time, with the reason.
         """
         before = len(self.requests)
 
@@ -131,7 +131,7 @@ class Server(HoldingServer):
         """The message on `to`, since the last one was asked for, for which `is_right` holds.
 
         `hint(message)` says what is wrong with another one, and `cause` in a few words. Raises
-        CheckFailed where none comes in TIMEOUT_SEC of time that was free.
+        CheckFailed where none comes in TIMEOUT_SEC of free time.
         """
 
         def received() -> list[Any]:
@@ -173,7 +173,7 @@ class Server(HoldingServer):
     def expect_alive(self, meanwhile: str, message: Any) -> None:
         """The node goes on counting on `alive`, though `message` is published: see `Heartbeat`.
 
-        `meanwhile`: what happens, as a clause. Raises CheckFailed where the count stands still, or
+        `meanwhile`: what happens, as a clause. Raises CheckFailed if the count stands still, or
         Starved if the machine may be to blame.
         """
         beats = heartbeat.Heartbeat(self._watcher, self._beats)

@@ -17,11 +17,11 @@ from my_robot_basics.graph import familiar, graphs, services
 from my_robot_basics.graph.watcher import Watcher
 
 ANSWER_SEC = 4.0
-"""How long to wait for an answer, of time that was free."""
+"""How long to wait for an answer, of free time."""
 LOOK_SEC = 0.5
 """How often the notebook is asked meanwhile whether a callback has raised."""
 PARAMETERS_SEC = 1.0
-"""How long a node may take to tell a parameter, of time that was free: one that spins does."""
+"""How long a node may take to tell a parameter, of free time: one that spins does."""
 RESPONSES = QoSProfile(depth=1000)
 """Room for responses: the first is not lost where a server sends more and the check is late."""
 
@@ -50,7 +50,7 @@ class Service:
     def call_all(self, *requests: Any) -> list[Any]:
         """Send all requests at once, before any is answered; the responses, in their order.
 
-        Answers may come in any order. Raises CheckFailed where there is no server, one of another
+        Answers may come in any order. Raises CheckFailed if there is no server, one of another
         type, or more than one; and where an answer does not come in ANSWER_SEC of time that was
         free, with the reason: the callback raised, returned no response, does not return, or the
         node does not spin.
@@ -142,7 +142,7 @@ class Service:
 def wait_for_all(
     watcher: Watcher, asked: Sequence[Future], *, gives_up: Callable[[], bool]
 ) -> bool:
-    """Spin until all are answered, at most ANSWER_SEC of time that was free; whether they are.
+    """Spin until all are answered, at most ANSWER_SEC of free time; whether they are.
 
     `gives_up` says that no answer can come any more.
     """

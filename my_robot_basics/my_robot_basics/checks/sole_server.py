@@ -9,7 +9,7 @@ from my_robot_basics.graph.watcher import Watcher
 GONE_SEC = 1.0
 """How long a server that was just stopped may still be on the graph."""
 TURNS, TURN_SEC = 4, 0.1
-"""So often, each time after so long, of time that was free, does the notebook's process get a turn
+"""So often, each time after so long, of free time, does the notebook's process get a turn
 until it knows that a server has gone."""
 
 

@@ -23,11 +23,11 @@ STEP_NS = 50_000_000
 HASTE = 100.0
 """Speed, in rad/s, of a move that only brings the arm somewhere."""
 HASTE_SEC = 4.0
-"""It may take so long, of time that was free."""
+"""It may take so long, of free time."""
 RESULT_SEC = 1.0
-"""How long a result may come behind the status, of time that was free."""
+"""How long a result may come behind the status, of free time."""
 SETTLE_SEC, SOON_SEC = 3.0, 0.5
-"""How long goals may take to end when nobody looks any more, of time that was free, and when to
+"""How long goals may take to end when nobody looks any more, of free time, and when to
 see whether that is in vain."""
 SHORTER_PART, TURN = 0.35, 7.7
 """Short moves are shorter than the longest by up to that part: which, comes of the position."""

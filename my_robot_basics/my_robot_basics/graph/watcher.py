@@ -82,7 +82,7 @@ class Watcher:
         return self
 
     def __exit__(self, _: object, error: BaseException | None, __: object) -> None:
-        """Leave it, with all that was made here. Raises CheckFailed where it could not be read."""
+        """Leave it, with all that was made here. Raises CheckFailed if it could not be read."""
         refused = strange_name(self.node) if isinstance(error, _REFUSES) else ''
         self._executor.shutdown()
         for node in self._nodes:
@@ -125,7 +125,7 @@ class Watcher:
     def spin_until(self, done: Callable[[], bool], *, timeout_sec: float) -> bool:
         """Spin until `done()`, at most `timeout_sec` of steady wall time; whether it is done.
 
-        Raises CheckFailed where there are more than MOST_ENDPOINTS.
+        Raises CheckFailed if there are more than MOST_ENDPOINTS.
         """
         deadline = time.monotonic() + timeout_sec
         while True:
@@ -146,7 +146,7 @@ class Watcher:
         self.spin_until(lambda: False, timeout_sec=seconds)
 
     def spin_until_free(self, done: Callable[[], bool], *, free_sec: float) -> bool:
-        """Spin until `done()`, at most `free_sec` of time that was free; whether it is done.
+        """Spin until `done()`, at most `free_sec` of free time; whether it is done.
 
         Time in which processes had to wait for a processor does not count.
         """
