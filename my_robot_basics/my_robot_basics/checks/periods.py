@@ -1,7 +1,7 @@
-"""What the times at which messages were sent tell of the timer, or of the loop, behind them.
+"""What the times at which messages were sent reveal about the timer or loop that sent them.
 
-All of them take `times_sec`: an array of seconds, ascending, of the message to begin at and of
-those that came after it.
+All functions take `times_sec`: an ascending array in seconds, first the time of the message at
+which the recording begins, then those of the messages after it.
 """
 
 from typing import NamedTuple
@@ -9,32 +9,33 @@ from typing import NamedTuple
 import numpy as np
 
 MOST_TIMES = 3_000
-"""So many of the first are compared, each with each: a minute at 50 Hz. A timer with a period of 0
-sends so many in a second, and all of them would take gigabytes."""
+"""How many times are compared pairwise: a minute at 50 Hz. A timer with a period of 0 sends as
+many in a second, and comparing all of them would take gigabytes of memory."""
 FEWEST_GAPS = 8
-"""So many gaps between messages tell a timer from a loop; fewer have their mean alone."""
+"""The least number of gaps that can distinguish a timer from a loop; of fewer, the mean counts."""
 FLOOR_PART = 0.01
-"""A loop that sleeps is late and never early: its shortest gaps are that near to each other."""
+"""A loop that sleeps is often late, never early: its shortest gaps differ by this part at most."""
 MOST_TURNS = 4
-"""Two, three or four gaps that come again and again are looked for …"""
+"""`come_by_turns` looks for sequences of 2 to MOST_TURNS gaps that repeat."""
 FEWEST_ROUNDS = 3
-"""… And have to come so many times."""
+"""How often a sequence of gaps, or a pattern, must fit into the recording to count."""
 TURNS_PART = 0.15
-"""Alternating gaps differ by this part of a period; a busy machine has no such order."""
+"""The gaps of a repeating sequence differ by at least this part of the median gap."""
 SHUFFLES = 50
-"""So many other orders of the same gaps are tried: each is more even."""
+"""The gaps are compared with this many random orders of them: in each, they must differ less."""
 FEWEST_LEFT_OUT = 3
-"""Messages that are missing at equal distances: no thread is late so evenly."""
+"""The least number of missing messages at equal distances: no thread is late so regularly."""
 TOO_MANY_TIMES, PARTS = 1.25, 4
-"""So many times as many messages as there should be, in each of so many parts of a recording."""
+"""Messages come too often if each of PARTS equal parts of a recording has more than TOO_MANY_TIMES
+as many as it should have."""
 SHORTEST_ROUND = 3
-"""Gaps from one missing message to the next: two that alternate may be anything."""
+"""The least number of gaps between two missing messages: two alternating gaps are ambiguous."""
 
 
 def spanned(times_sec: np.ndarray, slack_sec: float) -> tuple[float, float]:
     """The least and the greatest period, in seconds, of a timer that explains all of the times.
 
-    Each may be late by `slack_sec`. The least is above the greatest where none explains them.
+    Each time may be off by `slack_sec`. The least is above the greatest if no period does.
     """
     lengths, apart = _pairs(times_sec)
     # each pair of arrivals leaves the period a range; they must all agree on one
@@ -43,11 +44,11 @@ def spanned(times_sec: np.ndarray, slack_sec: float) -> tuple[float, float]:
 
 
 def meant(times_sec: np.ndarray) -> float:
-    """The period, in seconds, that a timer or a loop was given, however late it is now and then.
+    """The period, in seconds, that a timer or loop was given, even if some messages were late.
 
-    A timer keeps to its grid: the median slope over all pairs of messages is hardly moved by
-    late ones. A loop that sleeps begins anew with each message, so that each delay stays: its
-    period is the shortest gap that comes often.
+    A timer keeps to its grid, so its period is the median slope over all pairs of messages, which
+    late messages hardly change. A loop that sleeps starts again after each message, so delays add
+    up: its period is the shortest gap that is frequent (the lower quartile).
     """
     gaps = np.diff(times_sec)
     if len(gaps) < FEWEST_GAPS:
@@ -60,18 +61,17 @@ def meant(times_sec: np.ndarray) -> float:
 
 
 def _pairs(times_sec: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """How long, and how many messages, two of them are apart: each pair of the first ones."""
+    """For each pair of the first messages: the seconds between them, and how many periods."""
     first = times_sec[:MOST_TIMES]
     earlier, later = np.triu_indices(len(first), k=1)
     return first[later] - first[earlier], later - earlier
 
 
 def come_by_turns(times_sec: np.ndarray, slack_sec: float = 0.0) -> bool:
-    """Whether long and short gaps take turns: every second one, every third or every fourth.
+    """Whether long and short gaps alternate: every second, third or fourth gap is longer.
 
-    Most of the long ones have to be longer than most of the short ones, by more than
-    `slack_sec`, and by more than in any other order of the same gaps: what a busy machine does
-    to them has none.
+    Most long gaps must exceed most short ones by TURNS_PART of the median and `slack_sec`, and by
+    more than in random orders of the same gaps: the delays of a busy machine have no order.
     """
     gaps, chance = np.diff(times_sec), np.random.default_rng(0)
     for count in range(2, MOST_TURNS + 1):
@@ -86,29 +86,29 @@ def come_by_turns(times_sec: np.ndarray, slack_sec: float = 0.0) -> bool:
 
 
 def _apart_by_turns(gaps: np.ndarray, count: int) -> float:
-    """How much longer most of the longest of `count` turns are than most of the shortest."""
+    """Take every `count`-th gap as a turn: by how much most of the longest exceed the shortest."""
     turns = sorted((gaps[first::count] for first in range(count)), key=np.median)
     return float(np.quantile(turns[-1], 0.25) - np.quantile(turns[0], 0.75))
 
 
 def come_too_often(times_sec: np.ndarray, hz: float, *, seconds: float) -> bool:
-    """Whether more messages came than `hz` times a second, and all through `seconds`.
+    """Whether the rate was above `hz` throughout the `seconds` of a recording.
 
-    A node that was kept waiting may send late ones at once, but goes on to send no more.
+    A delayed node may send late messages in a burst, but that raises the rate only briefly.
     """
     counts, _ = np.histogram(times_sec[1:], bins=PARTS, range=(0.0, seconds))
     return bool(np.min(counts) > TOO_MANY_TIMES * hz * seconds / PARTS + 1)
 
 
 def left_out(times_sec: np.ndarray, slack_sec: float) -> int:
-    """Which message of a timer is left out again and again: 10 for every tenth; 0 for none.
+    """Which message of a timer is missing regularly: 10 for every tenth one; 0 for none.
 
-    One period explains all that came, each late by `slack_sec` at most, and what is missing is
-    missing evenly.
+    One period must explain all messages that came, each off by `slack_sec` at most, and the
+    missing ones must be at equal distances.
     """
     times_sec = times_sec[:MOST_TIMES]
     gaps = np.diff(times_sec)
-    if len(gaps) < FEWEST_GAPS or not np.median(gaps):  # messages of a burst have one time
+    if len(gaps) < FEWEST_GAPS or not np.median(gaps):  # the messages of a burst have equal times
         return 0
     steps = np.rint(gaps / np.median(gaps)).astype(int)
     missing_at = np.flatnonzero(steps > 1)
@@ -125,20 +125,20 @@ def left_out(times_sec: np.ndarray, slack_sec: float) -> int:
 
 
 class Pattern(NamedTuple):
-    """Messages that come in the same ticks of the robot's clock again and again."""
+    """A sequence of messages that repeats at the same ticks of the robot's clock."""
 
     size: int
-    """How many of them."""
+    """How many messages it has."""
     cycle_sec: float
-    """After so long they come again."""
+    """The time after which it repeats."""
     is_burst: bool
-    """Whether they come in one tick."""
+    """Whether all of its messages come in one tick."""
 
 
 def pattern_of(times_sec: np.ndarray, step_sec: float, *, seconds: float) -> Pattern | None:
-    """The shortest pattern of two messages or more that all of `seconds` are made of, or None.
+    """The shortest pattern that repeats throughout `seconds`; None if there is none.
 
-    `step_sec`: how far a tick moved the clock.
+    A pattern of one message is none. `step_sec`: how far a tick moved the clock.
     """
     ticks = np.rint(times_sec[1:] / step_sec).astype(int)
     counts = np.bincount(ticks, minlength=round(seconds / step_sec) + 1)[1:]

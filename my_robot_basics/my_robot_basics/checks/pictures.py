@@ -1,4 +1,4 @@
-"""Pictures that say what a sentence can't, as PNG bytes."""
+"""Pictures for the feedback, as PNG bytes."""
 
 import math
 from collections.abc import Sequence
@@ -10,12 +10,12 @@ if TYPE_CHECKING:
     from my_robot_basics.checks.recording import Recording
 
 SHOWN_PERIODS = 25
-# Okabe and Ito's colours are told apart by everyone
+# from Okabe and Ito's palette, which colour-blind readers can tell apart, too
 SEEN, EXPECTED = '#d55e00', '#0072b2'
 
 
 def arrivals(recording: 'Recording', *, hz: float | None = None) -> bytes:
-    """When the messages of a recording arrived; with `hz`, above when they should have."""
+    """Plot when the messages of a recording arrived; with `hz`, also when they should have."""
     from matplotlib.figure import Figure  # takes a second, and most checks need no picture
 
     until = min(recording.seconds, SHOWN_PERIODS / (hz or recording.rate_hz or 1.0))
@@ -32,7 +32,7 @@ def arrivals(recording: 'Recording', *, hz: float | None = None) -> bytes:
             color=colour,
             markersize=18,
             markeredgewidth=2,
-            clip_on=False,  # the last one stands on the frame
+            clip_on=False,  # the last marker is on the frame of the plot
         )
     axes.set_yticks(range(len(rows)), [label for label, _, _ in rows])
     axes.set_ylim(-0.6, len(rows) - 0.4)
@@ -47,7 +47,7 @@ def arrivals(recording: 'Recording', *, hz: float | None = None) -> bytes:
 
 
 def misread(position: Sequence[float]) -> bytes | None:
-    """Where the two-link arm goes when these numbers are read as radians; None for other arms."""
+    """Draw the two-link arm with these numbers read as radians; None for other arms."""
     if len(position) != 2:
         return None
     from my_robot_basics.drawing.arm import ArmPicture

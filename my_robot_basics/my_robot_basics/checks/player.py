@@ -1,7 +1,7 @@
-"""What the executable `arm_player` is to do with its targets; in metres, in `base_link`.
+"""What the executable `arm_player` must do with its targets; in metres, in `base_link`.
 
-The check serves `/solve_ik` and `/move_arm` itself, and says how each target ends. Its arm has
-other links than the course's: only a client that asks can know where a target leads.
+The check serves `/solve_ik` and `/move_arm` itself and decides how each target ends. Its arm has
+other link lengths than the course's, so only a client that calls `/solve_ik` knows the angles.
 """
 
 import math
@@ -13,8 +13,9 @@ from my_robot_basics.checks.player_servers import WORDS, Target
 from my_robot_basics.graph.watcher import Watcher
 
 NEAREST_M, FARTHEST_M = 0.6, 1.7
-"""Targets that are reached are within this ring, as `choose` chooses them."""
+"""`choose` takes targets at these distances from the origin: between the two circles."""
 APART_M = 0.1
+"""Two different targets of `choose` are at least this far apart."""
 
 
 def expect_plays(
@@ -24,9 +25,9 @@ def expect_plays(
 
     A target is a word and a point, `('succeeded', 1.2, 0.8)`. The word is 'succeeded', 'canceled'
     or 'aborted', which is how its goal ends; 'rejected', which its goal is; or 'unreachable',
-    which `/solve_ik` answers. The first goal that is accepted takes so many seconds, which no
-    other one does: an arm is slow, and a node that waits for it is right. `arm_first`: it is
-    `/move_arm` that is there before the other server. Raises CheckFailed.
+    which `/solve_ik` answers. The first accepted goal takes `first_goal_sec`, the others
+    QUIET_SEC: an arm is slow, and a right node waits for it. `arm_first`: `/move_arm` appears
+    before `/solve_ik`, otherwise after it. Raises CheckFailed.
     """
     for word, _, _ in targets:
         if word not in WORDS:
@@ -41,7 +42,7 @@ def expect_plays(
 
 
 def expect_asks_and_ends(x: float, y: float) -> None:
-    """`arm_player` asks `/solve_ik` for its first target, and ends cleanly while it waits.
+    """`arm_player` calls `/solve_ik` for its first target, and ends cleanly while it waits.
 
     Raises CheckFailed.
     """
@@ -52,14 +53,17 @@ def expect_asks_and_ends(x: float, y: float) -> None:
 def expect_ends_after_report(x: float, y: float) -> None:
     """`arm_player` ends cleanly once it has reported that its only target is unreachable.
 
-    Raises CheckFailed. `expect_plays` looks whether it reports at all.
+    Raises CheckFailed. Whether it reports at all is checked by `expect_plays`.
     """
     with Watcher() as watcher, Drawing.opened(watcher, [('unreachable', x, y)]) as drawing:
         drawing.expect_clean_end(after_report=True)
 
 
 def choose(numbers: random.Random) -> list[Target]:
-    """A target for each word, in some order, and two that succeed: another one, and one again."""
+    """One target for each word in random order, another one that succeeds, and one repetition.
+
+    The repetition is that of a target that succeeds.
+    """
     words = [*WORDS]
     numbers.shuffle(words)
     targets: list[Target] = []

@@ -1,4 +1,4 @@
-"""A run of `arm_player` until it may ask: its clients are there, and then the servers."""
+"""The start of `arm_player`: the check waits for its clients, then starts the servers."""
 
 from dataclasses import dataclass
 from typing import NoReturn
@@ -15,27 +15,28 @@ from my_robot_basics.session.pressure import Stopwatch
 
 NAME = 'arm_player'  # of the package, of the executable and of the node
 MEET_SEC = 8.0
-"""How long the clients of a program that was just started may take, of free time. …"""
+"""How long a new process may take until its client of `/solve_ik` exists, in s of free time."""
 SECOND_SEC = 1.0
-"""… A client that is made only when it is needed is not waited for longer."""
+"""How long to wait then for its client of `/move_arm`, in s of free time. It need not exist: some
+nodes create it only when they need it."""
 ALONE_SEC = 0.8
-"""How long who does not wait for `/move_arm` may take to ask the solver: rclpy's wait_for_service
-looks each 0.25 s."""
+"""How long to wait for an early request to `/solve_ik`, in s of free time. It is longer than
+0.25 s because rclpy's wait_for_service polls at this interval."""
 LATER_SEC = 1.5
-"""So much later does `/solve_ik` come than `/move_arm`: some wait for a second at most."""
+"""How much later than `/move_arm` `/solve_ik` appears: a node that waits only 1 s is wrong."""
 
 
 @dataclass(frozen=True)
 class PlayerMeeting:
-    """The player that was started, and whom it finds."""
+    """The `arm_player` process that the check has started, and the servers that it finds."""
 
     watcher: Watcher
     process: RunningExecutable
 
     def wait_for_clients(self) -> None:
-        """Wait for its clients, before there is a server: none of them asks one it has not met.
+        """Wait for the node's clients before any server exists: thus both discover each other.
 
-        Raises CheckFailed if none comes, or somebody else serves.
+        Raises CheckFailed if there is no client of `/solve_ik`, or another node serves.
         """
         count = self.watcher.node.count_clients
         self.expect_alone(own=0)
@@ -53,7 +54,10 @@ class PlayerMeeting:
         )
 
     def expect_not_asked_yet(self, solver: HoldingServer) -> None:
-        """It asks the solver for nothing, which serves from now on, while there is no arm."""
+        """Start `/solve_ik`; the node sends no request while `/move_arm` is absent.
+
+        Raises CheckFailed.
+        """
         solver.start()
         is_asked = self.watcher.spin_until_free(lambda: bool(solver.requests), free_sec=ALONE_SEC)
         expect(
@@ -66,13 +70,13 @@ class PlayerMeeting:
         )
 
     def expect_alone(self, *, own: int) -> None:
-        """The check's `own` servers are all that there are. Raises CheckFailed."""
+        """There are only the check's `own` servers of each name. Raises CheckFailed."""
         expect_no_other(self.watcher, SOLVE_IK, own=own)
         expect_no_other(self.watcher, f'{MOVE_ARM}/_action/send_goal', own=own)
 
     def fail_silent(
         self, *, expected: str, hint: str, cause: str, doubt: type[CheckFailed] = CheckFailed
     ) -> NoReturn:
-        """Raise CheckFailed: nothing came. Whoever has ended says why."""
+        """Raise CheckFailed: nothing came. If the process has ended, that is the reason given."""
         self.process.expect_running()
         fail(expected=expected, seen='none', hint=hint, cause=cause, doubt=doubt)

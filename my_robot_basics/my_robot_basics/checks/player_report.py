@@ -1,4 +1,4 @@
-"""What `arm_player` reports on `/arm_player/done`: one word for each target, kept."""
+"""The report of `arm_player` on `/arm_player/done`: one latched message, a word per target."""
 
 import re
 from collections.abc import Sequence
@@ -17,7 +17,7 @@ from my_robot_basics.graph.watcher import Watcher
 TOPIC = '/arm_player/done'
 TYPE = 'std_msgs/msg/String'
 LATE_SEC = 4.0
-"""How long a report may take to reach who joins late, of free time."""
+"""How long the report may take to reach a late-joining subscription, in s of free time."""
 DEPTH = 100
 ANY = QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT)
 LATCHED = QoSProfile(depth=DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -25,27 +25,28 @@ _SPELT = {'cancelled': 'canceled', 'cancel': 'canceled', 'succeed': 'succeeded'}
 
 
 class PlayerReport:
-    """The report: asked for with the least QoS, and for kept ones where somebody keeps them.
+    """Subscribes to the report twice: with BEST_EFFORT and, if that is offered, TRANSIENT_LOCAL.
 
-    A publisher that is made only for the report may send before it has met anybody.
+    The second one is needed because a node may create the publisher only for the report, and
+    then publishes before it has discovered any subscription.
     """
 
     topic_name = TOPIC
 
     def __init__(self, watcher: Watcher) -> None:
-        """Listen from now on."""
+        """Subscribe from now on."""
         self._watcher = watcher
         self._any = _recorder(watcher, ANY)
         self._kept: Recorder | None = None
 
     def is_there(self) -> bool:
-        """Whether a message has come, in either way."""
+        """Whether a report has come; subscribes with TRANSIENT_LOCAL once that is offered."""
         if self._kept is None and self._is_published() and not self.why_none():
             self._kept = _recorder(self._watcher, LATCHED)
         return bool(self._messages())
 
     def has_come(self) -> bool:
-        """Whether a message has come by now."""
+        """Whether a report has come by now."""
         return bool(self._messages())
 
     def has_come_twice(self) -> bool:
@@ -64,7 +65,7 @@ class PlayerReport:
         )
 
     def expect_none_yet(self) -> None:
-        """No report has come while a goal has not ended. Raises CheckFailed."""
+        """No report has come so far, as a goal has not ended yet. Raises CheckFailed."""
         said = self._messages()[-1:]
         expect(
             not said,
@@ -75,7 +76,7 @@ class PlayerReport:
         )
 
     def expect_words(self, words: Sequence[str]) -> None:
-        """It has these words, one for each target. Raises CheckFailed."""
+        """The report consists of these words, one for each target. Raises CheckFailed."""
         said = self._messages()[-1]
         seen = re.findall(r'\w+', said)
         if seen != [*words]:
@@ -87,7 +88,7 @@ class PlayerReport:
             )
 
     def expect_kept(self, process: RunningExecutable) -> None:
-        """A subscriber that joins now receives it, too. Raises CheckFailed."""
+        """A subscription that joins now receives the report, too. Raises CheckFailed."""
         process.expect_running()
         why = self.why_none()
         expect(
@@ -99,7 +100,7 @@ class PlayerReport:
         )
 
     def why_none(self) -> str:
-        """Why no report comes though somebody publishes, or ''."""
+        """Why publishers of the topic do not deliver a report (type, QoS), as advice; or ''."""
         infos = graphs.publisher_infos(self._watcher.node, TOPIC)
         types = sorted({info.topic_type for info in infos})
         if types and types != [TYPE]:

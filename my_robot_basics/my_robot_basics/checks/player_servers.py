@@ -1,4 +1,4 @@
-"""The check's own `/solve_ik` and `/move_arm`, for a node that visits targets: by a script."""
+"""The check's own `/solve_ik` and `/move_arm`: a list of targets says what they answer."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -17,18 +17,18 @@ from my_robot_basics.graph.watcher import Watcher
 
 SOLVE_IK, MOVE_ARM = '/solve_ik', '/move_arm'
 Target = tuple[str, float, float]
-"""How it ends, x and y in metres."""
+"""How the target ends (one of WORDS), and its x and y in metres."""
 WORDS = *TERMINAL, 'rejected', 'unreachable'
 L1_M = 1.3
-"""The first link of the check's arm: only a client that asks knows its angles."""
+"""The first link of the check's arm, unlike the course's: see `player`."""
 NEAR_RAD = 1e-6
 MOST_GOALS = 500
 CANCEL_SEC = 4.0
-"""How long a request to cancel may take, of free time."""
+"""How long the check's request to cancel may take to arrive, in s of free time."""
 
 
 class PlayerServers(ScriptedActionServer):
-    """Both servers; absent until `start`."""
+    """Both servers; they do not exist until `start`."""
 
     def __init__(self, watcher: Watcher, targets: Sequence[Target]) -> None:
         super().__init__(watcher.node, name=MOVE_ARM, type_=MoveArm)
@@ -41,18 +41,18 @@ class PlayerServers(ScriptedActionServer):
         self._canceller: Client | None = None
 
     def start(self) -> None:
-        """Serve both, or the other one beside that which was started alone."""
+        """Start those of the two servers that do not run yet."""
         if not self.solver.is_there():
             self.solver.start()
         if not self.is_there():
             super().start()
 
     def start_arm(self) -> None:
-        """Serve `/move_arm` alone."""
+        """Start only `/move_arm`."""
         super().start()
 
     def stop(self) -> None:
-        """Let goals end that have not, and be absent."""
+        """Abort the goals that have not ended, and destroy both servers."""
         for goal in self.goals:
             if not goal.end.done():
                 goal.finish('aborted')
@@ -66,13 +66,13 @@ class PlayerServers(ScriptedActionServer):
         return list(solve(request(x, y), l1=L1_M).elbow_up)
 
     def was_asked(self, number: int) -> bool:
-        """Whether a request came for a target: as many as it is listed up to here."""
+        """Whether a request came for a target; a repeated target needs as many requests."""
         _, x, y = self.targets[number]
         count = sum(is_for(asked, x, y) for asked in self.solver.requests)
         return count > self.times_before(number)
 
     def times_before(self, number: int) -> int:
-        """How often the point of a target is listed before it."""
+        """How often the same point is in the list before this target."""
         return [point for _, *point in self.targets[:number]].count([*self.targets[number][1:]])
 
     def was_skipped(self, number: int) -> bool:
@@ -81,17 +81,17 @@ class PlayerServers(ScriptedActionServer):
         return not self.was_asked(number) and any(map(self.was_asked, later))
 
     def strays(self) -> list[Any]:
-        """The requests for a point that is no target."""
+        """The requests for points that are not targets."""
         points = [(x, y) for _, x, y in self.targets]
         return [r for r in self.solver.requests if not any(is_for(r, *each) for each in points)]
 
     def number_of(self, goal: Any) -> int | None:
-        """Which target a goal is for, or None."""
+        """The index of the first target that a goal is for, or None."""
         numbers = (n for n in range(len(self.targets)) if is_near(goal.position, self.pose(n)))
         return next(numbers, None)
 
     def cancel(self, goal: ReceivedGoal) -> None:
-        """Ask to cancel a goal that moves, as anybody may, and let it be canceled."""
+        """Cancel an executing goal, as any client may, and end it as canceled."""
         if self._canceller is None:
             name = f'{MOVE_ARM}/_action/cancel_goal'
             self._canceller = self._watcher.node.create_client(CancelGoal, name)

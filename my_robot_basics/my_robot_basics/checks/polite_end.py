@@ -1,6 +1,6 @@
-"""End a program that a check has started, as Ctrl-C does, without a verdict.
+"""End a program that a check has started, as Ctrl-C does; this affects no verdict.
 
-A node that was killed stays on the graph for a while, and the next check would meet it.
+SIGINT comes first, because a killed node stays on the graph and would disturb the next check.
 """
 
 import time
@@ -9,12 +9,12 @@ from collections.abc import Callable
 from my_robot_basics.session.pressure import Stopwatch
 
 LEAVE_SEC, MOST_SEC = 2.0, 6.0
-"""How long it may take, of free time, and at most."""
+"""How long the program may take to end: in seconds of free time, and of wall time at most."""
 LOOK_EVERY_SEC = 0.05
 
 
 def end(send: Callable[[str], object], has_ended: Callable[[], bool]) -> None:
-    """Send it SIGINT, and SIGKILL where it goes on; `send` takes a signal's name."""
+    """Send SIGINT to the program, and SIGKILL if it does not end; `send` takes a signal's name."""
     send('SIGINT')
     watch = Stopwatch()
     while not has_ended():

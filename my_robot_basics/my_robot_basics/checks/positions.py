@@ -9,10 +9,10 @@ from my_robot_basics.checks import pictures
 from my_robot_basics.feedback.errors import expect, fail
 
 ANGLE_SLACK_RAD = 1e-3
-"""π / 2 is often written as 1.571, as it is shown here, too."""
+"""How far a position may exceed its range: π / 2 is often written as 1.571."""
 WHOLE_TURN_DEG = 360.0
 FEWEST_STEPS = 8
-"""So many in a row that go the same way are no chance."""
+"""This many steps in one direction, and no other, are no coincidence."""
 
 
 def check_positions(
@@ -20,7 +20,7 @@ def check_positions(
 ) -> None:
     """Fail unless each message has a position between low and high for each joint, in radians.
 
-    With `names`, these are the joints of low and high, in whatever order a message has them.
+    `names` are the joints of `low` and `high`; a message may have them in any order.
     """
     for message in messages:
         seen = len(message.position)
@@ -43,7 +43,7 @@ def _fail_position(
     of_degrees = [[math.degrees(bound) for bound in bounds] for bounds in degrees]
     shown = ', '.join(f'{angle:.4g}' for angle in pose)
     picture = None
-    # an angle in radians is likely to be a whole turn at most, as one in degrees is
+    # an angle in radians is rarely above 2π, and one in degrees rarely above 360
     largest = max(abs(angle) for each in poses for angle in each)
     if _grow(poses, low, high):
         seen = f'({shown}), further out with each message'
@@ -66,7 +66,7 @@ def _fail_position(
 
 
 def _grow(poses: Sequence[Sequence[float]], low: Sequence[float], high: Sequence[float]) -> bool:
-    """Whether a joint that leaves its range goes the same way with every message."""
+    """Whether a joint that leaves its range moves in the same direction in every message."""
     joints = zip(*poses, low, high, strict=True)
     for *angles, lowest, highest in joints:
         steps = [after - angle for angle, after in itertools.pairwise(angles)]
@@ -78,7 +78,7 @@ def _grow(poses: Sequence[Sequence[float]], low: Sequence[float], high: Sequence
 
 
 def _within(pose: Sequence[float], low: Sequence[float], high: Sequence[float]) -> bool:
-    # a NaN is within nothing
+    # NaN fails both comparisons, so it is not within the range
     slack = ANGLE_SLACK_RAD
     return all(a - slack <= x <= b + slack for x, a, b in zip(pose, low, high, strict=True))
 

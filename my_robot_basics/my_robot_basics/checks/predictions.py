@@ -1,4 +1,4 @@
-"""Predictions of what arrives, held against what does: the check runs each situation itself."""
+"""Compare predictions of what arrives with what does arrive: the check runs each situation."""
 
 import difflib
 from collections.abc import Callable, Mapping, Sequence
@@ -9,9 +9,9 @@ from my_robot_basics.feedback.errors import fail, shorten
 from my_robot_basics.feedback.hidden import is_quiet, said_in_full, tell_failed_already
 
 Situation = Callable[[Stage], bool]
-"""Runs on an empty stage, and returns whether the message arrived; named as its prediction is.
+"""A function with a prediction's name that runs on an empty stage; returns if the message arrived.
 
-Its docstring is what to think of where the prediction is wrong.
+Its docstring is the reason that the student reads if the prediction is wrong.
 """
 
 
@@ -31,9 +31,9 @@ class Predictions:
     """
 
     def __init__(self, name: str, keys: Sequence[str]) -> None:
-        """Ask for the dict. Raises CheckFailed unless it holds a bool for each of the keys.
+        """Get the dict. Raises CheckFailed unless it has a bool for each of the keys.
 
-        Keys of the student's own beside these do no harm.
+        Additional keys in the student's dict are ignored.
         """
         self._keys = tuple(keys)
         self._ran = 0
@@ -50,7 +50,7 @@ class Predictions:
             self._check_bool(key)
 
     def run(self, *situations: Situation) -> None:
-        """Run the situations, and remember which went otherwise than predicted."""
+        """Run the situations, and remember those whose result differs from the prediction."""
         with watchers() as participants:
             for situation in situations:
                 arrived = situation(Stage(*participants))
@@ -60,10 +60,10 @@ class Predictions:
                     self._failed_already |= not is_quiet()
 
     def conclude(self, points: Mapping[int, float]) -> None:
-        """Name each prediction that was wrong, and why. Raises CheckFailed if there are any.
+        """Raises CheckFailed, naming each wrong prediction and the reason, if there are any.
 
-        `points` are those that so many right predictions, or more, leave, once all have run. A
-        coin must not earn any to speak of.
+        `points` maps the least number of right predictions to the points that are left, once all
+        situations have run. Choose them so that guessing earns almost none.
         """
         if not self._wrong:
             return
@@ -76,7 +76,7 @@ class Predictions:
             _what_happened(f'`{each.__name__}`', each.__doc__ or '', arrived=arrived)
             for each, arrived in self._wrong
         ]
-        # it tells what happens on the check's own stage, and the student's own yes and no
+        # safe to show: what happens on the check's own stage, and the student's own answers
         with said_in_full():
             fail(
                 expected='each prediction to match what happens when the check runs it',

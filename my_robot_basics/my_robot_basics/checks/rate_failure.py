@@ -1,4 +1,4 @@
-"""What to say of a recording that shows another rate than was asked for."""
+"""The failure message for a recording that does not have the expected rate."""
 
 from typing import TYPE_CHECKING, NoReturn
 
@@ -11,14 +11,15 @@ if TYPE_CHECKING:
     from my_robot_basics.checks.recording import Recording
 
 MOSTLY_PART = 0.1
-"""So near to the period are most messages of a node that only pauses now and then."""
+"""If a node only pauses sometimes, the median gap differs from the period by at most this part."""
 TOO_FAST_TIMES = 20.0
-"""So many times too fast is no wrong number of seconds: a timer's period of 0."""
+"""A rate more than this many times too high comes from a timer with a period of (almost) 0, or
+from ever more timers, not from a wrong number of seconds."""
 AT_ONCE = 'several messages arrive at once'
 
 
 def fail_rate(recording: 'Recording', hz: float) -> NoReturn:
-    """Raise CheckFailed with the rate that was seen, and a picture of the arrivals."""
+    """Raise CheckFailed with the rate of the recording and a picture of the arrivals."""
     n = len(recording.messages)
     over = f'over {recording.seconds:.3g} s ({n} message{"" if n == 1 else "s"})'
     seen, cause, hint = _explanation(recording, hz, over)
@@ -29,7 +30,7 @@ def fail_rate(recording: 'Recording', hz: float) -> NoReturn:
 
 
 def _explanation(recording: 'Recording', hz: float, over: str) -> tuple[str, str, str]:
-    """Return what was seen, its cause, and what to try: of the first difference that fits."""
+    """Return what was seen, its cause, and what to try, for the first fault that fits."""
     if every := rates.leaves_out(recording):
         seen, cause = f'one message of {every} missing each time {over}', 'messages are left out'
         return seen, cause, 'publish in every call of the timer'
@@ -38,7 +39,7 @@ def _explanation(recording: 'Recording', hz: float, over: str) -> tuple[str, str
         seen = f'{pattern.size} messages at once, every {pattern.cycle_sec:.3g} s, {over}'
         return seen, AT_ONCE, rates.ONCE
     if recording.rate_hz > TOO_FAST_TIMES * hz:
-        # some nodes are busy with so many that none comes for a while
+        # this comes before pauses: a node may pause because it is busy with so many messages
         seen, cause = f'{_hz(recording.rate_hz)} {over}', 'far too many messages'
         hint = (
             'the timer period is 0, or nearly (period = 1 / rate, and 1 // rate is 0), or each'
@@ -66,7 +67,7 @@ def _explanation(recording: 'Recording', hz: float, over: str) -> tuple[str, str
 
 
 def _is_right_in_words(recording: 'Recording', hz: float) -> bool:
-    """Whether the rate that was seen would be told as the one that was asked for."""
+    """Whether the measured rate and the expected one are the same text once rounded."""
     return _hz(_measured_hz(recording, hz)) == _hz(hz)
 
 
@@ -75,7 +76,7 @@ def _is_uneven(recording: 'Recording') -> bool:
 
 
 def _is_mostly(recording: 'Recording', hz: float) -> bool:
-    """Whether most messages came one period behind the one before."""
+    """Whether most messages came one period after the one before."""
     gaps = np.diff(rates.times_of(recording))
     return bool(len(gaps)) and bool(abs(np.median(gaps) * hz - 1.0) <= MOSTLY_PART)
 

@@ -1,4 +1,4 @@
-"""A parameter that is the rate of a node, in Hz: it sets the rate, and refuses some values."""
+"""A parameter that is a node's rate in Hz: the node follows it, and refuses some values."""
 
 import math
 from collections.abc import Sequence
@@ -16,17 +16,17 @@ from my_robot_basics.feedback.hidden import theirs
 
 RECORD_SEC = 4.0
 HOLD_PERIODS, HOLD_SEC = 3.0, 1.0
-"""The clock stands still for so many periods of the rate that is asked for, so long at most."""
+"""The simulated clock is held for HOLD_PERIODS of the expected rate, HOLD_SEC at most."""
 NEAR_PART = 0.1
-"""Two rates that are nearer to each other than this part are taken for the same one …"""
+"""Two rates count as the same if they differ by at most this part."""
 UNCHANGED_PART = 0.25
-"""… and so near, on a busy machine, is a rate to what it was: refused values are farther away."""
+"""A rate counts as unchanged within this part, also on a busy machine; refused ones differ more."""
 ANOTHER_HZ = (4.0, 20.0, 8.0)
-"""One of them is neither of the two rates that are in doubt."""
+"""At least one of these differs from both rates that `_lags` has to tell apart."""
 
 
 def rate_parameter(node_name: str, name: str, *, topic_name: str) -> 'RateParameter':
-    """The parameter of that node, in Hz, which is to set how often it publishes on the topic.
+    """The parameter of that node that sets, in Hz, how often it publishes on the topic.
 
     Raises CheckFailed if there is no such node.
     """
@@ -35,14 +35,14 @@ def rate_parameter(node_name: str, name: str, *, topic_name: str) -> 'RateParame
 
 @dataclass(frozen=True)
 class RateParameter:
-    """What a check may say about a parameter that is a rate; each call takes a second or two."""
+    """The assertions about a parameter that is a rate; each call takes a second or two."""
 
     parameters: NodeParameters
     name: str
     topic_name: str
 
     def expect_default(self, rate_hz: float) -> None:
-        """It is declared as a double of that value, and the node publishes so often."""
+        """The parameter is a double with that value, and the node publishes at that rate."""
         refusals.expect_leaves_others_alone(self.parameters, self.name)
         value = self.parameters.get(self.name)
         expect(
@@ -60,7 +60,7 @@ class RateParameter:
         self._record(rate_hz).assert_rate(rate_hz)
 
     def expect_takes(self, *rates_hz: float) -> None:
-        """Each of these rates can be set; the last one is the value of the parameter then."""
+        """Each of these rates can be set, one after the other; the last one is the value then."""
         tried = refusals.in_its_type(self.parameters, self.name, rates_hz)
         for rate_hz, result in zip(tried, self.parameters.set(self.name, *tried), strict=True):
             if not result.successful:
@@ -75,7 +75,7 @@ class RateParameter:
         )
 
     def expect_follows(self, *rates_hz: float, beside_another: bool = False) -> None:
-        """The node publishes so often once the parameter is set, alone or `beside_another` one."""
+        """The node follows the parameter, set alone or (`beside_another`) with use_sim_time."""
         refusals.expect_leaves_others_alone(self.parameters, self.name)
         for rate_hz in rates_hz:
             before_hz = self.parameters.get_number(self.name)
@@ -92,9 +92,9 @@ class RateParameter:
                 self._explain(failed, recording, before_hz, rate_hz)
 
     def expect_refuses(self, *rates_hz: float) -> None:
-        """Each of these is refused, with a reason, and value and rate stay what they were.
+        """Each of these values is refused with a reason; the value and the rate do not change.
 
-        NaN and inf may be among them: they are tried last, and no rate is measured after them.
+        NaN and inf are allowed here: they are tried last, and no rate is measured after them.
         """
         refusals.expect_leaves_others_alone(self.parameters, self.name)
         kept_hz = self.parameters.get_number(self.name)
@@ -106,18 +106,18 @@ class RateParameter:
             self._expect_refused(kept_hz, [no_number])
 
     def _expect_stays(self, kept_hz: float, rates_hz: Sequence[float]) -> None:
-        """These are refused, and the rate stays: a node that takes them ends with the lowest."""
+        """The node refuses these values (the lowest one last), and its rate does not change."""
         self._expect_refused(kept_hz, rates_hz)
         seen_hz, _ = self._measure(kept_hz)
         if _are_near(seen_hz, kept_hz, part=UNCHANGED_PART):
             return
-        # it may have had another rate before: does a value that is refused make a difference?
+        # the rate may have been wrong before: find out whether a refused value changes it
         if seen_hz > kept_hz and self._stays_at(seen_hz, kept_hz, rates_hz[0]):
             return
         self.parameters.set(self.name, kept_hz)
         before_hz, _ = self._measure(kept_hz)
         if before_hz > TOO_FAST_TIMES * kept_hz:
-            return  # as fast as the machine can, which is never the same
+            return  # the node publishes as fast as it can, and that rate always varies
         self._expect_refused(kept_hz, rates_hz)
         after_hz, doubt = self._measure(kept_hz)
         expect(
@@ -130,7 +130,7 @@ class RateParameter:
         )
 
     def _stays_at(self, seen_hz: float, kept_hz: float, highest_hz: float) -> bool:
-        """Whether timers from before run on: the highest rate that is refused adds nothing."""
+        """Whether setting the highest refused rate leaves the rate: older timers caused it."""
         self._expect_refused(kept_hz, [highest_hz])
         return _are_near(self._measure(kept_hz)[0], seen_hz, part=UNCHANGED_PART)
 
@@ -140,7 +140,7 @@ class RateParameter:
     def _explain(
         self, failed: CheckFailed, recording: Recording, before_hz: float, now_hz: float
     ) -> NoReturn:
-        """Raise CheckFailed with what makes a node miss a new rate, where that can be told."""
+        """Raise CheckFailed with the reason why a node misses a new rate, else raise `failed`."""
         seen_hz = recording.rate_hz
         if _are_near(seen_hz, now_hz):
             raise failed
@@ -173,7 +173,7 @@ class RateParameter:
         )
 
     def _lags(self, before_hz: float, now_hz: float) -> bool:
-        """Whether the next change brings the rate that this one should have brought."""
+        """Whether the node is one change behind: the next change brings the rate `now_hz`."""
         others = [rate_hz for rate_hz in ANOTHER_HZ if not _are_near(rate_hz, before_hz)]
         another_hz = next(rate_hz for rate_hz in others if not _are_near(rate_hz, now_hz))
         self.expect_takes(another_hz)
@@ -181,12 +181,12 @@ class RateParameter:
         return _are_near(seen_hz, now_hz)
 
     def _record(self, rate_hz: float) -> Recording:
-        """A recording of messages that are to come so often."""
+        """Record the topic, on which `rate_hz` is expected."""
         hold_sec = min(HOLD_PERIODS / max(1.0, rate_hz), HOLD_SEC)
         return topic(self.topic_name).record(seconds=RECORD_SEC, hold_sec=hold_sec)
 
     def _measure(self, rate_hz: float) -> tuple[float, type[CheckFailed]]:
-        """How often messages come now, in Hz, 0 where none does; and what to raise of that."""
+        """The present rate in Hz (0 without messages), and the exception for a verdict on it."""
         try:
             recording = self._record(rate_hz)
         except CheckFailed:

@@ -1,4 +1,4 @@
-"""When a recording shows a rate."""
+"""Whether a recording has a given rate, and whether that is certain."""
 
 import math
 from typing import TYPE_CHECKING
@@ -11,23 +11,29 @@ if TYPE_CHECKING:
     from my_robot_basics.checks.recording import Recording
 
 TOLERANCE = 0.02
+"""How far a rate may differ from the expected one, as a part of it."""
 MEAN_TOLERANCE = -0.05, 0.03
-"""So much may the mean be off on the wall clock: a busy machine adds to each sleep of a loop."""
+"""How far the mean rate may differ on the wall clock: a busy machine lengthens a loop's sleeps."""
 DOUBTFUL = 0.01, 0.04
-"""Off by more, and by no more than that: 4 s of a busy machine do not decide it."""
+"""If a rate differs by a part between these two, a recording of 4 s on the wall clock does not
+decide: a busy machine may be the cause."""
 LARGEST_GAP_PERIODS = 1.75
-"""More between two messages (on the wall clock) is a pause: bursts are not a rate."""
+"""A longer gap between two messages on the wall clock is a pause, in periods of the rate."""
 SILENT_PERIODS = 2.75
-"""More at the end tells that none comes any more: the last message may be on its way."""
+"""A longer silence at the end, in periods, means that the messages have ended. It is more than one
+period because the last message may still be on its way."""
 LONGER_PAUSE = 1.5
+"""The silence at the end must also be this many times as long as the longest gap before it."""
 GAP_SLACK_SEC = 0.05
+"""How much longer than a period a gap may always be on the wall clock."""
 UNEVEN_PART = 0.25
-"""How much of a period most messages may be off: 0.1 s and 0.3 s alternating are no 5 Hz."""
+"""How far most gaps may differ from the period, as a part of it: gaps that alternate between 0.1 s
+and 0.3 s are not 5 Hz."""
 AT_ONCE_SEC = 0.02
-"""Nobody's timer means two messages so near to each other."""
+"""Messages this close to each other count as sent at once: no exercise has a timer this fast."""
 ONCE = 'publish one message each time the timer fires'
 FEWEST = 2
-"""Messages that tell whether they are evenly spaced, beside the one to begin at."""
+"""How many messages after the first one show whether they are evenly spaced."""
 
 
 def is_even(recording: 'Recording') -> bool:
@@ -39,7 +45,10 @@ def is_even(recording: 'Recording') -> bool:
 
 
 def is_nearly_even(recording: 'Recording') -> bool:
-    """Whether it does so within a quarter of that period, or a step, and without any turns."""
+    """Whether one period explains every arrival within a quarter of it, or within a step.
+
+    Long and short gaps that alternate are not nearly even.
+    """
     slack_sec = max(_slack_sec(recording), UNEVEN_PART / recording.rate_hz)
     times = times_of(recording)
     low, high = periods.spanned(times, slack_sec)
@@ -47,17 +56,17 @@ def is_nearly_even(recording: 'Recording') -> bool:
 
 
 def leaves_out(recording: 'Recording') -> int:
-    """Which message of the robot's clock is missing again and again (10: every tenth), or 0."""
+    """Which message is missing regularly on the robot's clock (10: every tenth one), or 0."""
     if recording.clock != 'simulated':
         return 0
     return periods.left_out(times_of(recording), _slack_sec(recording))
 
 
 def pattern_of(recording: 'Recording') -> periods.Pattern | None:
-    """The pattern of messages on the robot's clock that no timer makes, whatever its period.
+    """The messages' repeating pattern on the robot's clock that no single timer makes, or None.
 
-    They come at once, or far from evenly. The proof has to show the same: a thread that is late is
-    less so with finer steps.
+    They come several at once, or far from evenly. The proof (the recording with finer steps) must
+    show the same pattern: if only a late thread caused it, finer steps make it smaller.
     """
     proof = recording.proof
     if recording.clock != 'simulated' or proof is None:
@@ -74,18 +83,18 @@ def pattern_of(recording: 'Recording') -> periods.Pattern | None:
 
 
 def pattern_in(recording: 'Recording') -> periods.Pattern | None:
-    """The pattern that these steps of the robot's clock show, though they may have made it."""
+    """The repeating pattern of one recording; the size of its clock steps may have caused it."""
     times_sec, seconds = times_of(recording), recording.seconds
     return periods.pattern_of(times_sec, recording.step_sec, seconds=seconds)
 
 
 def is_certain(recording: 'Recording', hz: float) -> bool:
-    """Whether the robot's clock has shown beyond doubt whether a timer sends `hz` a second.
+    """Whether the recording on the robot's clock decides without doubt if a timer has `hz`.
 
-    All messages are equally far apart, or every so many of them is left out, or they come in a
-    pattern that no timer makes, or one period explains them and those of the proof, which took
-    other steps: a thread that is late now and then is later with coarse steps. Where that may be
-    the period of `hz`, and the mean is off, the first message may have been late, or the last.
+    It does if all gaps are equal, if messages are left out regularly, if they have a pattern that
+    no timer makes, or if one period that is not that of `hz` explains both the recording and its
+    proof, which has other steps (a late thread is later with coarse steps). If the period of `hz`
+    explains them, too, and yet the mean is off, the first or last message may have been late.
     """
     if recording.clock != 'simulated':
         return False
@@ -98,16 +107,17 @@ def is_certain(recording: 'Recording', hz: float) -> bool:
 
 
 def has_rate(recording: 'Recording', hz: float) -> bool:
-    """Whether messages came `hz` times a second, within ±2 %, and evenly.
+    """Whether messages came at `hz`, within ±2 %, and evenly.
 
-    On the wall clock that is the period which was meant: a busy machine slows a loop down.
+    On the wall clock, the ±2 % are of the period that the timer or loop was given (see
+    `periods.meant`), and MEAN_TOLERANCE is that of the mean: a busy machine slows a loop down.
     """
     off = abs(recording.rate_hz / hz - 1.0)
     if recording.clock == 'simulated':
         low, high = certain_range(recording)
         if low > high:
             low, high = _period_range(recording)
-        # the mean alone is off by as much as a step
+        # the mean is not exact enough by itself: it may be off by a step
         is_right = off <= TOLERANCE and (low > high or _holds(low, high, hz))
         goes_on = not recording.is_over and not leaves_out(recording)
         return is_right and goes_on and not pattern_of(recording)
@@ -117,15 +127,15 @@ def has_rate(recording: 'Recording', hz: float) -> bool:
 
 
 def _holds(low: float, high: float, hz: float) -> bool:
-    """Whether one of these periods, in seconds, is that of `hz`, within ±2 %."""
+    """Whether the range of periods from `low` to `high` (in s) includes that of `hz`, ±2 %."""
     shortest, longest = (1.0 / (hz * (1.0 + sign * TOLERANCE)) for sign in (1, -1))
     return low <= longest and shortest <= high
 
 
 def is_steady(recording: 'Recording', hz: float) -> bool:
-    """Whether messages on the wall clock came without pauses, and evenly, as `hz` asks for.
+    """Whether messages came evenly at about `hz`, without pauses, until the recording's end.
 
-    And went on to the end.
+    For recordings on the wall clock.
     """
     largest = max(LARGEST_GAP_PERIODS / hz, 1.0 / hz + GAP_SLACK_SEC)
     goes_on = recording.largest_gap_sec <= largest and not recording.has_ended
@@ -133,18 +143,21 @@ def is_steady(recording: 'Recording', hz: float) -> bool:
 
 
 def is_doubtful(recording: 'Recording', hz: float) -> bool:
-    """Whether the period on the wall clock is so near the tolerance that a longer look decides."""
+    """Whether a longer recording is needed: the wall clock's period is close to the tolerance."""
     low, high = DOUBTFUL
     return recording.clock == 'wall' and low < abs(off_meant(recording, hz)) <= high
 
 
 def off_meant(recording: 'Recording', hz: float) -> float:
-    """How far off is the rate that was meant: 0.01 for one that is 1 % too fast."""
+    """How far the rate of `periods.meant` is from `hz`: 0.01 if it is 1 % too fast."""
     return 1.0 / (hz * periods.meant(times_of(recording))) - 1.0 if recording.messages else -1.0
 
 
 def certain_range(recording: 'Recording') -> tuple[float, float]:
-    """The periods that explain a recording and its proof; the first above the second: none."""
+    """The least and greatest period (s) that explain both a recording and its proof.
+
+    The first is above the second if no period does.
+    """
     if recording.proof is None or not recording.messages or not recording.proof.messages:
         return 1.0, 0.0
     ranges = _period_range(recording), _period_range(recording.proof)
@@ -154,10 +167,10 @@ def certain_range(recording: 'Recording') -> tuple[float, float]:
 
 
 def is_uneven(recording: 'Recording', hz: float, slack_sec: float = 0.0) -> bool:
-    """Whether half of the messages, or more, are far from one period behind the one before.
+    """Whether at least half of the gaps are far from the period of `hz`, or the gaps alternate.
 
-    Or whether their gaps alternate. On a busy machine one or the other is late, and the next one
-    is early. `slack_sec`: how far off a message may be for no fault of its node.
+    A busy machine makes single messages late, and thus the gap after them short; that is not
+    uneven. `slack_sec`: how far a message may be off without a fault of its node.
     """
     times = times_of(recording)
     is_far = np.median(np.abs(np.diff(times) * hz - 1.0)) > UNEVEN_PART + slack_sec * hz
@@ -165,7 +178,7 @@ def is_uneven(recording: 'Recording', hz: float, slack_sec: float = 0.0) -> bool
 
 
 def times_of(recording: 'Recording') -> np.ndarray:
-    """When its messages came, in seconds, with the one at which it begins: shape (n + 1,)."""
+    """Arrival times in s, first the 0.0 of the message at which it begins: shape (n + 1,)."""
     return np.array([0.0, *(sample.time_sec for sample in recording.messages)])
 
 

@@ -1,4 +1,4 @@
-"""What is received on a topic, and when it was sent."""
+"""A subscription that keeps the messages of a topic, and when each was sent."""
 
 import itertools
 from typing import Any
@@ -12,13 +12,13 @@ from my_robot_basics.graph.qos_compatibility import incompatible
 from my_robot_basics.graph.watcher import Watcher
 
 MOST_AT_ONCE = 10_000
-"""A node that publishes on and on may be quicker than we are."""
+"""The most messages of one `take_all`: a node may publish faster than the check takes messages."""
 _NO_EVENTS = SubscriptionEventCallbacks(use_default_callbacks=False)
-"""Each look of an executor costs more for every event; nobody waits for these."""
+"""QoS events are off: each one makes every wait of the executor slower, and no check uses them."""
 
 
 TOLD = {'RELIABILITY', 'DURABILITY'}
-"""What a profile says that names no more: what it leaves out is no request."""
+"""The policies of a recorder's profile: only gaps in these mean that it will never connect."""
 
 
 class Recorder:
@@ -42,7 +42,7 @@ class Recorder:
         self._publishers: tuple[str, ...] = ()
 
     def is_connected(self) -> bool:
-        """Whether a publisher has been met, or those that are there offer too little to be met."""
+        """Whether a publisher is matched, or all publishers offer too little to be matched."""
         if self._subscription.get_publisher_count() > 0:
             return True
         infos = graphs.publisher_infos(self._node, self.topic_name)
@@ -52,7 +52,7 @@ class Recorder:
     def publishers(self) -> tuple[str, ...]:
         """Full names of the nodes that publish on the topic, one for each publisher.
 
-        The most that were ever seen: one may have gone when the recording ends.
+        It is the largest list seen so far: a node may have ended before the recording does.
         """
         infos = graphs.publisher_infos(self._node, self.topic_name)
         now = tuple(sorted(graphs.full_name(info) for info in infos))
@@ -60,7 +60,7 @@ class Recorder:
         return self._publishers
 
     def endpoint_gids(self) -> set[tuple[int, ...]]:
-        """The publishers that are there now, each as DDS knows it."""
+        """The DDS endpoint GIDs of the publishers that exist now."""
         infos = graphs.publisher_infos(self._node, self.topic_name)
         return {tuple(info.endpoint_gid) for info in infos}
 
@@ -69,17 +69,17 @@ class Recorder:
         return [message for message, _ in self.received]
 
     def count_since(self, wall_ns: int) -> int:
-        """How many messages were sent after that wall time: quick to tell, there may be many."""
+        """How many messages were sent after that wall time; fast even if there are many."""
         newest_first = reversed(self.received)
         return sum(1 for _ in itertools.takewhile(lambda each: each[1] > wall_ns, newest_first))
 
     def seconds_since(self, wall_ns: int) -> float:
-        """How long after the first message that was sent after that wall time the last one was."""
+        """Seconds from the first to the last message of those sent after that wall time."""
         sent_ns = [sent_ns for _, sent_ns in self.received if sent_ns > wall_ns]
         return (sent_ns[-1] - sent_ns[0]) / 1e9 if sent_ns else 0.0
 
     def take_all(self) -> None:
-        """Take all that has come by now: a look of the executor takes one message."""
+        """Take all messages that have arrived; the executor takes one of them per spin."""
         handle = self._subscription.handle
         with handle:
             for _ in range(MOST_AT_ONCE):
@@ -89,7 +89,7 @@ class Recorder:
                 self._receive(*taken)
 
     def close(self) -> None:
-        """Receive no more."""
+        """Destroy the subscription."""
         self._node.destroy_subscription(self._subscription)
 
     def _receive(self, message: Any, info: dict) -> None:

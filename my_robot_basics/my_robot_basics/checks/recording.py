@@ -1,4 +1,4 @@
-"""What was recorded on a topic, and what a check may say about it."""
+"""The messages recorded on a topic, and the assertions of a check about them."""
 
 import itertools
 import math
@@ -21,7 +21,7 @@ from my_robot_basics.feedback.errors import CheckFailed, expect, shorten, show
 
 SECOND_LOOK_SEC = 4.0
 LONGER_LOOK_SEC = 8.0
-"""On the wall clock, where a first look leaves the period in doubt."""
+"""How long to record again on the wall clock if the first recording leaves the period in doubt."""
 LONGEST_LOOK_SEC = 12.0
 
 
@@ -30,11 +30,11 @@ class Sample:
     """One message and when it was sent."""
 
     message: Any
-    """As it arrived."""
+    """The message as it arrived."""
     time_sec: float
-    """On the recording's clock, since the recording began."""
+    """When it was sent, on the recording's clock, since the recording began."""
     source_time_sec: float
-    """On the wall clock, since the epoch: DDS's source timestamp."""
+    """When it was sent, on the wall clock, since the epoch: DDS's source timestamp."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,25 +50,25 @@ class Recording:
     """Full names of the nodes that publish on the topic, one for each publisher."""
     seconds: float
     start_sec: float
-    """When it began, on its clock, since the epoch."""
+    """When the recording began, on its clock, since the epoch."""
     step_sec: float = 0.0
-    """How far a tick moved the simulated clock."""
+    """How far each tick moved the simulated clock; 0 on the wall clock."""
     note: str = ''
-    """A remark for the feedback that costs nothing."""
+    """A remark for the feedback that costs no points."""
     late_sec: float = 0.0
-    """How long the machine kept the recording itself waiting at most: a node fares no better."""
+    """The longest delay of the recording itself by a busy machine: a node may be as late."""
     was_busy: bool = False
-    """Whether processes waited for a processor for most of it."""
+    """Whether processes waited for a processor for most of the recording."""
     is_makeshift: bool = False
-    """Of the wall clock, since a busy machine left no time for the robot's."""
+    """Whether it is on the wall clock only because a busy machine was too slow for the robot's."""
     proof: 'Recording | None' = field(default=None, repr=False)
-    """What the simulated clock showed with other steps."""
+    """A second recording on the simulated clock, with steps of another size."""
     look_again: Callable[[float], 'Recording'] | None = field(default=None, repr=False)
-    """Records so many seconds more on the wall clock, for a second opinion."""
+    """Makes another recording of that many seconds on the wall clock."""
 
     @property
     def rate_hz(self) -> float:
-        """Messages per second, from the beginning to the last one; 0 without a message."""
+        """Messages per second, from the beginning to the last message; 0 without a message."""
         return len(self.messages) / self.messages[-1].time_sec if self.messages else 0.0
 
     @property
@@ -79,28 +79,27 @@ class Recording:
 
     @property
     def silent_sec(self) -> float:
-        """How long before its end the last message came."""
+        """The time between the last message and the end of the recording."""
         return self.seconds - self.messages[-1].time_sec if self.messages else self.seconds
 
     @property
     def has_ended(self) -> bool:
-        """Whether its end is so silent that no next message seems to come."""
+        """Whether the silence at the end is so long that the messages seem to have ended."""
         return not self.messages or self.silent_sec * self.rate_hz > rates.SILENT_PERIODS
 
     @property
     def is_over(self) -> bool:
-        """Whether it has ended with more than one of the pauses that it has had."""
+        """Whether the messages have ended, and the silence is longer than any earlier pause."""
         is_longest = self.silent_sec > rates.LONGER_PAUSE * self.largest_gap_sec
         return not self.messages or (self.has_ended and is_longest)
 
     def assert_rate(self, hz: float) -> None:
-        """The one publisher sends `hz` messages a second, evenly, within ±2 %.
+        """There is one publisher, and it sends `hz` messages per second, evenly, within ±2 %.
 
-        Before it fails it looks a second time, on the wall clock, unless the robot's clock has
-        shown a plain timer of another period, or the wall clock far too many messages; and some
-        times more where the machine is too busy for a node to keep its rate. Where the wall clock
-        leaves a doubt it looks for longer.
-        A callback that has raised fails, too: `rclpy.spin` would have ended there.
+        Otherwise raises CheckFailed. Before that it records again on the wall clock, for longer if
+        the rate is in doubt, and repeatedly if the machine is too busy for a node to keep its
+        rate. It does not if the robot's clock has shown another period for certain, or the wall
+        clock far too many messages. A callback that raised fails: `rclpy.spin` would have ended.
         """
         self._expect_one_publisher()
         callbacks.expect_none_so_far(self.publishers)
@@ -117,7 +116,7 @@ class Recording:
             second.assert_rate(hz)
 
     def assert_joint_names(self, names: Sequence[str]) -> None:
-        """Every message names these joints, and no others; each position belongs to its name."""
+        """Every message names exactly these joints, in any order. Raises CheckFailed."""
         for message in self._messages_with('name'):
             expect(
                 sorted(message.name) == sorted(names),
@@ -131,13 +130,13 @@ class Recording:
     ) -> None:
         """Every message has one position for each joint, in radians between low and high.
 
-        With `names`, low and high are for those joints, in whatever order a message has them.
+        `names` are the joints of `low` and `high`; a message may have them in any order.
         """
         messages = self._messages_with('position')
         positions.check_positions(messages, low, high, names)
 
     def assert_frame_id(self, frame_id: str) -> None:
-        """Every message's header names that frame."""
+        """Every message's header has that frame_id. Raises CheckFailed."""
         for message in self._messages_with('header'):
             expect(
                 message.header.frame_id == frame_id,
@@ -147,25 +146,25 @@ class Recording:
             )
 
     def assert_stamps(self) -> None:
-        """Every header's stamp is the node's clock at publication: set, advancing, and near."""
+        """Every stamp is the time of the node's clock at publication. Raises CheckFailed."""
         stamps.check_stamps(self, self._messages_with('header'))
 
     def plot(self, hz: float | None = None) -> None:
-        """Show when the messages arrived; with `hz`, beside when they should have."""
+        """Plot when the messages arrived and, with `hz`, when they should have arrived."""
         alt = f'Arrivals of {len(self.messages)} messages on {self.topic_name}'
         show(pictures.arrivals(self, hz=hz), alt=alt)
 
     def _look_again(self, hz: float, *, seconds: float) -> 'Recording | None':
-        """Another recording, where that can be had and may help."""
+        """Another recording on the wall clock, or None if that is impossible or cannot help."""
         if self.look_again is None or rates.is_certain(self, hz) or self._is_too_fast(hz):
             return None
         try:
             return self.look_again(min(max(seconds, 3.0 / hz), LONGEST_LOOK_SEC))
-        except CheckFailed:  # the node is gone, or no time is left: what was seen of it stands
+        except CheckFailed:  # the node has gone, or no time is left: judge the first recording
             return None
 
     def _is_too_fast(self, hz: float) -> bool:
-        """Whether the wall clock has shown a faster rate beyond doubt: a machine only delays."""
+        """Whether the wall clock shows a faster rate for certain: a busy machine only delays."""
         if self.clock != 'wall' or self.was_busy:
             return False
         times_sec = np.array([0.0, *(sample.time_sec for sample in self.messages)])
