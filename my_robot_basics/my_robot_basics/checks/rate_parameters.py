@@ -20,7 +20,7 @@ HOLD_PERIODS, HOLD_SEC = 3.0, 1.0
 NEAR_PART = 0.1
 """Two rates count as the same if they differ by at most this part."""
 UNCHANGED_PART = 0.25
-"""A rate counts as unchanged within this part, also on a busy machine; refused ones differ more."""
+"""A rate is unchanged within this part, even on a busy machine; refused values differ by more."""
 ANOTHER_HZ = (4.0, 20.0, 8.0)
 """At least one of these differs from both rates that `_lags` has to tell apart."""
 

@@ -1,4 +1,4 @@
-"""The two topics of a relay, and the node of the student between them: meet it on both."""
+"""The two topics of a relay: connect to the student's node on both of them."""
 
 from dataclasses import dataclass
 from typing import Any, NoReturn
@@ -27,20 +27,20 @@ from my_robot_basics.graph.watcher import Watcher
 
 TIMEOUT_SEC = 10.0
 REFUSED_SEC = 2.0
-"""How long another subscription of the node may come after one that asks for too much."""
+"""How long to wait for another subscription after an incompatible one (wall time)."""
 SECOND_SEC = 0.1
-"""How long a second subscription may come behind the first."""
+"""How long to wait for a second subscription after the first one (wall time)."""
 
 
 @dataclass(frozen=True)
 class RelayEndpoints:
-    """What a relay subscribes to, and what it publishes on."""
+    """The topic that a relay subscribes to (`source`), and the one it publishes on (`to`)."""
 
     source: str
     to: str
 
     def listen(self, watcher: Watcher, type_: type) -> Recorder:
-        """Listen on `to`; a VOLATILE publisher is waited for until it knows of the listener."""
+        """Subscribe to `to`; wait until matched, as a VOLATILE publisher keeps no messages."""
         recorder = Topic(self.to).listen(watcher, take=self._graph_without_publisher)
         expect(
             recorder.type is type_,
@@ -52,7 +52,7 @@ class RelayEndpoints:
         return recorder
 
     def publish_to_node(self, watcher: Watcher, type_: type, offered: QoSProfile) -> Publisher:
-        """A publisher that has met a subscription which asks for no more than it offers."""
+        """A publisher on `source`, once a compatible subscription matches. Raises CheckFailed."""
         refused = set()
 
         def refuse(event: Any) -> None:
@@ -86,9 +86,9 @@ class RelayEndpoints:
         )
 
     def expect_transient_local(self, watcher: Watcher) -> None:
-        """A subscription to `source` asks for what was published before.
+        """A subscription to `source` requests TRANSIENT_LOCAL. Raises CheckFailed.
 
-        A node that asks for what is offered subscribes only when there is a publisher.
+        Call it when there is a publisher: a node may copy that publisher's QoS.
         """
 
         def asked() -> set[str]:
@@ -97,7 +97,7 @@ class RelayEndpoints:
         timeout_sec = self._timeout_sec(watcher)
         if not watcher.spin_until(lambda: bool(asked()), timeout_sec=timeout_sec):
             self._fail_absent(watcher, timeout_sec=timeout_sec)
-        # a second subscription may be a moment behind the first
+        # a second subscription may be discovered shortly after the first
         if not watcher.spin_until(lambda: 'TRANSIENT_LOCAL' in asked(), timeout_sec=SECOND_SEC):
             fail(
                 expected=f'a subscription on {self.source} with durability TRANSIENT_LOCAL',
@@ -106,7 +106,7 @@ class RelayEndpoints:
             )
 
     def expect_one_profile(self, watcher: Watcher) -> None:
-        """The node that publishes on `to` subscribes to `source` with one profile: it chose."""
+        """The node that publishes on `to` subscribes with one profile. Raises CheckFailed."""
         offers = graphs.publisher_infos(watcher.node, self.to)
         names = {graphs.full_name(offer) for offer in offers}
         asked = {
@@ -123,7 +123,7 @@ class RelayEndpoints:
         )
 
     def why_lost(self, watcher: Watcher, *, is_latched: bool, has_others: bool) -> str:
-        """Advice where a message does not come out: what may have become of it."""
+        """What to try if a message does not come out of the node: one clause."""
         asked = [
             asked
             for asked in _requests(watcher.node, self.source)
@@ -146,7 +146,7 @@ class RelayEndpoints:
         )
 
     def expect_type(self, watcher: Watcher, type_: type) -> None:
-        """Each subscription to `source` has that type: one with another type never matches."""
+        """If `source` has subscriptions, one of them has that type. Raises CheckFailed."""
         wanted = values.type_name(type_)
         infos = graphs.subscription_infos(watcher.node, self.source)
         found = {info.topic_type for info in infos}
@@ -160,7 +160,7 @@ class RelayEndpoints:
     def _timeout_sec(self, watcher: Watcher, type_: type | None = None) -> float:
         """How long to wait for a subscription, once there is a publisher.
 
-        A timer that looks for one is a reason to wait even where nothing else can come.
+        At least ABSENT_SEC: before it subscribes, a node may look for publishers in a timer.
         """
         topic = Topic(self.source)
         timeout_sec = topic.timeout_for(watcher, TIMEOUT_SEC, end='subscriptions', type_=type_)
@@ -174,7 +174,7 @@ class RelayEndpoints:
         )
 
     def _graph_without_publisher(self, watcher: Watcher) -> GraphSnapshot:
-        """The graph where nobody publishes on `to`. Raises CheckFailed if that says why."""
+        """The graph if `to` has no publisher. Raises CheckFailed if it shows the reason."""
         graph = self._graph(watcher)
         listeners = sorted({*graph.subscriptions(self.source)})
         if listeners and graph.publishes_nothing(listeners) and not what_raised(listeners):
@@ -188,12 +188,12 @@ class RelayEndpoints:
         return graph
 
     def _graph(self, watcher: Watcher) -> GraphSnapshot:
-        """The graph without other publishers on `source`: it is not they who are at fault."""
+        """The graph without other nodes that publish on `source`: the fault is not theirs."""
         everybody = graphs.take(watcher)
         others = everybody.without(everybody.publishers(self.source))
         return others if others.nodes() else everybody
 
 
 def _requests(node: Node, topic_name: str) -> list[QoSProfile]:
-    """What the student's subscriptions on a topic ask for."""
+    """The QoS profiles that the student's subscriptions on a topic request."""
     return [info.qos_profile for info in graphs.subscription_infos(node, topic_name)]

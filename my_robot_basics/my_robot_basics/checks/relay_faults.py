@@ -1,4 +1,4 @@
-"""What became of messages that went through a node: late, lost, copied, and what to say of it."""
+"""The faults of a relay: messages late, lost or copied, and what to tell the student."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,24 +8,24 @@ from my_robot_basics.checks.variety import PLAIN
 
 CALLBACK = 'publish in every call of the callback'
 FEWEST_OF_A_KIND = 3
-"""Two may be of one kind by chance, where a busy machine leaves no time for more."""
+"""This many lost messages of one kind are no coincidence, even if a busy machine allowed few."""
 
 
 @dataclass(frozen=True)
 class RelayFaults:
-    """What was amiss: how many messages were late, which of them never came, and what came twice.
+    """How many messages were late, which of them never came out, and which came out repeatedly.
 
-    Each that is late was not there before the next one was sent.
+    A message is late if it did not come out before the next one was sent.
     """
 
     late: int = 0
     lost: tuple[str, ...] = ()
     """The kind of each message that never came out."""
     copies: int = 1
-    """How often one came out at most."""
+    """How often a message came out if one came out repeatedly, otherwise 1."""
 
     def is_whole(self) -> bool:
-        """Whether enough came out in time, and each once."""
+        """Whether enough messages came out in time, each exactly once."""
         return not self.late and self.copies == 1
 
     def fault(self) -> tuple[str, str]:
@@ -50,7 +50,10 @@ class RelayFaults:
 
 
 def what_differs(others: Sequence[Any], sent: Any, fields: Sequence[str] = ()) -> str:
-    """Which fields (of these, or of all) differ while others are right, as a clause; or ''."""
+    """Name the fields that differ, as a clause; '' if in each message all or none of them do.
+
+    `fields` are those to compare; by default, all of the message.
+    """
     names = fields or tuple(sent.get_fields_and_field_types())
     for received in others:
         wrong = _differing(names, received, sent)
@@ -65,7 +68,7 @@ def _differing(names: Sequence[str], received: Any, sent: Any) -> list[str]:
 
 
 def _inside(name: str, received: Any, sent: Any) -> str:
-    """The field of that name, or the one in it that alone differs: header.frame_id."""
+    """The field's name, or that of its only differing subfield, such as header.frame_id."""
     if not hasattr(sent, 'get_fields_and_field_types'):
         return name
     wrong = _differing(tuple(sent.get_fields_and_field_types()), received, sent)

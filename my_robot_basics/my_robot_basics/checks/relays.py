@@ -1,4 +1,4 @@
-"""A node that republishes what it receives: send on one topic, subscribe to the other."""
+"""A node that republishes what it receives: publish on one topic, subscribe to the other."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -21,46 +21,46 @@ from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import free_turns
 
 EVERYTHING = QoSProfile(depth=5000, reliability=ReliabilityPolicy.BEST_EFFORT)
-"""How to listen to all that is published on the source."""
+"""The QoS for a subscription to all messages on the source."""
 AGAIN_SEC = 0.1
 """How long to wait for a message to come out before it is sent once more."""
 LOST_SEC = 4.0
-"""What has not come out in so much time that was free is lost: no relay waits."""
+"""A message that has not come out in this much free time is lost: a right relay never waits."""
 TIMES_RAISED = 10
-"""After so many times, a callback that raised has decided: see `CallbackErrors.expect_none`."""
+"""After every TIMES_RAISED attempts, the check gives up if a callback has raised."""
 OFTEN, SELDOM = 40, 10
-"""After so many times, a message is sent each tenth time only: a busy machine takes longer, and a
-node that leaves out the first hundred must not receive more than a hundred."""
+"""After OFTEN attempts, a message is sent in every tenth only. A busy machine needs more attempts,
+but a node that wrongly ignores its first 100 messages must not receive more than 100."""
 
 
 def relay(source: str, *, to: str, fields: Sequence[str] = ()) -> 'Relay':
-    """What a node makes of the topic `source` when it publishes again on the topic `to`.
+    """A node that republishes the messages of the topic `source` on the topic `to`.
 
-    `relay('/joints', to='/monitor').assert_carries(make_message, qos_profile=offered)`. Where the
-    task does not say "unchanged", `fields` names those that stay: a new stamp is then allowed.
+    `relay('/joints', to='/monitor').assert_carries(make_message, qos_profile=offered)`. If only
+    some `fields` must stay unchanged, name them: others, such as the stamp, may then differ.
     """
     return Relay(source, to, tuple(fields))
 
 
 @dataclass(frozen=True)
 class Relay:
-    """Two topics with a node of the student between them; any QoS will do on the second one."""
+    """Two topics with the student's node between them; the second one may have any QoS."""
 
     source: str
     """The topic on which the check publishes."""
     to: str
-    """The topic on which the node is to publish the same."""
+    """The topic on which the node must republish the messages."""
     fields: tuple[str, ...] = ()
-    """The fields that have to be the same; by default, all of them."""
+    """The fields that must not change; by default, all of them."""
 
     def assert_carries(self, make_message: Callable[[], Any], *, qos_profile: QoSProfile) -> None:
-        """Each message that is offered with that profile on `source` comes out on `to`, once.
+        """Each message published on `source` with that profile comes out on `to`, exactly once.
 
-        Nothing else does, and its `fields` are the same. `make_message` makes each another one;
-        some are sent twice, with zeros, negative or large numbers, or without velocities. The
-        first is sent again and again until it comes out. Then each of a hundred in a row (fewer
-        where that takes long) has to come out before the next one, and once; so have one after a
-        pause, and two right after each other. No callback raises.
+        Its `fields` are the same, nothing else comes out, and no callback raises. `make_message`
+        makes a new message in each call; some are sent twice, with zeros, negative or large
+        numbers, or without velocities. The first is sent repeatedly until it comes out. Then each
+        of `enough.TIMES` in a row (fewer if that takes long) must come out before the next one,
+        and so must one after a pause and two right after each other. Raises CheckFailed.
         """
         make_message = filled(make_message)
         with Watcher(shared=True) as watcher:
@@ -75,11 +75,11 @@ class Relay:
             self._expect_passage(watcher, recorder, publisher, make_message, raised, first)
 
     def assert_carries_latched(self, make_message: Callable[[], Any], *, times: int = 1) -> None:
-        """A message that was published before anybody subscribed comes out on `to`, once.
+        """A latched message published before anyone subscribes comes out on `to`, exactly once.
 
-        So many times a new participant publishes one latched message, a new one of
-        `make_message`, before it has met anybody. And the graph says that the node asks for it:
-        TRANSIENT_LOCAL. What the last participant publishes then comes out, too.
+        `times` times, a new participant publishes a message of `make_message` before it discovers
+        any other. The node's subscription must request TRANSIENT_LOCAL. What the last participant
+        publishes afterwards must come out, too. Raises CheckFailed.
         """
         make_message = filled(make_message)
         with Watcher(shared=True) as watcher:
@@ -94,7 +94,7 @@ class Relay:
                         endpoints.expect_type(watcher, recorder.type)
                         endpoints.expect_one_profile(watcher)
                     self._expect_out(watcher, recorder, message, raised, before=before)
-                    # one behind the other, should there be two
+                    # if a second copy comes, it comes right after the first
                     watcher.spin_for(QUIET_SEC)
                     count = sum(self._is_same(each, message) for each in recorder.messages())
                     if count > 1:
@@ -164,7 +164,7 @@ class Relay:
         before: int = 0,
         again: Publisher | None = None,
     ) -> None:
-        """Wait for the message on `to`, behind so many; publish it `again` and again meanwhile."""
+        """Wait for the message on `to`, after `before` others; send it `again` meanwhile."""
         for times in free_turns(LOST_SEC):
             if again is not None and (times <= OFTEN or times % SELDOM == 0):
                 again.publish(message)
@@ -189,7 +189,7 @@ class Relay:
         )
 
     def _what(self, message: Any) -> bytes:
-        """What of a message has to come out as it is: all of it, or those fields."""
+        """The part of a message that must come out unchanged: all of it, or `fields`."""
         if self.fields:
             message = type(message)(**{name: getattr(message, name) for name in self.fields})
         return serialize_message(message)

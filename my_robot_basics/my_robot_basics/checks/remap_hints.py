@@ -1,4 +1,4 @@
-"""What is wrong with the rules of a command line, judged by what they should have brought."""
+"""What is wrong with the remap rules of a command line, judged by the names they should give."""
 
 from my_robot_basics.feedback.errors import shorten
 from my_robot_basics.ros2.command_line import OPTIONS_OF_PARAMETERS, CommandLine
@@ -11,7 +11,7 @@ _ENDED = (
 
 
 def for_a_name(line: CommandLine, node_name: str) -> str:
-    """What to try where a node has not the full name that it was to get: one clause."""
+    """What to try if a node does not have the full name that it should have: one clause."""
     rules = dict(line.rules())
     namespace, _, name = node_name.rpartition('/')
     given = next((rules[left] for left in _NAMES if left in rules), None)
@@ -38,7 +38,7 @@ def for_a_name(line: CommandLine, node_name: str) -> str:
 
 
 def for_a_topic(line: CommandLine, node_name: str, topic_name: str) -> str:
-    """What to try where a node still uses a topic that was to be renamed: one clause."""
+    """What to try if a node still uses a topic that should be renamed: one clause."""
     namespace = node_name.rpartition('/')[0]
     rules = [(left, right) for left, right in line.rules() if not left.startswith('__')]
     if not rules:

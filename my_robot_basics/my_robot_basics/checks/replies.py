@@ -1,4 +1,4 @@
-"""What a client of `/move_arm` is to do with what its server answers; positions in radians."""
+"""What a client of `/move_arm` must do with the server's responses; positions in radians."""
 
 import random
 from collections.abc import Sequence
@@ -20,7 +20,7 @@ from my_robot_basics.checks.unasked_cancels import (
 from my_robot_basics.checks.watched_arm import Pose
 
 SPEED = 0.5
-"""What the client is to ask for, in rad/s."""
+"""The speed that the client must request, in rad/s."""
 EXACT = 1e-6
 OUTCOMES: tuple[Ending, ...] = ('succeeded', 'aborted')
 _RESULT = 'publish the outcome when the result is there: future.result().status tells how it ended'
@@ -32,7 +32,7 @@ _WORDS = {
 
 
 def choose(numbers: random.Random, count: int) -> list[tuple[float, float]]:
-    """So many positions, each another one."""
+    """Choose `count` positions that differ clearly from each other."""
     chosen: list[tuple[float, float]] = []
     while len(chosen) < count:
         pose = round(numbers.uniform(-1.4, 1.4), 3), round(numbers.uniform(-2.0, 2.0), 3)
@@ -42,14 +42,14 @@ def choose(numbers: random.Random, count: int) -> list[tuple[float, float]]:
 
 
 def choose_outcomes(numbers: random.Random) -> dict[str, tuple[float, float]]:
-    """A position for each outcome that `expect_outcomes` knows, in some order."""
+    """A position for each outcome that `expect_outcomes` knows, in random order."""
     words = ['succeeded', 'rejected', 'aborted']
     numbers.shuffle(words)
     return dict(zip(words, choose(numbers, len(words)), strict=True))
 
 
 def expect_outcomes(server: ServedAction, **positions: Pose) -> None:
-    """Each position becomes a goal that ends as its word says, and the outcome is that word.
+    """Each position leads to a goal that ends as its word says; the client publishes that word.
 
     `expect_outcomes(server, succeeded=(0.5, 0.2), rejected=(1.0, 0.4))`. Raises CheckFailed.
     """
@@ -66,33 +66,34 @@ def expect_outcomes(server: ServedAction, **positions: Pose) -> None:
 
 
 def expect_waiting(server: ServedAction, early: Pose, later: Pose) -> None:
-    """A pose that comes while there is no server, which then starts, takes its time, and succeeds.
+    """A client that gets the `early` pose without a server still sends a goal for the `later` one.
 
-    The client waits for no server, and sends a goal for the later pose. Raises CheckFailed.
+    The server starts between the two, and succeeds after a while. The client must neither block
+    while there is no server, nor publish an outcome too soon. Raises CheckFailed.
     """
     publish_in_vain(server, _pose(early))
-    server.let_client_know()  # or the goal for it may be sent when there is a server
+    server.let_client_know()  # otherwise the client may process it when there is a server
     server.start()
     goal = ask(server, later)
-    server.forget_outcomes()  # the early pose may have become a goal, which has succeeded
+    server.forget_outcomes()  # a goal for the early pose may have come late, and succeeded
     server.expect_no_outcome('the server takes its time')
     goal.finish('succeeded')
     _expect(server, 'succeeded')
 
 
 def expect_cancel(server: ServedAction, position: Pose) -> None:
-    """An obstacle cancels the goal, which is canceled then. Raises CheckFailed."""
+    """An obstacle makes the client cancel its goal and publish 'canceled'. Raises CheckFailed."""
     goal = ask(server, position)
     _expect_cancel_of(server, goal)
 
 
 def expect_no_cancel(server: ServedAction, position: Pose) -> None:
-    """An obstacle that is there before the goal, or is there no longer, cancels nothing.
+    """The client does not cancel a goal for an obstacle before the goal, or for False.
 
     Raises CheckFailed.
     """
     server.say_obstacle(is_there=True)
-    server.let_client_know()  # two topics know no order: or the goal may come first
+    server.let_client_know()  # without this, the pose may overtake it: two topics have no order
     goal = ask(server, position)
     expect_none_for_earlier(server, goal)
     server.say_obstacle(is_there=False)
@@ -102,7 +103,7 @@ def expect_no_cancel(server: ServedAction, position: Pose) -> None:
 
 
 def expect_refused_cancel(server: ServedAction, position: Pose) -> None:
-    """The server rejects the request to cancel: the goal succeeds all the same.
+    """The server rejects the request to cancel, the goal succeeds, and so does the outcome.
 
     Raises CheckFailed.
     """
@@ -118,7 +119,7 @@ def expect_refused_cancel(server: ServedAction, position: Pose) -> None:
 def expect_cancel_in_spite_of_a_second_goal(
     server: ServedAction, first: Pose, second: Pose
 ) -> None:
-    """While the first goal moves, a second one is rejected; an obstacle cancels the first.
+    """While the first goal executes, a second one is rejected; an obstacle cancels the first.
 
     Raises CheckFailed.
     """

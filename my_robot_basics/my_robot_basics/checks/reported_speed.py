@@ -1,4 +1,4 @@
-"""The speed of the arm on one move, as its feedback tells it."""
+"""The speed of the arm during one move, computed from its feedback."""
 
 from dataclasses import dataclass
 
@@ -8,32 +8,36 @@ from my_robot_basics.checks.action_ends import SentGoal
 from my_robot_basics.checks.watched_arm import Pose, WatchedArm
 
 FEWEST = 4
-"""So much feedback tells a speed; of more than MOST messages, as many are looked at."""
+"""The least number of feedback messages from which a speed is computed."""
 MOST = 150
+"""The most feedback messages that are compared pairwise, taken evenly from all of them."""
 ALIKE = 1e-4
-"""So much of a step may two steps differ that were added, and not computed from a clock."""
+"""Steps that differ by at most this part are constant: not computed from a clock, but added."""
 FEWEST_OF_WALL = 3
+"""The least number of feedback messages that prove a move by the wall clock."""
 WALL_SEC, WALL_PART = 0.3, 0.1
-"""A move by the wall clock may be behind it by so much, and by that part of the time so far."""
+"""A move by the wall clock may differ from it by WALL_SEC plus this part of the time since the
+goal was sent."""
 OFTEN = 0.1
-"""So many of a loop's gaps are hardly longer than it was to sleep, on a busy machine, too."""
+"""The quantile of a loop's gaps that is close to its sleep, even on a busy machine."""
 
 
 @dataclass(frozen=True)
 class ReportedSpeed:
-    """What the feedback tells."""
+    """The speed according to the feedback."""
 
     rad_per_sec: float
-    """Of the faster joint; 0 where there is too little feedback on the way."""
+    """The speed of the faster joint; 0 if there is too little feedback during the move."""
     step_sec: float = 0.0
-    """How long a step takes of an arm that adds one step to the other; else 0."""
+    """The time between the steps of an arm that adds constant steps; otherwise 0."""
 
 
 def reported_speed(arm: WatchedArm, sent: SentGoal, position: Pose) -> ReportedSpeed:
     """The speed of a move from where the arm was to that position.
 
-    The median over all pairs of messages: one that is late hardly moves it. A loop that adds up
-    steps and sleeps between them is late with many, and early with none: its short gaps tell.
+    It is the median over all pairs of messages, which a few late ones hardly change. A loop that
+    adds constant steps and sleeps between them is different: it is often late and never early, so
+    its speed is computed from its short gaps.
     """
     times, ways = _on_the_way(arm, sent, position)
     if len(times) < FEWEST:
@@ -54,10 +58,10 @@ def reported_speed(arm: WatchedArm, sent: SentGoal, position: Pose) -> ReportedS
 
 
 def is_of_wall_time(arm: WatchedArm, sent: SentGoal, position: Pose, *, apart_sec: float) -> bool:
-    """Whether the feedback tells how far the arm would be by the wall clock, and not by its own.
+    """Whether the feedback follows the wall clock instead of the node's clock.
 
-    Its own clock is driven, and was held for more than `apart_sec` since the goal was sent: both
-    are so far apart afterwards, however busy the machine is.
+    The check drives the node's clock, and has held it for more than `apart_sec` since the goal was
+    sent. So both clocks differ by more than this afterwards, however busy the machine is.
     """
     own_sec, ways = _on_the_way(arm, sent, position)
     wall_sec, _ = _on_the_way(arm, sent, position, is_wall=True)
@@ -73,7 +77,7 @@ def is_of_wall_time(arm: WatchedArm, sent: SentGoal, position: Pose, *, apart_se
 def _on_the_way(
     arm: WatchedArm, sent: SentGoal, position: Pose, *, is_wall: bool = False
 ) -> tuple[np.ndarray, np.ndarray]:
-    """When the feedback came, in s, and how far the faster joint had gone then, in rad."""
+    """The times of the feedback during the move, in s, and the faster joint's way, in rad."""
     ways = [b - a for a, b in zip(arm.start, position, strict=True)]
     joint = max(range(len(ways)), key=lambda number: abs(ways[number]))
     found = []

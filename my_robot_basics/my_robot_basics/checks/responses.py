@@ -1,4 +1,4 @@
-"""Which messages of a node are made of responses that were sent to it, each of one of its own."""
+"""Match a node's messages with the responses sent to it: each needs a response of its own."""
 
 import time
 from collections.abc import Callable, Sequence
@@ -10,20 +10,20 @@ from my_robot_basics.feedback.errors import fail
 from my_robot_basics.graph.watcher import Watcher
 
 MadeOf = Callable[[Any, Any], bool]
-"""Whether a message is made of a response."""
+"""A function of a message and a response: whether the node made the message from the response."""
 OWED_SEC = 0.5
-"""How long a node may take to ask or to publish what it owes, of free time."""
+"""How long to wait for an outstanding request or message of a node, in s of free time."""
 
 
 def of_none(_message: Any, _response: Any) -> bool:
-    """No message is made of any response."""
+    """Return False: no message is made from any response."""
     return False
 
 
 def wait_for_owed(watcher: Watcher, requests: Sequence[Any], most: int) -> None:
-    """Wait for so many requests, each OWED_SEC at most: one for each message that was published.
+    """Wait for `most` requests, one for each published message; for each OWED_SEC at most.
 
-    A client may keep a message that came twice, and ask for it when the first one is answered.
+    The last may be late: a client may keep a repeated message until the first one is answered.
     """
     before = -1
     while before < len(requests) < most:
@@ -32,10 +32,10 @@ def wait_for_owed(watcher: Watcher, requests: Sequence[Any], most: int) -> None:
 
 
 class Made:
-    """The messages on a topic, since `begin`, beside the responses of a server."""
+    """The messages on a topic since `begin`, matched with the responses of a server."""
 
     def __init__(self, watcher: Watcher, recorder: Recorder, sent: Sequence[Any]) -> None:
-        """`sent`: the responses so far; more come."""
+        """`sent` is the list of responses, to which the server appends."""
         self._watcher, self._recorder, self._sent = watcher, recorder, sent
         self._left: list[Any] = []
         self._others: list[Any] = []
@@ -43,30 +43,30 @@ class Made:
         self._began_ns = 0
 
     def begin(self) -> None:
-        """Count what is sent from now on; only the first call does that.
+        """Count only messages that are sent from now on; later calls change nothing.
 
-        A late joiner may receive what was published for another server, before this one.
+        A late-joining subscription may receive messages that were made for an earlier server.
         """
         self._began_ns = self._began_ns or time.time_ns()
 
     def others(self, made_of: MadeOf) -> list[Any]:
-        """The messages that are made of no response, or of one that has its message."""
+        """The messages that match no response, or only one that another message matches."""
         self._look(made_of)
         return self._others
 
     def messages(self) -> list[Any]:
-        """All of them, in order."""
+        """All messages since `begin`, in order."""
         return [message for message, sent_ns in self._recorder.received if self._counts(sent_ns)]
 
     def was_sent_before(self, time_ns: int, message: Any) -> bool:
-        """Whether one of the messages left before that time, by the wall clock."""
+        """Whether this very message was sent before that wall time."""
         received = self._recorder.received
         return any(each is message and sent_ns < time_ns for each, sent_ns in received)
 
     def expect_no_others(self, made_of: MadeOf, *, hint: Callable[[Any], str]) -> None:
-        """Each message so far is made of a response that was sent, no two of the same one.
+        """Each message so far is made from a response of its own. Raises CheckFailed.
 
-        `hint(message)` says what is wrong with another one. Raises CheckFailed.
+        `hint(message)` says what is wrong with a message for which this is not so.
         """
         topic_name = self._recorder.topic_name
         if others := self.others(made_of):
@@ -78,9 +78,9 @@ class Made:
             )
 
     def wait_for_rest(self, made_of: MadeOf, *, leads: Callable[[Any], bool]) -> None:
-        """Wait for the message of each response that `leads` to one, so far as it comes.
+        """Wait up to OWED_SEC for the message of each response that `leads` to one.
 
-        Else the next check might receive it.
+        Otherwise the next check might receive it.
         """
 
         def is_all() -> bool:

@@ -1,4 +1,4 @@
-"""The time in which a check watches a node: the robot's clock, step by step, or the wall clock."""
+"""The clock by which a check watches a node: the robot's clock, in steps, or the wall clock."""
 
 import time
 from collections.abc import Callable
@@ -9,27 +9,28 @@ from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
 
 DUE_SEC = 0.05
-"""How long to wait, of free time, for what a thread of the node is to do in a tick."""
+"""How long to wait for what a thread of the node should do in a tick, in s of free time."""
 MOST_FAILED_WAITS = 5
+"""`DrivenTime` stops waiting for threads if this many more waits failed than succeeded."""
 PUSH_NS, LONGEST_PUSH_NS = 500_000_000, 16_000_000_000
+"""`push` doubles its steps, from PUSH_NS to LONGEST_PUSH_NS."""
 PUSH_SEC = 0.001
-"""Steps of a clock that is only to come to an end, each twice as far as the one before up to the
-longest, and how long each lasts."""
+"""The wall time between the steps of `push`."""
 PUSHED_TIMES = 5
-"""How much longer that may take on a busy machine."""
+"""How many times as long `push` may take on a busy machine."""
 MOST_OFF_NS = 1_000_000_000
-"""A node on this clock is never so far off it; one that nothing has reached yet shows 0."""
+"""A node on this clock never differs from it by more; before its first `/clock` it shows 0."""
 
 
 class WallTime:
-    """The wall clock; of a wait, only time counts that was free.
+    """The wall clock; timeouts of `wait` count free time only.
 
-    `DrivenTime` has the same attributes and methods.
+    `DrivenTime` can be used in its place.
     """
 
     is_driven = False
     step_ns = 0
-    """How far a tick moves it; 0: it goes by itself."""
+    """How far a tick moves the clock; 0 because the wall clock moves by itself."""
 
     def __init__(self, watcher: Watcher) -> None:
         self._watcher = watcher
@@ -40,31 +41,31 @@ class WallTime:
         return time.time_ns()
 
     def at_ns(self, wall_ns: int) -> int:
-        """The time at a wall time, such as a message's source timestamp; both in ns."""
+        """Convert a wall time, such as a message's source timestamp, to this clock; in ns."""
         return wall_ns
 
     def wait(self, done: Callable[[], bool], *, seconds: float) -> bool:
-        """Spin until `done()`, for so many seconds that were free; whether it is done."""
+        """Spin until `done()`, at most for `seconds` of free time; return whether it is done."""
         return self._watcher.spin_until_free(done, free_sec=seconds)
 
     def let_pass(self, done: Callable[[], bool], *, seconds: float) -> None:
-        """Spin for so many seconds, or fewer if it is done before."""
+        """Spin for `seconds` of wall time, or until `done()` if that is sooner."""
         self._watcher.spin_until(done, timeout_sec=seconds)
 
     def wall_sec(self) -> float:
-        """How long ago this was made."""
+        """The wall time since this object was created."""
         return self._watch.wall_sec()
 
     def stalled_sec(self) -> float:
-        """For how long processes had to wait for a processor since this was made."""
+        """How long processes had to wait for a processor since this object was created."""
         return self._watch.wall_sec() - self._watch.free_sec()
 
 
 class DrivenTime:
     """The robot's clock, in steps that the node acknowledges.
 
-    A thread of the node that sleeps on this clock acknowledges nothing. `beat()` counts what it
-    does, such as the feedback of an action: where that came every so many steps so far, the next
+    A thread of the node that sleeps on this clock acknowledges nothing. So `beat()` counts what it
+    does, such as sending feedback of an action: if that happened every n steps so far, the n-th
     step waits for it.
     """
 
@@ -79,22 +80,22 @@ class DrivenTime:
         self._last = beat()
         self._silent_steps = 0
         self._every = 0
-        """A beat came after so many steps lately; 0: nobody knows."""
+        """How many steps there were before the latest beat; 0 if unknown."""
         self._failed_waits = 0
-        """How many more waits for a beat failed than not: if many, no such thread exists."""
+        """Failed minus successful waits for a beat: if many, there is no such thread."""
 
     def now_ns(self) -> int:
-        """What `/clock` shows, in ns."""
+        """The time that `/clock` shows, in ns."""
         return self._clock.now_ns
 
     def at_ns(self, wall_ns: int) -> int:
-        """What it showed then."""
+        """The time that `/clock` showed at that wall time; both in ns."""
         return max(self._began_ns, self._clock.time_ns(wall_ns))
 
     def wait(self, done: Callable[[], bool], *, seconds: float) -> bool:
-        """Step until `done()`, for so many seconds; whether it is done.
+        """Step until `done()`, at most for `seconds` of this clock; return whether it is done.
 
-        Raises Inconclusive where the node does not follow.
+        Raises Inconclusive if the node does not follow the clock.
         """
         end_ns = self.now_ns() + round(seconds * 1e9)
         while not done():
@@ -104,25 +105,26 @@ class DrivenTime:
         return True
 
     def let_pass(self, done: Callable[[], bool], *, seconds: float) -> None:
-        """Step for so many seconds, or fewer if it is done before."""
+        """Step for `seconds` of this clock, or until `done()` if that is sooner."""
         self.wait(done, seconds=seconds)
 
     def expect_shown(self, node_ns: int) -> None:
-        """Raise Inconclusive where a node's clock showed another time just now.
+        """Raise Inconclusive if `node_ns`, the node's present time, differs from `/clock`.
 
-        `/clock` is sent once: on a busy machine, a node that has just been switched may miss it.
+        Each time is published once: on a busy machine, a node that has just been switched to this
+        clock may miss it.
         """
         if abs(node_ns - self.now_ns()) > MOST_OFF_NS:
             raise Inconclusive("the node's clock shows another time")
 
     def hold(self, seconds: float) -> None:
-        """Let the clock stand still for so many seconds of wall time."""
+        """Let the clock stand still for `seconds` of wall time."""
         self._clock.hold(seconds)
 
     def push(self, done: Callable[[], bool], *, free_sec: float) -> bool:
-        """Step without waiting for anybody until `done()`; whether that came in time.
+        """Step without waiting for the node until `done()`; return whether it is done in time.
 
-        Time in which processes waited for a processor does not count, up to PUSHED_TIMES as much.
+        It may take `free_sec` of free time, and PUSHED_TIMES as much wall time.
         """
         watch, step_ns = Stopwatch(), PUSH_NS
         while not done():
@@ -143,7 +145,7 @@ class DrivenTime:
             )
             self._failed_waits += -1 if came else 1
             if came:
-                self._clock.acknowledge()  # it has its turn to go to sleep again
+                self._clock.acknowledge()  # this gives the thread time to sleep again
         if (count := self._beat()) > self._last:
             self._every, self._silent_steps, self._last = self._silent_steps, 0, count
         elif is_due:

@@ -22,15 +22,16 @@ HOLD_SEC = 1.0
 UNEVEN = 'its messages are not evenly spaced'
 COUNTS = "it counts the calls of a timer that is faster than the clock's steps"
 CLOSER = (1.0, 0.1)
-"""Parts of the steps and of the time that are asked for: the second finds counted calls. …"""
+"""The recording is tried with these parts of the steps and of the time that are asked for. The
+second detects nodes that count the calls of a timer faster than the clock's steps."""
 SECONDS_LEAST = 2.0
-"""… It records no less. A drive that waits for threads has to prove something in so much first:
-a node that remembers when it published last is silent until the wall clock has come as far."""
+"""The shortest recording. A drive that waits for threads records only this much at first: a node
+that remembers when it published last is silent later until the wall clock has caught up."""
 PATTERN_SEC = 6.0
-"""Messages with alternating gaps, or several at once each second, have shown it by then."""
+"""Long enough to show a pattern: alternating gaps, or several messages at once each second."""
 PATTERN_STEP_SEC, STEPS_APART = 0.01, 4
-"""Finer steps take as long as the wall clock, and so do fine ones for many messages: fewer than so
-many steps from one to the next."""
+"""With steps below FINER_BELOW_SEC, `_pattern` records only if they are at least PATTERN_STEP_SEC
+and messages at least STEPS_APART steps apart: otherwise, the wall clock is as quick."""
 
 
 def simulated(
@@ -41,9 +42,10 @@ def simulated(
     step_sec: float,
     hold_sec: float = HOLD_SEC,
 ) -> Recording | Inconclusive:
-    """A recording on the robot's clock, or why there is none: TooSlow on a busy machine alone.
+    """A recording on the robot's clock, or the reason why there is none.
 
-    `hold_sec`: how long the clock stands still where messages may ignore it.
+    The reason is TooSlow only if the machine is busy. `hold_sec`: for how much wall time the clock
+    stands still, to see whether the node ignores it.
     """
     watch = Stopwatch()
     try:
@@ -69,7 +71,7 @@ class Uneven(Inconclusive):
     """Messages that are not evenly spaced."""
 
     def __init__(self, recording: Recording) -> None:
-        """`recording`: the messages."""
+        """`recording` has the messages."""
         super().__init__(UNEVEN)
         self.recording = recording
 
@@ -77,9 +79,10 @@ class Uneven(Inconclusive):
 def _patient(
     topic: DrivenTopic, first: Inconclusive, *, seconds: float, step_sec: float
 ) -> Recording | Inconclusive:
-    """A recording that leaves threads their time, after one that has proven nothing.
+    """Record again and wait for threads after each tick, after a recording without a result.
 
-    A short one, unless that goes well: so far ahead of the wall clock may a thread have to wait.
+    It is short at first, and as long as asked for only if that succeeds: afterwards a thread may
+    have to wait until the wall clock has caught up with this one.
     """
     topic.wait_for_threads()
     if isinstance(first, Uneven) and (shown := _pattern(topic, first, step_sec=step_sec)):
@@ -98,7 +101,7 @@ def _sampled(topic: DrivenTopic, *, seconds: float, step_sec: float) -> Recordin
         if rates.leaves_out(recording):
             return recording
         if recording.is_over or not rates.is_even(recording):
-            return Uneven(recording)  # should it go on, a thread was late
+            return Uneven(recording)  # perhaps a thread was late: see `_patient`
         proof = prove(topic, recording)
         if proof is None:
             topic.expect_follows()  # a thread may publish on the wall clock beside a timer
@@ -110,9 +113,9 @@ def _sampled(topic: DrivenTopic, *, seconds: float, step_sec: float) -> Recordin
 
 
 def _pattern(topic: DrivenTopic, first: Uneven, *, step_sec: float) -> Recording | None:
-    """A recording of messages in a pattern that no timer makes: by these steps, and by finer ones.
+    """A recording of a pattern that no timer makes, with a proof in finer steps, or None.
 
-    None where the first drive has shown none, or where the wall clock is as quick.
+    None if the first recording has no pattern, or if recording on the wall clock is as quick.
     """
     seen = first.recording
     if not _shows_soon(seen) or rates.pattern_in(seen) is None:

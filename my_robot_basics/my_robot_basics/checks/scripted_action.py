@@ -1,4 +1,4 @@
-"""A server of an action that accepts, rejects and ends goals as the check tells it to."""
+"""An action server that accepts, rejects and ends goals as the check tells it to."""
 
 import time
 from collections.abc import Callable
@@ -15,51 +15,51 @@ from my_robot_basics.checks.sending import wait_for_readers
 
 Ending = Literal['succeeded', 'aborted', 'canceled']
 REPORT_SEC = 0.1
-"""Feedback on a goal comes so often."""
+"""The period of the feedback on each executing goal."""
 SERVICES = 'send_goal', 'get_result', 'cancel_goal'
-"""What an action's server answers to."""
+"""The services of an action server."""
 
 
 @dataclass
 class ReceivedGoal:
-    """A goal that the server was sent."""
+    """A goal that the server has received."""
 
     request: Any
     """The goal's message."""
     is_accepted: bool
     end: Future = field(default_factory=Future)
-    """Set to how it is to end."""
+    """Its result is the Ending that `finish` was given; the goal executes until then."""
     cancels: list[int] = field(default_factory=list)
-    """When it was asked to cancel it, each time: wall time in ns."""
+    """When each request to cancel the goal came: wall time in ns."""
     received_ns: int = field(default_factory=time.time_ns)
-    """When it came: wall time in ns."""
+    """When the goal came: wall time in ns."""
 
     def cancelled_sec(self) -> float:
-        """How long after it came it was first asked to cancel it, in s; 0 where it was not."""
+        """The time from the goal to the first request to cancel it, in s; 0 if there was none."""
         return (self.cancels[0] - self.received_ns) / 1e9 if self.cancels else 0.0
 
     def finish(self, ending: Ending) -> None:
-        """Let it end so."""
+        """Let the goal end with that status."""
         self.end.set_result(ending)
 
 
 class ScriptedActionServer:
-    """Serves as soon as `start` was called, on a node that somebody else spins."""
+    """An action server that exists from `start` to `stop`; the caller spins the node."""
 
     def __init__(self, node: Node, *, name: str, type_: type) -> None:
         self.name, self.type = name, type_
         self.goals: list[ReceivedGoal] = []
-        """All that it was sent, in order."""
+        """All goals that the server has received, in order."""
         self.is_expected: Callable[[Any], bool] = lambda _: False
         """Whether a goal is the one that the check waits for; any other succeeds at once."""
         self.accepts = True
-        """Whether it accepts that one."""
+        """Whether the server accepts the expected goal."""
         self.cancels = True
-        """Whether it accepts a request to cancel."""
+        """Whether the server accepts requests to cancel."""
         self.reports: Callable[[Any], Any] | None = None
-        """The feedback on a goal that has not ended, made of its message; None: there is none."""
+        """Makes the feedback on an executing goal from the goal's message; None: no feedback."""
         self.starts = 0
-        """How often it was started."""
+        """How often `start` was called."""
         self._node = node
         self._timer: Timer | None = None
         self._server: ActionServer | None = None
@@ -67,7 +67,7 @@ class ScriptedActionServer:
         self._executed: list[ReceivedGoal] = []
 
     def start(self) -> None:
-        """Serve."""
+        """Create the action server."""
         self._server = ActionServer(
             self._node,
             self.type,
@@ -83,11 +83,11 @@ class ScriptedActionServer:
         self.starts += 1
 
     def is_there(self) -> bool:
-        """Whether it serves."""
+        """Whether the action server exists."""
         return self._server is not None
 
     def stop(self) -> None:
-        """Be absent."""
+        """Destroy the action server."""
         if self._server is not None and self._timer is not None:
             self._node.destroy_timer(self._timer)
             self._server.destroy()

@@ -1,4 +1,4 @@
-"""Inputs that nobody can guess, and that a re-grade can repeat."""
+"""Random inputs that a student cannot guess, and that a second grading repeats."""
 
 import os
 import random
@@ -7,10 +7,10 @@ from my_robot_basics.feedback import hidden
 
 
 def inputs(label: str) -> random.Random:
-    """A source of random inputs for the check of that label: `inputs('reach').uniform(0.2, 1.8)`.
+    """A random generator for the check of that label: `inputs('reach').uniform(0.2, 1.8)`.
 
-    It depends on MY_ROBOT_BASICS_SEED (the grader's, one for each student) and the label alone;
-    without a seed, as in a student's own kernel, it differs each time.
+    Its numbers depend only on the label and on MY_ROBOT_BASICS_SEED, which the grader sets for
+    each student. Without a seed, as in a student's own kernel, they differ each time.
     """
     hidden.note_inputs()
     seed = os.environ.get('MY_ROBOT_BASICS_SEED')

@@ -1,4 +1,4 @@
-"""Send a response also to a client that DDS has not met yet."""
+"""Send responses reliably to clients that DDS has not discovered completely yet."""
 
 import time
 import warnings
@@ -9,16 +9,16 @@ from typing import Any
 from rclpy.node import Node
 
 ATTEMPTS = 50
-"""Each waits 0.1 s for the client's end, as rmw does."""
+"""How often to send a response; in each attempt, rmw waits 0.1 s for the client's endpoint."""
 POLL_SEC = 0.01
 _PARTICIPANT_BYTES = 12
-"""So much of an endpoint's GID is its DDS participant's."""
+"""The first bytes of an endpoint's GID, which identify its DDS participant."""
 
 
 def send_until_met(send: Callable[[], None]) -> None:
     """Call `send` again while rclpy warns that the client will not receive the response.
 
-    It was not met in time: on a busy machine that takes longer, and the response is lost.
+    rclpy does so if the client is not discovered within 0.1 s, as happens on a busy machine.
     """
     for _ in range(ATTEMPTS):
         with warnings.catch_warnings(record=True) as said:
@@ -35,11 +35,11 @@ def send_until_met(send: Callable[[], None]) -> None:
 
 
 def wait_for_readers(node: Node, services: Sequence[str], *, asked: str = '') -> None:
-    """Wait until DDS knows where each client of these services reads its responses.
+    """Wait until DDS has discovered the response reader of each client of these services.
 
-    An `ActionServer` sends a response once, and rmw drops it where it does not know that by then.
-    A request of `asked` is there: so it has a client, although the graph may not know it yet.
-    It waits as long as `send_until_met` does, at most. Full names: '/move_arm/_action/send_goal'.
+    An `ActionServer` sends a response once, and rmw drops it if the reader is unknown then. The
+    service `asked` has received a request, so it has a client even if the graph shows none yet.
+    Names are full, such as '/move_arm/_action/send_goal'. It waits 5 s at most.
     """
     for _ in range(round(ATTEMPTS * 0.1 / POLL_SEC)):
         if all(_knows_readers(node, name, is_asked=name == asked) for name in services):

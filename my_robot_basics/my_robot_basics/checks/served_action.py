@@ -1,4 +1,4 @@
-"""The check's own server of an action, and what a node makes of how its goals end."""
+"""The check's own action server, and the outcomes that a client publishes of its goals."""
 
 from collections.abc import Callable
 from typing import Any
@@ -17,16 +17,17 @@ from my_robot_basics.feedback.hidden import theirs
 from my_robot_basics.graph.watcher import Watcher
 
 REPLY_SEC = 4.0
-"""How long to wait for a goal, a request to cancel or an outcome, of free time."""
+"""How long to wait for a goal, a request to cancel or an outcome, in s of free time."""
 QUIET_SEC, SOON_SEC, MORE_SEC = 0.5, 0.25, 0.05
-"""How long to listen for what must not come, for what a node that has dealt with all that came
-must not publish, and for more of a callback that has published."""
+"""How long to wait for what must not come: normally; if the node has already processed everything;
+for a second message of a callback that has published one. In s of wall time."""
 AGAIN_SEC, MEET_SEC, MET_SEC = 1.0, 2.0, 0.2
-"""A client that has just met the server may lose a goal: its message is published again then."""
+"""A new client may lose a goal, so its message is published again after AGAIN_SEC. Before that,
+MEET_SEC is how long to wait for the client, and MET_SEC for it to discover the server."""
 
 
 class ServedAction(ScriptedActionServer):
-    """What `action_server` yields, while it lasts."""
+    """The server that `action_server` yields, for the duration of its with statement."""
 
     def __init__(
         self,
@@ -49,16 +50,17 @@ class ServedAction(ScriptedActionServer):
         self._cancelled_sec = 0.0  # how long a request took that an obstacle asked for, at most
 
     def publish(self, message: Any) -> None:
-        """Publish a message that is to lead to a goal, without waiting for one."""
+        """Publish a message that should lead to a goal, without waiting for the goal."""
         self._was_away = self._was_away or self._server is None
         self._publish(self.asked_on, message)
 
     def ask(
         self, message: Any, *, is_it: Callable[[Any], bool], hint: Callable[[Any], str]
     ) -> ReceivedGoal:
-        """Publish a message on `asked_on`; the goal that it leads to, for which `is_it` holds.
+        """Publish a message on `asked_on`; return the goal to which it leads.
 
-        `hint(request)` says what is wrong with another one. Raises CheckFailed with the reason.
+        That is the first new goal for which `is_it` holds. `hint(request)` says what is wrong with
+        another goal. Raises CheckFailed with the reason.
         """
         self.is_expected = is_it
         self._meet_client()
@@ -84,18 +86,18 @@ class ServedAction(ScriptedActionServer):
         )
 
     def say_obstacle(self, is_there: bool) -> None:
-        """Publish on `cancelled_on`."""
+        """Publish on `cancelled_on` whether there is an obstacle."""
         self._before = len(self._outcomes.received)
         self._publish(self.cancelled_on, Bool(data=is_there))
 
     def expect_cancel_of(self, goal: ReceivedGoal) -> None:
-        """A request comes to cancel that goal for True on `cancelled_on`. Raises CheckFailed."""
+        """The client cancels that goal for True on `cancelled_on`. Raises CheckFailed."""
         self.say_obstacle(is_there=True)
         for _ in range(round(REPLY_SEC / AGAIN_SEC)):
             if self.watcher.spin_until_free(lambda: bool(goal.cancels), free_sec=AGAIN_SEC):
                 self._cancelled_sec = max(self._cancelled_sec, goal.cancelled_sec())
                 return
-            # it may have come before the client knew that its goal was accepted
+            # the message may have arrived before the client knew that its goal was accepted
             self._publish(self.cancelled_on, Bool(data=True))
         fail(
             expected=f'a request to cancel the goal for True on {self.cancelled_on}',
@@ -105,13 +107,13 @@ class ServedAction(ScriptedActionServer):
         )
 
     def is_cancelled(self, goal: ReceivedGoal, *, soon: bool) -> bool:
-        """Whether a request comes to cancel it, soon or after a while."""
-        # for longer than one has taken so far: a client may cancel each goal after a while
+        """Whether the client cancels the goal within a short (`soon`) or longer time."""
+        # longer than any such request took so far: a client may cancel each goal after a while
         quiet_sec = SOON_SEC if soon else QUIET_SEC + 1.5 * self._cancelled_sec
         return self.watcher.spin_until(lambda: bool(goal.cancels), timeout_sec=quiet_sec)
 
     def expect_outcome(self, word: str, *, hint: Callable[[str], str]) -> None:
-        """That word comes, once; `hint(seen)` is for another one. Raises CheckFailed."""
+        """The client publishes that word once; `hint(seen)` is for others. Raises CheckFailed."""
 
         def new() -> list[str]:
             return [message.data for message in self._outcomes.messages()[self._before :]]
@@ -138,12 +140,12 @@ class ServedAction(ScriptedActionServer):
         )
 
     def forget_outcomes(self) -> None:
-        """Wait for what goals of earlier come to, and count it no more."""
+        """Wait for the outcomes of earlier goals, and ignore them from now on."""
         self.watcher.spin_for(QUIET_SEC)
         self._before = len(self._outcomes.received)
 
     def expect_no_outcome(self, while_: str) -> None:
-        """Nothing comes there for a while, as `while_`, a clause, is so. Raises CheckFailed."""
+        """The client publishes nothing for a while. Raises CheckFailed; `while_` says why."""
         self.let_client_know()
         self.watcher.spin_for(SOON_SEC)
         others = [message.data for message in self._outcomes.messages()[self._before :]]
@@ -157,7 +159,7 @@ class ServedAction(ScriptedActionServer):
         self._raised.expect_none()
 
     def close(self) -> None:
-        """Let goals end that have not, and be gone."""
+        """Abort goals that have not ended, and destroy the server."""
         for goal in self.goals:
             if not goal.end.done():
                 goal.finish('aborted')
@@ -170,19 +172,19 @@ class ServedAction(ScriptedActionServer):
         self.publishers[topic_name].publish(message)
 
     def _meet_client(self) -> None:
-        """Wait for the client: it meets the server at about the same time."""
+        """Wait until the client is discovered: it discovers the server at about that time."""
         if self._known_starts < self.starts:
             node, name = self.watcher.node, f'{self.name}/_action/send_goal'
             self.watcher.spin_until(lambda: node.count_clients(name) > 0, timeout_sec=MEET_SEC)
             self.watcher.spin_for(MET_SEC)
 
     def let_client_know(self) -> None:
-        """Wait until it has had turns enough to deal with what was sent to it before."""
+        """Wait until the client must have processed what was sent to it before."""
         self.who_answers()
         self.watcher.spin_for(SOON_SEC if self._mute else 0.0)
 
     def who_answers(self) -> set[str]:
-        """The full names of the client's nodes that have told their parameters each time."""
+        """Full names of the client's nodes whose parameter services have always answered."""
         names = {*self._outcomes.publishers()} - self._mute
         self._mute |= {name for name in names if not answers_parameters(self.watcher, name)}
         return names - self._mute

@@ -1,4 +1,4 @@
-"""What rclpy's action server logs of the callbacks that it calls, as everybody can read it."""
+"""What rclpy's action server logs on `/rosout` about its callbacks."""
 
 from collections import deque
 from typing import Any
@@ -15,22 +15,22 @@ from my_robot_basics.graph.watcher import Watcher
 DEPTH = 100
 MOST_LINES = 1000
 MOST_CHARACTERS = 1000
-"""What is kept of a line: a sentence tells less."""
+"""How much of a log line is kept: more than any feedback shows."""
 LOG_SEC = 0.5
-"""How long a line may come behind what it explains, of free time."""
+"""How long to wait for a log line that may explain a fault, in s of free time."""
 _RAISED = 'Error raised in execute callback: '
 _NOT_SET = 'Goal state not set'
 _NO_RESPONSE = 'did not return a GoalResponse'
 _lines: dict[str, deque[tuple[int, str]]] = {}
-"""What each logger has said, and when: a grade cell may find what one before it has caused, when
-`/rosout` has dropped that."""
+"""The lines of each logger with their times. They are kept for later grade cells: `/rosout` may
+have dropped a line that explains a fault seen there."""
 
 
 class ServerLog:
-    """The lines of one node's action servers on `/rosout`; they tell where to look, no more."""
+    """The log lines of one node's action servers; they are used as hints, never for a verdict."""
 
     def __init__(self, watcher: Watcher, node_name: str) -> None:
-        """Listen from now on; what was logged shortly before comes, too."""
+        """Subscribe; latched, so lines logged shortly before arrive, too."""
         self._watcher = watcher
         self._logger = node_name.strip('/').replace('/', '.')
         self._lines = _lines.setdefault(self._logger, deque(maxlen=MOST_LINES))
@@ -38,7 +38,7 @@ class ServerLog:
         watcher.node.create_subscription(Log, '/rosout', with_info(self._receive), latched)
 
     def raised(self, *, since_ns: int) -> str:
-        """A clause on what the execute callback raised since a wall time, or ''."""
+        """A clause about what the execute callback raised since a wall time, or ''."""
         said = self._find(_RAISED, since_ns)
         if not said:
             return ''

@@ -1,4 +1,4 @@
-"""The check's own server, at once, slow or absent, for a node of the student's that asks it."""
+"""The check's own service server (fast, slow or absent) for a client in the student's node."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -21,11 +21,11 @@ from my_robot_basics.feedback.errors import expect, fail
 from my_robot_basics.graph.watcher import Watcher
 
 TIMEOUT_SEC = 4.0
-"""How long to wait for a request or an answer, of free time."""
+"""How long to wait for a request, or for a message on `to`, in s of free time."""
 QUIET_SEC = 0.5
-"""How long to listen for what must not come."""
+"""How long to wait for a message that must not come, in s of wall time."""
 AGAIN_SEC = 0.5
-"""Until a request arrives, its message is sent again so often: a new client may lose one."""
+"""How often a message is published again until its request comes: a new client may lose one."""
 Hint = Callable[[Any], str]
 
 
@@ -35,10 +35,10 @@ def serve(
 ) -> Iterator['Server']:
     """The check's own server of a service, for the duration of a with statement.
 
-    `answer(request)` returns the response to a request. The student's node asks for each message
-    on the topic `asked_on`, publishes what it makes of the answer on the topic `to`, and counts on
-    the topic `alive` at 10 Hz: where that stands still, the node waits in a callback. Raises
-    CheckFailed where nobody publishes on these two, or another node serves.
+    `answer(request)` returns the response. For each message on the topic `asked_on`, the student's
+    node sends a request, and publishes what it makes of the response on the topic `to`. It counts
+    on the topic `alive` at 10 Hz: if the count stops, a callback blocks the node. Raises
+    CheckFailed if `to` or `alive` has no publisher, or another node serves.
 
         with serve('/solve_ik', SolveIK, ik.solve, asked_on='/target_point',
                    to='/kinematics/joint_states', alive='/ik_client/alive') as server:
@@ -60,25 +60,25 @@ def serve(
 
 
 class Server(HoldingServer):
-    """What `serve` yields, while it lasts."""
+    """The server that `serve` yields, for the duration of its with statement."""
 
     def __init__(
         self, watcher: Watcher, *, asked_on: str, answers: Recorder, beats: Recorder, **served: Any
     ) -> None:
-        """`served` is for HoldingServer."""
+        """`served`: the other arguments of HoldingServer."""
         super().__init__(watcher.node, **served)
         self.asked_on = asked_on
         self._watcher, self._answers, self._beats = watcher, answers, beats
         self._raised = CallbackErrors({*answers.publishers(), *beats.publishers()})
         self.made = Made(watcher, answers, self.sent)
-        """The messages on `to`, beside the responses."""
+        """The messages on `to`, matched with the responses."""
         self.published: list[Any] = []
-        """All messages that were to lead to a request each."""
+        """All messages on `asked_on`; each should lead to a request."""
         self._publisher: Publisher | None = None
         self._seen = self._known_starts = 0
 
     def publish(self, message: Any) -> None:
-        """Publish a message that is to lead to a request, without waiting for one."""
+        """Publish a message that should lead to a request, without waiting for the request."""
         if self._publisher is None:
             self._publisher = Topic(self.asked_on).meet(self._watcher, type(message))
         self._seen = len(self._answers.received)
@@ -87,20 +87,20 @@ class Server(HoldingServer):
         self._publisher.publish(message)
 
     def wait_for_repeated(self) -> None:
-        """Wait for owed requests: a server that leaves would take the answer with it."""
+        """Wait for outstanding requests: without a server, they would never be answered."""
         wait_for_owed(self._watcher, self.requests, len(self.published))
 
     def stop(self) -> None:
-        """Be absent: return when the student's node has had the time to know it."""
+        """Destroy the server; return when the student's node has had time to notice."""
         super().stop()
         wait_until_known(self._watcher)
 
     def ask(
         self, message: Any, *, is_it: Callable[[Any], bool], hint: str = 'ask for what arrived'
     ) -> Any:
-        """Publish a message on `asked_on`; the request that it leads to, for which `is_it` holds.
+        """Publish a message on `asked_on`; return the first new request for which `is_it` holds.
 
-        Raises CheckFailed if none comes in TIMEOUT_SEC of free time, with the reason.
+        Raises CheckFailed with the reason if none comes in TIMEOUT_SEC of free time.
         """
         before = len(self.requests)
 
@@ -115,7 +115,7 @@ class Server(HoldingServer):
             if self._known_starts < self.starts:
                 self.publish(message)
         others = self.requests[before:]
-        if not (others and self._goes_on()):  # who waits may only now ask for what came before
+        if not (others and self._goes_on()):  # others may be late requests of a node that blocks
             was_away = 1 < self.starts != self._known_starts
             hint = self._client().why_not_asked(asked_on=self.asked_on, was_away=was_away)
         fail(
@@ -128,10 +128,10 @@ class Server(HoldingServer):
     def expect(
         self, is_right: Callable[[Any], bool], *, expected: str, hint: Hint, cause: str = ''
     ) -> Any:
-        """The message on `to`, since the last one was asked for, for which `is_right` holds.
+        """Return the first message on `to` since the last `publish` for which `is_right` holds.
 
-        `hint(message)` says what is wrong with another one, and `cause` in a few words. Raises
-        CheckFailed where none comes in TIMEOUT_SEC of free time.
+        `hint(message)` says what is wrong with another message, `cause` in a few words. Raises
+        CheckFailed if no right one comes in TIMEOUT_SEC of free time.
         """
 
         def received() -> list[Any]:
@@ -151,7 +151,7 @@ class Server(HoldingServer):
         )
 
     def expect_nothing(self, *, hint: Hint, made_of: MadeOf = of_none) -> None:
-        """Nothing comes on `to` in QUIET_SEC, but what is made of a response: see `Made`.
+        """In QUIET_SEC, nothing comes on `to` that is not made from a response: see `Made`.
 
         Raises CheckFailed.
         """
@@ -167,14 +167,14 @@ class Server(HoldingServer):
         self._raised.expect_none()
 
     def record_count(self) -> Recording | None:
-        """Record the count on `alive`, as time passes for the node: see `heartbeat.record`."""
+        """Record the count on `alive` on the node's clock: see `heartbeat.record`."""
         return heartbeat.record(self._watcher, self._beats)
 
     def expect_alive(self, meanwhile: str, message: Any) -> None:
-        """The node goes on counting on `alive`, though `message` is published: see `Heartbeat`.
+        """The node continues to count on `alive` after `message` is published: see `Heartbeat`.
 
         `meanwhile`: what happens, as a clause. Raises CheckFailed if the count stands still, or
-        Starved if the machine may be to blame.
+        Starved if the machine may be the cause.
         """
         beats = heartbeat.Heartbeat(self._watcher, self._beats)
         if not beats.goes_on(lambda: self.publish(message)):

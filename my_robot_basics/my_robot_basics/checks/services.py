@@ -1,4 +1,4 @@
-"""A service as a check sees it: call its server, and say why no answer comes."""
+"""A check's client of a service: it calls the server, and explains why no response comes."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -17,17 +17,17 @@ from my_robot_basics.graph import familiar, graphs, services
 from my_robot_basics.graph.watcher import Watcher
 
 ANSWER_SEC = 4.0
-"""How long to wait for an answer, of free time."""
+"""How long to wait for a response, in s of free time."""
 LOOK_SEC = 0.5
-"""How often the notebook is asked meanwhile whether a callback has raised."""
+"""How often to ask the notebook meanwhile whether a callback has raised."""
 PARAMETERS_SEC = 1.0
-"""How long a node may take to tell a parameter, of free time: one that spins does."""
+"""How long a spinning node may take to answer for a parameter, in s of free time."""
 RESPONSES = QoSProfile(depth=1000)
-"""Room for responses: the first is not lost where a server sends more and the check is late."""
+"""The queue for responses is long: a wrong server's additional responses must not push any out."""
 
 
 def service(name: str, type_: type) -> 'Service':
-    """The service of that (absolute) name and type, to be called.
+    """The service of that absolute name and type.
 
     `response = service('/solve_ik', SolveIK).call(SolveIK.Request(target=point))`
     """
@@ -36,23 +36,23 @@ def service(name: str, type_: type) -> 'Service':
 
 @dataclass(frozen=True)
 class Service:
-    """What a check may do with a service that the student's node serves."""
+    """A service of the student's node; each call makes a client for itself."""
 
     name: str
-    """Absolute: '/solve_ik'."""
+    """The absolute name, such as '/solve_ik'."""
     type: type
-    """Its class, such as `arm_interfaces.srv.SolveIK`."""
+    """The service's class, such as `arm_interfaces.srv.SolveIK`."""
 
     def call(self, request: Any) -> Any:
-        """Send a request; the response to it. Raises CheckFailed as `call_all` does."""
+        """Send a request; return the response. Raises CheckFailed as `call_all` does."""
         return self.call_all(request)[0]
 
     def call_all(self, *requests: Any) -> list[Any]:
-        """Send all requests at once, before any is answered; the responses, in their order.
+        """Send all requests at once, before any is answered; return their responses in order.
 
-        Answers may come in any order. Raises CheckFailed if there is no server, one of another
-        type, or more than one; and where an answer does not come in ANSWER_SEC of time that was
-        free, with the reason: the callback raised, returned no response, does not return, or the
+        The server may answer in any order. Raises CheckFailed if there is no server, one of
+        another type, or more than one; also if a response does not come in ANSWER_SEC of free
+        time, with the reason: the callback raised, returned no response, does not return, or the
         node does not spin.
         """
         with Watcher(shared=True) as watcher:
@@ -68,7 +68,7 @@ class Service:
             return [future.result() for future in asked]
 
     def _meet(self, watcher: Watcher) -> str:
-        """Wait for the server; the full name of its node."""
+        """Wait for the server; return the full name of its node. Raises CheckFailed."""
         found: dict[str, tuple[str, ...]] = {}
 
         def is_there() -> bool:
@@ -117,7 +117,7 @@ class Service:
 
     def _why_unanswered(self, watcher: Watcher, server: str, raised: CallbackErrors) -> str:
         if raised.hint():
-            # rclpy checks the type of what a callback returns, and says nothing but that
+            # rclpy raises a TypeError without a message if a callback returns no response
             if node_troubles.last_raised(server) == 'TypeError':
                 return 'end the callback with `return response`, in each of its branches'
             return raised.hint()
@@ -142,9 +142,9 @@ class Service:
 def wait_for_all(
     watcher: Watcher, asked: Sequence[Future], *, gives_up: Callable[[], bool]
 ) -> bool:
-    """Spin until all are answered, at most ANSWER_SEC of free time; whether they are.
+    """Spin until all are answered, at most ANSWER_SEC of free time; return whether they are.
 
-    `gives_up` says that no answer can come any more.
+    `gives_up()` returns whether no response can come any more.
     """
     for _ in range(round(ANSWER_SEC / LOOK_SEC)):
         if watcher.spin_until_free(lambda: all(f.done() for f in asked), free_sec=LOOK_SEC):
@@ -155,7 +155,7 @@ def wait_for_all(
 
 
 def answers_parameters(watcher: Watcher, node_name: str) -> bool:
-    """Whether a node tells a parameter: then it spins, and nothing keeps it busy."""
+    """Whether a node's parameter service answers: if so, the node spins and is not blocked."""
     client = watcher.node.create_client(GetParameters, f'{node_name}/get_parameters')
     told = watcher.spin_until_free(client.service_is_ready, free_sec=PARAMETERS_SEC)
     if told:

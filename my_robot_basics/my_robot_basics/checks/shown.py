@@ -9,5 +9,5 @@ from my_robot_basics.feedback.errors import shorten
 
 
 def shown(message: Any) -> str:
-    """One line: of a JointState its joints alone, as they stand in what was expected."""
+    """The message in one line; of a JointState only the joints, in the form of `joints.shown`."""
     return shorten(joints.shown(message) if isinstance(message, JointState) else message)

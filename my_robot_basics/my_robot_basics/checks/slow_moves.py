@@ -1,4 +1,4 @@
-"""A move of `/move_arm` that is far too slow, as its feedback tells: its end is not awaited."""
+"""Stop waiting for a move of `/move_arm` if its feedback shows that it is far too slow."""
 
 from my_robot_basics.checks.action_ends import SentGoal
 from my_robot_basics.checks.arm_progress import is_under_way
@@ -7,8 +7,8 @@ from my_robot_basics.checks.waits_in_vain import is_in_vain
 from my_robot_basics.checks.watched_arm import Pose, WatchedArm, far_rad
 
 CRAWL_PART = 1 / 8
-"""An arm that tells so small a part of the speed asked for does not arrive in three times its
-time, unless it gets faster: no right one is so slow for a quarter of the move."""
+"""An arm whose feedback shows less than this part of the requested speed does not arrive within
+three times its time unless it gets faster. No right arm is this slow for a quarter of a move."""
 
 
 def wait_unless_it_crawls(
@@ -19,9 +19,10 @@ def wait_unless_it_crawls(
     seconds: float,
     look_after_sec: float | None = None,
 ) -> bool:
-    """Wait so many seconds of the arm's time for the end of a goal; whether it has come.
+    """Wait up to `seconds` of the arm's time for a goal to end; return whether it has ended.
 
-    An arm that crawls is waited for no longer, after so many of them, or as many as are wanted.
+    After `look_after_sec` (by default, the time that the move should take), it stops waiting if
+    the arm crawls.
     """
     if look_after_sec is None:
         look_after_sec = far_rad(arm.start, position) / sent.goal.speed
@@ -35,9 +36,9 @@ def wait_unless_it_crawls(
 
 
 def _crawls(arm: WatchedArm, sent: SentGoal, position: Pose, *, left_sec: float) -> bool:
-    """Whether the feedback tells of an arm on its way that is far too slow.
+    """Whether the feedback shows an arm that moves far too slowly.
 
-    On the wall clock, slower than a machine that is too busy makes one.
+    On the wall clock, it must be slower than a busy machine can make a right arm.
     """
     told = reported_speed(arm, sent, position).rad_per_sec
     if not told or told >= CRAWL_PART * sent.goal.speed or not is_under_way(arm, sent, position):

@@ -10,7 +10,7 @@ from my_robot_basics.session.errors import NotRunnable
 from my_robot_basics.two_link_kinematics import L1, L2, inverse_kinematics
 
 NEAR_M = 1e-6
-"""A request for a target is no further off."""
+"""How far the target of a request may be from the expected one."""
 
 
 def request(x: float, y: float, *, z: float = 0.0) -> SolveIK.Request:
@@ -26,8 +26,8 @@ def is_for(asked: SolveIK.Request, x: float, y: float) -> bool:
 def solve(asked: SolveIK.Request, *, l1: float = L1, l2: float = L2) -> SolveIK.Response:
     """The right response to a request.
 
-    With other lengths of the links, in metres, only a client that got it can know it. No answer
-    may use it: it raises NotRunnable where a student's code is graded or validated.
+    With link lengths (in m) other than the course's, only a client of the check's server can know
+    the angles. Students must not call this function: it raises NotRunnable in the student's room.
     """
     if classroom.in_students_room():
         raise NotRunnable(

@@ -1,4 +1,4 @@
-"""Whether nodes of a program spin by now."""
+"""Wait until the nodes of a program spin."""
 
 from collections.abc import Sequence
 
@@ -7,14 +7,14 @@ from rcl_interfaces.srv import GetParameters
 from my_robot_basics.graph.watcher import Watcher
 
 SPIN_SEC = 2.0
-"""How long a node may take to answer for its parameters before it is told to end."""
+"""How long to wait for a node's parameter services and their answer, each in s of free time."""
 
 
 def wait_until_they_spin(watcher: Watcher, node_names: Sequence[str]) -> None:
-    """Wait until nodes answer for their parameters: before that, main is not in spin yet.
+    """Wait until the nodes' parameter services answer: then main has reached spin.
 
-    SIGINT between would meet rclpy half set up, which is no mistake of the student's. A node
-    without these services, or one that is busy, is not waited for long.
+    A SIGINT before that would interrupt rclpy's initialization, which is not the student's fault.
+    For a node without these services, or a busy one, the wait ends after SPIN_SEC each.
     """
     for name in node_names:
         client = watcher.node.create_client(GetParameters, f'{name}/get_parameters')

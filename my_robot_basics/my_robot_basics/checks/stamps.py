@@ -1,7 +1,7 @@
-"""Whether stamps are the node's clock at publication, and what to say where they are not.
+"""Whether stamps are the time of the node's clock at publication, and the message if not.
 
-Where a node's own clock and the computer's show the same, as on the wall clock, a recording is no
-proof: the node's clock is moved ahead, and its stamps must follow.
+On the wall clock, the node's clock and the computer's show the same time, so a recording proves
+nothing: then `own_clock` moves the node's clock ahead, and its stamps must follow.
 """
 
 import itertools
@@ -25,15 +25,15 @@ if TYPE_CHECKING:
     from my_robot_basics.checks.recording import Recording
 
 MOST_OFF_SEC = {'simulated': 0.5, 'wall': 1.0}
-"""How far a stamp may be from the time of publication, by clock."""
+"""How far each stamp may be from the time of publication, by clock."""
 USUAL_OFF_SEC = 0.15
-"""How far most of them may be: at 5 Hz, the stamp of the message before is further off."""
+"""How far the median stamp may be: less than a period at 5 Hz, to detect the preceding stamp."""
 
 
 def check_stamps(recording: 'Recording', messages: Sequence) -> None:
     """Each stamp is set, advances, and is near the time of publication. Raises CheckFailed.
 
-    Where the recording was made by a look (one that can look again), it is the node's own clock.
+    If the recording can be repeated (`look_again`), the stamps must also be of the node's clock.
     """
     stamps_ns = [nanoseconds(message.header.stamp) for message in messages]
     if 0 in stamps_ns:
@@ -44,26 +44,29 @@ def check_stamps(recording: 'Recording', messages: Sequence) -> None:
         _fail('a stamp that does not advance')
     offs = _offs(recording, stamps_ns)
     most, usual = MOST_OFF_SEC[recording.clock], statistics.median_low(offs)
-    # a late message does not count, one period behind in all of them does
+    # single late messages are tolerated up to `most`, but not if all are a period behind
     late = [off for off in offs if abs(off) > most]
     wrong = [usual] if abs(usual) > USUAL_OFF_SEC else late
     sent = [sample.source_time_sec for sample in recording.messages]
     from_wall = [abs(ns / 1e9 - at) for ns, at in zip(stamps_ns, sent, strict=True)]
     is_wall = statistics.median(from_wall) <= USUAL_OFF_SEC
-    # where all are wrong, one may also have been sent late
+    # if all are wrong, compare the median, because one of them may also have been sent late
     is_told = is_wall if wrong == [usual] else max(from_wall) <= USUAL_OFF_SEC
     if wrong and recording.clock == 'simulated' and is_told:
         fail_computer()
     doubt = Starved if wrong == late and recording.was_busy else CheckFailed
     for off in wrong:
         _fail(f'a stamp {abs(off):.1f} s {"ahead of" if off > 0.0 else "behind"} it', doubt)
-    # on a busy machine, the driven clock may happen to show the computer's time as well
+    # on a busy machine, the driven clock may show the computer's time by chance
     if recording.look_again is not None and is_wall:
         expect_to_follow(recording.topic_name, type(messages[0]), recording.publishers)
 
 
 def _come_in_pairs(recording: 'Recording', stamps_ns: Sequence[int]) -> bool:
-    """Whether a message comes twice: messages of one tick of the robot's clock share a stamp."""
+    """Whether messages come in pairs with one stamp each.
+
+    On the robot's clock, they must also be equal: different messages of one tick share a stamp.
+    """
     on_wall = recording.clock == 'wall'
     apart = [
         later.time_sec - earlier.time_sec
@@ -72,7 +75,8 @@ def _come_in_pairs(recording: 'Recording', stamps_ns: Sequence[int]) -> bool:
         )
         if stamp == after and (on_wall or _are_alike(earlier.message, later.message))
     ]
-    return bool(apart) and statistics.median(apart) < AT_ONCE_SEC  # a busy machine parts some
+    # the median, because a busy machine delays the second message of some pairs
+    return bool(apart) and statistics.median(apart) < AT_ONCE_SEC
 
 
 def _are_alike(message: Any, other: Any) -> bool:

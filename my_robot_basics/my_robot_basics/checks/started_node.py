@@ -1,4 +1,4 @@
-"""What a command line makes of a node, as rcl itself reads it: nothing is started."""
+"""The names and parameters that a command line gives a node, as rcl reads it: no process starts."""
 
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
@@ -22,27 +22,30 @@ from my_robot_basics.session import classroom
 from my_robot_basics.session.environment import set_meanwhile
 
 _REFUSED = (RuntimeError, ValueError, ParameterException)
-"""What rclpy raises for names, rules and parameters that are none."""
+"""What rclpy raises for invalid names, rules and parameters."""
 
 
 @dataclass(frozen=True)
 class StartedNode:
-    """A node that was made as the command line says, and is gone."""
+    """What a node was like that was created for a moment with the command line's options."""
 
     name: str
-    """Full: '/left/arm'."""
+    """The full name, such as '/left/arm'."""
     topic_name: str
-    """Full: what became of the program's topic."""
+    """The full name that the program's topic has after the remap rules."""
     parameter: Any
-    """The value of the parameter; None where no option gives one."""
+    """The value of the parameter; None if no option sets it."""
     has_file: bool
-    """Whether parameters may come from a file, too, which is not read here."""
+    """Whether the command line also names a parameter file, which is not read here."""
 
 
 def started_node(
     line: CommandLine, *, node_name: str, topic_name: str, parameter_name: str
 ) -> StartedNode | None:
-    """What a program gets whose node and topic have these names; None where rcl refuses it."""
+    """Apply a command line to a program with this node, topic and parameter.
+
+    None if rcl refuses the command line.
+    """
     options = line.options(*OPTIONS_OF_RULES, *OPTIONS_OF_PARAMETERS)
     arguments = ['--ros-args', *(word for pair in options for word in pair)]
     domain_id, context = classroom.enter(), Context()
@@ -81,5 +84,5 @@ def started_node(
 
 
 def _met_by_nobody() -> AbstractContextManager[None]:
-    """Participants that are made meanwhile neither find others, nor are found."""
+    """Participants created inside this context neither discover others nor are discovered."""
     return set_meanwhile('ROS_AUTOMATIC_DISCOVERY_RANGE', 'OFF')

@@ -1,4 +1,4 @@
-"""Whether a machine that is too busy may be to blame for a rate on the wall clock."""
+"""Whether a busy machine may be the cause of a wrong rate on the wall clock."""
 
 from typing import TYPE_CHECKING
 
@@ -10,33 +10,34 @@ if TYPE_CHECKING:
     from my_robot_basics.checks.recording import Recording
 
 LATE_SEC = 0.05
-"""A machine that keeps the recording waiting so long …"""
+"""A recording that the machine delayed by at least this much excuses a delay of the node."""
 LATE_TIMES = 3.0
-"""… may keep a node waiting so many times as long: several of its threads take turns."""
+"""The node's delay may be this many times as long, because several of its threads take turns."""
 STEADY_PART = 0.05
-"""Gaps that differ by no more of them are those of a node that nobody kept waiting."""
+"""Gaps whose quartiles differ by less than this part of the median are even: nothing delayed the
+node."""
 RIGHT_PART = 0.02
-"""Even gaps that are off by no more of a period are those of the right timer. …"""
+"""Even gaps are those of the right timer if they differ by at most this part from its period."""
 SLOW_PART = 0.04
-"""… Where processes wait for a processor all the time, a loop that sleeps is late each time, and
-as evenly: by 6 ms of 0.2 s, with eight processes for each processor."""
+"""If processes waited for a processor most of the time, even gaps may be longer than the period by
+this part: a loop that sleeps is late each time by as much, such as 6 ms of 0.2 s."""
 MOST_TIMES = 1.03
-"""So many times as many messages may a busy machine bring: those that were late, at once."""
+"""A busy machine may raise the rate by at most this factor, when late messages come at once."""
 
 NEAR_LEAST = 0.75
-"""… and so many times as many are nearly right: a look every 10 ms makes 60 ms of 50."""
+"""A rate is nearly right from this part of the expected one to MOST_TIMES: a node that looks at
+its clock every 10 ms may publish every 60 ms instead of 50."""
 
 
 def may_be(recording: 'Recording', hz: float) -> bool:
-    """Whether a node of that rate may have been kept waiting for what was recorded.
+    """Whether a node with the rate `hz` may produce this recording on a busy machine.
 
-    A machine that is too busy makes messages late, each by another time, and no more of them. How
-    much is told by how late the recording itself was; alternating gaps, or gaps as even as with a
-    timer of another period, are no machine's doing, but a pause of the right one may be. Where
-    processes waited for a processor most of the time, a rate that is nearly right is no proof
-    either; and where there was no time for the robot's clock, not even an
-    even one: a node that looks at its clock again and again is exact on that one alone. Such a
-    machine may bring any pause, too.
+    A busy machine makes messages late, each by a different time, but not more frequent. So it
+    excuses a pause if it also delayed the recording, by a third of the pause at least; a nearly
+    right rate if processes waited for a processor most of the time; and any pause if it left no
+    time for the robot's clock. It excuses neither alternating gaps nor even gaps of another period,
+    with one exception: without time for the robot's clock, a nearly right rate is always excused,
+    because a node that polls its clock is exact only on the robot's.
     """
     messages = recording.messages
     is_near = NEAR_LEAST <= recording.rate_hz / hz <= MOST_TIMES

@@ -1,6 +1,6 @@
-"""Say in a student's own notebook that a check has passed: a cell that shows nothing leaves doubt.
+"""Print in a student's own notebook that a check has passed: an empty output would leave doubt.
 
-One hook for all of them, after each cell that ran; the grader's rooms have none.
+One IPython hook, which runs after each cell, does so for all checks; the grader has no hook.
 """
 
 import ast
@@ -16,7 +16,7 @@ _watched: list[Any] = []
 
 
 def watch() -> None:
-    """From now on, say so below each cell of a check that passes; twice does no harm."""
+    """From now on, print PASSED below each check cell that passes; a second call does nothing."""
     shell = kernel.shell()
     if shell is None or 'MY_ROBOT_BASICS_ROOM' in os.environ or shell in _watched:
         return
@@ -25,7 +25,7 @@ def watch() -> None:
 
 
 def is_check(source: str) -> bool:
-    """Whether a cell is a check: it says what it checks, and imports what checks."""
+    """Whether a cell is a check: it has a docstring, and imports from the package of checks."""
     if _CHECKS not in source:  # most cells
         return False
     try:

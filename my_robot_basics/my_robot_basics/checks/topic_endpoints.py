@@ -1,4 +1,4 @@
-"""The two ends of a topic: meet the notebook's subscription, or listen to its publisher."""
+"""The endpoints of a topic: connect to the notebook's subscription or to its publisher."""
 
 from collections.abc import Callable
 
@@ -15,24 +15,24 @@ from my_robot_basics.graph.watcher import Watcher
 
 PUBLISHER_SEC = 10.0
 ABSENT_SEC = 3.0
-"""How long to wait for an endpoint that the notebook's own process says it has not got."""
+"""How long to wait for an endpoint that the notebook's process reports not to have."""
 DEPTH = 5000
-"""Queue of a recording: more messages than any look can bring (KEEP_LAST overwrites)."""
+"""The queue of a recording, longer than any recording needs: KEEP_LAST drops the oldest."""
 DISCOVERY_SEC = 0.5
-"""How long a BEST_EFFORT subscription is given to meet the publisher, and to read what it sent."""
+"""The time for a BEST_EFFORT subscription to discover a publisher, or to receive its messages."""
 
 
 class TopicEndpoints:
-    """One topic, and the endpoints that a check makes on it."""
+    """One topic, and the endpoints that a check creates on it."""
 
     def __init__(self, name: str) -> None:
-        """Nothing is done with the topic yet."""
+        """Keep the topic's name; no endpoint is created yet."""
         self.name = name
 
     def meet(
         self, watcher: Watcher, type_: type, *, depth: int = 10, timeout_sec: float = 10.0
     ) -> Publisher:
-        """A publisher that every subscription is content with, once one is there."""
+        """A publisher compatible with every subscription, once one matches. Raises CheckFailed."""
         offer = QoSProfile(
             depth=max(10, depth),
             reliability=ReliabilityPolicy.RELIABLE,
@@ -44,12 +44,12 @@ class TopicEndpoints:
             lambda: publisher.get_subscription_count() > 0, timeout_sec=timeout_sec
         ):
             self._fail_no_subscription(watcher, type_, timeout_sec=timeout_sec)
-        # a BEST_EFFORT one may not know yet of a publisher that knows of it
+        # a BEST_EFFORT subscription may not know the publisher yet, and would lose messages
         watcher.spin_for(DISCOVERY_SEC if self.sends_once(watcher) else 0.0)
         return publisher
 
     def sends_once(self, watcher: Watcher) -> bool:
-        """Whether a subscription is BEST_EFFORT: to it nothing is sent again."""
+        """Whether a subscription is BEST_EFFORT: lost messages are not sent to it again."""
         infos = graphs.subscription_infos(watcher.node, self.name)
         return any(info.qos_profile.reliability == ReliabilityPolicy.BEST_EFFORT for info in infos)
 
@@ -62,8 +62,8 @@ class TopicEndpoints:
     ) -> Recorder:
         """Subscribe with the publishers' own type and QoS; wait for them first.
 
-        `take` gives the graph where a missing publisher is looked for. Raises CheckFailed when
-        there is no publisher, or no one type, or another than `type_`, if that is given.
+        `take` returns the graph that explains a missing publisher. Raises CheckFailed if there is
+        no publisher, if publishers have different types, or if the type is not `type_`.
         """
         timeout_sec = self.timeout_for(watcher, PUBLISHER_SEC, end='publishers')
         if not graphs.wait_for_publisher(watcher, self.name, timeout_sec=timeout_sec):
@@ -93,9 +93,9 @@ class TopicEndpoints:
     def timeout_for(
         self, watcher: Watcher, most_sec: float, *, end: str, type_: type | None = None
     ) -> float:
-        """How long to wait for an endpoint of the notebook: less where it says it has none.
+        """How long to wait for an endpoint of the notebook: less if the notebook reports none.
 
-        `end` is 'publishers' or 'subscriptions', with `type_` if only one of that type will do.
+        `end` is 'publishers' or 'subscriptions'; with `type_`, only endpoints of that type count.
         """
         type_name = values.type_name(type_) if type_ else ''
         if student.has_endpoint(self.name, end, type_name):
@@ -105,7 +105,7 @@ class TopicEndpoints:
         return most_sec if student.has_endpoint(self.name) else min(most_sec, ABSENT_SEC)
 
     def _message_type(self, watcher: Watcher) -> type:
-        """The one type that the publishers of the topic agree on."""
+        """The message type of all publishers of the topic. Raises CheckFailed if they differ."""
         infos = graphs.publisher_infos(watcher.node, self.name)
         types = sorted({info.topic_type for info in infos})
         try:
@@ -119,9 +119,9 @@ class TopicEndpoints:
             )
 
     def fail_silent(self, watcher: Watcher, *, seen: str) -> None:
-        """Say why no message comes. Raises CheckFailed."""
+        """Raise CheckFailed with the reason why no message comes."""
         if graphs.publisher_infos(watcher.node, self.name):
-            # a publisher of another type may have come to light only now
+            # a publisher of another type may have been discovered only now
             self._message_type(watcher)
         hint = graphs.take(watcher).why_no_message(self.name)
         fail(expected=f'messages on {self.name}', seen=seen, hint=hint)

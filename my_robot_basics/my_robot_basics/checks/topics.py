@@ -1,4 +1,4 @@
-"""A topic as a check sees it: record what arrives, publish, wait for one message."""
+"""A topic for a check: record what arrives, publish, wait for one message."""
 
 from collections.abc import Callable, Hashable
 from typing import Any
@@ -16,13 +16,13 @@ from my_robot_basics.graph.raised import what_raised
 from my_robot_basics.graph.watcher import Watcher
 
 ONCE_MORE_SEC = 2.0
-"""How long to wait for the answer to what is sent a second time."""
+"""How long to wait for a message after `wait_for` has called `after` a second time."""
 EXTRA_SEC = 0.3
-"""How long to listen for what must not come beside the right message."""
+"""How long to wait for messages that must not come before or after the right one."""
 
 
 def topic(name: str) -> 'Topic':
-    """The topic of that (absolute) name, to be recorded, published on or waited for.
+    """The topic of that absolute name: record it, publish on it, or wait for a message.
 
     `topic('/kinematics/joint_states').record(seconds=10.0).assert_rate(hz=5.0)`
     """
@@ -30,28 +30,28 @@ def topic(name: str) -> 'Topic':
 
 
 class Topic(TopicEndpoints):
-    """What a check may do with one topic; each call is a ROS node of its own while it lasts."""
+    """One topic; each call of a method uses a ROS node of its own."""
 
     def record(
         self, seconds: float = 10.0, step_sec: float = 0.1, hold_sec: float = sampling.HOLD_SEC
     ) -> Recording:
         """Record `seconds` of the robot's time, beginning at a message (which does not count).
 
-        The robot's clock is driven by the check in steps of `step_sec`, or in finer ones where
-        messages come faster than every second step. Where they may ignore it, it stands still for
-        `hold_sec` of wall time: they go on then. Where that proves nothing (the node does not
-        follow the clock, answers too slowly, …) 4 s of wall time are recorded instead; up to 7 s
-        where no second message comes sooner.
-        Where an exercise is judged, an earlier recording that tells as much is taken instead.
-        Raises CheckFailed when there is no publisher or no message.
+        The check drives the robot's clock in steps of `step_sec`, or in finer ones if messages
+        come more often than every second step. To detect messages that ignore this clock, it
+        stands still for `hold_sec` of wall time. If this has no clear result (the node does not
+        follow the clock, answers too slowly, …), 4 s of wall time are recorded instead, or up to
+        7 s if there is no second message before. When an exercise is judged, an earlier recording
+        that is sufficient is reused. Raises CheckFailed if there is no publisher or no message.
         """
         wanted = Wanted(self.name, seconds=seconds, step_sec=step_sec)
         return looks.record(self, wanted, hold_sec=hold_sec)
 
     def publish(self, *messages: Any, timeout_sec: float = 10.0) -> None:
-        """Publish messages, once a subscription is there to receive them; wait until they arrived.
+        """Wait for a subscription, publish messages, and wait until they have arrived.
 
-        The publisher is RELIABLE and TRANSIENT_LOCAL, which every subscription is content with.
+        The publisher is RELIABLE and TRANSIENT_LOCAL: every subscription is compatible with that.
+        Raises CheckFailed if there is no subscription.
         """
         with Watcher(shared=True) as watcher:
             publisher = self.meet(
@@ -75,16 +75,15 @@ class Topic(TopicEndpoints):
         once: bool = False,
         type_: type | None = None,
     ) -> Any:
-        """The first message for which the predicate holds (the first of all without one).
+        """Return the first message for which the predicate holds (without one, the first at all).
 
-        `after` is called once the subscription stands: what it publishes can't be missed.
-        Raises CheckFailed when there is no publisher or no such message in time. Where there were
-        others, it speaks of what was `expected`, of the last one, as `seen` puts it in words, and
-        gives the `hint` (on that one, if it is a function); so it does where one comes for which
-        `never` holds, alone or beside the right one: nothing that comes later changes that. With
-        `once`, any second message fails, too, in words for a node that publishes once for each
-        message: so publish one message in `after`. Other types than `type_` fail; without it, the
-        functions get messages of any standard type.
+        `after` is called once the subscription exists, so that no answer to what it publishes is
+        lost. Raises CheckFailed if there is no publisher, or no such message in time. If others
+        came, it shows what was `expected`, the last of them in the words of `seen`, and the `hint`
+        (called with it, if it is a function). It does the same if a message comes for which
+        `never` holds, before or soon after the right one. With `once`, any second message fails,
+        too, with advice for a node that publishes once for each message: so publish only one in
+        `after`. Types other than `type_` fail; without it, any standard type is allowed.
         """
         with Watcher(shared=True) as watcher:
             recorder = self.listen(watcher, type_=type_)
@@ -127,14 +126,14 @@ class Topic(TopicEndpoints):
             return found()[0]
 
     def _answered(self, recorder: Recorder) -> tuple[Hashable, object]:
-        """What is remembered of those that publish here now: that they have answered."""
+        """The key and value to remember that the present publishers of the topic have answered."""
         return ('answers', self.name), recorder.endpoint_gids()
 
     def _has_answered(self, watcher: Watcher, recorder: Recorder) -> bool:
         return familiar.is_known(watcher.context, *self._answered(recorder))
 
     def _expect_none_early(self, watcher: Watcher, recorder: Recorder) -> None:
-        """Before anything was sent, nothing comes."""
+        """No message comes before the check has sent anything. Raises CheckFailed."""
         watcher.spin_for(EXTRA_SEC)
         expect(
             not recorder.received,
@@ -146,9 +145,9 @@ class Topic(TopicEndpoints):
     def _expect_answer(
         self, watcher: Watcher, recorder: Recorder, after: Callable[[], None]
     ) -> None:
-        """Do once more what brings messages; one that comes only now is the one before.
+        """Call `after` again: a node that answers only now publishes the preceding message.
 
-        Not so where others were answered at once: such a node leaves out some.
+        If the node has answered others at once, it leaves some out. Raises CheckFailed for both.
         """
         if self._has_answered(watcher, recorder):
             expect(

@@ -1,4 +1,4 @@
-"""Requests to cancel a goal that no obstacle has asked for, and why a client sends them."""
+"""Requests to cancel a goal without an obstacle, and why a client sends them."""
 
 from my_robot_basics.checks.scripted_action import ReceivedGoal
 from my_robot_basics.checks.served_action import ServedAction
@@ -8,7 +8,7 @@ CAUSE = 'a goal is cancelled without an obstacle'
 
 
 def expect_none_for_earlier(server: ServedAction, goal: ReceivedGoal) -> None:
-    """No request comes to cancel a goal because of an obstacle before it. Raises CheckFailed."""
+    """The client does not cancel a goal for an obstacle before the goal. Raises CheckFailed."""
     expect(
         not server.is_cancelled(goal, soon=False),
         expected=f'no request to cancel a goal that came after True on {server.cancelled_on}',
@@ -19,7 +19,7 @@ def expect_none_for_earlier(server: ServedAction, goal: ReceivedGoal) -> None:
 
 
 def expect_none_for_another(server: ServedAction, goal: ReceivedGoal) -> None:
-    """No request comes to cancel the goal now that another was sent. Raises CheckFailed."""
+    """The client does not cancel the goal because it sent another one. Raises CheckFailed."""
     expect(
         not server.is_cancelled(goal, soon=True),
         expected=f'no request to cancel the goal that moves the arm for a message on '
@@ -32,7 +32,7 @@ def expect_none_for_another(server: ServedAction, goal: ReceivedGoal) -> None:
 
 
 def expect_none_for_false(server: ServedAction, goal: ReceivedGoal) -> None:
-    """No request comes to cancel the goal now that False was said. Raises CheckFailed."""
+    """The client does not cancel the goal for False on `cancelled_on`. Raises CheckFailed."""
     expect(
         not server.is_cancelled(goal, soon=False),
         expected=f'no request to cancel the goal for False on {server.cancelled_on}',

@@ -1,4 +1,4 @@
-"""Messages that a node may treat unlike others: with zeros, say, or without velocities."""
+"""Messages that a wrong node may treat unlike others, such as zeros or missing velocities."""
 
 import array
 import copy
@@ -10,12 +10,12 @@ from typing import Any
 PLAIN, AGAIN = '', 'equal to the one before'
 ZERO, NEGATIVE, LARGE = 'with zeros, or empty', 'with negative numbers', 'with large numbers'
 BARE = 'without velocities and efforts'
-"""As the arm of the lessons sends them: a node that zips all four lists makes nothing of them."""
+"""The lessons' arm sends such messages; a node that zips all four lists gets nothing from them."""
 UNSTAMPED = 'without a stamp and a frame'
-"""As a node sends them that forgets both: lesson 7 has one."""
+"""A node that forgets both sends such messages; lesson 7 has one."""
 BLOCK = (PLAIN, BARE, UNSTAMPED, AGAIN, ZERO, NEGATIVE, LARGE)
-"""What each so many messages are, in an order that differs each time: a node that counts messages
-meets every kind."""
+"""The kinds in each block of messages, in an order that differs from block to block: a node that
+leaves out every n-th message meets every kind."""
 LARGE_FACTOR = 100.0
 SHUFFLED = 2026
 UNMEASURED = 'velocity', 'effort'
@@ -24,14 +24,14 @@ UNMEASURED = 'velocity', 'effort'
 
 @dataclass(frozen=True)
 class Sent:
-    """A message, and what is special about it, in words that tell no number."""
+    """A message, and its kind in words, which reveal none of its numbers."""
 
     message: Any
     kind: str
 
 
 def varied(make_message: Callable[[], Any]) -> Iterator[Sent]:
-    """Yield messages without end, made of those of `make_message`, of every kind."""
+    """Yield endless messages of all kinds, made from those of `make_message`."""
     order = random.Random(SHUFFLED)
     while True:
         for kind in order.sample(BLOCK, len(BLOCK)):
@@ -46,10 +46,10 @@ def varied(make_message: Callable[[], Any]) -> Iterator[Sent]:
 
 
 def filled(make_message: Callable[[], Any]) -> Callable[[], Any]:
-    """Make its messages with a stamp, a frame, velocities and efforts where these are empty.
+    """A function that fills in stamp, frame, velocities and efforts in `make_message`'s messages.
 
-    Each stamp is another one, and older than now: a copy has it, and a new one does not. So is
-    each frame another one than the usual base_link.
+    Stamps are random and in the past, and frames are not the usual base_link: so a relayed message
+    differs from one that the node makes itself.
     """
     numbers = random.Random(SHUFFLED)
 
@@ -68,9 +68,9 @@ def filled(make_message: Callable[[], Any]) -> Callable[[], Any]:
 
 
 def changed(message: Any, kind: str) -> Any:
-    """A copy with its numbers changed; a text is left out where numbers are to be zeros.
+    """A copy of the message, changed to that kind.
 
-    What is BARE has only the numbers that every sensor sends, what is UNSTAMPED no header.
+    ZERO also empties texts, BARE the fields that a sensor may leave empty, UNSTAMPED the header.
     """
     message = copy.deepcopy(message)
     if kind == UNSTAMPED and hasattr(message, 'header'):

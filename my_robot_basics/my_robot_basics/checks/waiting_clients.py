@@ -1,4 +1,4 @@
-"""Why a node does not ask a service, or makes nothing of the answer: one clause each."""
+"""Why a node does not call a service, or does not use the response: one clause for each case."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ WAITS_FOR_LOST = (
 
 
 def waits_for_answer(name: str) -> str:
-    """The node has asked, and nothing else of it runs until it has the answer."""
+    """The advice for a node that has sent a request and blocks until it has the response."""
     return (
         f"it called `{name}` inside a callback and waited there: the answer can't be delivered "
         'while the callback runs, or while all threads of its executor wait like this; use '
@@ -25,7 +25,7 @@ def waits_for_answer(name: str) -> str:
 
 
 def waits_for_server(name: str) -> str:
-    """The node has not asked, and nothing of it runs."""
+    """The advice for a node that has not sent a request, and blocks."""
     return (
         f'it waits inside a callback, for `{name}` to be there or for the answer to an earlier '
         'request, and no other callback runs meanwhile; look at service_is_ready(), which returns '
@@ -35,22 +35,22 @@ def waits_for_server(name: str) -> str:
 
 @dataclass(frozen=True)
 class WaitingClient:
-    """A node that does not do what it is to do, and what may be the reason."""
+    """A client that does not do what it should, and the likely reason."""
 
     watcher: Watcher
     name: str
-    """Of the service."""
+    """The service's name."""
     type_: type
     raised: CallbackErrors
     goes_on: Callable[[], bool]
-    """Whether nothing holds it up, though it is asked once more."""
+    """Returns whether the node goes on running, even after one more message."""
     has_lost: bool = False
-    """Whether there was no server for a while, in which a request of its was lost."""
+    """Whether the server was absent for a while, so that a request may have been lost."""
 
     def why_not_asked(self, *, asked_on: str, was_away: bool) -> str:
-        """What to try where no request comes.
+        """What to try if no request comes.
 
-        `was_away`: there was no server when it was to ask before.
+        `was_away`: there was no server when the node should have sent an earlier request.
         """
         if raised := self.raised.hint_or_thread():
             return raised
@@ -69,7 +69,7 @@ class WaitingClient:
         return f'call self.client.call_async(request) for each message on {asked_on}'
 
     def why_not_published(self) -> str:
-        """What to try where an answer was sent, and nothing is made of it."""
+        """What to try if the server has responded, and the node publishes nothing."""
         raised = self.raised.hint_or_thread()
         if raised and not _is_of_no_answer(raised):
             return raised
@@ -84,7 +84,7 @@ class WaitingClient:
         )
 
     def why_still(self, *, has_asked: bool) -> str:
-        """What to try where nothing of it goes on."""
+        """What to try if the node blocks."""
         raised = self.raised.hint_or_thread()
         if raised and not _is_of_no_answer(raised):
             return raised
@@ -92,5 +92,5 @@ class WaitingClient:
 
 
 def _is_of_no_answer(raised: str) -> bool:
-    """Whether it is what comes of a wait that was given up: the answer was None."""
+    """Whether the exception follows from a wait with a timeout, whose response is None."""
     return 'NoneType' in raised

@@ -1,17 +1,18 @@
-"""Whether the end of a move of `/move_arm` is waited for in vain, as its feedback tells."""
+"""Whether waiting for the end of a `/move_arm` goal is in vain, according to its feedback."""
 
 from my_robot_basics.checks.action_ends import SentGoal
 from my_robot_basics.session.pressure import BUSY_TIMES
 
 FEWEST = 4
-"""So much feedback tells how fast the arm comes nearer."""
+"""The least number of feedback messages that show how fast the arm approaches its goal."""
 
 
 def is_in_vain(sent: SentGoal, *, free_sec: float, since_ns: int = 0) -> bool:
-    """Whether a goal does not end within that time, unless the arm gets faster.
+    """Whether a goal cannot end within `free_sec` of free time unless the arm gets faster.
 
-    Nor does it if the machine is so busy that this takes as long as it may. Feedback counts since
-    a wall time; False where there is too little, or it tells of no arm that comes nearer.
+    On a busy machine, this may take BUSY_TIMES as much wall time: the goal cannot end within that,
+    either. Only feedback since the wall time `since_ns` counts. False if there is too little of
+    it, or if the arm does not approach the goal.
     """
     wanted = list(sent.goal.position)
     told = [

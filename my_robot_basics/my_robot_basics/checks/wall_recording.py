@@ -15,15 +15,15 @@ from my_robot_basics.session.pressure import Stopwatch
 WALL_SEC = 4.0
 
 TIMEOUT_SEC = 7.0
-"""How long to wait on the wall clock for a message, and for the next one: 5 s apart is slow, but
-no silence."""
+"""How long to wait on the wall clock for a message, and for the next one: messages that are 5 s
+apart are slow, but have not ended."""
 
 RAISED_SEC = 2.0
-"""The same where nothing has come yet and a callback raised: rclpy.spin would have ended there."""
+"""The same if nothing has come yet and a callback raised: rclpy.spin would have ended there."""
 
 GOES_ON_SEC = 4.0
-"""So long does it have to go on as it did before: with the first look, for 9 s in all. A loop that
-publishes forty times has ended by then, and is silent for longer than a timer may be."""
+"""How long messages must go on as before: with the first recording, for 9 s in all. A loop that
+publishes forty times has ended by then, and its silence is longer than a timer's period."""
 
 IGNORES = 'the node ignores the clock'
 
@@ -38,14 +38,14 @@ def wall(
 ) -> Recording:
     """A recording of `seconds` on the wall clock, beginning at a message.
 
-    It waits for that one `timeout_sec` at most, or until the wall clock has come to where a driven
-    one was; and as long for the next one, should that be longer: then it ends there. `why`: what
-    spoke against the robot's clock.
+    It waits up to `timeout_sec` for this first message, plus the time until the wall clock has
+    caught up with a driven one. If no second message comes within `seconds`, it waits up to
+    `timeout_sec` for that, too, and ends there. `why`: the reason not to use the robot's clock.
     """
     has_raised = not recorder.received and what_raised(recorder.publishers())
     if has_raised:
         seconds = timeout_sec = RAISED_SEC
-    # who seemed to ignore the robot's clock may have been a thread that was late
+    # also if the node seemed to ignore the robot's clock: perhaps one of its threads was late
     is_ahead = not (has_raised or isinstance(why, NoMessage))
 
     def record() -> tuple[int, Stopwatch]:
@@ -58,12 +58,12 @@ def wall(
             watcher.spin_until(
                 lambda: recorder.count_since(since_ns) > 1, timeout_sec=timeout_sec - seconds
             )
-            recorder.take_all()  # far too many may lie there still, and would seem to have ended
+            recorder.take_all()  # if there are too many to keep up, they would seem to have ended
         return since_ns, watch
 
     since_ns, watch = record()
     if is_ahead and ahead_sec() and recorder.count_since(since_ns) == 1:
-        # a thread that sleeps until a time is woken by the change of its clock: its next is ahead
+        # a change of the clock wakes a thread that sleeps until a time; its next message is later
         since_ns, watch = record()
     sent = [(message, sent_ns) for message, sent_ns in recorder.received if sent_ns > since_ns]
     start_ns = sent[0][1] if sent else since_ns
@@ -89,7 +89,7 @@ def wall(
 def remembers_sec(why: Inconclusive | None) -> float:
     """How long a node may be silent that remembers when it published last, on the robot's clock.
 
-    None does that published nothing then, or while it stood still.
+    0 if the node published nothing on that clock, or ignored it.
     """
     return 0.0 if isinstance(why, NoMessage) or str(why) == IGNORES else ahead_sec()
 
@@ -101,5 +101,5 @@ def goes_on(watcher: Watcher, recorder: Recorder, earlier: Recording) -> bool:
 
 
 def _note(recorder: Recorder) -> str:
-    name = shorten(', '.join(recorder.publishers()))  # each line of a note would be one
+    name = shorten(', '.join(recorder.publishers()))  # in one line: each line would be a note
     return f"note: {name} ignores the robot's clock (use_sim_time); judged on the wall clock"

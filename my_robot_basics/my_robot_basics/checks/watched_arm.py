@@ -1,4 +1,4 @@
-"""The arm behind `/move_arm`, and the time in which a check watches it."""
+"""The arm behind `/move_arm`, and the clock by which a check watches it."""
 
 import math
 import time
@@ -19,24 +19,25 @@ Pose = Sequence[float]
 """Positions of joint1 and joint2, in radians."""
 
 STEP_NS = 50_000_000
-"""Steps of the robot's clock: two of them between feedback at 10 Hz."""
+"""The step of the robot's clock: half a period of feedback at 10 Hz."""
 HASTE = 100.0
-"""Speed, in rad/s, of a move that only brings the arm somewhere."""
+"""The speed, in rad/s, of a move that is not judged and only brings the arm to a position."""
 HASTE_SEC = 4.0
-"""It may take so long, of free time."""
+"""How long such a move may take, in s of free time."""
 RESULT_SEC = 1.0
-"""How long a result may come behind the status, of free time."""
+"""How long after the terminal status the result may come, in s of free time."""
 SETTLE_SEC, SOON_SEC = 3.0, 0.5
-"""How long goals may take to end when nobody looks any more, of free time, and when to
-see whether that is in vain."""
+"""How long unjudged goals may take to end, and after which time to see whether waiting is in vain;
+both in s of free time."""
 SHORTER_PART, TURN = 0.35, 7.7
-"""Short moves are shorter than the longest by up to that part: which, comes of the position."""
+"""`goal` makes moves up to SHORTER_PART shorter than `longest_sec`. How much depends on the
+position, in a way that only looks random; TURN is a factor for that."""
 EARLY_PART = 0.8
-"""A move that is over sooner was not made at its speed."""
+"""A move that takes less than this part of its time was not made at the requested speed."""
 FEW, ON_SEC = 3, 1.0
-"""So much feedback within that time after the end of a goal tells of a move that goes on."""
+"""A move goes on after its goal's end if FEW feedback messages come within ON_SEC."""
 STALLED_PART = 0.05
-"""So much of a look in which processes had to wait for a processor makes it a doubtful one."""
+"""A verdict is doubtful if processes waited for a processor for more than this part of a check."""
 
 
 def goal(position: Pose, *, speed: float = 1.0) -> MoveArm.Goal:
@@ -45,35 +46,35 @@ def goal(position: Pose, *, speed: float = 1.0) -> MoveArm.Goal:
 
 
 def far_rad(start: Pose, end: Pose) -> float:
-    """How far the faster joint has to go, in rad."""
+    """The distance of the joint that moves farther, in rad."""
     return max(abs(b - a) for a, b in zip(start, end, strict=True))
 
 
 @dataclass
 class WatchedArm:
-    """The server, met, with its arm at rest at `start`, and the time in which it is watched."""
+    """The connected server, with its arm at rest at `start`, and the clock that the check uses."""
 
     server: OpenAction
     time: DrivenTime | WallTime
     start: tuple[float, ...]
-    """Where the arm is, in rad, if the server does what it was asked to."""
+    """Where the arm is, in rad, if the server has done what it was asked to."""
     longest_sec: float = math.inf
-    """No move takes longer, and each another part of it."""
+    """The limit of a move's time; `goal` gives each move a different part of it."""
     lost_sec: float = 0.0
-    """So much longer the last move took because of a step of the clock that was too coarse."""
+    """How much longer the last move took because the clock's steps were too coarse."""
     computes_on_wall: bool = False
-    """Whether the server computes with the wall clock, whichever it waits on."""
+    """Whether the server computes positions by the wall clock, whatever clock it sleeps on."""
 
     def goal(self, position: Pose, *, speed: float) -> MoveArm.Goal:
-        """A goal with that speed, or with a higher one where the move has to be short.
+        """A goal with that speed, or with a higher one if the move would exceed `longest_sec`.
 
-        Short moves differ in their time: a server that takes the same for each is not right.
+        Such moves take different times, to detect a server that takes the same time for each.
         """
         longest_sec = self.longest_sec * (1.0 - SHORTER_PART * (TURN * sum(position) % 1.0))
         return goal(position, speed=max(speed, far_rad(self.start, position) / longest_sec))
 
     def send(self, wanted: MoveArm.Goal, *others: MoveArm.Goal) -> SentGoal:
-        """Send a goal that has to be accepted, or another. Raises CheckFailed, Inconclusive."""
+        """Send a goal that must be accepted, see `accepted`. Raises CheckFailed, Inconclusive."""
         sent = accepted(self.server, wanted, *others)
         if isinstance(self.time, DrivenTime):
             stamp = sent.answer.result().stamp
@@ -81,21 +82,21 @@ class WatchedArm:
         return sent
 
     def seconds(self, sent: SentGoal) -> float:
-        """How long a goal that is over has taken, in seconds of this time."""
-        # of several statuses in a moment, the last one alone may arrive
+        """How long an ended goal has taken, in seconds of the arm's clock."""
+        # if the status changes several times in a moment, only the last change may arrive
         told = [at_ns for at_ns, status in sent.statuses() if status not in TERMINAL]
         began_ns = told[0] if told else sent.sent_ns
         over_ns = self.time.at_ns(sent.over_ns()) if sent.over_ns() else self.time.now_ns()
         return (over_ns - self.time.at_ns(began_ns)) / 1e9
 
     def seconds_since_sent(self, sent: SentGoal, wall_ns: int) -> float:
-        """How long after a goal was sent that wall time was, in seconds of this time."""
+        """The time from sending a goal to that wall time, in seconds of the arm's clock."""
         return (self.time.at_ns(wall_ns) - self.time.at_ns(sent.sent_ns)) / 1e9
 
     def why_too_soon(self, sent: SentGoal) -> str:
-        """What to try where feedback goes on after the server has told how the goal ended; or ''.
+        """What to try if feedback goes on after the goal's terminal status; or ''.
 
-        It waits for that.
+        It waits up to ON_SEC for such feedback.
         """
 
         def goes_on() -> bool:
@@ -106,12 +107,12 @@ class WatchedArm:
         return ends_too_soon()
 
     def why_no_feedback(self, sent: SentGoal) -> str:
-        """Why there may be no feedback on a goal that is over, where that is known; or ''."""
+        """Why there may be no feedback on an ended goal, if that is known; or ''."""
         raised = self.server.raised.hint() or self.server.log.raised(since_ns=sent.sent_ns)
         return raised or self._why_unreliable() or self.why_too_soon(sent)
 
     def _why_unreliable(self) -> str:
-        """What to try where its feedback has a QoS with which none arrives; or ''."""
+        """What to try if the feedback's QoS is incompatible with an ActionClient; or ''."""
         node, name = self.server.watcher.node, f'{self.server.name}/_action/feedback'
         offered = {
             info.qos_profile.reliability for info in node.get_publishers_info_by_topic(name)
@@ -124,18 +125,17 @@ class WatchedArm:
         )
 
     def has_result(self, sent: SentGoal) -> bool:
-        """Whether the result comes, now that the goal is over."""
+        """Wait for the result of an ended goal; return whether it came."""
         return self.server.watcher.spin_until_free(sent.has_result, free_sec=RESULT_SEC)
 
     def stalled_sec(self) -> float:
-        """For how long the machine was too busy during this look; 0 on the robot's clock."""
+        """How long processes have waited for a processor so far; 0 on the robot's clock."""
         return self.time.stalled_sec() if isinstance(self.time, WallTime) else 0.0
 
     def doubt(self, sent: SentGoal | None = None, position: Pose = ()) -> type[CheckFailed]:
-        """What to raise for what a machine that is too busy may have done.
+        """The exception for a fault: Starved if a busy machine may have caused it.
 
-        It makes no move to a position faster: with a goal that was over too early it has nothing
-        to do.
+        A busy machine makes no move faster, so it cannot be the cause if the goal ended too early.
         """
         if sent is not None and sent.is_over():
             wanted_sec = far_rad(self.start, position) / sent.goal.speed
@@ -147,7 +147,7 @@ class WatchedArm:
         return CheckFailed
 
     def settle(self) -> None:
-        """Bring each goal to its end that has none yet, and let the server return."""
+        """End the goals that are still active, and let the execute callbacks return."""
         self._end_goals()
         self.server.wait_for_returns()
 
@@ -157,7 +157,7 @@ class WatchedArm:
         if not server.has_active():
             return
         for cancel_first in False, True:
-            if cancel_first:  # last: it may leave a wrong server with a wish to stop
+            if cancel_first:  # only then: a wrong server may remember the request, and stop again
                 server.ends.cancel_all()
             began_ns = time.time_ns() if self.time.is_driven else 0
             for free_sec in SOON_SEC, SETTLE_SEC - SOON_SEC:
@@ -171,6 +171,6 @@ class WatchedArm:
                     break
 
     def _is_last_in_vain(self, *, since_ns: int) -> bool:
-        """Whether the last goal does not end by itself while goals are brought to their end."""
+        """Whether waiting for the last accepted goal to end by itself is in vain."""
         last = self.server.accepted[-1:]
         return any(is_in_vain(sent, free_sec=SETTLE_SEC, since_ns=since_ns) for sent in last)
