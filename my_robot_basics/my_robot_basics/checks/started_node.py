@@ -1,4 +1,4 @@
-"""The names and parameters that a command line gives a node, as rcl reads it: no process starts."""
+"""The names and parameters that a command line gives a node, as rcl reads it. Nothing starts."""
 
 from contextlib import AbstractContextManager
 from dataclasses import dataclass

@@ -35,9 +35,9 @@ def may_be(recording: 'Recording', hz: float) -> bool:
     A busy machine makes messages late, each by a different time, but not more frequent. So it
     excuses a pause if it also delayed the recording, by a third of the pause at least; a nearly
     right rate if processes waited for a processor most of the time; and any pause if it left no
-    time for the robot's clock. It excuses neither alternating gaps nor even gaps of another period,
-    with one exception: without time for the robot's clock, a nearly right rate is always excused,
-    because a node that polls its clock is exact only on the robot's.
+    time for the robot's clock. It excuses neither alternating gaps nor even gaps of another
+    period, with one exception: without time for the robot's clock, a nearly right rate is always
+    excused, because a node that polls its clock is exact only on the robot's.
     """
     messages = recording.messages
     is_near = NEAR_LEAST <= recording.rate_hz / hz <= MOST_TIMES

@@ -1,1 +1,1 @@
-"""The ROS graph, from a node of its own: who is there, and whose QoS is compatible."""
+"""The ROS graph as a node of the check sees it: nodes, endpoints, and compatible QoS."""

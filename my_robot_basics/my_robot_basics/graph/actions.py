@@ -1,4 +1,4 @@
-"""Actions on the graph: which nodes serve one, which send goals, and with which type."""
+"""Actions on the graph: which nodes are servers or clients of each action, and of which type."""
 
 from rclpy.action import get_action_names_and_types
 from rclpy.node import Node

@@ -1,7 +1,7 @@
-"""One ROS participant for all watchers of a grade cell: to meet the nodes takes each one 0.3 s.
+"""One DDS participant for all watchers of a grade cell: discovery takes a new one 0.3 s each time.
 
-It is there in the test's room alone, where nobody else runs a cell, and ends with the cell. A node
-that does nothing keeps it: rmw ends a participant with the last node of its context.
+It exists only in the test's room, where no other cell runs at the same time, and ends with the
+cell. An idle node keeps it: rmw ends a participant with the last node of its context.
 """
 
 import rclpy
@@ -15,12 +15,12 @@ from my_robot_basics.session import kernel
 
 KEEPER = '_keeper'
 _keepers: dict[int, Node] = {}
-"""A node in the context of each ROS domain."""
+"""The idle node for each ROS domain; its context is the shared one."""
 _watched: list[object] = []
 
 
 def new_context(domain_id: int) -> Context:
-    """A context of that ROS domain, for whoever shuts it down."""
+    """A new context in that ROS domain; the caller must shut it down."""
     context = Context()
     rclpy.init(
         args=[],
@@ -32,7 +32,7 @@ def new_context(domain_id: int) -> Context:
 
 
 def context_of_cell(domain_id: int) -> Context | None:
-    """The context that ends with the cell which runs now; None where it would not end."""
+    """The context shared by the present grade cell's watchers; None outside the test's room."""
     shell = kernel.shell()
     if shell is None or not is_in_test_room():
         return None

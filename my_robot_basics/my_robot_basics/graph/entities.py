@@ -1,7 +1,7 @@
-"""Which nodes and endpoints each ROS participant says that it has.
+"""Which nodes and endpoints each ROS participant announces.
 
-They say so on the DDS topic `ros_discovery_info`, latched: there is a
-`rmw_dds_common/msg/ParticipantEntitiesInfo` of each.
+Each participant publishes them on the latched DDS topic `ros_discovery_info`, as a
+`rmw_dds_common/msg/ParticipantEntitiesInfo`.
 """
 
 import contextlib
@@ -19,16 +19,16 @@ _GID_BYTES = 16
 
 @dataclass(frozen=True)
 class Entities:
-    """What one participant has."""
+    """The nodes and endpoints of one participant."""
 
     nodes: frozenset[tuple[str, str]]
     """Name and namespace of each node."""
     endpoints: frozenset[bytes]
-    """Identifiers of its nodes' publishers and subscriptions, those of services included."""
+    """GIDs of its nodes' publishers and subscriptions, including those of services."""
 
 
 class Reader:
-    """Reads what all participants say, for the duration of a with statement."""
+    """Reads the announcements of all participants, for the duration of a with statement."""
 
     def __init__(self, node: Node) -> None:
         self._subscription = LatchedSubscription(
@@ -37,26 +37,26 @@ class Reader:
         self._said: dict[bytes, Entities] = {}
 
     def __enter__(self) -> 'Reader':
-        """Go on."""
+        """Return this reader."""
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Stop reading."""
+        """Close the subscription."""
         self._subscription.close()
 
     def read(self) -> dict[bytes, Entities]:
-        """What each participant has said last, by its identifier."""
+        """The latest announcement of each participant, by the participant's GID."""
         while (message := self._subscription.take()) is not None:
-            with contextlib.suppress(ValueError):  # whoever it is that speaks so
+            with contextlib.suppress(ValueError):  # ignore what a foreign program publishes here
                 participant, entities = parse(message)
                 self._said[participant] = entities
         return dict(self._said)
 
 
 def parse(message: bytes) -> tuple[bytes, Entities]:
-    """A serialized ParticipantEntitiesInfo: the participant's identifier, and what it has.
+    """Parse a serialized ParticipantEntitiesInfo: the participant's GID, and its entities.
 
-    Raises ValueError if it is none.
+    Raises ValueError if the message is too short.
     """
     reading = _Reading(message)
     participant = reading.gid()
@@ -71,7 +71,7 @@ def parse(message: bytes) -> tuple[bytes, Entities]:
 
 
 class _Reading:
-    """Takes values one by one from a message in CDR, in which numbers are aligned."""
+    """Reads values one after the other from a message in CDR, which aligns numbers to 4 bytes."""
 
     def __init__(self, message: bytes) -> None:
         self._order: Literal['little', 'big'] = 'little' if message[1:2] == b'\1' else 'big'

@@ -1,7 +1,7 @@
-"""What a participant has looked at long enough: the checks of a grade cell share one.
+"""Remember what a participant has already waited for: the checks of a grade cell share one.
 
-An endpoint that comes a moment later than the first is waited for once. After that it is there, or
-it was made between two checks.
+The first check waits for a moment for a second endpoint. Later checks need not wait again as long
+as they see the same endpoints.
 """
 
 from collections.abc import Hashable
@@ -13,10 +13,10 @@ _seen: WeakKeyDictionary[Context, dict[Hashable, object]] = WeakKeyDictionary()
 
 
 def is_known(context: Context, name: Hashable, what: object) -> bool:
-    """Whether this, and nothing else, was there the last time that somebody waited."""
+    """Whether the latest `remember` for this name had the same `what`."""
     return _seen.get(context, {}).get(name) == what
 
 
 def remember(context: Context, name: Hashable, what: object) -> None:
-    """This has been there for a moment, and nothing else has come."""
+    """Remember that exactly `what` (such as a set of GIDs) exists, after waiting for more."""
     _seen.setdefault(context, {})[name] = what

@@ -1,4 +1,4 @@
-"""Look at the ROS graph as a check does: the student's nodes, who publishes and who subscribes."""
+"""The ROS graph for checks: the student's nodes, and which of them publish and subscribe."""
 
 import time
 from collections.abc import Callable
@@ -12,27 +12,28 @@ from my_robot_basics.graph.snapshot import GraphSnapshot
 from my_robot_basics.graph.watcher import HIDDEN, Watcher
 
 SETTLE_SEC = 0.4
-"""The graph counts as settled when it has not changed for so long."""
+"""The graph counts as settled when it has not changed for this long."""
 MOST_SETTLE_SEC = 5.0
+"""How long `take` waits for that at most, without the time to read the graph."""
 MOST_TAKE_SEC = 15.0
-"""The same with the looks themselves: a busy machine, or a large graph, takes longer for each."""
+"""The same with that time: on a busy machine, or with a large graph, reading takes longer."""
 PUBLISHER_SEC = 10.0
 NEWCOMER_SEC = 0.2
-"""How long to look out for a second publisher after the first."""
+"""How long to wait for a second publisher after the first."""
 MANY_NEWCOMERS = 5
-"""So many times, one after the other, and none is the last: a publisher for each message."""
+"""If the publishers change this often, new ones keep coming: one is created for each message."""
 SETTLED_SEC = 0.5
-"""How long to wait for what the notebook has not got, and nothing in it can make any more."""
+"""How long to wait for what the notebook does not have, if nothing in it can create more."""
 SEEN_SEC = 3.0
-"""How long the nodes that it has may take to be seen."""
+"""How long the notebook's nodes may take to be discovered."""
 UNKNOWN = '_NODE_NAME_UNKNOWN_'
-"""rclpy's word while it knows an endpoint, and not yet its node (about 20 ms)."""
+"""rmw's name for the node of an endpoint whose node it does not know yet (for about 20 ms)."""
 
 
 def graph(*, after_publisher_on: str = '') -> GraphSnapshot:
-    """The graph as it is now, once it has settled: `graph().publishers('/chatter')`.
+    """The graph once it has settled: `graph().publishers('/chatter')`.
 
-    With the name of a topic, once somebody publishes there, or after PUBLISHER_SEC.
+    `after_publisher_on`: a topic; first wait for a publisher on it, PUBLISHER_SEC at most.
     """
     with Watcher() as watcher:
         if after_publisher_on:
@@ -41,7 +42,10 @@ def graph(*, after_publisher_on: str = '') -> GraphSnapshot:
 
 
 def take(watcher: Watcher) -> GraphSnapshot:
-    """The graph as a watcher sees it, once no change came for a while and all names are known."""
+    """The graph as a watcher sees it, once it has not changed for SETTLE_SEC and knows all names.
+
+    After MOST_SETTLE_SEC or MOST_TAKE_SEC, the graph as it is then.
+    """
     last = _look(watcher.node)
     since, earlier = watcher.earlier_look
     if last == earlier and not _has_unknown(last) and time.monotonic() - since >= SETTLE_SEC:
@@ -65,9 +69,9 @@ def take(watcher: Watcher) -> GraphSnapshot:
 def publisher_infos(
     node: Node, topic_name: str, *, is_dds: bool = False
 ) -> list[TopicEndpointInfo]:
-    """The endpoints that publish on a topic; those of nodes of the course are left out.
+    """The publishers on a topic, without those of the course's own nodes.
 
-    `is_dds`: the name is that of DDS, which for a service ROS makes of its own.
+    `is_dds`: the name is DDS's, such as 'rq/solve_ikRequest' for the requests of a service.
     """
     found = node.get_publishers_info_by_topic(topic_name, no_mangle=is_dds)
     return [info for info in found if not _hidden(info)]
@@ -76,9 +80,9 @@ def publisher_infos(
 def subscription_infos(
     node: Node, topic_name: str, *, is_dds: bool = False
 ) -> list[TopicEndpointInfo]:
-    """The endpoints that subscribe to a topic; those of nodes of the course are left out.
+    """The subscriptions to a topic, without those of the course's own nodes.
 
-    `is_dds`: the name is that of DDS, which for a service ROS makes of its own.
+    `is_dds`: the name is DDS's, such as 'rq/solve_ikRequest' for the requests of a service.
     """
     found = node.get_subscriptions_info_by_topic(topic_name, no_mangle=is_dds)
     return [info for info in found if not _hidden(info)]
@@ -90,10 +94,10 @@ def full_name(info: TopicEndpointInfo) -> str:
 
 
 def wait_for_publisher(watcher: Watcher, topic_name: str, *, timeout_sec: float) -> bool:
-    """Wait until somebody publishes on the topic, and no other publisher turns up for a moment.
+    """Wait for a publisher on the topic, and then until no more come; return whether one exists.
 
-    Those that a shared participant has met so before are not waited for again. Where newcomers
-    turn up all the time, somebody publishes all the same.
+    If a shared participant has seen the same publishers before, it does not wait for more. True
+    also if new publishers come all the time (MANY_NEWCOMERS).
     """
     last: set = set()
     since, changes = time.monotonic(), 0
@@ -117,9 +121,9 @@ def wait_for_publisher(watcher: Watcher, topic_name: str, *, timeout_sec: float)
 
 
 def is_settled(watcher: Watcher, node_name: str = '') -> bool:
-    """Whether the graph has all nodes of the notebook, and no other endpoint of its can come.
+    """Whether the graph has all nodes of the notebook, and the notebook cannot create endpoints.
 
-    Nor a node of that name: they have none.
+    False if one of the nodes is `node_name`: then the caller should wait for it as usual.
     """
     names = student.settled_nodes()
     if names is None or node_name in names:
@@ -132,15 +136,15 @@ def is_settled(watcher: Watcher, node_name: str = '') -> bool:
 
 
 def none_in(seconds: float) -> str:
-    """What was seen of something that did not come in time."""
+    """The words for something that did not come: 'none', after a longer wait with the time."""
     return 'none' if seconds <= SETTLED_SEC else f'none in {seconds:g} s'
 
 
 def is_gone(watcher: Watcher, node_name: str) -> bool:
-    """Whether no node of that full name is on the graph.
+    """Whether no running node has that full name.
 
-    A name alone is no node: it stays if rmw handles a participant's last message after its end.
-    Each running node of rclpy publishes on /parameter_events.
+    A name on the graph is no proof of a node: it stays if rmw handles a participant's last message
+    after its end. So the node must also publish on /parameter_events, as each node of rclpy does.
     """
     living = {full_name(info) for info in publisher_infos(watcher.node, '/parameter_events')}
     return node_name not in living or node_name not in node_names(watcher.node)
@@ -157,7 +161,7 @@ def _look(node: Node) -> GraphSnapshot:
 
 
 def node_names(node: Node) -> list[str]:
-    """Full names of the nodes on the graph, but the course's own."""
+    """Full names of the nodes on the graph, without the course's own."""
     return [
         f'{namespace.rstrip("/")}/{name}'
         for name, namespace in node.get_node_names_and_namespaces()

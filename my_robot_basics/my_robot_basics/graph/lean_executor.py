@@ -1,8 +1,8 @@
-"""An executor of one thread for the nodes of a check: a callback costs it half of rclpy's own.
+"""A single-threaded executor for the nodes of a check; a callback takes half of rclpy's time.
 
-rclpy's builds its set of what to wait for again for each callback, and looks once more after it,
-for nothing. Here the set is kept until nodes make or destroy something, and all that one look has
-found is dealt with.
+rclpy's own executor builds a new wait set for each callback, and waits once more after it. Here
+the wait set is kept until a node creates or destroys an entity, and all entities that are ready
+after one wait are handled.
 """
 
 import threading
@@ -24,11 +24,11 @@ KINDS = {
     'client': 'clients',
     'service': 'services',
 }
-"""What a set calls them, and a node; in the order in which rclpy's own executors take them."""
+"""The names of entity kinds in a wait set and in a node, in the order of rclpy's executors."""
 NUMBERS = NumberOfEntities.__slots__
-"""Of each kind in a set, in the order in which it is told."""
+"""The fields with the number of each kind, in the order of the arguments of `WaitSet`."""
 Take = Callable[[Any], Callable[[], Coroutine] | None]
-"""Takes what has come for an entity, and returns what is to be done with it."""
+"""Takes the message or event of an entity, and returns what handles it, if anything must."""
 
 
 class _Kind(NamedTuple):
@@ -37,18 +37,18 @@ class _Kind(NamedTuple):
     add: Callable[[Any], int]
     handles: list[Any]
     entities: dict[int, Any]
-    """Those that have callbacks, by what a set says of them."""
+    """The entities with callbacks, by the pointer with which a wait set names them."""
 
 
 class LeanExecutor(Executor):
     """Calls callbacks in the thread that calls `spin_once`, in the order of rclpy's own executor.
 
-    Callback groups decide alone who is listened to, whenever something is made or destroyed: no
-    callback of a check waits for another one.
+    Callback groups are asked only when the wait set is built (see `Unheeded`), not before each
+    callback: no callback of a check has to wait for another one.
     """
 
     def __init__(self, *, context: Context) -> None:
-        """It has no nodes."""
+        """Create the executor without nodes."""
         self._is_stale = True
         self._spins_in: int | None = None
         self._wait_set: Any = None
@@ -57,22 +57,22 @@ class LeanExecutor(Executor):
         super().__init__(context=context)
 
     def wake(self) -> None:
-        """End the wait: nodes call this for whatever they make or destroy."""
+        """End the wait: nodes call this when they create or destroy an entity."""
         self._is_stale = True
         super().wake()
 
     def add_node(self, node: Node) -> bool:
-        """Spin one more node; whether it is a new one."""
+        """Add a node; return whether it is new."""
         self._is_stale = True
         return super().add_node(node)
 
     def remove_node(self, node: Node) -> None:
-        """Leave a node alone from now on."""
+        """Remove a node: its callbacks are not called any more."""
         self._is_stale = True
         super().remove_node(node)
 
     def create_task(self, callback: Callable | Coroutine, *args: Any, **kwargs: Any) -> Task:
-        """Do something as soon as possible, in `spin_once`; returns its future."""
+        """Let the next `spin_once` run a callback or coroutine; return its future."""
         task = Task(callback, args, kwargs, executor=self)
         self._keep(task)
         if self._spins_in != threading.get_ident():
@@ -80,14 +80,14 @@ class LeanExecutor(Executor):
         return task
 
     def shutdown(self, timeout_sec: float | None = None) -> bool:
-        """Call no callback any more. True: none goes on elsewhere."""
+        """Call no callback any more; return True, as no callback runs in another thread."""
         self._forget()
         return super().shutdown(timeout_sec)
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
-        """Wait for something, without end for None, and call the callbacks of all that has come.
+        """Wait until entities are ready (None: without limit), and call their callbacks.
 
-        Raises what they raise, and ExternalShutdownException where the context has ended.
+        Raises what the callbacks raise, and ExternalShutdownException if the context has ended.
         """
         if self._is_shutdown:
             return
@@ -100,7 +100,7 @@ class LeanExecutor(Executor):
             self._spins_in = None
 
     def _wait(self, timeout_sec: float | None) -> list[tuple[Take, Any]]:
-        """What has come, before any callback changes what there is."""
+        """Wait, and return all ready entities before any callback can change them."""
         if self._is_stale:
             self._gather()
         wait_set = self._wait_set
@@ -125,7 +125,7 @@ class LeanExecutor(Executor):
     def _run(self, take: Take, entity: Any) -> None:
         try:
             begin = take(entity)
-        except InvalidHandle:  # a callback before has destroyed it
+        except InvalidHandle:  # an earlier callback has destroyed the entity
             return
         if begin is not None:
             coroutine = begin()
@@ -133,10 +133,10 @@ class LeanExecutor(Executor):
                 coroutine.send(None)
             except StopIteration:
                 return
-            self._keep(Task(coroutine, executor=self))  # it waits for something
+            self._keep(Task(coroutine, executor=self))  # a coroutine that awaits something
 
     def _run_tasks(self) -> bool:
-        """Go on with each task, once; whether any is done. Raises what one has raised."""
+        """Continue each task once; return whether any is done. Raises what a task has raised."""
         tasks = [task for task, _, _ in self._tasks]
         for task in tasks:
             task()
@@ -154,7 +154,7 @@ class LeanExecutor(Executor):
 
     def _take_timer(self, timer: Any) -> Callable[[], Coroutine] | None:
         with timer.handle:
-            is_due = timer.handle.is_timer_ready()  # rcl names those that were cancelled, too
+            is_due = timer.handle.is_timer_ready()  # a wait set also reports canceled timers
         return super()._take_timer(timer) if is_due else None
 
     def _forget(self) -> None:
@@ -164,7 +164,7 @@ class LeanExecutor(Executor):
             self._wait_set = None
 
     def _gather(self) -> None:
-        """Build the set anew, of all that the nodes have now."""
+        """Build the wait set again from all entities that the nodes have now."""
         self._forget()
         self._is_stale = False
         if not self._context.ok():
@@ -173,7 +173,7 @@ class LeanExecutor(Executor):
         self._waitables = list(self._awaited('waitables'))
         count = NumberOfEntities(
             len(found['subscription']),
-            len(found['guard_condition']) + 2,  # for the executor's own
+            len(found['guard_condition']) + 2,  # two are the executor's own
             *(len(found[name]) for name in ('timer', 'client', 'service')),
         )
         for waitable in self._waitables:
@@ -189,7 +189,7 @@ class LeanExecutor(Executor):
             self._kinds.append(_Kind(name, take, add, handles, by_pointer))
 
     def _awaited(self, of_node: str) -> Iterator[Any]:
-        """What the nodes have of a kind, without what its callback group leaves alone."""
+        """The nodes' entities of a kind, without those that their callback group excludes."""
         for node in self.get_nodes():
             for entity in getattr(node, of_node):
                 if entity.callback_group is None or entity.callback_group.can_execute(entity):

@@ -1,4 +1,4 @@
-"""The DDS participants that this machine has in a ROS domain, asked of the operating system.
+"""The DDS participants of this machine in a ROS domain, according to the operating system.
 
 The RTPS standard numbers the ports: participant n of a domain listens for announcements on
 7400 + 250 · domain + 10 + 2 · n.
@@ -13,23 +13,23 @@ _FIRST_PORT, _PORTS_A_DOMAIN, _OFFSET, _PORTS_A_PARTICIPANT = 7400, 250, 10, 2
 
 
 def count(domain_id: int) -> int:
-    """Participants that listen in the domain now, of any process; 0 if that can't be known."""
+    """The number of participants in the domain, of all processes; 0 if it cannot be known."""
     return len(ports(domain_id))
 
 
 def ports(domain_id: int) -> set[int]:
-    """The ports on which they listen for announcements; none if that can't be known."""
+    """The ports on which participants listen for announcements; empty if they cannot be known."""
     return set(_inodes(domain_id))
 
 
 def own_ports(domain_id: int) -> set[int]:
-    """The ports of those that are in this process."""
+    """The ports of the participants in this process."""
     own = set(_open_sockets())
     return {port for port, inode in _inodes(domain_id).items() if inode in own}
 
 
 def _inodes(domain_id: int) -> dict[int, str]:
-    """Each port with the number of its socket."""
+    """The participants' ports, each with the inode of its socket."""
     try:
         lines = SOCKETS.read_text(encoding='ascii').splitlines()[1:]
     except OSError:

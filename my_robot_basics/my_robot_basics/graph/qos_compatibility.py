@@ -1,4 +1,4 @@
-"""Whether two QoS profiles fit together, and what to say where they do not."""
+"""Whether two QoS profiles are compatible, and what to advise if not."""
 
 from collections.abc import Iterable
 
@@ -7,7 +7,7 @@ from rclpy.qos import DurabilityPolicy, LivelinessPolicy, QoSProfile, Reliabilit
 
 
 def incompatible(offered: QoSProfile, asked: QoSProfile) -> dict[str, tuple[str, str]]:
-    """Each policy of which less is offered than asked for, with both values in words."""
+    """Each policy that offers less than requested: its name, and both values in words."""
     gaps = {}
     if (
         offered.reliability == ReliabilityPolicy.BEST_EFFORT
@@ -35,12 +35,12 @@ def incompatible(offered: QoSProfile, asked: QoSProfile) -> dict[str, tuple[str,
 
 
 def brief(qos_profile: QoSProfile) -> str:
-    """The two policies of which the lessons speak, in one word."""
+    """The two policies that the lessons explain, such as 'RELIABLE/VOLATILE'."""
     return f'{qos_profile.reliability.name}/{qos_profile.durability.name}'
 
 
 def leave_out(policies: Iterable[str]) -> str:
-    """What to do about policies that no publisher offers."""
+    """What to try if a subscription requests policies that no publisher offers: one clause."""
     if 'LIVELINESS' in policies:
         return (
             'no publisher offers such a liveliness, which BEST_AVAILABLE requests, too, while'

@@ -1,4 +1,4 @@
-"""What keeps a node from its work: what its callback or thread raised, or what doesn't return."""
+"""What stopped a node: an exception of a callback or thread, or a callback that never returns."""
 
 from collections.abc import Iterable
 
@@ -9,7 +9,7 @@ from my_robot_basics.feedback.python_errors import explained, what_to_do
 
 
 def what_raised(node_names: Iterable[str]) -> str:
-    """A clause on the callback of one of the nodes that has raised, or ''."""
+    """A clause about the exception of a callback of one of the nodes, or ''."""
     raised = ((name, node_troubles.last_raised(name)) for name in sorted(set(node_names)))
     name, said = next((each for each in raised if each[1]), ('', ''))
     if not said:
@@ -31,7 +31,7 @@ def what_raised(node_names: Iterable[str]) -> str:
 
 
 def what_stopped(node_names: Iterable[str]) -> str:
-    """As `what_raised`; else on a callback that goes on, or a thread that ended; or ''."""
+    """The same, else a clause about an unfinished callback or a thread that raised, or ''."""
     names = sorted(set(node_names))
     if raised := what_raised(names):
         return raised
@@ -40,9 +40,9 @@ def what_stopped(node_names: Iterable[str]) -> str:
 
 
 def what_ended_a_thread() -> str:
-    """A clause on what a thread that the notebook has begun itself raised, or ''.
+    """A clause about the exception of a thread that the notebook itself has started, or ''.
 
-    An executor of the student's own may have run there: then nothing of its nodes goes on.
+    An executor of the student's may have spun there: then the callbacks of its nodes have stopped.
     """
     said = node_troubles.last_raised(wire.THREADS)
     return f'a thread of the notebook raised {safely(said)}' if said else ''

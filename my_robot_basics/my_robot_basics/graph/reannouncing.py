@@ -1,9 +1,9 @@
 """Ask the DDS participants of this machine to announce themselves again.
 
-Fast DDS sends a first announcement before it listens for replies. A participant nearby replies
-at once and once; if that reply is lost, its next announcement comes up to 3 s later. But each
-participant replies to whoever is new. So a participant that does not exist is announced to it, at
-the address of one that does: the reply arrives there.
+Fast DDS sends a first announcement before it listens for replies. Another participant replies
+once, immediately; if that reply is lost, its next announcement comes up to 3 s later. But a
+participant replies to every new one. So this module announces an invented participant with the
+address of an existing one: the reply arrives there.
 """
 
 import os
@@ -15,7 +15,7 @@ from my_robot_basics.graph import participants
 
 LOOPBACK = '127.0.0.1'
 LEASE_SEC = 1
-"""So long others keep the participant that does not exist."""
+"""How long other participants remember the invented one."""
 
 # numbers of the RTPS standard, version 2.3
 _VERSION, _NO_VENDOR = bytes([2, 3]), bytes(2)
@@ -29,7 +29,7 @@ _UNICAST, _METATRAFFIC_UNICAST, _ENDPOINTS, _END = 0x31, 0x32, 0x58, 0x01
 
 
 def ask(domain_id: int) -> None:
-    """Ask all that this machine has in the ROS domain to announce themselves to this process."""
+    """Ask all participants of this machine in the ROS domain to announce themselves here."""
     own = participants.own_ports(domain_id)
     others = participants.ports(domain_id) - own
     for port in own:
@@ -44,9 +44,10 @@ def ask_ports(ports: Iterable[int], *, reply_port: int) -> None:
 
 
 def announcement(guid_prefix: bytes, reply_port: int) -> bytes:
-    """An RTPS message that announces a participant, of 12 bytes' name, at a port of this machine.
+    """An RTPS message that announces a participant at a port of this machine.
 
-    It says that it has no endpoints, and nothing of ROS.
+    `guid_prefix` (12 bytes) identifies the participant. It announces no endpoints except those
+    for discovering participants.
     """
     address = struct.pack('<iI12x', _UDP_V4, reply_port) + socket.inet_aton(LOOPBACK)
     parameters = {

@@ -1,7 +1,7 @@
-"""Subscriptions of rmw, the layer below rclpy, by ctypes: to DDS topics that rclpy can't name.
+"""Subscriptions of rmw, the layer below rclpy, by ctypes: to DDS topics that rclpy cannot name.
 
-rclpy puts a slash before each topic name, and needs the class of a message, whose import may take
-as long as that of rclpy. Here a topic is named as DDS has it, and messages are bytes.
+rclpy puts a slash before each topic name, and needs the message's class, whose import may take as
+long as that of rclpy. Here a topic has its name in DDS, and messages are serialized bytes.
 """
 
 import ctypes
@@ -11,15 +11,15 @@ from rclpy.node import Node
 
 
 class LatchedSubscription:
-    """Takes each message of a latched DDS topic once; the node lives until it is closed.
+    """Takes each message of a latched DDS topic once; do not destroy the node before `close`.
 
-    Raises RuntimeError if rmw does not let it subscribe.
+    Raises RuntimeError if rmw refuses the subscription.
     """
 
     def __init__(
         self, node: Node, topic_name: str, *, package: str, message_name: str, kind: str = 'msg'
     ) -> None:
-        """`kind` of interface: 'msg', or 'srv' for a request or response."""
+        """`kind` of the interface: 'msg', or 'srv' for a request or response."""
         self._rmw = _functions()
         self._node = self._rmw.rcl_node_get_rmw_handle(node.handle.pointer)
         self._bytes = _Bytes()
@@ -34,12 +34,12 @@ class LatchedSubscription:
             raise RuntimeError(f'rmw does not subscribe to the DDS topic {topic_name}')
 
     def close(self) -> None:
-        """Unsubscribe."""
+        """Destroy the subscription."""
         self._rmw.rmw_destroy_subscription(self._node, self._subscription)
         self._rmw.rcutils_uint8_array_fini(self._bytes)
 
     def take(self) -> bytes | None:
-        """The next message as it was serialized, or None while there is no other."""
+        """The next message, serialized, or None if there is none at present."""
         is_taken = ctypes.c_bool()
         status = self._rmw.rmw_take_serialized_message(
             self._subscription, self._bytes, is_taken, None
@@ -104,7 +104,7 @@ class _Bytes(ctypes.Structure):
 
 
 def _functions() -> ctypes.CDLL:
-    """Those of the very rmw and rcl that rclpy uses."""
+    """The functions of the same rmw and rcl that rclpy uses."""
     library = ctypes.CDLL(rclpy_implementation.__file__)
     pointer, by_reference = ctypes.c_void_p, ctypes.POINTER
     library.rcl_node_get_rmw_handle.restype = pointer

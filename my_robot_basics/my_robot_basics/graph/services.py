@@ -1,4 +1,4 @@
-"""Services on the graph: which nodes serve one, which ask, and with which type."""
+"""Services on the graph: which nodes are servers or clients of each service, and of which type."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -24,21 +24,22 @@ OF_EVERY_NODE = frozenset(
 
 @dataclass(frozen=True)
 class ServiceGraph:
-    """Who serves and who asks, without the nodes whose names start with `_`; of actions, too."""
+    """Servers and clients of services or actions, without nodes whose names start with `_`."""
 
     node_names: tuple[str, ...]
     """Full names of all nodes, sorted."""
     servers: dict[str, dict[str, tuple[str, ...]]]
-    """Service name to full node name to the types that the node serves it with."""
+    """Service name to full name of the server's node to the types of its servers."""
     clients: dict[str, dict[str, tuple[str, ...]]]
-    """The same of those that ask."""
+    """The same for clients."""
     node: Node
-    """The node that has seen them, to be asked about a topic of that name."""
+    """The node that took this graph; `why_none` also looks up topics with it."""
 
     def why_none(self, name: str, *, maker: str) -> str:
-        """What to try where nobody is at that end of a service: one clause.
+        """What to try if a service or action has no server, or no client: one clause.
 
-        `maker` is 'create_service' or 'create_client', 'ActionServer' or 'ActionClient'.
+        `maker` creates what is missing: 'create_service', 'create_client', 'ActionServer' or
+        'ActionClient'.
         """
         is_served = maker in ('create_service', 'ActionServer')
         ends = self.servers if is_served else self.clients
@@ -70,10 +71,11 @@ def take(node: Node) -> ServiceGraph:
 
 
 def take_ends(node: Node, requests: Mapping[str, str]) -> ServiceGraph:
-    """Who is at the ends of services, by name, or of actions, with the service that asks first.
+    """The servers and clients of `requests`: names of services or actions to request services.
 
-    By the endpoints of its requests: what a node of some name has cannot be asked, because one
-    that has ended may stay on the graph under the name of one that runs, and have nothing.
+    A service is its own request service; that of an action is send_goal. The DDS endpoints of the
+    requests are looked up, not the services of each node name: an ended node without services may
+    stay on the graph under the name of a running one, and would hide its services.
     """
     servers: dict[str, dict[str, tuple[str, ...]]] = {}
     clients: dict[str, dict[str, tuple[str, ...]]] = {}
@@ -93,9 +95,9 @@ def take_ends(node: Node, requests: Mapping[str, str]) -> ServiceGraph:
 
 
 def _type_of(dds_type: str) -> str:
-    """What ROS calls the type of an interface whose requests have this type in DDS."""
+    """ROS's name of a service or action type, from the DDS type of its requests."""
     parts = dds_type.split('::')
     if len(parts) < 3:
-        return dds_type  # of no program of ROS
+        return dds_type  # not made by ROS
     package, kind, *_, name = parts
     return f'{package}/{kind}/{name.removesuffix("_Request_").removesuffix("_SendGoal")}'

@@ -1,4 +1,4 @@
-"""The ROS graph at one moment, and what it says of a topic on which nothing arrives."""
+"""The ROS graph at one moment, and what it shows about a topic on which nothing arrives."""
 
 import difflib
 from collections.abc import Collection
@@ -12,12 +12,12 @@ NOT_RUNNING = (
     ' __init__ raises, waits, loops or spins never runs'
 )
 PLUMBING = ('/clock', '/parameter_events', '/rosout')
-"""Topics that every node has, whatever its author wrote."""
+"""Topics that rclpy itself uses in every node, whatever the node's author wrote."""
 
 
 @dataclass(frozen=True)
 class GraphSnapshot:
-    """A picture of the graph, without the nodes whose names start with `_`."""
+    """The nodes and endpoints of the graph, without nodes whose names start with `_`."""
 
     node_names: tuple[str, ...]
     """Full names, such as `/kinematics_publisher`, sorted."""
@@ -39,7 +39,7 @@ class GraphSnapshot:
         return self.subscription_names.get(topic_name, ())
 
     def publishes_nothing(self, node_names: Collection[str]) -> bool:
-        """Whether none of those nodes has a publisher, except those that each node has."""
+        """Whether none of those nodes has a publisher, apart from those on PLUMBING."""
         return not any(
             {*nodes} & {*node_names}
             for topic_name, nodes in self.publisher_names.items()
@@ -47,7 +47,7 @@ class GraphSnapshot:
         )
 
     def without(self, node_names: Collection[str]) -> 'GraphSnapshot':
-        """The same graph, had those nodes not been there."""
+        """The same graph without those nodes."""
 
         def left(names: dict[str, tuple[str, ...]]) -> dict[str, tuple[str, ...]]:
             rest = {
@@ -78,7 +78,7 @@ class GraphSnapshot:
         return self._why_none(topic_name, self.publisher_names, 'create_publisher', others)
 
     def why_no_subscription(self, topic_name: str) -> str:
-        """What to try when nobody subscribes to a topic: one clause."""
+        """What to try when a topic has no subscription: one clause."""
         others = self.publishers(topic_name)
         return self._why_none(topic_name, self.subscription_names, 'create_subscription', others)
 
@@ -89,10 +89,10 @@ class GraphSnapshot:
         maker: str,
         others: tuple[str, ...],
     ) -> str:
-        # who is at the other end of the topic is not the one that is missing at this end
+        # a node at the other end of the topic is usually not the one that is missing at this end
         runs = [name for name in self.node_names if name not in others]
         near = similar(topic_name, [name for name in names if name not in PLUMBING])
-        # it may be the one that was meant, with its two ends mixed up
+        # but it may be, if its publisher and its subscription are swapped
         if mixed := sorted({*names.get(near or '', others if not runs else ())} & {*others}):
             return (
                 f'{theirs(", ".join(mixed))} is at the other end of this topic, so check the'
@@ -119,7 +119,7 @@ class GraphSnapshot:
 
 
 def similar(topic_name: str, others: list[str]) -> str | None:
-    """The name that was probably meant, among others; or None."""
+    """The one of `others` that was probably meant by this name, or None."""
     last = topic_name.rpartition('/')[2]
     same_end = [name for name in others if name.rpartition('/')[2].lower() == last.lower()]
     parts = sorted(topic_name.split('/'))

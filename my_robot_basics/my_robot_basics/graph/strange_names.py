@@ -1,4 +1,4 @@
-"""Names on the graph that DDS allows and ROS does not: rclpy refuses to be asked about them."""
+"""Names on the graph that DDS allows and ROS does not: rclpy refuses to look them up."""
 
 from collections.abc import Iterator
 
@@ -8,7 +8,7 @@ from rclpy.validate_full_topic_name import validate_full_topic_name
 
 
 def strange_name(node: Node) -> str:
-    """Return one that the node sees now; '' where there is none, or names are no text."""
+    """Return one that the node sees now; '' if there is none, or a name is not UTF-8."""
     try:
         return next((name for name in _names(node) if not _is_allowed(name)), '')
     except UnicodeDecodeError:
@@ -16,7 +16,7 @@ def strange_name(node: Node) -> str:
 
 
 def _names(node: Node) -> Iterator[str]:
-    """Yield the full names of topics, services and nodes, which are formed alike."""
+    """Yield the full names of topics, services and nodes, to which the same rules apply."""
     for look_up in node.get_topic_names_and_types, node.get_service_names_and_types:
         yield from (name for name, _ in look_up())
     for name, namespace in node.get_node_names_and_namespaces():

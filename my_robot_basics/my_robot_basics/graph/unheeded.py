@@ -1,11 +1,11 @@
-"""A callback group for what nobody waits for."""
+"""A callback group for entities that an executor should ignore."""
 
 from rclpy.callback_groups import CallbackGroup
 
 
 class Unheeded(CallbackGroup):
-    """What comes for its entities is left where it is: nobody is woken up for it."""
+    """Its entities are never in a wait set, so they neither wake the executor nor run."""
 
     def can_execute(self, entity: object) -> bool:
-        """Never."""
+        """Return False."""
         return False

@@ -1,4 +1,4 @@
-"""A check's own ROS node: it lives for one check, and no student code can reach it."""
+"""A check's own ROS node: it exists for one check, and no student code can reach it."""
 
 import time
 from collections.abc import Callable, Sequence
@@ -22,27 +22,28 @@ from my_robot_basics.session.pressure import free_turns
 
 TRANSPORTS = 'FASTDDS_BUILTIN_TRANSPORTS'
 HIDDEN = '_'
-"""Nodes whose names start so are the course's own; no count and no check includes them."""
+"""Names of the course's own nodes start with this; checks and counts ignore these nodes."""
 MOST_ENDPOINTS = 1_000
-"""Publishers, subscriptions and services in a domain: thirty nodes have some 400. With many
-thousands, no look at the graph comes to an end."""
+"""The limit of publishers, subscriptions and services in a domain. Thirty nodes have about 400;
+with many thousands, reading the graph would take too long."""
 BY_RCLPY = 'make nodes, topics and services with rclpy alone, by names of ASCII letters'
 _REFUSES = ValueError, NameValidationException
-"""What rclpy raises where it is asked about a name that nobody can have given with it."""
+"""What rclpy raises if it should look up a name that rclpy itself could not have created."""
 COUNT_EVERY_SEC = 0.5
+"""How often the endpoints are counted for MOST_ENDPOINTS."""
 LOOK_EVERY_SEC = 0.05
 
 
 def _only_shared_memory() -> AbstractContextManager[None]:
-    """Participants that are made meanwhile have no socket: a room's memory is no other room's."""
+    """Participants created inside have no sockets: each room has shared memory of its own."""
     return set_meanwhile(TRANSPORTS, 'SHM')
 
 
 class Watcher:
     """A context manager around a node with a Context and an executor of its own.
 
-    It spins only inside `spin_until`, in the caller's thread: nothing goes on in the
-    background, and an interrupt ends the check at once.
+    It spins only inside its `spin_…` methods, in the caller's thread: nothing runs in the
+    background, and an interrupt ends the check immediately.
     """
 
     def __init__(
@@ -55,17 +56,17 @@ class Watcher:
     ) -> None:
         """`domain_id`: the ROS domain to join, instead of the lesson's.
 
-        `apart`: where the grader runs the check, only meet what is in the test room, too.
-        `shared`: be content with a participant that the cell's checks have made before.
-        `listens`: the nodes are left as they are found, with the clocks that they had.
+        `apart`: in the grader, only discover participants that are in the test's room, too.
+        `shared`: use the participant that the cell's checks share, if there is one.
+        `listens`: the check only records, so it does not count as an interaction with the nodes.
         """
         self._domain_id, self._shared, self._listens = domain_id, shared, listens
         self._transports = _only_shared_memory if apart and is_in_test_room() else nullcontext
         self.late_sec = 0.0
-        """How long the machine has kept this waiting at most, against its intention."""
+        """The most by which a spin took longer than it should have."""
         self._next_count = 0.0
         self.earlier_look: tuple[float, GraphSnapshot | None] = 0.0, None
-        """The graph as it was at a moment of the monotonic clock."""
+        """The graph at an earlier time of `time.monotonic()`, and that time first."""
 
     def __enter__(self) -> Self:
         """Join the domain."""
@@ -82,7 +83,7 @@ class Watcher:
         return self
 
     def __exit__(self, _: object, error: BaseException | None, __: object) -> None:
-        """Leave it, with all that was made here. Raises CheckFailed if it could not be read."""
+        """Leave the domain. Raises CheckFailed if names on the graph could not be read."""
         refused = strange_name(self.node) if isinstance(error, _REFUSES) else ''
         self._executor.shutdown()
         for node in self._nodes:
@@ -90,7 +91,7 @@ class Watcher:
         if self._is_own:
             self.context.shutdown()
         if isinstance(error, UnicodeDecodeError):
-            # rclpy reads all names at once: one that is no text hides all others
+            # rclpy decodes all names at once: one that is not UTF-8 hides all others
             fail(
                 expected='names and types on the graph that are text',
                 seen='bytes that are not UTF-8',
@@ -104,7 +105,7 @@ class Watcher:
             )
 
     def add_node(self, name: str, *, namespace: str = '', cli_args: Sequence[str] = ()) -> Node:
-        """Make one more hidden node, which is spun and destroyed together with the first."""
+        """Create one more hidden node, which is spun and destroyed together with the first."""
         node = Node(
             f'{HIDDEN}{name}',
             context=self.context,
@@ -112,18 +113,18 @@ class Watcher:
             cli_args=list(cli_args),
             use_global_arguments=False,
             enable_rosout=False,
-            # or student code could set use_sim_time here
+            # with these, student code could set use_sim_time here
             start_parameter_services=False,
             parameter_overrides=[Parameter('start_type_description_service', value=False)],
         )
-        for event in node.waitables:  # of its /parameter_events; each costs every look something
+        for event in node.waitables:  # QoS events of /parameter_events; each slows every wait down
             event.callback_group = Unheeded()
         self._executor.add_node(node)
         self._nodes.append(node)
         return node
 
     def spin_until(self, done: Callable[[], bool], *, timeout_sec: float) -> bool:
-        """Spin until `done()`, at most `timeout_sec` of steady wall time; whether it is done.
+        """Spin until `done()`, at most `timeout_sec` of monotonic time; return whether it is done.
 
         Raises CheckFailed if there are more than MOST_ENDPOINTS.
         """
@@ -135,22 +136,22 @@ class Watcher:
             left = deadline - time.monotonic()
             if left <= 0.0:
                 return False
-            # `done` may look at the graph, which wakes nobody up
+            # `done` may look at the graph, whose changes do not wake the executor
             pause = min(left, 0.02)
             start = time.monotonic()
             self._executor.spin_once(timeout_sec=pause)
             self.late_sec = max(self.late_sec, time.monotonic() - start - pause)
 
     def spin_for(self, seconds: float) -> None:
-        """Spin for a while of steady wall time."""
+        """Spin for `seconds` of monotonic time."""
         self.spin_until(lambda: False, timeout_sec=seconds)
 
     def spin_until_free(self, done: Callable[[], bool], *, free_sec: float) -> bool:
-        """Spin until `done()`, at most `free_sec` of free time; whether it is done.
+        """Spin until `done()`, at most `free_sec` of free time; return whether it is done.
 
-        Time in which processes had to wait for a processor does not count.
+        Free time is time in which no process had to wait for a processor.
         """
-        # most is done at once: then Linux need not be asked how busy the machine is
+        # most waits end immediately: then Linux need not be asked how busy the machine is
         if self.spin_until(done, timeout_sec=min(LOOK_EVERY_SEC, free_sec)):
             return True
         turns = free_turns(free_sec)
