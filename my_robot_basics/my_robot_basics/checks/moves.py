@@ -1,4 +1,4 @@
-"""What `/move_arm` is to do, for grade cells; positions in radians, speeds in radians a second."""
+"""What `/move_arm` must do, for grade cells; positions in rad, speeds in rad/s."""
 
 import math
 import random
@@ -70,6 +70,6 @@ def choose_wrong(numbers: random.Random) -> list[MoveArm.Goal]:
 
 
 def choose_near_limits(numbers: random.Random) -> list[tuple[float, float]]:
-    """Positions just within the limits, on each side."""
+    """Choose two positions just within the limits of both joints, one on each side."""
     first, second = (limit - BEYOND_RAD * numbers.uniform(0.5, 1.0) for limit in LIMITS_RAD)
     return [(first, -second), (-first, second)]

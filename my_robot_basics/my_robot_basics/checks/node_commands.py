@@ -25,7 +25,7 @@ cell that starts the node has waited for it before."""
 MOST_POSES = 3_600
 """An hour of poses at 1 Hz: how far the node has come when the check receives one is unknown."""
 _OF_ALL = '/rosout', '/parameter_events'
-"""The topics on which each node publishes."""
+"""The topics on which every node of rclpy publishes."""
 _PACKAGE, _EXECUTABLE = 'my_robot_basics', 'kinematics_publisher'
 
 

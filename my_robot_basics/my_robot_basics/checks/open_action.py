@@ -43,7 +43,7 @@ class OpenAction:
         self.watcher, self.name, self.type = watcher, name, type_
         self.ends = ActionEnds(watcher, name, type_)
         self.node_name = ''  # the full name of the server's node
-        self.accepted: list[SentGoal] = []  # the last one last
+        self.accepted: list[SentGoal] = []  # oldest first
 
     def meet(self) -> None:
         """Wait for the only server, and until its earlier goals end. Raises CheckFailed."""
@@ -84,7 +84,7 @@ class OpenAction:
         count = self.watcher.node.count_services(f'{self.name}/_action/send_goal')
         names = ', '.join(sorted(actions.take(self.watcher.node).servers.get(self.name, {})))
         expect(
-            count <= 1,  # two nodes may have one name
+            count <= 1,  # count servers, not names: two nodes may have the same name
             expected=f'one server of the action {self.name}',
             seen=f'{count} ({theirs(names)})',
             hint='stop the other node: nobody knows which one moves the arm'

@@ -36,7 +36,7 @@ CLEANLY = (
 
 
 class RunningExecutable:
-    """One process of the student's package, inside a `with`."""
+    """One process of the student's package, for the duration of a with statement."""
 
     def __init__(self, package: str, executable: str, arguments: tuple[str, ...]) -> None:
         """Prepare the process; the `with` statement starts it."""

@@ -18,7 +18,7 @@ TIMEOUT_FACTOR, LEAST_SEC = 10.0, 0.2
 """Once one came out, the first timeout is TIMEOUT_FACTOR times the slowest so far, at least
 LEAST_SEC. After that `carry` asks whether a flood explains the delay; if not, ON_TIME_SEC more."""
 QUIET_SEC = 0.1
-"""How long to listen for a second copy."""
+"""How long to wait for a second copy of a message, in s of wall time."""
 MOST_SEC, LAST_SEC = 12.0, 20.0
 """After MOST_SEC of wall time, `carry` decides on what it has seen; after LAST_SEC, so do the
 tests with pairs and pauses. *Validate* gives a cell 30 s."""
@@ -40,7 +40,7 @@ PAUSES = 3
 
 
 class Passage:
-    """Publishes on one topic and sees what comes out on another one."""
+    """Publishes on one topic and observes what comes out on another one."""
 
     def __init__(
         self,
@@ -87,7 +87,7 @@ class Passage:
             elif len(self._others) - others >= FLOOD and self._pushed_out < MOST_PUSHED_OUT:
                 self._pushed_out += 1
                 self._waiting.remove(sent)
-            # in a queue of depth 1, the next would push it out
+            # wait for it: in a queue of depth 1, the next message would push it out
             elif self._wait_for(sent, free_sec=ON_TIME_SEC):
                 in_a_row += 1
             else:

@@ -38,7 +38,7 @@ def spanned(times_sec: np.ndarray, slack_sec: float) -> tuple[float, float]:
     Each time may be off by `slack_sec`. The least is above the greatest if no period does.
     """
     lengths, apart = _pairs(times_sec)
-    # each pair of arrivals leaves the period a range; they must all agree on one
+    # each pair of arrivals limits the period to a range; the result is what all ranges share
     low, high = (lengths - slack_sec) / apart, (lengths + slack_sec) / apart
     return float(np.max(low)), float(np.min(high))
 
@@ -86,7 +86,10 @@ def come_by_turns(times_sec: np.ndarray, slack_sec: float = 0.0) -> bool:
 
 
 def _apart_by_turns(gaps: np.ndarray, count: int) -> float:
-    """Take every `count`-th gap as a turn: by how much most of the longest exceed the shortest."""
+    """Group the gaps by their index modulo `count`; how far apart are the extreme groups, in s?
+
+    From the third quartile of the shortest group to the first quartile of the longest one.
+    """
     turns = sorted((gaps[first::count] for first in range(count)), key=np.median)
     return float(np.quantile(turns[-1], 0.25) - np.quantile(turns[0], 0.75))
 
@@ -138,7 +141,7 @@ class Pattern(NamedTuple):
 def pattern_of(times_sec: np.ndarray, step_sec: float, *, seconds: float) -> Pattern | None:
     """The shortest pattern that repeats throughout `seconds`; None if there is none.
 
-    A pattern of one message is none. `step_sec`: how far a tick moved the clock.
+    A single message that repeats is not a pattern. `step_sec`: how far a tick moved the clock.
     """
     ticks = np.rint(times_sec[1:] / step_sec).astype(int)
     counts = np.bincount(ticks, minlength=round(seconds / step_sec) + 1)[1:]

@@ -16,7 +16,7 @@ SEEN, EXPECTED = '#d55e00', '#0072b2'
 
 def arrivals(recording: 'Recording', *, hz: float | None = None) -> bytes:
     """Plot when the messages of a recording arrived; with `hz`, also when they should have."""
-    from matplotlib.figure import Figure  # takes a second, and most checks need no picture
+    from matplotlib.figure import Figure  # slow to import (1 s), and rarely needed
 
     until = min(recording.seconds, SHOWN_PERIODS / (hz or recording.rate_hz or 1.0))
     seen = [s.time_sec for s in recording.messages if s.time_sec <= until]

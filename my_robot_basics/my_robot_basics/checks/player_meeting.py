@@ -13,7 +13,7 @@ from my_robot_basics.feedback.errors import CheckFailed, expect, fail
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
 
-NAME = 'arm_player'  # of the package, of the executable and of the node
+NAME = 'arm_player'  # the name of the package, of the executable and of the node
 MEET_SEC = 8.0
 """How long a new process may take until its client of `/solve_ik` exists, in s of free time."""
 SECOND_SEC = 1.0

@@ -61,7 +61,7 @@ class PlayerServers(ScriptedActionServer):
         super().stop()
 
     def pose(self, number: int) -> list[float]:
-        """The position that the goal for a target has to have, in radians."""
+        """The position that the goal for a target must have, in radians."""
         _, x, y = self.targets[number]
         return list(solve(request(x, y), l1=L1_M).elbow_up)
 
@@ -96,7 +96,7 @@ class PlayerServers(ScriptedActionServer):
             name = f'{MOVE_ARM}/_action/cancel_goal'
             self._canceller = self._watcher.node.create_client(CancelGoal, name)
             self._watcher.spin_until(self._canceller.service_is_ready, timeout_sec=CANCEL_SEC)
-        self._canceller.call_async(CancelGoal.Request())  # without an id: every goal
+        self._canceller.call_async(CancelGoal.Request())  # without a goal id: all goals
         self._watcher.spin_until_free(lambda: bool(goal.cancels), free_sec=CANCEL_SEC)
         goal.finish('canceled')
 

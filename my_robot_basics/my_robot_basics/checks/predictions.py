@@ -60,7 +60,7 @@ class Predictions:
                     self._failed_already |= not is_quiet()
 
     def conclude(self, points: Mapping[int, float]) -> None:
-        """Raises CheckFailed, naming each wrong prediction and the reason, if there are any.
+        """Raise CheckFailed, naming each wrong prediction and the reason, if there are any.
 
         `points` maps the least number of right predictions to the points that are left, once all
         situations have run. Choose them so that guessing earns almost none.

@@ -39,13 +39,13 @@ class Sample:
 
 @dataclass(frozen=True, kw_only=True)
 class Recording:
-    """The messages of a topic over `seconds`, beginning at a message that is not among them."""
+    """The messages of a topic over `seconds`, which begin at a message that does not count."""
 
     topic_name: str
     messages: tuple[Sample, ...]
     """Oldest first; the one at which the recording began is not among them."""
     clock: Literal['simulated', 'wall']
-    """Which clock `seconds` and the samples' `time_sec` are of."""
+    """The clock of `seconds` and of the samples' `time_sec`."""
     publishers: tuple[str, ...]
     """Full names of the nodes that publish on the topic, one for each publisher."""
     seconds: float
@@ -73,7 +73,7 @@ class Recording:
 
     @property
     def largest_gap_sec(self) -> float:
-        """The longest time between two messages; infinite without a message."""
+        """The longest gap between two messages, in s; infinite without a message."""
         times = [0.0, *(sample.time_sec for sample in self.messages)]
         return max((b - a for a, b in itertools.pairwise(times)), default=math.inf)
 

@@ -130,7 +130,7 @@ def expect_cancel_in_spite_of_a_second_goal(
 
 
 def ask(server: ServedAction, position: Pose, *, accepts: bool = True) -> ReceivedGoal:
-    """The goal that the client sends for a position. Raises CheckFailed."""
+    """Publish a position; return the goal that the client sends for it. Raises CheckFailed."""
     server.accepts, server.reports = accepts, half_way
 
     def is_it(request: MoveArm.Goal) -> bool:

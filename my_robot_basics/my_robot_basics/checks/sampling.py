@@ -104,7 +104,7 @@ def _sampled(topic: DrivenTopic, *, seconds: float, step_sec: float) -> Recordin
             return Uneven(recording)  # perhaps a thread was late: see `_patient`
         proof = prove(topic, recording)
         if proof is None:
-            topic.expect_follows()  # a thread may publish on the wall clock beside a timer
+            topic.expect_follows()  # beside the timer, a thread may publish on the wall clock
             continue
         if not rates.is_nearly_even(proof):
             return Uneven(recording)

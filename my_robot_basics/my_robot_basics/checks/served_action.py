@@ -45,9 +45,9 @@ class ServedAction(ScriptedActionServer):
         self._raised = CallbackErrors(set(outcomes.publishers()))
         self.publishers: dict[str, Publisher] = {}
         self._known_starts = self._before = 0
-        self._was_away = False  # when a message was to lead to a goal that has not come
-        self._mute: set[str] = set()  # nodes that tell no parameters are asked once
-        self._cancelled_sec = 0.0  # how long a request took that an obstacle asked for, at most
+        self._was_away = False  # whether a message without a goal so far found no server
+        self._mute: set[str] = set()  # nodes without an answer about parameters: not asked again
+        self._cancelled_sec = 0.0  # the longest time from a goal to an obstacle's cancel request
 
     def publish(self, message: Any) -> None:
         """Publish a message that should lead to a goal, without waiting for the goal."""

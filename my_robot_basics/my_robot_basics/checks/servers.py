@@ -188,7 +188,7 @@ class Server(HoldingServer):
         self.expect_alone()
 
     def expect_alone(self) -> None:
-        """No other node serves. Raises CheckFailed."""
+        """No other node serves this service. Raises CheckFailed."""
         expect_no_other(self._watcher, self.name, own=int(self.is_there()))
 
     def _client(self) -> WaitingClient:

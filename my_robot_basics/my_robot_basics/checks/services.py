@@ -87,7 +87,7 @@ class Service:
         known = ('service', self.name), {**found}
         if not familiar.is_known(watcher.context, *known):
             watcher.spin_for(graphs.NEWCOMER_SEC)
-        # two nodes may have one name
+        # count servers, not names: two nodes may have the same name
         count = watcher.node.count_services(self.name)
         expect(
             count == 1,

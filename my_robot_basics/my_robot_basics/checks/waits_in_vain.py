@@ -22,6 +22,6 @@ def is_in_vain(sent: SentGoal, *, free_sec: float, since_ns: int = 0) -> bool:
     ]
     if sent.is_over() or len(told) < FEWEST:
         return False
-    later = told[len(told) // 2 - 1 :]  # an arm may begin slowly
+    later = told[len(told) // 2 - 1 :]  # not the first half: an arm may begin slowly
     passed_sec, gone_rad = later[-1][0] - later[0][0], later[0][1] - later[-1][1]
     return gone_rad > 0.0 and later[-1][1] * passed_sec > BUSY_TIMES * free_sec * gone_rad

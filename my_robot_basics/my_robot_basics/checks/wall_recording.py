@@ -95,7 +95,7 @@ def remembers_sec(why: Inconclusive | None) -> float:
 
 
 def goes_on(watcher: Watcher, recorder: Recorder, earlier: Recording) -> bool:
-    """Whether the messages of an earlier recording still come, as often and as evenly."""
+    """Whether messages still come as often and as evenly as in an earlier recording."""
     again = wall(watcher, recorder, seconds=GOES_ON_SEC, timeout_sec=GOES_ON_SEC)
     return again.publishers == earlier.publishers and rates.has_rate(again, earlier.rate_hz)
 

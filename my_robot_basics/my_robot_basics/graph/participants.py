@@ -49,7 +49,7 @@ def _open_sockets() -> list[str]:
     for file in OWN_FILES.iterdir():
         try:
             target = os.readlink(file)
-        except OSError:  # closed meanwhile
+        except OSError:  # another thread has closed it meanwhile
             continue
         if target.startswith('socket:['):
             found.append(target[len('socket:[') : -1])

@@ -37,7 +37,7 @@ def ask(domain_id: int) -> None:
 
 
 def ask_ports(ports: Iterable[int], *, reply_port: int) -> None:
-    """Ask the participants behind some ports to announce themselves to a port."""
+    """Ask the participants that listen on `ports` to announce themselves to `reply_port`."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
         for port in ports:
             sender.sendto(announcement(os.urandom(12), reply_port), (LOOPBACK, port))

@@ -19,7 +19,7 @@ OF_EVERY_NODE = frozenset(
     """describe_parameters get_parameter_types get_parameters list_parameters set_parameters
     set_parameters_atomically get_type_description""".split()  # noqa: SIM905
 )
-"""The services that every node has, by the last part of their names."""
+"""The last parts of the names of the services that rclpy creates in every node."""
 
 
 @dataclass(frozen=True)

@@ -58,7 +58,7 @@ class Watcher:
 
         `apart`: in the grader, only discover participants that are in the test's room, too.
         `shared`: use the participant that the cell's checks share, if there is one.
-        `listens`: the check only records, so it does not count as an interaction with the nodes.
+        `listens`: the check leaves the nodes as it found them, so no interaction is counted.
         """
         self._domain_id, self._shared, self._listens = domain_id, shared, listens
         self._transports = _only_shared_memory if apart and is_in_test_room() else nullcontext
@@ -78,7 +78,7 @@ class Watcher:
         self.context = found or new_context(domain_id)
         self._executor = LeanExecutor(context=self.context)
         self._nodes: list[Node] = []
-        with self._transports():  # the first node makes the participant
+        with self._transports():  # the first node of a context creates the participant
             self.node = self.add_node('check')
         return self
 
