@@ -103,7 +103,7 @@ def _while_ahead_inside(
             shown_ns += _tick_ahead(watcher, clock, seconds=PROOF_SEC)
             return _ahead_sec(proofs(since_ns), shown_ns)
         finally:
-            # show the wall time again: else a timer would wait until it reaches the time ahead
+            # back to wall time: otherwise a timer would wait until the wall clock has caught up
             clock.publish(Clock(clock=Time(nanoseconds=time.time_ns()).to_msg()))
             watcher.spin_for(SETTLE_SEC)
             for name, value in former.items():

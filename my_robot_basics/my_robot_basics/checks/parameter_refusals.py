@@ -1,4 +1,4 @@
-"""What a node answers when a parameter is set: it accepts the value, or gives a reason."""
+"""A node's answer to a new parameter value: it accepts the value, or refuses it with a reason."""
 
 import math
 from collections.abc import Sequence

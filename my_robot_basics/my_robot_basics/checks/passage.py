@@ -102,7 +102,7 @@ class Passage:
         )
 
     def copies(self) -> int:
-        """How often repeated messages came out so far (the least of them); 1 if none repeats."""
+        """How often the least repeated message came out so far; 1 if none was repeated."""
         self._take()
         doubled = [number for number in self._copies if number > 1]
         # a message that counts as pushed out may still come, and looks like a copy of its equal

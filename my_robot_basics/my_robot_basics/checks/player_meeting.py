@@ -23,7 +23,7 @@ ALONE_SEC = 0.8
 """How long to wait for an early request to `/solve_ik`, in s of free time. It is longer than
 0.25 s because rclpy's wait_for_service polls at this interval."""
 LATER_SEC = 1.5
-"""How much later than `/move_arm` `/solve_ik` appears: a node that waits only 1 s is wrong."""
+"""How much later than `/move_arm` `/solve_ik` appears, to detect nodes that wait only 1 s."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class PlayerMeeting:
     process: RunningExecutable
 
     def wait_for_clients(self) -> None:
-        """Wait for the node's clients before any server exists: thus both discover each other.
+        """Wait for the node's clients before creating servers, which then know them already.
 
         Raises CheckFailed if there is no client of `/solve_ik`, or another node serves.
         """

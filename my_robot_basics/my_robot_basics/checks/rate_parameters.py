@@ -75,7 +75,7 @@ class RateParameter:
         )
 
     def expect_follows(self, *rates_hz: float, beside_another: bool = False) -> None:
-        """The node follows the parameter, set alone or (`beside_another`) with use_sim_time."""
+        """The node publishes at each rate set, alone or (`beside_another`) with use_sim_time."""
         refusals.expect_leaves_others_alone(self.parameters, self.name)
         for rate_hz in rates_hz:
             before_hz = self.parameters.get_number(self.name)

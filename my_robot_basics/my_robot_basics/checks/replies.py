@@ -103,7 +103,7 @@ def expect_no_cancel(server: ServedAction, position: Pose) -> None:
 
 
 def expect_refused_cancel(server: ServedAction, position: Pose) -> None:
-    """The server rejects the request to cancel, the goal succeeds, and so does the outcome.
+    """The server rejects the request to cancel; the goal succeeds, and the client publishes so.
 
     Raises CheckFailed.
     """

@@ -25,7 +25,7 @@ MOST_OFF_NS = 1_000_000_000
 class WallTime:
     """The wall clock; timeouts of `wait` count free time only.
 
-    `DrivenTime` can be used in its place.
+    `DrivenTime` shares `is_driven`, `step_ns`, `now_ns`, `at_ns`, `wait` and `let_pass` with it.
     """
 
     is_driven = False

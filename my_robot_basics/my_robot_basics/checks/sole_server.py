@@ -14,7 +14,7 @@ time, then until that process has answered something."""
 
 
 def expect_no_other(watcher: Watcher, name: str, *, own: int) -> None:
-    """The service has no server but the check's `own`, a number. Raises CheckFailed."""
+    """The service has only the servers of the check, `own` in number. Raises CheckFailed."""
     node = watcher.node
     is_alone = watcher.spin_until(lambda: node.count_services(name) <= own, timeout_sec=GONE_SEC)
     known = sorted(services.take(node).servers.get(name, {}))

@@ -44,7 +44,7 @@ def check_stamps(recording: 'Recording', messages: Sequence) -> None:
         _fail('a stamp that does not advance')
     offs = _offs(recording, stamps_ns)
     most, usual = MOST_OFF_SEC[recording.clock], statistics.median_low(offs)
-    # single late messages are tolerated up to `most`, but not if all are a period behind
+    # a few late messages are tolerated up to `most`, but not if the median is a period behind
     late = [off for off in offs if abs(off) > most]
     wrong = [usual] if abs(usual) > USUAL_OFF_SEC else late
     sent = [sample.source_time_sec for sample in recording.messages]
