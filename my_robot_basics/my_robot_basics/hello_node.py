@@ -8,7 +8,7 @@ from rclpy.node import Node
 
 
 class HelloNode(Node):
-    """Logs one line and stays, until it is stopped."""
+    """Logs one line and keeps running until it is stopped."""
 
     def __init__(self) -> None:
         super().__init__('hello_node')

@@ -13,7 +13,7 @@ from my_robot_basics.two_link_kinematics import forward_kinematics, inverse_kine
 
 
 class KinematicsNode(Node):
-    """Logs where one pose puts the end effector, and both poses that reach it; then is silent."""
+    """Logs the end effector's position for one pose, then both poses that reach that position."""
 
     def __init__(self) -> None:
         super().__init__('kinematics_node')

@@ -19,8 +19,8 @@ from my_robot_basics.two_link_kinematics import forward_kinematics
 class KinematicsPublisher(Node):
     """Publishes joint angles on /kinematics/joint_states once a second.
 
-    θ1 lies within ±90° and θ2 within ±120°. With the same parameter `seed` the poses are the
-    same again; without one, it is drawn.
+    θ1 is within ±90° and θ2 within ±120°. The parameter `seed` fixes the sequence of poses;
+    if it is not given, it is chosen at random.
     """
 
     def __init__(self, seed: int | None = None) -> None:

@@ -14,13 +14,13 @@ from sensor_msgs.msg import JointState
 from my_robot_basics.two_link_kinematics import forward_kinematics, inverse_kinematics
 
 JOINTS = ('joint1', 'joint2')
-SAME_DEG = 1e-3  # angles that differ by less are the same
+SAME_DEG = 1e-3  # degrees; angles that differ by less count as equal
 
 
 class KinematicsSubscriber(Node):
-    """Receives joint angles and says which of IK's two branches each pose is.
+    """Receives joint angles and logs which of the two IK branches each pose belongs to.
 
-    A message that does not hold a pose is answered with a warning.
+    It logs a warning for a message that does not contain a pose.
     """
 
     def __init__(self) -> None:
@@ -33,7 +33,7 @@ class KinematicsSubscriber(Node):
         self.get_logger().info(f'waiting for poses on {topic}')
 
     def check_pose(self, msg: JointState) -> None:
-        """Radians → degrees → FK → IK, and compare with both branches."""
+        """Convert to degrees, compute FK, then IK, and compare the pose with both branches."""
         try:
             pose = self.pose_deg(msg)
             x, y = forward_kinematics(*pose)
@@ -55,7 +55,7 @@ class KinematicsSubscriber(Node):
         )
 
     def pose_deg(self, msg: JointState) -> tuple[float, float]:
-        """Return (θ1, θ2) in degrees, looked up by joint name; ValueError says what is missing."""
+        """Return (θ1, θ2) in degrees, found by joint name; ValueError says what is missing."""
         if len(msg.name) != len(msg.position):
             raise ValueError(
                 f'{len(msg.name)} names but {len(msg.position)} positions: each joint needs both'
@@ -74,7 +74,7 @@ class KinematicsSubscriber(Node):
 
 
 def same_pose(pose: tuple[float, float], other: tuple[float, float]) -> bool:
-    """Compare angles in degrees, whole turns aside."""
+    """Whether two poses in degrees are equal, where 360° counts as 0°."""
     return all(
         abs(math.remainder(a - b, 360.0)) < SAME_DEG for a, b in zip(pose, other, strict=True)
     )

@@ -1,8 +1,8 @@
 """Forward and inverse kinematics of a planar arm with two links: pure maths, no ROS.
 
-The base stands at the origin of `base_link`. θ1 turns the first link away from the x axis,
-θ2 turns the second link away from the first one, both counter-clockwise. Angles are in degrees
-and lengths in metres; messages carry radians, so nodes convert where they publish or receive.
+The base is at the origin of `base_link`. θ1 is the angle from the x axis to the first link and
+θ2 the angle from the first link to the second one, both counter-clockwise. Angles are in degrees
+and lengths in metres; messages carry radians, so nodes convert when they publish or receive.
 """
 
 import numpy as np
@@ -11,13 +11,13 @@ from numpy.typing import ArrayLike
 L1 = 1.0  # m, first link of the course's arm
 L2 = 0.8  # m, second link
 
-BORDER_M = 1e-9  # a target past the border of what the arm reaches by no more counts as on it
+BORDER_M = 1e-9  # a target at most this far outside the reachable ring counts as on its border
 
 
 def forward_kinematics(
     theta1_deg: ArrayLike, theta2_deg: ArrayLike, l1: ArrayLike = L1, l2: ArrayLike = L2
 ) -> tuple:
-    """Return where the end effector is, (x, y) in metres, for joint angles in degrees.
+    """Return the end effector's position, (x, y) in metres, for joint angles in degrees.
 
     Numbers give two floats; arrays are broadcast against each other and give two arrays.
     Raises ValueError for NaN, infinity, or a link length that is not positive.
@@ -25,7 +25,7 @@ def forward_kinematics(
     theta1_deg, theta2_deg = _finite(theta1_deg=theta1_deg, theta2_deg=theta2_deg)
     l1, l2 = _lengths(l1=l1, l2=l2)
     first = np.radians(theta1_deg)
-    second = first + np.radians(theta2_deg)  # θ2 counts from the first link, not from the x axis
+    second = first + np.radians(theta2_deg)  # θ2 is relative to the first link, not to the x axis
     x = l1 * np.cos(first) + l2 * np.cos(second)
     y = l1 * np.sin(first) + l2 * np.sin(second)
     return _plain(x), _plain(y)
@@ -39,12 +39,12 @@ def inverse_kinematics(
     Look from the base towards the target. In the pose `elbow_up` the elbow is on the left of that
     line (above it, for a target on the positive x axis) and θ2 <= 0; in `elbow_down` it is on the
     right and θ2 >= 0. All angles are in degrees, above -180 and up to 180, so an arm that is
-    folded back has θ2 = 180 in both. Where the arm is stretched or folded the two poses are one.
+    folded back has θ2 = 180 in both. If the arm is stretched or folded, the two poses are equal.
 
     Targets are in metres. Numbers give floats; arrays are broadcast against each other and give
-    arrays. A target that is past the border of what the arm reaches by no more than 1e-9 m counts
-    as on it. At the base itself, which only links of equal length reach, any θ1 would do, and
-    both poses have θ1 = 0.
+    arrays. A target that is at most 1e-9 m outside the reachable ring counts as on its border.
+    Only links of equal length reach the base itself: any θ1 is right there, and both poses have
+    θ1 = 0.
 
     Raises ValueError for a target out of reach (with arrays, for any such target), and for NaN,
     infinity, or a link length that is not positive.
@@ -56,11 +56,11 @@ def inverse_kinematics(
     _refuse_unreachable(distance, nearest, farthest)
 
     # The triangle base-elbow-target by the law of cosines, written with half angles: arccos would
-    # lose half of its digits where the arm is nearly stretched or folded.
+    # lose half of its digits when the arm is nearly stretched or folded.
     r = np.clip(distance, nearest, farthest)
     bend = 2 * np.arctan2(
         np.sqrt((farthest - r) * (farthest + r)), np.sqrt((r - nearest) * (r + nearest))
-    )  # between the first link, drawn on, and the second
+    )  # between the extension of the first link and the second link
     offset = 2 * np.arctan2(
         np.sqrt((farthest - r) * (r - (l1 - l2))), np.sqrt((farthest + r) * (r + (l1 - l2)))
     )  # between the line to the target and the first link
@@ -97,7 +97,7 @@ def _refuse_unreachable(distance: np.ndarray, nearest: np.ndarray, farthest: np.
     bad = too_far | (distance < nearest - BORDER_M)
     if not bad.any():
         return
-    first = np.flatnonzero(bad)[0]  # numbers are arrays of one element here
+    first = np.flatnonzero(bad)[0]  # a single number is an array of one element here
     is_far = too_far.flat[first]
     target = (
         f'the target is {distance.flat[first]:.6g} m from the base'
@@ -117,7 +117,7 @@ def _refuse_unreachable(distance: np.ndarray, nearest: np.ndarray, farthest: np.
 
 
 def _wrapped_deg(angle_rad: np.ndarray) -> float | np.ndarray:
-    """Convert to degrees above -180 and up to 180."""
+    """Convert radians to degrees in the range -180 (excluded) to 180 (included)."""
     angle = np.degrees(angle_rad)
     angle = np.where(angle > 180, angle - 360, angle)
     angle = np.where(angle <= -180, angle + 360, angle)

@@ -10,15 +10,15 @@ from my_robot_basics.drawing.described import gettext_noop
 from my_robot_basics.drawing.labels import PictureLabel, place, points_along
 from my_robot_basics.two_link_kinematics import L1, L2, forward_kinematics
 
-# Okabe and Ito's colours are told apart by everyone
+# Okabe and Ito's palette: colour-blind readers can distinguish these colours, too
 LINK1, LINK2, EFFECTOR, ANGLE, RING = '#0072b2', '#d55e00', '#009e73', '#000000', '#56b4e9'
 DASHED = '#666666'
 BEHIND = 1.5
-"""Where the arm is drawn over it: above the ring, below other lines."""
+"""zorder of what the arm is drawn over: above the ring, below other lines."""
 
 
 def describe(theta1_deg: float, theta2_deg: float, *, l1: float = L1, l2: float = L2) -> str:
-    """Return the pose and where the end effector is, in words."""
+    """Return the pose and the end effector's position, in words."""
     x, y = forward_kinematics(theta1_deg, theta2_deg, l1, l2)
     return gettext_noop(
         f'two-link arm at θ1 = {theta1_deg:.1f}°, θ2 = {theta2_deg:.1f}°: '
@@ -30,8 +30,8 @@ class ArmPicture:
     """One figure of the arm, drawn again for each pose."""
 
     def __init__(self, *, l1: float = L1, l2: float = L2) -> None:
-        """Draw axes and ring for links of these lengths in metres."""
-        # importing it takes a second, which only those spend who look at a picture
+        """Draw the axes and the reachable ring for links of these lengths in metres."""
+        # importing matplotlib takes a second: do it only when a picture is drawn
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
         from matplotlib.patches import Wedge
@@ -40,7 +40,7 @@ class ArmPicture:
         self._figure = Figure(figsize=(4.6, 5.1), dpi=80)
         # no pyplot: a picture may be drawn in any thread
         self._canvas = FigureCanvasAgg(self._figure)
-        # a layout that is computed anew would cost more than the drawing, and the view would jump
+        # a fixed layout: computing it for each drawing costs more than the drawing, and it jumps
         self._axes = axes = self._figure.add_axes((0.15, 0.15, 0.81, 0.73))
         reach = l1 + l2
         axes.set(
@@ -50,7 +50,7 @@ class ArmPicture:
             xlabel='x in base_link (m)',
             ylabel='y in base_link (m)',
         )
-        axes.apply_aspect()  # else words are measured in other metres before the first drawing
+        axes.apply_aspect()  # else labels measured before the first drawing use another scale
         (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
         frame = [(left, bottom), (right, bottom), (right, top), (left, top), (left, bottom)]
         self._frame = points_along(frame)
@@ -76,7 +76,7 @@ class ArmPicture:
         self._figure.legend(loc='lower center', ncols=4, fontsize=8, frameon=False)
 
     def move(self, theta1_deg: float, theta2_deg: float, *, title: str = '') -> None:
-        """Put the arm in a pose, angles in degrees."""
+        """Show the arm in a pose; angles in degrees."""
         elbow = self._l1 * _direction(theta1_deg)
         x, y = forward_kinematics(theta1_deg, theta2_deg, self._l1, self._l2)
         self._link1.set_data([0, elbow[0]], [0, elbow[1]])
@@ -94,7 +94,7 @@ class ArmPicture:
         self.title('\n'.join(filter(None, [title, pose])))
 
     def dashed(self, theta1_deg: float, theta2_deg: float) -> None:
-        """Put a second arm in a pose, where it stays until the next call: angles in degrees."""
+        """Show a second, dashed arm in a pose until the next call; angles in degrees."""
         elbow = self._l1 * _direction(theta1_deg)
         tip = forward_kinematics(theta1_deg, theta2_deg, self._l1, self._l2)
         self._dashed.set_data(*zip((0, 0), elbow, tip, strict=True))
@@ -108,7 +108,7 @@ class ArmPicture:
         self._axes.plot(x, y, ',', color=EFFECTOR, zorder=BEHIND)
 
     def title(self, text: str) -> None:
-        """Write above the picture."""
+        """Set the title above the picture."""
         self._axes.set_title(text, fontsize=10)
 
     def png(self) -> bytes:
@@ -120,9 +120,9 @@ class ArmPicture:
     def _angle(
         self, name: str, angle_deg: float, *, at: np.ndarray, start_deg: float
     ) -> PictureLabel:
-        """Draw an arc from the direction `start_deg` on, its zero line, and the angle in words.
+        """Draw an arc that begins at the direction `start_deg`, its zero line, and a label.
 
-        The words are still to be placed.
+        The caller still has to place the label.
         """
         from matplotlib.patches import Arc
         from matplotlib.patheffects import withStroke

@@ -1,4 +1,4 @@
-"""Pictures that come with their words. Imports nothing that is slow."""
+"""Pictures together with their alternative text. Imports nothing that is slow."""
 
 import base64
 import html
@@ -17,10 +17,10 @@ def gettext_noop(text: str) -> str:
 
 
 def described(png: bytes, text: str, language: str = ENGLISH) -> tuple[Bundle, dict[str, Any]]:
-    """A picture and its alternative text as a notebook's output: the data, and its metadata.
+    """Return a picture and its alternative text as a notebook's output: data and metadata.
 
-    The text is put into the language, so far as it is translated.
-    JupyterLab shows the HTML, since it leaves the words out of a plain PNG; others take the PNG.
+    The text is translated into the language if there is a translation. The HTML is for
+    JupyterLab, which ignores the alternative text of a plain PNG; other front ends use the PNG.
     """
     text = picture_in(language, text)
     words = in_one_line(language, text)

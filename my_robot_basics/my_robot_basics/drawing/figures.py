@@ -1,4 +1,4 @@
-"""A figure of matplotlib as a PNG; no pyplot, so it may be drawn in any thread."""
+"""A matplotlib figure as a PNG; without pyplot, so that any thread may draw it."""
 
 import io
 from typing import TYPE_CHECKING

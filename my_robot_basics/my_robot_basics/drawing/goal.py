@@ -1,4 +1,4 @@
-"""A picture of a goal of an action: the states that it has been through, and the arm it moves."""
+"""A picture of an action's goal: the states that it has been in, and the arm that it moves."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -14,20 +14,20 @@ PLACES = {
     'CANCELING': (5.0, 1.5),
     'CANCELED': (8.4, 1.5),
 }
-"""Each state of a goal, and where it is drawn."""
+"""The centre (x, y) of each goal state in the diagram."""
 WAYS = (
     *(('ACCEPTED', 'EXECUTING'), ('EXECUTING', 'SUCCEEDED'), ('EXECUTING', 'ABORTED')),
     *(('EXECUTING', 'CANCELING'), ('CANCELING', 'CANCELED'), ('CANCELING', 'SUCCEEDED')),
 )
-"""From which state to which a goal usually goes."""
+"""The state transitions that are drawn: (from, to)."""
 WIDTH, HEIGHT = 10.0, 4.3
 BOX = (1.1, 0.35)
 """Half the width and half the height of the largest frame around a state."""
 BAR = (1.0, 0.2, 8.0, 0.4)
-"""Left, bottom, width and height of the bar that says how much of the way remains."""
+"""Left, bottom, width and height of the bar that shows the remaining part of the motion."""
 STATES_INCHES = 2.0
 REACHED, NOW, NOT_YET = '#56b4e9', '#e69f00', 'white'
-"""A state that was left, the state now, and one that the goal has not been in."""
+"""Colours of a former state, of the current state, and of one that the goal was not in yet."""
 
 
 class GoalPicture(ArmPicture):
@@ -58,7 +58,7 @@ class GoalPicture(ArmPicture):
         self._remaining.set_fontsize(9)
 
     def states(self, states: Sequence[str]) -> None:
-        """Fill in the states that a goal has been through, the last of which it is in now."""
+        """Colour the states that a goal has been in; the last one is its current state."""
         for state, box in self._boxes.items():
             is_now = state == (states[-1] if states else None)
             face = NOW if is_now else REACHED if state in states else NOT_YET
@@ -66,7 +66,7 @@ class GoalPicture(ArmPicture):
             box.set_fontweight('bold' if is_now else 'normal')
 
     def remaining(self, part: float, text: str) -> None:
-        """Show how much of the way remains, from 0 to 1, and the same in words."""
+        """Show the remaining part of the motion, from 0 to 1, and the same in words."""
         self._bar.set_width(BAR[2] * min(1.0, max(0.0, part)))
         self._remaining.set_text(text)
 
@@ -81,7 +81,7 @@ class GoalPicture(ArmPicture):
 
 
 def _edge(state: str, *, towards: str) -> tuple[float, float]:
-    """Where the way between two states meets the frame of the first."""
+    """Return the point where the arrow between two states meets the frame of `state`."""
     (x, y), (to_x, to_y) = PLACES[state], PLACES[towards]
     part = min(half / abs(way) for half, way in zip(BOX, (to_x - x, to_y - y), strict=True) if way)
     return x + part * (to_x - x), y + part * (to_y - y)

@@ -1,4 +1,4 @@
-"""Words in a picture, put where they hide nothing."""
+"""Labels in a picture, placed where they hide as little as possible."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -12,16 +12,16 @@ if TYPE_CHECKING:
     from matplotlib.text import Text
 
 TURNS_DEG = (0, 30, -30, 60, -60, 90, -90, 120, -120, 150, -150, 180)
-"""From where words belong to where else they may stand, the nearest first."""
+"""Directions to try for a label, relative to its preferred direction, the nearest first."""
 POINTS = 60
-"""Stand for a straight line."""
+"""How many points represent a straight line."""
 MARGIN = 0.35
-"""Left free around words, in heights of them: as much as the widest line needs on each side."""
+"""Free space around a label, in label heights: what the widest line needs on each side."""
 
 
 @dataclass(frozen=True)
 class PictureLabel:
-    """Words that stand beside a point of the picture."""
+    """A label beside a point of the picture."""
 
     words: 'Text'
     at: np.ndarray
@@ -29,7 +29,7 @@ class PictureLabel:
     distance: float
     """From that point, in metres."""
     direction_deg: float
-    """Where they belong, as seen from the point."""
+    """The preferred direction of the label, seen from the point."""
 
 
 def points_along(corners: ArrayLike) -> np.ndarray:
@@ -40,7 +40,7 @@ def points_along(corners: ArrayLike) -> np.ndarray:
 
 
 def place(label: PictureLabel, *, avoid: np.ndarray) -> np.ndarray:
-    """Put words where they hide the fewest of the points `avoid`; return points around them."""
+    """Place a label where it hides the fewest points of `avoid`; return points on its outline."""
     size = _size(label.words)
     spots = [_spot(label, turn_deg, size) for turn_deg in TURNS_DEG]
     hidden = [_count(low, low + size, avoid) for low in spots]
@@ -52,7 +52,7 @@ def place(label: PictureLabel, *, avoid: np.ndarray) -> np.ndarray:
 
 
 def _size(words: 'Text') -> np.ndarray:
-    """Return width and height of words as they are drawn, in metres."""
+    """Return the width and height of a drawn label, in metres of the axes."""
     figure, axes = words.get_figure(), words.axes
     assert figure is not None  # it is drawn in one
     assert axes is not None
@@ -62,7 +62,7 @@ def _size(words: 'Text') -> np.ndarray:
 
 
 def _spot(label: PictureLabel, turn_deg: float, size: np.ndarray) -> np.ndarray:
-    """Return the lower left corner of words that stand in that direction."""
+    """Return the lower left corner of the label if it is placed in that direction."""
     angle = np.radians(label.direction_deg + turn_deg)
     towards = np.array([np.cos(angle), np.sin(angle)])
     on_the_left = size[0] if towards[0] < -1e-9 else 0.0
@@ -70,6 +70,6 @@ def _spot(label: PictureLabel, turn_deg: float, size: np.ndarray) -> np.ndarray:
 
 
 def _count(low: np.ndarray, high: np.ndarray, points: np.ndarray) -> int:
-    """Count the points that lie in that box, or close to it."""
+    """Count the points that are in that box, or within MARGIN of it."""
     margin = MARGIN * (high[1] - low[1])
     return np.all((points > low - margin) & (points < high + margin), axis=1).sum()

@@ -1,1 +1,1 @@
-"""What crosses between a notebook's kernel and a check's: a probe, questions and replies."""
+"""Requests and replies between a notebook's kernel and the kernel of a check, and a probe."""

@@ -1,4 +1,4 @@
-"""Put a question to the notebook under test: by way of the grader, or in its own process."""
+"""Send a request to the notebook under test: through the grader, or in the same process."""
 
 from typing import Any
 
@@ -7,17 +7,17 @@ from my_robot_basics.feedback.hidden import is_in_test_room
 
 
 def send(question: str) -> str:
-    """Return the reply to a request, as text that nobody has looked at yet."""
+    """Return the reply to a request, as text that is not validated yet."""
     return input(question) if is_in_test_room() else responder.answer(question)
 
 
 def wait_for_turn() -> None:
-    """Return once the notebook has answered something: its process has had a turn."""
+    """Return once the notebook has answered a request: its process got processor time."""
     send(wire.request(op='raised', name=wire.THREADS))
 
 
 def told(question: str) -> Any:
-    """Return what the notebook answers, or None where it has no value to tell."""
+    """Return the value that the notebook answers, or None if its reply has none."""
     try:
         kind, body = wire.parse_reply(send(question))
     except values.WireError:

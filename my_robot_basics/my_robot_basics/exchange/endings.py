@@ -1,27 +1,27 @@
-"""How a program has ended: its exit code, its signal, and the error in what it printed."""
+"""How a program ended: its exit code, its signal, and the error in its output."""
 
 import signal
 from collections.abc import Sequence
 
 RACE = 'rcl_shutdown already called'
-"""Of rclpy, not of a student: its own handler of SIGINT shuts the context down in a thread, and
-`try_shutdown` in main may come between. Seen in 1 of 44 ends of a plain node."""
+"""An error of rclpy, not of the student: its SIGINT handler shuts the context down in a thread,
+and `try_shutdown` in main may run at the same time. Seen in 1 of 44 ends of a plain node."""
 TRY_SHUTDOWN = 'try_shutdown'
-"""In a traceback, the name of the call."""
+"""The name of the call, as a traceback shows it."""
 
 
 def is_clean(code: int | None, lines: Sequence[str], *, is_second: bool = False) -> bool:
-    """Whether a program that was told to end did so as it should: with exit code 0.
+    """Whether a program that was told to end did so correctly: with exit code 0, or by RACE.
 
-    `is_second`: it has ended by the race before. A second time, only a program that calls
-    `try_shutdown` is excused: one `shutdown` too many raises the same error each time.
+    `is_second`: it ended by RACE before. The second time, RACE is accepted only if the program
+    calls `try_shutdown`: a superfluous `shutdown` raises the same error each time.
     """
     is_luck = not is_second or any(TRY_SHUTDOWN in line for line in lines)
     return code == 0 or (code == 1 and RACE in error_in(lines) and is_luck)
 
 
 def error_in(lines: Sequence[str]) -> str:
-    """The last line of a traceback among the lines that a program has printed; '' without one."""
+    """Return the last line of the last traceback in a program's output; '' if it has none."""
     starts = [i for i, line in enumerate(lines) if line.startswith('Traceback (most recent call')]
     if not starts:
         return ''
@@ -30,7 +30,7 @@ def error_in(lines: Sequence[str]) -> str:
 
 
 def why_crashed(code: int | None) -> str:
-    """What a program that Linux has ended for a wrong access to memory may have done; or ''."""
+    """Return the probable mistake in a program that was ended by SIGSEGV; '' for other codes."""
     if code != -signal.SIGSEGV:
         return ''
     return (
@@ -40,7 +40,7 @@ def why_crashed(code: int | None) -> str:
 
 
 def signal_name(number: int) -> str:
-    """What a signal is called: SIGINT, say."""
+    """Return the name of a signal, such as SIGINT."""
     try:
         return signal.Signals(number).name
     except ValueError:

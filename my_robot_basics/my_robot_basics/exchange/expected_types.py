@@ -1,16 +1,16 @@
-"""What type a check expects of an answer, and what to say where it has another."""
+"""Compare an answer's type with the expected one, and describe the difference."""
 
 from my_robot_basics.exchange import values
 from my_robot_basics.feedback.errors import fail, shorten
 
 _CLASS_OF_A_MESSAGE = 'Metaclass_'
-"""How rosidl calls the class of a message's class."""
+"""rosidl's metaclass of a message class is called this, plus the name of that class."""
 
 
 def check_type(
     found: object, wanted: type | tuple[type, ...] | None, *, what: str, cause: str
 ) -> None:
-    """Fail unless it has that type; a bool is no int, an int will do for a float."""
+    """Fail unless `found` has that type; a bool is not an int, an int is accepted as a float."""
     if wanted is None:
         return
     types = wanted if isinstance(wanted, tuple) else (wanted,)
@@ -22,7 +22,7 @@ def check_type(
 
 
 def what_is_unsupported(body: str, wanted: type | tuple[type, ...] | None) -> tuple[str, str]:
-    """What to say of a result that cannot travel: what it is, and what to do."""
+    """Return what a result that cannot be transmitted is, and a hint; `body` names its type."""
     if values.WRONG_FIELD in body:
         hint = 'give each field a value of the type that get_fields_and_field_types() names'
     elif body.startswith(_CLASS_OF_A_MESSAGE):
@@ -38,8 +38,8 @@ def what_is_unsupported(body: str, wanted: type | tuple[type, ...] | None) -> tu
 
 
 def kind_of(body: str) -> str:
-    """What cannot travel, in words; `body` names its type, which is `type` for a class."""
-    if body.startswith(('a numpy ', 'values ')):  # it is in words already
+    """Describe a value that cannot be transmitted; `body` names its type, `type` for a class."""
+    if body.startswith(('a numpy ', 'values ')):  # already a description
         return shorten(body)
     return 'a class' if body == 'type' else with_article(shorten(body))
 
@@ -57,12 +57,12 @@ def _other_type(found: object, wanted: tuple[type, ...]) -> str:
 
 
 def not_always(name: str, returns: type | tuple[type, ...] | None) -> str:
-    """The cause of a failure, without what was returned."""
+    """Return the cause of a failure, without the returned value."""
     return f'`{name}` does not always return {wanted_type(returns)}'
 
 
 def wanted_type(types: type | tuple[type, ...] | None) -> str:
-    """One of these types, in words."""
+    """Return the accepted types in words: 'a float or an int'."""
     if types is None:
         return 'a plain value or a ROS message'
     types = types if isinstance(types, tuple) else (types,)
@@ -70,12 +70,12 @@ def wanted_type(types: type | tuple[type, ...] | None) -> str:
 
 
 def with_article(noun: str) -> str:
-    """A noun behind a or an."""
+    """Return a noun with its article, a or an."""
     return f'{"an" if noun[:1].lower() in "aeiou" else "a"} {noun}'
 
 
 def brief(argument: object) -> str:
-    """An argument as a student would type it; a message by its type alone."""
+    """Return an argument as a student would type it; for a message, its type alone."""
     if hasattr(argument, 'get_fields_and_field_types'):
         return f'{type(argument).__name__}(…)'
     return shorten(repr(argument), 60)

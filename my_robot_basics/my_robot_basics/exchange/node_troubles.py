@@ -1,6 +1,6 @@
-"""What keeps a node of the notebook from its work, where the notebook's process knows.
+"""Errors in a node of the notebook, as the notebook's process reports them.
 
-It tells students where to look; the verdict stays with what was seen.
+They tell students where to look; the verdict depends only on what the check observes over DDS.
 """
 
 from my_robot_basics.exchange import wire
@@ -9,15 +9,15 @@ from my_robot_basics.feedback.errors import shorten
 
 
 def last_raised(node_name: str) -> str:
-    """What a callback of that node raised last, where the notebook's process knows; or ''."""
+    """Return the last exception of that node's callbacks, '' if the notebook reports none."""
     body = told(wire.request(op='trouble', name=node_name))
     return shorten(body) if isinstance(body, str) else ''
 
 
 def unpublished_field(node_name: str) -> tuple[str, str]:
-    """For which field a message of that node did not travel, and its type; or texts of ''.
+    """Return the field that kept that node from publishing a message, and its type; else '', ''.
 
-    Without a field, the type is how to make what rclpy was to be given.
+    If the field is '', the other text says how to make the object that `publish` expects.
     """
     body = told(wire.request(op='field', name=node_name))
     is_told = isinstance(body, tuple) and [type(text) for text in body] == [str, str]
@@ -25,12 +25,12 @@ def unpublished_field(node_name: str) -> tuple[str, str]:
 
 
 def times_raised(node_name: str) -> int:
-    """How often a callback of that node raised, where the notebook's process knows; or 0."""
+    """Return how often that node's callbacks raised, 0 if the notebook reports nothing."""
     body = told(wire.request(op='raised', name=node_name))
     return body if type(body) is int else 0
 
 
 def unfinished(node_name: str) -> str:
-    """Where a callback of that node is that keeps all others from running: its line, or ''."""
+    """Return the line at which a callback of that node blocks all others, or ''."""
     body = told(wire.request(op='unfinished', name=node_name))
     return shorten(body) if isinstance(body, str) else ''

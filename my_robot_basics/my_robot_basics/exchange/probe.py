@@ -1,6 +1,6 @@
-"""See that a message can cross between the rooms, before any student code runs.
+"""Check that a message gets from room to room before any student code runs.
 
-The student room announces, the test room receives: a zero then is never the network's doing.
+The student's room publishes and the test's room receives: so the network cannot cause a zero.
 """
 
 import threading
@@ -22,20 +22,20 @@ _announced: list = []
 
 
 def announce() -> None:
-    """Publish one latched message that stays available until `silence`."""
+    """Publish one transient-local message, which is available until `silence`."""
     context, node = _node('_probe_student_room')
     node.create_publisher(Empty, TOPIC_NAME, QOS).publish(Empty())
     _announced.append((context, node))
 
 
 def silence() -> None:
-    """Take the announcement back, and everything that it took."""
+    """Remove the announcement, its node and its context."""
     while _announced:
         _end(*_announced.pop())
 
 
 def receive(timeout_sec: float = TIMEOUT_SEC) -> None:
-    """Wait for the other room's message; raises TimeoutError."""
+    """Wait for the other room's message; raises TimeoutError if it does not arrive in time."""
     context, node = _node('_probe_test_room')
     received = threading.Event()
     node.create_subscription(Empty, TOPIC_NAME, lambda _: received.set(), QOS)

@@ -1,6 +1,6 @@
-"""The student's side of `student`: look a name or an endpoint up, answer in JSON.
+"""The student's side of `student`: look up a name or an endpoint, and answer in JSON.
 
-Of what checks are made of, a student's kernel runs at grading only this module, settled.py,
+At grading, a student's kernel runs no other module of the checks than this one, settled.py,
 wire.py, values.py and wrong_fields.py.
 """
 
@@ -12,13 +12,13 @@ from typing import Any
 from my_robot_basics.exchange import settled, values, wire
 
 _OF_NAMES = ('call', 'value')
-"""What is asked of a name of the notebook; `_OTHERS` has all other questions."""
+"""Requests about a name of the notebook; `_OTHERS` has all other requests."""
 
 
 def answer(request_text: str) -> str:
-    """Answer one request against the notebook's namespace (`__main__`); the reply's text.
+    """Answer one request from the notebook's namespace (`__main__`); return the reply's text.
 
-    Raises values.WireError for a request that is not of this protocol.
+    Raises values.WireError for a request that does not follow this protocol.
     """
     request = wire.loads(request_text)
     op, args = request.get('op'), request.get('args', [])
@@ -34,7 +34,7 @@ def answer(request_text: str) -> str:
     if op == 'call':
         arguments = [values.decode(argument) for argument in args]
         try:
-            # a warning or a log line of the function never costs points
+            # to stdout: a warning or a log line of the function must not cost points
             with contextlib.redirect_stderr(sys.stdout):
                 value = value(*arguments)
         except (Exception, SystemExit) as error:
@@ -45,7 +45,8 @@ def answer(request_text: str) -> str:
 def _has_endpoint(topic_name: str, end: str = '', type_name: str = '') -> bool:
     """Whether a node of this process publishes on a topic or subscribes to it.
 
-    With `end`, 'publishers' or 'subscriptions', whether it does that; and with that type.
+    `end` is 'publishers', 'subscriptions', or '' for both; with `type_name`, only endpoints of
+    that type count.
     """
     if 'rclpy' not in sys.modules:
         return False
@@ -62,34 +63,34 @@ def _has_endpoint(topic_name: str, end: str = '', type_name: str = '') -> bool:
 
 
 def _trouble(node_name: str) -> str:
-    """What a callback of a node raised last that live spins, or ''."""
+    """Return the last exception in a callback of a node that `live` spins, or ''."""
     troubles = sys.modules.get('my_robot_basics.live.troubles')
     return troubles.last(node_name) if troubles else ''
 
 
 def _times_raised(node_name: str) -> int:
-    """How often a callback of a node raised that live spins."""
+    """Return how often callbacks of a node that `live` spins have raised."""
     troubles = sys.modules.get('my_robot_basics.live.troubles')
     return troubles.times(node_name) if troubles else 0
 
 
 def _unpublished_field(node_name: str) -> tuple[str, str]:
-    """For which field a node could not publish, and its type."""
+    """Return the field that kept a node from publishing, and its type."""
     troubles = sys.modules.get('my_robot_basics.live.troubles')
     return troubles.field(node_name) if troubles else ('', '')
 
 
 def _unfinished(node_name: str) -> str:
-    """Where a callback is that keeps a node from all else, if live has run one, or ''."""
+    """Return the line at which a callback blocks a node that `live` spins, or ''."""
     troubles = sys.modules.get('my_robot_basics.live.troubles')
     return troubles.unfinished(node_name) if troubles else ''
 
 
 def _set_use_sim_time(node_name: str, value: bool) -> bool | None:
-    """Give a node of this process its clock; its former `use_sim_time`.
+    """Set `use_sim_time` of a node of this process; return its former value.
 
-    None where there is no such node, or it refuses. For one without parameter services: nobody
-    else can.
+    None if there is no such node or it refuses. This is for a node without parameter services,
+    which only its own process can set.
     """
     if 'rclpy' not in sys.modules:
         return None
@@ -106,13 +107,13 @@ def _set_use_sim_time(node_name: str, value: bool) -> bool | None:
 
 
 def _ask_package(package: str, verb: str, *args: Any) -> dict[str, Any] | None:
-    """What `live` knows of a package that it has built, or does with it; None where it has not."""
+    """Ask `live` about a package that it has built, or to act on it; None without `live`."""
     packages = sys.modules.get('my_robot_basics.live.packages')
     return packages.answer_check(package, verb, *args) if packages else None
 
 
 def _settled_nodes(_: str, *args: float) -> list[str] | None:
-    """The nodes of this process, if nothing in it can make another endpoint."""
+    """Return the nodes of this process if nothing in it can create another endpoint, else None."""
     return settled.settled_nodes(*args)
 
 
@@ -134,7 +135,7 @@ def _reply(value: object) -> str:
     except values.UnsupportedValue as error:
         return wire.dumps({'unsupported': _text(error)})
     except Exception as error:
-        # a list that changes while it is read, a dict subclass with ideas of its own, …
+        # a list that changes while it is read, a dict subclass with its own methods, …
         return wire.dumps({'unsupported': f'{type(value).__name__} ({_text(error)})'})
     if len(text) > wire.MOST_BYTES:
         return wire.dumps({'failed': f'more than {wire.MOST_BYTES // 1024} kB of text'})

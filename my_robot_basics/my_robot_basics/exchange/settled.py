@@ -1,8 +1,8 @@
-"""Whether anything of a notebook may still make an endpoint while none of its cells runs.
+"""Whether anything in a notebook may still create an endpoint while none of its cells runs.
 
-A publisher that is not there yet may come late: from a thread of the student's, from a process
-that was started, from a timer's callback. Where there is none of these, waiting longer brings
-nothing, however slow the machine is.
+A missing publisher may still be created: by a thread of the student's, by a process that was
+started, by a timer's callback. If there is none of these, it is useless to wait longer, however
+slow the machine is.
 """
 
 import asyncio
@@ -15,16 +15,16 @@ from collections.abc import Callable, Iterator
 import psutil
 
 _OURS = ('ipykernel', 'my_robot_basics')
-"""Packages whose threads and tasks make no endpoint by themselves."""
+"""Packages whose threads and tasks create no endpoint by themselves."""
 _FIRED_SEC = 2.0
-"""A timer that has had its period, and so much more, has fired."""
+"""A timer counts as fired when its period and this much time have passed."""
 
 
 def settled_nodes(lived_sec: float = 0.0) -> list[str] | None:
-    """Return the full names of this process's nodes; None where another endpoint may come.
+    """Return the full names of this process's nodes; None if another endpoint may be created.
 
-    A timer may make one when it first fires. The nodes have existed for `lived_sec` at least: a
-    timer with a shorter period has fired.
+    A timer may create one when it first fires. The nodes have existed for at least `lived_sec`:
+    a timer whose period is shorter by _FIRED_SEC or more has fired.
     """
     if any(may_come() for may_come in (_threads, _processes, _tasks, _alarm)):
         return None
@@ -42,7 +42,7 @@ def settled_nodes(lived_sec: float = 0.0) -> list[str] | None:
 
 def _threads() -> bool:
     known = {thread.ident for thread in threading.enumerate() if _is_ours(thread)}
-    # also those that threading does not know
+    # _current_frames also has the threads that `threading` does not know
     return bool(sys._current_frames().keys() - known)
 
 
@@ -53,7 +53,7 @@ def _is_ours(thread: threading.Thread) -> bool:
 
 
 def _processes() -> bool:
-    """Whether there are processes that were started here, their parents gone or not."""
+    """Whether processes that were started here still run, also after their parents ended."""
     return bool(psutil.Process().children(recursive=True)) or any(_in_session())
 
 

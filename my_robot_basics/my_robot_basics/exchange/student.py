@@ -1,7 +1,7 @@
-"""Ask the notebook under test for plain values, by name; the verdict is made on this side.
+"""Ask the notebook under test for plain values, by name; the check judges them on its own side.
 
-In the test kernel the question goes to the grader (which asks the student's kernel); in the
-student's own kernel the same question is answered in place, in the same words.
+From the test kernel, a request goes to the grader, which passes it to the student's kernel. In
+the student's own kernel, the same request is answered in the same process.
 """
 
 import builtins
@@ -31,8 +31,8 @@ def call(name: str, *args: object, returns: type | tuple[type, ...] | None = Non
     """Call the student's function and return what it returned: `call('reach', 1.0, 0.5)`.
 
     Arguments and result are plain values or ROS messages (see values.py). With `returns`, any
-    other type fails the check; a bool is no int, an int will do for a float. Raises CheckFailed
-    where there is no such function, or it raises, returns None, or does not end in 10 s.
+    other type fails the check; a bool is not an int, an int is accepted as a float. Raises
+    CheckFailed if there is no such function, or it raises, returns None, or takes over 10 s.
     """
     shown = hidden.theirs(shorten(f'{name}({", ".join(brief(argument) for argument in args)})'))
     interactions.note()
@@ -66,10 +66,10 @@ def call(name: str, *args: object, returns: type | tuple[type, ...] | None = Non
 
 
 def value(name: str, *, type: builtins.type | tuple[builtins.type, ...] | None = None) -> Any:
-    """The value of a name of the notebook; with `type`, any other type fails the check.
+    """Return the value of a name of the notebook; with `type`, any other type fails the check.
 
-    Values are plain ones (numbers, text, lists, tuples, sets, dicts) or ROS messages. Raises
-    CheckFailed where the notebook has no such name, or another value.
+    It is a plain value (number, text, list, tuple, set, dict) or a ROS message. Raises
+    CheckFailed if the notebook has no such name, or a value that cannot be transmitted.
     """
     kind, body = _ask(wire.request(op='value', name=name), name)
     if kind == 'missing':
@@ -86,10 +86,10 @@ def value(name: str, *, type: builtins.type | tuple[builtins.type, ...] | None =
 
 
 def has_endpoint(topic_name: str, end: str = '', type_name: str = '') -> bool:
-    """Whether the notebook's process has a publisher or subscription there, or does not say.
+    """Whether the notebook's process has an endpoint on a topic; True if it does not answer.
 
-    With `end`, 'publishers' or 'subscriptions', whether it has one of these; and of that type.
-    It saves waiting for what can't come; the verdict stays with the graph.
+    `end` is 'publishers', 'subscriptions', or '' for both; with `type_name`, only endpoints of
+    that type count. It saves waiting for what can't come; the verdict depends on the graph.
     """
     question = wire.request(op='endpoint', name=topic_name, args=(end, type_name))
     try:
@@ -100,15 +100,15 @@ def has_endpoint(topic_name: str, end: str = '', type_name: str = '') -> bool:
 
 
 def publishes(topic_name: str) -> bool:
-    """Whether the notebook's process says that it publishes there, also before the graph does."""
+    """Whether the notebook's process reports a publisher, possibly before the graph shows it."""
     request = wire.request(op='endpoint', name=topic_name, args=('publishers', ''))
     return told(request) is True
 
 
 def settled_nodes() -> list[str] | None:
-    """The full names of the notebook's nodes; None where more may come, or it does not say.
+    """Return the full names of the notebook's nodes; None if more may come, or without answer.
 
-    It saves waiting for what can't come; the verdict stays with the graph.
+    It saves waiting for what can't come; the verdict depends on the graph.
     """
     question = wire.request(op='settled', name='', args=(hidden.checked_for_sec(),))
     body = told(question)
@@ -117,20 +117,20 @@ def settled_nodes() -> list[str] | None:
 
 
 def set_use_sim_time(node_name: str, value: bool) -> bool | None:
-    """Give a node of the notebook's process its clock; its former `use_sim_time`.
+    """Set `use_sim_time` of a node of the notebook's process; return its former value.
 
-    None where that process has no such node, or does not answer, or the node refuses. It drives a
-    node that nothing else can drive; the verdict stays with what the node publishes.
+    None if that process has no such node, or does not answer, or the node refuses. It serves
+    nodes without parameter services; the verdict depends on what the node publishes.
     """
     body = told(wire.request(op='clock', name=node_name, args=(value,)))
     return body if isinstance(body, bool) else None
 
 
 def ask_package(package: str, verb: str, *args: object) -> dict[str, Any]:
-    """What the notebook says of a package that it has built; {} where it does not say.
+    """Return what the notebook reports of a package that it has built; {} without an answer.
 
-    It is a claim: of what the student's room has started, and with which exit code it ended. What
-    a package does is seen over DDS.
+    The student's room claims what it has started and with which exit code that ended; this is no
+    evidence. The check observes over DDS what a package does.
     """
     interactions.note()
     body = told(wire.request(op='package', name=package, args=(verb, *args)))

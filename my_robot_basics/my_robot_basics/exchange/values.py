@@ -1,10 +1,10 @@
-"""Values that cross between the test kernel and the student's kernel, as what JSON can hold.
+"""Values that are sent between the test kernel and the student's kernel, encoded as JSON.
 
-A value is JSON as it stands (null, true, 1, 1.5, "text", a list), or an object with one tag:
+A value is plain JSON (null, true, 1, 1.5, "text", a list), or an object with one tag:
 {"float": "nan"}, {"tuple": […]}, {"set": […]}, {"dict": [[key, value], …]}, or a ROS message
-{"ros": "sensor_msgs/msg/JointState", "cdr": base64}. NumPy scalars and arrays travel as the
-plain numbers and lists that they hold, and what is like a list or a dict as one. Nothing outside
-MESSAGE_PACKAGES is ever imported.
+{"ros": "sensor_msgs/msg/JointState", "cdr": base64}. NumPy scalars and arrays are sent as plain
+numbers and lists, list-like objects as lists, mappings as dicts. Messages are decoded only from
+MESSAGE_PACKAGES; no other module is imported.
 """
 
 import base64
@@ -36,24 +36,24 @@ MESSAGE_PACKAGES = (
 )
 
 WRONG_FIELD = 'a field of a wrong type'
-"""What is unsupported about a message that does not travel."""
+"""What the text of UnsupportedValue says about a message that cannot be serialized."""
 
 _MESSAGE_NAME = re.compile(rf'({"|".join(MESSAGE_PACKAGES)})/msg/([A-Z][A-Za-z0-9]*)')
 _LISTS = list, UserList, deque, ValuesView
-"""What travels as a list; `names = !ros2 …` makes one of a class of IPython's own."""
+"""Types that are sent as a list; `names = !ros2 …` gives a list of IPython's own class."""
 _SPECIAL_FLOATS = {'nan': math.nan, 'inf': math.inf, '-inf': -math.inf}
 
 
 class WireError(ValueError):
-    """A text that is not of this protocol."""
+    """A text that does not follow this protocol."""
 
 
 class UnsupportedValue(TypeError):
-    """A value that does not travel; the message is its type, in words."""
+    """A value that cannot be transmitted; the exception's text describes its type."""
 
 
 def encode(value: object, depth: int = 0) -> Any:
-    """Turn a plain value into what JSON can hold. Raises UnsupportedValue."""
+    """Encode a plain value as JSON data. Raises UnsupportedValue."""
     if depth > MOST_DEPTH:
         raise UnsupportedValue(f'values nested more than {MOST_DEPTH} deep')
     if isinstance(value, np.generic | np.ndarray):
@@ -105,7 +105,7 @@ def decode(encoded: object, depth: int = 0) -> Any:
 
 
 def message_type(name: str) -> type:
-    """The class of an allow-listed message name like 'std_msgs/msg/String'. Raises WireError."""
+    """Return the class of an allowed name like 'std_msgs/msg/String', or raise WireError."""
     parts = _MESSAGE_NAME.fullmatch(name)
     found = parts and getattr(importlib.import_module(f'{parts[1]}.msg'), parts[2], None)
     if not found:
@@ -114,7 +114,7 @@ def message_type(name: str) -> type:
 
 
 def type_name(type_: type) -> str:
-    """The name of an interface's class: 'std_msgs/msg/String', 'arm_interfaces/action/MoveArm'."""
+    """Return an interface's full name: 'std_msgs/msg/String', 'arm_interfaces/action/MoveArm'."""
     return '/'.join([*type_.__module__.split('.')[:2], type_.__name__])
 
 
@@ -132,7 +132,7 @@ def _encode_message(value: Any, depth: int) -> dict:
     try:
         cdr = serialize_message(value)
     except Exception as error:
-        # rclpy raises whatever the field's conversion raised: TypeError, AttributeError, …
+        # rclpy passes on what the conversion of a field raises: TypeError, AttributeError, …
         path, held, wanted = wrong_field(value, type_)
         what = f'{path} = {held} is no {wanted}' if path else error
         raise UnsupportedValue(f'{name} with {WRONG_FIELD} ({what})') from error
@@ -140,7 +140,7 @@ def _encode_message(value: Any, depth: int) -> dict:
 
 
 def _is_known(type_: type) -> bool:
-    """Whether a class is that of a message which travels; one derived from it travels as it."""
+    """Whether this is an allowed message class; a subclass of one is sent as its base."""
     try:
         return message_type(type_name(type_)) is type_
     except WireError:
@@ -156,13 +156,13 @@ def _decode_message(name: str, cdr: str) -> object:
         with _quiet_c_stderr():
             return deserialize_message(data, wanted)
     except Exception as error:
-        # The bytes come from a student: whatever the C library says of them, they are wrong.
+        # The bytes come from a student: whatever the C library raises, the bytes are invalid.
         raise WireError(f'bytes that are not a {name}') from error
 
 
 @contextlib.contextmanager
 def _quiet_c_stderr() -> Iterator[None]:
-    """Fast CDR prints its complaint to descriptor 2 before it raises; a check prints nothing."""
+    """Silence descriptor 2: Fast CDR prints its error there before it raises."""
     saved, nowhere = os.dup(2), os.open(os.devnull, os.O_WRONLY)
     try:
         os.dup2(nowhere, 2)

@@ -1,4 +1,4 @@
-"""The texts that cross between the test kernel and the student's kernel: bounded JSON."""
+"""The texts that are sent between the test kernel and the student's kernel: bounded JSON."""
 
 import json
 import math
@@ -9,17 +9,17 @@ from my_robot_basics.exchange.values import WireError, decode, encode
 PROTOCOL = 'my_robot_basics.student/1'
 MOST_BYTES = 64 * 1024
 THREADS = ''
-"""Stands for the threads that the notebook has begun itself, in the place of a node's name."""
+"""In the place of a node's name: the threads that the notebook has started itself."""
 _REPLIES = {'ok': object, 'raised': dict, 'missing': str, 'unsupported': str, 'failed': str}
 
 
 def dumps(message: object) -> str:
-    """JSON text of a request or reply."""
+    """Return the JSON text of a request or reply."""
     return json.dumps(message, allow_nan=False, separators=(',', ':'))
 
 
 def loads(text: object) -> dict:
-    """The JSON object in a text of at most MOST_BYTES. Raises WireError, and nothing else."""
+    """Return the JSON object in a text of at most MOST_BYTES. Raises only WireError."""
     if not isinstance(text, str):
         raise WireError('not a text')
     if len(text) > MOST_BYTES:
@@ -34,16 +34,16 @@ def loads(text: object) -> dict:
 
 
 def request(*, op: str, name: str, args: tuple = ()) -> str:
-    """The text of a question: `op` is one that responder.py knows, and `name` what it is about."""
+    """Return a request's text: `op` is one that responder.py knows, `name` is its subject."""
     body = {'protocol': PROTOCOL, 'op': op, 'name': name, 'args': [encode(a) for a in args]}
     return dumps(body)
 
 
 def parse_reply(text: object) -> tuple[str, Any]:
-    """The kind of a reply ('ok', 'raised', 'missing', 'unsupported', 'failed') and its body.
+    """Return a reply's kind ('ok', 'raised', 'missing', 'unsupported', 'failed') and its body.
 
     The body of 'ok' is the decoded value, of 'raised' {'type': str, 'message': str}, of the
-    others a str. Raises WireError, and nothing else.
+    others a str. Raises only WireError.
     """
     reply = loads(text)
     if len(reply) != 1:

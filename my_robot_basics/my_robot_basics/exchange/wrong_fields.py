@@ -1,4 +1,4 @@
-"""Which field of a ROS message holds a value that its type does not take."""
+"""Find the field of a ROS message whose value does not have the field's type."""
 
 import re
 from reprlib import Repr
@@ -12,9 +12,9 @@ _BRIEF.maxstring = _BRIEF.maxother = 60
 
 
 def wrong_field(message: Any, type_: type) -> tuple[str, str, str]:
-    """Return a field, its value and its type: ('header.frame_id', '5', 'string'); or texts of ''.
+    """Return a field, its value and its type: ('header.frame_id', '5', 'string'); else three ''.
 
-    It is the first one that cannot be serialized in a message whose other fields have defaults.
+    It is the first field that cannot be serialized in a message whose other fields are defaults.
     """
     for field, wanted in message.get_fields_and_field_types().items():
         value = getattr(message, field)

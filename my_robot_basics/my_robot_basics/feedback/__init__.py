@@ -1,1 +1,1 @@
-"""What a check tells: its exception, and what of it a student may read."""
+"""The exception of a failed check, and which part of it a student may read."""

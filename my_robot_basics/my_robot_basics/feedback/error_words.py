@@ -1,4 +1,4 @@
-"""What to do about exceptions of Python and rclpy: a table by the words of their sentences."""
+"""Hints for exceptions of Python and rclpy, in a table of patterns of their messages."""
 
 from typing import NamedTuple
 
@@ -6,12 +6,12 @@ from my_robot_basics.feedback.rclpy_names import CLASSES, OWN_METHODS, OWN_PROPE
 
 
 class Case(NamedTuple):
-    """What is raised, and what to do about it."""
+    """A kind of exception, and a hint for it."""
 
     pattern: str
-    """A regular expression, found in what Python or rclpy says."""
+    """A regular expression to search for in the text of the exception."""
     to_do: str
-    """A clause that goes behind that."""
+    """A clause to append to that text."""
 
 
 DECIMAL_COMMA = ', so a decimal comma may have made two numbers of one: write 0.2, and not 0,2'
@@ -197,4 +197,4 @@ BY_WORDS = (
         to_do=', so leave out the quotes around a number, or convert a text to one with float()',
     ),
 )
-"""The first whose pattern is found counts."""
+"""The first case whose pattern is found is used."""

@@ -1,4 +1,4 @@
-"""The one exception of a failing check, and the two functions that raise it."""
+"""The exceptions of a failing check, and the two functions that raise them."""
 
 import sys
 from collections.abc import Callable
@@ -16,26 +16,26 @@ MOST_CHARACTERS = 200
 
 
 class CheckFailed(AssertionError):
-    """A check's verdict in one readable sentence: what was expected, seen, and what to try."""
+    """A check's verdict in one readable sentence: what was expected, what was seen, and a hint."""
 
     repeat: Callable[[], NoReturn] | None = None
-    """Fails for the same reason in another check; None where `fail` did not raise it."""
+    """Raises the same failure again in another check; None if `fail` did not raise this one."""
 
     def _render_traceback_(self) -> list[str]:
-        # IPython asks for this: the sentence alone, never the source of a test.
+        # IPython calls this: it shows the sentence alone, never the source of a test.
         return in_lines(in_language_here(str(self)))
 
 
 class PartlyRight(CheckFailed):
-    """A verdict that leaves some of the points: the grader is told how many."""
+    """A failure that earns part of the points; `fail` tells the grader how many."""
 
 
 class Starved(CheckFailed):
-    """A verdict for which a machine that is too busy may be to blame: rooms take a second look."""
+    """A failure that a busy machine may have caused: the check is repeated."""
 
 
 class Disturbed(CheckFailed):
-    """One for which the check itself may be to blame: rooms take another look at it."""
+    """A failure that the check itself may have caused: the check is repeated."""
 
 
 def expect(
@@ -71,10 +71,10 @@ def fail(
 ) -> NoReturn:
     """Raise CheckFailed('expected …, saw …: hint'); show the picture (PNG bytes) before it.
 
-    From a hidden part on, students read 'cause: hint' alone, or the hint: `cause` is what went
-    wrong in words that tell no input, no right value, and nothing that the student's code made.
-    What is `earned` all the same, fewer points than the check has, makes it a PartlyRight; where
-    another than the answer may be to blame, `doubt` is Starved or Disturbed.
+    In a hidden part, students read only 'cause: hint', or the hint alone: `cause` says what is
+    wrong without any input, expected value, or output of the student's code.
+    With `earned`, the points that the answer still gets, it raises PartlyRight. If something
+    other than the answer may be the reason, `doubt` is Starved or Disturbed.
     """
     Failure = PartlyRight if earned else doubt
     if earned:
@@ -94,14 +94,14 @@ def fail(
 
 
 def shorten(text: object, most: int = MOST_CHARACTERS) -> str:
-    """One printable line of at most `most` characters, for a text that a student's code made."""
+    """Return a text of a student's code as one printable line of at most `most` characters."""
     line = ' '.join(str(text).split())
     line = ''.join(character if character.isprintable() else '?' for character in line)
     return line if len(line) <= most else line[: most - 1] + '…'
 
 
 def show(picture: bytes, *, alt: str) -> None:
-    """Display a PNG in the notebook, with its text alternative; nothing happens outside of one."""
+    """Display a PNG with its alternative text in a notebook; outside of one, do nothing."""
     if 'IPython' not in sys.modules:
         return
     from IPython import get_ipython

@@ -1,8 +1,8 @@
-"""The part of a check that students are not given: what fails there is told by its cause alone.
+"""The hidden part of a check, which is not released: students read only the cause of its failure.
 
-The grader runs a grade cell as `marked` of `hidden_source` writes it. From its hidden part on,
-`fail` names neither inputs nor what is right, and nothing that the student's code made: someone
-who builds a table from feedback has nothing to write into it. The whole sentence goes to the
+The grader runs a grade cell as `marked` of `hidden_source` writes it. In the hidden part, `fail`
+names neither inputs nor expected values, and no output of the student's code: so nobody can
+collect the right answers from feedback into a lookup table. The whole sentence goes to the
 instructor.
 """
 
@@ -15,24 +15,24 @@ from contextlib import contextmanager
 from typing import Any
 
 PLACE = 'in the part checked at grading: '
-"""How a reason from there begins."""
+"""How the reason of a failure in the hidden part begins."""
 
 MOST_DETAILS = 2_000
-"""Characters; what a student's code returned may be long."""
+"""Characters that are kept of a sentence for the instructor: returned values may be long."""
 
 _MARK = 'application/vnd.my_robot_basics.hidden'
-"""A display of this MIME type is for the grader: that the hidden part began, or that inputs were
-chosen. …"""
+"""MIME type of a display for the grader: the hidden part began, inputs were chosen, or a failure
+occurred in the visible part, too."""
 _DETAILS = 'application/vnd.my_robot_basics.details'
-"""… Of this one, too: the sentence that a student is not told. …"""
+"""MIME type of a display for the grader: the full sentence, which students may not read."""
 _POINTS = 'application/vnd.my_robot_basics.points'
-"""… Of this one: the points that a check leaves which fails. …"""
+"""MIME type of a display for the grader: the points that a failed check still gives."""
 _HINT = 'application/vnd.my_robot_basics.hint'
-"""… And of this one: which words of its sentence say what to try."""
+"""MIME type of a display for the grader: which words at the end of a reason are the hint."""
 _BEGAN, _INPUTS, _ALREADY = 'began', 'inputs', 'already'
 
 _OPEN, _CLOSE = '\u2068', '\u2069'
-"""Around what a student's code made."""
+"""Characters around a text that the student's code made."""
 _THEIRS = re.compile(f'{_OPEN}[^{_CLOSE}]*{_CLOSE}')
 _MEASURED = re.compile(r'(?<![\w.])[-+−]?(\d+\.\d+|\d{3,})(?![\w.]*\d)°?')
 _LIST = re.compile(r'…(, …)+')
@@ -47,58 +47,58 @@ def is_in_test_room() -> bool:
 
 
 def is_advice() -> bool:
-    """Whether *Validate* runs this check: what it says costs nobody points."""
+    """Whether *Validate* runs this check, so that its result costs no points."""
     return os.environ.get('MY_ROBOT_BASICS_ADVICE') == '1'
 
 
 def start(*, quiet: bool) -> None:
-    """Begin a grade cell."""
+    """Begin a grade cell; with `quiet`, it is treated as hidden from its first line."""
     global _quiet, _start_sec
     _quiet = quiet
     _start_sec = time.monotonic() if _start_sec is None else _start_sec
 
 
 def checked_for_sec() -> float:
-    """For how long *Validate* has checked these nodes already; 0 where the grader does.
+    """Return for how many seconds *Validate* has checked these nodes; 0 in the grader.
 
-    What has not come in that time is not waited for once more. The grader takes nobody's word
-    that a callback would not have made it later.
+    An endpoint that was not created in this time is not waited for again. The grader does not
+    rely on this: a callback may still create the endpoint later.
     """
     return time.monotonic() - _start_sec if is_advice() and _start_sec is not None else 0.0
 
 
 def begin() -> None:
-    """Begin its hidden part, which goes on to the cell's end."""
+    """Begin the cell's hidden part, which continues to the cell's end."""
     global _quiet
     _quiet = True
     _display(_MARK, _BEGAN)
 
 
 def tell_failed_already() -> None:
-    """Let the grader know that a failure which is told at the end is of the visible part, too."""
+    """Tell the grader that the failure raised at the end also occurred in the visible part."""
     if is_in_test_room():
         _display(_MARK, _ALREADY)
 
 
 def is_quiet() -> bool:
-    """Whether a failure is told by its cause alone."""
+    """Whether the reason of a failure is reduced to its cause, as in a hidden part."""
     return _quiet
 
 
 def note_inputs() -> None:
-    """Let the grader know that the check has chosen inputs."""
+    """Tell the grader that the check has chosen inputs."""
     if is_in_test_room():
         _display(_MARK, _INPUTS)
 
 
 def theirs(text: object) -> str:
-    """What a student's code made, for a sentence: nobody is told it from the hidden part."""
-    said = in_full(str(text))  # a name that DDS brings may hold any character
+    """Mark a text that the student's code made; in quiet mode, reasons leave it out."""
+    said = in_full(str(text))  # a name received over DDS may contain any character
     return f'{_OPEN}{said}{_CLOSE}' if _quiet else said
 
 
 def raised(said: str) -> str:
-    """`said`, like "ValueError: …", where the name of an exception of Python's own is nobody's."""
+    """Mark an exception's text like "ValueError: …", except the name of a builtin exception."""
     kind, _, message = said.partition(':')
     if not isinstance(getattr(builtins, kind, None), type):
         return theirs(said)
@@ -106,45 +106,45 @@ def raised(said: str) -> str:
 
 
 def in_full(text: str) -> str:
-    """A sentence for readers who may read all of it."""
+    """Return a sentence without the marks of `theirs`, for those who may read all of it."""
     return text.replace(_OPEN, '').replace(_CLOSE, '')
 
 
 def without_inputs(text: str) -> str:
-    """A sentence without what the student's code made, and without measured numbers."""
+    """Replace what the student's code made, and measured numbers, by '…'."""
     return _LIST.sub('…', _MEASURED.sub('…', _THEIRS.sub('…', text)))
 
 
 def tell_grader(details: str) -> None:
-    """Hand over what an instructor may read of a failure."""
+    """Send the grader what only an instructor may read of a failure."""
     _display(_DETAILS, details)
 
 
 def tell_points(earned: float) -> None:
-    """Hand over how many points a check that fails leaves."""
+    """Send the grader how many points a failed check still gives."""
     if is_in_test_room():
         _display(_POINTS, repr(float(earned)))
 
 
 def points_in(outputs: Iterable[Any]) -> float:
-    """How many points were handed over; 0 where none were."""
+    """Return the points that a cell's outputs report; 0 if they report none."""
     return float(next(iter(_said(outputs, _POINTS)), 0.0))
 
 
 def tell_hint(hint: str) -> None:
-    """Hand over which words at the end of a sentence say what to try."""
+    """Send the grader the words at the end of a reason that are its hint."""
     if is_in_test_room():
         _display(_HINT, hint)
 
 
 def hint_in(outputs: Iterable[Any], reason: str) -> str:
-    """The words at a reason's end that were handed over, or ''."""
+    """Return the hint at a reason's end, if the cell's outputs report it; else ''."""
     return next((said for said in _said(outputs, _HINT) if reason.endswith(f': {said}')), '')
 
 
 @contextmanager
 def said_in_full() -> Iterator[None]:
-    """For what a check says of a student's work without a word of any hidden input."""
+    """Leave quiet mode meanwhile: for sentences that mention no hidden input."""
     global _quiet
     former, _quiet = _quiet, False
     try:
@@ -154,29 +154,29 @@ def said_in_full() -> Iterator[None]:
 
 
 def has_started(outputs: Iterable[Any]) -> bool:
-    """Whether a cell with these outputs came to its hidden part."""
+    """Whether a cell with these outputs reached its hidden part."""
     return _BEGAN in _said(outputs, _MARK)
 
 
 def failed_only_there(outputs: Iterable[Any]) -> bool:
-    """Whether a check that failed did so in its hidden part, and not before it."""
+    """Whether a failed check failed in its hidden part, and not in the visible one."""
     said = _said(outputs, _MARK)
     return _BEGAN in said and _ALREADY not in said
 
 
 def has_told_inputs(outputs: Iterable[Any]) -> bool:
-    """Whether it came there with inputs of its own: the student's code knows them now."""
+    """Whether the hidden part chose inputs, so that the student's code knows them now."""
     said = _said(outputs, _MARK)
     return _BEGAN in said and _INPUTS in said
 
 
 def details_in(outputs: Iterable[Any]) -> str:
-    """What was handed over to the grader, or ''."""
+    """Return the sentence for the instructor in a cell's outputs, or ''."""
     return next(iter(_said(outputs, _DETAILS)), '')[:MOST_DETAILS]
 
 
 def shown(outputs: Sequence[Any]) -> list[Any]:
-    """The outputs from before the hidden part, without what was for the grader."""
+    """Return the outputs before the hidden part, without displays for the grader."""
     kept = []
     for output in outputs:
         if _BEGAN in _said([output], _MARK):

@@ -1,17 +1,17 @@
-"""The text of a grade cell: with a mark where its hidden part begins, or without that part."""
+"""The source of a grade cell: with a mark where its hidden part begins, or without that part."""
 
 import ast
 
 BEGIN, END = (f'{word} HIDDEN TESTS' for word in ('BEGIN', 'END'))
-# in one piece, these words would show that something hidden was given out
+# written whole, these words would make a search for leaked hidden tests find this file
 
 _HERE = "__import__('my_robot_basics.feedback.hidden', fromlist=['begin'])"
 
 
 def marked(source: str, *, quiet: bool = False) -> str:
-    """A grade cell as it is run: it says where its hidden part begins.
+    """Return a grade cell's source as it is run: with a call where its hidden part begins.
 
-    It is `quiet` from its first line on where the student's code knows hidden inputs already.
+    With `quiet`, all of it counts as hidden: the student's code knows hidden inputs already.
     """
     lines = []
     for line in source.split('\n'):
@@ -22,7 +22,7 @@ def marked(source: str, *, quiet: bool = False) -> str:
 
 
 def visible(source: str) -> str:
-    """A grade cell as students are given it."""
+    """Return a grade cell's source as it is released to students."""
     kept, inside = [], False
     for line in source.split('\n'):
         inside = (inside or BEGIN in line) and END not in line
@@ -32,7 +32,7 @@ def visible(source: str) -> str:
 
 
 def _title_lines(source: str) -> int:
-    """How many lines the docstring takes, which stays the first thing of a cell."""
+    """Return how many lines the cell's docstring takes; it must stay the first statement."""
     first, *_ = [*ast.parse(source).body, None]
     if isinstance(first, ast.Expr) and isinstance(first.value, ast.Constant):
         return first.end_lineno or 0

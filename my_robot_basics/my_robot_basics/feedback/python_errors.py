@@ -1,4 +1,4 @@
-"""What to do about exceptions of Python and rclpy whose own words do not tell beginners."""
+"""Hints for exceptions of Python and rclpy whose messages do not help beginners."""
 
 import re
 import unicodedata
@@ -10,7 +10,7 @@ _NAME = re.compile(
     r'Invalid (?P<kind>node|topic|service|)[^:]*: \w+( name)? must not contain characters other '
     r"than [^:]*:\s+'(?P<name>.*?)'(?P<caret>\s+\^)"
 )
-"""How rcl refuses a name, with the place of what it refuses in a line below."""
+"""rcl's message about an invalid name, with a caret under the wrong character one line below."""
 _CHARACTER = re.compile(r"invalid (?:character '(.)' \(|non-printable character )U\+")
 _MARKS = {
     **dict.fromkeys('‘’‚‛′', "'"),
@@ -18,19 +18,19 @@ _MARKS = {
     **dict.fromkeys('‐‑‒–—−', '-'),
     **{'。': '.', '、': ',', '【': '[', '】': ']', '《': '<', '》': '>', '×': '*', '÷': '/'},
 }
-"""What a word processor, or a keyboard of another language, has in place of what Python reads."""
+"""Characters of word processors and other keyboards, and what Python expects in their place."""
 
 
 def explained(told: str) -> str:
-    """A sentence or clause that tells what was raised, with what to do behind it, if anything."""
+    """Return a text that names an exception, with a hint appended if there is one."""
     why = what_to_do(told)
-    if found := _NAME.search(told):  # in one line its caret points nowhere
+    if found := _NAME.search(told):  # in a single line, the caret points nowhere
         told = told[: found.start('caret')] + told[found.end('caret') :]
     return told.rstrip('.') + why if why else told
 
 
 def what_to_do(said: str) -> str:
-    """A clause to put behind what was raised, such as 'AttributeError: …'; or ''."""
+    """Return a hint to append to an exception's text, such as 'AttributeError: …'; or ''."""
     if found := _CHARACTER.search(said):
         return _about_character(found[1])
     if found := _NAME.search(said):
@@ -39,7 +39,7 @@ def what_to_do(said: str) -> str:
 
 
 def _about_character(character: str | None) -> str:
-    """Which character to type in place of this one; None is one that shows nothing."""
+    """Return which character to type in place of this one; None is an invisible one."""
     if character is None:
         return ', so type that line again: it has a space of another kind, as copied text may have'
     plain = _MARKS.get(character) or unicodedata.normalize('NFKC', character)
@@ -48,7 +48,7 @@ def _about_character(character: str | None) -> str:
 
 
 def _about_name(name: str, *, is_node: bool) -> str:
-    """Which characters a name of ROS takes in place of those that it has."""
+    """Return a hint about the characters that a ROS name may have."""
     strange = re.search(r'\W' if is_node else r'[^\w/~{}]', name, re.ASCII)
     plain = unicodedata.normalize('NFKC', strange[0]) if strange else ''
     if strange and re.fullmatch(r'\w' if is_node else r'[\w/~{}]', plain, re.ASCII):

@@ -1,4 +1,4 @@
-"""Names of rclpy, as parts of regular expressions: where rclpy is not needed, it costs time."""
+"""Names in rclpy, as parts of regular expressions; written down, since importing rclpy is slow."""
 
 OWN_PROPERTIES = (
     'handle|clients|timers|publishers|subscriptions|services|executor|context|waitables|guards'
@@ -9,9 +9,9 @@ OWN_METHODS = (
     'get_(?:logger|clock|name|namespace|parameters?)|declare_parameters?|set_parameters'
     '|create_(?:publisher|subscription|client|service|timer)|destroy_node'
 )
-"""Those of its methods that a student may define by chance."""
+"""Methods of Node that a student may override by accident."""
 CLASSES = (
     'Node|Publisher|Client|Service|Subscription|Timer|Clock|Time|Duration|Future|RcutilsLogger'
     '|Parameter|Action(?:Client|Server)|(?:Client|Server)GoalHandle|Random'
 )
-"""Classes whose methods no student has written; `random.uniform` is one of Random's."""
+"""Classes whose methods are not a student's; `random.uniform` is a method of Random."""

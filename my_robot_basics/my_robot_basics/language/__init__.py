@@ -1,1 +1,1 @@
-"""Other languages than English: what is translated, and how a sentence is found there."""
+"""Translation of messages into languages other than English."""

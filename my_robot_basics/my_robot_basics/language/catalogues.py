@@ -1,13 +1,13 @@
-"""What was translated: locale/LANGUAGE/LC_MESSAGES/PART.po, gettext's files.
+"""Read translations from gettext's files, locale/LANGUAGE/LC_MESSAGES/PART.po.
 
-A part is a lesson, a page beside the lessons, or a part of the software. What is missing or fuzzy
-there stays English.
+A part is a lesson, another page, or a part of the software. A text whose translation is missing
+or fuzzy stays English.
 """
 
 from pathlib import Path
 
 LOCALE = Path(__file__).resolve().parents[3] / 'locale'
-"""The catalogues beside the package, in the course and in a student's bundle of it."""
+"""The folder of the catalogues, beside the package in the course and in a student's bundle."""
 ENGLISH = 'en'
 """The language of the source: it needs no catalogue."""
 MESSAGES = 'LC_MESSAGES'
@@ -20,19 +20,19 @@ def languages(locale: Path) -> list[str]:
 
 
 def catalogue_path(locale: Path, language: str, part: str) -> Path:
-    """Return where the translations of a part lie."""
+    """Return the path of the catalogue of a part."""
     return locale / language / MESSAGES / f'{part}.po'
 
 
 def read_translations(locale: Path, language: str, part: str) -> dict[str, str]:
-    """Return each English text of a part with its translation; {} where there is no catalogue.
+    """Return the translation of each English text of a part; {} if there is no catalogue.
 
-    Raises babel.messages.pofile.PoFileError where the file is damaged.
+    Raises babel.messages.pofile.PoFileError if the file is damaged.
     """
     path = catalogue_path(locale, language, part)
     if not path.is_file():
         return {}
-    from babel.messages.pofile import read_po  # takes 50 ms; English readers do without
+    from babel.messages.pofile import read_po  # takes 50 ms, which English readers need not wait
 
     with path.open('rb') as file:
         catalogue = read_po(file, locale=language, abort_invalid=True)

@@ -1,4 +1,4 @@
-"""Whether a template would cut a text where no phrase ends, so that it does not fit."""
+"""Reject matches of a template that would cut a text in the middle of a phrase."""
 
 import re
 from collections.abc import Mapping
@@ -10,13 +10,13 @@ MOST_DROPPED = 5
 """Characters that a translation may leave out, such as the s of a plural."""
 
 _OPENED = re.compile(r'(?<!\w)[\'"](?=\w)')
-"""A quote that is not closed."""
+"""An opening quote; closed quotes are removed before the search."""
 _RAISES = re.compile(r'(Error|Exception|Interrupt|Exit):( |$)')
-"""After it follow Python's own words, with colons, brackets and 'and' of their own."""
+"""The name of an exception: Python's own message follows, with any colons and brackets."""
 
 
 def cuts(template: Template, found: Mapping[str, str]) -> bool:
-    """Whether a template would cut a sentence or a bracket in two, or leave a place empty."""
+    """Whether a match cuts a sentence, a quote or a pair of brackets, or leaves a place empty."""
     said = {place: QUOTED.sub('', text) for place, text in found.items()}
     ended = any('. ' in said[place] for place in template.places[:-1]) and template.letters > 0
     named = {place for place in template.used if not place.startswith('value')}
@@ -39,9 +39,9 @@ def cuts(template: Template, found: Mapping[str, str]) -> bool:
 
 
 def cuts_raised(template: Template, found: Mapping[str, str], starts: tuple[str, ...]) -> bool:
-    """Whether a template would end what Python says of an exception before its end.
+    """Whether a match cuts the message of an exception before its end.
 
-    That ends where words of ours follow: the template's, or words that `starts` lists.
+    The message ends where the course's words follow: the template's, or one of `starts`.
     """
     pairs = zip(template.places, template.places[1:], template.literals[1:], strict=False)
     return any(
@@ -52,7 +52,7 @@ def cuts_raised(template: Template, found: Mapping[str, str], starts: tuple[str,
 
 
 def is_open(text: str) -> bool:
-    """Whether a space does not end a text: a colon belongs there, or it says what was raised."""
+    """Whether a text is incomplete: it ends with a colon, or contains an exception's name."""
     return text.endswith(':') or bool(_RAISES.search(text))
 
 

@@ -10,11 +10,11 @@ _OPENING, _CLOSING = '（“《', '，。；：！？、）”》'
 _PIECE = re.compile(
     rf'\s*[{_OPENING}]*(?:[{_HAN}]|(?:(?![{_HAN}{_OPENING}])\S)+|(?=\s|$))[{_CLOSING}]*'
 )
-"""What stays together: a word, or a Chinese character, with the marks that belong to it."""
+"""What is not broken: a word, or a Chinese character, with the punctuation that belongs to it."""
 
 
 def in_lines(text: str, columns: int, *, first: str = '', rest: str = '') -> list[str]:
-    """Return the lines of a text, of at most so many columns; a longer word stays whole.
+    """Return the lines of a text, each of at most `columns` columns; longer words stay whole.
 
     `first` is put before the first line, `rest` before the others.
     """

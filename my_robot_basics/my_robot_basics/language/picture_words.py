@@ -1,7 +1,7 @@
-"""Put a picture's alternative text into another language, clause by clause.
+"""Translate a picture's alternative text, clause by clause.
 
-What the lesson's code calls something, as a row of a timeline, stays as it is: the picture shows
-it so.
+Names from the lesson's code, such as that of a row in a timeline, are not translated: the
+picture shows them, too.
 """
 
 import re
@@ -13,21 +13,21 @@ from my_robot_basics.language.english import letters_left
 from my_robot_basics.language.sentences import CLAUSES, JOINED, Sentences
 
 PICTURES, DOCTOR, CHECKS = 'pictures', 'doctor', 'checks'
-"""The catalogues of these texts, of what the doctor says in one, and of how parts are joined."""
+"""The catalogues of alternative texts, of the doctor's sentences in them, and of JOINED."""
 COLON = '{one}: {other}'
 CLAUSE = '; '
-"""Between two clauses, as between two lines where the text is one line."""
+"""Separates two clauses, and two lines if the text has to be one line."""
 
 _HAN = re.compile('[\u3400-\u9fff]+')
 
 
 def picture_in(language: str, text: str, locale: Path = LOCALE) -> str:
-    """Return an alternative text in a language, line by line; what is not translated stays."""
+    """Translate an alternative text line by line; what has no translation stays English."""
     return text if language == ENGLISH else _translated(locale, language, text)
 
 
 def in_one_line(language: str, text: str, locale: Path = LOCALE) -> str:
-    """Return the lines of an alternative text one behind the other, as `alt` takes them."""
+    """Join the lines of an alternative text into one, for the attribute `alt`."""
     between = CLAUSE if language == ENGLISH else _joined(locale, language, CLAUSES)
     return between.join(text.split('\n'))
 
@@ -42,14 +42,14 @@ def _translated(locale: Path, language: str, text: str) -> str:
 
 
 def _clause(sentences: Sentences, clause: str) -> str:
-    """Translate a clause as a whole, or what stands before and behind each colon in it."""
+    """Translate a clause as a whole, or each of its parts between colons."""
     whole = sentences.translate(clause)
     if ': ' not in clause:
         return whole
     parts = clause.split(': ')
     put = [sentences.translate(part) for part in parts]
     if put == parts and _left(whole):
-        return whole  # it is not the course's
+        return whole  # it is not a text of the course
     colon = sentences.translations.get(COLON, COLON)
     shown = colon.format(one='', other='').join(put)
     return min(shown, whole, key=_left)

@@ -1,9 +1,9 @@
-"""Put a sentence that was made in English into another language: by what it was made from.
+"""Translate finished English sentences by matching them with the templates that they come from.
 
 Checks make their sentences in English, so that a grade, a gradebook and a report do not depend on
-who reads them. A sentence is translated only where it is shown: it is matched with the templates
-of the code, 'no message in {seconds} s', and what stands in their places is translated the same
-way. What no template fits, such as a name or what a student's code made, stays as it is.
+who reads them. A sentence is translated only when it is shown: it is matched with the templates
+of the code, such as 'no message in {seconds} s', and the texts in their places are translated the
+same way. A text that no template fits, such as a name or a student's output, stays as it is.
 """
 
 import re
@@ -17,44 +17,44 @@ from my_robot_basics.language.spaces import close_up
 from my_robot_basics.language.templates import FEW_LETTERS, LETTERS, PLACE, Template
 
 SENTENCES, SPACED = '{sentence} {other}', '{one} {other}'
-"""One sentence behind another one; and what begins as some template does, behind anything."""
+"""Two sentences in a row; and any text followed by one that begins like some template."""
 REASON, CLAUSES = 'expected {expected}, saw {seen}: {hint}', '{one}; {other}'
 JOINED: tuple[str, ...] = (SENTENCES, SPACED, CLAUSES, '{one}. {other}')
 JOINED += ('{one}: {other}', '{one}, {other}', '{one} and {other}', '{one} or {other}', '({one})')
 JOINED += ('{one} ({other})',)
-"""How sentences are put together of others, anywhere."""
+"""Templates that join any two texts, or put one into brackets."""
 MOST_CHARACTERS = 2_000
-"""No sentence of ours is longer; what a student's code made may be."""
+"""Longer texts are not translated: only a student's output makes a sentence so long."""
 MOST_TRIES = 8_000
-"""How many places are tried for one sentence."""
+"""How many matches are tried for one sentence."""
 MOST_DEEP = 12
-"""How many templates may stand one in the other."""
+"""How deep templates may be nested."""
 MOST_SPACES = 40
-"""At how many spaces a text may be two."""
+"""At how many spaces it is tried to split a text."""
 MOST_SPLITS = 10
-"""In how many ways one template may fit one text."""
+"""How many matches of one template with one text are tried."""
 
 _HOW_MANY = re.compile(r'(len|count|code|number|(f_)?lineno|line_number)\d*')
-"""The places of numbers, so that `{len} wrong` fits nothing but these; hidden ones are `…`."""
+"""Names of places that only a number, or `…` for a hidden one, may fill: `{len} wrong`."""
 _NUMBER = re.compile(r'[\d,.]+|…')
 
 
 @dataclass
 class Sentences:
-    """The templates of a language."""
+    """Translates sentences into one language."""
 
     translations: Mapping[str, str]
-    """Of each English template, as in the catalogues."""
+    """The translation of each English template, as in the catalogues."""
     _templates: list[Template] = field(default_factory=list)
     _found: dict[str, tuple[int, tuple[float, str]]] = field(default_factory=dict)
-    """The best of each text so far, for one sentence, and how deep it was looked for."""
+    """For the current sentence: each text's best translation so far, and its nesting depth."""
     _first: tuple[Template, ...] = ()
-    """A reason, and a list of faults: each part by itself takes far fewer tries."""
+    """REASON and CLAUSES, which are tried first: their parts take far fewer tries."""
     _starts: tuple[str, ...] = ()
     _tries: int = 0
 
     def __post_init__(self) -> None:
-        """Take the templates apart, once."""
+        """Parse the templates once."""
         templates = [
             Template.of(_with_places(english), _with_places(translation, english))
             for english, translation in self.translations.items()
@@ -71,7 +71,7 @@ class Sentences:
         self._starts = tuple({start for start in starts if len(LETTERS.findall(start)) > 2})
 
     def translate(self, text: str) -> str:
-        """Return a sentence in this language, or as it is where nothing fits."""
+        """Return a sentence in this language, or unchanged if nothing fits."""
         if len(text) > MOST_CHARACTERS:
             return text
         self._found, self._tries = {}, 0
@@ -79,10 +79,9 @@ class Sentences:
         return text if shown == text else close_up(shown)
 
     def parts(self, english: str, text: str) -> dict[str, str]:
-        """Return what stands in a template's places in a text, in this language.
+        """Return the translated text of each of the template's places in `text`.
 
-        Where it fits in several ways, it is the one that leaves the least in English; where in
-        none, there is nothing.
+        Of several matches, it is the one that leaves the least in English; {} if none fits.
         """
         template = Template.of(english, english)
         self._found, self._tries = {}, 0
@@ -97,7 +96,7 @@ class Sentences:
         return parts
 
     def _best(self, text: str, deep: int) -> tuple[float, str]:
-        """Return how many letters stay English, and the text with the fewest of them."""
+        """Return the translation with the fewest letters in English, after that number."""
         if (exact := self.translations.get(text)) is not None:
             return 0, exact
         known = self._found.get(text)
@@ -127,7 +126,7 @@ class Sentences:
         yield from self._at_spaces(text, deep)
 
     def _at_spaces(self, text: str, deep: int) -> Iterator[tuple[float, str]]:
-        """Split a text behind a sentence, or before what begins as some template does."""
+        """Split a text after a sentence, or before words with which some template begins."""
         for space in islice(re.finditer(' ', text), MOST_SPACES):
             before, after = text[: space.start()], text[space.end() :]
             self._tries += 1
@@ -141,7 +140,7 @@ class Sentences:
                         yield left, shown
 
     def _cuts(self, template: Template, found: Mapping[str, str]) -> bool:
-        """Whether a template would cut a sentence in two, or take one for what the code names."""
+        """Whether a match cuts a phrase, or puts a phrase in the place of a name or number."""
         for place, text in found.items():
             if _HOW_MANY.fullmatch(place) and not _NUMBER.fullmatch(text):
                 return True
@@ -153,7 +152,7 @@ class Sentences:
         return cuts(template, found) or cuts_raised(template, found, self._starts)
 
     def _put(self, template: Template, found: Mapping[str, str], deep: int) -> tuple[float, str]:
-        """Return a template's translation with that in its places, and how much stays English."""
+        """Fill a template's translation; return the letters that stay English, and the text."""
         best = {
             name: (0, found[name]) if name in template.quoted else self._best(found[name], deep)
             for name in template.places
@@ -164,7 +163,7 @@ class Sentences:
 
 
 def _with_places(text: str, english: str = '') -> str:
-    """Return a beginning or an end, such as 'your cell ', with a place for what it belongs to."""
+    """Add the place {rest} to a prefix or suffix, such as 'your cell '."""
     english = english or text
     if english[-1:] == ' ' and english.strip():
         return text + '{rest}'

@@ -1,4 +1,4 @@
-"""What a sentence is made from: words, and places for what differs each time."""
+"""Templates of sentences: fixed words, and places for the parts that vary."""
 
 import re
 from collections.abc import Iterator
@@ -7,51 +7,51 @@ from dataclasses import dataclass
 PLACE = re.compile(r'\{(\w*)\}')
 LETTERS = re.compile(r'[^\W\d_]')
 FEW_LETTERS = 4
-"""Templates with fewer, such as '{name} is {value}', fit anything: none is part of a phrase,
-unless there are quotes in it."""
+"""Templates with fewer letters, such as '{name} is {value}', fit almost anything: such a match
+counts only if it leaves no English phrase, or if the template has quotes."""
 _WORD = re.compile(r'[^\s,;(]*')
 _QUOTES = tuple('`\'"')
-"""Between “these” stands what the course calls something."""
+"""A place after one of these is a name, which is not translated."""
 
 
 @dataclass(frozen=True)
 class Template:
-    """What a sentence is made from, and its translation."""
+    """An English template, parsed, and its translation."""
 
     literals: tuple[str, ...]
-    """What stands before, between and behind its places."""
+    """The fixed texts before, between and after its places."""
     places: tuple[str, ...]
     translation: str
 
     @property
     def used(self) -> set[str]:
-        """The places that the translation has, too."""
+        """The places that the translation uses."""
         return {*PLACE.findall(self.translation)}
 
     @classmethod
     def of(cls, english: str, translation: str) -> 'Template':
-        """Take an English template apart."""
+        """Parse an English template."""
         pieces = PLACE.split(english)
         return cls(tuple(pieces[::2]), tuple(pieces[1::2]), translation)
 
     @property
     def letters(self) -> int:
-        """How much of it is words of its own: the more, the better it fits what it fits."""
+        """How many letters its fixed texts have: the more, the more certain is a match."""
         return len(LETTERS.findall(''.join(self.literals)))
 
     @property
     def quoted(self) -> set[str]:
-        """The places between quotes: what stands there is somebody else's."""
+        """The places between quotes: their texts are names, and are not translated."""
         return {
             place
             for n, (place, before) in enumerate(zip(self.places, self.literals, strict=False))
-            # a backtick may as well be the end of a name, with a place right behind it
+            # a backtick may also be the closing one of a name, directly before the place
             if before.endswith(_QUOTES)
             and not (before == '`' and ''.join(self.literals[: n + 1]).count('`') % 2 == 0)
         }
 
     def fits(self, text: str) -> Iterator[dict[str, str]]:
-        """Yield what may stand in its places, for each way in which it fits a text."""
+        """Yield the text of each place, for each way in which the template matches a text."""
         first, *between = self.literals
         if text.startswith(first) and text.endswith(between[-1]):
             yield from self._splits(text[len(first) :], between, self.places)
@@ -64,7 +64,7 @@ class Template:
             if text.endswith(literal):
                 yield {places[0]: text.removesuffix(literal)}
             return
-        if not literal:  # two places without anything between them: a word is in the first
+        if not literal:  # nothing between two places: the first one takes a single word
             at = len(_WORD.match(text)[0])  # type: ignore[index]  # it matches anything
             for found in self._splits(text[at:], others, places[1:]):
                 yield {places[0]: text[:at], **found}
@@ -75,6 +75,6 @@ class Template:
             for found in self._splits(text[at + len(literal) :], others, places[1:]):
                 has_fitted = True
                 yield {places[0]: text[:at], **found}
-            if not has_fitted:  # nor does it behind a later place
+            if not has_fitted:  # the rest will not match after a later occurrence, either
                 return
             at = text.find(literal, at + 1)
