@@ -1,1 +1,1 @@
-"""What a process needs to take part in ROS: a domain, its environment, other nodes in it."""
+"""What a process needs to take part in a lesson: ROS domain, environment, neighbours."""

@@ -1,4 +1,4 @@
-"""What a machine needs to compile a package of interfaces, beside what .venv has."""
+"""The programs that a machine needs, besides .venv, to compile a package of interfaces."""
 
 import os
 import shutil
@@ -8,7 +8,7 @@ from pathlib import Path
 
 
 def missing() -> dict[str, str]:
-    """Return what this machine lacks, and the package of Debian or Ubuntu that has it."""
+    """Return each missing program, and the Debian or Ubuntu package that contains it."""
     header = Path(sysconfig.get_path('include'), 'Python.h')
     python = 'python{}.{}-dev'.format(*sys.version_info)
     wanted = {
@@ -22,7 +22,7 @@ def missing() -> dict[str, str]:
 
 
 def why_not(package: str) -> str:
-    """Why a package of interfaces cannot be compiled here, in a sentence; '' where it can."""
+    """Say why a package of interfaces cannot be compiled here; '' if it can."""
     lacking = missing()
     if not lacking:
         return ''
@@ -38,6 +38,6 @@ def why_not(package: str) -> str:
 
 
 def _is_here(variable: str, *programs: str) -> bool:
-    """Whether the program that a variable names, or else one of these, can be run."""
+    """Whether the program that an environment variable names, or else one of these, exists."""
     named = os.environ.get(variable, '').split()[:1]
     return any(map(shutil.which, named or programs))

@@ -13,9 +13,9 @@ from my_robot_basics.session.errors import BadDomain, tell
 
 HIGHEST_DOMAIN = 232
 PACKAGE = Path(__file__).parents[2]
-"""The folder of package.xml, as the course installs it."""
+"""The folder of this package's package.xml, as the course installs it."""
 FAST_DISCOVERY = Path(__file__).with_name('fast_discovery.xml')
-"""Fast DDS profile with which nodes of two processes meet in a fraction of a second."""
+"""Fast DDS profile with which nodes of two processes discover each other within a second."""
 
 _claim: Claim | None = None
 _domain_id: int | None = None
@@ -24,11 +24,11 @@ _domain_id: int | None = None
 def enter() -> int:
     """Set the environment of a lesson, once, and return the ROS domain ID.
 
-    Nodes are found on this machine only, and fast; logs go to stdout, line by line and without
+    Discovery is limited to this machine, and fast; logs go to stdout, line by line and without
     colours; ROS resources and commands are found in this Python's prefix; and the process has
     a ROS domain of its own, or the one that MY_ROBOT_BASICS_DOMAIN_ID names. It takes effect
-    for contexts that are initialised afterwards. A notebook's kernel also tells terminals of
-    itself. Raises NoFreeDomain or BadDomain.
+    for contexts that are initialised afterwards. A notebook's kernel also announces its lesson
+    to terminals. Raises NoFreeDomain or BadDomain.
     """
     global _claim, _domain_id
     if _domain_id is None:
@@ -50,7 +50,7 @@ def show_domain() -> None:
 
 
 def workspace() -> Path:
-    """The colcon workspace: `ros_ws/` of the course, or what MY_ROBOT_BASICS_WORKSPACE names."""
+    """Return the colcon workspace: MY_ROBOT_BASICS_WORKSPACE, or else the course's `ros_ws/`."""
     return Path(os.environ.get('MY_ROBOT_BASICS_WORKSPACE') or PACKAGE.parent / 'ros_ws')
 
 
@@ -60,7 +60,7 @@ def in_grading_room() -> bool:
 
 
 def in_students_room() -> bool:
-    """Whether what runs here is a student's code that is graded or validated."""
+    """Whether this process runs a student's code, for the grader or for *Validate*."""
     return os.environ.get('MY_ROBOT_BASICS_ROOM') == 'student'
 
 
@@ -79,7 +79,7 @@ def _set_environment(domain_id: int) -> None:
         'FASTRTPS_DEFAULT_PROFILES_FILE': str(FAST_DISCOVERY),
     }
     for name, value in network.items():
-        # a room of the grader has a network of its own making: what it has set stands
+        # the grader sets up the network of its rooms: keep the values that it has set
         if not (in_grading_room() and os.environ.get(name)):
             os.environ[name] = value
     os.environ['RCUTILS_LOGGING_USE_STDOUT'] = '1'
@@ -90,10 +90,10 @@ def _set_environment(domain_id: int) -> None:
     os.environ['ROS_DOMAIN_ID'] = str(domain_id)
     os.environ['ROS_WS'] = str(workspace())
     if ' ' in sys.prefix:
-        # colcon's setup.bash stumbles over a space in its Python's path, and any Python serves it
+        # colcon's setup.bash fails if its Python's path has a space; any Python will do
         os.environ['COLCON_PYTHON_EXECUTABLE'] = str(Path(sys.executable).resolve())
     _put_first('AMENT_PREFIX_PATH', sys.prefix)
-    _put_first('PATH', str(Path(sys.prefix, 'bin')))  # `!colcon` and the like in a cell
+    _put_first('PATH', str(Path(sys.prefix, 'bin')))  # for commands in a cell, such as `!colcon`
 
 
 def _put_first(name: str, folder: str) -> None:

@@ -1,4 +1,4 @@
-"""One ROS domain per kernel: the first free one of this machine, held until its holder is gone.
+"""One ROS domain per kernel: the first free one of this machine, until the kernel's end.
 
 Imports neither rclpy nor anything else that is slow.
 """
@@ -12,12 +12,12 @@ from dataclasses import dataclass
 from my_robot_basics.session.errors import NoFreeDomain
 
 FIRST, LAST = 1, 101
-"""Above 101 the ports of Linux's outgoing connections begin; 0 is everybody's."""
+"""DDS's ports of higher domains are in Linux's range of ephemeral ports; 0 is ROS's default."""
 
 
 @dataclass(frozen=True, eq=False)
 class Claim:
-    """A domain that is this process's alone, until `release()` or the process's end."""
+    """A domain reserved for this process until `release()` or the process's end."""
 
     domain_id: int
     """ROS domain ID, 1 to 101."""
@@ -25,16 +25,16 @@ class Claim:
     _holder: socket.socket
 
     def release(self) -> None:
-        """Give the domain back; twice does no harm."""
+        """Give the domain back; a second call does nothing."""
         self._holder.close()
 
 
 def claim() -> Claim:
-    """Take the first free ROS domain, raising NoFreeDomain when all are taken.
+    """Reserve the first free ROS domain; raises NoFreeDomain if all are taken.
 
     The claim is a bound abstract Unix socket: it needs no file, binding is atomic across all
-    users of the machine (of the network namespace, to be exact), and the kernel drops it with
-    the process, however that dies. Processes that the holder starts do not keep it.
+    users of the machine (of the network namespace, to be exact), and Linux closes it with the
+    process, however that ends. Processes that the holder starts do not keep it.
     """
     for domain_id in range(FIRST, LAST + 1):
         if holder := hold(f'my_robot_basics.domain.{domain_id}'):
@@ -46,9 +46,9 @@ def claim() -> Claim:
 
 
 def hold(name: str) -> socket.socket | None:
-    """Bind an abstract Unix socket to a name, or return None where the name is taken.
+    """Bind an abstract Unix socket to a name, or return None if the name is taken.
 
-    It is held until it is closed or this process ends.
+    The name is taken until the socket is closed or this process ends.
     """
     # not inherited through exec: Python's sockets are close-on-exec
     holder = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
@@ -71,5 +71,5 @@ def _let_go() -> None:
         holder.close()
 
 
-# a forked child works in its parent's domain, but must not keep it taken after the parent's end
+# a forked child uses its parent's domain, but must not keep it reserved after the parent's end
 os.register_at_fork(after_in_child=_let_go)

@@ -1,8 +1,8 @@
-"""Let rclpy's EventsExecutor wait without end, as `spin()` asks it to.
+"""Let rclpy's EventsExecutor wait without a timeout, as `spin()` asks it to.
 
-In the wheel, a wait without a limit is one for a moment that overflows: it looks at the clock
-without a pause, lets no event in, and stops all threads that have one. With a limit, it waits as
-it should. `./course` links this into .venv as a module of its own, which rclpy's
+In the wheel, the deadline of a wait without a timeout overflows: the wait polls the clock
+without a pause, handles no event, and blocks all threads that have one. With a timeout, it
+works. `./course` links this into .venv as a module of its own, which rclpy's
 `experimental/events_executor.py` imports at its end.
 """
 
@@ -13,11 +13,11 @@ from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.task import Future
 
 LONG_SEC = 1e8
-"""Three years: longer than a node runs."""
+"""About three years: longer than a node runs."""
 
 
 def limit(executor_class: Any) -> None:
-    """Give a limit to each wait of the class that has none."""
+    """Give LONG_SEC as the timeout to each wait of the class that has none."""
     once = executor_class.spin_once
 
     def spin_once(self: Any, timeout_sec: float | None = None) -> None:

@@ -1,4 +1,4 @@
-"""A variable of the environment that is another one for a moment."""
+"""Set an environment variable temporarily."""
 
 import os
 from collections.abc import Iterator
@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 @contextmanager
 def set_meanwhile(name: str, value: str) -> Iterator[None]:
-    """Set a variable of this process; give it back as it was, or was not, whatever happens."""
+    """Set an environment variable of this process; restore it, or unset it, at the end."""
     former = os.environ.get(name)
     os.environ[name] = value
     try:

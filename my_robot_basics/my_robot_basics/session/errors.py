@@ -1,4 +1,4 @@
-"""What goes wrong in a lesson, in a line or two: no traceback of ours in a student's notebook."""
+"""The errors of a lesson in a line or two: students see no traceback of the course's code."""
 
 import re
 
@@ -6,27 +6,27 @@ from my_robot_basics.language import lines
 from my_robot_basics.language.speaking import in_language_here
 
 COLUMNS = 90
-"""What fits beside a file browser; JupyterLab breaks words, and Validate cuts long lines off."""
+"""Columns beside a file browser; JupyterLab breaks longer lines in words, Validate cuts them."""
 
 _SIGNATURES = re.compile(r'\. The following argument types are supported:.*', re.DOTALL)
-"""What rclpy's functions in C++ take, and what they were given: in words of C++, for pages."""
+"""The long list of C++ signatures and arguments at the end of pybind11's TypeError."""
 
 
 def in_lines(text: str, *, first: str = '') -> list[str]:
-    """`text` in lines that end between words; `first` is put before the first one."""
+    """Return a text as lines that end between words; `first` is put before the first one."""
     return lines.in_lines(text, COLUMNS, first=first)
 
 
 def tell(text: str, *, in_one: bool = True) -> None:
-    """Print a sentence of the course's in the reader's language, in one line or several."""
+    """Print a sentence of the course in the reader's language, in one line or several."""
     shown = in_language_here(text)
     lines = [shown] if in_one else in_lines(shown)
-    # in one piece: an interrupt between the text and its end would leave the line open
+    # one call: an interrupt between the text and its newline would leave the line open
     print('\n'.join([*lines, '']), end='', flush=True)
 
 
 def without_signatures(said: str) -> str:
-    """Return what an exception says, without the signatures of rclpy's functions in C++."""
+    """Return an exception's text without the signatures of rclpy's C++ functions."""
     return _SIGNATURES.sub('', said)
 
 
@@ -50,7 +50,7 @@ class NotRunnable(LiveError):
 
 
 class WrongType(LiveError, TypeError):
-    """rclpy was given a type of another kind than it expects, where it would crash."""
+    """A call gives rclpy a type of a wrong kind, with which it would crash."""
 
 
 class WaitTimeout(LiveError, TimeoutError):

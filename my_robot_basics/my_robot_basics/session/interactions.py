@@ -1,14 +1,14 @@
-"""How often checks have done more with the nodes than listen to them."""
+"""Count how often checks have done more with the nodes than receive their messages."""
 
 _count = 0
 
 
 def note() -> None:
-    """Something is done that may change what a node does: a message, a call, a parameter."""
+    """Count an action that may change a node's behaviour: a message, a call, a parameter."""
     global _count
     _count += 1
 
 
 def count() -> int:
-    """How often so far."""
+    """Return the number of such actions so far."""
     return _count

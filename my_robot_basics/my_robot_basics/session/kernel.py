@@ -5,7 +5,7 @@ from typing import Any
 
 
 def shell() -> Any:
-    """IPython's shell when it runs in a kernel, else None."""
+    """Return IPython's shell if it runs in a kernel, else None."""
     if 'IPython' not in sys.modules:
         return None
     found = sys.modules['IPython'].get_ipython()

@@ -1,7 +1,7 @@
-"""Lessons that run on this machine: each tells of itself, so that a terminal can join it.
+"""Lessons that run on this machine: each announces itself, so that a terminal can join it.
 
-What a kernel tells is the name of an abstract Unix socket, which is gone with the kernel, however
-that dies. Imports nothing that is slow.
+The announcement is the name of an abstract Unix socket, which disappears with the kernel,
+however that ends. Imports nothing that is slow.
 """
 
 import os
@@ -17,7 +17,7 @@ SOCKETS = Path('/proc/net/unix')
 _PREFIX = 'my_robot_basics.lesson'
 _ROW = re.compile(rf' @{re.escape(_PREFIX)}\.(\d+)\.(\d+)\.(\d+)\.([\w-]+)$', re.ASCII)
 _LONGEST_NAME = 40
-"""The name of a socket has room for 107 bytes in all."""
+"""Characters; the whole name of a socket has at most 107 bytes."""
 
 _announcement: socket.socket | None = None
 
@@ -27,25 +27,25 @@ class RunningLesson:
     """A notebook whose kernel takes part in ROS."""
 
     started_nsec: int
-    """When it joined its ROS domain, since the epoch."""
+    """When it joined its ROS domain, in ns since the epoch."""
     domain_id: int
     pid: int
-    """Of its kernel."""
+    """Process ID of its kernel."""
     name: str
-    """Of the notebook, or of its folder where the notebook's is not known."""
+    """Name of the notebook, or of its folder if the notebook's is unknown."""
 
 
 def announce(domain_id: int) -> None:
-    """Tell other processes of the lesson in this kernel, until it ends."""
+    """Announce the lesson in this kernel to other processes, until the kernel ends."""
     global _announcement
-    opened = os.environ.get('JPY_SESSION_NAME')  # JupyterLab's word for the notebook's path
+    opened = os.environ.get('JPY_SESSION_NAME')  # the notebook's path, set by JupyterLab
     name = Path(opened).stem if opened else Path.cwd().name
     name = re.sub(r'[^\w-]', '_', name, flags=re.ASCII)[:_LONGEST_NAME] or 'notebook'
     _announcement = domain.hold(f'{_PREFIX}.{domain_id}.{time.time_ns()}.{os.getpid()}.{name}')
 
 
 def running() -> list[RunningLesson]:
-    """The lessons of this user on this machine, the one that started last comes last."""
+    """Return this user's lessons on this machine, the one that started last at the end."""
     try:
         rows = SOCKETS.read_text(encoding='ascii', errors='replace').splitlines()
     except OSError:
@@ -59,7 +59,7 @@ def running() -> list[RunningLesson]:
 
 
 def _is_ours(pid: int) -> bool:
-    """Other users of this machine take the same course."""
+    """Whether it is a process of this user: others on this machine may take the course, too."""
     try:
         return Path('/proc', str(pid)).stat().st_uid == os.getuid()
     except OSError:

@@ -1,4 +1,4 @@
-"""Processes that have a mark in their environment, as all do that one of them has started."""
+"""Processes with a mark in their environment, which the processes that they start inherit."""
 
 import contextlib
 
@@ -6,7 +6,7 @@ import psutil
 
 
 def end(name: str, mark: str) -> None:
-    """Kill the processes that can be killed and in whose environment `name` has that value."""
+    """Kill all processes, as far as permitted, whose environment variable `name` is `mark`."""
     for process in psutil.process_iter():
         with contextlib.suppress(psutil.Error):
             if process.environ().get(name) == mark:

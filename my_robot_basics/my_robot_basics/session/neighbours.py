@@ -1,4 +1,4 @@
-"""Which nodes live in this ROS domain besides those of `live`."""
+"""Which nodes run in this ROS domain besides those of `live`."""
 
 import gc
 import time
@@ -11,24 +11,24 @@ from rclpy.node import Node
 from my_robot_basics.session import classroom
 
 DISCOVERY_SEC = 0.3
-"""How long a new observer needs, most often, to discover the nodes of other processes."""
+"""How long a new observer usually needs to discover the nodes of other processes."""
 
 REMOVAL_SEC = 6.0
-"""How long a node that is gone may be on the graph: its process says so in one datagram, and where
-that was lost, or it was killed, it is forgotten when its lease of five seconds is over."""
+"""How long a node that has ended may stay on the graph: its process announces the end in one
+datagram. If that is lost, or the process is killed, the lease expires after five seconds."""
 
 
 class Neighbours:
-    """Looks at the graph through a node and a context of its own: it outlives `rclpy.shutdown`."""
+    """Observes the graph with its own node and context, which `rclpy.shutdown` does not end."""
 
     def __init__(self) -> None:
         self._observer: Node | None = None
         self._since = 0.0
 
     def meet(self) -> None:
-        """Begin to listen, in a ROS domain that is this kernel's."""
+        """Start the observer in this kernel's ROS domain, unless it runs."""
         if self._observer is not None and self._observer.context.ok():
-            return  # else Ctrl-C has ended it with all other contexts
+            return  # not ok: Ctrl-C has shut it down with all other contexts
         context = Context()
         context.init([], initialize_logging=False)
         self._observer = Node(
@@ -41,18 +41,18 @@ class Neighbours:
         self._since = time.monotonic()
 
     def leave(self) -> None:
-        """Stop listening."""
+        """Destroy the observer and its context."""
         if self._observer is not None:
             self._observer.destroy_node()
             self._observer.context.try_shutdown()
             self._observer = None
 
     def have(self, name: str) -> bool:
-        """Whether a node of that fully qualified name lives."""
-        # a node that another thread of this process has just made is not on the graph yet
+        """Whether a node of that fully qualified name exists."""
+        # a node that another thread of this process has just created is not on the graph yet
         if any(node.get_fully_qualified_name() == name for node in nodes_here()):
             return True
-        if not classroom.in_grading_room():  # where nobody else can have come
+        if not classroom.in_grading_room():  # in a grading room there are no other processes
             time.sleep(max(0.0, self._since + DISCOVERY_SEC - time.monotonic()))
         deadline = time.monotonic() + REMOVAL_SEC
         while self._is_announced(name):
@@ -62,12 +62,12 @@ class Neighbours:
         return False
 
     def _is_announced(self, name: str) -> bool:
-        """Whether the graph has the name, and the publisher that each running node has.
+        """Whether the graph has the name, and the /parameter_events publisher of each node.
 
-        A name alone is no node: rmw keeps it for ever if it handles a participant's last message
-        after its end.
+        A name alone does not prove a node: rmw keeps it for ever if it handles a participant's
+        last message after the participant's end.
         """
-        assert self._observer is not None  # it has met them
+        assert self._observer is not None  # `meet` was called
         names = {
             f'{namespace.rstrip("/")}/{node_name}'
             for node_name, namespace in self._observer.get_node_names_and_namespaces()
@@ -79,14 +79,14 @@ class Neighbours:
 
 
 def destroy_orphans() -> None:
-    """Destroy nodes whose context was shut down: they are of no use, but still on the graph."""
+    """Destroy nodes whose context was shut down: they are useless, but still on the graph."""
     for node in nodes_here(alive=False):
         node.destroy_node()
 
 
 def nodes_here(*, alive: bool = True) -> Iterator[Node]:
-    """Yield this process's nodes that are not destroyed, in a live context or in a dead one."""
-    # not all objects: only to look at a tuple that another thread is building breaks it
+    """Yield this process's nodes that are not destroyed and whose context is ok, or is not."""
+    # not gc.get_objects(): touching a tuple that another thread is building breaks it
     for thing in gc.get_referrers(*_classes(Node)):
         if not issubclass(type(thing), Node):
             continue
@@ -103,7 +103,7 @@ def nodes_here(*, alive: bool = True) -> Iterator[Node]:
 
 
 def _classes(base: type) -> Iterator[type]:
-    """Yield a class and all that derive from it."""
+    """Yield a class and all its subclasses."""
     yield base
     subclasses: list[type] = base.__subclasses__()
     for derived in subclasses:

@@ -1,7 +1,7 @@
-"""Interface packages that were built in a workspace: can they be used, and if not, why not.
+"""Interface packages that were built in a workspace: whether they can be used, and why not.
 
-Read by its path, too, before a package of the course can be imported (sourced.py): imports
-nothing but the standard library.
+sourced.py also loads this module by its path, while Python looks for a package of interfaces:
+besides the standard library, it imports only `language`.
 """
 
 import json
@@ -15,17 +15,17 @@ from pathlib import Path
 from my_robot_basics.language.speaking import in_language_here
 
 INDEX = 'share/ament_index/resource_index/rosidl_interfaces'
-"""Where ROS looks for packages with .msg, .srv and .action files: a file for each, which lists
-them."""
+"""The part of the ament index with a file for each package of interfaces, which lists its .msg,
+.srv and .action files."""
 LAYOUT = '.colcon_install_layout'
-"""The file by which colcon knows its install folder; a robot's /opt/ros has none."""
+"""The file that marks an install folder of colcon; a robot's /opt/ros has none."""
 LIBRARIES = (
     *('rosidl_generator_c', 'rosidl_generator_py', 'rosidl_typesupport_c'),
     *('rosidl_typesupport_fastrtps_c', 'rosidl_typesupport_introspection_c'),
 )
-"""What a Python node loads of a package that colcon has built: lib<package>__<name>.so."""
+"""The libraries of a built package that a Python node loads: lib<package>__<name>.so."""
 ELF = b'\x7fELF'
-"""How a library begins; that of a build that was cut short may be empty."""
+"""The first bytes of a library; an interrupted build may leave an empty file."""
 
 
 @dataclass(frozen=True)
@@ -48,12 +48,12 @@ class Overlay:
 
     @property
     def python_folder(self) -> Path:
-        """Where the package's Python modules lie, from the prefix, for the Python that runs."""
+        """The folder, relative to the prefix, of its modules for the running Python version."""
         version = '{}.{}'.format(*sys.version_info)
         return Path('lib', f'python{version}', 'site-packages', self.package)
 
     def fault(self) -> str:
-        """Why nothing can be done with it, and what to do, in a sentence; '' if all is there."""
+        """Say why the package cannot be loaded, and what to do; '' if it is complete."""
         if not (self.prefix / self.python_folder).is_dir():
             for other in sorted(self.prefix.glob(f'lib/python3.*/site-packages/{self.package}')):
                 built = other.parts[-3].removeprefix('python')
@@ -67,9 +67,9 @@ class Overlay:
         return ''
 
     def difference(self) -> str:
-        """How it differs from its sources, or from the course's, in a sentence; '' if in nothing.
+        """Say how it differs from its sources or from the course's package; '' if it does not.
 
-        Its nodes run, but they do not meet those that use the other.
+        Its nodes run, but they cannot communicate with nodes that use the other definition.
         """
         shared = self.prefix / 'share' / self.package
         for file in self._definitions():
@@ -89,7 +89,7 @@ class Overlay:
         return ''
 
     def _needed(self) -> Iterator[Path]:
-        """What must exist, from the prefix."""
+        """Yield the files that must exist, relative to the prefix."""
         yield Path(INDEX, self.package)
         for file in self._definitions():
             yield Path('share', self.package, file)
@@ -122,7 +122,7 @@ def sourced(variables: Mapping[str, str]) -> Iterator[Overlay]:
 
 
 def faults(variables: Mapping[str, str]) -> Iterator[str]:
-    """Yield a sentence for all that is wrong with the workspaces that a terminal has sourced."""
+    """Yield a sentence for each fault of the workspaces that a terminal has sourced."""
     yield from (gone(prefix) for prefix in _prefixes(variables) if not prefix.exists())
     for overlay in sourced(variables):
         if sentence := overlay.fault() or overlay.difference():
@@ -130,7 +130,7 @@ def faults(variables: Mapping[str, str]) -> Iterator[str]:
 
 
 def gone(prefix: Path) -> str:
-    """What to say of a folder that a terminal has sourced, and that is no longer there."""
+    """Return the sentence about a sourced folder that no longer exists."""
     return (
         f'{prefix} is gone, and this terminal still looks for its package there: build the '
         "package again, or open a new terminal, which uses the course's package if there is one"
@@ -138,14 +138,14 @@ def gone(prefix: Path) -> str:
 
 
 def say(sentence: str) -> None:
-    """Tell the user, once in a process."""
+    """Print a sentence to stderr, once in a process."""
     if sentence not in _said:
         _said.add(sentence)
         print(f'course: {in_language_here(sentence)}', file=sys.stderr)
 
 
 def was_said(sentence: str) -> bool:
-    """Whether the user knows it already."""
+    """Whether this process has printed the sentence already."""
     return sentence in _said
 
 
@@ -164,7 +164,7 @@ def _is_library(file: Path) -> bool:
 
 
 def _type_hashes(file: Path) -> dict[str, str]:
-    """The hash of each type in what rosidl has written of a file; {} where there is none."""
+    """Return the hash of each type in a .json file of rosidl; {} if there is no file."""
     if not file.is_file():
         return {}
     listed = json.loads(file.read_text(encoding='utf-8'))['type_hashes']
@@ -172,6 +172,6 @@ def _type_hashes(file: Path) -> dict[str, str]:
 
 
 def _quoted(workspace: Path) -> str:
-    """A workspace as a terminal of the course understands it."""
+    """Return a workspace's path, quoted for a shell: "$ROS_WS" if that is the same."""
     known = os.environ.get('ROS_WS')
     return '"$ROS_WS"' if known and Path(known) == workspace else shlex.quote(str(workspace))

@@ -1,7 +1,7 @@
-"""Which files of a ROS package belong to what a student hands in, and why the others do not.
+"""Which files of a ROS package belong to a submission, and why the others do not.
 
-A notebook builds what is taken here, and the grader takes the same: a package that lacks a file
-lacks it in both places. Imports nothing that is slow.
+A notebook builds only these files, and the grader collects the same ones: a package that lacks a
+file lacks it in both places. Imports nothing that is slow.
 """
 
 import os
@@ -13,35 +13,35 @@ from itertools import islice
 from pathlib import Path
 
 MAX_FILES, MAX_BYTES = 200, 2_000_000
-"""Of one package: a robot's own driver has some thirty files, and pictures are no part of it."""
+"""Limits of one package: a robot's driver has about thirty files, and pictures do not belong."""
 MAX_DEPTH = 8
-"""Folders and file, from the package's folder on."""
+"""Folders in the package's folder, and the file, that a path may have."""
 MAX_NAME_BYTES = 100
 MOST_SEEN = 20_000
-"""Entries of a folder that are looked at."""
+"""Files and folders of a package that are looked at."""
 MOST_REASONS = 20
-"""Of files that are left out, each by name; of more, their number is told."""
+"""How many files that are left out are named; of the others, only the number is reported."""
 
 _BUILT = {'build', 'install', 'log'}
-"""What colcon writes where it is called: in the package's own folder, nobody else's."""
+"""Folders that colcon creates where it is called; only those at the top of the package count."""
 _LEFT_BEHIND = {'__pycache__', '__MACOSX', 'venv', 'Thumbs.db', 'desktop.ini'}
 _BESIDE_LETTERS = frozenset('._-+@=, ()')
 
 
 @dataclass(frozen=True)
 class PackageFiles:
-    """What is taken of a package, and what is not; paths begin in its folder."""
+    """The files that are taken of a package, and the others; paths are relative to its folder."""
 
     taken: dict[str, Path]
-    """Where each file can be read, by its path: 'resource/arm_player'."""
+    """The file to read for each path, such as 'resource/arm_player'."""
     left_out: tuple[str, ...]
     """A clause for each file or folder that is left out: its path, and why."""
     problem: str = ''
-    """Why nothing of it is taken."""
+    """Why nothing of the package is taken."""
 
 
 def read(folder: Path) -> PackageFiles:
-    """Look through a package's folder; no link is followed. Raises OSError where it can't be."""
+    """Look through a package's folder without following links. Raises OSError if it can't."""
     sizes: dict[str, int] = {}
     left_out: list[str] = []
     for seen, (path, parts, reason) in enumerate(_walk(folder, ()), start=1):
@@ -57,7 +57,7 @@ def read(folder: Path) -> PackageFiles:
 
 
 def why_not(parts: Sequence[str]) -> str:
-    """Why a file of that path, from the package's folder on, is left out; '' where it is not."""
+    """Say why a file with that path in the package's folder is left out; '' if it is taken."""
     for at, part in enumerate(parts):
         is_folder = at < len(parts) - 1
         if part.startswith('.'):
@@ -76,7 +76,7 @@ def why_not(parts: Sequence[str]) -> str:
 
 
 def too_much(sizes: Mapping[str, int]) -> str:
-    """Why a package of files with these sizes is not taken at all; '' where it is."""
+    """Say why a package with files of these sizes is not taken at all; '' if it is."""
     if len(sizes) > MAX_FILES:
         what = f'it has {len(sizes):,} files, and at most {MAX_FILES} are taken'
     elif sum(sizes.values()) > MAX_BYTES:
@@ -90,21 +90,21 @@ def too_much(sizes: Mapping[str, int]) -> str:
 
 
 def told(path: str, reason: str) -> str:
-    """A clause that says of a path why it is left out; nothing in it moves a cursor."""
+    """Return a clause with a path and why it is left out, without control characters."""
     shown = ''.join(c if c.isprintable() else '?' for c in path)
     return f'{shown if len(shown) <= 120 else shown[:119] + "…"} ({reason})'
 
 
 def few(clauses: Sequence[str]) -> tuple[str, ...]:
-    """The first of many clauses, and how many more there are."""
+    """Return the first MOST_REASONS clauses, and how many more there are."""
     more = len(clauses) - MOST_REASONS
     return (*clauses[:MOST_REASONS], *([f'and {more:,} more'] if more > 0 else []))
 
 
 def write(files: Mapping[str, Path], folder: Path) -> None:
-    """Copy files to their paths in a folder. Raises OSError where one is no plain file any more.
+    """Copy files to their paths in a folder. Raises OSError if one is no longer a plain file.
 
-    They become ours: none can be run by itself, and what they may be is not what they were.
+    Only the content is copied: the copies belong to this user and are not executable.
     """
     for name, source in files.items():
         target = folder / name
@@ -113,7 +113,7 @@ def write(files: Mapping[str, Path], folder: Path) -> None:
 
 
 def content(file: Path) -> bytes:
-    """Read a plain file, and nothing that was put in its place meanwhile. Raises OSError."""
+    """Read a file, unless a link or device has replaced it meanwhile. Raises OSError."""
     descriptor = os.open(file, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
     with os.fdopen(descriptor, 'rb') as opened:
         status = os.fstat(descriptor)
@@ -123,14 +123,14 @@ def content(file: Path) -> bytes:
 
 
 def _walk(folder: Path, above: tuple[str, ...]) -> Iterator[tuple[Path, tuple[str, ...], str]]:
-    """Yield each file, its path and why it is left out; of a folder that is, only itself."""
+    """Yield each file, its path and why it is left out; a folder that is left out comes alone."""
     for path in sorted(islice(folder.iterdir(), MOST_SEEN + 1)):
-        if path.name == '__pycache__':  # nobody wrote it: each import makes one
+        if path.name == '__pycache__':  # not worth a message: each import creates one
             continue
         parts = (*above, path.name)
         mode = path.lstat().st_mode
         is_folder = stat.S_ISDIR(mode)
-        # a folder's own name is judged as that of a folder
+        # 'x' stands for a file in the folder, so that the folder's name is judged as a folder's
         if reason := why_not((*parts, 'x') if is_folder else parts):
             yield path, parts, reason
         elif stat.S_ISLNK(mode):
@@ -153,7 +153,7 @@ def _is_plain(name: str) -> bool:
 
 
 def _holds_most(sizes: Mapping[str, int]) -> str:
-    """The folder in the package's in which most of the files lie; '' where none has so many."""
+    """Return the top-level folder with more than half of MAX_FILES files; '' if none has."""
     counts: dict[str, int] = {}
     for name in sizes:
         top, slash, _ = name.partition('/')

@@ -1,4 +1,4 @@
-"""How busy the machine is, as Linux tells it: time without a free processor proves nothing."""
+"""How busy the machine is, as Linux reports it: a delay on a busy machine proves nothing."""
 
 import itertools
 import re
@@ -10,13 +10,13 @@ CPU, UPTIME = Path('/proc/pressure/cpu'), Path('/proc/uptime')
 COARSE_SEC = 0.02
 """Linux counts idle time in hundredths of a second."""
 BUSY_TIMES = 5.0
-"""How many times as long an answer may take where processes have to wait for a processor."""
+"""How many times as long an answer may take if processes have to wait for a processor."""
 
 
 def stalled_sec() -> float:
-    """For how long so far some process had to wait for a processor, in seconds.
+    """Return for how many seconds so far some process had to wait for a processor.
 
-    Only differences mean anything. 0.0 where Linux does not tell (psi=0).
+    Only differences are meaningful. 0.0 if Linux does not report it (psi=0).
     """
     try:
         text = CPU.read_text(encoding='ascii')
@@ -27,43 +27,43 @@ def stalled_sec() -> float:
 
 
 def idle_sec() -> float:
-    """For how long so far the processors were idle, all of them together, in seconds.
+    """Return for how many seconds so far the processors were idle, summed over all of them.
 
-    Only differences mean anything.
+    Only differences are meaningful.
     """
     try:
         return float(UPTIME.read_text(encoding='ascii').split()[1])
-    except (OSError, IndexError, ValueError):  # where Linux does not tell: as if one had been
+    except (OSError, IndexError, ValueError):  # not reported: as if one were always idle
         return time.monotonic()
 
 
 class Stopwatch:
-    """Measures time from when it is made."""
+    """Measures time since its creation."""
 
     def __init__(self) -> None:
         self._start = time.monotonic()
         self._stalled_sec, self._idle_sec = stalled_sec(), idle_sec()
 
     def wall_sec(self) -> float:
-        """Seconds of steady wall time."""
+        """Return the seconds since then on the monotonic clock."""
         return time.monotonic() - self._start
 
     def free_sec(self) -> float:
-        """Seconds of it in which no process had to wait for a processor.
+        """Return the seconds since then in which no process had to wait for a processor.
 
-        Nor is more of it free than processors were idle: a virtual machine that shares them tells
-        of a part of the waiting alone.
+        The result is at most the time that processors were idle: a virtual machine with shared
+        processors reports only a part of the waiting.
         """
         told_sec = self.wall_sec() - (stalled_sec() - self._stalled_sec)
         return max(0.0, min(told_sec, idle_sec() - self._idle_sec + COARSE_SEC))
 
     def is_busy(self) -> bool:
-        """Whether some process had to wait for a processor for most of it."""
+        """Whether some process had to wait for a processor for most of the measured time."""
         return self.free_sec() < 0.5 * self.wall_sec()
 
 
 def free_turns(free_sec: float) -> Iterator[int]:
-    """Yield 1, 2, … until so much time has passed in which no process waited for a processor."""
+    """Yield 1, 2, … until `free_sec` have passed in which no process waited for a processor."""
     watch = Stopwatch()
     for turn in itertools.count(1):
         yield turn

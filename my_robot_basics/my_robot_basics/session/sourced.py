@@ -1,7 +1,7 @@
-"""What each Python of .venv begins with in a terminal in which a workspace was sourced.
+"""The startup code of each Python of .venv in a terminal in which a workspace was sourced.
 
-`./course` links it into .venv as a module of its own: PYTHONPATH may name the student's copy of
-the package first. Imports nothing that is slow.
+`./course` links it into .venv as a module of its own, because PYTHONPATH may list the student's
+copy of this package first. Imports nothing that is slow.
 """
 
 import os
@@ -11,22 +11,22 @@ from importlib.util import module_from_spec, spec_from_file_location
 from types import ModuleType
 
 STARTED = '_ROS_WHEELS_BOOTSTRAP_COMPLETE'
-"""Set where ROS's wheels have started Python again, with their libraries."""
+"""The environment variable that ROS's wheels set when they restart Python with their libraries."""
 LAYOUT = '.colcon_install_layout'
 
 
 def start() -> None:
-    """Load libraries in the order in which the workspaces were sourced, and look at packages."""
+    """Restart Python with libraries in the order of the sourced workspaces; check packages."""
     if STARTED not in os.environ:
         _start_again()
     sys.meta_path.insert(0, Guard())
 
 
 def _start_again() -> None:
-    """Start Python again as ROS's wheels do, but with the libraries in an order.
+    """Restart Python as ROS's wheels do, but with the library folders in a fixed order.
 
-    Theirs comes out of a set. So a package of which both a workspace and .venv have libraries
-    would be loaded half from the one, half from the other, each time in another way.
+    The wheels take them from a set, in random order: if both a workspace and .venv have libraries
+    of a package, some would be loaded from the one and some from the other.
     """
     site_packages = '{}/lib/python{}.{}/site-packages'.format(sys.prefix, *sys.version_info)
     ours = [f'{sys.prefix}/lib']
@@ -45,13 +45,13 @@ def _start_again() -> None:
 
 
 def _is_built(folder: str) -> bool:
-    """Whether it is the lib/ of a package that colcon has installed, alone or with all others."""
+    """Whether a folder is the lib/ of colcon's install/, of one package or of all merged."""
     above = os.path.dirname(folder)
     return any(os.path.exists(f'{f}/{LAYOUT}') for f in (above, os.path.dirname(above)))
 
 
 class Guard:
-    """Is asked first for each module; stops one that was built wrong, and says why."""
+    """Python's first import finder: refuses a package that was built wrong, and says why."""
 
     def __init__(self) -> None:
         self.folders = [f for f in os.environ.get('PYTHONPATH', '').split(os.pathsep) if f]
@@ -59,7 +59,7 @@ class Guard:
     def find_spec(
         self, name: str, path: object = None, target: object = None
     ) -> ModuleSpec | None:
-        """Return None, and Python goes on to look for the module as always.
+        """Return None, so that Python uses its other finders, unless a sourced folder is gone.
 
         Raises ImportError for a package of interfaces in a workspace that cannot be loaded.
         """
@@ -75,10 +75,10 @@ class Guard:
 
 
 def _look_at(folder: str, name: str) -> None:
-    """Raise ImportError where the package cannot be loaded; say where it is another one."""
+    """Raise ImportError if the package cannot be loaded; print how it differs, if it does."""
     with os.scandir(f'{folder}/{name}') as entries:
         if not any(entry.name.startswith((f'{name}_s__', f'_{name}_s.')) for entry in entries):
-            return  # no package of interfaces
+            return  # not a package of interfaces
     checks = _checks()
     overlay = checks.Overlay(checks.Path(folder).parents[2], name)
     if fault := overlay.fault():
@@ -98,7 +98,7 @@ def _instead(folder: str, name: str) -> ModuleSpec | None:
 
 
 def _checks() -> ModuleType:
-    """The module overlays, under its own name: a later import gets the same one."""
+    """Return the module overlays, registered under its name: a later import gets the same one."""
     name = 'my_robot_basics.session.overlays'
     if name not in sys.modules:
         file = os.path.join(os.path.dirname(os.path.realpath(__file__)), 'overlays.py')

@@ -1,8 +1,8 @@
 """Run a command, and end whatever it leaves running: `python -I -S subreaper.py COMMAND …`.
 
-Linux gives a process that has lost its parent to the nearest subreaper above it. So what the
-command's processes have left alone becomes a child of this one, whichever session, group or
-environment it has chosen. The exit code is the command's, 128 + N where signal N has ended it.
+When the parent of a process ends, the nearest subreaper above becomes its new parent. So the
+orphans of the command become children of this process, whatever session, group or environment
+they have chosen. The exit code is the command's, or 128 + N if signal N ended it.
 """
 
 import ctypes
@@ -13,17 +13,17 @@ from contextlib import suppress
 from pathlib import Path
 
 LOOK_EVERY_SEC = 0.5
-"""How often to look for what was left alone."""
+"""How often to look for orphans."""
 ROUNDS_MOST = 1_000
-"""So often it is ended before it is given up: it may start others faster than that."""
+"""How often orphans are killed before giving up: they may start others faster than that."""
 _PR_SET_CHILD_SUBREAPER = 36
 _WAKES = (signal.SIGTERM, signal.SIGINT, signal.SIGCHLD)
 
 
 def run(command: list[str]) -> int:
-    """Run it and return its exit code; SIGTERM and SIGINT end it with all that it has started.
+    """Run a command and return its exit code; SIGTERM and SIGINT end all that it has started.
 
-    Raises OSError where there is no such command.
+    Raises OSError if there is no such command.
     """
     ctypes.CDLL(None).prctl(_PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
     signal.pthread_sigmask(signal.SIG_BLOCK, _WAKES)
@@ -45,7 +45,7 @@ def run(command: list[str]) -> int:
 
 
 def _reap() -> dict[int, int]:
-    """Take note of the children that have ended; return their statuses by their ids."""
+    """Reap the children that have ended; return their wait statuses by process ID."""
     ended: dict[int, int] = {}
     with suppress(ChildProcessError):
         while (child := os.waitpid(-1, os.WNOHANG))[0]:
@@ -54,7 +54,7 @@ def _reap() -> dict[int, int]:
 
 
 def _end_children(but: int | None = None) -> bool:
-    """Kill the children, except one; whether there were any."""
+    """Kill the children, except `but`; return whether there were any."""
     children = [child for child in _children() if child != but]
     for child in children:
         with suppress(ProcessLookupError, PermissionError):
@@ -67,7 +67,7 @@ def _children() -> list[int]:
     for process in Path('/proc').glob('[0-9]*'):
         with suppress(OSError):
             stat = (process / 'stat').read_text(encoding='utf-8', errors='replace')
-            # behind the name, which may hold anything: the state, and the parent's id
+            # after the name, which may contain anything: the state, and the parent's process ID
             if int(stat.rpartition(')')[2].split()[1]) == os.getpid():
                 found.append(int(process.name))
     return found

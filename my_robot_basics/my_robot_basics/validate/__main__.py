@@ -1,6 +1,6 @@
-"""`./course validate`: say in a terminal what the visible checks of a lesson come to.
+"""`./course validate`: run the visible checks of a lesson and print their results.
 
-The exit code is 0 where all of them pass, 1 where not, and 2 where nothing could be checked.
+The exit code is 0 if all of them pass, 1 if not, and 2 if nothing could be checked.
 """
 
 import argparse
@@ -37,10 +37,10 @@ def main(arguments: list[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     say = _say_json if options.json else _say
     told: list[Report] = []
-    signal.signal(signal.SIGTERM, signal.default_int_handler)  # ends its kernels then, too
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # so that its kernels end, too
     try:
         with ForkServer() as server:
-            # imported while the server does the same
+            # imported here, while the fork server does its own imports
             from my_robot_basics.validate.as_text import as_text
             from my_robot_basics.validate.remembering import remember
             from my_robot_basics.validate.run import validate
@@ -67,7 +67,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _say(line: str) -> None:
-    """Show on a terminal what goes on, in one line that the next one replaces."""
+    """Show the progress on a terminal, in one line that the next one replaces."""
     if sys.stderr.isatty():
         print(f'\r\033[K{line:.78}', end='', file=sys.stderr, flush=True)
 
@@ -82,7 +82,7 @@ def _say_json(line: str) -> None:
 
 
 def _write_words(language: str) -> None:
-    """Give the dialog its own words, which are there in English."""
+    """Send JupyterLab's dialog the translations of its words; it has the English ones."""
     if language != ENGLISH:
         _write({'words': words_around(language)})
 

@@ -1,4 +1,4 @@
-"""Lay a report out for a terminal."""
+"""Format a report for a terminal."""
 
 from collections.abc import Iterator
 from functools import partial

@@ -1,4 +1,4 @@
-"""How long the student's cells of a notebook may take together."""
+"""The time that all student cells of a notebook may take together."""
 
 import asyncio
 from dataclasses import dataclass, field
@@ -19,15 +19,15 @@ from my_robot_basics.validate.rooms_interface import R
 
 @dataclass
 class Budget(Generic[R]):
-    """What is left of the time that all student cells of a notebook may take together."""
+    """The remaining time for the student cells of a notebook, in seconds."""
 
     remaining_sec: float = STUDENT_CELLS_BUDGET_SEC
     loop_time: Any = field(default_factory=lambda: asyncio.get_running_loop().time)
 
     async def run(self, rooms: R, cell: NotebookNode) -> CellRun:
-        """Run one of the student's cells within its limit, and within what is left.
+        """Run one of the student's cells within its limit and the remaining time.
 
-        Raises RoomFailure where a package was not built in time: a slow machine is no verdict.
+        Raises RoomFailure if a package was not built in time: a slow machine may be the reason.
         """
         if packages := packages_built_by(cell):
             run = await self.run_within(BUILD_TIMEOUT_SEC, rooms, cell)
@@ -42,5 +42,5 @@ class Budget(Generic[R]):
         return run
 
     async def run_within(self, timeout_sec: float, rooms: R, cell: NotebookNode) -> CellRun:
-        """Run one of the student's cells for so long at most."""
+        """Run one of the student's cells for at most `timeout_sec`."""
         return await rooms.run_student_cell(cell.source, timeout_sec=timeout_sec)

@@ -1,6 +1,6 @@
-"""Name a cell as students find it: by its number from the top, and by what it is for.
+"""Name a cell as students can find it: by its number from the top, and by its purpose.
 
-The ids by which nbgrader knows cells are shown nowhere in JupyterLab.
+JupyterLab does not show nbgrader's cell ids.
 """
 
 import re
@@ -17,14 +17,14 @@ _NAMED = re.compile(r'\b(?:the )?(?:answer )?(?:cell|check) `([^`]+)`')
 
 
 def number_of(cells: list[NotebookNode], index: int) -> int:
-    """Return which cell from the top it is, text and code, in the notebook as it was read."""
+    """Return a cell's number from the top of the notebook as it was read, from 1, with text."""
     return cells[index].metadata.get(KEY, {}).get('number', index + 1)
 
 
 def in_words(text: str, notebook: NotebookNode, language: str = ENGLISH) -> str:
-    """Return a sentence with cells named so instead of by their ids; others stay as they are.
+    """Replace cell ids in a sentence by numbers and purposes; unknown ids stay as they are.
 
-    In another language than English, their number is put behind their id.
+    In a language other than English, the id stays, followed by the number.
     """
     places = {grade_id(cell): i for i, cell in enumerate(notebook.cells) if grade_id(cell)}
     if language != ENGLISH:

@@ -1,14 +1,14 @@
-"""What a cell of a lesson is for, as its metadata says."""
+"""The role of a lesson's cell, from its metadata."""
 
 import hashlib
 
 from nbformat import NotebookNode
 
 KEY = 'my_robot_basics'
-"""Our one key in a cell's metadata: {'role': ...}, and after grading the verdict."""
+"""The course's only key in a cell's metadata: {'role': ...}, and after grading the verdict."""
 RECORD = 'cells'
-"""Under KEY in a released notebook's metadata: what each cell was given out as, by its
-nbgrader id; by its own where it has none."""
+"""The key, under KEY in a released notebook's metadata, of each cell's role and source hash when
+it was released, by its nbgrader id, or else by its own id."""
 
 
 def grade_id(cell: NotebookNode) -> str | None:
@@ -22,7 +22,7 @@ def graded_id(cell: NotebookNode) -> str:
 
 
 def role(cell: NotebookNode) -> str:
-    """Return what a cell is for: answer, grade, locked, setup, demo, free or text."""
+    """Return a cell's role: answer, grade, locked, setup, demo, free or text."""
     if recorded := cell.metadata.get(KEY, {}).get('role'):
         return recorded
     marks = cell.metadata.get('nbgrader', {})
@@ -38,17 +38,17 @@ def role(cell: NotebookNode) -> str:
 
 
 def is_code(cell: NotebookNode) -> bool:
-    """Whether the cell holds code."""
+    """Whether it is a code cell."""
     return cell.cell_type == 'code'
 
 
 def is_reset(cell: NotebookNode) -> bool:
-    """Whether the cell begins an exercise: it forgets what earlier cells made."""
+    """Whether the cell begins an exercise: it deletes names and nodes of earlier cells."""
     return (grade_id(cell) or '').endswith('-reset')
 
 
 def title_of(notebook: NotebookNode) -> str:
-    """Return a lesson's title in words: its first heading, or '' where it has none."""
+    """Return a lesson's title: its first heading of level 1, or ''."""
     texts = (cell.source for cell in notebook.cells if cell.cell_type == 'markdown')
     heads = (line for text in texts for line in text.splitlines() if line.startswith('# '))
     return next(heads, '').removeprefix('# ').strip()
@@ -60,11 +60,11 @@ def roles(notebook: NotebookNode) -> list[str]:
     for cell in notebook.cells:
         kind = role(cell)
         in_exercise = is_reset(cell) or (in_exercise and kind != 'grade')
-        # what is neither marked nor shown in an exercise is its "try it" cell
+        # a code cell of an exercise that is neither marked nor a demo is its "try it" cell
         found.append('free' if kind == 'setup' and in_exercise else kind)
     return found
 
 
 def fingerprint(source: str) -> str:
-    """Return what tells a cell's text from any other."""
+    """Return a short hash that identifies a cell's source."""
     return hashlib.sha256(source.strip().encode(errors='replace')).hexdigest()[:12]

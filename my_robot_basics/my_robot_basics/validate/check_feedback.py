@@ -1,4 +1,4 @@
-"""What a report says of one graded cell: made from its verdict, or from what it is."""
+"""Make a report's entry for one graded cell from its verdict and its metadata."""
 
 from collections.abc import Iterable
 
@@ -15,7 +15,7 @@ from my_robot_basics.validate.verdict import UNGRADED, Verdict
 def make_check(
     lesson: Lesson, cell: NotebookNode, verdict: Verdict | None, outputs: Iterable[NotebookNode]
 ) -> CheckFeedback:
-    """Tell of one graded cell; `verdict` is None where it was not run."""
+    """Return the entry of one graded cell; `verdict` is None if the cell was not run."""
     name = graded_id(cell)
     hidden = lesson.hidden.get(name)
     by_hand = cell.metadata[KEY].role == 'answer'
@@ -34,7 +34,7 @@ def make_check(
 
 
 def troubles_of(verdicts: Iterable[Verdict]) -> tuple[str, ...]:
-    """Return what went wrong in the student's own cells of an exercise, each once."""
+    """Return the sentences about errors in the student's cells of an exercise, each once."""
     notes = [note for verdict in verdicts for note in verdict.notes]
     return tuple(dict.fromkeys(note for note in notes if note.startswith(TROUBLE)))
 

@@ -1,4 +1,4 @@
-"""How long *Validate* waits for the checks of an exercise: it is advice, and comes soon."""
+"""How long *Validate* waits for the checks of an exercise: its advice has to come soon."""
 
 from dataclasses import dataclass
 
@@ -21,15 +21,15 @@ TOO_BUSY = (
 
 @dataclass
 class ChecksBudget:
-    """What is left of the time that the checks of an exercise may take together."""
+    """The remaining time for all checks of an exercise: with a free processor, and in all."""
 
     free_sec: float = VALIDATE_CHECKS_SEC
     wall_sec: float = VALIDATE_CHECKS_MOST_SEC
     given_up: CellRun | None = None
-    """The check that was not waited for: none begins after it."""
+    """The check that was given up, if any: no other one starts after it."""
 
     async def run(self, kernel: LocalKernel, source: str, *, on_input: OnInput) -> CellRun:
-        """Run a grade cell within what is left; one that is given up says so, and why."""
+        """Run a grade cell within the remaining time; `given_up` of the result says why not."""
         if self.given_up is not None:
             return self.given_up
         watch = Stopwatch()

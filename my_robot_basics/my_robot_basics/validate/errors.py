@@ -1,9 +1,9 @@
-"""What can go wrong beside an answer, in sentences for people."""
+"""Errors that are not a verdict about an answer, as sentences for people."""
 
 
 class CourseError(Exception):
-    """Say what happened, what was expected and what to do next; shown without a traceback."""
+    """Base of errors that are shown without a traceback: what happened, and what to do next."""
 
 
 class RoomFailure(CourseError):
-    """What runs the checks failed itself: never the student's fault, never a zero."""
+    """Running the checks failed for another reason than the answer: it never gives a zero."""

@@ -1,4 +1,4 @@
-"""Find the exercises of a healed notebook: which of its cells are whose."""
+"""Find the exercises of a notebook, and the cells of each; the notebook is restored before."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -17,20 +17,20 @@ class Exercise:
     name: str
     """The grade id of its answer cell."""
     defines: tuple[str, ...]
-    """What the answer has to define: the names that its reset cell forgets."""
+    """The names that the answer has to define, which its reset cell deletes."""
     reset: int
     answer: int
     run: tuple[int, ...]
-    """Locked cells that start what was answered."""
+    """Locked cells that run the answer."""
     grades: tuple[int, ...]
     packages: tuple[str, ...] = ()
-    """ROS packages that its locked cells build: their folders are the answer."""
+    """ROS packages that its locked cells build: then their folders are the answer."""
 
 
 def find_exercises(notebook: NotebookNode) -> tuple[Exercise, ...]:
     """Return the exercises in the notebook's order; each begins with its `<id>-reset` cell.
 
-    Where an answer cell was taken away there is no exercise.
+    An exercise whose answer cell was deleted is left out.
     """
     starts = [i for i, cell in enumerate(notebook.cells) if is_reset(cell)]
     spans = [range(*span) for span in pairwise([*starts, len(notebook.cells)])]

@@ -1,4 +1,4 @@
-"""Fork kernels from a process that has imported already what they need."""
+"""Fork kernels from a process that has already imported what they need."""
 
 import asyncio
 import contextlib
@@ -19,15 +19,15 @@ from my_robot_basics.session import marked_processes
 from my_robot_basics.validate.errors import RoomFailure
 
 _MARK = 'MY_ROBOT_BASICS_VALIDATE'
-"""Names, in the environment of all that one of these has started, which one that was."""
+"""The environment variable that marks all processes of one ForkServer with its id."""
 _END_SEC = 5.0
 
 
 class ForkServer:
-    """A process that forks kernels; `with` ends it, and all that was left running in them."""
+    """A process that forks kernels; `with` ends it, and all processes that they left running."""
 
     def __init__(self) -> None:
-        """Start it; it imports while other things are done."""
+        """Start the process; its imports go on in the background."""
         self._mark = uuid.uuid4().hex
         self._asking = threading.Lock()
         self._process = subprocess.Popen(
@@ -42,11 +42,11 @@ class ForkServer:
         )
 
     def __enter__(self) -> Self:
-        """Nothing is left to do."""
+        """Return this server, which is already started."""
         return self
 
     def __exit__(self, *_: object) -> None:
-        """End it, and what students' code has forked and let go."""
+        """End the server, and processes that students' code has started and left running."""
         with contextlib.suppress(OSError, subprocess.TimeoutExpired):
             self._process.communicate(timeout=_END_SEC)
         self._process.kill()
@@ -56,7 +56,7 @@ class ForkServer:
     async def fork(
         self, folder: Path, environment: dict[str, str], arguments: list[str]
     ) -> 'ForkedKernel':
-        """Fork a kernel that works in a folder. Raises RoomFailure."""
+        """Fork a kernel with this working directory. Raises RoomFailure if the server ended."""
         order = {
             'folder': str(folder),
             'environment': environment | {_MARK: self._mark},
@@ -65,7 +65,7 @@ class ForkServer:
         try:
             return ForkedKernel(await asyncio.to_thread(self._ask, json.dumps(order)))
         except asyncio.CancelledError:
-            self._process.kill()  # nobody knows what it would answer next
+            self._process.kill()  # its reply to this order would be taken for that to the next
             raise
 
     def _ask(self, order: str) -> int:
@@ -80,10 +80,10 @@ class ForkServer:
 
 
 class ForkedKernel:
-    """A kernel's process, with a session of its own."""
+    """A kernel's process, which leads a session of its own."""
 
     def __init__(self, pid: int) -> None:
-        """Take a process that was just forked."""
+        """Open a process that was just forked."""
         self._pid = pid
         try:
             self._file = os.pidfd_open(pid)
@@ -92,33 +92,33 @@ class ForkedKernel:
 
     @property
     def alive(self) -> bool:
-        """Whether it has not ended."""
+        """Whether the kernel's process still runs."""
         return self._file >= 0 and not select.select([self._file], [], [], 0)[0]
 
     def busy_sec(self) -> float:
-        """For how long it has had a processor for its main thread, which runs the cells."""
+        """Return the processor time, in seconds, of its main thread, which runs the cells."""
         with contextlib.suppress(psutil.Error):
             threads = {thread.id: thread for thread in psutil.Process(self._pid).threads()}
             return threads[self._pid].user_time + threads[self._pid].system_time
         return 0.0
 
     def interrupt(self) -> None:
-        """Interrupt what runs in it, and what it has started in its group."""
+        """Send SIGINT to the kernel's process group."""
         self._send(signal.SIGINT)
 
     async def kill(self) -> None:
-        """End it and its group, and wait for its own end."""
+        """Kill the kernel's process group, and wait for the end of the kernel."""
         self._send(signal.SIGKILL)
         with contextlib.suppress(TimeoutError):
             await asyncio.wait_for(self.ended(), _END_SEC)
 
     async def ended(self) -> None:
-        """Wait for its end."""
+        """Wait for the end of the kernel's process."""
         while self.alive:
             await asyncio.sleep(0.01)
 
     def close(self) -> None:
-        """Forget it; to be called when it has ended."""
+        """Close the pidfd; to be called when the kernel has ended."""
         if self._file >= 0:
             os.close(self._file)
             self._file = -1

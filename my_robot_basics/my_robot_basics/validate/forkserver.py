@@ -1,7 +1,7 @@
 """A program that imports once what each kernel of *Validate* needs, and forks kernels.
 
-Each order is a line of JSON, `{"folder": …, "environment": {…}, "arguments": […]}`; the answer is
-the process ID. It ends when its standard input does: with the process that began it.
+Each order is a line of JSON, `{"folder": …, "environment": {…}, "arguments": […]}`; the reply is
+the process ID. The program ends when its standard input is closed, with its parent at the latest.
 """
 
 import contextlib
@@ -28,17 +28,17 @@ _IMPORTS = (
     'my_robot_basics.exchange.responder',
     'my_robot_basics.checks.topics',
 )
-"""Nothing here may enter a classroom, start a thread of Python's or make a ZMQ context."""
+"""None of these may call `classroom.enter`, start a Python thread or create a ZMQ context."""
 _ASLEEP_SEC = 10.0
 
 
 def main() -> None:
-    """Import, then fork a kernel for each order; returns in the kernels alone."""
+    """Import, then fork a kernel for each order; returns only in the forked kernels."""
     for name in _IMPORTS:
         importlib.import_module(name)
     _wait_for_other_threads()
     gc.collect()
-    gc.freeze()  # a collection in a kernel would else copy all of it
+    gc.freeze()  # else a garbage collection in a kernel would copy all memory pages
     signal.signal(signal.SIGCHLD, _forget_the_ended)
     for line in sys.stdin:
         pid = os.fork()
@@ -56,7 +56,7 @@ def _forget_the_ended(*_: object) -> None:
 
 
 def _wait_for_other_threads() -> None:
-    """Wait until those that LTTng starts are asleep: they hold no lock then that a fork copies."""
+    """Wait until LTTng's threads sleep: then they hold no lock that a fork would copy."""
     deadline = time.monotonic() + _ASLEEP_SEC
     others = [task for task in os.listdir('/proc/self/task') if int(task) != os.getpid()]
     while not all(_is_asleep(task) for task in others):
@@ -71,7 +71,7 @@ def _is_asleep(task: str) -> bool:
 
 
 def _become_a_kernel(order: dict) -> None:
-    """Be a process as one that was started with this folder, environment and arguments."""
+    """Make this process like one that was started with the order's folder and so on."""
     os.setsid()
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)
     nowhere = os.open(os.devnull, os.O_RDWR)
@@ -79,7 +79,7 @@ def _become_a_kernel(order: dict) -> None:
         os.dup2(nowhere, file)
     os.chdir(order['folder'])
     os.environ.clear()
-    # a kernel ends when this parent does
+    # ipykernel ends when the process with this ID ends
     os.environ.update(order['environment'] | {'JPY_PARENT_PID': str(os.getppid())})
     sys.argv[1:] = order['arguments']
     random.seed()
@@ -88,7 +88,7 @@ def _become_a_kernel(order: dict) -> None:
 
 if __name__ == '__main__':
     main()
-    # only a kernel comes here
+    # only a forked kernel gets here
     from ipykernel.kernelapp import launch_new_instance
 
     launch_new_instance()

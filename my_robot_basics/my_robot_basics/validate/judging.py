@@ -1,4 +1,4 @@
-"""Run an exercise as its plans say, in rooms that somebody opens, and judge its checks."""
+"""Run an exercise as its plans say, in rooms that the caller opens, and judge its checks."""
 
 import copy
 from contextlib import suppress
@@ -27,21 +27,21 @@ Checks = dict[int, tuple[Verdict, list[NotebookNode]]]
 
 @dataclass(frozen=True)
 class JudgedExercise:
-    """What came of one exercise; cells are known by their place in the notebook."""
+    """The results of one exercise; keys are the cells' positions in the notebook."""
 
     runs: dict[int, CellRun]
-    """Of the student's cells; empty where the rooms failed."""
+    """Results of the student's cells; empty if the rooms failed."""
     checks: Checks
-    """Of each grade cell, with its outputs."""
+    """Verdict and outputs of each grade cell."""
 
 
 async def judge_exercise(
     notebook: NotebookNode, exercise: Exercise, open_rooms: OpenRooms[R], budget: Budget[R]
 ) -> JudgedExercise:
-    """Judge one exercise; where the rooms fail, once more in fresh ones.
+    """Judge one exercise; if the rooms fail, once more in fresh ones.
 
-    So it does where the machine, or a check itself, may have made it fail. Where that comes to
-    nothing its checks are `ungraded`.
+    The same happens if the machine or a check itself may have caused a failure. If the second
+    attempt also fails, the verdicts are `ungraded`.
     """
     failure: RoomFailure | None = None
     looks = Attempts(open_rooms)
@@ -82,15 +82,15 @@ async def _try_plan(
     *,
     is_last: bool,
 ) -> JudgedExercise | None:
-    """Judge an exercise after a plan's cells; None where it lacks a name and others are left."""
+    """Run a plan's cells and judge the exercise; None if a name is missing and plans are left."""
     async with looks.rooms() as rooms:
-        # as they are now: a display that is updated later may show hidden inputs
+        # a copy: a display that is updated later, during a check, may show hidden inputs
         runs = copy.deepcopy(await _run_cells(notebook, exercise, plan, rooms, budget))
         if not is_last and _lacks_a_name(notebook, runs, exercise, plan):
             return None
         checks, cut = await _judge_cells(notebook, exercise, looks, rooms, runs)
     if cut:
-        with suppress(RoomFailure):  # the verdicts stand, with their causes alone
+        with suppress(RoomFailure):  # then the verdicts keep their short reasons
             async with looks.rooms() as rooms:
                 await _run_cells(notebook, exercise, plan, rooms, budget)
                 checks |= await _explained_in_full(notebook, rooms, {i: checks[i] for i in cut})
@@ -98,7 +98,7 @@ async def _try_plan(
 
 
 def _missing_names(judged: JudgedExercise) -> set[str]:
-    """Return names for want of which the answer raised when a check called it."""
+    """Return the undefined names that made the answer raise when a check called it."""
     lost = [verdict for verdict, _ in judged.checks.values() if verdict.outcome != 'passed']
     return set().union(*(names_not_defined(f'{v.reason} {v.details}') for v in lost))
 
@@ -110,9 +110,9 @@ def _points(judged: JudgedExercise) -> float:
 async def _run_cells(
     notebook: NotebookNode, exercise: Exercise, plan: Plan, rooms: R, budget: Budget[R]
 ) -> dict[int, CellRun]:
-    """Run a plan's cells; the answer and what starts it once more, where a name came only later.
+    """Run a plan's cells; then the answer and its run cells again if a later cell bound a name.
 
-    So does a student who adds a helper below.
+    This happens if a student adds a helper function below the answer.
     """
     runs = {i: await budget.run(rooms, notebook.cells[i]) for i in plan.cells}
     own = [i for i in (exercise.answer, *exercise.run) if i in runs]
@@ -128,10 +128,10 @@ async def _judge_cells(
     rooms: R,
     runs: dict[int, CellRun],
 ) -> tuple[Checks, list[int]]:
-    """Judge an exercise's grade cells; return what came of them, and whose reasons are cut short.
+    """Judge an exercise's grade cells; return verdicts, and the cells with shortened reasons.
 
-    Once the student's code knows hidden inputs, it may have the visible part of another check say
-    them: that one's reason is explained by its cause alone, too.
+    Once the student's code knows hidden inputs, it might reveal them through the visible part of
+    a later check: so that one's reason is reduced to its cause, too.
     """
     cells = notebook.cells
     own = [(graded_id(cells[i]), runs[i]) for i in (exercise.answer, *exercise.run) if i in runs]
@@ -152,7 +152,7 @@ async def _judge_cells(
 
 
 async def _explained_in_full(notebook: NotebookNode, rooms: Rooms, cut: Checks) -> Checks:
-    """Give reasons that were cut short in full, from rooms where nobody knows hidden inputs."""
+    """Replace shortened reasons by full ones, from rooms whose code knows no hidden inputs."""
     explained = {}
     for index, (verdict, _) in cut.items():
         cell = notebook.cells[index]
@@ -172,12 +172,12 @@ def _name(cells: list[NotebookNode], index: int) -> str:
 def _lacks_a_name(
     notebook: NotebookNode, runs: dict[int, CellRun], exercise: Exercise, plan: Plan
 ) -> bool:
-    """Whether the answer, or starting it, stopped for want of a name, or may when it is called.
+    """Whether the answer or its run cells stopped at an undefined name that another cell binds.
 
-    One that no other cell can bind is not lacking: it is misspelled.
+    Also if a demonstration failed. A name that no other cell can bind is misspelled, not missing.
     """
     if not all(runs[i].ran_to_end for i in plan.demonstrations):
-        return True  # what the lesson shows may need more than names
+        return True  # a demonstration may need more than the names that were planned for
     wanting = [run for i in (exercise.answer, *exercise.run) if _wants_a_name(run := runs[i])]
     if not wanting:
         return False

@@ -24,7 +24,7 @@ OPTIONS = ('--InteractiveShellApp.ignore_cwd=True', '--HistoryManager.enabled=Fa
 
 
 class LocalKernel:
-    """One kernel that works in a folder of its own; everything of it goes with stop()."""
+    """One kernel with its own working directory; `stop` ends all that it has started."""
 
     def __init__(self, folder: Path, environment: dict[str, str], server: ForkServer) -> None:
         """Prepare a kernel in an empty folder; `environment` is added to the caller's."""
@@ -62,10 +62,10 @@ class LocalKernel:
         on_input: OnInput | None = None,
         expressions: dict[str, str] | None = None,
     ) -> CellRun:
-        """Run one cell; interrupt it after `timeout_sec`, kill the kernel if that does nothing.
+        """Run one cell; interrupt it after `timeout_sec`, kill the kernel if that does not help.
 
-        So it does after `free_sec` in which no process had to wait for a processor, or for which
-        the code has had one.
+        The same happens after `free_sec` in which no process had to wait for a processor, or
+        after `free_sec` of processor time of the code itself.
         """
         result, watch = CellRun(), Stopwatch()
         if not self.alive:
@@ -93,7 +93,10 @@ class LocalKernel:
         return result
 
     async def stop(self, *, politely: bool) -> None:
-        """End the kernel and all that it started; politely first where it may have nodes."""
+        """End the kernel and all that it started; with `politely`, ask it to shut down first.
+
+        That lets it destroy its nodes.
+        """
         if politely and self.alive:
             assert self._client is not None  # it is alive
             self._client.shutdown()
@@ -105,7 +108,7 @@ class LocalKernel:
 
     @property
     def _forked(self) -> ForkedKernel:
-        """Its process, once it was started."""
+        """The kernel's process, once it was started."""
         assert self._process is not None
         return self._process
 
@@ -117,7 +120,7 @@ class LocalKernel:
         await wait_for_welcome(client, self._expect_alive)
 
     async def _kill(self) -> None:
-        """Kill the kernel, and what left its process group but kept its environment."""
+        """Kill the kernel, and processes that left its group but have its IPYTHONDIR."""
         self.alive = False
         if self._process is not None:
             await self._process.kill()

@@ -1,4 +1,4 @@
-"""Read a student's notebook as a lesson: what each cell is for, and what was changed in it."""
+"""Read a student's notebook as a lesson: the role of each cell, and what was changed in it."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,17 +17,17 @@ class Lesson:
 
     notebook: NotebookNode
     hidden: dict[str, str]
-    """Of checks, by grade id: 'part' where more is checked at grading, 'all' where all is."""
+    """By grade id: 'part' for a check with a hidden part, 'all' for one that is hidden."""
     altered: frozenset[str]
-    """Grade ids of checks that are not what they were given out as."""
+    """Grade ids of checks that are missing or differ from the released ones."""
     missing: dict[str, float]
-    """Points of the checks that are not there any more, by grade id."""
+    """Points of the graded cells that are missing, by grade id."""
     notes: tuple[str, ...]
-    """What is wrong with the notebook, and what happens to that at grading."""
+    """Sentences about faults of the notebook, and what happens about them at grading."""
 
 
 def read_lesson(path: Path) -> Lesson:
-    """Read a notebook. Raises CourseError where there is none, or it holds no exercise."""
+    """Read a notebook. Raises CourseError if that fails, or it has no exercise."""
     notebook = _read(path)
     notes: list[str] = []
     record = _record(notebook)
@@ -71,7 +71,7 @@ def _read(path: Path) -> NotebookNode:
 
 
 def _record(notebook: NotebookNode) -> dict[str, dict[str, Any]]:
-    """Return what the cells were given out as; {} where an older release does not tell."""
+    """Return the released cells' roles and hashes by id; {} for a release without this record."""
     match notebook.metadata.get(KEY):
         case {'cells': dict(record)}:
             return {i: mark for i, mark in record.items() if {'role', 'source'} <= mark.keys()}
@@ -79,7 +79,7 @@ def _record(notebook: NotebookNode) -> dict[str, dict[str, Any]]:
 
 
 def _change_back(cell: NotebookNode, notes: list[str]) -> None:
-    """Give a cell of an exercise the type again that it was given out with."""
+    """Change a cell of an exercise back to the cell type that it was released with."""
     wanted = cell.metadata.get('nbgrader', {}).get('cell_type', cell.cell_type)
     if wanted == cell.cell_type:
         return
@@ -94,7 +94,7 @@ def _change_back(cell: NotebookNode, notes: list[str]) -> None:
 
 
 def _one_for_each_id(cells: list[NotebookNode], notes: list[str]) -> list[NotebookNode]:
-    """Join the parts of an answer that was split; of other repeated cells the first one counts."""
+    """Join an answer that was split into cells; of other cells with one id, keep the first."""
     first: dict[str, NotebookNode] = {}
     kept = []
     for cell in cells:
@@ -112,7 +112,7 @@ def _one_for_each_id(cells: list[NotebookNode], notes: list[str]) -> list[Notebo
 
 
 def _role(cell: NotebookNode, given: str, record: dict[str, dict[str, Any]]) -> str:
-    """Return what a cell is for; what students added or changed is theirs."""
+    """Return a cell's role; cells that students added or changed are 'free'."""
     if given in ('text', 'answer') or grade_id(cell) or not record:
         return given
     mark = record.get(cell.get('id', ''), {})
@@ -120,7 +120,7 @@ def _role(cell: NotebookNode, given: str, record: dict[str, dict[str, Any]]) -> 
 
 
 def _altered(here: dict[str, NotebookNode], record: dict[str, dict[str, Any]]) -> dict[str, str]:
-    """Return what to say of each cell of an exercise that was changed or taken away."""
+    """Return a sentence for each cell of an exercise that was changed or deleted, by grade id."""
     said = {}
     for name, mark in record.items():
         if mark['role'] not in ('answer', 'grade', 'locked'):

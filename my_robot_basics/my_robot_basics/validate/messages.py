@@ -1,4 +1,4 @@
-"""What a kernel says while it runs a cell, on three channels at once."""
+"""Receive the messages of a kernel that runs a cell, on three channels at once."""
 
 import asyncio
 import contextlib
@@ -12,14 +12,14 @@ from my_robot_basics.validate.limits import MAX_MESSAGE_PARTS
 from my_robot_basics.validate.outputs import CellRun, Displays
 
 OUTPUT_GRACE_SEC = 2.0
-"""How long a cell's last outputs may come after its reply."""
+"""How long after a cell's reply its last outputs may arrive."""
 
 OnInput = Callable[[str], Awaitable[str]]
 """Answers a kernel's input() request."""
 
 
 class Messages:
-    """The messages of one kernel."""
+    """Runs cells in one kernel and collects their messages."""
 
     def __init__(self, client: AsyncKernelClient) -> None:
         """Read from a client whose channels are open."""
@@ -35,9 +35,9 @@ class Messages:
         on_input: OnInput | None = None,
         expressions: dict[str, str] | None = None,
     ) -> AsyncIterator[asyncio.Future]:
-        """Let the kernel run a cell; what this gives is done when the cell is. Nobody waits on.
+        """Start a cell in the kernel and give a future that is done when the cell is.
 
-        Afterwards nothing is read for that cell any more.
+        When the block ends, messages of that cell are no longer read.
         """
         request = self._client.execute(
             code,
@@ -55,16 +55,16 @@ class Messages:
                 await done
 
     async def follow(self, request: str, result: CellRun, on_input: OnInput | None) -> None:
-        """Gather a cell's outputs until the kernel has replied and is idle again."""
+        """Collect a cell's outputs until the kernel has replied and is idle again."""
         outputs = asyncio.ensure_future(self._gather_outputs(request, result))
         inputs = asyncio.ensure_future(self._answer_inputs(request, on_input))
         reply = asyncio.ensure_future(next_message(self._client.get_shell_msg, request))
         try:
             await asyncio.wait([inputs, reply], return_when=asyncio.FIRST_COMPLETED)
             if inputs.done():
-                inputs.result()  # it only ends by an exception
+                inputs.result()  # it can end only by an exception, which this raises
             content = (await reply)[1]
-            # an idle message may be lost: a kernel that floods its socket is not waited for
+            # with a timeout: the idle message may be lost if a kernel floods its socket
             await asyncio.wait([outputs], timeout=OUTPUT_GRACE_SEC)
             result.conclude(content)
         finally:
@@ -96,7 +96,7 @@ class Messages:
 
 
 def unpacked(raw: bytes) -> object:
-    """Read a part of a message, which is JSON. Raises ValueError where that would take memory."""
+    """Parse a message part, which is JSON. Raises ValueError if it would take too much memory."""
     parts = raw.count(b'{') + raw.count(b'[')
     if parts > MAX_MESSAGE_PARTS:
         raise ValueError(f'{parts:,} objects and lists in a message')
@@ -112,16 +112,16 @@ async def next_message(
 ) -> tuple[str, dict]:
     """Return type and content of the next message that belongs to a request.
 
-    The student's code holds its kernel's sockets and may send anything at all: what is not a
-    message is passed over.
+    The student's code can use its kernel's sockets and send anything: invalid messages are
+    ignored. `also` is a type that is accepted from any request; `pass_over` gets the others.
     """
     while True:
-        await asyncio.sleep(0)  # a flood of messages must not keep time limits waiting
+        await asyncio.sleep(0)  # a flood of messages must not delay the time limits
         try:
             message = await get(timeout=None)
         except zmq.ZMQError:
             raise
-        except Exception:  # whatever the reading of a forged message raises
+        except Exception:  # reading a forged message may raise anything
             continue
         parent, content = message['parent_header'], message['content']
         ours = isinstance(parent, dict) and parent.get('msg_id') == request

@@ -1,4 +1,4 @@
-"""Whether a name that an answer lacks is misspelled: no other cell of its notebook can bind it."""
+"""Whether an undefined name is misspelled: then no other cell of the notebook can bind it."""
 
 import re
 
@@ -10,13 +10,14 @@ from my_robot_basics.validate.names import names_of
 
 _WORD = re.compile(r'\w+')
 _LINE_MAGIC = re.compile(r'^[ \t]*%(?!%)', re.MULTILINE)
-"""Some bind names, as `%pylab` does."""
+"""A line magic: some bind names, as `%pylab` does."""
 
 
 def are_misspelled(names: set[str], notebook: NotebookNode, exercise: Exercise) -> bool:
-    """Whether no cell beside the answer has one of these names in its text.
+    """Whether no cell but the answer contains one of these names in its text.
 
-    Each of those cells has to tell all that it binds: one with a star import may bind any.
+    A cell that may bind names which its text does not show, such as by a star import, counts as
+    containing them.
     """
     cells = enumerate(notebook.cells)
     texts = [cell.source for i, cell in cells if is_code(cell) and i != exercise.answer]

@@ -1,4 +1,4 @@
-"""Which names a cell binds, and which it needs from elsewhere: read from its text, never run."""
+"""Which names a cell binds, and which it needs from other cells; its text is parsed, not run."""
 
 import ast
 import builtins
@@ -11,9 +11,9 @@ from typing import TypeGuard
 from IPython.core.inputtransformer2 import TransformerManager
 
 MAX_SOURCE_CHARACTERS = 20_000
-"""Ten times the longest answer. Some texts take a time that grows with the square of it."""
+"""Ten times the longest answer: for some texts, the time grows with the square of the length."""
 MAX_IPYTHON = {'characters': 4_000, 'lines': 10}
-"""The same for text that is not Python without IPython's help: it reads all for each magic."""
+"""Limits for text with IPython's syntax: IPython reads all of it again for each magic."""
 
 
 @dataclass(frozen=True)
@@ -22,14 +22,14 @@ class Names:
 
     bound: frozenset[str] = frozenset()
     needed: frozenset[str] = frozenset()
-    """Read somewhere in the cell, in its functions too, no builtin, and not there once it ran.
+    """Names that the cell or its functions read, but that running the cell does not bind.
 
-    A function that binds a global one has to be called first.
+    Builtins are left out. A global that only a function binds is needed: it may be called late.
     """
     binds_more: bool = False
-    """Whether it binds names that its text does not tell: a star import, `%run`, `exec`, …"""
+    """Whether it may bind names that its text does not show: a star import, `%run`, `exec`, …"""
     needs_more: bool = False
-    """Whether it looks names up by other means than its text: `eval`, `globals()`, `__main__`."""
+    """Whether it may read names that its text does not show: `eval`, `globals()`, `__main__`."""
 
 
 @lru_cache(maxsize=1_000)
@@ -44,7 +44,7 @@ def names_of(source: str) -> Names:
     except (SyntaxError, ValueError, RuntimeError, MemoryError):  # a RecursionError, too
         return Names()
     here, later, read = _globals(table)
-    # from Python 3.12 on, symtable does not tell that `[y := x for x in z]` binds y
+    # from Python 3.12 on, symtable does not report that `[y := x for x in z]` binds y
     walrus = {node.target.id for node in nodes if isinstance(node, ast.NamedExpr)}
     here |= walrus & {*table.get_identifiers()}
     stored, loaded = _said_to_bind_and_read(nodes)
@@ -60,7 +60,7 @@ def names_of(source: str) -> Names:
 
 
 def names_not_defined(said: str) -> set[str]:
-    """Return the names that errors in a text say are not there."""
+    """Return the names that a text with error messages reports as undefined."""
     return {name for names in _NOT_DEFINED.findall(said) for name in names if name}
 
 
@@ -80,11 +80,11 @@ _NOT_DEFINED = re.compile(
     r"|AttributeError: module '__main__' has no attribute '(\w+)'"
 )
 _LOOK_UP = frozenset(('eval', 'exec', 'globals', 'locals', 'vars', '__main__', 'user_ns'))
-"""Names, modules, attributes and texts that lead to names which a text does not tell."""
+"""Names, modules, attributes and strings with which code reads names not shown in its text."""
 
 
 def _said(node: ast.AST) -> set[str]:
-    """Return what a node names: a name, an attribute, a module, a text."""
+    """Return the name, attribute, modules or string constant that a syntax node contains."""
     match node:
         case ast.Name(id=name) | ast.Attribute(attr=name) | ast.Constant(value=str(name)):
             return {name}
@@ -99,16 +99,16 @@ _AT_ONCE = ('listcomp', 'setcomp', 'dictcomp')
 _RUN = re.compile(r'^[ \t]*%run\s', re.MULTILINE)
 _AROUND_CELL = re.compile(r'\A\s*%%(?:time|capture|prun)\b.*\n')
 _BEFORE_LINE = re.compile(r'^([ \t]*)%(?:time|prun)[ \t]+(?=[^\W\d])', re.MULTILINE)
-"""Magics that run the Python behind them as if they were not there."""
+"""Magics that run the Python code after them as if they were not there."""
 _MAGIC = re.compile(r'^[ \t]*[!%?,;/]|\?\s*$|=\s*[!%]', re.MULTILINE)
 _IPYTHON = {'display', 'get_ipython', 'In', 'Out', '_', '__', '___', '__name__', '__file__'}
 
 
 class _Transformer(TransformerManager):
-    """IPython's, which gives up sooner: it reads all text anew for each `;` of a thousand."""
+    """IPython's transformer with a limit: it reads all text again for each `;` or magic."""
 
     def do_token_transforms(self, lines: list[str]) -> list[str]:
-        """Replace what only IPython understands. Raises SyntaxError where it is too much."""
+        """Replace IPython's syntax by Python. Raises SyntaxError after too many replacements."""
         for _ in range(MAX_IPYTHON['lines'] + 1):
             changed, lines = self.do_one_token_transform(lines)
             if not changed:
@@ -117,7 +117,7 @@ class _Transformer(TransformerManager):
 
 
 def _python(source: str) -> tuple[str, ast.Module]:
-    """Return a cell as plain Python. Raises SyntaxError, and what else `ast.parse` does."""
+    """Return a cell as plain Python, and its syntax tree. Raises what `ast.parse` raises."""
     try:
         return source, ast.parse(source)
     except SyntaxError:
@@ -131,12 +131,12 @@ def _python(source: str) -> tuple[str, ast.Module]:
 
 
 def _globals(outermost: symtable.SymbolTable) -> tuple[set[str], set[str], set[str]]:
-    """Return global names by scope: set when the cell runs, set by its functions, and read."""
+    """Return the global names that running the cell binds, that its functions bind, and read."""
     here: set[str] = set()
     later: set[str] = set()
     read: set[str] = set()
     tables = [(outermost, here)]
-    while tables:  # not by recursion: a table lies in a table for each `lambda:` of a thousand
+    while tables:  # no recursion: a thousand nested `lambda:` would exceed its limit
         table, bound = tables.pop()
         for symbol in table.get_symbols():
             if table.get_type() == 'module' or symbol.is_global():
@@ -151,7 +151,7 @@ def _globals(outermost: symtable.SymbolTable) -> tuple[set[str], set[str], set[s
 
 
 def _said_to_bind_and_read(nodes: list[ast.AST]) -> tuple[set[str], set[str]]:
-    """Return names of every scope: those that are bound, and those that have to be there."""
+    """Return the names of all scopes that are bound, and those that are read."""
     aside = _inside_comprehensions(nodes)
     aside |= {id(n.target) for n in nodes if isinstance(n, ast.AnnAssign) and n.value is None}
     added_to = {id(n.target) for n in nodes if isinstance(n, ast.AugAssign)}
@@ -179,9 +179,9 @@ def _said_to_bind_and_read(nodes: list[ast.AST]) -> tuple[set[str], set[str]]:
 
 
 def _inside_comprehensions(nodes: list[ast.AST]) -> set[int]:
-    """Return which nodes name what only a comprehension binds, and that only inside.
+    """Return the ids of Name nodes, inside a comprehension, of names that it binds itself.
 
-    From Python 3.12 on, symtable tells such names as those of the scope around it.
+    From Python 3.12 on, symtable reports such names for the scope around the comprehension.
     """
     found: set[int] = set()
     for node in nodes:

@@ -1,6 +1,6 @@
-"""The outputs of one cell: gathered from a kernel's messages, bounded in size.
+"""The outputs of one cell: collected from a kernel's messages, bounded in size.
 
-The messages may be a student's forgeries: what does not have the shape of an output is none.
+A student's code may forge messages: whatever does not have the form of an output is ignored.
 """
 
 from dataclasses import dataclass, field
@@ -12,62 +12,62 @@ from my_robot_basics.validate.limits import FLOOD_CHARACTERS, MAX_MESSAGE_BYTES
 from my_robot_basics.validate.safe_outputs import safe_output
 
 MAX_OUTPUT_CHARACTERS = 200_000
-"""What is kept of one cell's output; the rest is drained and counted."""
+"""How much is kept of one cell's output; the rest is read and counted only."""
 
 CUT_OFF = (
     f'sent over {MAX_MESSAGE_BYTES / 1e6:.0f} MB at once, or closed a connection of its '
     'kernel, which was ended: nothing that it says could be received any more'
 )
-"""What is said of a cell whose kernel was cut off."""
+"""The message about a cell whose kernel was cut off, as a predicate."""
 EXITS = 'it calls exit()'
-"""What is said of a cell that has asked its kernel to end."""
+"""The message about a cell that has asked its kernel to end."""
 _OVERHEAD = 100
-"""What an output costs besides its text: many small ones are as bad as a large one."""
+"""Characters that each output counts besides its text: many small ones cost memory, too."""
 
 
 @dataclass
 class CellRun:
-    """What came of one cell."""
+    """The result of running one cell."""
 
     outputs: list[NotebookNode] = field(default_factory=list)
     error: NotebookNode | None = None
     """The `error` output, if the cell raised one."""
     status: str | None = None
-    """The kernel's own word on how it ended: 'ok', 'error', or None without a reply."""
+    """How the cell ended, as the kernel replied: 'ok', 'error', or None without a reply."""
     expressions: object = None
     """The reply's user_expressions, as the kernel sent them."""
     timed_out: bool = False
     cut_after_sec: float = 0.0
-    """After how long *Validate* gave the student's code up, where grading waits longer; else 0."""
+    """After how many seconds *Validate* gave up student code for which grading waits longer."""
     given_up: str = ''
-    """Why *Validate* did not wait for a check, where grading does; else empty."""
+    """Why *Validate* gave up a check for which grading waits longer; else empty."""
     died: bool = False
     cut_off: bool = False
-    """Whether its kernel had to be ended, because nothing from it could be received any more."""
+    """Whether its kernel had to be killed because nothing more could be received from it."""
     leaves: bool = False
-    """Whether its kernel ends right after it, because it has called `exit()`."""
+    """Whether its kernel ends after this cell, which has called `exit()`."""
     ending: str = ''
-    """How the student's kernel, or what it had started, was ended, if that was their doing."""
+    """How the student's kernel or its processes ended, if the student's code caused it."""
     _kept: int = 0
     _dropped: int = 0
     _foreign: int = 0
 
     @property
     def ran_to_end(self) -> bool:
-        """Whether the kernel itself reported that the cell was done, without an error."""
+        """Whether the kernel reported the cell's end, without an error or a timeout."""
         return self.status == 'ok' and not (self.timed_out or self.died or self.error)
 
     @property
     def flooded(self) -> bool:
-        """Whether it printed more than anybody wants to read."""
+        """Whether it printed more than FLOOD_CHARACTERS, or its kernel was cut off."""
         return self.cut_off or self._dropped + self._foreign > FLOOD_CHARACTERS
 
     def pass_over(self, content: dict) -> None:
-        """Count what came meanwhile and is no output of this cell: of a thread, for instance."""
+        """Count a message that is not an output of this cell, but of a thread, for instance."""
         self._foreign += _size(content)
 
     def keep(self, kind: str, content: dict) -> NotebookNode | None:
-        """Keep an output while there is room; return it if it can be updated later."""
+        """Keep an output if its size allows; return it if a later message can update it."""
         output = safe_output(kind, content)
         if output is None:
             return None
@@ -86,19 +86,19 @@ class CellRun:
         return output
 
     def replace(self, output: NotebookNode, data: dict, *, size: int) -> None:
-        """Give an output that was kept other data of that size, unless it would grow too large."""
+        """Replace the data of a kept output by data of that size, if the limit allows."""
         growth = size - _size(output.data)
         if growth <= self._room:
             self._kept += growth
             output.data = nbformat.from_dict(data)
 
     def clear(self) -> None:
-        """Forget the outputs so far."""
+        """Drop the outputs so far."""
         self.outputs.clear()
         self._kept = 0
 
     def conclude(self, reply: dict) -> None:
-        """Take over what the kernel says at the end, and an error that came no other way."""
+        """Store what the kernel's reply says, and its error if no output had one."""
         self.status, self.expressions = reply.get('status'), reply.get('user_expressions')
         if self.status == 'error' and self.error is None:
             self.keep('error', reply)
@@ -106,7 +106,7 @@ class CellRun:
             self.leaves, self.ending = True, EXITS
 
     def close(self) -> None:
-        """Say at the end what was not kept."""
+        """Append a note about dropped output, if there is any."""
         if self._dropped:
             text = f'\n[{self._dropped:,} more characters of output were not kept]\n'
             self.outputs.append(nbformat.v4.new_output('stream', name='stdout', text=text))
@@ -134,21 +134,21 @@ class Displays:
     """The outputs of one kernel that later messages may update, by display id."""
 
     def __init__(self) -> None:
-        """Know no output yet."""
+        """Begin without outputs."""
         self._outputs: dict[str, list[tuple[CellRun, NotebookNode]]] = {}
 
     def remember(self, content: dict, run: CellRun, output: NotebookNode | None) -> None:
-        """Note an output under the display id of the message that brought it, if it has one."""
+        """Store an output under the display id of its message, if it has one."""
         display_id = _display_id(content)
         if display_id and output is not None:
             self._outputs.setdefault(display_id, []).append((run, output))
 
     def update(self, content: dict) -> None:
-        """Replace what the content of an update_display_data message names."""
+        """Replace the outputs with the display id of an update_display_data message."""
         new, display_id = safe_output('display_data', content), _display_id(content)
         if new is None or display_id is None:
             return
-        size = _size(new.data)  # once: thousands of small outputs may have one id
+        size = _size(new.data)  # computed once: thousands of small outputs may share an id
         for run, output in self._outputs.get(display_id, ()):
             run.replace(output, new.data, size=size)
 

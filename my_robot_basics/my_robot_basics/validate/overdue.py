@@ -1,4 +1,4 @@
-"""What *Validate* gave up, where grading waits longer: no answer is called wrong for that."""
+"""Code that *Validate* gave up and for which grading waits longer: it is not called wrong."""
 
 import math
 from collections.abc import Sequence
@@ -17,9 +17,10 @@ NOT_CHECKED = 'not checked, because your code did not return: look for a loop th
 def judge_overdue(
     cell: NotebookNode, run: CellRun | None, given_up: Sequence[tuple[str, CellRun]]
 ) -> Verdict | None:
-    """Leave a grade cell open where student code was given up; None where it can be judged.
+    """Return an open verdict if student code was given up; None if the cell can be judged.
 
-    `given_up` are the student's cells that were. What passes without them has passed.
+    `given_up` are the student's cells that were given up. A check that passes without their end
+    has passed.
     """
     if run is not None and run.ran_to_end:
         return None
@@ -35,7 +36,7 @@ def judge_overdue(
 
 
 def how_long(run: CellRun) -> str:
-    """Say for how long a cell was waited for, and how long grading waits."""
+    """Return how long Validate waited for a cell, and how long grading does, in words."""
     interrupted = 'could not be interrupted' if run.died else 'was interrupted'
     return (
         f'did not return within {rounded_down(run.cut_after_sec):g} s and {interrupted};'
@@ -44,5 +45,5 @@ def how_long(run: CellRun) -> str:
 
 
 def rounded_down(seconds: float) -> float:
-    """Return seconds in tenths, and no more than it was."""
+    """Round seconds down to tenths."""
     return math.floor(seconds * 10) / 10

@@ -1,4 +1,4 @@
-"""Which ROS packages a lesson asks for: those that its locked cells build, and no other list.
+"""Which ROS packages a lesson asks for: exactly those that its locked cells build.
 
 The folder of such a package, beside the notebook, is the answer of its exercise.
 """
@@ -16,13 +16,13 @@ _NAME = re.compile(r'[a-z][a-z0-9_]*')
 
 
 def packages_of(notebook: NotebookNode) -> tuple[str, ...]:
-    """Return the packages that belong to what is handed in for a lesson, in their order."""
+    """Return the packages that belong to a lesson's submission, in the order of its cells."""
     names = (name for cell in notebook.cells for name in packages_built_by(cell))
     return tuple(dict.fromkeys(names))
 
 
 def packages_built_by(cell: NotebookNode) -> tuple[str, ...]:
-    """Return the packages that a cell builds; a cell of the student's does not count."""
+    """Return the packages that a locked cell builds; () for other cells, such as a student's."""
     if cell.cell_type != 'code' or BUILD not in cell.source or role(cell) != 'locked':
         return ()
     try:
@@ -41,5 +41,5 @@ def packages_built_by(cell: NotebookNode) -> tuple[str, ...]:
 
 
 def _name_of(function: ast.expr) -> str:
-    """Return the name of what is called: `build_package`, or that of `live.build_package`."""
+    """Return a called function's name, without its module: `live.build_package` also counts."""
     return str(getattr(function, 'id', getattr(function, 'attr', '')))

@@ -1,9 +1,9 @@
-"""Which answers *Validate* has seen pass: one small file of the student's, on their machine alone.
+"""Which answers passed in *Validate*: a small file, only on the student's own machine.
 
-It lies in Jupyter's folder for the data of a user, not beside the lessons: those may be read-only,
-are replaced by a new bundle, and exist once for each language. An answer is known by a hash of its
-text and of its checks, so the file holds no answer. Nobody but the student's own pages reads it:
-no submission has it, and the grader does not know of it.
+It is in Jupyter's user data folder, not beside the lessons: those may be read-only, are replaced
+by a new bundle, and exist once for each language. The file stores a hash of each answer and its
+checks, but no answer. Only the student's own pages read it: it is not part of a submission, and
+the grader does not use it.
 """
 
 import fcntl
@@ -25,7 +25,7 @@ from my_robot_basics.validate.exercises import Exercise
 
 SCHEMA = 1
 MOST_OF_ONE = 20
-"""Answers that are kept of an exercise: the latest."""
+"""How many answers are kept for each exercise, the latest ones."""
 
 
 @dataclass(frozen=True)
@@ -35,32 +35,32 @@ class Pass:
     answer: str
     """See `answer_of`."""
     notebook: str
-    """Where it was."""
+    """The path of its notebook."""
     passed_at: str
     """In UTC, ISO 8601."""
 
 
 Passes = dict[str, dict[str, list[Pass]]]
-"""By lesson and exercise, the latest last."""
+"""Passed answers by lesson and exercise, the latest at the end."""
 
 
 class DamagedFile(CourseError):
-    """The file is there, and does not say what was passed."""
+    """The file exists, but cannot be parsed."""
 
 
 class NewerFile(CourseError):
-    """A newer version of the course has written the file."""
+    """The file was written by a newer version of the course."""
 
 
 def default_path() -> Path:
-    """Return where the file of this user is."""
+    """Return the path of this user's file."""
     return Path(jupyter_data_dir()) / 'my_robot_basics' / 'passed_answers.json'
 
 
 def answer_of(notebook: NotebookNode, exercise: Exercise, folder: Path) -> str:
-    """Return what tells an answer, together with the checks that it passes, from any other.
+    """Return a hash of an answer together with its checks.
 
-    `folder` is the notebook's: packages in it belong to the answer, without what builds leave.
+    `folder` is the notebook's: its packages belong to the answer, without the files of builds.
     """
     cells = [notebook.cells[i] for i in (exercise.answer, *exercise.grades)]
     said = [cell.source.strip() for cell in cells]
@@ -80,7 +80,7 @@ def _hash_of(path: Path) -> str:
 
 
 def read_passes(path: Path) -> Passes:
-    """Return what has passed; nothing where there is no file yet. Raises CourseError."""
+    """Return the passed answers; {} if there is no file yet. Raises CourseError."""
     try:
         raw = path.read_bytes()
     except FileNotFoundError:
@@ -113,10 +113,10 @@ def read_passes(path: Path) -> Passes:
 def record(
     path: Path, lesson: str, results: Mapping[str, tuple[str, bool]], notebook: Path
 ) -> tuple[str, ...]:
-    """Write down, for each exercise by name, its answer and whether that passed.
+    """Record, for each exercise by name, its answer and whether that passed.
 
-    An answer that fails now has not passed, whatever was written before. Returns sentences for the
-    student: why nothing could be written, or what became of a damaged file.
+    An answer that fails now is removed from the passed ones. Returns sentences for the student:
+    why nothing could be written, or what happened to a damaged file.
     """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -139,7 +139,7 @@ def record(
 
 
 def _read_to_write(path: Path) -> tuple[Passes, tuple[str, ...]]:
-    """Return what has passed; a damaged file is moved aside, and a sentence tells where to."""
+    """Return the passed answers; a damaged file is renamed, and a sentence gives its new name."""
     try:
         return read_passes(path), ()
     except DamagedFile:
@@ -155,7 +155,7 @@ def _read_to_write(path: Path) -> tuple[Passes, tuple[str, ...]]:
 
 
 def _write(path: Path, passes: Passes) -> None:
-    """Write the file so that nobody ever finds half of it."""
+    """Write the file atomically, so that no reader finds half of it."""
     lessons = {
         lesson: {name: [asdict(each) for each in found] for name, found in exercises.items()}
         for lesson, exercises in passes.items()
@@ -173,7 +173,7 @@ def _write(path: Path, passes: Passes) -> None:
 
 @contextmanager
 def _locked(folder: Path) -> Iterator[None]:
-    """Let one Validate write at a time; where a file system has no locks, the last one wins."""
+    """Let one Validate write at a time; on a file system without locks, the last one wins."""
     descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
     try:
         with suppress(OSError):

@@ -1,6 +1,6 @@
-"""Whether a picture that somebody else made can be shown: what it takes is not what it weighs.
+"""Whether an untrusted picture can be shown: a small file may take much memory when decoded.
 
-40 kB of PNG can hold 16,000 times 16,000 pixels: a gigabyte in whatever shows them.
+A PNG of 40 kB can have 16,000 × 16,000 pixels, which take a gigabyte in a browser.
 """
 
 import base64
@@ -8,18 +8,18 @@ import binascii
 import struct
 
 MAX_PIXELS = 25_000_000
-"""A photo has half of them; a plot of a lesson, a fiftieth."""
+"""A photo has about half as many; a plot of a lesson, a fiftieth."""
 KINDS = ('image/png', 'image/jpeg')
 
 _PNG, _JPEG = b'\x89PNG\r\n\x1a\n', b'\xff\xd8'
 _NO_FRAMES = (0xC4, 0xC8, 0xCC)
-"""Among the markers of JPEG frames; they begin something else."""
+"""Markers in the range of JPEG's frame markers that do not begin a frame."""
 
 
 def why_not_shown(encoded: str) -> str:
-    """Say why a picture in base64 is better not shown, in a phrase; '' for one that can be.
+    """Say in a phrase why a base64 picture must not be shown; '' if it may be.
 
-    Whatever it is called: browsers look at what it is.
+    The content decides, not the declared MIME type: browsers do the same.
     """
     size = _size(encoded)
     if size is None:
@@ -31,7 +31,7 @@ def why_not_shown(encoded: str) -> str:
 
 
 def _size(encoded: str) -> tuple[int, int] | None:
-    """Return width and height in pixels, as its header says; None where it has none."""
+    """Return width and height in pixels from a picture's header; None if it has none."""
     try:
         raw = base64.b64decode(''.join(encoded.split()), validate=True)
         if raw.startswith(_PNG) and raw[12:16] == b'IHDR':
@@ -45,7 +45,7 @@ def _size_of_jpeg(raw: bytes) -> tuple[int, int] | None:
     at = 2
     while raw[at] == 0xFF:
         marker = raw[at + 1]
-        if marker == 0xFF:  # fills up
+        if marker == 0xFF:  # a fill byte
             at += 1
             continue
         if 0xC0 <= marker <= 0xCF and marker not in _NO_FRAMES:

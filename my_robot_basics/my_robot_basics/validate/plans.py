@@ -17,19 +17,19 @@ class Plan:
     cells: tuple[int, ...]
     why: str
     demonstrations: tuple[int, ...] = ()
-    """Those of them that the lesson shows, run for the names that they bind."""
+    """The cells of the lesson itself among them, run for the names that they bind."""
     again: tuple[int, ...] = ()
-    """What starts the answer, once more at the end: a cell below binds what it will need."""
+    """Cells that run the answer, to be run again at the end: a cell below binds a needed name."""
 
 
 def plans(notebook: NotebookNode, exercise: Exercise) -> Iterator[Plan]:
-    """Yield what to run, least first: the answer alone, with what it missing, the whole lesson.
+    """Yield plans, smallest first: the answer alone, with the student's other cells, all cells.
 
-    The first plan is left out where the text shows already that the answer needs a name that
-    only another of the student's cells binds. Demonstrations come with the names that they bind:
-    a function asks for a name only when it is called, and then it is too late to run more.
-    Where a package is the answer, there is one plan, which has no cell of the student's: what runs
-    of theirs is what is started of the package.
+    The first plan is left out if the text already shows that the answer needs a name that only
+    another of the student's cells binds. Demonstrations are added for the names that they bind:
+    a function reads a name only when it is called, and then it is too late to run more.
+    If a package is the answer, there is one plan without any cell of the student's: their code
+    runs only as the package's programs.
     """
     cells = notebook.cells
     own = (exercise.reset, exercise.answer, *exercise.run)
@@ -58,9 +58,9 @@ def plans(notebook: NotebookNode, exercise: Exercise) -> Iterator[Plan]:
 def plan_for_names(
     notebook: NotebookNode, exercise: Exercise, plan: Plan, names: set[str]
 ) -> Plan | None:
-    """Plan the answer with what binds names that it turned out to need, and all that is shown.
+    """Plan the answer with all demonstrations and the cells that bind the undefined `names`.
 
-    None where no cell that was left out binds one of them.
+    None if no cell that `plan` left out binds one of them.
     """
     cells = notebook.cells
     more = _with_all_shown(cells, exercise)
@@ -76,7 +76,7 @@ def plan_for_names(
 def _lending(
     cells: list[NotebookNode], indexes: Iterable[int], names: Iterable[str]
 ) -> tuple[set[int], set[str]]:
-    """Which of these cells bind such a name, or one that those need; and all such names."""
+    """Return the cells that bind these names or names that such cells need; and all the names."""
     binders = _binders(cells, indexes)
     lending: set[int] = set()
     met, todo = set[str](), {*names}
@@ -89,9 +89,9 @@ def _lending(
 
 
 def _with_all_shown(cells: list[NotebookNode], exercise: Exercise) -> Plan:
-    """Plan the answer after all that the lesson shows before it.
+    """Plan the answer after all demonstrations before it.
 
-    So it is where a text looks names up by other means: which it will need, nobody can know.
+    This is for an answer whose text does not show which names it needs.
     """
     before = [i for i in range(exercise.reset) if role(cells[i]) in ('demo', 'setup')]
     shown = [i for i in before if is_code(cells[i]) and not _is_apart(cells[i])]
@@ -108,7 +108,7 @@ def _end(exercise: Exercise) -> int:
 
 
 def _missing(cells: list[NotebookNode], exercise: Exercise, setup: list[int]) -> frozenset[str]:
-    """Names that the answer needs, or owes, and that neither it nor the setup binds."""
+    """Return names that the answer needs or must define, and that neither it nor setup binds."""
     answer = names_of(cells[exercise.answer].source)
     return (answer.needed | {*exercise.defines} - answer.bound) - _bound(cells, setup)
 
@@ -116,7 +116,7 @@ def _missing(cells: list[NotebookNode], exercise: Exercise, setup: list[int]) ->
 def _binds_what_is_missing(
     cells: list[NotebookNode], others: list[int], missing: frozenset[str]
 ) -> bool:
-    """Whether one of these cells binds a name that is lacking, as far as its text tells."""
+    """Whether one of these cells binds a missing name, or may do so."""
     names = [names_of(cells[i].source) for i in others]
     return bool(missing) and any(each.binds_more or each.bound & missing for each in names)
 
@@ -124,7 +124,7 @@ def _binds_what_is_missing(
 def _with_what_is_shown(
     cells: list[NotebookNode], exercise: Exercise, chosen: set[int], *, why: str
 ) -> Plan:
-    """Plan the chosen cells, and what the lesson shows that binds a name which they need."""
+    """Plan the chosen cells, and the demonstrations that bind names which they need."""
     shown = [i for i, c in enumerate(cells) if is_code(c) and role(c) in ('demo', 'setup')]
     binders, bound = _binders(cells, shown), _bound(cells, chosen)
     demonstrations: set[int] = set()
@@ -133,7 +133,7 @@ def _with_what_is_shown(
         place, needed = todo.pop()
         for name in needed - bound:
             binding = binders.get(name, [])
-            # of several, the one that ran last when the lesson was read from top to bottom
+            # of several, the last one above the cell, as when the lesson is run from the top
             nearest = [i for i in binding if i < place][-1:] or binding[:1]
             demonstrations.update(nearest)
             bound |= _bound(cells, nearest)
@@ -149,9 +149,9 @@ def _again(
     *,
     names: Iterable[str] = (),
 ) -> tuple[int, ...]:
-    """Which cells start the answer before all is there that it will need, these names or others.
+    """Return the cells that run the answer if a chosen cell below them binds a needed name.
 
-    A callback may ask for a name at once, and a constructor does.
+    The first time, a constructor or a callback may have failed without that name.
     """
     if not exercise.run:
         return ()
@@ -161,12 +161,12 @@ def _again(
     needed = names_of(cells[exercise.answer].source).needed
     _, met = _lending(cells, chosen, {*names, *needed})
     if any(names_of(cells[i].source).binds_more for i in below):
-        lent |= met  # one of them, perhaps
+        lent |= met  # it may bind one of them
     return exercise.run if met & lent - there else ()
 
 
 def _binders(cells: list[NotebookNode], indexes: Iterable[int]) -> dict[str, list[int]]:
-    """Which of these cells bind each name: there may be 800, each with a name of the next."""
+    """Return which cells bind each name; a table, as there may be 800 cells to search."""
     binders: dict[str, list[int]] = {}
     for i in indexes:
         for name in names_of(cells[i].source).bound:
@@ -183,5 +183,5 @@ def _is_students(cell: NotebookNode) -> bool:
 
 
 def _is_apart(cell: NotebookNode) -> bool:
-    """Whether the lesson writes or runs a program in this cell: it binds no name."""
+    """Whether this cell of the lesson writes or runs a program, so that it binds no name."""
     return role(cell) in ('demo', 'setup') and cell.source.startswith(('%%bash', '%%write_node'))

@@ -1,4 +1,4 @@
-"""`./course progress`, and the list above the contents page: which exercises Validate passed."""
+"""`./course progress`, and the list above the contents page: the exercises that passed."""
 
 import argparse
 import json
@@ -27,7 +27,7 @@ State = Literal['passed', 'changed', 'open', 'by hand', 'at grading']
 MARKS: dict[State, str] = {'passed': '✓', 'changed': '↻', 'open': '○'}
 MARKS |= {'by hand': '…', 'at grading': '…'}
 CONTENTS = 'contents'
-"""Under KEY in the metadata of the contents page: its lessons, and their exercises."""
+"""The key, under KEY in the contents page's metadata, of its lessons and their exercises."""
 TO_SHOW: tuple[str, ...] = ('Your progress', 'Passed in Validate: {passed} of {total} exercises.')
 TO_SHOW += ('This is kept on this computer alone. You get your points at grading.',)
 TO_SHOW += ('passed', 'changed since it passed: press Validate again', 'not passed yet')
@@ -43,7 +43,7 @@ WORDS: dict[State, str] = {
 
 @dataclass(frozen=True)
 class LessonProgress:
-    """The exercises of a lesson, as they are now."""
+    """The current states of a lesson's exercises."""
 
     name: str
     title: str
@@ -56,19 +56,19 @@ class Progress:
 
     lessons: tuple[LessonProgress, ...]
     notes: tuple[str, ...] = ()
-    """What could not be read."""
+    """Sentences about files that could not be read."""
     language: str = ENGLISH
 
     @property
     def summary(self) -> str:
-        """How many exercises passed, of those that Validate can check."""
+        """Return how many exercises passed, of those that Validate can check, as a sentence."""
         states = [state for lesson in self.lessons for state in lesson.exercises.values()]
         total = sum(state in ('passed', 'changed', 'open') for state in states)
         text = 'Passed in Validate: {passed} of {total} exercises.'
         return put(self.language, text, passed=states.count('passed'), total=total)
 
     def as_data(self) -> dict:
-        """Return all of it, in its language, as what JSON can say."""
+        """Return all of it, in its language, as JSON data."""
         say = partial(put, self.language)
         return {
             'title': say('Your progress'),
@@ -91,9 +91,9 @@ class Progress:
 
 
 def progress_on(page: Path, file: Path) -> Progress:
-    """Return what has passed of the lessons beside a contents page.
+    """Return the progress in the lessons beside a contents page.
 
-    Raises CourseError where the page is none.
+    Raises CourseError if `page` is not a contents page.
     """
     metadata = _metadata(page)
     notes: tuple[str, ...] = ()
@@ -131,7 +131,7 @@ def _lessons(metadata: Mapping, page: Path, passes: Passes) -> Iterator[LessonPr
 def _states(
     kinds: Mapping[str, str], passes: Mapping[str, list[Pass]], beside: Path
 ) -> dict[str, State]:
-    """Compare what passed with what the notebooks say now: that beside, and where it passed."""
+    """Compare the passed answers with those now in the lesson, and in notebooks that passed."""
     places = {beside, *(Path(each.notebook) for found in passes.values() for each in found)}
     now = [answers for place in sorted(places) if (answers := _answers(place))] if passes else []
     states: dict[str, State] = {}
@@ -148,7 +148,7 @@ def _states(
 
 
 def _answers(notebook: Path) -> dict[str, str]:
-    """Return the answers of a notebook by exercise; none where it can't be read any more."""
+    """Return the hash of each exercise's answer in a notebook; {} if it can't be read."""
     try:
         cells = read_lesson(notebook).notebook
         exercises = find_exercises(cells)
@@ -158,7 +158,7 @@ def _answers(notebook: Path) -> dict[str, str]:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Print the progress; return 0, or 2 where there is no contents page."""
+    """Print the progress; return 0, or 2 if there is no contents page."""
     parser = argparse.ArgumentParser(
         prog='./course progress',
         usage='./course progress [-h] [--language LANGUAGE]',

@@ -1,4 +1,4 @@
-"""What the list above the contents page asks for: a student's progress, from their own files."""
+"""Serve a student's progress, from their own files, to the list above the contents page."""
 
 import asyncio
 
@@ -14,11 +14,11 @@ ADDRESS = 'my_robot_basics/progress'
 
 
 class ProgressHandler(APIHandler):
-    """Takes ?path=, the contents page below the server's root; answers with what it shows."""
+    """Answers ?path=, a contents page below the server's root, with the progress as JSON."""
 
     @web.authenticated
     async def get(self) -> None:
-        """Read the page, the lessons beside it and what has passed."""
+        """Read the page, the lessons beside it and the passed answers."""
         assert self.serverapp is not None  # a handler has one
         page = path_below(self.serverapp, self.get_query_argument('path'))
         try:

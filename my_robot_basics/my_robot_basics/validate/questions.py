@@ -1,7 +1,7 @@
-"""What two kernels need to meet: a message that crosses, and a check's questions to the student.
+"""Code and replies for two kernels: the probe message, and a check's requests to the student.
 
-The rooms have no path to each other but DDS: what holds both kernels takes questions over as text,
-and text of a bounded size back.
+DDS is the only direct path between the rooms: the process that has started both kernels passes
+on requests as text, and returns replies of a bounded size.
 """
 
 import ast
@@ -21,26 +21,26 @@ from my_robot_basics.exchange import probe
 probe.receive()
 """
 STUDENT_GOES = 'import sys; probe.silence(); sys.path.append({files!r}); del probe, sys'
-"""Modules of the student's come last, and after the probe: libraries look for some that they may
-do without. Nothing of ours stays among the names of the notebook."""
+"""The student's modules come last in sys.path, and after the probe: else they could replace
+optional modules that libraries try to import. No name of this code stays in the notebook."""
 
 _RESPONDER = (
     "__import__('my_robot_basics.exchange.responder', fromlist=['answer']).answer({request!r})"
 )
 _ESCAPE = r"""\\(?:[\\'"nrt]|x[0-9a-f]{2}|u[0-9a-f]{4}|U[0-9a-f]{8})"""
 _STRING = re.compile(rf"""'(?:[^'\\\n]|{_ESCAPE})*'|"(?:[^"\\\n]|{_ESCAPE})*\"""")
-"""The literal of one string as Python writes it, and no other Python."""
+"""Matches one Python string literal as `repr` writes it, and no other Python code."""
 
 
 def as_expression(request: str) -> dict[str, str]:
-    """Return the user expression that answers a check's question in the student's kernel."""
+    """Return the user expression that answers a check's request in the student's kernel."""
     return {'reply': _RESPONDER.format(request=request)}
 
 
 def reply_of(run: CellRun, *, within_sec: float, at_grading_sec: float = 0.0) -> str:
-    """Return what came of it in so long as text for the check: a reply, or why there is none.
+    """Return the text for the check: the reply in `run`, or why there is none.
 
-    `at_grading_sec` is how long it has there, if that is longer.
+    `within_sec` is how long the kernel had; `at_grading_sec`, the limit there, if it is longer.
     """
     if run.cut_off:
         why = CUT_OFF  # a sentence of its own: what stands in a place in capitals is a name
@@ -59,7 +59,7 @@ def reply_of(run: CellRun, *, within_sec: float, at_grading_sec: float = 0.0) ->
         case {'reply': {'data': {'text/plain': str(text)}}} if len(text) > MAX_REPLY:
             return _failed(f'an answer of {len(text):,} characters')
         case {'reply': {'data': {'text/plain': str(text)}}} if _STRING.fullmatch(text):
-            # a number that is no character, or half a surrogate pair, is no text for the test
+            # an invalid code point or a lone surrogate is refused
             with contextlib.suppress(SyntaxError, ValueError):
                 return ast.literal_eval(text).encode().decode()
     return _failed('no usable answer')

@@ -1,4 +1,4 @@
-"""Write down what a report says, for the student's own list of what has passed."""
+"""Record a report's results for the student's progress."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -9,7 +9,7 @@ from my_robot_basics.validate.report import ExerciseFeedback, Report
 
 
 def remember(report: Report, notebook: Path) -> Report:
-    """Record what passed and what did not; return the report, with a note where that failed."""
+    """Record what passed and what did not; return the report, with notes of the recording."""
     results = {
         part.name: (part.answer, passed)
         for part in report.parts
@@ -23,7 +23,7 @@ def remember(report: Report, notebook: Path) -> Report:
 
 
 def has_passed(part: ExerciseFeedback) -> bool | None:
-    """Whether all of an exercise that can be checked here passed; None where nobody knows."""
+    """Whether all of an exercise that can be checked here passed; None if that is unknown."""
     outcomes = {check.outcome for check in part.checks}
     if outcomes & {'failed', 'partial'}:
         return False

@@ -1,4 +1,4 @@
-"""What *Validate* says of each exercise and check: data that any front end can show."""
+"""The results of *Validate* for each exercise and check, as data that any front end can show."""
 
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
@@ -15,7 +15,7 @@ MARKS |= {'at grading': '…', 'by hand': '…', 'not checked': '?'}
 
 @dataclass(frozen=True)
 class CheckFeedback:
-    """One graded cell."""
+    """The result of one graded cell."""
 
     name: str
     """Its grade id."""
@@ -23,38 +23,38 @@ class CheckFeedback:
     points: float
     outcome: Outcome
     is_partly_hidden: bool
-    """Whether more of it is checked at grading."""
+    """Whether it also has a hidden part, which is checked at grading."""
     earned: float = 0.0
-    """The points that what can be seen here leaves."""
+    """The points that the visible part gives so far."""
     message: str = ''
     notes: tuple[str, ...] = ()
-    """What costs no points, and is good to know."""
+    """Remarks that cost no points."""
     pictures: tuple[dict[str, str], ...] = ()
-    """{'png': base64, 'alt': text}: what the check has drawn."""
+    """{'png': base64, 'alt': text} of each picture that the check has drawn."""
     source: str = ''
-    """What students may read of the check."""
+    """The visible source of the check."""
 
 
 @dataclass(frozen=True)
 class ExerciseFeedback:
-    """One exercise."""
+    """The results of one exercise."""
 
     name: str
     troubles: tuple[str, ...]
-    """What went wrong in the student's own cells."""
+    """Errors in the student's own cells, as sentences."""
     checks: tuple[CheckFeedback, ...]
-    answer: str = ''  # tells the answer that was judged from any other
+    answer: str = ''  # the hash of the judged answer: see passed_answers.answer_of
 
 
 @dataclass(frozen=True)
 class Report:
-    """All that is said of a notebook."""
+    """The results of a notebook."""
 
     notebook: str
     parts: tuple[ExerciseFeedback, ...]
     notes: tuple[str, ...]
     language: str = ENGLISH
-    """That of the notebook, in which the report is read."""
+    """The notebook's language, in which the report is shown."""
 
     @property
     def checks(self) -> list[CheckFeedback]:
@@ -64,7 +64,7 @@ class Report:
     def with_words(
         self, put: Callable[[str], str], *, title: Callable[[str], str] = str
     ) -> 'Report':
-        """Return the same report with each of its sentences, and titles, put otherwise."""
+        """Return the report with `put` applied to its sentences, and `title` to its titles."""
 
         def put_all(lines: tuple[str, ...]) -> tuple[str, ...]:
             return tuple(put(line) for line in lines)
@@ -86,12 +86,12 @@ class Report:
 
     @property
     def passed(self) -> bool:
-        """Whether all that can be checked here was, and passed."""
+        """Whether everything that can be checked here was checked and passed."""
         return all(c.outcome not in ('failed', 'partial', 'not checked') for c in self.checks)
 
     @property
     def summary(self) -> str:
-        """What it comes to, in one line."""
+        """Return the overall result in one line."""
         said = [self._visible()]
         total = _number(sum(check.points for check in self.checks))
         waiting = [check for check in self.checks if _waits(check)]
@@ -106,7 +106,7 @@ class Report:
         return in_language(self.language, ' '.join(said))
 
     def as_data(self) -> dict:
-        """Return all of it as what JSON can say."""
+        """Return all of it as JSON data."""
         told = {'summary': self.summary, 'passed': self.passed, 'marks': MARKS}
         return {**asdict(self), **told, 'words': words_around(self.language)}
 
@@ -133,7 +133,7 @@ class Report:
 
 
 def _waits(check: CheckFeedback) -> bool:
-    """Whether its points are still open when all that can be seen is right."""
+    """Whether points of this check are decided only at grading."""
     return check.outcome == 'at grading' or (check.earned > 0 and check.is_partly_hidden)
 
 

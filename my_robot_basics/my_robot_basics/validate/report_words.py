@@ -1,4 +1,4 @@
-"""What JupyterLab's button and dialog, and a terminal, say around a report."""
+"""Texts of JupyterLab's button and dialog, and of a terminal, around a report."""
 
 from my_robot_basics.language.speaking import in_language
 
@@ -16,5 +16,5 @@ TO_SHOW += ('({points}; {more})', '({points})')
 
 
 def words_around(language: str) -> dict[str, str]:
-    """Return each of these texts in a language, by its English."""
+    """Return the translation of each of these English texts."""
     return {text: in_language(language, text) for text in TO_SHOW}

@@ -1,4 +1,4 @@
-"""The two kernels of *Validate*: as when a lesson is graded, but on the student's own machine."""
+"""The two kernels of *Validate*: as at grading, but on the student's own machine."""
 
 import asyncio
 import math
@@ -31,9 +31,9 @@ from my_robot_basics.validate.together import together
 
 SETUP_TIMEOUT_SEC = 60.0
 SLOW_SEC = 1.0
-"""A cell that takes longer is named while it is waited for."""
+"""A cell that takes longer is named in the progress line."""
 MOST_PATH = 60
-"""A socket's path has room for about 100 characters."""
+"""Longest usable path of a temporary folder: a Unix socket's path has about 100 characters."""
 
 Say = Callable[[str], None]
 
@@ -42,16 +42,16 @@ class LocalRooms:
     """A student's kernel and a test's for one exercise; `async with` starts and ends them."""
 
     say: Say = staticmethod(lambda line: None)
-    """Is told what begins."""
+    """Called with a line about each step that begins."""
     end_later: Callable[[Coroutine], object] | None = None
-    """Takes over how the kernels end, unless something has failed: nobody waits for that."""
+    """Called with the coroutine that ends the kernels, to run it later, unless something failed."""
 
     def __init__(
         self, *, files: Sequence[Path], server: ForkServer, beside: Path = Path()
     ) -> None:
-        """Prepare two kernels of a server; the student's finds copies of `files`.
+        """Prepare two kernels of a server; the student's kernel can import copies of `files`.
 
-        ROS packages are looked for in the folder `beside`, the notebook's own.
+        ROS packages are searched in the folder `beside`, which is the notebook's.
         """
         self._files, self._server, self._beside = files, server, beside
         self._claim: Claim | None = None
@@ -59,10 +59,10 @@ class LocalRooms:
         self._kernels: list[LocalKernel] = []
         self._checks = ChecksBudget()
         self._unanswered: CellRun | None = None
-        """The question that was given up."""
+        """The request that was given up, if any."""
 
     async def __aenter__(self) -> 'LocalRooms':
-        """Start both kernels, and see a message cross. Raises RoomFailure."""
+        """Start both kernels and send the probe message between them. Raises RoomFailure."""
         self.say('starting two kernels')
         try:
             folder = self._open()
@@ -79,7 +79,7 @@ class LocalRooms:
         return self
 
     async def __aexit__(self, failed: object = True, *_: object) -> None:
-        """End both kernels, whatever state they are in, and leave nothing behind."""
+        """End both kernels in any state, and remove their folder and ROS domain."""
         if failed is None and self.end_later is not None:
             self.end_later(self._end())
         else:
@@ -87,7 +87,7 @@ class LocalRooms:
 
     async def _end(self) -> None:
         try:
-            # a check has closed its nodes itself; the student's may hold shared memory
+            # only the student's kernel may still have nodes, which can hold shared memory
             stops = [k.stop(politely=k is self._kernels[0]) for k in self._kernels]
             await asyncio.gather(*stops)
         finally:
@@ -112,7 +112,7 @@ class LocalRooms:
     ) -> CellRun:
         """Run one of the student's cells; give it up after `free_sec` with a free processor.
 
-        `number` is which cell of the notebook it is, and `builds` the package that it builds.
+        `number` is the cell's number in the notebook, and `builds` the package that it builds.
         """
         what = f'building {builds} with colcon, which takes a few seconds'
         self.say(what if builds else f'running your cells ({number})')
@@ -125,10 +125,10 @@ class LocalRooms:
             later.cancel()
 
     def student_cpu_sec(self) -> None:
-        """Nobody counts: it is the student's own machine."""
+        """Return None: processor time is not measured on the student's own machine."""
 
     async def run_check(self, source: str) -> CellRun:
-        """Run a grade cell, passing its questions on to the student's kernel."""
+        """Run a grade cell, and pass its requests on to the student's kernel."""
         self.say(f'checking: {title_of_check(source)}')
         run = await self._checks.run(self._test, source, on_input=self._ask_student)
         if self._unanswered is not None and not run.ran_to_end:
@@ -136,7 +136,7 @@ class LocalRooms:
         return run
 
     async def _ask_student(self, request: str) -> str:
-        """Take a question over; what has not answered one in time is asked no more."""
+        """Pass a request on; after one was not answered in time, no other one is sent."""
         run = self._unanswered or await self._student.run(
             '',
             timeout_sec=REPLY_TIMEOUT_SEC,
@@ -150,7 +150,7 @@ class LocalRooms:
         return reply_of(run, within_sec=within_sec, at_grading_sec=at_grading_sec)
 
     def _open(self) -> Path:
-        """Make the kernels' folder; return it."""
+        """Create and return the kernels' folder, and prepare both kernels in it."""
         self._claim = owned = claim()
         short = None if len(tempfile.gettempdir()) < MOST_PATH else '/tmp'
         self._folder = folder = Path(tempfile.mkdtemp(prefix='validate-', dir=short))
@@ -168,9 +168,9 @@ class LocalRooms:
             'MY_ROBOT_BASICS_ADVICE': '1',
             'MY_ROBOT_BASICS_DOMAIN_ID': str(domain_id),
             'RCUTILS_LOGGING_USE_STDOUT': '1',
-            # the student's own stays as it is, whichever cells are run
+            # the student's own workspace must not be changed by the cells that are run
             'MY_ROBOT_BASICS_WORKSPACE': str(folder / 'ros_ws'),
-            # read there as they are, and copied by the build
+            # packages are only read there: the build copies them
             'MY_ROBOT_BASICS_PACKAGES': str(self._beside.resolve()),
             'ROS_LOG_DIR': str(folder / 'ros_log'),
             'MPLBACKEND': 'module://matplotlib_inline.backend_inline',

@@ -1,4 +1,4 @@
-"""What judging needs of two rooms, whoever opens them."""
+"""The interface of two rooms that judging needs, for the grader's rooms and *Validate*'s."""
 
 from collections.abc import Callable
 from contextlib import AbstractAsyncContextManager
@@ -18,10 +18,10 @@ class Rooms(Protocol):
         """Run one of the student's cells."""
 
     def student_cpu_sec(self) -> float | None:
-        """How long the student's room has kept processors busy; None where nobody counts."""
+        """Return the processor time of the student's room in seconds; None if not measured."""
 
     async def run_check(self, source: str) -> CellRun:
-        """Run a grade cell, passing its questions on to the student's kernel."""
+        """Run a grade cell, and pass its requests on to the student's kernel."""
 
 
 R = TypeVar('R', bound=Rooms)

@@ -1,4 +1,4 @@
-"""Validate a lesson: run what its exercises need, nothing else, and say what came of it."""
+"""Validate a lesson: run only the cells that its exercises need, and report the results."""
 
 import asyncio
 from collections.abc import Callable
@@ -23,7 +23,7 @@ from my_robot_basics.validate.short_budget import ShortBudget
 from my_robot_basics.validate.together import together
 
 SIDE_BY_SIDE = 2
-"""Exercises at a time: they wait more than they work, and loops without an end do not."""
+"""How many exercises run at a time: most of their time is waiting, except in endless loops."""
 
 
 async def validate(
@@ -36,9 +36,9 @@ async def validate(
 ) -> Report:
     """Run the visible checks of a notebook, each exercise in fresh kernels of a server.
 
-    `speak` gets the notebook's language, `say` a line in it whenever something else begins, and
-    `tell` the report, while the kernels still end. Raises CourseError where the file is
-    no notebook of the course.
+    `speak` is called with the notebook's language, `say` with a line in it for each step, and
+    `tell` with the report, before all kernels have ended. Raises CourseError if the file is not
+    a notebook of the course.
     """
     lesson = read_lesson(path)
     language = language_of(lesson.notebook.metadata)
@@ -61,7 +61,7 @@ async def validate(
 
 @dataclass(frozen=True)
 class _Run:
-    """What the exercises of a lesson have in common."""
+    """What the exercises of one lesson share."""
 
     lesson: Lesson
     folder: Path
@@ -71,16 +71,16 @@ class _Run:
     places: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(SIDE_BY_SIDE))
     budget: ShortBudget = field(default_factory=ShortBudget)
     ends: list[asyncio.Task] = field(default_factory=list)
-    """Kernels that are not needed any more end there."""
+    """Tasks that end kernels which are no longer needed."""
 
     async def part(self, exercise: Exercise) -> ExerciseFeedback:
-        """Judge an exercise by the checks that can be run, when its turn comes."""
+        """Wait for a free place, then judge an exercise by the checks that can be run."""
         judged = JudgedExercise({}, {})
         runnable = tuple(i for i in exercise.grades if _can_run(self.lesson, i))
         answer = ''
         async with self.places:
             if runnable:
-                # a package may be edited while its checks run
+                # before the checks: a package may be edited while they run
                 answer = answer_of(self.lesson.notebook, exercise, self.folder)
                 judged = await judge_exercise(
                     self.lesson.notebook,
@@ -116,14 +116,14 @@ def _part(lesson: Lesson, exercise: Exercise, judged: JudgedExercise) -> Exercis
 
 
 def _by_hand(lesson: Lesson) -> list[ExerciseFeedback]:
-    """Tell of the answers that a person reads."""
+    """Return the entries of answers that a person reads."""
     written = [c for c in lesson.notebook.cells if role(c) == 'answer' and _has_points(c)]
     checks: list[CheckFeedback] = [make_check(lesson, cell, None, []) for cell in written]
     return [ExerciseFeedback(check.name, (), (check,)) for check in checks]
 
 
 def _without_exercise(lesson: Lesson, named: set[str]) -> list[ExerciseFeedback]:
-    """Tell of the checks whose answer cell, or what begins their exercise, was taken away."""
+    """Return the entries of checks whose answer cell or reset cell was deleted."""
     cells = [c for c in lesson.notebook.cells if role(c) == 'grade' and grade_id(c) not in named]
     checks = [make_check(lesson, cell, None, []) for cell in cells]
     return [ExerciseFeedback(check.name, (), (check,)) for check in checks]

@@ -8,11 +8,11 @@ from my_robot_basics.validate.pictures import KINDS, why_not_shown
 MAX_ALT_CHARACTERS = 500
 MAX_ERROR_CHARACTERS = 10_000
 WIDGET_VIEW = 'application/vnd.jupyter.widget-view+json'
-"""Outlives no kernel; as text it ends whatever wants to show the notebook."""
+"""It is useless without its kernel, and if it is text, it crashes programs that show it."""
 
 
 def safe_output(kind: str, content: dict) -> NotebookNode | None:
-    """Build an output that is safe to store; None for what is not one."""
+    """Return an output that is safe to store; None if the message is not a valid output."""
     match kind, content:
         case 'stream', {'name': 'stdout' | 'stderr' as name, 'text': str(text)}:
             return nbformat.v4.new_output('stream', name=name, text=_clean(text))
@@ -40,9 +40,9 @@ def _leave_large_pictures_out(data: dict[str, str]) -> None:
 
 
 def _about_pictures(metadata: object, data: dict[str, str]) -> dict[str, dict[str, int | str]]:
-    """Keep the width and height (pixels) of pictures and their text alternative, by MIME type.
+    """Keep the width and height (pixels) of pictures and their alternative text, by MIME type.
 
-    Of nothing else: a million kinds that somebody made up would be a million objects.
+    Other metadata is dropped: a million invented MIME types would be a million objects.
     """
     kept = {}
     for kind in KINDS:
@@ -55,5 +55,5 @@ def _about_pictures(metadata: object, data: dict[str, str]) -> dict[str, dict[st
 
 
 def _clean(text: str) -> str:
-    """Replace lone surrogates: they can't be written to any file."""
+    """Replace lone surrogates, which can't be encoded as UTF-8."""
     return text.encode(errors='replace').decode()

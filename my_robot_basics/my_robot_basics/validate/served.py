@@ -7,7 +7,7 @@ from tornado import web
 
 
 def path_below(server: ServerApp, path: str) -> Path:
-    """Return a file below the server's root. Raises HTTPError where it lies outside."""
+    """Return a file below the server's root. Raises HTTPError if it is outside."""
     root = Path(server.root_dir).expanduser().resolve()
     found = (root / path.lstrip('/')).resolve()
     if not found.is_relative_to(root):

@@ -1,7 +1,7 @@
-"""Lets JupyterLab's button validate, and the contents page show progress: a server extension.
+"""A Jupyter server extension: *Validate* for JupyterLab's button, progress for the contents page.
 
-The button starts `python -m my_robot_basics.validate` and passes its lines on as they come: the
-student's server goes on with everything else meanwhile.
+The button starts `python -m my_robot_basics.validate` in a process of its own and passes its
+lines on as they come, so that the student's server is not blocked.
 """
 
 import asyncio
@@ -24,14 +24,14 @@ from my_robot_basics.validate.served import path_below
 
 ADDRESS = 'my_robot_basics/validate'
 MAX_LINE_BYTES = 2**26
-"""A report with its pictures is one line."""
+"""The longest line: a report with its pictures is one line."""
 STOP_TIMEOUT_SEC = 15.0
 
 
 class ValidateHandler(APIHandler):
-    """Takes {"path": ...}, answers with lines of JSON: progress, and a report at the end.
+    """POST takes {"path": ...} and answers with lines of JSON: progress, at the end a report.
 
-    Asked with ?path= alone, it answers with the words around them.
+    GET takes ?path= and answers with the texts of the button and the dialog.
     """
 
     _process: asyncio.subprocess.Process | None = None
@@ -57,12 +57,12 @@ class ValidateHandler(APIHandler):
         try:
             await self._pass_on(self._process)
         except iostream.StreamClosedError:
-            _interrupt(self._process)  # nobody reads on: the dialog was closed
+            _interrupt(self._process)  # the dialog was closed
         finally:
             await _end_of(self._process)
 
     def on_connection_close(self) -> None:
-        """End what was started for somebody who has closed the dialog."""
+        """End the process when the dialog is closed."""
         super().on_connection_close()
         if self._process is not None:
             _interrupt(self._process)
@@ -88,7 +88,7 @@ class ValidateHandler(APIHandler):
 
 
 def _words_for(path: Path) -> dict[str, str]:
-    """Return the words for a notebook; what cannot be read has none, and Validate says why."""
+    """Return the words in a notebook's language; {} if it can't be read: Validate reports that."""
     try:
         metadata = json.loads(path.read_bytes())['metadata']
         return words_around(language_of(metadata))
@@ -97,7 +97,7 @@ def _words_for(path: Path) -> dict[str, str]:
 
 
 def _interrupt(process: asyncio.subprocess.Process) -> None:
-    """Ask it to end its kernels and itself."""
+    """Send SIGINT, on which the process ends its kernels and itself."""
     if process.returncode is None:
         with contextlib.suppress(ProcessLookupError):
             os.kill(process.pid, signal.SIGINT)

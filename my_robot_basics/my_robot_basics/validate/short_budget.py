@@ -1,4 +1,4 @@
-"""How long *Validate* waits for each of the student's cells: it is advice, and comes soon."""
+"""How long *Validate* waits for each of the student's cells: its advice has to come soon."""
 
 import math
 from dataclasses import dataclass
@@ -18,14 +18,14 @@ _STUDENTS = ('answer', 'free', 'locked')
 
 @dataclass
 class ShortBudget(Budget[LocalRooms]):
-    """The grader's, and less for each cell of the student's: still less after one was given up."""
+    """The grader's budget with a shorter limit for a cell, even shorter after one was given up."""
 
     free_sec: float = VALIDATE_TIMEOUT_SEC
 
     async def run_within(
         self, timeout_sec: float, rooms: LocalRooms, cell: NotebookNode
     ) -> CellRun:
-        """Run one of the student's cells for so long at most."""
+        """Run a cell for at most `timeout_sec`, a student's also for at most `free_sec`."""
         builds = packages_built_by(cell)
         is_theirs = role(cell) in _STUDENTS and not builds
         free_sec = self.free_sec if is_theirs else math.inf

@@ -7,26 +7,26 @@ from wcwidth import iter_graphemes
 from wcwidth import width as width_of
 
 _JOINERS = '\u200c\u200d'
-"""Not printable, and part of how some alphabets and some emoji are spelled."""
+"""Not printable, but needed to write some alphabets and some emoji."""
 _SELECTORS = '\u180b-\u180d\u180f\ufe00-\ufe0f\U000e0100-\U000e01ef'
-"""Choose another look of the character before them."""
+"""Variation selectors, which choose another form of the character before them."""
 _BLANK = re.compile('[\u034f\u115f\u1160\u17b4\u17b5\u2800\u3164\uffa0]')
-"""Letters and marks to Unicode, and nothing to the eye."""
+"""Letters and marks in Unicode that are invisible."""
 _DOUBTFUL = re.compile(f'[^\n\t -~\u00a1-\u00ac\u00ae-\u02ff\u4e00-\u9fff]|[{_SELECTORS}]')
-"""What takes a second look; most text has none of it."""
+"""Characters that need a closer check; most text has none of them."""
 _SELECTOR = re.compile(f'[{_SELECTORS}]')
 
 
 def printable(text: object) -> str:
-    """Return one line in which escapes, controls and direction marks are spelled out."""
+    """Return one line in which escapes, controls and direction marks are written as escapes."""
     return visible(' '.join(str(text).split()))
 
 
 def visible(text: str) -> str:
-    """Return text in which every character can be seen; its lines and tabs stay.
+    """Return text in which every character is visible; its newlines and tabs stay.
 
-    Escapes, controls of the direction of text and other characters that show nothing are spelled
-    out, so that what is read is what is there. Words of any language and emoji stay as they are.
+    Control characters, direction marks and other invisible characters are replaced by escape
+    sequences, so that nothing is concealed. Words of any language and emoji stay as they are.
     """
     return _DOUBTFUL.sub(lambda found: _spelled(text, found.start()), text)
 
@@ -39,7 +39,7 @@ def _spelled(text: str, place: int) -> str:
 
 
 def _shows(character: str, *, before: str, after: str) -> bool:
-    """Whether a character can be seen where it stands."""
+    """Whether a character is visible, or has an effect, between these neighbours."""
     if character in _JOINERS:
         return _joins(before) and _joins(after)
     if _SELECTOR.match(character):
@@ -48,15 +48,15 @@ def _shows(character: str, *, before: str, after: str) -> bool:
 
 
 def _joins(character: str) -> bool:
-    """Whether a character's look can depend on an invisible one beside it."""
+    """Whether a character's form can depend on an invisible one beside it."""
     kind = unicodedata.category(character) if character else ''
     return not character.isascii() and (kind[:1] in ('L', 'M') or kind in ('So', 'Sk', 'Sm', 'Po'))
 
 
 def shorten(text: str, width: int) -> str:
-    """Return at most `width` columns of a line, an ellipsis where something was cut.
+    """Return at most `width` columns of a line, with an ellipsis if it was cut.
 
-    It is cut between what a reader takes for characters: an emoji of several stays whole.
+    It is cut between graphemes: an emoji of several code points stays whole.
     """
     if columns(text) <= width:
         return text
@@ -70,5 +70,5 @@ def shorten(text: str, width: int) -> str:
 
 
 def columns(text: str) -> int:
-    """Return how many columns of a terminal a line takes; controls take none."""
+    """Return how many columns of a terminal a line takes; control characters take none."""
     return width_of(text, control_codes='ignore')

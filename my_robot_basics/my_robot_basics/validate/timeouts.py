@@ -1,4 +1,4 @@
-"""How long a cell is waited for: time that nobody could use does not count."""
+"""Time limits of a cell, which a busy machine extends."""
 
 import asyncio
 from collections.abc import Awaitable, Callable
@@ -8,14 +8,15 @@ from my_robot_basics.validate.limits import INTERRUPT_GRACE_SEC, INTERRUPT_MOST_
 
 LOOK_EVERY_SEC = 0.2
 MOST_TIMES = 3.0
-"""How many times its limit a cell may take at most, on a busy machine. …"""
+"""How many times its limit a cell may take at most, on a busy machine."""
 ASLEEP_PART = 0.01
-"""… Code that works gets more than this part of a processor, however busy the machine is."""
+"""Part of one processor: code that uses less is waiting; even on a busy machine, running code
+gets more."""
 
 IsAlive = Callable[[], Awaitable[bool]]
-"""Whether the kernel lives."""
+"""Whether the kernel is alive."""
 UsedSec = Callable[[], float | None]
-"""How long the code has kept processors busy so far; None if nobody counts."""
+"""The processor time of the code so far, in seconds; None if it is not measured."""
 
 
 async def finished(
@@ -24,10 +25,10 @@ async def finished(
     is_alive: IsAlive,
     is_enough: Callable[[], bool] = lambda: False,
 ) -> bool:
-    """Wait for a cell's end, or its kernel's; False if its time is over, or `is_enough()`, first.
+    """Wait for the end of a cell or its kernel; False if the limit or `is_enough()` comes first.
 
-    What counts is time in which we could look: a grader that stood still for seconds, on a
-    machine that was too busy, has not seen the cell take them.
+    Each look counts LOOK_EVERY_SEC at most: if a busy machine stops this process for seconds,
+    they do not count against the cell.
     """
     left_sec = timeout_sec
     while not done.done():
@@ -37,7 +38,7 @@ async def finished(
         await asyncio.wait([done], timeout=tick_sec)
         left_sec -= tick_sec
         if not done.done() and not await is_alive():
-            await asyncio.wait([done], timeout=0.2)  # its last messages may be under way
+            await asyncio.wait([done], timeout=0.2)  # its last messages may still arrive
             return True
     await done
     return True
@@ -50,10 +51,10 @@ async def finished_while_served(
     is_enough: Callable[[], bool],
     used_sec: UsedSec,
 ) -> bool:
-    """As `finished`, but code that works and gets too little of a processor has longer.
+    """Like `finished`, but with more time for running code that gets too little of a processor.
 
-    It has until it has used `timeout_sec` of a processor, or could have, and MOST_TIMES as long at
-    most. Code that waits for anything else uses no processor, and has no longer.
+    The limit is `timeout_sec` of processor time, or of time with a free processor, and at most
+    MOST_TIMES as long. Code that waits uses no processor and gets no more time.
     """
     watch, before_sec = pressure.Stopwatch(), used_sec()
     left_sec = timeout_sec
@@ -69,7 +70,7 @@ async def finished_while_served(
 
 
 async def finished_in_grace(done: asyncio.Future, is_alive: IsAlive) -> bool:
-    """Wait for the end of a cell that was interrupted, while processors are free for it."""
+    """Wait for an interrupted cell's end: INTERRUPT_GRACE_SEC of time with a free processor."""
     watch = pressure.Stopwatch()
     while not await finished(done, LOOK_EVERY_SEC, is_alive):
         if watch.free_sec() >= INTERRUPT_GRACE_SEC or watch.wall_sec() >= INTERRUPT_MOST_SEC:

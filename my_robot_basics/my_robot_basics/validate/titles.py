@@ -1,4 +1,4 @@
-"""What a check is called: the first line of its docstring."""
+"""The title of a check: the first line of its docstring."""
 
 import ast
 
@@ -6,9 +6,9 @@ from my_robot_basics.feedback.hidden_source import visible
 
 
 def title_of_failure(source: str) -> str:
-    """Return what a check is called that failed only in what students are not given.
+    """Return the title of a check that failed only in its hidden part.
 
-    A check without any other part has a title of its own for that.
+    For a check that is hidden as a whole, it is its own title.
     """
     title = title_of_check(source)
     return f'Checked at grading, beyond “{title}”' if checks_something(visible(source)) else title

@@ -1,4 +1,4 @@
-"""Do several things at a time."""
+"""Run several awaitables concurrently."""
 
 import asyncio
 from collections.abc import Awaitable
@@ -8,7 +8,7 @@ T = TypeVar('T')
 
 
 async def together(*work: Awaitable[T]) -> list[T]:
-    """Wait for all of it; when some fails the rest is called off: nothing goes on alone."""
+    """Wait for all of them; if one fails, cancel the others and wait for their end."""
     tasks = [asyncio.ensure_future(each) for each in work]
     try:
         return await asyncio.gather(*tasks)

@@ -1,4 +1,4 @@
-"""What went wrong in a student's own cell, in a sentence."""
+"""Describe an error in a student's own cell in a sentence."""
 
 import re
 
@@ -9,18 +9,18 @@ from my_robot_basics.validate.outputs import CUT_OFF, CellRun
 from my_robot_basics.validate.text import printable, shorten
 
 TROUBLE = 'your cell '
-"""A note that begins so tells what went wrong in one of the student's cells."""
+"""Notes about errors in the student's cells begin with this."""
 _TEMPORARY_FILE = re.compile(r'\((<(ipython-input|tokenize|string)[^>]*>|\d+\.py), (?=line \d+\))')
-"""How a SyntaxError names a cell of a notebook, which nobody would recognise."""
+"""The file name of a cell in a SyntaxError, which means nothing to a student."""
 _COLOURS = re.compile(r'\x1b\[[\d;]*m')
 _OWN_LINE = re.compile(
     r'^Cell In\[\d+\], line (\d+).*?^-*> ?\1 +(\S[^\n]*)$', re.MULTILINE | re.DOTALL
 )
-"""Where a frame of the notebook's own is in a traceback of IPython, and what stands there."""
+"""A frame of the notebook's own code in IPython's traceback: line number and code."""
 
 
 def trouble_in(name: str, run: CellRun) -> str | None:
-    """Say what went wrong in one of the student's cells, and what to try where that is plain."""
+    """Describe the error in one of the student's cells, with a hint if there is one; or None."""
     if run.cut_off:
         return f'{TROUBLE}`{name}` {CUT_OFF}'
     if run.timed_out:
@@ -41,7 +41,7 @@ def trouble_in(name: str, run: CellRun) -> str | None:
 
 
 def _own_line(traceback: list[str]) -> str:
-    """The student's last line, for an exception that says nothing; '' if that line raises it."""
+    """Return the student's last line in a traceback; '' if it is a `raise` statement."""
     lines = _OWN_LINE.findall(_COLOURS.sub('', '\n'.join(traceback)))
     number, code = lines[-1] if lines else ('', 'raise')
     return '' if code.startswith('raise') else f'line {number}: {code}'

@@ -1,4 +1,4 @@
-"""Turn what came of a grade cell into a verdict with its reason, and write it into the cell."""
+"""Turn the result of a grade cell into a verdict with its reason, and write it into the cell."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -16,19 +16,19 @@ from my_robot_basics.validate.trouble import trouble_in
 
 Outcome = Literal['passed', 'partial', 'failed', 'ungraded', 'manual']
 SCORED = ('passed', 'partial', 'failed')
-"""Outcomes that leave nothing to a person."""
+"""Outcomes with a score, which need no decision by a person."""
 
 NOTE = 'note: '
-"""A check's line that starts so costs nothing, and is told to the student."""
+"""A printed line of a check that starts with this costs no points and is shown to the student."""
 UNGRADED = 'not graded, a person has to look at it: '
-"""How the reason begins where the grader itself failed."""
+"""How the reason begins if the grader itself failed."""
 _FAILURES = ('CheckFailed', 'PartlyRight', STARVED, DISTURBED, 'AssertionError')
 _SHOWN = ('display_data', 'stream')
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """What one grade cell came to."""
+    """The result of one grade cell."""
 
     grade_id: str
     outcome: Outcome
@@ -38,13 +38,13 @@ class Verdict:
     """Why it did not earn all of them; empty when it passed."""
     notes: tuple[str, ...] = ()
     details: str = ''
-    """What only instructors are told: what was expected and seen in a hidden part."""
+    """For instructors only: what was expected and seen in a hidden part."""
     earned: float = 0.0
     """The points of a `partial` outcome."""
     failed_at_grading: bool = False
-    """Whether what students can run of it passed, and what is checked at grading did not."""
+    """Whether its visible part passed and its hidden part failed."""
     hint: str = ''
-    """The words at the reason's end that say what to try, where the check has told which."""
+    """The words at the reason's end that are its hint, if the check has reported them."""
 
     @property
     def score(self) -> float | None:
@@ -54,10 +54,10 @@ class Verdict:
 
 
 def judge(cell: NotebookNode, run: CellRun | None, own: Iterable[tuple[str, CellRun]]) -> Verdict:
-    """Judge a grade cell by how it ran; `run` is None where the student's kernel had ended.
+    """Judge a grade cell by its run; `run` is None if the student's kernel ended before it.
 
-    `own` are the student's cells of the exercise. Raises RoomFailure where the check did not
-    come to a verdict.
+    `own` are the runs of the student's cells of the exercise. Raises RoomFailure if the check
+    did not reach a verdict.
     """
     name, points, own = graded_id(cell), float(cell.metadata.nbgrader.points), list(own)
     if run is None:
@@ -114,8 +114,8 @@ def refuse(notebook: NotebookNode, problem: str) -> list[Verdict]:
 def write_verdict(cell: NotebookNode, verdict: Verdict, outputs: Iterable[NotebookNode]) -> None:
     """Write a verdict into its grade cell, in the form that nbgrader scores.
 
-    Text goes to stdout, pictures stay; a failure is one `error` output that holds the reason and
-    no line of the test; some of the points are one result, their number, beside the reason.
+    Text on stdout and pictures stay. A failure becomes one `error` output with the reason and no
+    line of the test; partial credit becomes the reason as text and the points as the result.
     """
     shown = hidden.shown(list(outputs))
     cell.outputs = [out for out in shown if out.output_type in _SHOWN and not _is_stderr(out)]
@@ -150,7 +150,7 @@ def _notes(run: CellRun) -> Iterable[str]:
 
 
 def _in_words(reason: str, cell: NotebookNode) -> str:
-    """What a student reads of an `assert` in a hidden part: words of the lesson's author."""
+    """Return the reason of a failed `assert` in a hidden part: only words from the cell itself."""
     words = reason if reason in cell.source else 'the check failed'
     return f'{hidden.PLACE}{words}'
 
