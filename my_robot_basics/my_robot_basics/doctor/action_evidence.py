@@ -1,4 +1,4 @@
-"""What the doctor has seen of an action."""
+"""The doctor's evidence on an action."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -8,35 +8,35 @@ from my_robot_basics.doctor.evidence import Endpoint, Seen
 
 @dataclass(frozen=True, kw_only=True)
 class StandingGoal:
-    """A goal that was in one state all the time, without feedback on it."""
+    """A goal that stayed in one state, without feedback, while it was observed."""
 
     state: str
     """'accepted', 'executing' or 'canceling'."""
     seconds: float
-    """How long it was looked at."""
+    """How long it was observed."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class ActionEvidence(Seen):
-    """The graph around one action, and what its server tells everybody of its goals."""
+    """The graph around one action, and what its server publishes about its goals."""
 
     KINDS, OF = ('client', 'server'), 'of'
     NEEDED = ('server',)
 
     goals: tuple[StandingGoal, ...] = ()
     unset: frozenset[str] = frozenset()
-    """Nodes whose execute callback returned lately, and had set no status of its goal."""
+    """Nodes whose execute callback has recently returned without setting its goal's status."""
     raised: tuple[tuple[str, str], ...] = ()
-    """A node, and what its execute callback has raised lately."""
+    """A node, and the exception that its execute callback has recently raised."""
     proceeding: int = 0
-    """Goals that are not over, and go on."""
+    """How many unfinished goals make progress."""
 
     @cached_property
     def clients(self) -> tuple[Endpoint, ...]:
-        """Those of the action."""
+        """The clients of the action."""
         return self.ends('client')
 
     @cached_property
     def servers(self) -> tuple[Endpoint, ...]:
-        """Those of the action."""
+        """The servers of the action."""
         return self.ends('server')

@@ -1,6 +1,6 @@
-"""Gathers the evidence on an action: the graph, and what its server tells of its goals.
+"""Collects the evidence on an action: the graph, and what its server publishes about its goals.
 
-It is sent no goal, and no request to cancel one.
+It never sends a goal or a cancel request.
 """
 
 import contextlib
@@ -24,12 +24,12 @@ from my_robot_basics.ros2.errors import CommandError
 from my_robot_basics.session.pressure import Stopwatch
 
 STATUS_SEC = 0.5
-"""How long the states of goals may take to come, which are kept for whoever subscribes later."""
+"""How long the transient-local message with the states of all goals may take to arrive."""
 STANDS_SEC = 3.0
-"""So long a goal has to stand still before that is worth telling, of time that was free."""
+"""A goal without progress for this long is reported; only time with a free processor counts."""
 EVERY_SEC = 0.05
 BUSY_TIMES = 2.5
-"""How many times as long it may all take where processes have to wait for a processor."""
+"""How many times as long the look may take if processes have to wait for a processor."""
 LOG_DEPTH = 1_000
 MOST_CHARACTERS = 100
 _ACTIVE = {
@@ -42,7 +42,7 @@ _RAISED = 'Error raised in execute callback: '
 
 
 def endpoints_of(node: Node) -> tuple[Endpoint, ...]:
-    """All ends of actions that are not those of hidden nodes."""
+    """Return all action clients and servers, except those of hidden nodes."""
     ends = actions.take(node)
     kinds: dict[Kind, dict] = {'client': ends.clients, 'server': ends.servers}
     return tuple(
@@ -55,20 +55,20 @@ def endpoints_of(node: Node) -> tuple[Endpoint, ...]:
 
 
 class _Told:
-    """What the server of an action publishes of its goals, and what nodes log."""
+    """What the server of an action publishes about its goals, and what nodes log."""
 
     def __init__(self, node: Node, name: str, type_name: str) -> None:
         self.states: dict[bytes, str] = {}
-        """Of the goals that are not over."""
+        """The state of each unfinished goal, by goal ID."""
         self.moving: set[bytes] = set()
-        """Goals that have changed their state, or had feedback, since they were first seen."""
+        """Goals whose state has changed, or that got feedback, since they were first seen."""
         self.lines: list[tuple[str, str]] = []
-        """The names of loggers, with what each has logged."""
+        """Pairs of a logger's name and a line that it has logged."""
         topics, status_qos = f'{name}/_action', qos_profile_action_status_default
         node.create_subscription(GoalStatusArray, f'{topics}/status', self._states, status_qos)
         latched = QoSProfile(depth=LOG_DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         node.create_subscription(Log, '/rosout', self._line, latched)
-        with contextlib.suppress(CommandError):  # a type that this machine has not got
+        with contextlib.suppress(CommandError):  # a type that is not installed here
             feedback = interfaces.action_class_for(type_name).Impl.FeedbackMessage
             node.create_subscription(feedback, f'{topics}/feedback', self._feedback, 10)
 
@@ -89,7 +89,7 @@ class _Told:
         self.lines.append((message.name, message.msg))
 
     def logged_by(self, node_names: Iterable[str]) -> list[tuple[str, str]]:
-        """The full names of these nodes, with what each has logged."""
+        """Return pairs of a node's full name and a line that it has logged, for these nodes."""
         loggers = {name: name.strip('/').replace('/', '.') for name in node_names}
         return [
             (name, line)
@@ -100,9 +100,9 @@ class _Told:
 
 
 def look(watcher: Watcher, name: str, *, domain_id: int, look_sec: float) -> ActionEvidence:
-    """What can be seen of an action, from a watcher that knows the graph.
+    """Return the evidence on an action, from a watcher that has taken the graph.
 
-    It ends as soon as every goal is seen to go on, and with none, at most after `look_sec`.
+    The look ends when every goal has made progress or there is none, at most after `look_sec`.
     """
     endpoints = endpoints_of(watcher.node)
     servers = [end for end in endpoints if (end.kind, end.name) == ('server', name)]
@@ -141,6 +141,6 @@ def look(watcher: Watcher, name: str, *, domain_id: int, look_sec: float) -> Act
 
 
 def _is_long(watch: Stopwatch, look_sec: float) -> bool:
-    """Whether a goal that goes on would have shown it."""
+    """Whether a goal that makes progress would have shown it by now."""
     long_sec = min(STANDS_SEC, look_sec)
     return watch.free_sec() >= long_sec or watch.wall_sec() >= BUSY_TIMES * long_sec

@@ -1,4 +1,4 @@
-"""A diagnosis as a part of a web page, whose lines are as long as there is room."""
+"""A diagnosis as HTML, whose lines adapt to the width of the page."""
 
 import html
 
@@ -8,12 +8,12 @@ from my_robot_basics.language.catalogues import ENGLISH
 from my_robot_basics.language.speaking import in_language
 
 STYLE = 'font-size:13px;line-height:1.4;overflow-wrap:anywhere'
-"""As large as other outputs, however narrow the window is."""
+"""The text size of other outputs; long words are broken in a narrow window."""
 CODE_STYLE = 'margin:2px 0;white-space:pre-wrap;overflow-wrap:anywhere'
 
 
 def tell_as_html(diagnosis: Diagnosis, language: str = ENGLISH) -> str:
-    """The whole answer, as `report.tell` gives it, in HTML."""
+    """Return the whole diagnosis as HTML, with the words of `report.tell`."""
     items = ''.join(_item(finding, language) for finding in diagnosis.findings)
     first = f'<p>{html.escape(opening(diagnosis, language))}</p>'
     shown = f'{first}\n<ol>\n{items}</ol>' if items else first

@@ -1,4 +1,4 @@
-"""Asks nodes a question that every node that is spun answers."""
+"""Sends nodes a parameter request, which every node that is spun answers."""
 
 from rcl_interfaces.srv import GetParameters
 from rclpy.client import Client
@@ -9,16 +9,16 @@ from my_robot_basics.graph.watcher import Watcher
 
 READY_SEC = 1.0
 ANSWER_SEC = 3.0
-"""How long a node may take to answer, from the moment in which the answer is wanted."""
+"""How long to wait for answers, from the call of `answers`."""
 
 
 class Questions:
-    """One question a node, for its use_sim_time: asked now, and answered in the background."""
+    """A request to each node for its use_sim_time: sent at once, answered in the background."""
 
     UNASKED = NodeState(answers=None)
 
     def __init__(self, watcher: Watcher, node_names: list[str]) -> None:
-        """Ask the nodes of these full names that have parameter services."""
+        """Send the request to those of these nodes (full names) that have parameter services."""
         self._watcher = watcher
         services = dict(watcher.node.get_service_names_and_types())
         clients: dict[str, Client] = {
@@ -37,11 +37,11 @@ class Questions:
         }
 
     def unanswered(self) -> set[str]:
-        """The nodes that were asked and have not answered yet."""
+        """Return the nodes that have got the request and have not answered yet."""
         return {name for name, future in self._asked.items() if not future.done()}
 
     def answers(self, *, timeout_sec: float = ANSWER_SEC) -> dict[str, NodeState]:
-        """What is known of each node that was asked, after a short wait."""
+        """Wait for answers, at most `timeout_sec`; return the state of each of these nodes."""
         self._watcher.spin_until(lambda: not self.unanswered(), timeout_sec=timeout_sec)
         return {name: _state(future) for name, future in self._asked.items()}
 

@@ -1,4 +1,4 @@
-"""Clients that were made with another type than the server of their service or action."""
+"""Clients whose type differs from that of the server of their service or action."""
 
 from collections.abc import Iterable, Iterator
 
@@ -9,7 +9,7 @@ from my_robot_basics.doctor.evidence import Endpoint, Finding
 def clients_of_another_type(
     servers: Iterable[Endpoint], clients: Iterable[Endpoint]
 ) -> Iterator[tuple[Endpoint, str, str]]:
-    """Yield each such client, a server's node, and the server's type; that one counts as right."""
+    """Yield each such client, a server's node, and the server's type, which is taken as right."""
     types = {server.type_name: server.node_name for server in servers}
     for client in clients:
         if types and client.type_name not in types:
@@ -20,7 +20,7 @@ def clients_of_another_type(
 def types_differ(
     client: Endpoint, type_name: str, name: str, *, expected: str, seen: str
 ) -> Finding:
-    """Return what to say of a client whose type should be `type_name`."""
+    """Return the finding about a client whose type should be `type_name`."""
     return Finding(
         title='types differ',
         expected=expected,

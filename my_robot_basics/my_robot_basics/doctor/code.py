@@ -1,4 +1,4 @@
-"""The lines of Python that the fixes show."""
+"""The lines of Python that fixes show."""
 
 from my_robot_basics.doctor.evidence import Kind
 
@@ -22,9 +22,9 @@ _TYPES = {'publisher': 'JointState', 'subscription': 'JointState'}
 
 
 def create(kind: Kind, *, type_name: str, name: str, qos_profile: str = '10') -> str:
-    """The call that makes an endpoint of a topic, a service or an action of that name.
+    """Return the line that creates an endpoint of the topic, service or action `name`.
 
-    A topic's QoS profile is given as Python or as a queue's depth.
+    `qos_profile` is for topics: a QoSProfile as Python code, or the queue's depth.
     """
     if '/action/' in type_name:
         return _ACTIONS[kind].format(type_name.rpartition('/')[2] or 'MoveArm', name)

@@ -1,4 +1,4 @@
-"""Looks at a name, a topic's, a service's or an action's, and judges what is seen."""
+"""Collects and judges the evidence on the topic, service or action with a given name."""
 
 import dataclasses
 from collections.abc import Callable, Iterable
@@ -29,7 +29,7 @@ class _Graph(NamedTuple):
     action_ends: tuple[Endpoint, ...]
 
     def has(self, ends: tuple[Endpoint, ...], name: str) -> bool:
-        """Whether these are ends of that name, or it is near to one of them and to no other's."""
+        """Whether one of `ends` has that name, or if none at all has it, only `ends` are near."""
         every = self.topic_ends, self.service_ends, self.action_ends
         if any(end.name == name for found in every for end in found):
             return any(end.name == name for end in ends)
@@ -44,12 +44,12 @@ def diagnose(
     seconds: float = looking.LISTEN_SEC,
     raised: service_looking.Raised = lambda _: {},
 ) -> tuple[Diagnosis, ...]:
-    """Look at what has this full name in a ROS domain: a topic, a service, an action, or several.
+    """Diagnose what has this full name in a ROS domain: a topic, a service, an action, or several.
 
-    Listens to a topic until enough has arrived, and watches a service until all is clear, each
-    for `seconds` at most. With `other_domains` the other domains in use on this machine are looked
-    at too, where an end is missing. `raised` tells, by their nodes, what the callbacks of a
-    service have raised.
+    It receives messages of a topic until they are enough, and observes a service until the
+    evidence is clear, each for at most `seconds`. If an end is missing, `other_domains` makes it
+    search the other domains in use on this machine. `raised` returns, for a service, the last
+    exception of its callback by node.
     """
     topic = service = action = None
     with Watcher(domain_id=domain_id) as watcher:
@@ -87,10 +87,10 @@ def diagnose(
 
 
 def _find(watcher: Watcher, name: str, domain_id: int) -> _Graph:
-    """The graph, complete where nobody is there who serves or uses that name."""
+    """Return the graph; if nothing but clients has that name, wait until discovery is complete."""
     graph = _take(watcher)
     if not any(end.name == name and end.kind != 'client' for end in sum(graph[1:], ())):
-        # before anybody is called missing
+        # wait before an end is reported as missing
         discovery.settle(watcher.node, watcher.spin_for, domain_id=domain_id)
         graph = _take(watcher)
     return graph
@@ -113,7 +113,7 @@ def _is_near(name: str, ends: Iterable[Endpoint]) -> bool:
 def _elsewhere(
     name: str, domain_id: int, ends_of: Callable[[Node], Iterable[Endpoint]]
 ) -> dict[int, tuple[Endpoint, ...]]:
-    """The ends of that name in the other domains that are in use on this machine."""
+    """Return the ends with that name in the other domains that are in use on this machine."""
     found = {}
     for other in looking.other_domains(domain_id):
         with Watcher(domain_id=other) as watcher:

@@ -1,4 +1,4 @@
-"""What the doctor has seen, and what a rule makes of it."""
+"""The doctor's evidence, and the findings that rules derive from it."""
 
 import itertools
 from dataclasses import dataclass, field
@@ -10,9 +10,9 @@ from rclpy.qos import QoSProfile, qos_profile_services_default
 from my_robot_basics.doctor.callback import Callback
 
 LARGEST_PAUSE_SEC = 0.005
-"""Messages of one burst follow each other at least as fast as this …"""
+"""The largest pause between two messages of one burst."""
 PART_OF_PERIOD = 0.25
-"""… and within this part of the mean time between two: a fast, steady flow is no burst."""
+"""The same as a part of the mean period: so a fast, steady stream does not count as a burst."""
 
 Kind = Literal['publisher', 'subscription', 'client', 'server']
 VERBS: dict[Kind, str] = {
@@ -21,26 +21,26 @@ VERBS: dict[Kind, str] = {
     'client': 'asks',
     'server': 'serves',
 }
-"""What a node with such an endpoint does."""
+"""The verb for a node with such an endpoint."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Endpoint:
-    """One end of a topic or of a service, on one node."""
+    """One end of a topic, a service or an action, on one node."""
 
     kind: Kind
     node_name: str
     """Full name, such as `/kinematics_publisher`."""
     name: str
-    """Of the topic or the service."""
+    """Full name of the topic, the service or the action."""
     type_name: str
-    """Such as `sensor_msgs/msg/JointState`."""
+    """Full name of its type, such as `sensor_msgs/msg/JointState`."""
     qos_profile: QoSProfile = field(
         compare=False, default_factory=lambda: qos_profile_services_default
     )
-    """As the graph tells it: without queue depth and history, which DDS does not transmit."""
+    """As the graph has it: without queue depth and history, which DDS does not transmit."""
     depth: int | None = None
-    """Length of its queue, known for nodes of this process alone."""
+    """Depth of its queue; known only for nodes of this process."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,7 +49,7 @@ class ReceivedMessage:
 
     message: Any
     sent_sec: float
-    """On the wall clock, since the epoch: DDS's source timestamp."""
+    """DDS's source timestamp, in seconds since the epoch on the wall clock."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,52 +57,52 @@ class NodeState:
     """What a node answers through its parameter services."""
 
     answers: bool | None
-    """Whether it answered; None where it has no such services, and nothing is known."""
+    """Whether it answered; None if unknown, because it has no such services or was not asked."""
     use_sim_time: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
 class Remap:
-    """A rule with which a process of this machine was started, to call one name by another."""
+    """A remapping rule in the command line of a process on this machine."""
 
     command: str
-    """What starts the process without the rule, for a shell."""
+    """The shell command that starts the process without the rule."""
     name: str
     instead: str
 
 
 @dataclass(frozen=True, kw_only=True)
 class Seen:
-    """The graph around one topic, or around one service."""
+    """The graph around one topic, service or action."""
 
     name: str
-    """The full name that was asked about."""
+    """The full name to diagnose."""
     endpoints: tuple[Endpoint, ...]
-    """Of all topics (or all services) but ROS's own; those of hidden nodes are left out."""
+    """Those of all topics (or services, or actions) except ROS's own and hidden nodes'."""
     nodes: dict[str, NodeState]
     """Full names of all nodes that are not hidden."""
     remaps: tuple[Remap, ...] = ()
     domain_id: int = 0
     missing_participants: int = 0
-    """Participants of this domain on this machine that are not on the graph."""
+    """How many participants of this domain on this machine are not on the graph."""
     elsewhere: dict[int, tuple[Endpoint, ...]] = field(default_factory=dict)
-    """Endpoints of the name in other domains of this machine, where these were looked at."""
+    """Endpoints with the name in other domains of this machine, if these were searched."""
     callbacks: tuple[Callback, ...] = ()
-    """Those of this process that went on all the time; none are known of other processes."""
+    """Callbacks of this process that have not returned; those of others are unknown."""
 
     KINDS: ClassVar[tuple[Kind, Kind]]
-    """Both ends, in the direction in which data (or a request) goes."""
+    """Both kinds of ends, in the direction in which messages (or requests) go."""
     OF: ClassVar[str]
-    """What links an end to a name: a publisher *on* a topic, a server *of* a service."""
+    """The preposition before the name: a publisher *on* a topic, a server *of* a service."""
     NEEDED: ClassVar[tuple[Kind, ...]]
-    """The ends without which something is wrong."""
+    """The kinds of ends that must exist, else there is a fault."""
 
     def ends(self, kind: Kind) -> tuple[Endpoint, ...]:
-        """The ends of that kind on the name that was asked about."""
+        """Return the ends of that kind with the diagnosed name."""
         return tuple(end for end in self.endpoints if (end.kind, end.name) == (kind, self.name))
 
     def all_ends(self) -> tuple[Endpoint, ...]:
-        """The ends of both kinds."""
+        """Return the ends of both kinds with the diagnosed name."""
         first, second = map(self.ends, self.KINDS)
         return first + second
 
@@ -111,7 +111,7 @@ class Seen:
         return any(node_name in each.holds for each in self.callbacks)
 
     def state(self, node_name: str) -> NodeState:
-        """What a node answered."""
+        """Return what a node answered."""
         return self.nodes.get(node_name, NodeState(answers=None))
 
 
@@ -123,27 +123,27 @@ class Evidence(Seen):
     NEEDED = KINDS
 
     has_clock: bool = False
-    """Whether somebody publishes `/clock`."""
+    """Whether a node publishes `/clock`."""
     received: tuple[ReceivedMessage, ...] = ()
     listened_sec: float = 0.0
     start_sec: float = 0.0
-    """When the doctor began to listen, on the wall clock."""
+    """When the doctor subscribed, on the wall clock."""
     unknown_types: tuple[str, ...] = ()
-    """Types of the topic's publishers that are not installed here: nobody could listen in."""
+    """Types of the topic's publishers that are not installed here: the doctor can't subscribe."""
 
     @cached_property
     def publishers(self) -> tuple[Endpoint, ...]:
-        """Those of the topic."""
+        """The publishers on the topic."""
         return self.ends('publisher')
 
     @cached_property
     def subscriptions(self) -> tuple[Endpoint, ...]:
-        """Those of the topic."""
+        """The subscriptions on the topic."""
         return self.ends('subscription')
 
     @cached_property
     def fresh(self) -> tuple[ReceivedMessage, ...]:
-        """The messages that were sent while the doctor looked: not those kept for late joiners."""
+        """The messages that were sent during the look, not those kept for late subscribers."""
         return tuple(each for each in self.received if each.sent_sec >= self.start_sec)
 
     @property
@@ -154,7 +154,7 @@ class Evidence(Seen):
 
     @property
     def bursts(self) -> list[int]:
-        """How many messages came in one go, each time; one message alone is a 1."""
+        """The number of messages in each burst; a single message is a 1."""
         times = [each.sent_sec for each in self.fresh]
         period_sec = self.listened_sec / max(1, len(times))
         most_sec = min(LARGEST_PAUSE_SEC, PART_OF_PERIOD * period_sec)
@@ -169,7 +169,7 @@ class Evidence(Seen):
 
 @dataclass(frozen=True, kw_only=True)
 class Finding:
-    """One fault, in the words of a check: what was expected, what was seen, what to do."""
+    """One fault, described as in a check: what was expected, what was seen, what to do."""
 
     title: str
     expected: str
@@ -177,16 +177,16 @@ class Finding:
     fix: str
     """A sentence that says what to do."""
     code: str = ''
-    """The line that fixes it: Python in the node, or a command where it starts with `$ `."""
+    """The line that fixes it: Python in the node, or a shell command if it starts with `$ `."""
     broken: tuple[Endpoint, ...] = ()
-    """Ends whose way to the topic, or from it, is broken."""
+    """Ends whose connection to the topic, service or action is broken."""
     missing: Kind | None = None
-    """The end that nobody has."""
+    """The kind of end that no node has."""
 
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """The evidence and what follows from it, the likeliest first; no finding: all is well."""
+    """The evidence and its findings, the likeliest first; without findings, all is well."""
 
     evidence: Seen
     findings: tuple[Finding, ...]

@@ -1,4 +1,4 @@
-"""What the callbacks of this process do, looked at again and again from another thread of it."""
+"""Observes the callbacks of this process by repeated looks from another of its threads."""
 
 import contextlib
 import linecache
@@ -24,25 +24,25 @@ _NOT_THEIRS = (
     f'{sysconfig.get_path("stdlib")}/',
     f'{Path(__file__).parents[1] / "live"}/',
 )
-"""What rclpy, Python's own library and `live` do in there is no line of the student's."""
+"""Folders of rclpy, Python's standard library and `live`: their code is not the student's."""
 SURE_SEC = 1.0
-"""So long a callback has to wait, that can't get what it waits for, or a request be lost."""
+"""After this long, a deadlock or a lost request is reported."""
 LONG_SEC = 5.0
-"""So long any other callback has to go on: it may be slow."""
+"""After this long, any other callback that has not returned is reported: it may be slow."""
 
 
 class Inside:
-    """Looks at this process, whenever `look` is called, and tells what lasted."""
+    """Compares the callbacks in progress at each call of `look`, and reports which have lasted."""
 
     def __init__(self, service_name: str = '') -> None:
-        """`service_name`: the service whose requests are of interest, if any."""
+        """Observe callbacks, and requests to `service_name`, if one is given."""
         self._service_name = service_name
         self._works: dict[Task, tuple[float, Work]] = {}
         self._requests: dict[Future, tuple[float, str]] = {}
         self._spun: set[object] = set()
 
     def look(self) -> None:
-        """Look once."""
+        """Record which callbacks are in progress and which requests have no answer."""
         with contextlib.suppress(InvalidHandle):  # a node was destroyed just now
             self._look()
 
@@ -52,7 +52,7 @@ class Inside:
         works = {}
         for work in in_progress(threads):
             since, last = self._works.get(work.task, (now, work))
-            # in the moment in which a coroutine goes on nobody sees where it is
+            # while a coroutine resumes, its frames can't be seen: keep the former ones
             works[work.task] = since, work if work.frames else last
         asked, self._works = dict(self._last_requests()), works
         serves = any(_service_of(w) == self._service_name for _, w in self._works.values())
@@ -62,7 +62,7 @@ class Inside:
         }
 
     def callbacks(self, *, at_least_sec: float) -> tuple[Callback, ...]:
-        """The callbacks that have been in progress for so long, and still are."""
+        """Return the callbacks that have been in progress for `at_least_sec`, and still are."""
         now, works = time.monotonic(), [work for _, work in self._works.values()]
         found = []
         for since, work in self._works.values():
@@ -72,12 +72,12 @@ class Inside:
         return tuple(found)
 
     def lasting(self, *, at_least_sec: float = LONG_SEC) -> tuple[Callback, ...]:
-        """The callbacks that can't get what they wait for, or go on for so long."""
+        """Return the callbacks in a deadlock, and those in progress for `at_least_sec`."""
         sure = self.callbacks(at_least_sec=SURE_SEC)
         return tuple(each for each in sure if each.is_sure() or each.seconds >= at_least_sec)
 
     def unanswered(self, *, at_least_sec: float) -> dict[str, float]:
-        """How long the last request of a node had no answer, while none was being answered."""
+        """Return, by node, how long its last request had no answer while the server was idle."""
         now = time.monotonic()
         return {
             node_name: now - since
@@ -86,7 +86,7 @@ class Inside:
         }
 
     def unspun(self) -> frozenset[str]:
-        """The nodes that no thread spins."""
+        """Return the nodes that no thread spins."""
         return frozenset(
             node.get_fully_qualified_name()
             for node in own_nodes()
@@ -94,7 +94,7 @@ class Inside:
         )
 
     def _may_spin(self, node: Node) -> bool:
-        # of executors in C++, no thread shows whether they spin
+        # no Python frame shows whether an executor written in C++ spins
         return not isinstance(node.executor, Executor) or node.executor in self._spun
 
     def _last_requests(self) -> Iterator[tuple[Future, str]]:
@@ -106,7 +106,7 @@ class Inside:
 
 
 def visible() -> frozenset[str]:
-    """The nodes of this process whose callbacks can be looked at."""
+    """Return the nodes of this process whose callbacks can be observed."""
     return frozenset(
         node.get_fully_qualified_name()
         for node in own_nodes()
@@ -115,12 +115,12 @@ def visible() -> frozenset[str]:
 
 
 def taken() -> frozenset[str]:
-    """The nodes of this process that were taken from the executor that spun them."""
+    """Return the nodes of this process that were removed from the executor that spun them."""
     return frozenset(node.get_fully_qualified_name() for node in own_nodes() if _is_taken(node))
 
 
 def _is_taken(node: Node) -> bool:
-    """Whether the node's executor has it no more: it was added to another one, and removed."""
+    """Whether the node's executor lost it: the node was added to another one, and removed."""
     return node.executor is not None and node not in node.executor.get_nodes()
 
 

@@ -1,4 +1,4 @@
-"""Gathers the evidence: the graph, what nodes answer, what arrives, and what is next door."""
+"""Collects the evidence on a topic: the graph, nodes' answers, messages, and other domains."""
 
 import dataclasses
 import time
@@ -23,28 +23,28 @@ from my_robot_basics.session.neighbours import nodes_here
 LISTEN_SEC = 6.0
 """How long to wait for messages at most."""
 ENOUGH_MESSAGES, ENOUGH_SEC = 4, 2.0
-"""So many messages, in so long since the first of them, are a good look."""
+"""The look ends after this many messages, and this long after the first of them was sent."""
 MISSING_SEC = 4.0
-"""How long to wait for participants that the operating system knows and the graph does not."""
+"""How long to wait for participants that Linux shows and the graph does not have yet."""
 DOMAINS = (*range(domain.LAST + 1), *range(215, 233))
-"""Those whose ports are not Linux's for outgoing connections."""
+"""Domains whose ports are outside of Linux's range of ephemeral ports."""
 DEPTH = 5000
-"""Of the doctor's own queue: more messages than it can receive in one look."""
+"""Depth of the doctor's own queue: more messages than it can receive in one look."""
 ANNOUNCEMENTS = 'ros_discovery_info'
 """DDS topic on which each ROS participant publishes the names of its nodes."""
 
 
 def other_domains(domain_id: int) -> Iterator[int]:
-    """The other domains that are in use on this machine."""
+    """Yield the other domains that are in use on this machine."""
     return (other for other in DOMAINS if other != domain_id and participants.count(other))
 
 
 def look(
     watcher: Watcher, graph: GraphSnapshot, topic_name: str, *, domain_id: int, listen_sec: float
 ) -> Evidence:
-    """What can be seen of a topic, from a watcher that has taken the graph."""
+    """Return the evidence on a topic, from a watcher that has taken the graph."""
     if not (graph.publishers(topic_name) and graph.subscriptions(topic_name)):
-        # before anybody is called missing
+        # wait before an end is reported as missing
         watcher.spin_until(
             lambda: missing_participants(watcher.node, domain_id) <= 0, timeout_sec=MISSING_SEC
         )
@@ -71,7 +71,7 @@ def look(
 
 
 def _listen(watcher: Watcher, evidence: Evidence, *, listen_sec: float) -> Evidence:
-    """Subscribe in a way that every publisher's offer allows, and keep what arrives."""
+    """Subscribe with a QoS profile compatible with every publisher, and keep the messages."""
     classes = {end.type_name: message_class(end.type_name) for end in evidence.publishers}
     unknown = tuple(sorted(name for name, class_ in classes.items() if class_ is None))
     evidence = dataclasses.replace(evidence, unknown_types=unknown)
@@ -109,7 +109,7 @@ def _listen(watcher: Watcher, evidence: Evidence, *, listen_sec: float) -> Evide
 
 
 def endpoints_of(node: Node) -> Iterator[Endpoint]:
-    """All endpoints on the graph that are neither ROS's own nor those of hidden nodes."""
+    """Yield all endpoints on the graph, except ROS's own topics' and hidden nodes'."""
     depths = _depths()
     look_ups: dict[Kind, Callable[[str], list[TopicEndpointInfo]]] = {
         'publisher': node.get_publishers_info_by_topic,
@@ -134,7 +134,7 @@ def endpoints_of(node: Node) -> Iterator[Endpoint]:
 
 
 def _depths() -> dict[tuple[Kind, str, str], int]:
-    """Depths of the queues in this process, the shortest where a node has several on a topic."""
+    """Return the depths of queues in this process; of several on one topic, the smallest."""
     found: dict = {}
     for node in nodes_here():
         name = node.get_fully_qualified_name()
@@ -146,6 +146,6 @@ def _depths() -> dict[tuple[Kind, str, str], int]:
 
 
 def missing_participants(node: Node, domain_id: int) -> int:
-    """How many participants this machine has in the domain that are not on the graph."""
+    """Return how many participants of the domain on this machine are not on the graph."""
     received = node.get_publishers_info_by_topic(ANNOUNCEMENTS, no_mangle=True)
     return participants.count(domain_id) - len(received)

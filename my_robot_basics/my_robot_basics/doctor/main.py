@@ -13,9 +13,9 @@ WELL, FAULT, USAGE, INTERRUPTED = 0, 1, 2, 130
 
 
 def main(argv: list[str] | None = None) -> int:
-    """Say why nothing arrives on a topic, or why a service or an action does not answer.
+    """Print why no message arrives on a topic, or why a service or an action does not answer.
 
-    0: all is well, 1: a fault was named, 2: wrong usage.
+    Returns 0 if all is well, 1 if a fault was found, 2 for wrong usage, 130 after Ctrl-C.
     """
     parser = argparse.ArgumentParser(
         'topic_doctor',
@@ -54,7 +54,7 @@ def main(argv: list[str] | None = None) -> int:
         parser.error(str(error))
     environment.say_where()
     try:
-        # rclpy takes its time, and `--help` needs none of it
+        # imported late: rclpy is slow to import, and `--help` does not need it
         from my_robot_basics.doctor.diagnosing import diagnose
         from my_robot_basics.doctor.report import tell
 

@@ -1,8 +1,8 @@
-"""Names of topics and services as people type them."""
+"""Names of topics and services as users type them."""
 
 
 def full_name(text: str) -> str:
-    """The full name, with its slash in front; raises ValueError for what can't be a name."""
+    """Return the full name, with its leading slash; raises ValueError for an invalid name."""
     from rclpy.exceptions import InvalidTopicNameException
     from rclpy.validate_full_topic_name import validate_full_topic_name
 

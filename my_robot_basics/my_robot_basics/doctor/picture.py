@@ -1,4 +1,4 @@
-"""The graph around a topic as a picture, the broken edge marked."""
+"""The graph around a topic, service or action as a picture, with the broken edges marked."""
 
 from typing import TYPE_CHECKING
 
@@ -11,14 +11,14 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-# Okabe and Ito's colours are told apart by everyone; a broken edge is dashed and crossed, too
+# Okabe and Ito's palette, for colour-blind readers; a broken edge is also dashed and crossed
 WELL, BROKEN, TOPIC = '#0072b2', '#d55e00', '#f0f0f0'
 ROW = 0.9
 LEFT, MIDDLE, RIGHT = 0.0, 1.0, 2.0
 
 
 def describe(diagnosis: Diagnosis) -> str:
-    """The picture in words, for those who can't see it."""
+    """Return the picture's alternative text."""
     graph = (
         gettext_noop(f'graph of {diagnosis.evidence.name}') + f': {summary(diagnosis.evidence)}'
     )
@@ -31,7 +31,7 @@ def describe(diagnosis: Diagnosis) -> str:
 
 
 def draw(diagnosis: Diagnosis) -> bytes:
-    """Publishers, or clients, on the left, subscriptions, or servers, on the right; as a PNG."""
+    """Return a PNG: publishers or clients on the left, subscriptions or servers on the right."""
     from matplotlib.figure import Figure  # takes a second
 
     evidence = diagnosis.evidence
@@ -72,7 +72,7 @@ def _label(end: Endpoint | None, kind: Kind, name: str) -> str:
 
 
 def box(axes: 'Axes', x: float, y: float, text: str, *, face: str, style: str = 'square') -> None:
-    """Write a name in a frame; topics have round corners and another face than nodes."""
+    """Draw a name in a frame; callers give topics round corners and another colour than nodes."""
     axes.text(
         *(x, y, text),
         ha='center',
@@ -91,9 +91,9 @@ def arrow(
     is_broken: bool = False,
     bend: float = 0.0,
 ) -> None:
-    """Draw a line along the way of the messages; a broken one is dashed and crossed.
+    """Draw an arrow in the direction of the messages; a broken one is dashed and crossed.
 
-    `bend` lifts its middle.
+    `bend` raises its middle.
     """
     colour = BROKEN if is_broken else WELL
     middle = (start[0] + stop[0]) / 2, (start[1] + stop[1]) / 2 + bend

@@ -1,4 +1,4 @@
-"""With which remapping rules the processes of this machine were started (`-r old:=new`)."""
+"""The remapping rules (`-r old:=new`) in the command lines of processes on this machine."""
 
 import shlex
 from collections.abc import Iterator
@@ -10,7 +10,7 @@ PROCESSES = Path('/proc')
 
 
 def of_domain(domain_id: int) -> tuple[Remap, ...]:
-    """The rules in the command lines of this user's processes in a ROS domain."""
+    """Return the rules in the command lines of this user's processes in a ROS domain."""
     return tuple(
         remap
         for folder in PROCESSES.iterdir()
@@ -21,7 +21,7 @@ def of_domain(domain_id: int) -> tuple[Remap, ...]:
 
 
 def of_command(words: list[str]) -> Iterator[Remap]:
-    """The rules in one command line."""
+    """Yield the rules in one command line."""
     if '--ros-args' not in words:
         return
     for i, word in enumerate(words[:-1]):
@@ -36,7 +36,7 @@ def _slash(name: str) -> str:
 
 
 def _domain(environment: list[str]) -> str:
-    """The domain ID with which a process was started, 0 where it was given none."""
+    """Return the domain ID in a process's environment, '0' if it has none."""
     return dict(word.partition('=')[::2] for word in environment).get('ROS_DOMAIN_ID') or '0'
 
 
@@ -44,5 +44,5 @@ def _words(path: Path) -> list[str]:
     try:
         text = path.read_text(encoding='utf-8', errors='replace')
     except OSError:
-        return []  # it has ended just now, or is another user's
+        return []  # the process has just ended, or belongs to another user
     return [word for word in text.split('\0') if word]

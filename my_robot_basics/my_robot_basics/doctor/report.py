@@ -1,4 +1,4 @@
-"""A diagnosis in words for a beginner."""
+"""A diagnosis as text for beginners."""
 
 from functools import partial
 
@@ -26,20 +26,20 @@ TO_SHOW += ('nobody publishes', 'nobody subscribes', 'nobody asks', 'nobody serv
 TO_SHOW += ('{names} publishes', '{names} subscribes', '{names} asks', '{names} serves')
 TO_SHOW += ('{names} publish', '{names} subscribe', '{names} ask', '{names} serve')
 TO_SHOW += ('publisher', 'subscription', 'client', 'server', 'a client of {name}')
-"""What sentences are made from in places where no template of them is seen."""
+"""Texts for `./course translate` that it does not find in f-strings of the code."""
 INDENT = ' ' * 13
-"""Below the words of a paragraph, whose labels stand before them."""
+"""The indentation of a paragraph's text, which is to the right of its labels."""
 
 
 def tell(diagnosis: Diagnosis, language: str = ENGLISH) -> str:
-    """The whole answer: one paragraph a fault, the likeliest first, or that all is well."""
+    """Return the whole diagnosis: one paragraph for each fault, or that all is well."""
     findings = enumerate(diagnosis.findings, start=1)
     paragraphs = [_paragraph(i, finding, language) for i, finding in findings]
     return '\n\n'.join([opening(diagnosis, language), *paragraphs])
 
 
 def opening(diagnosis: Diagnosis, language: str) -> str:
-    """Whether something is wrong, and what was seen: the first sentence."""
+    """Return the first sentence: whether there is a fault, and a summary of the evidence."""
     evidence = diagnosis.evidence
     if not diagnosis.findings:
         return in_language(language, f'All is well on {evidence.name}: {summary(evidence)}.')
@@ -51,7 +51,7 @@ def opening(diagnosis: Diagnosis, language: str) -> str:
 
 
 def summary(evidence: Seen) -> str:
-    """Which nodes are there, and what was seen of them: one clause."""
+    """Return in one clause which nodes use the name, and what was observed of them."""
     first, second = evidence.KINDS if isinstance(evidence, Evidence) else evidence.KINDS[::-1]
     told = f'{_names(evidence, first)}, {_names(evidence, second)}'
     if isinstance(evidence, Evidence):
@@ -82,7 +82,7 @@ def _received(evidence: Evidence) -> str:
 
 
 def _lost(evidence: ServiceEvidence) -> str:
-    """A note on requests without an answer; a second one gets it, so that is no fault."""
+    """Return a note on requests without an answer; it is no fault: the next request gets one."""
     idle = all(end.node_name in evidence.visible for end in evidence.servers)
     spun = [e.node_name for e in evidence.unanswered if evidence.state(e.node_name).answers]
     names = sorted({*spun})
@@ -107,12 +107,12 @@ def _paragraph(number: int, finding: Finding, language: str) -> str:
     for label, text in fields(finding, language).items():
         lines += in_lines(text, COLUMNS, first=f'   {ljust(label, 10)}', rest=INDENT)
     if finding.code:
-        lines.append(f'{INDENT}{finding.code}')  # in one line, to be copied
+        lines.append(f'{INDENT}{finding.code}')  # not broken, so that it can be copied
     return '\n'.join(lines)
 
 
 def fields(finding: Finding, language: str) -> dict[str, str]:
-    """What is said of a fault, by its label, in a language."""
+    """Return the texts about a fault by their labels, in a language."""
     say = partial(in_language, language)
     fix = say(finding.fix)
     if finding.code:

@@ -1,4 +1,4 @@
-"""What the doctor has seen of a service."""
+"""The doctor's evidence on a service."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -9,38 +9,38 @@ from my_robot_basics.doctor.evidence import Endpoint, Seen
 
 @dataclass(frozen=True, kw_only=True)
 class Unanswered:
-    """The last request of a client of this process, which had no answer all the time."""
+    """The last request of a client of this process, if it had no answer during the whole look."""
 
     node_name: str
     seconds: float
-    """How long it was looked at."""
+    """How long it was observed."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class ServiceEvidence(Seen):
-    """The graph around one service, and what its nodes do, as far as this process can know."""
+    """The graph around one service, and what its nodes do, as far as this process can observe."""
 
     KINDS, OF = ('client', 'server'), 'of'
     NEEDED = ('server',)
 
     looked_sec: float = 0.0
-    """How long its nodes were given to answer a question."""
+    """How long its nodes had to answer a parameter request."""
     raised: Mapping[str, str] = field(default_factory=dict)
-    """What a node's callback of this service raised last, and where; of nodes that `live` runs."""
+    """By node, the last exception of its callback of this service; only nodes that `live` runs."""
     visible: frozenset[str] = frozenset()
-    """Nodes of this process, into whose callbacks the doctor could look."""
+    """Nodes of this process whose callbacks the doctor could observe."""
     unspun: frozenset[str] = frozenset()
-    """Those of them that no thread has spun."""
+    """Nodes of this process that no thread has spun."""
     taken: frozenset[str] = frozenset()
-    """Those of them that were taken from the executor that spun them."""
+    """Nodes of this process that were removed from the executor that spun them."""
     unanswered: tuple[Unanswered, ...] = ()
 
     @cached_property
     def clients(self) -> tuple[Endpoint, ...]:
-        """Those of the service."""
+        """The clients of the service."""
         return self.ends('client')
 
     @cached_property
     def servers(self) -> tuple[Endpoint, ...]:
-        """Those of the service."""
+        """The servers of the service."""
         return self.ends('server')

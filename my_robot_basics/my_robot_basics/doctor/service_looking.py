@@ -1,6 +1,6 @@
-"""Gathers the evidence on a service: the graph, what nodes answer, what their callbacks do.
+"""Collects the evidence on a service: the graph, nodes' answers, and what their callbacks do.
 
-The service is never called: nobody knows what that would set in motion.
+The service is never called: a call may have side effects, such as moving a robot.
 """
 
 from collections.abc import Callable, Mapping
@@ -18,25 +18,26 @@ from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
 
 SILENT_SEC = 3.0
-"""So long a node has to answer a question, of time that was free, …"""
+"""A node that is not known to be busy counts as silent if it has not answered a parameter request
+for this long; only time with a free processor counts."""
 SILENT_MOST_SEC = 15.0
-"""… or so long, where no time is free. No callback may be known that keeps it busy."""
+"""The same in wall time, for a busy machine."""
 EVERY_SEC = 0.05
 BUSY_TIMES = 2.5
-"""How many times as long it may all take where processes have to wait for a processor."""
+"""How many times as long the look may take if processes have to wait for a processor."""
 
 Raised = Callable[[str], Mapping[str, str]]
 
 
 def endpoints_of(node: Node) -> tuple[Endpoint, ...]:
-    """All ends of services that are neither ROS's own nor those of hidden nodes."""
+    """Return all service clients and servers, except ROS's own and hidden nodes'."""
     ends = services.take(node)
     kinds: dict[Kind, dict] = {'client': ends.clients, 'server': ends.servers}
     return tuple(
         Endpoint(kind=kind, node_name=node_name, name=name, type_name=type_name)
         for kind, found in kinds.items()
         for name, nodes in sorted(found.items())
-        if '/_' not in name  # an action's, or hidden
+        if '/_' not in name  # else it belongs to an action, or is hidden
         for node_name, types in sorted(nodes.items())
         for type_name in types
     )
@@ -45,10 +46,10 @@ def endpoints_of(node: Node) -> tuple[Endpoint, ...]:
 def look(
     watcher: Watcher, name: str, *, domain_id: int, raised: Raised, look_sec: float
 ) -> ServiceEvidence:
-    """What can be seen of a service, from a watcher that knows the graph.
+    """Return the evidence on a service, from a watcher that has taken the graph.
 
-    `raised` tells, by their nodes, what its callbacks have raised. It ends as soon as
-    nothing goes on that takes longer to judge, at most after `look_sec` of time that was free.
+    `raised` returns the last exception of the service's callback by node. The look ends as soon
+    as the evidence is clear, at most after `look_sec` of time with a free processor.
     """
     endpoints = endpoints_of(watcher.node)
     names = sorted({end.node_name for end in endpoints if end.name == name})
@@ -61,7 +62,7 @@ def look(
     unspun = view.unspun() if watch.wall_sec() >= SURE_SEC else frozenset()
     answers = questions.answers(timeout_sec=0.0)
     if not _is_long(watch):
-        # too early to say of any other node that it does not answer
+        # too early to call any other node silent
         unknown = questions.unanswered() - unspun
         answers = {node_name: answers[node_name] for node_name in answers.keys() - unknown}
     return ServiceEvidence(
@@ -88,7 +89,7 @@ def look(
 def _is_enough(
     name: str, questions: Questions, view: Inside, names: list[str], watch: Stopwatch
 ) -> bool:
-    """Whether a longer look would tell nothing new."""
+    """Whether a longer look would find nothing new."""
     going_on = [
         each
         for each in view.callbacks(at_least_sec=EVERY_SEC / 2)
@@ -107,5 +108,5 @@ def _is_enough(
 
 
 def _is_long(watch: Stopwatch) -> bool:
-    """Whether a node that is spun would have answered."""
+    """Whether a node that is spun would have answered by now."""
     return watch.free_sec() >= SILENT_SEC or watch.wall_sec() >= SILENT_MOST_SEC

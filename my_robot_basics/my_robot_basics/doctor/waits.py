@@ -1,4 +1,4 @@
-"""What a callback waits for, and whether that can come while it waits."""
+"""What a callback waits for, and whether the callback itself prevents it."""
 
 import inspect
 from collections.abc import Callable, Iterable
@@ -26,7 +26,7 @@ _CODES = {inspect.unwrap(function).__code__: name for name, function in _FUNCTIO
 
 
 def waits(frames: Iterable[FrameType]) -> tuple[str, Client | None]:
-    """In which of rclpy's functions a callback waits, and for the response to which client."""
+    """Return the rclpy function in which a callback waits, and the client of the response."""
     for frame in frames:
         name = _CODES.get(frame.f_code, '')
         if name in (CALL, SERVER):
@@ -37,10 +37,10 @@ def waits(frames: Iterable[FrameType]) -> tuple[str, Client | None]:
 
 
 def keeps(work: Work, others: Iterable[Work]) -> Keeps:
-    """Why the response that a callback waits for can't be taken while it waits, or ''.
+    """Return what blocks the response that a callback waits for, or ''.
 
-    That takes a thread of the executor that spins the client's node, and that no other callback
-    of the client's group is in progress.
+    To take the response, the executor that spins the client's node needs a free thread, and no
+    other callback of the client's mutually exclusive group may be in progress.
     """
     name, client = waits(work.frames)
     if client is None or name == SERVER:
@@ -64,7 +64,7 @@ def keeps(work: Work, others: Iterable[Work]) -> Keeps:
 
 
 def held(work: Work) -> Iterable[Node]:
-    """The nodes of which no parameter is told while the callback is in progress."""
+    """Yield the nodes that answer no parameter request while the callback is in progress."""
     own = {*own_nodes()}
     if work.is_running and type(work.executor) is SingleThreadedExecutor:
         yield from own & {*work.executor.get_nodes()}
@@ -75,7 +75,7 @@ def held(work: Work) -> Iterable[Node]:
 
 
 def asks(work: Work) -> str:
-    """A service of whose responses one can't be taken before the callback returns, or ''."""
+    """Return a service with a response that can't be taken before the callback returns, or ''."""
     if not work.is_running or type(work.executor) is not SingleThreadedExecutor:
         return ''
     nodes = {*own_nodes()} & {*work.executor.get_nodes()}
@@ -84,14 +84,14 @@ def asks(work: Work) -> str:
 
 
 def pending(client: Client) -> dict[int, Future]:
-    """The requests of a client that have no response yet, by their numbers."""
-    # one that is done stays in rclpy's list until the executor spins again
+    """Return a client's requests without a response, by their sequence numbers."""
+    # a finished one stays in rclpy's dict until the executor spins again
     requests = client._pending_requests.copy().items()
     return {number: future for number, future in requests if not future.done()}
 
 
 def _fills(executor: MultiThreadedExecutor, works: Iterable[Work]) -> bool:
-    """Whether calls whose responses this executor would take occupy all of its threads."""
+    """Whether blocking calls whose responses this executor must take occupy all its threads."""
     clients = [waits(w.frames) for w in works if w.is_running and w.executor is executor]
     blocked = [
         client
@@ -102,7 +102,7 @@ def _fills(executor: MultiThreadedExecutor, works: Iterable[Work]) -> bool:
 
 
 def _asked_by(future: Future) -> Client | None:
-    """The client of this process that waits for the response that the future will hold."""
+    """Return the client of this process whose pending response is this future."""
     return next(
         (
             client
@@ -115,5 +115,5 @@ def _asked_by(future: Future) -> Client | None:
 
 
 def node_of(client: Client) -> Node | None:
-    """The node of this process that made the client."""
+    """Return the node of this process that created the client."""
     return next((node for node in own_nodes() if client in node.clients), None)

@@ -1,6 +1,6 @@
-"""The callbacks that are in progress in this process at one moment, and where each of them is.
+"""The callbacks that are in progress in this process, with the frames that each executes.
 
-A callback is a Task in its executor's list, from when it begins until it has returned.
+rclpy keeps a callback as a Task in its executor's list until it has returned.
 """
 
 import inspect
@@ -23,26 +23,26 @@ _TASK = Task.__call__.__code__
 
 @dataclass(frozen=True)
 class Work:
-    """A callback that has begun and has not returned."""
+    """A callback that has started and has not returned."""
 
     task: Task
     executor: Executor
     entity: Any
-    """The timer, subscription, service or client; None: it is called when a future is done."""
+    """The timer, subscription, service or client; None for a done callback of a future."""
     node: Node | None
     frames: list[FrameType] = field(repr=False)
-    """From the outermost; empty in the moment in which a coroutine goes on."""
+    """From the outermost; empty while a coroutine resumes."""
     is_running: bool
-    """Whether it occupies a thread; else it is a coroutine that waits."""
+    """Whether it occupies a thread; else it is a suspended coroutine."""
 
 
 def own_nodes() -> Iterator[Node]:
-    """The nodes of this process, without the course's own."""
+    """Yield the nodes of this process, except the course's hidden ones."""
     return filter(_is_theirs, nodes_here())
 
 
 def stacks() -> list[list[FrameType]]:
-    """The frames of each thread, from the outermost."""
+    """Return the frames of each thread, from the outermost."""
     found = []
     frame: FrameType | None
     for frame in sys._current_frames().values():
@@ -55,20 +55,20 @@ def stacks() -> list[list[FrameType]]:
 
 
 def spinning(threads: list[list[FrameType]]) -> set[Executor]:
-    """The executors in whose methods a thread is."""
+    """Return the executors of which a thread executes a method."""
     callers = (frame.f_locals.get('self') for frames in threads for frame in frames)
     return {caller for caller in callers if isinstance(caller, Executor)}
 
 
 def in_progress(threads: list[list[FrameType]]) -> Iterator[Work]:
-    """The callbacks of this process that have begun and have not returned."""
+    """Yield the callbacks of this process that have started and have not returned."""
     running = {
         frames[i].f_locals['self']: frames[i + 1 :]
         for frames in threads
         for i in range(len(frames))
         if frames[i].f_code is _TASK
     }
-    # a node that was taken from its executor leads no more to the one in which it still runs
+    # running tasks, too: a node that was removed from its executor no longer refers to it
     executors = {task._executor() for task in running} | {n.executor for n in own_nodes()}
     for executor in filter(None, executors):
         for task, entity, node in [*getattr(executor, '_tasks', [])]:
@@ -81,15 +81,15 @@ def in_progress(threads: list[list[FrameType]]) -> Iterator[Work]:
 
 
 def _is_theirs(node: Node) -> bool:
-    """Whether a node is neither the course's own nor destroyed."""
+    """Whether a node is neither a hidden one of the course nor destroyed."""
     try:
         return not node.get_name().startswith(HIDDEN)
-    except InvalidHandle:  # and a callback of it has not returned
+    except InvalidHandle:  # destroyed, although a callback of it has not returned
         return False
 
 
 def _suspended(awaiting: Any) -> Iterator[FrameType]:
-    """The frames of a coroutine that has begun and waits, from the outermost."""
+    """Yield the frames of a coroutine that has started and is suspended, from the outermost."""
     if not inspect.iscoroutine(awaiting):
         return
     if inspect.getcoroutinestate(awaiting) != inspect.CORO_SUSPENDED:

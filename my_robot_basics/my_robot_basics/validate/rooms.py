@@ -44,7 +44,7 @@ class LocalRooms:
     say: Say = staticmethod(lambda line: None)
     """Called with a line about each step that begins."""
     end_later: Callable[[Coroutine], object] | None = None
-    """Called with the coroutine that ends the kernels, to run it later, unless something failed."""
+    """Called with the coroutine that ends the kernels, to run it later; not after a failure."""
 
     def __init__(
         self, *, files: Sequence[Path], server: ForkServer, beside: Path = Path()

@@ -1,4 +1,4 @@
-"""Nobody serves the action."""
+"""The action has no server."""
 
 from collections.abc import Iterator
 
@@ -8,7 +8,7 @@ from my_robot_basics.doctor.evidence import Finding
 
 
 def examine(evidence: ActionEvidence) -> Iterator[Finding]:
-    """Say which nodes send goals to no server, and which nodes run."""
+    """Name the action clients without a server, and the other running nodes."""
     if evidence.servers:
         return
     sending = sorted({end.node_name for end in evidence.clients})

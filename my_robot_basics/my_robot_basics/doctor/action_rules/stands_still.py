@@ -1,4 +1,4 @@
-"""A goal is not over, and nothing is told of it: it may never end."""
+"""An unfinished goal makes no progress and gets no feedback: it may never end."""
 
 from collections.abc import Iterator
 
@@ -25,10 +25,10 @@ _FIX = {
 
 
 def examine(evidence: ActionEvidence) -> Iterator[Finding]:
-    """Say in which state it is, and for how long it was looked at."""
+    """Name the goal's state, and how long it was observed."""
     busy = {each.node_name for each in evidence.callbacks}
     if any(end.node_name in busy for end in evidence.servers):
-        return  # what keeps it is known
+        return  # a callback blocks the server, which another rule reports
     for state in sorted({goal.state for goal in evidence.goals}):
         seconds = min(goal.seconds for goal in evidence.goals if goal.state == state)
         fix, line = _FIX[state]

@@ -8,7 +8,7 @@ from my_robot_basics.doctor.evidence import Finding
 
 
 def examine(evidence: ActionEvidence) -> Iterator[Finding]:
-    """Name both types; the server's counts as right."""
+    """Name both types; the server's type is taken as the right one."""
     for client, server, type_name in clients_of_another_type(evidence.servers, evidence.clients):
         yield types_differ(
             client,

@@ -1,4 +1,4 @@
-"""Nobody has set how a goal ended, so that rclpy took it for aborted."""
+"""The execute callback has not set its goal's status, so that rclpy aborted the goal."""
 
 from collections.abc import Iterator
 
@@ -7,7 +7,7 @@ from my_robot_basics.doctor.evidence import Finding
 
 
 def examine(evidence: ActionEvidence) -> Iterator[Finding]:
-    """Show the line that is missing; a callback that raised could not come to it."""
+    """Show the missing line; callbacks that raised are left out, as they could not reach it."""
     for node_name in sorted(evidence.unset - {name for name, _ in evidence.raised}):
         yield Finding(
             title='nobody has set how the goal ended',

@@ -1,6 +1,6 @@
-"""What may be wrong, one rule a file: `examine(evidence)` gives findings, or nothing.
+"""Rules about the faults of a topic, one in each file: `examine(evidence)` yields findings.
 
-`RULES` is the order of likelihood: a cause stands before the consequence that it explains.
+`RULES` is in the order of likelihood: a cause comes before the consequence that it explains.
 """
 
 from collections.abc import Callable, Iterable
@@ -50,6 +50,6 @@ RULES: tuple[Callable[[Evidence], Iterable[Finding]], ...] = (
 
 
 def judge(evidence: Evidence) -> Diagnosis:
-    """All that the rules find, the likeliest first."""
+    """Return all findings of the rules, the likeliest first."""
     findings = tuple(finding for examine in RULES for finding in examine(evidence))
     return Diagnosis(evidence, findings)

@@ -22,7 +22,7 @@ _FIX: dict[str, str] = {
 
 
 def examine(evidence: Seen) -> Iterator[Finding]:
-    """Name the callback, and the ways out."""
+    """Name the callback, and how to avoid the deadlock."""
     for each in evidence.callbacks:
         ends = [end for end in evidence.all_ends() if end.node_name == each.node_name]
         if not (each.keeps and ends):

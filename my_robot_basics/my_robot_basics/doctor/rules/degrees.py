@@ -8,11 +8,11 @@ from my_robot_basics.doctor.evidence import Evidence, Finding
 
 TURN_DEG = 360.0
 _TURNS_FOREVER = ('wheel', 'continuous', 'propeller', 'rotor')
-"""Joints whose names say so may well stand at many radians."""
+"""Parts of the names of continuous joints, which may be at many radians."""
 
 
 def examine(evidence: Evidence) -> Iterator[Finding]:
-    """Name positions beyond a whole turn in radians, and within one in degrees."""
+    """Name the largest position if it is more than a turn in radians, but not in degrees."""
     angles = [angle for each in evidence.received for angle in _angles(each.message)]
     sizes = [abs(angle) for angle in angles if math.isfinite(angle)]
     if not sizes or not math.tau < max(sizes) <= TURN_DEG:
@@ -30,7 +30,7 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
 
 
 def _angles(message: Any) -> list[float]:
-    """The positions of a JointState's joints that do not turn forever."""
+    """Return the positions of a JointState's joints, without continuous ones."""
     if type(message).__name__ != 'JointState':
         return []
     return [

@@ -1,4 +1,4 @@
-"""A process of this domain runs on this machine, and is not on the graph."""
+"""A process of this domain runs on this machine, but is not on the graph."""
 
 from collections.abc import Iterator
 
@@ -6,7 +6,7 @@ from my_robot_basics.doctor.evidence import Finding, Seen
 
 
 def examine(evidence: Seen) -> Iterator[Finding]:
-    """Suspect the discovery range where an end is missing and a process can't be discovered."""
+    """Suspect the discovery range if an end is missing and a process is not discovered."""
     missing = next((k for k in evidence.NEEDED if not evidence.ends(k)), None)
     if missing is None or evidence.missing_participants <= 0:
         return

@@ -1,4 +1,4 @@
-"""What was published before a subscription joined was not kept for it."""
+"""A subscription does not receive messages that were published before it joined."""
 
 from collections.abc import Iterator
 

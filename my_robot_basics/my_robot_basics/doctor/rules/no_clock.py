@@ -1,4 +1,4 @@
-"""A silent publisher waits for a clock that nobody drives."""
+"""A silent publisher uses sim time, but no node publishes /clock."""
 
 from collections.abc import Iterator
 
@@ -6,7 +6,7 @@ from my_robot_basics.doctor.evidence import Evidence, Finding
 
 
 def examine(evidence: Evidence) -> Iterator[Finding]:
-    """Name each publisher's node with use_sim_time, where no node publishes /clock."""
+    """Name each publisher's node whose use_sim_time is true, if no node publishes /clock."""
     if evidence.received or evidence.has_clock:
         return
     for publisher in evidence.publishers:

@@ -1,4 +1,4 @@
-"""Nobody publishes on the topic."""
+"""The topic has no publisher."""
 
 from collections.abc import Iterator
 
@@ -7,7 +7,7 @@ from my_robot_basics.doctor.evidence import Evidence, Finding
 
 
 def examine(evidence: Evidence) -> Iterator[Finding]:
-    """Say who runs instead."""
+    """Name the nodes that run."""
     if evidence.publishers:
         return
     running = ', '.join(evidence.nodes)

@@ -1,4 +1,4 @@
-"""Nobody subscribes to the topic."""
+"""The topic has no subscription."""
 
 from collections.abc import Iterator
 
@@ -7,7 +7,7 @@ from my_robot_basics.doctor.evidence import Evidence, Finding
 
 
 def examine(evidence: Evidence) -> Iterator[Finding]:
-    """Name the publisher without a subscription."""
+    """Name the nodes that publish on it."""
     if evidence.subscriptions:
         return
     senders = ' and '.join(end.node_name for end in evidence.publishers)

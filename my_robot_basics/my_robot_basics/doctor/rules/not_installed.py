@@ -1,4 +1,4 @@
-"""The message type is not installed where the doctor runs, so that nothing here can listen."""
+"""The message type is not installed where the doctor runs, so that no node here can subscribe."""
 
 from collections.abc import Iterator
 
@@ -6,7 +6,7 @@ from my_robot_basics.doctor.evidence import Evidence, Finding
 
 
 def examine(evidence: Evidence) -> Iterator[Finding]:
-    """Name the type, who publishes it, and the package to install or to source."""
+    """Name the type, the nodes that publish it, and the package to install or to source."""
     for type_name in evidence.unknown_types:
         ends = tuple(end for end in evidence.publishers if end.type_name == type_name)
         senders = ' and '.join(sorted({end.node_name for end in ends}))

@@ -1,4 +1,4 @@
-"""A callback goes on and on, and meanwhile nothing else of its node can run."""
+"""A callback does not return, and meanwhile no other callback of its node can run."""
 
 from collections.abc import Iterator
 
@@ -8,7 +8,7 @@ from my_robot_basics.doctor.rules.blocks_itself import ASK, LATER
 
 
 def examine(evidence: Seen) -> Iterator[Finding]:
-    """Name the callback, how long it was seen, and where it is."""
+    """Name the callback, how long it was observed, and the line that it executes."""
     for each in evidence.callbacks:
         serves = each.service_name == evidence.name
         ends = [

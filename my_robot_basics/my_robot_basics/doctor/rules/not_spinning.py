@@ -1,4 +1,4 @@
-"""Nobody spins a node: its timers do not fire, and its callbacks are not called."""
+"""A node is not spun: its timers do not fire, and its callbacks are not called."""
 
 from collections.abc import Iterator
 
@@ -6,7 +6,7 @@ from my_robot_basics.doctor.evidence import Evidence, Finding
 
 
 def examine(evidence: Evidence) -> Iterator[Finding]:
-    """Name silent publishers, and subscriptions, whose nodes answer no question."""
+    """Name silent publishers, and subscriptions, whose nodes do not answer requests."""
     ends = (() if evidence.received else evidence.publishers) + evidence.subscriptions
     for end in ends:
         if evidence.busy(end.node_name) or evidence.state(end.node_name).answers is not False:

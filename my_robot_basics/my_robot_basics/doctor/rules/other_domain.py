@@ -6,7 +6,7 @@ from my_robot_basics.doctor.evidence import VERBS, Finding, Seen
 
 
 def examine(evidence: Seen) -> Iterator[Finding]:
-    """Name the domain, if the neighbouring ones were looked at."""
+    """Name the domain, if other domains were searched."""
     for kind in evidence.NEEDED:
         if evidence.ends(kind):
             continue

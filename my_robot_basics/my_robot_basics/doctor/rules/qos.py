@@ -1,4 +1,4 @@
-"""One end asks for more than the other end offers."""
+"""A subscription requests a stronger QoS policy than a publisher offers."""
 
 from collections.abc import Iterator
 
@@ -40,13 +40,13 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
 
 
 def _compatible_profile(offered: QoSProfile, asked: QoSProfile) -> str:
-    """A profile in Python that the offer satisfies, and no more modest than need be."""
+    """Return a compatible QoSProfile as Python code, as close to the requested one as possible."""
     gaps = incompatible(offered, asked)
     reliable = asked.reliability == ReliabilityPolicy.RELIABLE and 'RELIABILITY' not in gaps
     parts = ['depth=10', f'reliability=ReliabilityPolicy.{_RELIABILITY[reliable]}']
     if asked.durability == DurabilityPolicy.TRANSIENT_LOCAL and 'DURABILITY' not in gaps:
         parts.append('durability=DurabilityPolicy.TRANSIENT_LOCAL')
-    # what is left out of these is the least that can be asked for
+    # policies that are left out have defaults that any offer satisfies
     return f'QoSProfile({", ".join(parts)})'
 
 

@@ -1,4 +1,4 @@
-"""An end was given another name where its node was started."""
+"""A remapping rule gave an end another name when its node was started."""
 
 from collections.abc import Iterator
 
@@ -6,7 +6,7 @@ from my_robot_basics.doctor.evidence import Finding, Seen
 
 
 def examine(evidence: Seen) -> Iterator[Finding]:
-    """Show the command without the remapping rule that moved an end away."""
+    """Show the command without the remapping rule that renamed the end."""
     for kind in evidence.NEEDED:
         if evidence.ends(kind):
             continue

@@ -7,13 +7,14 @@ from my_robot_basics.doctor import code
 from my_robot_basics.doctor.evidence import Evidence, Finding
 
 FEWEST = 5
-"""Fewer at once are no burst; so are two of each publisher, whose timers fire together."""
+"""A burst has at least so many messages, and more than two of each publisher, as timers of several
+publishers may fire at the same time."""
 PART_IN_BURSTS = 0.5
-"""A node that sends in bursts sends most messages so; a busy machine makes one or two."""
+"""At least this part of all messages must be in bursts: a busy machine causes one or two."""
 
 
 def examine(evidence: Evidence) -> Iterator[Finding]:
-    """Name queues that are shorter than a burst, of nodes whose queues are known."""
+    """Name queues that are shorter than a burst, of nodes whose depths are known."""
     fewest = max(FEWEST, 2 * len(evidence.publishers) + 1)
     bursts = [length for length in evidence.bursts if length >= fewest]
     if not bursts or sum(bursts) < PART_IN_BURSTS * len(evidence.fresh):
@@ -40,7 +41,7 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
 
 
 def _round(burst: int) -> int:
-    """The next number of 10, 20, 50, 100, …: the next burst may be a little longer."""
+    """Round up to 10, 20, 50, 100, …, as the next burst may be a little longer."""
     return next(
         step * 10**power
         for power in itertools.count(1)

@@ -1,4 +1,4 @@
-"""A publisher is there, its node is alive, and nothing is sent."""
+"""A publisher exists and its node may be spun, but it sends no message."""
 
 from collections.abc import Iterator
 
@@ -6,7 +6,7 @@ from my_robot_basics.doctor.evidence import Evidence, Finding
 
 
 def examine(evidence: Evidence) -> Iterator[Finding]:
-    """Suspect the timer, where the node is known to spin or nothing is known."""
+    """Suspect the timer, unless the node is known not to be spun, or waits for /clock."""
     if evidence.received or not evidence.listened_sec:
         return
     for publisher in evidence.publishers:

@@ -1,4 +1,4 @@
-"""An end is missing, and another one has a name that may have been meant."""
+"""An end is missing, and another one has a similar name, which may be misspelled."""
 
 import difflib
 from collections.abc import Iterator
@@ -10,7 +10,7 @@ CUTOFF = 0.75
 
 
 def examine(evidence: Seen) -> Iterator[Finding]:
-    """Show the edit, or the name to ask for where nobody uses the one that was given."""
+    """Show the line to edit; if no node uses the given name, show a similar one to diagnose."""
     if not any(evidence.ends(kind) for kind in evidence.KINDS):
         yield from _misspelt_question(evidence)
         return
@@ -36,9 +36,9 @@ def examine(evidence: Seen) -> Iterator[Finding]:
 
 
 def _wrong_end(evidence: Seen, other: Endpoint) -> tuple[Endpoint, str]:
-    """The end to edit, and the name that it should have: a relative name was meant to be another.
+    """Return the end to edit, and the name that it should have.
 
-    If nobody did, the name that was asked about is right.
+    It is an end of the diagnosed name if that is relative by mistake; else `other`.
     """
     for end in evidence.endpoints:
         if end.name == evidence.name and _is_relative(end, other.name):
@@ -47,7 +47,7 @@ def _wrong_end(evidence: Seen, other: Endpoint) -> tuple[Endpoint, str]:
 
 
 def _is_relative(end: Endpoint, name: str) -> bool:
-    """Whether the end would have this name if its own were not in its node's namespace."""
+    """Whether the end would have this name without its node's namespace."""
     return end.name != name and end.name == f'{end.node_name.rpartition("/")[0]}{name}'
 
 
@@ -73,11 +73,11 @@ def _misspelt_question(evidence: Seen) -> Iterator[Finding]:
 
 
 def _similar(evidence: Seen, kind: Kind) -> list[Endpoint]:
-    """Ends of that kind with similar names; first those that wait for the other end."""
+    """Return ends of that kind with similar names; first those whose other end is missing."""
     met = {
         end.name
         for end in evidence.endpoints
-        if end.kind != kind  # somebody is there at the other end
+        if end.kind != kind  # the name has an end of the other kind
     }
     near = [
         end
@@ -92,12 +92,12 @@ def _similar(evidence: Seen, kind: Kind) -> list[Endpoint]:
 
 
 def are_similar(one: str, other: str) -> bool:
-    """Whether one of two names may have been meant where the other one is used."""
+    """Whether one of two names may be a misspelling of the other."""
     return _similarity(one, other) >= CUTOFF
 
 
 def _similarity(one: str, other: str) -> float:
-    """0 to 1; the same last part counts as much as a small slip of the pen."""
+    """Return 0 to 1; the same last part counts as much as a small typing error."""
     if _last(one) == _last(other):
         return 0.9
     return difflib.SequenceMatcher(a=one.lower(), b=other.lower()).ratio()

@@ -1,4 +1,4 @@
-"""Messages arrive, and nodes that use their stamps drop them."""
+"""Messages arrive, but with stamps for which other nodes drop them."""
 
 from collections.abc import Iterator
 
@@ -6,11 +6,11 @@ from my_robot_basics.doctor.evidence import Evidence, Finding
 
 MOST_OFF_SEC = 1.0
 LONG_SEC = 0.5
-"""A stamp that stands still for so long is not that of one burst."""
+"""If all messages over a longer time have one stamp, it is wrong, and they are not one burst."""
 
 
 def examine(evidence: Evidence) -> Iterator[Finding]:
-    """Name stamps of zero, and stamps far from the time of sending."""
+    """Report stamps of zero, stamps far from the sending time, and stamps that never change."""
     stamped = [each for each in evidence.fresh if hasattr(each.message, 'header')]
     if not stamped:
         return

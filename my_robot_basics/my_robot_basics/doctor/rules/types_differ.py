@@ -7,7 +7,7 @@ from my_robot_basics.doctor.evidence import Evidence, Finding
 
 
 def examine(evidence: Evidence) -> Iterator[Finding]:
-    """Name both types; the publisher's counts as right."""
+    """Name both types; the publisher's type is taken as the right one."""
     types = {publisher.type_name: publisher.node_name for publisher in evidence.publishers}
     for subscription in evidence.subscriptions:
         if not types or subscription.type_name in types:

@@ -1,6 +1,6 @@
-"""What may be wrong with a service, one rule a file, beside some of those of `doctor.rules`.
+"""Rules about the faults of a service, one in each file; some are those of `doctor.rules`.
 
-`RULES` is the order of likelihood: a cause stands before the consequence that it explains.
+`RULES` is in the order of likelihood: a cause comes before the consequence that it explains.
 """
 
 from collections.abc import Callable, Iterable
@@ -41,6 +41,6 @@ RULES: tuple[Callable[[ServiceEvidence], Iterable[Finding]], ...] = (
 
 
 def judge(evidence: ServiceEvidence) -> Diagnosis:
-    """All that the rules find, the likeliest first."""
+    """Return all findings of the rules, the likeliest first."""
     findings = tuple(finding for examine in RULES for finding in examine(evidence))
     return Diagnosis(evidence, findings)

@@ -1,4 +1,4 @@
-"""Nobody serves the service."""
+"""The service has no server."""
 
 from collections.abc import Iterator
 
@@ -8,7 +8,7 @@ from my_robot_basics.doctor.service_evidence import ServiceEvidence
 
 
 def examine(evidence: ServiceEvidence) -> Iterator[Finding]:
-    """Say which nodes call a service without a server, and which nodes run."""
+    """Name the clients without a server, and the other running nodes."""
     if evidence.servers:
         return
     asking = sorted({end.node_name for end in evidence.clients})

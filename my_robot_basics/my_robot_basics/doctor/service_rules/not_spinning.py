@@ -1,4 +1,4 @@
-"""Nobody spins a node: no request is taken, and no response."""
+"""A node is not spun: it takes neither requests nor responses."""
 
 from collections.abc import Iterator
 
@@ -9,9 +9,9 @@ _JOBS = {'server': 'requests are taken', 'client': 'responses are taken'}
 
 
 def examine(evidence: ServiceEvidence) -> Iterator[Finding]:
-    """Name servers that answer nothing, and clients, if somebody waits for their responses.
+    """Name servers and clients whose nodes do not answer requests.
 
-    A client of this process that nobody spins, and that waits for nothing, may be spun later.
+    A client of this process without a pending request is left out: it may be spun later.
     """
     waiting = {each.node_name for each in evidence.unanswered}
     for end in evidence.servers + evidence.clients:

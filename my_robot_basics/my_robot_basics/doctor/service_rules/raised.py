@@ -6,11 +6,11 @@ from my_robot_basics.doctor.evidence import Finding
 from my_robot_basics.doctor.service_evidence import ServiceEvidence
 
 NO_RESPONSE = 'TypeError'
-"""All that rclpy says where a callback returns anything but a response of the right type."""
+"""All that rclpy reports if a callback does not return a response of the right type."""
 
 
 def examine(evidence: ServiceEvidence) -> Iterator[Finding]:
-    """Say what was raised, and what rclpy means where it says so little."""
+    """Name the exception, or explain rclpy's bare TypeError."""
     for server in evidence.servers:
         raised = evidence.raised.get(server.node_name, '')
         if not raised:

@@ -1,4 +1,4 @@
-"""Several nodes serve one name: each of them does the work, and the client learns of one."""
+"""Several nodes serve one name: each handles a request, but the client gets one response."""
 
 from collections.abc import Iterator
 
@@ -7,7 +7,7 @@ from my_robot_basics.doctor.service_evidence import ServiceEvidence
 
 
 def examine(evidence: ServiceEvidence) -> Iterator[Finding]:
-    """Name them, and say what comes of it."""
+    """Name the nodes, and the consequence."""
     if len(evidence.servers) < 2:
         return
     names = sorted({end.node_name for end in evidence.servers})

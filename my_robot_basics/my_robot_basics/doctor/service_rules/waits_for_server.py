@@ -1,4 +1,4 @@
-"""A callback waits for a server that is not there, and nothing else of its node runs."""
+"""A callback waits for a missing server, and no other callback of its node can run."""
 
 from collections.abc import Iterator
 
@@ -7,7 +7,7 @@ from my_robot_basics.doctor.service_evidence import ServiceEvidence
 
 
 def examine(evidence: ServiceEvidence) -> Iterator[Finding]:
-    """Name the callback, and how it can look without waiting."""
+    """Name the callback, and how it can test for the server without waiting."""
     for each in evidence.callbacks:
         if (each.waits_in, each.waits_for) != ('wait_for_service', evidence.name):
             continue
