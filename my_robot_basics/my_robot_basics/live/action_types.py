@@ -1,7 +1,7 @@
-"""Refuse what is no type of an action, where an ActionClient or an ActionServer is made.
+"""Refuse a type that is not an action's when an ActionClient or an ActionServer is created.
 
-rclpy looks into that type without a check, and crashes with a segmentation fault: the kernel would
-be gone, without a word on why. Topics and services have such a check in rclpy itself.
+rclpy uses that type without a check, and crashes with a segmentation fault: the kernel would end
+without an error message. For topics and services, rclpy itself checks the type.
 """
 
 import functools
@@ -14,11 +14,11 @@ from my_robot_basics.live.patching import patch
 from my_robot_basics.session.errors import WrongType
 
 _POSITION = 1
-"""Where the type stands among the arguments, behind the node."""
+"""The position of the type among the arguments, after the node."""
 
 
 def expect_action_types() -> None:
-    """Let both raise WrongType from now on, in place of a crash."""
+    """Make both classes raise WrongType from now on instead of crashing."""
     for owner in (ActionClient, ActionServer):
         patch(owner, '__init__', _checking(owner.__init__, owner.__name__))
 
@@ -39,7 +39,7 @@ def _checking(init: Callable[..., None], maker: str) -> Callable[..., None]:
 
 
 def _seen(given: object) -> str:
-    """What was given in place of the type of an action."""
+    """Describe what was given in place of an action's type."""
     if not (isinstance(given, type) and hasattr(type(given), '_TYPE_SUPPORT')):
         return f'{given!r:.80}'
     name = given.__name__.replace('_', '.', 1)  # the class of MoveArm.Goal is called MoveArm_Goal

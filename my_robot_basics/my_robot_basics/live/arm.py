@@ -22,7 +22,7 @@ def show_arm(
     """Show a picture of the arm in one pose: angles in degrees, link lengths in metres.
 
     A second pose, `other`, is drawn dashed; `dots` are points, (all x, all y) in metres.
-    Raises ValueError for angles or lengths that are no finite numbers.
+    Raises ValueError for angles or lengths that are not finite numbers.
     """
     text = describe(theta1_deg, theta2_deg, l1=l1, l2=l2)
     picture = ArmPicture(l1=l1, l2=l2)

@@ -1,4 +1,4 @@
-"""One node, one executor, one thread: the shape in which nodes can be replaced without a trace."""
+"""One node, one executor, one thread: so a node can be replaced and leaves nothing behind."""
 
 import threading
 from collections.abc import Callable
@@ -9,7 +9,7 @@ from rclpy.node import Node
 from my_robot_basics.live.destroying import destroy
 
 JOIN_TIMEOUT_SEC = 1.0
-"""How long a callback may still run before its node is destroyed under it."""
+"""How long `stop` waits for a running callback before it destroys the node all the same."""
 
 
 class Background:
@@ -36,7 +36,7 @@ class Background:
         self._lock = threading.Lock()
         self._destroyed = False
         self._executor = SingleThreadedExecutor(context=node.context)
-        if node.executor is None:  # else its constructor has seen to its spinning
+        if node.executor is None:  # else its constructor has added it to an executor
             self._executor.add_node(node)
         self._thread = threading.Thread(
             target=self._spin, name=f'spin {node.get_name()}', daemon=True
@@ -53,12 +53,12 @@ class Background:
         self._stopping.set()
         with self._lock:
             if not self._destroyed:
-                self._executor.create_task(lambda: None)  # waking alone does not end a wait
+                self._executor.create_task(lambda: None)  # wake() alone does not end a wait
         if threading.current_thread() is self._thread:
-            return  # a callback stops its own node: the thread ends after it
+            return  # a callback stops its own node: the thread ends after this callback
         self._thread.join(JOIN_TIMEOUT_SEC)
         if self._thread.is_alive():
-            # the callback does not return: with its node gone, its next use of it raises
+            # the callback does not return: once the node is destroyed, its next use of it raises
             self._destroy()
             self._thread.join(JOIN_TIMEOUT_SEC)
 
@@ -77,7 +77,7 @@ class Background:
         try:
             self._executor.spin_once(timeout_sec=1.0)
         except ExternalShutdownException:
-            pass  # the loop's condition says so
+            pass  # the loop in _spin checks the context
         except SystemExit:
             self._stopping.set()
             self._on_end('a callback called exit()')

@@ -1,4 +1,4 @@
-"""What rclpy takes where it raises a TypeError without a word: a request, a goal, a feedback."""
+"""What rclpy expects when it raises a TypeError without text: a request, a goal, or feedback."""
 
 import traceback
 from typing import Any
@@ -11,7 +11,7 @@ MOST_FIELDS = 3
 
 
 def made_with(error: BaseException) -> str:
-    """How to make what was to be given, such as 'SolveIK.Request(target=…)'; '' elsewhere."""
+    """Return how to make the expected object: 'SolveIK.Request(target=…)'; '' for other errors."""
     if type(error) is not TypeError or error.args or error.__traceback__ is None:
         return ''
     *_, (frame, _) = traceback.walk_tb(error.__traceback__)
@@ -26,6 +26,6 @@ def made_with(error: BaseException) -> str:
 
 
 def _call(type_: Any, part: str) -> str:
-    """The call that makes a part of a service's or an action's type, with its first fields."""
+    """Return the call that makes a part of a service or action type, with its first fields."""
     fields = list(getattr(type_, part).get_fields_and_field_types())[:MOST_FIELDS]
     return f'{type_.__name__}.{part}({", ".join(f"{field}=…" for field in fields)})'

@@ -1,4 +1,4 @@
-"""A picture of the two branches of IK: which one each of many poses belongs to."""
+"""A picture of many poses, each marked by the IK branch that it belongs to."""
 
 from collections.abc import Iterable
 
@@ -11,13 +11,14 @@ from my_robot_basics.live import notebook
 from my_robot_basics.two_link_kinematics import L1, L2, forward_kinematics, inverse_kinematics
 
 STYLES = {'elbow_up': ('^', '#0072b2'), 'elbow_down': ('v', '#d55e00')}
-"""Markers and colours; Okabe and Ito's colours are told apart by everyone."""
+"""Markers and colours; Okabe and Ito's palette, for colour-blind readers."""
 
 
 def branch_of(theta1_deg: float, theta2_deg: float, *, l1: float = L1, l2: float = L2) -> str:
-    """Return the branch in which IK finds a pose again; angles in degrees, lengths in metres.
+    """Return the IK branch that contains a pose; angles in degrees, lengths in metres.
 
-    A stretched or folded arm is in both: of these, elbow_up is returned.
+    A stretched or folded arm is in both branches: then it is elbow_up. Raises ValueError if the
+    pose is in neither branch.
     """
     x, y = forward_kinematics(theta1_deg, theta2_deg, l1, l2)
     for branch, solution in inverse_kinematics(x, y, l1, l2).items():
@@ -29,7 +30,7 @@ def branch_of(theta1_deg: float, theta2_deg: float, *, l1: float = L1, l2: float
 def show_branches(
     poses_deg: Iterable[tuple[float, float]], *, l1: float = L1, l2: float = L2
 ) -> None:
-    """Show poses (θ1, θ2) in degrees, marked by their branch, and where their effectors are.
+    """Show poses (θ1, θ2) in degrees, marked by branch, and their end effectors' positions.
 
     Link lengths are in metres.
     """

@@ -1,6 +1,6 @@
-"""A camera in a process of its own that sends pictures faster than anybody takes them.
+"""A camera in a process of its own that sends pictures faster than subscriptions take them.
 
-`python -m my_robot_basics.live.camera COUNT SUBSCRIPTIONS DEPTH` is what `send_pictures` runs.
+`send_pictures` runs `python -m my_robot_basics.live.camera COUNT SUBSCRIPTIONS DEPTH`.
 """
 
 import array
@@ -14,22 +14,22 @@ from my_robot_basics.session.errors import LiveError
 
 TOPIC_NAME = '/camera'
 WIDTH, HEIGHT = 480, 320
-"""0.46 MB: small enough that a best-effort subscription gets some, large enough to lose others."""
+"""A picture has 0.46 MB: a best-effort subscription receives some of them and loses others."""
 SUBSCRIPTIONS_SEC = 10.0
 ARRIVED_SEC = 10.0
 TIMEOUT_SEC = 30.0
 
 
 class NoPictures(LiveError):
-    """The camera did not send what it was asked to."""
+    """The camera did not send all pictures."""
 
 
 def send_pictures(count: int, *, subscriptions: int, depth: int | None = None) -> None:
-    """Publish `count` pictures (0.46 MB each) on /camera, once it has so many subscriptions.
+    """Publish `count` pictures (0.46 MB each) on /camera, once it has `subscriptions` of them.
 
-    They are sent RELIABLE, without a pause, from a process of its own; it has ended when this
-    returns. The publisher's queue holds `depth` pictures, by default all. The number of a picture,
-    from 1, is its frame_id. Raises NoPictures.
+    They are sent RELIABLE, without a pause, by a separate process, which has ended when this
+    returns. The publisher's queue holds `depth` pictures, by default all. A picture's frame_id is
+    its number, from 1. Raises NoPictures.
     """
     numbers = count, subscriptions, count if depth is None else depth
     command = [sys.executable, '-m', __name__, *map(str, numbers)]
@@ -52,9 +52,9 @@ def send_pictures(count: int, *, subscriptions: int, depth: int | None = None) -
 
 
 def main(count: int, subscriptions: int, depth: int) -> None:
-    """Be the camera."""
+    """Run the camera's node until all pictures are sent."""
     classroom.enter()
-    # by now the environment is what rclpy is to see
+    # imported only now, after `enter` has set the environment for rclpy
     import rclpy
     from rclpy.duration import Duration
     from rclpy.qos import QoSProfile

@@ -1,8 +1,8 @@
-"""Unregister the child loggers of a node with that node, so that its successor's stay registered.
+"""Unregister a node's child loggers together with the node, so that its successor's are kept.
 
-rclpy does so when such a logger is collected as garbage, by its name alone. By then a node of the
-same name may have one, whose lines reach `/rosout` no more: an action server's, say, after a cell
-was run again.
+rclpy unregisters such a logger, by its name, when it is garbage-collected. By then, a new node of
+the same name may have registered that name: its lines would no longer reach `/rosout`. This
+happens to the logger of an action server, for example, after a cell was run again.
 """
 
 from weakref import WeakKeyDictionary
@@ -11,16 +11,16 @@ from rclpy.impl.rcutils_logger import RcutilsLogger
 from rclpy.node import Node
 
 _nodes: WeakKeyDictionary[RcutilsLogger, str] = WeakKeyDictionary()
-"""Each child logger, and the name of the node's logger from which it comes, directly or not."""
+"""The name of the node's logger from which each child logger is derived, directly or not."""
 
 
 def remember_child_loggers() -> None:
-    """Note each child logger that is made from now on."""
+    """Record each child logger that is created from now on."""
     get_child = RcutilsLogger.get_child
 
     def get_noted_child(logger: RcutilsLogger, name: str) -> RcutilsLogger:
         child = get_child(logger, name)
-        if logger.name:  # a node's own logger is a child of the root, which has none
+        if logger.name:  # a node's own logger is a child of the root logger, whose name is empty
             _nodes[child] = _nodes.get(logger, logger.name)
         return child
 
@@ -28,7 +28,7 @@ def remember_child_loggers() -> None:
 
 
 def unregister_child_loggers(node: Node) -> None:
-    """Take the child loggers of a node, and their children, off `/rosout`."""
+    """Remove a node's child loggers, and their children, from `/rosout`."""
     for child, name in list(_nodes.items()):
         if name == node.get_logger().name:
-            child.__del__()  # does nothing a second time
+            child.__del__()  # a second call does nothing

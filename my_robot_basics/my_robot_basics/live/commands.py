@@ -1,4 +1,4 @@
-"""Command lines of a notebook as processes, as `ros2 run` starts them; no shell is between."""
+"""Run command lines of a notebook as processes, as `ros2 run` does, without a shell."""
 
 import sys
 import threading
@@ -11,10 +11,10 @@ from my_robot_basics.session import classroom
 from my_robot_basics.session.errors import NotRunnable, tell
 
 STARTED_SEC = 6.0
-"""How long a cell waits for the first line of its commands, or their end."""
+"""How long a cell waits for the first log line of its commands, or their end."""
 _PACKAGE = 'my_robot_basics'
 _OWN_WORDS = 4
-"""ros2 run PACKAGE EXECUTABLE: the words before those of the program."""
+"""How many words of `ros2 run PACKAGE EXECUTABLE` come before the program's arguments."""
 _running: list['_Command'] = []
 
 
@@ -32,17 +32,17 @@ class _Command(Process):
 
     def _receive(self, line: str) -> None:
         self.last_line = line.strip()
-        if line.startswith('[INFO]'):  # the log of a node that is up
+        if line.startswith('[INFO]'):  # a log line: the node has started
             self.has_spoken.set()
 
 
 def run_commands(*names: str, executable: str = 'kinematics_publisher') -> None:
-    """Start the command line that each of these names of the notebook holds, as one process each.
+    """Start the command lines that these variables of the notebook contain, each as a process.
 
-    Each has to be `ros2 run my_robot_basics EXECUTABLE --ros-args …`; no shell reads it. What ran
-    before is stopped first; `stop()` and `reset()` stop them, too, and they end with the kernel.
-    Where one ends by itself, what it printed last is printed. Raises NotRunnable for what is no
-    such command line.
+    Each has to be `ros2 run my_robot_basics EXECUTABLE --ros-args …`; no shell reads it. Former
+    commands are stopped first; `stop()` and `reset()` stop them, too, and they end with the
+    kernel. If one ends by itself, its last line is printed. Raises NotRunnable for any other
+    command line.
     """
     stop_commands()
     classroom.enter()
@@ -60,13 +60,13 @@ def run_commands(*names: str, executable: str = 'kinematics_publisher') -> None:
 
 
 def stop_commands() -> None:
-    """End all that `run_commands` has started."""
+    """Stop all processes that `run_commands` has started."""
     while _running:
         _running.pop().stop()
 
 
 def _executable(name: str) -> Path:
-    """What `ros2 run` starts: to start that as well takes as long as the node itself."""
+    """Return the program to start directly: `ros2 run` would take as long again as the node."""
     return next(path for path in packages.executables(_PACKAGE) if path.name == name)
 
 

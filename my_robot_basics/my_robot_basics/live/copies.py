@@ -9,25 +9,25 @@ from pathlib import Path
 from my_robot_basics.language.speaking import in_language_here
 
 LEFTOVERS = ('.', '__pycache__', 'build', 'install', 'log')
-"""How folders begin that programs leave behind."""
+"""Beginnings of the names of folders that programs leave behind."""
 TO_SHOW: tuple[str, ...] = ('new', 'changed', 'missing')
 NEW, CHANGED, MISSING = TO_SHOW
-"""How a file of the copy differs."""
+"""How a file of the copy can differ from the package's."""
 
 
 @dataclass(frozen=True)
 class Copied:
-    """What is copied from where to where."""
+    """A package of the course, and the student's copy of it."""
 
     source: Path
     """The package in the course."""
     target: Path
     """The student's copy."""
     patterns: tuple[str, ...]
-    """What the package consists of, as its builder needs it."""
+    """Glob patterns of the files that a build needs."""
 
     def make(self) -> None:
-        """Copy in a way that leaves nothing half done."""
+        """Copy the package; the target appears only when it is complete."""
         unfinished = self.target.with_name(f'.{self.target.name}.part')
         shutil.rmtree(unfinished, ignore_errors=True)
         for path in self._files():
@@ -37,12 +37,12 @@ class Copied:
         unfinished.rename(self.target)
 
     def move_aside(self, shelf: Path) -> Path:
-        """Put the student's folder beside those of earlier times; return where it is now."""
+        """Move the student's folder to `shelf` under a new number; return its new path."""
         number = 1 + sum(1 for _ in shelf.glob(f'{self.target.name}_*'))
         return self.target.rename(shelf / f'{self.target.name}_{number}')
 
     def differences(self) -> list[str]:
-        """In words, file by file, how the copy differs from the package."""
+        """Return a line for each file of the copy that differs from the package."""
         if not self.target.exists():
             return []
         ours = {path.relative_to(self.source) for path in self._files()}

@@ -1,8 +1,8 @@
-"""The course's own nodes are to be read and run in lessons; no answer is made of them.
+"""Refuse answers that use the course's own nodes, which lessons only show and run.
 
-An answer may call the course's functions, such as those of `two_link_kinematics`. Where its node
-derives from one of the package, takes a method of it, or makes one, or starts the program of one,
-it is told so.
+An answer may call the course's functions, such as those of `two_link_kinematics`. It is refused,
+with a message, if its node derives from a node of the course or uses one of its methods, or if it
+creates such a node or starts its program.
 """
 
 import importlib
@@ -25,14 +25,14 @@ MODULES = tuple(
 _PROGRAM = re.compile(
     rf'\bmy_robot_basics[./ ]({"|".join(m.partition(".")[2] for m in MODULES)})\b'
 )
-"""In a command line: `ros2 run` and what that starts, or `python -m`."""
+"""A program of the course in a command line of `ros2 run`, of its process, or of `python -m`."""
 END_SEC = 3.0
 """How long a program has to leave the graph after SIGINT, before it is killed."""
 HOW = 'write your own in the answer cell; the functions of two_link_kinematics may be called'
 
 
 def taken_from(answer: type) -> str:
-    """What a node class has of the course's own nodes, as the end of a sentence; or ''."""
+    """Return what a node class takes from the course's nodes, as the end of a sentence; or ''."""
     for base in answer.__mro__:
         if base.__module__ in MODULES:
             return f'one that derives from {base.__module__}.{base.__name__}'
@@ -44,15 +44,15 @@ def taken_from(answer: type) -> str:
 
 
 def programs(*, besides: Collection[psutil.Process]) -> dict[psutil.Process, str]:
-    """Return what this process has started that is a program of one of these nodes, by name.
+    """Return the descendants of this process that run the course's nodes, with the nodes' names.
 
-    Without those children of it, and all that they have started: `ros2 run` starts its program
-    a while after it was started itself.
+    The children in `besides` and their descendants are left out: a `ros2 run` among them may
+    start its program later.
     """
     found = {}
     for child in set(psutil.Process().children()) - set(besides):
         family = [child]
-        with suppress(psutil.Error):  # it has ended meanwhile
+        with suppress(psutil.Error):  # the child has ended meanwhile
             family += child.children(recursive=True)
         for process in family:
             with suppress(psutil.Error):
@@ -62,7 +62,7 @@ def programs(*, besides: Collection[psutil.Process]) -> dict[psutil.Process, str
 
 
 def end_programs(processes: Collection[psutil.Process]) -> None:
-    """End them as Ctrl-C does, so that their nodes leave the graph; kill what goes on."""
+    """Send SIGINT, so that the nodes leave the graph; after END_SEC, kill what still runs."""
     for process in processes:
         with suppress(psutil.Error):
             process.send_signal(signal.SIGINT)
@@ -73,7 +73,7 @@ def end_programs(processes: Collection[psutil.Process]) -> None:
 
 @contextmanager
 def none_made() -> Iterator[None]:
-    """Nobody makes one of the course's nodes meanwhile."""
+    """Refuse to create any of the course's nodes meanwhile."""
     with ExitStack() as stack:
         for NodeClass in _classes():
             stack.enter_context(patched(NodeClass, '__init__', _refusal(NodeClass)))
@@ -81,7 +81,7 @@ def none_made() -> Iterator[None]:
 
 
 def close() -> None:
-    """Let nobody make one any more, derive from one, or use a method: a notebook is graded."""
+    """Refuse from now on to create such a node, derive from it, or use a method: for grading."""
     for NodeClass in _classes():
         refuse = _refusal(NodeClass)
         for name, attribute in [*vars(NodeClass).items()]:

@@ -1,4 +1,4 @@
-"""What rosidl reads in the text of a .msg, .srv or .action file, line by line."""
+"""Explain how rosidl understands the text of a .msg, .srv or .action file, line by line."""
 
 from collections.abc import Collection
 
@@ -14,7 +14,7 @@ _WIDTH = 40
 def show_definition(text: str, *, own_types: Collection[str] = (), package: str = PACKAGE) -> None:
     """Print what each line of a definition means to rosidl, or why it is refused.
 
-    `package` is that of the file, and `own_types` names the messages that this package has.
+    `package` is the file's package, and `own_types` has the names of its messages.
     """
     lines = [
         (shorten(line), _told(meaning) if isinstance(meaning, DefinedMember) else meaning)
@@ -35,7 +35,7 @@ def _told(member: DefinedMember) -> str:
 
 
 def _told_type(type_: object) -> str:
-    """A type in words: 'exactly 2 float64'."""
+    """Return a type in words: 'exactly 2 float64'."""
     name, brackets, size = str(type_).partition('[')
     size = size.removesuffix(']')
     if not brackets:

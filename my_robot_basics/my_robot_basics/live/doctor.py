@@ -1,4 +1,4 @@
-"""Why nothing arrives on a topic, or a service does not answer, said and drawn in the notebook."""
+"""Show in the notebook why no message arrives on a topic, or why a service does not answer."""
 
 from my_robot_basics.doctor import as_html, diagnosing, names, picture, report
 from my_robot_basics.doctor.evidence import Diagnosis
@@ -9,16 +9,16 @@ from my_robot_basics.session.errors import LiveError
 
 
 class NoSuchName(LiveError):
-    """What was asked about can't be the name of a topic or a service."""
+    """The argument can't be the name of a topic or a service."""
 
 
 def why(name: str, *, domains: bool = False) -> None:
-    """Print why messages do not arrive on a topic, or why a service does not answer.
+    """Print why messages do not arrive on a topic, or why a service or action does not answer.
 
-    The likeliest cause comes first. Each comes with what was expected, what was seen, and what to
-    do; below stands a picture of the graph with the broken edge marked. When all is well it says
-    so, with the rate of a topic. A service is not called; callbacks that wait are found in nodes
-    of this notebook. With `domains` it looks at the other ROS domains of this machine, too. Raises
+    The likeliest cause comes first, each with what was expected, what was seen, and what to do.
+    Below is a picture of the graph with the broken edge marked. If all is well, it says so, with
+    the rate of a topic. A service is not called. Waiting callbacks are found only in nodes of this
+    notebook. With `domains`, it also searches the other ROS domains of this machine. Raises
     NoSuchName.
     """
     try:

@@ -1,4 +1,4 @@
-"""An entry point makes a function of the student's package a command of `ros2 run`."""
+"""Add an entry point, with which `ros2 run` starts a function of the student's package."""
 
 import ast
 import re
@@ -11,18 +11,18 @@ _FORM = re.compile(r'(?P<command>[\w-]+) *= *(?P<package>\w+)\.(?P<module>\w+):(
 
 
 class NotAdded(LiveError):
-    """An entry point does not fit the package, or `setup.py` was changed beyond recognition."""
+    """An entry point does not fit the package, or `setup.py` has no list of entry points."""
 
 
 def add_entry_point(entry_point: str) -> None:
     """Add a line such as 'greeter = my_robot_basics.greeter:main' to `setup.py`; show the list.
 
-    What else is in `setup.py` stays as it is. Where the module is still to be written, this is
-    printed. Raises NotAdded where it lacks the function, another function has the command, or the
-    list is not found.
+    The rest of `setup.py` stays as it is. If the module is not written yet, this is printed.
+    Raises NotAdded if the module lacks the function, another function has the command's name, or
+    the list is not found.
     """
     command, module, name = _parts(entry_point)
-    if not module.is_file():  # not an error: *Run All* goes on
+    if not module.is_file():  # no exception, so that *Run All* continues
         said = f'not added: there is no {workspace.shown(module)} yet: run the cell with'
         tell(f'{said} %%write_node {module.name} first', in_one=False)
         return
@@ -100,7 +100,7 @@ def _list_in(tree: ast.Module) -> ast.List | None:
 
 
 def _with_line(text: str, listed: ast.List, entry_point: str) -> str:
-    """Return the text with one more entry, the first of its list; all else stays."""
+    """Return the text with the entry inserted as the first of the list."""
     lines = text.encode().splitlines(keepends=True)  # ast counts bytes
     line, column = lines[listed.lineno - 1], listed.col_offset + 1
     new = f"'{entry_point}',"

@@ -1,4 +1,4 @@
-"""Executables of a student's package as processes: what `ros2 run` starts, and how each ends."""
+"""Run executables of a student's package as processes, as `ros2 run` does; report their ends."""
 
 import itertools
 import os
@@ -19,12 +19,12 @@ from my_robot_basics.session.errors import NotRunnable, tell
 _numbers = itertools.count(1)
 _started: dict[int, 'Executable'] = {}
 MOST_STARTED = 64
-"""Of one notebook's life, that are remembered: the oldest that have ended are forgotten."""
+"""How many started executables are remembered: the oldest ones that have ended are dropped."""
 
 
 @dataclass(frozen=True)
 class Executable:
-    """One that was started."""
+    """An executable that was started."""
 
     package: str
     name: str
@@ -38,7 +38,7 @@ def start(
 ) -> tuple[int, Executable]:
     """Start an executable as `ros2 run` does; return its number, too. Raises NotRunnable.
 
-    Unless a check starts it, its lines show with the cell that runs now.
+    Unless a check starts it, its output appears with the cell that runs now.
     """
     classroom.enter()
     path = prefix_of(package) / 'lib' / package / name
@@ -59,12 +59,12 @@ def start(
 
 
 def find(number: int) -> Executable | None:
-    """What was started under a number."""
+    """Return the executable that was started under a number; None if it is unknown."""
     return _started.get(number)
 
 
 def environment_of(package: str) -> dict[str, str]:
-    """What sourcing install/setup.bash adds for a Python package, before what is there."""
+    """Return the variables as sourcing install/setup.bash sets them for a Python package."""
     prefix = prefix_of(package)
     site = prefix / 'lib/python{}.{}/site-packages'.format(*sys.version_info)
     added = {'AMENT_PREFIX_PATH': prefix, 'PYTHONPATH': site, 'PATH': prefix / 'bin'}
@@ -72,7 +72,7 @@ def environment_of(package: str) -> dict[str, str]:
 
 
 def stop_started(*, package: str = '', name: str = '', by_notebook_alone: bool = False) -> None:
-    """End what was started, all of it or that of a name, and print how each has ended."""
+    """Stop started executables, all or those of a package or name; print how each ended."""
     for number, each in list(_started.items()):
         if package not in ('', each.package) or name not in ('', each.name):
             continue
@@ -88,7 +88,7 @@ def stop_started(*, package: str = '', name: str = '', by_notebook_alone: bool =
 
 
 def how_it_ended(each: Executable, took: signal.Signals | None) -> str:
-    """Say how one has ended, and whether that is how a node should."""
+    """Return how an executable ended, and what is wrong with that; `took` is from Process.stop."""
     code, last = each.process.code, error_in([*each.process.lines])
     why = why_crashed(code)
     if took is None:
@@ -98,7 +98,7 @@ def how_it_ended(each: Executable, took: signal.Signals | None) -> str:
             return f'had ended by itself ({_how(code)}): {why or last}'
         return f'had ended by itself ({_how(code)})'
     if took is signal.SIGINT and is_clean(code, [*each.process.lines]):
-        return 'ended cleanly after SIGINT'  # not its code: see RACE in endings.py
+        return 'ended cleanly after SIGINT'  # the exit code may be 1: see RACE in endings.py
     if took is signal.SIGINT:
         if last:
             return (
@@ -123,10 +123,10 @@ def _panel(title: str) -> 'ProcessPanel':
 
 
 class ProcessPanel(Panel):
-    """A cell's panel with the lines of a program."""
+    """A cell's panel with the output of a program."""
 
     def line(self, text: str) -> None:
-        """Add a line that it has printed."""
+        """Add a line that the program has printed."""
         self._add(PanelEntry(text))
         if not notebook.in_kernel():
             print(text, flush=True)

@@ -1,4 +1,4 @@
-"""What the locked cells of an exercise call: a clean start before the answer, its node after."""
+"""For the locked cells of an exercise: `reset` before the answer, `run_answer` after it."""
 
 import sys
 from typing import Any
@@ -12,14 +12,14 @@ from my_robot_basics.session.errors import NotRunnable, tell
 from my_robot_basics.session.neighbours import nodes_here
 
 _started_before: set[psutil.Process] = set()
-"""What ran before the answer: a lesson's own cells may start programs of the course's nodes."""
+"""Processes from before the answer: the lesson's own cells may start the course's nodes."""
 
 
 def reset(*names: str) -> None:
     """Stop every node, shut rclpy down, and delete `names` from the notebook's variables.
 
-    So no earlier cell can stand in for an answer, and an answer may initialise rclpy itself. Where
-    the notebook is graded, nor can the course's own nodes.
+    So nothing from earlier cells counts as an answer, and an answer may initialise rclpy itself.
+    At grading, the course's own nodes cannot be used from then on, either.
     """
     runner.shut_down()
     troubles.forget_all()
@@ -38,9 +38,9 @@ def reset(*names: str) -> None:
 def run_answer(name: str, *args: Any, **kwargs: Any) -> Node | None:
     """Run the node class `name` that the answer cell defines; see `run` for the rest.
 
-    Raises NotRunnable where the notebook has no class of that name that derives from Node, where
-    it was imported or taken from the course's own nodes, where the answer has started the program
-    of one, and where it has made its node already, but does not spin it.
+    Raises NotRunnable if the notebook has no such class derived from Node, if it was imported or
+    taken from the course's own nodes, if the answer has started the program of one of these, or
+    if it has created its node already, but does not spin it.
     """
     answer = _notebook().get(name)
     where = 'write it in the answer cell: only the notebook is submitted'
@@ -68,7 +68,7 @@ def run_answer(name: str, *args: Any, **kwargs: Any) -> Node | None:
 
 
 def _refuse_programs() -> None:
-    """End the programs of the course's nodes that the answer has started, and say so."""
+    """End programs of the course's nodes that the answer has started, and raise NotRunnable."""
     started = course_nodes.programs(besides=_started_before)
     if started:
         course_nodes.end_programs(started)

@@ -1,7 +1,7 @@
-"""What each notebook kernel of this Python loads at its start, an extension of IPython.
+"""The IPython extension that each notebook kernel of this Python loads at its start.
 
-Importing `live` changes nothing. The kernel is set up by the first cell whose text names it,
-before that cell runs: it may initialise rclpy itself.
+Importing `live` changes nothing. The first cell whose text names `live` sets the kernel up, before
+that cell runs, because it may initialise rclpy itself.
 """
 
 import re
@@ -14,7 +14,7 @@ _NAMES_LIVE = re.compile(r'\bmy_robot_basics\b.*\blive\b')
 
 
 def load_ipython_extension(shell: Any) -> None:
-    """Wait for that cell; say from now on below checks that they pass."""
+    """Wait for that cell; from now on, show a tick below checks that pass."""
     tick.watch()
 
     def before_cell(info: Any) -> None:
@@ -26,9 +26,9 @@ def load_ipython_extension(shell: Any) -> None:
 
 
 def _set_up() -> None:
-    from my_robot_basics.live import runner  # takes a while: rclpy comes with it
+    from my_robot_basics.live import runner  # slow, because it imports rclpy
 
     try:
         runner.set_up()
     except LiveError as error:
-        print(error)  # `run` raises it, too; a cell that does without has been told
+        print(error)  # not raised: the cell may not need `run`, which raises it again

@@ -16,7 +16,7 @@ from my_robot_basics.two_link_kinematics import L1, L2
 
 JOINTS = ('joint1', 'joint2')
 FIRST_MESSAGE_SEC = 1.2
-"""How long to wait for a first pose when somebody publishes: a stored notebook then shows it."""
+"""How long to wait for a first pose if there is a publisher, so that a saved notebook shows it."""
 
 
 def follow_arm(
@@ -24,8 +24,8 @@ def follow_arm(
 ) -> None:
     """Show the arm in the pose of the JointState messages on a topic, until `stop()`.
 
-    One picture moves in place, a few times a second, while the cell has long returned. Messages
-    that give no pose are counted below the title. Link lengths are in metres.
+    The picture is updated in place, a few times a second, after the cell has returned. Messages
+    without a valid pose are counted below the title. Link lengths are in metres.
     """
     view = ArmView(topic_name, l1=l1, l2=l2)
     node_name = '_follow' + ''.join(c if c.isalnum() else '_' for c in topic_name)
@@ -42,19 +42,19 @@ def follow_arm(
 
 
 class ArmFollower(Node):
-    """Hands on each joint state of a topic."""
+    """Passes each joint state of a topic on."""
 
     def __init__(
         self, node_name: str, topic_name: str, receive: Callable[[JointState], None]
     ) -> None:
-        """Subscribe, in a way that every publisher's QoS allows; the newest message will do."""
+        """Subscribe with a QoS profile compatible with any publisher, for the newest message."""
         super().__init__(node_name, enable_rosout=False, start_parameter_services=False)
         qos_profile = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
         self.create_subscription(JointState, topic_name, receive, qos_profile)
 
 
 class ArmView:
-    """Takes a panel's place: what this node has to show is a picture."""
+    """A picture in place of a panel with log lines."""
 
     _make_picture = ArmPicture
 
@@ -71,11 +71,11 @@ class ArmView:
         self._drawing = threading.Lock()
 
     def _about(self, topic_name: str) -> str:
-        """Return what the picture is, in words."""
+        """Return the beginning of the picture's alternative text."""
         return gettext_noop(f'two-link arm that follows {topic_name}')
 
     def receive(self, message: JointState) -> None:
-        """Take the pose from a message, or say what is wrong with it."""
+        """Take the pose from a message, or show what is wrong with it."""
         trouble = what_is_wrong(message)
         if trouble:
             self._ignored += 1
@@ -102,27 +102,27 @@ class ArmView:
             return {'image/png': self._picture.png(), 'text/plain': self._text}
 
     def listen(self, name: str) -> None:
-        """Log nothing: a picture has no lines."""
+        """Do nothing: a picture has no log lines."""
 
     def adopt_thread(self) -> None:
-        """Print nothing either."""
+        """Do nothing: the node prints nothing."""
 
     def show(self, state: str) -> None:
-        """Wait with the picture: `follow_arm` publishes it once there is a pose."""
+        """Do nothing: `follow_arm` publishes the picture once there is a pose."""
 
     def error(self, error: BaseException) -> None:
-        """Write an exception of ours above the picture, rather than lose it."""
+        """Show an exception of the course's code above the picture."""
         self._trouble = where_and_what(error)[1]
         self._display.update_soon(self._bundle)
 
     def close(self, reason: str) -> None:
-        """Leave the last picture."""
+        """Keep the last picture, with the reason above it."""
         self._trouble = reason
         self._display.update(self._bundle())
 
 
 def what_is_wrong(message: JointState) -> str:
-    """Return why a message gives no pose, or nothing if it does."""
+    """Return why a message has no valid pose, or '' if it has one."""
     missing = [joint for joint in JOINTS if joint not in message.name]
     if missing:
         return f'no {" and no ".join(missing)} among the names {list(message.name)}'

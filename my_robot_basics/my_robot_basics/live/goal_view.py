@@ -1,4 +1,4 @@
-"""A picture that fills in as a goal of an action proceeds, and the arm that moves meanwhile."""
+"""A picture of the states of an action's goal, and of the arm that it moves, updated live."""
 
 import math
 from typing import Any
@@ -14,7 +14,7 @@ from my_robot_basics.live.follow import ArmView
 from my_robot_basics.two_link_kinematics import L1, L2
 
 NAMES = {getattr(GoalStatus, f'STATUS_{state}'): state for state in PLACES}
-"""Status numbers and the states that they stand for."""
+"""The state's name for each status number."""
 BEFORE = {
     'EXECUTING': ('ACCEPTED',),
     'CANCELING': ('ACCEPTED', 'EXECUTING'),
@@ -22,15 +22,15 @@ BEFORE = {
     'ABORTED': ('ACCEPTED', 'EXECUTING'),
     'CANCELED': ('ACCEPTED', 'EXECUTING', 'CANCELING'),
 }
-"""States that a goal has been through although no message may have said so: only the newest list
-of states is kept for a subscription."""
+"""States that a goal must have been in before, even if no message showed it: a new subscription
+receives only the newest list of states."""
 
 
 def follow_goal(action_name: str = '/move_arm', *, l1: float = L1, l2: float = L2) -> None:
     """Show the newest goal of a MoveArm action: its states, its feedback, the arm, until `stop()`.
 
-    One picture is updated in place, a few times a second, while the cell has long returned. It
-    asks nobody: states and feedback are on two topics of the action. Link lengths are in metres.
+    The picture is updated in place, a few times a second, after the cell has returned. It sends no
+    request: states and feedback come from two topics of the action. Link lengths are in metres.
     """
     view = GoalView(action_name, l1=l1, l2=l2)
     node_name = '_follow_goal' + ''.join(c if c.isalnum() else '_' for c in action_name)
@@ -45,7 +45,7 @@ def follow_goal(action_name: str = '/move_arm', *, l1: float = L1, l2: float = L
 
 
 class GoalFollower(Node):
-    """Hands on what an action publishes of its goals."""
+    """Passes on what an action's server publishes about its goals."""
 
     def __init__(self, node_name: str, action_name: str, view: 'GoalView') -> None:
         """Subscribe to the action's two topics."""
@@ -60,13 +60,13 @@ class GoalFollower(Node):
 
 
 class GoalView(ArmView):
-    """What is known of one goal, and its picture."""
+    """The state of one goal, and its picture."""
 
     _make_picture = GoalPicture
     _picture: GoalPicture
 
     def __init__(self, action_name: str, *, l1: float, l2: float) -> None:
-        """Begin with no goal."""
+        """Begin without a goal."""
         super().__init__(action_name, l1=l1, l2=l2)
         self._trouble = gettext_noop('waiting for a goal')
         self._goal_id = b''
@@ -85,7 +85,7 @@ class GoalView(ArmView):
         self._display.update_soon(self._bundle)
 
     def take_feedback(self, message: Any) -> None:
-        """Move the arm to where it is now."""
+        """Show the arm's current pose and the remaining part of the motion."""
         feedback = message.feedback
         if len(feedback.position) != 2 or not all(map(math.isfinite, feedback.position)):
             return
@@ -99,7 +99,7 @@ class GoalView(ArmView):
         self._display.update_soon(self._bundle)
 
     def _begin(self, goal_id: bytes) -> None:
-        """Forget the former goal, if this is another one."""
+        """Start over if this is a new goal."""
         if self._goal_id == goal_id:
             return
         self._goal_id, self._trouble = goal_id, ''

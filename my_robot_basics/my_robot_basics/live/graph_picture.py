@@ -1,4 +1,4 @@
-"""A picture of the ROS graph as it is now: nodes, topics, and the way of the messages."""
+"""A picture of the current ROS graph: nodes, topics, and the direction of the messages."""
 
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
@@ -17,22 +17,22 @@ from my_robot_basics.live import notebook
 
 COLUMN_INCHES, ROW_INCHES = 2.5, 0.75
 ASIDE = 0.12
-"""How far two arrows between the same two boxes stand from the line between them, in rows."""
+"""Distance, in rows, of two opposite arrows from the line between their boxes."""
 BEND = 0.5
-"""How far an arrow evades the boxes between its ends, in rows."""
+"""How far an arrow is bent, in rows, to avoid the boxes between its ends."""
 
 
 class Box(NamedTuple):
     """A node, by its full name; or a topic with one message type.
 
-    Where a topic's name is used with two types, nothing crosses between them: it is two boxes.
+    A topic name with two types is two boxes: no message gets from one type to the other.
     """
 
     name: str
     type_name: str = ''
 
     def __str__(self) -> str:
-        """What stands in the box."""
+        """Return the text in the box."""
         return f'{self.name}\n{self.type_name}' if self.type_name else self.name
 
 
@@ -41,10 +41,10 @@ Arrows = dict[Box, tuple[Box, ...]]
 
 
 def show_graph(title: str = '') -> None:
-    """Show who publishes and who subscribes, on every topic of this lesson's ROS domain, now.
+    """Show which nodes publish and subscribe on each topic of this lesson's ROS domain now.
 
-    Left out are nodes whose names start with `_`, and ROS's own topics. Messages go along the
-    arrows, mostly from left to right.
+    Nodes whose names start with `_`, and ROS's own topics, are left out. The arrows show the
+    direction of the messages, mostly from left to right.
     """
     with Watcher() as watcher:
         nodes = graphs.take(watcher).nodes()
@@ -54,7 +54,7 @@ def show_graph(title: str = '') -> None:
 
 
 def arrows_of(nodes: Iterable[str], endpoints: Iterable[Endpoint]) -> Arrows:
-    """Make the graph of nodes (full names, those without endpoints too) and their endpoints."""
+    """Return the graph of nodes (full names, also those without endpoints) and endpoints."""
     found: dict[Box, set[Box]] = {Box(name): set() for name in nodes}
     for end in endpoints:
         node, topic = Box(end.node_name), Box(end.name, end.type_name)
@@ -65,7 +65,7 @@ def arrows_of(nodes: Iterable[str], endpoints: Iterable[Endpoint]) -> Arrows:
 
 
 def describe(arrows: Arrows) -> str:
-    """The picture in words, for those who can't see it."""
+    """Return the picture's alternative text."""
     senders: dict[Box, list[str]] = defaultdict(list)
     for box, others in arrows.items():
         for other in others:
@@ -85,7 +85,7 @@ def describe(arrows: Arrows) -> str:
 
 
 def draw(arrows: Arrows, *, title: str = '') -> bytes:
-    """The graph as a PNG."""
+    """Return the graph as a PNG."""
     from matplotlib.figure import Figure  # takes a second
 
     places = _places(arrows)
@@ -111,10 +111,10 @@ def draw(arrows: Arrows, *, title: str = '') -> bytes:
 
 
 def _places(arrows: Arrows) -> dict[Box, tuple[int, float]]:
-    """Column and height of each box: nodes in even columns, topics in odd ones.
+    """Return column and height of each box: nodes in even columns, topics in odd ones.
 
-    A box stands about as high as those whose messages it gets; one that gets none, as those to
-    which its messages go; and one that is alone stands below all others.
+    A box is about as high as its senders; one without senders, as its receivers; and one without
+    either is below all others.
     """
     columns = _columns(arrows)
     senders = {box: [other for other in arrows if box in arrows[other]] for box in arrows}
@@ -142,7 +142,7 @@ def _places(arrows: Arrows) -> dict[Box, tuple[int, float]]:
 
 
 def _apart(wanted: dict[Box, float]) -> dict[Box, float]:
-    """The heights nearest to those wanted at which boxes of one column are a row apart."""
+    """Return heights close to those wanted at which boxes of one column are a row apart."""
     heights: dict[Box, float] = {}
     for box in sorted(wanted, key=lambda box: (-wanted[box], box)):
         heights[box] = min([wanted[box], *(height - 1 for height in heights.values())])
@@ -151,20 +151,20 @@ def _apart(wanted: dict[Box, float]) -> dict[Box, float]:
 
 
 def _columns(arrows: Arrows) -> dict[Box, int]:
-    """Each box stands right of those whose messages it gets; loops have a way back."""
+    """Return a column for each box, to the right of its senders; loops are broken up."""
     senders = _without_loops(arrows)
     columns: dict[Box, int] = {}
     for box in TopologicalSorter(senders).static_order():
         first = int(bool(box.type_name))
         columns[box] = max([first, *(columns[sender] + 1 for sender in senders[box])])
     for box, others in arrows.items():
-        if others and not senders[box]:  # close to where its messages go
+        if others and not senders[box]:  # move it next to its receivers
             columns[box] = max(columns[box], min(columns[other] for other in others) - 1)
     return columns
 
 
 def _without_loops(arrows: Arrows) -> dict[Box, set[Box]]:
-    """For each box those that send to it, without the arrows that close a loop."""
+    """Return the senders of each box, without the arrows that close a loop."""
     senders: dict[Box, set[Box]] = {box: set() for box in arrows}
     done: set[Box] = set()
 

@@ -1,4 +1,4 @@
-"""Errors of rclpy's that do no harm, and that nobody can catch: they are not shown."""
+"""Hide harmless errors of rclpy that no code can catch."""
 
 import sys
 import threading
@@ -14,7 +14,7 @@ _OF_EXECUTORS = {each.__del__.__qualname__ for each in (Executor, SignalHandlerG
 
 
 def hide() -> None:
-    """Show no such error from now on, in a thread or while an object is deleted."""
+    """Hide such errors from now on, in a thread and while an object is deleted."""
     threading.excepthook = _without_shutdowns(threading.excepthook)
     sys.unraisablehook = _without_races(sys.unraisablehook)
 
@@ -22,9 +22,9 @@ def hide() -> None:
 def _without_shutdowns(
     former: Callable[[threading.ExceptHookArgs], object],
 ) -> Callable[[threading.ExceptHookArgs], None]:
-    """Make a hook for threads that a student lets spin: that rclpy is shut down is no error.
+    """Make a hook for a student's threads that spin, which ignores ExternalShutdownException.
 
-    Any other one is remembered: a check that misses a message can tell why it does not come.
+    Other exceptions are recorded: a check that misses a message can name the reason.
     """
 
     def hook(args: threading.ExceptHookArgs) -> None:
@@ -40,11 +40,11 @@ def _without_shutdowns(
 def _without_races(
     former: Callable[['sys.UnraisableHookArgs'], object],
 ) -> Callable[['sys.UnraisableHookArgs'], None]:
-    """Make a hook for what rclpy raises while something of its own is deleted.
+    """Make a hook for exceptions of rclpy while one of its objects is deleted.
 
-    A Context removes executors that are gone from a list without a lock; where two go at the same
-    moment, it may miss one. An executor misses its parts where an interrupt came as it was made.
-    Shown in a cell that is being validated, that would cost its points.
+    A Context removes deleted executors from a list without a lock: if two are deleted at the same
+    time, one may be missing. An executor lacks attributes if an interrupt came while it was
+    created. If nbgrader's Validate showed such an error in a cell, it would cost the points.
     """
 
     def hook(args: 'sys.UnraisableHookArgs') -> None:

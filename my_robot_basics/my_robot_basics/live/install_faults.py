@@ -1,4 +1,4 @@
-"""Why `ros2 run` cannot use what a build has installed, in a sentence that says what to do."""
+"""Why `ros2 run` cannot use what a build has installed, in a sentence with a hint."""
 
 import ast
 import os
@@ -11,11 +11,11 @@ from my_robot_basics.live.package_faults import NO_PYTHON, short
 from my_robot_basics.session.package_files import PackageFiles
 
 _MOST_OF_A_LINE = 200
-"""Bytes of an executable that are looked at."""
+"""Bytes of an executable's first line that are read."""
 
 
 def fault_in_install(package: str, prefix: Path, files: PackageFiles) -> str:
-    """Why what was installed cannot be run by `ros2 run`; '' where it can."""
+    """Say why `ros2 run` cannot run what was installed; '' if it can."""
     if not (prefix / 'share/ament_index/resource_index/packages' / package).is_file():
         return (
             f'{package} was built without its marker, so that ROS does not find it: install '
@@ -40,9 +40,9 @@ def fault_in_install(package: str, prefix: Path, files: PackageFiles) -> str:
 
 
 def _fault_of_scripts(scripts: Path) -> str:
-    """Why Linux cannot start an executable; '' where it can.
+    """Say why Linux cannot start an executable; '' if it can start all of them.
 
-    setuptools writes `#!python` into what `scripts=` names, and means a wheel's installer with it.
+    setuptools writes `#!python` into files of `scripts=`, which only a wheel's installer replaces.
     """
     for path in sorted(scripts.iterdir()):
         line = _first_line(path)
@@ -57,7 +57,7 @@ def _fault_of_scripts(scripts: Path) -> str:
 
 
 def _first_line(path: Path) -> str:
-    """The begin of an executable; '' where it is no file that can be read."""
+    """Return the first line of an executable; '' if it is not a readable file."""
     if not path.is_file():
         return ''
     try:
@@ -115,7 +115,7 @@ def _fault_of_entry(entry: EntryPoint, package: str, site: Path, files: PackageF
 
 
 def _bound(tree: ast.Module) -> Iterator[str]:
-    """Yield what a module may bind; of `from … import *`, nobody knows."""
+    """Yield names that a module may bind; those of `from … import *` are unknown."""
     for node in ast.walk(tree):
         if isinstance(node, ast.FunctionDef | ast.ClassDef | ast.AsyncFunctionDef):
             yield node.name

@@ -1,8 +1,8 @@
-"""Whatever a cell waits for, its interrupt ends it: JupyterLab's ■, or the end of a cell's time.
+"""Make all waits of a cell interruptible, by JupyterLab's ■ or at the cell's time limit.
 
-Python raises KeyboardInterrupt between two of its own instructions. In a program of its own, rclpy
-sees to it that a wait ends; in a kernel, where ipykernel sets the handler of SIGINT anew for each
-cell, nothing does.
+Python raises KeyboardInterrupt only between two of its own instructions. In a normal program,
+rclpy's handler of SIGINT ends a wait in C++; in a kernel, ipykernel replaces that handler for each
+cell, and such a wait would not end.
 """
 
 import contextlib
@@ -27,9 +27,9 @@ POLL_SEC = 0.1
 
 
 def let_cells_be_interrupted() -> None:
-    """Let a cell that waits in rclpy without end be interrupted, at any moment.
+    """Make waits in rclpy without a timeout interruptible.
 
-    Only the thread in which cells run sees a difference: a student's own threads spin as before.
+    This changes only the thread in which cells run: a student's own threads spin as before.
     """
     wait = _interruptible(Executor.wait_for_ready_callbacks)
     patch(Executor, 'wait_for_ready_callbacks', wait)
@@ -40,10 +40,10 @@ def let_cells_be_interrupted() -> None:
 
 
 def forget_dead_executor() -> None:
-    """Let `rclpy.spin` make an executor where the one that it keeps has a context that is over.
+    """Make `rclpy.spin` create a new global executor if the current one's context is shut down.
 
-    An interrupt that came as it was made, or that rclpy's own handler answered, has left it so:
-    each `spin` would return at once.
+    An interrupt while it was created, or one that rclpy's own handler handled, can leave such an
+    executor: each `spin` would return at once.
     """
     kept = vars(rclpy).get('__executor')
     if kept is not None and not kept.context.ok():
@@ -56,7 +56,7 @@ def in_a_cell() -> bool:
 
 
 def _interruptible(wait: Callable[..., Any]) -> Callable[..., Any]:
-    """Make an endless wait one of many short ones: Python sees the interrupt between them."""
+    """Split a wait without a timeout into short ones: Python handles an interrupt between them."""
 
     @functools.wraps(wait)
     def wait_in_steps(
@@ -98,7 +98,7 @@ class _InterruptibleWaitSet(rclpy_implementation.WaitSet):
             return
         super().wait(int(POLL_SEC * 1e9))
         while not any(map(self.get_ready_entities, ('subscription', 'guard_condition'))):
-            self.clear_entities()  # what was not ready is no longer in it
+            self.clear_entities()  # a wait removes the entities that were not ready
             for add, handle in self._added:
                 add(handle)
             super().wait(int(POLL_SEC * 1e9))
@@ -107,13 +107,13 @@ class _InterruptibleWaitSet(rclpy_implementation.WaitSet):
 def _sending_again(
     former: Callable[['sys.UnraisableHookArgs'], object],
 ) -> Callable[['sys.UnraisableHookArgs'], None]:
-    """Make a hook for an interrupt that meets the deletion of an object, where Python drops it."""
+    """Make a hook that sends SIGINT again if it came in a `__del__`, where Python drops it."""
 
     def hook(args: 'sys.UnraisableHookArgs') -> None:
         if not (issubclass(args.exc_type, KeyboardInterrupt) and in_a_cell()):
             former(args)
             return
-        # not at once: it would meet this hook, and be dropped again
+        # not at once: it would come in this hook, and be dropped again
         again = threading.Timer(POLL_SEC, os.kill, (os.getpid(), signal.SIGINT))
         again.daemon = True
         again.start()
@@ -122,11 +122,11 @@ def _sending_again(
 
 
 def _wait_for_end(thread: Any, block: bool = True, timeout: float = -1) -> None:
-    """Do what `Thread.is_alive` and `join` do, and take no running thread for one that has ended.
+    """Wait for a thread's end as `Thread.is_alive` and `join` do, but safely for interrupts.
 
-    Before 3.13 Python does where an interrupt comes then. ipykernel asks at each print whether
-    its thread that sends outputs runs: once it takes it for dead, all threads send, at the same
-    time, until messages are lost, such as the one that says that a cell has ended.
+    Before 3.13, an interrupt in this function can make Python take a running thread for an ended
+    one. ipykernel calls `is_alive` of its output thread at each print: once that is False, all
+    threads use its socket at the same time and messages are lost, even a cell's final one.
     """
     lock = thread._tstate_lock
     if lock is None:
@@ -137,6 +137,6 @@ def _wait_for_end(thread: Any, block: bool = True, timeout: float = -1) -> None:
             thread._stop()
     except BaseException:
         if lock.locked() and thread.ident not in sys._current_frames():
-            lock.release()  # it was acquired here: the thread has ended
+            lock.release()  # this function has acquired it: the thread has ended
             thread._stop()
         raise

@@ -1,14 +1,14 @@
-"""Tell the lines of the ROS logger from everything else that a process writes to stdout."""
+"""Separate the lines of the ROS logger from everything else that a process writes to stdout."""
 
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
 RECORD_END = '\x1f'
-"""Unit separator, put behind each record so that one of several lines is known to be one."""
+"""Unit separator, written after each record, to find the end of a record with several lines."""
 
 CONSOLE_FORMAT = '[{severity}] [{time}] [{name}]: {message}' + RECORD_END
-"""The ROS default and the separator, for RCUTILS_CONSOLE_OUTPUT_FORMAT."""
+"""ROS's default format with the separator, for RCUTILS_CONSOLE_OUTPUT_FORMAT."""
 
 _START = re.compile(rb'\[(DEBUG|INFO|WARN|ERROR|FATAL)\] \[\d+\.\d+\] \[([^\]\n]*)\]: ')
 _END = RECORD_END.encode()
@@ -16,7 +16,7 @@ _END = RECORD_END.encode()
 
 @dataclass(frozen=True)
 class LogRecord:
-    """One thing that a logger said."""
+    """One message of a logger."""
 
     severity: str
     """DEBUG, INFO, WARN, ERROR or FATAL."""
@@ -29,21 +29,21 @@ class LogRecord:
 
 
 class Splitter:
-    """Takes bytes as they come; hands on each log record that is wanted, and all other bytes."""
+    """Splits a stream of bytes into wanted log records and all other bytes."""
 
     def __init__(
         self, *, take: Callable[[LogRecord], bool], forward: Callable[[bytes], None]
     ) -> None:
-        """`take` returns whether the record was wanted; what it refuses goes to `forward`."""
+        """Pass each record to `take`; if that returns False, and other bytes, to `forward`."""
         self._take = take
         self._forward = forward
         self._pending = b''
         self._marked = True
-        """Whether records carry the separator: not where logging began before we were asked."""
+        """Whether records end with the separator: not if logging was set up earlier."""
 
     @property
     def waiting(self) -> bool:
-        """Whether bytes are held back because more are expected."""
+        """Whether bytes are kept back because a record may be incomplete."""
         return bool(self._pending)
 
     def feed(self, data: bytes) -> None:
@@ -69,7 +69,7 @@ class Splitter:
             self._forward(bytes(plain))
 
     def give_up_waiting(self) -> None:
-        """No more bytes came: treat what is held back as complete."""
+        """Treat the bytes that are kept back as complete, since no more came."""
         raw, self._pending = self._pending, b''
         start = _START.match(raw)
         if start is not None and raw.endswith(b'\n'):
@@ -79,7 +79,7 @@ class Splitter:
             self._forward(raw)
 
     def _length_of_record(self, lines: list[bytes]) -> int | None:
-        """How many lines the record at the front has; None while that is unknown."""
+        """Return how many lines the first record has; None while that is unknown."""
         for number, line in enumerate(lines, start=1):
             if line.endswith(_END + b'\n'):
                 self._marked = True
@@ -92,7 +92,7 @@ class Splitter:
         return None
 
     def _hand_on(self, raw: bytes, start: re.Match[bytes]) -> bytes:
-        """Offer a record; return the bytes to forward where nobody wants it."""
+        """Pass a record to `take`; return the bytes to forward if it is not wanted."""
         raw = raw.removesuffix(b'\n').removesuffix(_END)
         severity, logger, text = (
             part.decode(errors='replace') for part in (*start.groups(), raw[start.end() :])

@@ -1,4 +1,4 @@
-"""Know a node's name before the node exists: its constructor alone can tell."""
+"""Get a node's name, which only its constructor knows, before the node is created."""
 
 import functools
 from collections.abc import Callable, Iterator
@@ -12,10 +12,10 @@ from my_robot_basics.live.patching import patched
 
 @contextmanager
 def announce_name(node: Node, on_name: Callable[[str], None]) -> Iterator[None]:
-    """Call `on_name` with the fully qualified name of `node` just before rclpy makes the node.
+    """Call `on_name` with the fully qualified name of `node` just before rclpy creates the node.
 
-    What `on_name` raises ends the constructor there and then: no second node of a name is made,
-    not even for a moment (destroying it would silence the first one's /rosout).
+    An exception of `on_name` ends the constructor: so no second node of a name is created, not
+    even for a moment (destroying it would stop the first one's log messages on /rosout).
     """
     make = Node.__init__
 

@@ -1,4 +1,4 @@
-"""`%%write_node FILE`: the text of a cell becomes a module of the student's package."""
+"""`%%write_node FILE`: write the text of a cell as a module of the student's package."""
 
 import shutil
 from pathlib import Path
@@ -9,24 +9,24 @@ from my_robot_basics.session import kernel
 from my_robot_basics.session.errors import LiveError, tell
 
 ROOM_FOR_NAMES = 34
-"""Columns of the tree; the words stand behind them."""
+"""Columns for the names in the tree, before their descriptions."""
 
 
 class NotWritten(LiveError):
-    """`%%write_node` was given no name for a module, or there is no workspace."""
+    """`%%write_node` did not get the name of a module, or there is no workspace."""
 
 
 def register() -> None:
-    """Make the magic known to the notebook."""
+    """Register the magic command in the notebook."""
     kernel.shell().register_magic_function(write_node, 'cell', 'write_node')
 
 
 def write_node(line: str, cell: str) -> None:
-    """Write the cell into the workspace's package; a file that differs is kept beside it.
+    """Write the cell into the workspace's package; keep a copy of a file that differs.
 
-    A class whose body is `...` is the notebook's own class of that name: its text is copied there,
-    and the whole file is printed. Where that is still to be written, this is printed, and a file
-    that is there stays. Raises NotWritten or NotAProgram.
+    A class whose body is `...` is replaced by the text of the notebook's class of that name, and
+    the whole file is printed. If that class is not written yet, this is printed, and an existing
+    file is not changed. Raises NotWritten or NotAProgram.
     """
     name = line.strip()
     if not (name.endswith('.py') and name.removesuffix('.py').isidentifier()):
@@ -37,7 +37,7 @@ def write_node(line: str, cell: str) -> None:
     target = modules / name
     try:
         text = program.fill_in(cell)
-    except program.NotAnswered as error:  # not an error: *Run All* goes on
+    except program.NotAnswered as error:  # printed, so that *Run All* continues
         if target.exists():
             tell(f'not written: {error} ({name} stays as it was)', in_one=False)
         else:
@@ -65,7 +65,7 @@ def show_workspace() -> None:
 
 
 def _below(root: Path, folder: Path, indent: str) -> list[str]:
-    """Return a line for each part of a folder that is on the list and exists."""
+    """Return a line for each existing entry of a folder that is listed in _WORDS."""
     lines = []
     entries = _entries(root, folder)
     for entry in entries:

@@ -1,4 +1,4 @@
-"""The way to a notebook's cells; outside a notebook kernel, to stdout."""
+"""Show outputs in a notebook's cells; outside a notebook kernel, on stdout."""
 
 import itertools
 import threading
@@ -15,7 +15,7 @@ from my_robot_basics.session import kernel
 from my_robot_basics.session.environment import set_meanwhile
 
 PAUSE_SEC = 0.25
-"""Between two updates: a flood of messages must not become a flood of displays."""
+"""Pause between two updates, so that a flood of messages does not become a flood of displays."""
 
 _tap: StdoutTap | None = None
 _numbers = itertools.count()
@@ -27,24 +27,24 @@ def in_kernel() -> bool:
 
 
 def open_tap() -> None:
-    """Begin to listen to the ROS logger, in a notebook kernel."""
+    """Start reading the ROS logger's output, in a notebook kernel."""
     global _tap
     if _tap is None and in_kernel():
         _tap = StdoutTap()
         _mark_log_records()
-        # else the last picture, sent at the kernel's end, would need a part of ZMQ that is gone
+        # else a large picture that is sent at the kernel's end uses a part of ZMQ that is gone
         kernel.shell().kernel.iopub_thread.socket.copy_threshold = 2**31 - 1
 
 
 def _mark_log_records() -> None:
-    """Set the ROS logger up, with a mark behind each record, unless it has been set up before."""
-    # not for longer: programs that the notebook starts write to people
+    """Set up the ROS logger with RECORD_END after each record, unless it is set up already."""
+    # only meanwhile: programs that the notebook starts must log in the normal format
     with set_meanwhile('RCUTILS_CONSOLE_OUTPUT_FORMAT', CONSOLE_FORMAT):
         rclpy.logging.initialize()
 
 
 def leave() -> None:
-    """Update no display any more, and leave stdout as it was."""
+    """Stop updating displays, and restore stdout."""
     global _tap
     _refresher.stop()
     if _tap is not None:
@@ -53,13 +53,13 @@ def leave() -> None:
 
 
 def listen(logger: str, sink: Callable[[LogRecord], None]) -> None:
-    """Give what the logger of that name says to `sink`."""
+    """Pass the records of the logger with that name to `sink`."""
     if _tap is not None:
         _tap.give(logger, sink)
 
 
 def listen_no_more(sink: Callable[[LogRecord], None]) -> None:
-    """Give nothing more to `sink`."""
+    """Stop passing records to `sink`."""
     if _tap is not None:
         _tap.take_back(sink)
 
@@ -74,19 +74,19 @@ class Display:
     """One output of the cell that runs now, updated in place from any thread."""
 
     def __init__(self) -> None:
-        """Remember the cell; nothing shows before `show`."""
+        """Store the current cell; nothing appears before `show`."""
         self._shell = kernel.shell()
         self._cell = self._shell.get_parent() if self._shell else None
         self._id = f'live-{next(_numbers)}-{time.time_ns():x}'
         self._shown = False
 
     def adopt_thread(self) -> None:
-        """Let what this thread prints and shows appear with the cell."""
+        """Make the outputs of this thread appear with the cell."""
         if self._shell:
             self._shell.set_thread_parent(self._cell)
 
     def show(self, bundle: Bundle) -> None:
-        """Publish the first time, now."""
+        """Publish the output for the first time."""
         if self._shell:
             self._publish(bundle, update=False)
             self._shown = True
@@ -94,12 +94,12 @@ class Display:
             print(bundle['text/plain'])
 
     def update_soon(self, render: Callable[[], Bundle]) -> None:
-        """Publish what `render()` then gives, with the next round of updates."""
+        """Publish the result of `render()` in the next round of updates."""
         if self._shown:
             _refresher.add(self, render)
 
     def update(self, bundle: Bundle) -> None:
-        """Publish anew, now, as part of the cell's outputs, whichever cell runs."""
+        """Update the output at once, in its own cell, whichever cell runs."""
         if not self._shown or _refresher.stopped:
             return
         publisher = self._shell.display_pub

@@ -1,4 +1,4 @@
-"""Build one package by colcon, from a copy: nothing is written into the student's folder."""
+"""Build one package with colcon from a copy, so that the student's folder is not changed."""
 
 import contextlib
 import os
@@ -17,40 +17,40 @@ from my_robot_basics.live.package_faults import fault_in_sources, fault_in_words
 from my_robot_basics.session import classroom, package_files, subreaper
 
 MOST_WORDS = 20_000
-"""Characters of what colcon prints that are kept, the last ones."""
+"""How many bytes of colcon's output are kept, the last ones."""
 _LOOK_EVERY_SEC, _IN_A_PIPE = 0.5, 65_536
-"""How often to look whether colcon has ended, and the bytes that may wait in its pipe then."""
+"""How often to test whether colcon has ended, and how many bytes its pipe may contain then."""
 _END_SEC = 10.0
-"""How long to wait until all that a build has started is ended."""
+"""How long to wait for the end of all processes that a build has started."""
 _STAGED = '.packages'
-"""Where in the workspace the copy is; colcon passes over folders that begin with a dot."""
+"""The copy's folder in the workspace; colcon ignores folders that begin with a dot."""
 _ESCAPES = re.compile(r'\x1b\[[0-9;?]*[A-Za-z]')
 
 
 @dataclass(frozen=True)
 class Build:
-    """What came of a build."""
+    """The result of a build."""
 
     package: str
     status: int | None
-    """colcon's exit code, negative for a signal; None where it was not run."""
+    """colcon's exit code, negative for a signal; None if it was not run."""
     problem: str
-    """What is wrong, and what to do, in a sentence; '' for a package that can be run."""
+    """What is wrong, and what to do, in a sentence; '' if the package can be run."""
     words: str = ''
-    """What colcon has printed, the end of it."""
+    """The end of colcon's output."""
     executables: tuple[str, ...] = ()
-    """What `ros2 run` finds in it."""
+    """The executables that `ros2 run` finds in it."""
     left_out: tuple[str, ...] = ()
-    """Files in its folder that are no part of it, each with its reason."""
+    """Files in its folder that do not belong to it, each with the reason."""
 
 
 def prefix_of(package: str) -> Path:
-    """Where a package is installed in the workspace."""
+    """Return the folder in which a package is installed in the workspace."""
     return classroom.workspace() / 'install' / package
 
 
 def executables_of(package: str) -> tuple[str, ...]:
-    """The names that `ros2 run` finds of a package that was built."""
+    """Return the executables that `ros2 run` finds in a package that was built."""
     folder = prefix_of(package) / 'lib' / package
     if not folder.is_dir():
         return ()
@@ -58,9 +58,9 @@ def executables_of(package: str) -> tuple[str, ...]:
 
 
 def build(package: str, folder: Path) -> Build:
-    """Build the package in a folder in the workspace, which keeps build/, install/ and log/.
+    """Build the package in `folder`; build/, install/ and log/ are in the workspace.
 
-    What is taken is what the grader takes, too. Nothing is raised for what is wrong with it.
+    The same files are used as by the grader. A fault of the package is returned, not raised.
     """
     try:
         files = package_files.read(folder)
@@ -83,7 +83,7 @@ def build(package: str, folder: Path) -> Build:
 
 
 def _run_colcon(package: str, files: Mapping[str, Path]) -> tuple[int, str]:
-    """Build from a fresh copy; return colcon's exit code, and the end of what it has printed."""
+    """Build from a fresh copy; return colcon's exit code, and the end of its output."""
     workspace = classroom.workspace()
     staged = workspace / _STAGED / package
     for former in (staged, workspace / 'build' / package, workspace / 'install' / package):
@@ -108,7 +108,7 @@ def _run_colcon(package: str, files: Mapping[str, Path]) -> tuple[int, str]:
         words = _end_of(colcon)
         return colcon.wait(), words
     finally:
-        # an interrupt of the cell: it ends all that the package's setup.py has started, too
+        # after an interrupt of the cell: end also all that the package's setup.py has started
         colcon.terminate()
         with contextlib.suppress(subprocess.TimeoutExpired):
             colcon.wait(_END_SEC)
@@ -118,9 +118,9 @@ def _run_colcon(package: str, files: Mapping[str, Path]) -> tuple[int, str]:
 
 
 def _end_of(colcon: subprocess.Popen) -> str:
-    """Read all that it prints until it ends; return the end of it as text.
+    """Read colcon's output until it ends; return the last part of it as text.
 
-    What setup.py has left running is ended meanwhile: it may hold the pipe that colcon reads.
+    Meanwhile, subreaper.py ends processes that setup.py leaves behind, which may hold the pipe.
     """
     assert colcon.stdout is not None  # it is a pipe
     kept = b''

@@ -1,4 +1,4 @@
-"""What is wrong with a package, or with its build, in a sentence that says what to do."""
+"""What is wrong with a package, or with its build, in a sentence with a hint."""
 
 import ast
 import re
@@ -13,14 +13,14 @@ _IN_FILE = re.compile(r'^\s*File "(?P<file>[^"]+)", line (?P<line>\d+)')
 _CANNOT_COPY = re.compile(r"error: can't copy '([^']+)'")
 _SETUP_ERROR = re.compile(r'^error: (.+)$')
 _COLCONS = ('CalledProcessError', 'DeprecationWarning', 'SetuptoolsDeprecationWarning')
-"""What colcon and setuptools raise or say beside the package's own error."""
+"""Errors and warnings of colcon and setuptools themselves, beside the package's own error."""
 _MOST = 300
 NO_PYTHON = (ValueError, RecursionError, MemoryError)
-"""What Python's own reader raises beside SyntaxError: zeros, and what is nested too deeply."""
+"""What Python's parser raises besides SyntaxError: for null bytes, and for too deep nesting."""
 
 
 def fault_in_sources(package: str, files: PackageFiles) -> str:
-    """What is wrong before anything is built; '' where nothing is seen."""
+    """Return what is wrong with a package's sources; '' if no fault is found before the build."""
     if 'package.xml' not in files.taken:
         return (
             f'{package}/ has no package.xml, so it is no ROS package yet: write one, or begin '
@@ -69,7 +69,7 @@ def _fault_in_manifest(package: str, file: Path) -> str:
 
 
 def fault_in_words(package: str, status: int, words: str) -> str:
-    """What matters of colcon's words when it has failed, and what to do."""
+    """Return the error in the output of colcon, after it has failed, and what to do."""
     if status < 0:
         return (
             f'colcon was ended by {signal_name(-status)} while it built {package}: look for what '
@@ -88,7 +88,7 @@ def fault_in_words(package: str, status: int, words: str) -> str:
 
 
 def _last_error(lines: list[str]) -> str:
-    """The last error among lines, with the line of the package's own file that it came from."""
+    """Return the last error in the output, with the line of the package's file that caused it."""
     where = found = at_error = ''
     is_run = False
     for line in lines:
@@ -98,7 +98,7 @@ def _last_error(lines: list[str]) -> str:
                 where = f'{file.split("/.packages/")[1]}, line {number}: '
             elif file == '<string>' and is_run:
                 where = f'setup.py, line {number}: '
-            is_run = is_run or line.endswith('in run_setup')  # setuptools reads setup.py there
+            is_run = is_run or line.endswith('in run_setup')  # where setuptools runs setup.py
         elif (error := _LAST_LINE.match(line.strip())) and error[1] not in _COLCONS:
             found, at_error = line.strip(), where
         elif error := _SETUP_ERROR.match(line.strip()):
@@ -115,7 +115,7 @@ def _is_colcons(line: str) -> bool:
 
 
 def short(text: str) -> str:
-    """One printable line of a text that somebody wrote, cut where it is long."""
+    """Return an untrusted text as one printable line, shortened if it is long."""
     line = ' '.join(text.split())
     line = ''.join(character if character.isprintable() else '?' for character in line)
     return line if len(line) <= _MOST else line[: _MOST - 1] + '…'

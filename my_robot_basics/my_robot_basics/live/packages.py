@@ -1,4 +1,4 @@
-"""A ROS package beside the notebook: make one, build it, run what is in it."""
+"""A ROS package beside the notebook: create it, build it, run its executables."""
 
 import os
 from collections.abc import Sequence
@@ -13,18 +13,18 @@ from my_robot_basics.session import classroom
 from my_robot_basics.session.errors import NotRunnable, tell
 
 FOLDER = 'MY_ROBOT_BASICS_PACKAGES'
-"""Names, where a notebook is graded, the folder in which the packages that were handed in lie."""
+"""The environment variable with the folder of the submitted packages, at grading."""
 MOST_SAID = 2_000
-"""Characters of a program's words that a check is told."""
+"""How many characters of a program's output, or of a message, a check gets."""
 
 _builds: dict[str, Build] = {}
 
 
 def build_package(name: str) -> None:
-    """Build the package whose folder lies beside the notebook, as `colcon build` does; say how.
+    """Build the package beside the notebook, as `colcon build` does, and print the result.
 
-    What colcon makes is in the workspace, and nothing in the folder changes. What runs of the
-    package is stopped first. What is wrong with it is printed with what to do: nothing is raised.
+    colcon's results are in the workspace, and the folder is not changed. Running executables of
+    the package are stopped first. A fault is printed with what to do, and not raised.
     """
     __tracebackhide__ = True
     _expect_name(name)
@@ -45,9 +45,9 @@ def build_package(name: str) -> None:
 def run_executable(package: str, executable: str, *arguments: str) -> bool:
     """Start an executable of a package that was built, as `ros2 run` does, in the background.
 
-    `run_executable('arm_player', 'arm_driver', '--ros-args', '-p', 'speed:=0.5')`: a process of
-    its own, whose lines show with the cell. One that runs already is replaced. Where there is no
-    such executable, that is printed with what to do, and nothing is raised: *Run All* goes on.
+    `run_executable('arm_player', 'arm_driver', '--ros-args', '-p', 'speed:=0.5')` starts a
+    process, whose output appears with the cell. If it runs already, it is replaced. If there is no
+    such executable, this is printed with what to do, and not raised, so that *Run All* continues.
     Returns whether it was started.
     """
     executables.stop_started(package=package, name=executable)
@@ -60,9 +60,9 @@ def run_executable(package: str, executable: str, *arguments: str) -> bool:
 
 
 def make_package(name: str, *, node_name: str = '', dependencies: Sequence[str] = ()) -> None:
-    """Make a new package beside the notebook, as `ros2 pkg create` does for ament_python.
+    """Create a new package beside the notebook, as `ros2 pkg create` does for ament_python.
 
-    `node_name` is an executable to begin with. Raises NotRunnable where the folder is there.
+    `node_name` is the name of a first executable. Raises NotRunnable if the folder exists.
     """
     __tracebackhide__ = True
     _expect_name(name)
@@ -78,15 +78,15 @@ def make_package(name: str, *, node_name: str = '', dependencies: Sequence[str] 
 
 
 def beside() -> Path:
-    """The folder in which a notebook's packages lie: its own; another where it is graded."""
+    """Return the folder of a notebook's packages: its own, or at grading the one of FOLDER."""
     return Path(os.environ.get(FOLDER) or Path.cwd())
 
 
 def answer_check(package: str, verb: str, *args: Any) -> dict[str, Any]:
-    """Answer a check that asks about a package: bounded text, numbers and no more.
+    """Answer a check's request about a package with bounded text and numbers only.
 
-    'built': what came of the build. 'start', name, arguments: start an executable. 'state',
-    number: whether it runs, its exit code and last words. 'signal', number, name: send it one.
+    'built': the result of the build. 'start', name, arguments: start an executable. 'state',
+    number: its exit code, None while it runs, and last output. 'signal', number, name: send one.
     """
     if verb == 'built':
         return _told_of(_builds.get(package))

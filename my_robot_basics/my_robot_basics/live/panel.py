@@ -1,4 +1,4 @@
-"""A cell's panel: the log lines and the troubles of the node that the cell has started."""
+"""A cell's panel: the log lines and exceptions of the node that the cell has started."""
 
 import html
 import threading
@@ -16,21 +16,21 @@ LONGEST = 400
 """Characters of an entry that are shown."""
 TO_SHOW: tuple[str, ...] = ('running', 'stopped')
 STOPPED = TO_SHOW[-1]
-"""The state of a node that was stopped or replaced, as every node of a lesson is in the end."""
+"""The state of a node that was stopped or replaced."""
 STYLE = 'margin:0;padding-left:8px;border-left:3px solid #0072b2;font-size:13px;word-break:normal'
-"""As large as other outputs, and broken between words: JupyterLab does neither to a <pre>."""
+"""Text size of other outputs, lines broken between words: not JupyterLab's default for <pre>."""
 
 
 @dataclass
 class PanelEntry:
-    """A log record or an exception; `times` counts the exception's returns."""
+    """A log record or an exception; `times` counts how often the exception occurred."""
 
     text: str
     where: str | None = None
     times: int = 1
 
     def __str__(self) -> str:
-        """What the panel shows."""
+        """Return the text that the panel shows."""
         text = self.text if len(self.text) <= LONGEST else self.text[:LONGEST] + ' …'
         again = self.times - 1
         more = in_language_here(f'… {again} more time{"s"[: again != 1]}')
@@ -38,13 +38,13 @@ class PanelEntry:
 
 
 class NodePanel(Protocol):
-    """What shows one node: its log, or a picture."""
+    """The interface of an output about one node: its log, or a picture."""
 
     def listen(self, name: str) -> None:
         """Show the log lines of the node of that fully qualified name."""
 
     def adopt_thread(self) -> None:
-        """Let what this thread prints appear here."""
+        """Make this thread's output appear here."""
 
     def show(self, state: str) -> None:
         """Appear for the first time."""
@@ -53,11 +53,11 @@ class NodePanel(Protocol):
         """Show an exception that a callback raised."""
 
     def close(self, reason: str) -> None:
-        """Say why the node is gone."""
+        """Show why the node has ended."""
 
 
 class Panel:
-    """What one node says, shown with the cell that started it and updated in place."""
+    """The log of one node, shown with the cell that started it and updated in place."""
 
     def __init__(self, title: str) -> None:
         """Make an empty panel that belongs to the cell that runs now."""
@@ -76,11 +76,11 @@ class Panel:
         notebook.listen(name.strip('/').replace('/', '.'), self.log)
 
     def adopt_thread(self) -> None:
-        """Let what this thread prints appear with the panel's cell."""
+        """Make this thread's output appear with the panel's cell."""
         self._display.adopt_thread()
 
     def show(self, state: str) -> None:
-        """Publish the panel for the first time, with all that was said so far."""
+        """Publish the panel for the first time, with all entries so far."""
         notebook.sync()
         with self._lock:
             self._state = state
@@ -101,9 +101,9 @@ class Panel:
             print(text, flush=True)
 
     def close(self, reason: str) -> None:
-        """Take no more log lines, and say why the node is gone.
+        """Take no more log lines, and show why the node has ended.
 
-        Of a node that was stopped and has said nothing, nothing stays.
+        The panel of a node that was stopped without any entry disappears.
         """
         if reason == STOPPED:
             troubles.forget(self._name)  # the next node of that name may be another's

@@ -1,4 +1,4 @@
-"""Put a function of ours in the place of a class's own."""
+"""Replace methods of a class."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -6,13 +6,13 @@ from typing import Any
 
 
 def patch(owner: type, name: str, function: Callable[..., Any] | classmethod) -> None:
-    """Replace a method for good."""
+    """Replace a method permanently."""
     setattr(owner, name, function)
 
 
 @contextmanager
 def patched(owner: type, name: str, function: Callable[..., Any] | classmethod) -> Iterator[None]:
-    """Replace a method for a while."""
+    """Replace a method meanwhile, and restore it at the end."""
     former = getattr(owner, name)
     patch(owner, name, function)
     try:

@@ -1,4 +1,4 @@
-"""A program that a notebook has started: its lines, and how it ends. It dies with the notebook."""
+"""A program that a notebook has started, with its output; it ends with the kernel."""
 
 import contextlib
 import os
@@ -10,12 +10,12 @@ from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 
 END_SEC = 5.0
-"""How long a program has to end after SIGINT, …"""
+"""How long a program may take to end after SIGINT."""
 FIRM_SEC = 2.0
-"""… and then after SIGTERM; what is left is killed."""
+"""How long it may then take to end after SIGTERM, before it is killed."""
 MOST_LINES, LONGEST = 40, 400
-"""Lines that are kept of what it prints, and characters of one."""
-_DIES_WITH_US = (  # a kernel that is killed leaves no node behind
+"""How many lines of its output are kept, and characters of each."""
+_DIES_WITH_US = (  # so that a kernel that is killed leaves no node behind
     'import ctypes, os, sys; ctypes.CDLL(None).prctl(1, 15); os.execv(sys.argv[1], sys.argv[1:])'
 )
 
@@ -31,10 +31,10 @@ class Process:
         environment: Mapping[str, str] | None = None,
         on_end: Callable[[int], None] = lambda code: None,
     ) -> None:
-        """Start a program, whose path is the first word of a command.
+        """Start a program, whose path is the first word of `command`.
 
-        `on_line` gets each line that it prints, and `on_end` its exit code, negative for a signal;
-        both in a thread.
+        `on_line` gets each line that it prints, and `on_end` its exit code, negative for a signal.
+        Both are called in a thread.
         """
         self._on_line, self._on_end = on_line, on_end
         self.lines: deque[str] = deque(maxlen=MOST_LINES)
@@ -45,7 +45,7 @@ class Process:
             stderr=subprocess.STDOUT,
             text=True,
             errors='replace',
-            process_group=0,  # an interrupt of the cell is not theirs
+            process_group=0,  # an interrupt of the cell must not reach the program
             env={**os.environ, 'PYTHONUNBUFFERED': '1', **(environment or {})},
         )
         self._reader = threading.Thread(target=self._read, daemon=True)
@@ -57,7 +57,7 @@ class Process:
         return self.process.poll()
 
     def send(self, number: signal.Signals) -> None:
-        """Send a signal to it and what it has started, as Ctrl-C does."""
+        """Send a signal to its process group, as Ctrl-C does."""
         if self.process.poll() is None:
             try:
                 os.killpg(self.process.pid, number)
@@ -65,9 +65,9 @@ class Process:
                 self.process.send_signal(number)
 
     def stop(self) -> signal.Signals | None:
-        """End it by SIGINT, else SIGTERM, else SIGKILL; return which one it took.
+        """End it by SIGINT, else SIGTERM, else SIGKILL; return the signal that was needed.
 
-        None where it had ended before.
+        None if it had ended before.
         """
         if self.process.poll() is not None:
             return None
@@ -84,7 +84,7 @@ class Process:
         return number
 
     def wait_for_lines(self) -> None:
-        """Wait until all that it printed before its end was read."""
+        """Wait until all of its output is read, after its end."""
         self._reader.join(FIRM_SEC)
 
     def _read(self) -> None:

@@ -1,4 +1,4 @@
-"""A node class of the notebook becomes part of a program: its text, and the names it needs."""
+"""Make a program from a node class of the notebook: its text, and the names that it needs."""
 
 import ast
 import builtins
@@ -14,9 +14,9 @@ from my_robot_basics.language.speaking import in_language_here
 from my_robot_basics.session.errors import LiveError, in_lines
 
 ONLY_IN_NOTEBOOKS = {'display', 'get_ipython'}
-"""IPython puts them among the builtins; a `!` or `%` line needs the second one."""
+"""IPython adds these to the builtins; a `!` or `%` line needs the second one."""
 INDENT = '  '
-"""Before what to do about a name."""
+"""Indentation of the lines with hints about names."""
 _EVERYWHERE = (vars(builtins).keys() - ONLY_IN_NOTEBOOKS) | {'__file__', '__name__', '__doc__'}
 
 
@@ -33,19 +33,19 @@ class NotAProgram(LiveError):
 
 
 class NotAnswered(NotAProgram):
-    """The class that a program is made of is still to be written."""
+    """The class that belongs into the program is not written yet."""
 
 
 def fill_in(cell: str) -> str:
-    """Return the cell's text; each `class Name(Node): ...` is replaced by the notebook's class.
+    """Return the cell's text, with each `class Name(Node): ...` replaced by the notebook's class.
 
-    Raises NotAnswered where a class is missing or does nothing, and NotAProgram where the cell is
-    not Python, or the program would need names that only the notebook has.
+    Raises NotAnswered if a class is missing or does nothing, and NotAProgram if the cell is not
+    valid Python, or the program needs names that only the notebook has.
     """
     try:
         tree = ast.parse(cell)
     except SyntaxError as error:
-        # the magic itself is the first line of what the student sees
+        # +1: in the student's cell, the magic command is the first line
         where = f'line {(error.lineno or 0) + 1}: {error.msg}'
         raise NotAProgram(f'this cell is not valid Python ({where}): fix that line') from None
     lines = cell.splitlines(keepends=True)
@@ -61,7 +61,7 @@ def fill_in(cell: str) -> str:
 def names_missing_in(program: str) -> list[str]:
     """Return the global names that a program reads and does not bind, sorted.
 
-    After a star import nobody knows: [].
+    Returns [] if there is a star import, which may bind any name.
     """
     if any(isinstance(n, ast.ImportFrom) and n.names[0].name == '*' for n in _nodes(program)):
         return []
@@ -112,9 +112,9 @@ def _source_of(name: str) -> str:
 
 
 def _definition(NodeClass: type) -> tuple[str, ast.ClassDef]:
-    """Return the text of the cell that made a class, and the class in it.
+    """Return the text of the cell that defined a class, and the class in its syntax tree.
 
-    `inspect.getsource` needs a file until Python 3.13; the code of a method tells its cell.
+    Before Python 3.13, `inspect.getsource` needs a file; but a method's code has its cell's name.
     """
     methods = [m for m in vars(NodeClass).values() if isinstance(m, FunctionType)]
     for method in methods:
@@ -129,9 +129,9 @@ def _definition(NodeClass: type) -> tuple[str, ast.ClassDef]:
 
 
 def _does_nothing(node: ast.ClassDef) -> bool:
-    """Whether a class only makes its node, as a released answer does."""
+    """Whether a class only calls Node's constructor, as an unanswered exercise does."""
     if [ast.unparse(base) for base in node.bases] != ['Node']:
-        return False  # what it derives from may do all there is to do
+        return False  # its base class may do everything that is needed
     calls = [ast.unparse(n.func) for n in ast.walk(node) if isinstance(n, ast.Call)]
     return set(calls) <= {'super', 'super().__init__'}
 
@@ -156,12 +156,12 @@ def _how_to_add(names: list[str]) -> str:
 
 
 def import_line(name: str, thing: Any) -> str:
-    """Return the line that imports a thing under that name; '' where none does."""
+    """Return the line that imports a thing under that name; '' if there is none."""
     if isinstance(thing, ModuleType):
         return f'import {thing.__name__}' + (f' as {name}' if name != thing.__name__ else '')
     own = getattr(thing, '__name__', None)
     parts = (getattr(thing, '__module__', None) or '').split('.')
-    # sensor_msgs.msg._joint_state is a private place of what sensor_msgs.msg gives
+    # sensor_msgs.msg._joint_state is private: sensor_msgs.msg exports the same class
     public = '.'.join(part for part in parts if not part.startswith('_'))
     for module in (public, '.'.join(parts)):
         if own and module != '__main__' and getattr(sys.modules.get(module), own, None) is thing:

@@ -1,4 +1,4 @@
-"""A picture of the rule for QoS: no more may be requested than is offered."""
+"""A picture of QoS compatibility: a subscription may not request more than is offered."""
 
 from itertools import product
 from typing import TYPE_CHECKING
@@ -16,16 +16,16 @@ POLICIES = {
     'reliability': ('RELIABLE', 'BEST_EFFORT'),
     'durability': ('TRANSIENT_LOCAL', 'VOLATILE'),
 }
-"""The values of each policy, the one that promises more first."""
+"""The values of each policy, the stronger one first."""
 OFFERED, REQUESTED = 0.0, 1.0
 GAP = 0.07
-"""Between the end of a line and the name there."""
+"""The distance between the end of a line and the name beside it."""
 CROSS = 0.25
-"""Where a line that does not match is crossed: off the middle, where two lines meet."""
+"""Where an incompatible pair's line is crossed: not in the middle, where two lines meet."""
 
 
 def show_offers() -> None:
-    """Show which offered values of reliability and durability match which requested ones."""
+    """Show which offered and requested values of reliability and durability are compatible."""
     said = [
         gettext_noop(f'{offered} → {requested} yes')
         if matches(values, offered, requested)
@@ -38,12 +38,12 @@ def show_offers() -> None:
 
 
 def matches(values: tuple[str, str], offered: str, requested: str) -> bool:
-    """Whether no more is requested than is offered; of the values, the first promises more."""
+    """Whether the pair is compatible; `values` has the stronger value first."""
     return values.index(offered) <= values.index(requested)
 
 
 def draw() -> bytes:
-    """The rule as a PNG, 400 pixels wide: a panel for each policy, arrows for pairs that match."""
+    """Return a PNG, 400 pixels wide: a panel for each policy, arrows for compatible pairs."""
     from matplotlib.figure import Figure  # takes a second
 
     figure = Figure(figsize=(4.0, 3.4), dpi=100, layout='constrained')
@@ -66,7 +66,7 @@ def _name(axes: 'Axes', x: float, y: float, value: str, *, side: str) -> None:
 
 
 def _line(axes: 'Axes', offered: int, requested: int) -> None:
-    """Draw an arrow for a pair that matches; a dashed, crossed line for one that does not."""
+    """Draw an arrow for a compatible pair; a dashed, crossed line for an incompatible one."""
     start, stop = (OFFERED + GAP, offered), (REQUESTED - GAP, requested)
     if offered <= requested:
         style = {'arrowstyle': '-|>', 'color': picture.WELL, 'lw': 2, 'mutation_scale': 16}

@@ -1,4 +1,4 @@
-"""Which QoS profiles match which: measured, each pair on a topic of its own."""
+"""Measure which QoS profiles are compatible, with a topic of its own for each pair."""
 
 from collections.abc import Callable, Mapping
 from itertools import product
@@ -19,11 +19,11 @@ TIMEOUT_SEC = 10.0
 
 
 def measure_pairs(profiles: Mapping[str, QoSProfile]) -> dict[tuple[str, str], str]:
-    """Send a message from each profile to each other one; return what came of it.
+    """Send a message from each profile to each profile; return the outcome of each pair.
 
-    The keys are pairs of names, (what is offered, what is asked for). The outcome is 'yes' where
-    the message arrived, else the name of the policy that did not match. Raises WaitTimeout where
-    a pair tells neither.
+    The keys are pairs of names, (offered, requested). The outcome is 'yes' if the message
+    arrived, else the name of the incompatible policy. Raises WaitTimeout if a pair has neither
+    outcome in time.
     """
     classroom.enter()
     context = Context()
@@ -35,7 +35,7 @@ def measure_pairs(profiles: Mapping[str, QoSProfile]) -> dict[tuple[str, str], s
 
 
 class _Pairs(Node):
-    """Offers each profile to each other profile."""
+    """A publisher and a subscription for each pair of profiles."""
 
     def __init__(self, profiles: Mapping[str, QoSProfile], *, context: Context) -> None:
         super().__init__(
@@ -52,7 +52,7 @@ class _Pairs(Node):
             self._connect((offered, asked), profiles[offered], profiles[asked])
 
     def measure(self) -> dict[tuple[str, str], str]:
-        """Send to all that match, and end the node."""
+        """Send a message on each topic, return the outcomes, and destroy the node."""
         self._executor.add_node(self)
         senders = self._senders.items()
         try:

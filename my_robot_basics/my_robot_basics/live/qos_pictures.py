@@ -1,4 +1,4 @@
-"""Pictures of which QoS profiles match, and of the messages that were lost on the way."""
+"""Pictures of compatible QoS profiles, and of lost messages."""
 
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
@@ -10,19 +10,19 @@ from my_robot_basics.live import notebook
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-# Okabe and Ito's colours are told apart by everyone; words or shapes say the same
+# Okabe and Ito's palette, for colour-blind readers; words or shapes show the same
 ARRIVED, LOST = '#0072b2', '#d55e00'
 YES, NO = '#cce3f0', '#f7dfcc'
-"""The same two, so light that black is easily read on them."""
+"""Light versions of the two, on which black text is easy to read."""
 LONG = 12
 """Characters of a label that fit in one line."""
 
 
 def show_qos_matrix(outcomes: Mapping[tuple[str, str], str], *, title: str = '') -> None:
-    """Show a table of pairs (what is offered, what is requested), each with what came of it.
+    """Show a table of pairs (offered, requested) with the outcome of each.
 
-    An outcome is 'yes' where a message arrived, else the name of the policy that did not match.
-    Raises ValueError for a table with holes.
+    An outcome is 'yes' if a message arrived, else the name of the incompatible policy.
+    Raises ValueError if a pair is missing.
     """
     offers, requests = ([*dict.fromkeys(names)] for names in zip(*outcomes, strict=True))
     holes = [(o, r) for o in offers for r in requests if (o, r) not in outcomes]

@@ -1,4 +1,4 @@
-"""A picture of the way of a message: publisher, two queues, executor, callback."""
+"""A picture of a message's path: publisher, two queues, executor, callback."""
 
 from typing import TYPE_CHECKING
 
@@ -12,11 +12,11 @@ if TYPE_CHECKING:
 
 
 WAITS, FREE = '#56b4e9', 'white'
-"""A place in a queue: with a message, and without one."""
+"""Colours of a place in a queue with a message, and without one."""
 PLACES = 3
 WIDTH, HEIGHT = 10.0, 7.0
 TOP, BOTTOM = 5.4, 1.0
-"""Heights of the row that publishes and of the row that subscribes."""
+"""Heights of the publisher's row and of the subscription's row."""
 ROUND = 'round4'
 
 
@@ -30,7 +30,7 @@ def show_queues() -> None:
 
 
 def draw() -> bytes:
-    """The way of a message as a PNG, 400 pixels wide: publishing above, subscribing below."""
+    """Return a message's path as a PNG, 400 pixels wide: publisher above, subscription below."""
     from matplotlib.figure import Figure  # takes a second
 
     figure = Figure(figsize=(4.0, 2.8), dpi=100)
@@ -50,7 +50,7 @@ def draw() -> bytes:
 
 
 def _queue(axes: 'Axes', x: float, y: float, title: str, *, waiting: int) -> None:
-    """Draw a queue around (x, y) in which some messages wait."""
+    """Draw a queue around (x, y) with `waiting` messages."""
     for place in range(PLACES):
         left = x + 0.9 * (place - PLACES / 2)
         face = WAITS if place < waiting else FREE

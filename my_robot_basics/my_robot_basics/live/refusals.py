@@ -1,4 +1,4 @@
-"""What `run` says to what it cannot run."""
+"""The error messages of `run` about classes that it cannot run."""
 
 import inspect
 from types import FunctionType, ModuleType
@@ -9,13 +9,13 @@ from my_robot_basics.session.errors import NotRunnable
 
 _OWN = sorted(n for n in dir(Node) if isinstance(vars(Node).get(n), property))
 _UNUSED = 'publishers'
-"""That one no executor looks at: a node spins without it."""
+"""The only property of Node that no executor reads: a node spins even if it is overridden."""
 _METHODS = (FunctionType, staticmethod, classmethod)
-"""… and with a property of its own, cached or not, or another value in its place."""
+"""What must not override a property of Node; another property or value may."""
 
 
 def expect_runnable(NodeClass: object) -> None:
-    """Raise NotRunnable for what is no node class, or has a method in place of a Node's property.
+    """Raise NotRunnable if it is not a node class, or if a method overrides a property of Node.
 
     rclpy reads these properties at each spin, so such a node would raise again and again.
     """
@@ -35,7 +35,7 @@ def expect_runnable(NodeClass: object) -> None:
 
 
 def not_a_class(thing: object) -> str:
-    """Words for what is no node class."""
+    """Return the message about an argument that is not a node class."""
     if isinstance(thing, Node):
         name = type(thing).__name__
         return f'run expects the class, saw a node made from it: write run({name})'
@@ -46,7 +46,7 @@ def not_a_class(thing: object) -> str:
 
 
 def no_node_yet(NodeClass: type[Node]) -> str:
-    """Words for a constructor that uses the node before there is one, or never makes it."""
+    """Return the message about a constructor that does not call Node's constructor first."""
     return (
         f'expected the constructor of {NodeClass.__name__} to begin with '
         "super().__init__('its_name'), saw it use the node before that, or leave it out"
@@ -54,5 +54,5 @@ def no_node_yet(NodeClass: type[Node]) -> str:
 
 
 def is_made(node: Node) -> bool:
-    """Whether rclpy's own constructor has made the node."""
+    """Whether Node's constructor has created the node."""
     return getattr(node, 'handle', None) is not None

@@ -41,16 +41,16 @@ _is_set_up = False
 
 
 class _LivesElsewhere(Exception):
-    """A node of that name is there already, and it is not ours."""
+    """A node of that name that `live` has not started exists already."""
 
 
 def run(NodeClass: type[N], *args: Any, key: str | None = None, **kwargs: Any) -> N | None:
-    """Make `NodeClass(*args, **kwargs)` and let it spin in the background; return the node.
+    """Create `NodeClass(*args, **kwargs)` and spin it in the background; return the node.
 
-    It replaces the node that runs under `key` (by default the class's name), and one of its own
-    name that runs under another key. rclpy is initialised when it is not. Where a node of that
-    name already lives outside `live`, no second one is started: that is printed, and the result
-    is None. What the constructor raises is raised; the old node is then stopped all the same.
+    It replaces the node that runs under `key` (by default the class's name), and any other node
+    of `live` with its node name. rclpy is initialised if needed. If a node of that name already
+    runs outside `live`, no second one is started: this is printed, and the result is None. An
+    exception of the constructor is raised; the former node is stopped all the same.
     """
     __tracebackhide__ = True
     expect_runnable(NodeClass)
@@ -66,7 +66,7 @@ def launch(
     key: str,
     make_panel: Callable[[], NodePanel],
 ) -> N | None:
-    """Do what `run` says, with another panel; it is made once stdout is tapped."""
+    """Do the same as `run` with another panel, which is created after stdout is redirected."""
     __tracebackhide__ = True
     _stop_keys([key, *(k for k, background in _running.items() if not background.alive)])
     ensure_rclpy()
@@ -82,7 +82,7 @@ def launch(
     try:
         with announce_name(node, on_name):
             returned = type(node).__init__(node, *args, **kwargs)
-        if returned is not None:  # Python asks for that where it makes the object itself
+        if returned is not None:  # as Python requires when it calls __init__ itself
             raise TypeError(f"__init__() should return None, not '{type(returned).__name__}'")
         if not is_made(node):
             raise NotRunnable(no_node_yet(NodeClass))
@@ -95,7 +95,7 @@ def launch(
     except BaseException as error:
         too_soon = isinstance(error, AttributeError) and error.obj is node and not is_made(node)
         if is_made(node):
-            destroy(node)  # or the publishers that it has made would live on
+            destroy(node)  # else the publishers that it has created would stay on the graph
         panel.show('its constructor failed')
         panel.close('its constructor failed')
         if too_soon:
@@ -111,10 +111,10 @@ def launch(
 
 
 def stop(key_or_node: str | type[Node] | Node | None = None) -> None:
-    """Stop the node that runs under a key, that node, the node of that class; or all of them.
+    """Stop the node with this key, this node, or the nodes of this class; by default, all nodes.
 
-    All of them are also those that `run_commands` and `run_executable` have started; how each of
-    the latter has ended is printed.
+    "All" includes processes that `run_commands` and `run_executable` have started; for the
+    latter, it is printed how each has ended.
     """
     if key_or_node is None:
         _stop_keys(list(_running))
@@ -139,10 +139,10 @@ def _stop_keys(keys: list[str]) -> None:
 
 
 def ensure_rclpy() -> None:
-    """Initialise rclpy in the lesson's domain where nobody has; print where it is in another."""
+    """Initialise rclpy in the lesson's domain, if it is not; print a note if it is in another."""
     domain_of_lesson = set_up()
-    # rclpy.init() in a student's cell listens for Ctrl-C: after one, a thread of rclpy shuts down
-    # every context of this process, on a busy machine only when the next node has begun
+    # rclpy.init() in a student's cell handles Ctrl-C: then a thread of rclpy shuts down every
+    # context of this process, on a busy machine possibly after the next node has started
     uninstall_signal_handlers()
     destroy_orphans()
     if not rclpy.ok():
@@ -159,17 +159,16 @@ def ensure_rclpy() -> None:
 
 
 def shut_down() -> None:
-    """Stop every node, then rclpy's default context, no matter what initialised it."""
+    """Stop every node, then shut rclpy's default context down, whichever code initialised it."""
     stop()
     rclpy.try_shutdown()
 
 
 def set_up() -> int:
-    """Make this process part of a lesson, once, and return its ROS domain ID.
+    """Set this process up for a lesson, once, and return its ROS domain ID.
 
-    A notebook's kernel begins to read the ROS log, knows %%write_node, and lets a cell that spins
-    be interrupted. What `run` started is stopped when Python ends. Raises NoFreeDomain or
-    BadDomain.
+    A notebook's kernel reads the ROS log from then on, has %%write_node, and can interrupt a cell
+    that spins. Nodes of `run` are stopped when Python ends. Raises NoFreeDomain or BadDomain.
     """
     global _is_set_up
     domain_id = classroom.enter()
@@ -190,7 +189,7 @@ def set_up() -> int:
 
 
 def _leave_nothing(owner_pid: int) -> None:
-    # a forked child has neither our threads nor our participants
+    # not in a forked child, which has neither these threads nor these DDS participants
     if os.getpid() == owner_pid:
         shut_down()
         _neighbours.leave()

@@ -1,4 +1,4 @@
-"""A picture of two clients that ask one server: who sends what to whom, and when."""
+"""A sequence diagram of two clients and one server."""
 
 from typing import TYPE_CHECKING
 
@@ -13,12 +13,12 @@ if TYPE_CHECKING:
 
 WIDTH, HEIGHT = 10.0, 7.0
 LEFT, SERVER, RIGHT = 1.4, 5.0, 8.6
-"""Where the three nodes stand; time goes down."""
+"""The x positions of the three nodes; time goes down."""
 TOP, BOTTOM = 6.2, 0.3
 WORK_WIDTH = 0.5
 WORKS = '#e69f00'
 REQUEST, RESPONSE = '-', '--'
-"""A response is dashed, as in all diagrams of this kind."""
+"""Line styles: a response is dashed, as usual in sequence diagrams."""
 
 
 def show_service() -> None:
@@ -32,7 +32,7 @@ def show_service() -> None:
 
 
 def draw() -> bytes:
-    """The sequence as a PNG, 400 pixels wide."""
+    """Return the sequence diagram as a PNG, 400 pixels wide."""
     from matplotlib.figure import Figure  # takes a second
 
     figure = Figure(figsize=(4.0, 2.8), dpi=100)
@@ -51,7 +51,7 @@ def draw() -> bytes:
 
 
 def _work(axes: 'Axes', begin: float, end: float) -> None:
-    """Draw that the server's callback runs."""
+    """Draw a bar for the time in which the server's callback runs."""
     left = SERVER - WORK_WIDTH / 2
     axes.bar(left, begin - end, WORK_WIDTH, end, align='edge', color=WORKS, edgecolor='black')
 

@@ -11,7 +11,7 @@ WITHOUT_WIDGETS = 'Run this cell: two sliders, for θ1 and θ2, appear here and 
 TARGET_WITHOUT_WIDGETS = (
     'Run this cell: two sliders, for x and y, appear here and publish the target point.'
 )
-"""What stands for the sliders where no kernel runs, as on GitHub."""
+"""Texts in place of the sliders if no kernel runs, as on GitHub."""
 
 
 def move_arm(
@@ -20,13 +20,13 @@ def move_arm(
     """Show the arm and two sliders that set its angles; link lengths are in metres.
 
     The arm starts at these angles, in degrees between -180 and 180. Outside a notebook kernel
-    there are no sliders: the pose is told in words.
+    there are no sliders: the pose is printed as text.
     """
     ArmSliders(theta1_deg, theta2_deg, l1=l1, l2=l2).show()
 
 
 class ArmSliders:
-    """Two sliders, `theta1` and `theta2`, and one picture that is drawn anew with each change."""
+    """Two sliders, `theta1` and `theta2`, and one picture that is redrawn at each change."""
 
     def __init__(self, theta1_deg: float, theta2_deg: float, *, l1: float, l2: float) -> None:
         """Make the sliders and the axes of the picture; nothing shows before `show`."""
@@ -45,7 +45,7 @@ class ArmSliders:
             slider.observe(self._moved, names='value')
 
     def _moved(self, change: object) -> None:
-        # at once: the browser sends the next position only when this one has been dealt with
+        # at once: the browser sends the next position only after this one is handled
         self._display.update(self._bundle())
 
     def _bundle(self) -> notebook.Bundle:
@@ -56,7 +56,7 @@ class ArmSliders:
 
 
 def show_widgets(*widgets: ipywidgets.Widget, without: str) -> None:
-    """Show widgets below each other, and that text where no kernel runs."""
+    """Show widgets below each other, and the text `without` if no kernel runs."""
     box = ipywidgets.VBox(widgets)
     display(box._repr_mimebundle_() | {'text/plain': without}, raw=True)
 

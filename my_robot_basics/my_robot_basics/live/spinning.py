@@ -1,6 +1,6 @@
-"""What a ROS 2 program does for itself and a cell should not: `rclpy.init` again, `rclpy.spin`.
+"""Explain calls that a ROS 2 program needs and a cell does not: `rclpy.init` and `rclpy.spin`.
 
-In a program of its own, Ctrl-C ends `rclpy.spin`; here ■ does, and `live.interrupting` sees to it.
+In a program, Ctrl-C ends `rclpy.spin`; in a cell, ■ does, with the help of `live.interrupting`.
 """
 
 import functools
@@ -20,11 +20,11 @@ from my_robot_basics.session.errors import LiveError, in_lines, tell
 
 
 class AlreadyInitialised(LiveError, RuntimeError):
-    """`rclpy.init` was called while rclpy is up; rclpy itself raises a RuntimeError, too."""
+    """`rclpy.init` was called again; rclpy itself raises a RuntimeError for that, too."""
 
 
 class AlreadySpinning(LiveError):
-    """`rclpy.spin` was given a node that spins in the background."""
+    """`rclpy.spin` was called with a node that spins in the background."""
 
 
 class SpinInterrupted(KeyboardInterrupt):
@@ -35,7 +35,7 @@ class SpinInterrupted(KeyboardInterrupt):
 
 
 def help_in_cells() -> None:
-    """Explain what goes wrong in cells that initialise rclpy or spin."""
+    """Replace `rclpy.init` and `rclpy.spin` by versions that explain what goes wrong in cells."""
     rclpy.init = _explaining_init(rclpy.init)
     rclpy.spin = _explaining_spin(rclpy.spin)
 
@@ -56,8 +56,8 @@ def _explaining_init(init: Callable[..., None]) -> Callable[..., None]:
             )
             raise AlreadyInitialised(in_language_here(why))  # lesson 7 prints it
         if signal_handler_options is None:
-            # an interrupt ends the cell without rclpy's handler. That one also shuts down, in a
-            # thread, all contexts of this kernel: the program's own rclpy.shutdown() fails then
+            # an interrupt ends the cell also without rclpy's signal handler, which would shut
+            # down all contexts of this kernel, so that the cell's own rclpy.shutdown() fails
             signal_handler_options = SignalHandlerOptions.NO
         init(*args, context=context, signal_handler_options=signal_handler_options, **kwargs)
         forget_dead_executor()
@@ -78,7 +78,7 @@ def _explaining_spin(spin: Callable[..., None]) -> Callable[..., None]:
                 f'{name} spins in the background already: leave rclpy.spin out, and go on with '
                 'the next cell'
             )
-        try:  # an interrupt may come as soon as the line is read
+        try:  # before the line is printed: from then on, an interrupt may come
             tell(
                 f'rclpy.spin keeps this cell busy while {name} runs, and no other cell can run: '
                 'press ■ (Interrupt the kernel) above to stop it.'

@@ -1,7 +1,7 @@
-"""Listen to what C code writes to stdout: the ROS logger knows no other way out of a notebook.
+"""Read what C code writes to stdout: in a notebook, the ROS logger has no other output.
 
-In a notebook kernel, file descriptor 1 leads to the cell that happens to run. A pipe in front
-of it gives each node's log lines to the cell that started the node, and passes on the rest.
+In a notebook kernel, file descriptor 1 writes into the cell that happens to run. A pipe in front
+of it passes each node's log lines to the cell that started the node, and the rest to stdout.
 """
 
 import contextlib
@@ -15,24 +15,24 @@ from collections.abc import Callable
 from my_robot_basics.live.log_lines import LogRecord, Splitter
 
 PIPE_BYTES = 1 << 20
-"""rclpy logs with the GIL held: a pipe that is full while we cannot read would be a deadlock."""
+"""rclpy logs while it holds the GIL: if the pipe were full, the reading thread could not run."""
 
 GRACE_SEC = 0.05
-"""How long an unfinished line is held back."""
+"""How long an unfinished line is kept back."""
 
 
 class StdoutTap:
     """A pipe in front of file descriptor 1, and the thread that reads it."""
 
     def __init__(self) -> None:
-        """Open the tap."""
+        """Redirect file descriptor 1 into the pipe and start the thread."""
         self._sinks: dict[str, Callable[[LogRecord], None]] = {}
         self._marks: dict[bytes, threading.Event] = {}
         self._numbers = itertools.count()
         self._splitter = Splitter(take=self._take, forward=self._forward)
         self._former = os.dup(1)
         self._reader, writer = os.pipe()
-        with contextlib.suppress(OSError):  # a machine may allow less
+        with contextlib.suppress(OSError):  # Linux may limit a pipe's size to less
             fcntl.fcntl(writer, fcntl.F_SETPIPE_SZ, PIPE_BYTES)
         os.dup2(writer, 1)
         os.close(writer)
@@ -40,20 +40,20 @@ class StdoutTap:
         threading.Thread(target=self._read, name='live stdout', daemon=True).start()
 
     def give(self, logger: str, sink: Callable[[LogRecord], None]) -> None:
-        """Give what the logger of that name and its children say to `sink`, from now on."""
+        """Pass the records of the logger with that name and its children to `sink` from now on."""
         self._sinks[logger] = sink
 
     def take_back(self, sink: Callable[[LogRecord], None]) -> None:
-        """Give nothing to `sink` any more: what it had goes on to stdout."""
+        """Stop passing records to `sink`: they go to stdout again."""
         self._sinks = {name: s for name, s in self._sinks.items() if s != sink}
 
     def sync(self) -> None:
-        """Return when all that was written so far has been handed on."""
+        """Return when all that was written so far has been passed on, after 2 s at most."""
         if not self._closed.is_set():
             self._mark().wait(2.0)
 
     def close(self) -> None:
-        """Put file descriptor 1 back as it was."""
+        """Restore file descriptor 1."""
         self.sync()
         self._closed.set()
         done = self._mark()
@@ -99,6 +99,6 @@ class StdoutTap:
         return False
 
     def _forward(self, data: bytes) -> None:
-        with contextlib.suppress(OSError):  # nobody listens to this process any more
+        with contextlib.suppress(OSError):  # the reader of this process's stdout is gone
             while data:
                 data = data[os.write(self._former, data) :]

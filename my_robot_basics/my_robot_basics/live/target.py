@@ -41,10 +41,10 @@ def drag_target(
 
 
 class TargetNode(Node):
-    """Publishes target points, and hands on all that come on the topic."""
+    """Publishes target points, and passes on all points of the topic."""
 
     def __init__(self, topic_name: str, view: 'TargetView') -> None:
-        """Make both endpoints; the newest target is all that counts."""
+        """Create both endpoints; a depth of 1 suffices, as only the newest target matters."""
         super().__init__(NODE_NAME, enable_rosout=False, start_parameter_services=False)
         view.publisher = self.create_publisher(Point, topic_name, 10)
         self.create_subscription(Point, topic_name, view.receive, 1)
@@ -75,12 +75,12 @@ class TargetView(ArmView):
             slider.observe(self.publish_target, names='value')
 
     def publish_target(self, change: object = None) -> None:
-        """Send where the sliders stand, in metres."""
+        """Publish the sliders' values, in metres."""
         assert self.publisher is not None  # sliders are shown once the node has it
         self.publisher.publish(Point(x=self.x.value, y=self.y.value))
 
     def receive(self, message: Point) -> None:
-        """Reach for a target, or say why the arm can't."""
+        """Show the poses that reach a target, or why the arm can't reach it."""
         with self._lock:
             self._target = message
             try:
@@ -95,7 +95,7 @@ class TargetView(ArmView):
         self._display.update(self._bundle())
 
     def close(self, reason: str) -> None:
-        """Leave the last picture; sliders that move nothing any more are greyed out."""
+        """Keep the last picture, and disable the sliders."""
         self.x.disabled = self.y.disabled = True
         super().close(reason)
 

@@ -1,17 +1,15 @@
-"""Let a MultiThreadedExecutor's threads begin, and have enough of them, on any machine.
+"""Let a MultiThreadedExecutor's threads start promptly, with the same number on any machine.
 
-rclpy of Jazzy keeps them waiting. From handing a callback to its pool until a thread there begins
-it, that executor does not wait but goes round: it hands the callback over again, and its wait set
-returns at once: the subscription is left out, but not its QoS events, and Fast DDS has one
-condition for both. Python lets another thread in during each of these waits, some 10 µs long. A
-thread that takes longer to wake up comes too late, again and again; and since it was woken before
-its wait timed out, it does not make the first one give way. On an idle machine up to half of the
-messages came seconds late.
+In Jazzy's rclpy, they may starve. After the executor has submitted a callback to its pool, and
+until a thread starts it, the executor loops without waiting: its wait set returns at once, since
+it leaves out the subscription but not its QoS events, and Fast DDS has one condition for both.
+Each wait releases the GIL for about 10 µs. A thread that takes longer to wake up misses that time
+again and again; and as it was woken before its own wait timed out, it does not request the GIL
+from the executor's thread. On an idle machine up to half of the messages came seconds late.
 See https://github.com/ros2/rclpy/issues/1452, which is fixed in later releases.
 
-By default there are as many threads as processors. Callbacks that wait keep a thread each, so an
-answer would be right on one machine and block on a smaller one: here, each machine has the
-same number.
+By default there are as many threads as processors. Each waiting callback occupies a thread, so an
+answer could work on one machine and block on a smaller one. Therefore the number is fixed here.
 """
 
 import threading
@@ -22,16 +20,16 @@ from typing import Any
 from rclpy.executors import MultiThreadedExecutor
 
 THREADS = 4
-"""Enough for two calls that wait, one whose answer never comes, and a timer."""
+"""Enough for two waiting calls, one whose response never comes, and a timer."""
 BEGIN_SEC = 0.01
-"""How long the executor waits at most: while all threads are busy, others are served so often."""
+"""How long the executor waits at most for a thread to start the callback, if all are busy."""
 
 
 class PromptPool(ThreadPoolExecutor):
-    """A pool in which what is handed in begins before the one who does so goes on."""
+    """A thread pool whose `submit` waits until a thread has started the function."""
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future:
-        """Hand in a callback, and wait until a thread has begun it, or for BEGIN_SEC."""
+        """Submit a callback, and wait until a thread has started it, at most BEGIN_SEC."""
         started = threading.Event()
 
         def begin() -> Any:
@@ -44,9 +42,9 @@ class PromptPool(ThreadPoolExecutor):
 
 
 def let_threads_begin() -> None:
-    """Give such a pool to each MultiThreadedExecutor that is made from now on.
+    """Give such a pool to each MultiThreadedExecutor that is created from now on.
 
-    Where its maker names no number of threads, it has THREADS of them.
+    If the caller does not pass a number of threads, it has THREADS.
     """
     init = MultiThreadedExecutor.__init__
 

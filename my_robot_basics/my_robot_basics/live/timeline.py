@@ -1,4 +1,4 @@
-"""Pictures of when messages arrive: how evenly, how late, and which of them never do."""
+"""Pictures of when messages arrive: how evenly, how late, and which are lost."""
 
 from collections.abc import Iterable, Mapping, Sequence
 
@@ -8,7 +8,7 @@ from my_robot_basics.drawing.described import gettext_noop
 from my_robot_basics.drawing.figures import png
 from my_robot_basics.live import notebook
 
-# Okabe and Ito's colours are told apart by everyone; what is lost has another shape, too
+# Okabe and Ito's palette, for colour-blind readers; lost messages also have another shape
 ARRIVED, LOST, BUSY = '#0072b2', '#d55e00', '#e69f00'
 WIDTH_INCHES, STRIP_INCHES, PANEL_INCHES = 7.0, 0.55, 1.3
 
@@ -20,11 +20,11 @@ def show_arrivals(
     busy: Mapping[str, tuple[float, float]] | None = None,
     title: str = '',
 ) -> None:
-    """Show when things happened, a strip each: labels and times in seconds, oldest first.
+    """Show when events happened, one strip for each label: times in seconds, oldest first.
 
     Each strip begins with its own first time. With `period_sec`, the gap from each time to the
-    one before is drawn below, beside the period that was meant. `busy` gives, for a label, a span
-    of time to be shaded. Raises ValueError for a row with fewer than two times.
+    one before is drawn below, together with the intended period. `busy` has, for a label, a span
+    of time to shade. Raises ValueError for a row with fewer than two times.
     """
     for label, times_sec in rows.items():
         if len(times_sec) < 2:
@@ -53,10 +53,10 @@ def show_arrivals(
 def show_deliveries(
     rows: Mapping[str, Mapping[int, float]], *, sent: Mapping[int, float], title: str = ''
 ) -> None:
-    """Show when numbered messages were sent and when each receiver came to them, a row each.
+    """Show when numbered messages were sent and received, one row for each receiver.
 
-    All times are in seconds on one clock. A line leads from each message to its arrival: the
-    flatter, the longer it had to wait. A message that never arrived is crossed.
+    All times are in seconds on one clock. A line goes from each message to its arrival: the
+    flatter it is, the longer the message waited. A message that never arrived is a cross.
     """
     figure, panels = _panels([PANEL_INCHES] * len(rows), title=title)
     start_sec = min(sent.values())
@@ -77,7 +77,7 @@ def show_deliveries(
 
 
 def delays_sec(arrived: Mapping[int, float], *, sent: Mapping[int, float]) -> list[float]:
-    """Return how long each message that arrived had taken, in the order of their numbers."""
+    """Return the delay of each message that arrived, in the order of their numbers."""
     return [arrived[number] - sent[number] for number in sorted(arrived) if number in sent]
 
 
@@ -99,7 +99,7 @@ def _delays(label: str, arrived: Mapping[int, float], sent: Mapping[int, float])
 
 
 def _panels(heights_inches: Sequence[float], *, title: str) -> tuple:
-    """Make a figure with panels above each other; return it, and an iterator over them."""
+    """Make a figure with panels below each other; return it, and an iterator over them."""
     from matplotlib.figure import Figure  # takes a second
 
     size = (WIDTH_INCHES, 0.5 + 1.3 * sum(heights_inches) + 0.3 * bool(title))

@@ -1,4 +1,4 @@
-"""What keeps a node from its work: an exception, or a callback that does not return, and where."""
+"""Record exceptions of a node's callbacks, and find callbacks that do not return."""
 
 import sysconfig
 import time
@@ -17,25 +17,25 @@ from my_robot_basics.session.errors import without_signatures
 
 UNFINISHED_SEC = 0.5
 _last: dict[str, str] = {}
-"""What a callback of a node raised last, by the node's full name."""
+"""The last exception of a node's callbacks, by the node's full name."""
 _times: dict[str, int] = {}
-"""How often one has raised."""
+"""How often a node's callbacks have raised."""
 _fields: dict[str, tuple[str, str]] = {}
-"""The field of a message that could not be published, and its type, if that was it."""
+"""What `field` returns, by the node's full name."""
 _of_services: dict[tuple[str, str], str] = {}
-"""What the callback of a service raised last, by the node's and the service's full names."""
+"""The last exception of a service's callback, by the node's and the service's full names."""
 _NOT_THEIRS = (str(Path(rclpy.__file__).parent), str(Path(__file__).parent))
 _OF_A_LIBRARY = tuple(sysconfig.get_path(kind) for kind in ('stdlib', 'purelib', 'platlib'))
 
 
 def where_and_what(error: BaseException) -> tuple[str, str]:
-    """Return where the error happened, outermost call first, and what it says."""
+    """Return where the error happened, outermost call first, and its text."""
     where = '\n'.join(f'  {_line(frame)}' for frame in _frames(error))
     return where, ''.join(traceback.format_exception_only(error)).strip()
 
 
 def remember(node_name: str, error: BaseException) -> None:
-    """Note what a callback of the node, or a thread of the notebook's own, raised, and where."""
+    """Record an exception of the node's callback, or of a thread of the notebook, and its line."""
     _, what = where_and_what(error)
     frames = _frames(error)
     own = [frame for frame in frames if not frame.filename.startswith(_OF_A_LIBRARY)]
@@ -45,13 +45,13 @@ def remember(node_name: str, error: BaseException) -> None:
     _fields[node_name] = _unpublished(error) or ('', made_with(error))
     if node_name != THREADS and (service_name := _service(error)):
         _of_services[node_name, service_name] = told
-    # last: a check in another thread that knows of these asks for the others at once
+    # these two last: a check in another thread that sees them asks for the others at once
     _last[node_name] = told
     _times[node_name] = times(node_name) + 1
 
 
 def forget(node_name: str) -> None:
-    """Forget it, and what ended threads: a new node of that name begins, and its threads do."""
+    """Drop a node's records, and those of threads: a new node of that name is starting."""
     for of_nodes in (_last, _times, _fields):
         of_nodes.pop(node_name, None)
         of_nodes.pop(THREADS, None)
@@ -60,7 +60,7 @@ def forget(node_name: str) -> None:
 
 
 def forget_all() -> None:
-    """Forget what the nodes of all names raised: an exercise begins."""
+    """Drop all records, at the beginning of an exercise."""
     _last.clear()
     _times.clear()
     _fields.clear()
@@ -68,14 +68,14 @@ def forget_all() -> None:
 
 
 def last(node_name: str) -> str:
-    """Return what a callback of the node raised last, or ''."""
+    """Return the last exception of the node's callbacks, or ''."""
     return _last.get(node_name, '')
 
 
 def field(node_name: str) -> tuple[str, str]:
-    """Return the field for which it could not publish, and its type, where it raised that last.
+    """Return the field that kept the node from publishing, and its type, for its last exception.
 
-    Where it gave rclpy what is no request or goal, no field, and how to make one.
+    If it gave rclpy a wrong object instead of a request or goal: '', and how to make one.
     """
     return _fields.get(node_name, ('', ''))
 
@@ -86,14 +86,14 @@ def times(node_name: str) -> int:
 
 
 def of_service(service_name: str) -> dict[str, str]:
-    """Return what the callbacks of a service raised last, by their nodes' full names."""
+    """Return the last exception of a service's callback, by the nodes' full names."""
     return {node: what for (node, name), what in _of_services.items() if name == service_name}
 
 
 def unfinished(node_name: str) -> str:
-    """Return where a callback is that keeps all others of the node from running, or ''.
+    """Return the line at which a callback blocks all others of the node, or ''.
 
-    That is one that goes on for UNFINISHED_SEC, while this looks.
+    It is a callback that is in progress for UNFINISHED_SEC, for which this function waits.
     """
     from my_robot_basics.doctor import inside  # few answers need it
 
@@ -118,7 +118,7 @@ def _line(frame: traceback.FrameSummary) -> str:
 
 
 def _unpublished(error: BaseException) -> tuple[str, str] | None:
-    """The field for which a message did not travel, and its type: rclpy's function has both."""
+    """Return the field that could not be serialized, and its type, from rclpy's frames; or None."""
     for frame, _ in traceback.walk_tb(error.__traceback__):
         publisher, message = (frame.f_locals.get(name) for name in ('self', 'msg'))
         if isinstance(publisher, Publisher):
@@ -130,7 +130,7 @@ def _unpublished(error: BaseException) -> tuple[str, str] | None:
 
 
 def _service(error: BaseException) -> str:
-    """The service whose callback raised: rclpy's own function, that called it, knows it."""
+    """Return the service whose callback raised, from the frame of rclpy that called it; or ''."""
     for frame, _ in traceback.walk_tb(error.__traceback__):
         service = frame.f_locals.get('srv')
         if frame.f_code.co_name == '_execute' and isinstance(service, Service):
@@ -139,7 +139,7 @@ def _service(error: BaseException) -> str:
 
 
 def _place(filename: str) -> str:
-    """Name the file; cells of the notebook live in files with names that tell nothing."""
+    """Return a file's name for a message; '' for a cell, whose file name is meaningless."""
     path = Path(filename)
     if path.parent.name.startswith('ipykernel_') or filename.startswith('<'):
         return ''

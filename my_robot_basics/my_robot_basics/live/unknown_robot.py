@@ -1,4 +1,4 @@
-"""A robot that the student has not seen before: which of its nodes meet on a topic?"""
+"""A robot that the student has not seen before, for the exercise about nodes on a topic."""
 
 from typing import Any
 
@@ -17,19 +17,19 @@ TOOL = '/kinematics/tool_point'
 
 
 class UnknownRobot(Node):
-    """Brings all nodes of the robot along, lets them publish, and takes them with it."""
+    """Creates all nodes of the robot, publishes for them, and destroys them with itself."""
 
     def __init__(self) -> None:
         super().__init__('_unknown_robot', enable_rosout=False, start_parameter_services=False)
         self._parts: list[Node] = []
         self._publishers_and_messages: list[tuple[Publisher, Any]] = []
-        # no table of them can be imported: a running system is to be asked
+        # not a table that students can import: they have to ask the running system
         self._add('encoder_board', publishes=(TOPIC, TEMPERATURE))
         self._add('self_test', publishes=(TOPIC,), subscribes=(TOPIC,))
         self._add('motor_guard', subscribes=(TOPIC, TEMPERATURE))
         self._add('pose_logger', subscribes=(TOPIC,))
         self._add('tool_tracker', publishes=(TOOL,), subscribes=(TOPIC,))
-        # and those that only seem to belong there
+        # nodes that only seem to be on the topic
         self._add('joint_viewer', subscribes=('/kinematics/joint_state',))
         self._add('gripper_driver', publishes=('/joint_states',), subscribes=(TOOL,))
         self._add('left_arm_board', publishes=('/left_arm/kinematics/joint_states',))
@@ -37,16 +37,16 @@ class UnknownRobot(Node):
 
     @property
     def runs(self) -> bool:
-        """Whether its nodes are there."""
+        """Whether its nodes run."""
         return bool(self._parts) and self.context.ok()
 
     @property
     def size(self) -> int:
-        """How many nodes it consists of."""
+        """The number of its nodes."""
         return len(self._parts)
 
     def strangers(self) -> list[str]:
-        """Names of nodes that are on the robot's topic and none of its own."""
+        """Return the names of other nodes on the robot's topic."""
         own = {part.get_name() for part in self._parts}
         infos = [
             *self.get_publishers_info_by_topic(TOPIC),
@@ -64,8 +64,8 @@ class UnknownRobot(Node):
     def _add(
         self, name: str, *, publishes: tuple[str, ...] = (), subscribes: tuple[str, ...] = ()
     ) -> None:
-        """Make a node of that name; it occurs nowhere else in the lessons."""
-        # nobody spins it: a service of its own would never answer
+        """Create a node with that name, which no other lesson uses."""
+        # the node is not spun, so that parameter services would never answer
         node = Node(name, start_parameter_services=False)
         self._parts.append(node)
         for topic_name in publishes:
@@ -87,7 +87,7 @@ _robot: UnknownRobot | None = None
 
 
 def start_unknown_robot() -> None:
-    """Start the robot's nodes, unless they run already, and say who else is on its topic."""
+    """Start the robot's nodes, unless they run, and print which other nodes are on its topic."""
     global _robot
     if _robot is None or not _robot.runs:
         _robot = runner.run(UnknownRobot)
@@ -102,7 +102,7 @@ def start_unknown_robot() -> None:
 
 
 def _message(topic_name: str) -> JointState | Point | Temperature:
-    """What goes over a topic of the robot; angles in rad, metres, degrees Celsius."""
+    """Return the message for a topic of the robot; in rad, metres or degrees Celsius."""
     if topic_name == TOOL:
         return Point(x=1.2, y=0.8)
     if topic_name == TEMPERATURE:

@@ -1,4 +1,4 @@
-"""Wait for what other threads and processes do, never for longer than was said."""
+"""Wait for a condition that other threads or processes fulfil, with a timeout."""
 
 import time
 from collections.abc import Callable
@@ -8,18 +8,18 @@ from my_robot_basics.live import notebook
 from my_robot_basics.session.errors import NotRunnable, WaitTimeout
 
 PAUSE_SEC = 0.01
-"""Between two looks at the condition."""
+"""The pause between two tests of the condition."""
 
 SILENT_SEC = 1.0
-"""Anyone who waits for longer is told so, once every such time."""
+"""If a wait takes longer, the elapsed time is shown and updated at this interval."""
 
 
 def wait_until(condition: Callable[[], object], timeout_sec: float = 5.0) -> None:
     """Return as soon as condition() is true.
 
-    A wait of more than a second shows how long it has taken so far; nothing of that stays in the
-    cell. Raises WaitTimeout, a TimeoutError, when it is still false after `timeout_sec`, and
-    NotRunnable for a condition that is no function.
+    A wait of more than a second shows the elapsed time, which disappears at the end. Raises
+    WaitTimeout, a TimeoutError, if the condition is still false after `timeout_sec`, and
+    NotRunnable for a condition that is not a function.
     """
     __tracebackhide__ = True
     if not callable(condition):
@@ -43,7 +43,7 @@ def wait_until(condition: Callable[[], object], timeout_sec: float = 5.0) -> Non
 
 
 class _Progress:
-    """A line in the cell that waits, rewritten as time goes by."""
+    """A line in the waiting cell with the elapsed time."""
 
     def __init__(self, timeout_sec: float) -> None:
         self._timeout_sec = timeout_sec
@@ -57,7 +57,7 @@ class _Progress:
         line = in_language_here(f'waiting … {waited_sec:.0f} s of at most {self._timeout_sec:g} s')
         if self._display is None:
             self._display = notebook.Display()
-            self._display.show({})  # what compares two runs sees the first state, not the updates
+            self._display.show({})  # empty: tools that compare two runs see only this first state
         self._display.update({'text/plain': line})
 
     def clear(self) -> None:

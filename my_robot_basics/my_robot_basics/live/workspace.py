@@ -18,7 +18,7 @@ from my_robot_basics.session.overlays import Overlay
 NAME = 'my_robot_basics'
 PACKAGE = classroom.PACKAGE
 CONTENTS = ('package.xml', 'setup.*', 'resource/*', 'test/*.py', f'{NAME}/*.py')
-"""What a package of nodes consists of: all but what the lessons and the commands need."""
+"""Glob patterns of the files of a package of nodes, without those for lessons and commands."""
 INTERFACES = 'arm_interfaces'
 INTERFACES_CONTENTS = (
     'package.xml',
@@ -32,23 +32,23 @@ REFERENCE = (
     f'{NAME}/kinematics_subscriber.py',
     'setup.py',
 )
-"""What students copy from, to catch up or to begin a file anew."""
+"""Files that students copy from, to catch up or to start a file again."""
 BUILD = f'cd "$ROS_WS" && colcon build --packages-select {NAME} && source install/setup.bash'
 LESSONS = PACKAGE.parent / 'notebooks'
 """The root of JupyterLab's file browser."""
 
 
 class NoPackage(LiveError):
-    """The files to copy are not there."""
+    """The files to copy do not exist."""
 
 
 def make_workspace(*, refresh: bool | str = False, interfaces: bool = False) -> None:
-    """Make the workspace where it is missing, and print what is there.
+    """Create the workspace if it is missing, and print its contents.
 
-    With `interfaces`, the package of the arm's service and action is copied beside that of the
-    nodes. What the student has edited stays as it is. With `refresh` it is moved aside, and
-    replaced by the course's files; the name of a package refreshes that one alone. Raises
-    NoPackage where these are not installed as the course does it.
+    With `interfaces`, the package of the arm's service and action is copied, too. Files that the
+    student has edited stay as they are. With `refresh`, a changed package is moved aside and
+    replaced by the course's; the name of a package refreshes only that one. Raises NoPackage if
+    this package is not installed as the course does it.
     """
     if not (PACKAGE / 'package.xml').is_file():
         raise NoPackage(
@@ -72,7 +72,7 @@ def make_workspace(*, refresh: bool | str = False, interfaces: bool = False) -> 
 
 
 def _make(package: Copied, refresh: bool) -> None:
-    """Copy a package where it is missing, and print what is there."""
+    """Copy a package if it is missing, and print the state of the copy."""
     changes = package.differences()
     name = shown(package.target)
     if refresh and changes:
@@ -90,7 +90,7 @@ def _make(package: Copied, refresh: bool) -> None:
 
 
 def _about_interfaces(workspace: Path) -> str:
-    """Return how the interfaces are built, or what is wrong with what was built."""
+    """Return how to build the interfaces, or what is wrong with their build."""
     built = Overlay(workspace / 'install' / INTERFACES, INTERFACES)
     is_built = built.prefix.exists()
     if is_built and (sentence := built.fault() or built.difference()):
@@ -118,7 +118,7 @@ def copy() -> Path:
 
 
 def make_shelf() -> Path:
-    """Return the folder for files of a student's that are moved aside; no build looks there."""
+    """Return the folder for a student's files that are moved aside, which builds ignore."""
     shelf = classroom.workspace() / 'kept'
     shelf.mkdir(exist_ok=True)
     (shelf / 'COLCON_IGNORE').touch()
@@ -130,11 +130,11 @@ def _write_reference(reference: Path) -> None:
         target = reference / 'src' / NAME / name
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(PACKAGE / name, target)
-    (reference / 'COLCON_IGNORE').touch()  # two packages of one name can't be built
+    (reference / 'COLCON_IGNORE').touch()  # colcon refuses two packages with the same name
 
 
 def shown(path: Path) -> str:
-    """Return a path of the workspace as a terminal of the course understands it."""
+    """Return a path in the workspace that begins with $ROS_WS, for a terminal of the course."""
     return f'$ROS_WS/{path.relative_to(classroom.workspace())}'.removesuffix('/.')
 
 
