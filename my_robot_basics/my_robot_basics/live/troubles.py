@@ -118,7 +118,7 @@ def _line(frame: traceback.FrameSummary) -> str:
 
 
 def _unpublished(error: BaseException) -> tuple[str, str] | None:
-    """Return the field that could not be serialized, and its type, from rclpy's frames; or None."""
+    """Return the field that could not be serialized, and its type; None for other errors."""
     for frame, _ in traceback.walk_tb(error.__traceback__):
         publisher, message = (frame.f_locals.get(name) for name in ('self', 'msg'))
         if isinstance(publisher, Publisher):

@@ -1,6 +1,6 @@
 """The `ros2` command, for machines that have no ros2cli.
 
-It offers what the course needs of ros2cli (ROS 2 Jazzy), with its syntax, options, output and
-exit codes. One verb a file in `verbs/`, one table (`table.py`), one layer over rclpy's graph API
-(`graph.py`). Nothing here imports rclpy before a verb needs it.
+It offers the part of ros2cli (ROS 2 Jazzy) that the course needs, with its syntax, options, output
+and exit codes. Each verb is a file in `verbs/` and an entry in `table.py`; `graph.py` is the layer
+over rclpy's graph API. Nothing here imports rclpy before a verb needs it.
 """

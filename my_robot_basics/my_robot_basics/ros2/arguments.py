@@ -1,7 +1,7 @@
 """Arguments that several verbs share, and the types of their values.
 
-The choices of QoS policies are written out, so that `--help` and mistakes cost no import of
-rclpy; a test holds them to rclpy's own.
+The choices of QoS policies are written down here, so that `--help` and error messages need no
+import of rclpy; a test compares them with rclpy's.
 """
 
 import argparse
@@ -43,26 +43,26 @@ POLICIES = {
     ),
 }
 MOST = 2**31 - 1
-"""What a queue depth, a count or a time in seconds may be, at most."""
+"""The largest accepted queue depth, count, or time in seconds."""
 
 
 def positive_int(text: str) -> int:
-    """A whole number from 1."""
+    """Parse a whole number from 1."""
     return _int_from(1, text, 'value must be a positive integer')
 
 
 def unsigned_int(text: str) -> int:
-    """A whole number from 0."""
+    """Parse a whole number from 0."""
     return _int_from(0, text, 'value must be non-negative integer')
 
 
 def any_int(text: str) -> int:
-    """A whole number."""
+    """Parse a whole number."""
     return _int_from(-MOST, text, f'value must be an integer, {MOST} at most')
 
 
 def positive_float(text: str) -> float:
-    """A number above 0: seconds, or a rate in Hz."""
+    """Parse a number above 0: seconds, or a rate in Hz."""
     number = any_float(text)
     if number <= 0.0:
         raise argparse.ArgumentTypeError('Value must be positive')
@@ -72,7 +72,7 @@ def positive_float(text: str) -> float:
 
 
 def any_float(text: str) -> float:
-    """A finite number."""
+    """Parse a finite number."""
     try:
         number = float(text)
     except ValueError:
@@ -93,7 +93,7 @@ def _int_from(lowest: int, text: str, complaint: str) -> int:
 
 
 def add_discovery(parser: argparse.ArgumentParser, *, daemon: bool = True) -> None:
-    """Add the arguments of a verb that looks at the graph."""
+    """Add the arguments of a verb that uses the graph."""
     parser.add_argument(
         '--spin-time',
         type=any_float,
@@ -111,12 +111,12 @@ def add_discovery(parser: argparse.ArgumentParser, *, daemon: bool = True) -> No
 
 
 def add_hidden_topics(parser: argparse.ArgumentParser) -> None:
-    """Repeat the argument of `ros2 topic`, which is good before and after the verb."""
+    """Add the option of `ros2 topic` to a verb, too: it is allowed before and after the verb."""
     _add_hidden(parser, 'topics')
 
 
 def add_hidden_services(parser: argparse.ArgumentParser) -> None:
-    """Repeat the argument of `ros2 service`, which is good before and after the verb."""
+    """Add the option of `ros2 service` to a verb, too: it is allowed before and after the verb."""
     _add_hidden(parser, 'services')
 
 
@@ -124,7 +124,7 @@ def _add_hidden(parser: argparse.ArgumentParser, what: str) -> None:
     parser.add_argument(
         f'--include-hidden-{what}',
         action='store_true',
-        default=argparse.SUPPRESS,  # else it would undo what stands before the verb
+        default=argparse.SUPPRESS,  # else it would overwrite the option before the verb
         help=f'Consider hidden {what} as well',
     )
 

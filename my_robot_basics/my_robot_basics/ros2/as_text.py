@@ -1,4 +1,4 @@
-"""Messages as YAML and as comma-separated values, in the form of `ros2 topic echo`."""
+"""Format messages as YAML and as comma-separated values, as `ros2 topic echo` does."""
 
 import array
 import sys
@@ -15,18 +15,18 @@ _SEQUENCES = (list, tuple, array.array, numpy.ndarray)
 
 @dataclass(frozen=True)
 class Shortening:
-    """What to leave out of a message."""
+    """How to shorten a message."""
 
     length: int | None = None
-    """Elements of an array and characters of a string beyond this number become `...`."""
+    """Array elements and string characters beyond this number are replaced by `...`."""
     no_arr: bool = False
-    """Name the type and length of an array instead of its elements."""
+    """Show the type and length of an array instead of its elements."""
     no_str: bool = False
-    """Name the length of a string instead of the string."""
+    """Show the length of a string instead of the string."""
 
 
 class _Dumper(yaml.SafeDumper):
-    """In flow style only arrays are on one line, as in ros2cli."""
+    """A dumper whose flow style puts only arrays on one line, as in ros2cli."""
 
 
 def _represent_fields(dumper: yaml.SafeDumper, fields: dict[str, Any]) -> yaml.MappingNode:
@@ -38,7 +38,7 @@ _Dumper.add_representer(dict, _represent_fields)
 
 
 def as_yaml(message: Any, shortening: Shortening, *, flow_style: bool = False) -> str:
-    """A message as a YAML document."""
+    """Return a message as a YAML document."""
     return yaml.dump(
         _plain_message(message, shortening),
         Dumper=_Dumper,
@@ -49,7 +49,7 @@ def as_yaml(message: Any, shortening: Shortening, *, flow_style: bool = False) -
 
 
 def as_csv(message: Any, shortening: Shortening) -> str:
-    """All values of a message, of nested messages too, on one line."""
+    """Return all values of a message and its nested messages on one line."""
     return _joined(
         _cell(getattr(message, name), slot_type, shortening)
         for name, slot_type in _fields(message)
@@ -102,7 +102,7 @@ def _cell(value: Any, slot_type: Any, shortening: Shortening) -> str:
 
 
 def _joined(cells: Iterable[str]) -> str:
-    """As ros2cli joins them: no comma follows empty cells at the start."""
+    """Join cells as ros2cli does: no comma follows empty cells at the start."""
     line = ''
     for cell in cells:
         line = f'{line},{cell}' if line else cell
@@ -127,7 +127,7 @@ def _kind_of(value: Any, slot_type: Any) -> str:
 
 
 def type_name(slot_type: Any) -> str:
-    """The name of a field's type, such as `double`, `string` or `geometry_msgs/msg/Point`."""
+    """Return a field type's name, such as `double`, `string` or `geometry_msgs/msg/Point`."""
     if isinstance(slot_type, definition.BasicType):
         return slot_type.typename
     if isinstance(slot_type, definition.NamespacedType):

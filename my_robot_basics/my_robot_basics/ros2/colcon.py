@@ -1,6 +1,6 @@
-"""The command `colcon` of .venv: colcon itself, which says in a sentence what it lacks.
+"""The command `colcon` of .venv: colcon, with a message about missing build tools.
 
-Without a compiler, CMake would fail after two dozen lines, none of which says what to install.
+Without a compiler, CMake would fail with two dozen lines that do not say what to install.
 """
 
 import os
@@ -14,12 +14,12 @@ from colcon_ros.task.ament_cmake.build import AmentCmakeBuildTask
 from my_robot_basics.session import build_tools
 
 OLDEST_POLICY = '3.5'
-"""CMake 4 refuses files that were written for an older CMake, unless it is told this."""
+"""CMake 4 refuses files that were written for an older CMake, unless this minimum is set."""
 
 
 def main() -> int:
     """Run colcon on the command line, and return its exit status."""
-    os.environ['VIRTUAL_ENV'] = sys.prefix  # the Python that CMake is to take
+    os.environ['VIRTUAL_ENV'] = sys.prefix  # so that CMake finds this Python
     os.environ.setdefault('CMAKE_POLICY_VERSION_MINIMUM', OLDEST_POLICY)
     os.environ['PATH'] = os.pathsep.join([str(Path(sys.prefix, 'bin')), os.environ['PATH']])
     AmentCmakeBuildTask.build = _build

@@ -1,4 +1,4 @@
-"""A command line that starts one executable with `ros2 run`, read without a shell."""
+"""Parse a command line that starts one executable with `ros2 run`, without a shell."""
 
 import itertools
 import re
@@ -9,16 +9,16 @@ OPTIONS_OF_RULES = '-r', '--remap'
 OPTIONS_OF_PARAMETERS = '-p', '--param'
 OPTIONS_OF_FILES = ('--params-file',)
 _OF_A_SHELL = set('();<>|&')
-"""What stands between commands; `shlex` makes words of their own of them."""
+"""A shell's operators, which separate commands; `shlex` returns them as separate words."""
 _EXPANDED = '$`'
-"""What a shell puts something else for."""
+"""Characters with which a shell's expansions begin."""
 _PLACE = re.compile(r'\{\w+\}')
-"""What Python fills in, where a text begins with f."""
+"""A replacement field of an f-string: the text lacks its f."""
 MOST_CHARACTERS = 2_000
 
 
 class BadCommandLine(ValueError):
-    """A text that is no such command line: a clause that says what it is, and one what to do."""
+    """A text that is not such a command line: what was seen, and a hint."""
 
     def __init__(self, seen: str, hint: str) -> None:
         super().__init__(f'{seen}: {hint}')
@@ -33,20 +33,20 @@ class CommandLine:
     words: tuple[str, ...]
 
     def rules(self) -> list[tuple[str, str]]:
-        """Both sides of each remap rule, in their order: ('__ns', '/left')."""
+        """Return both sides of each remapping rule, in order: ('__ns', '/left')."""
         rules = [rule for _, rule in self.options(*OPTIONS_OF_RULES)]
         return [(left, right) for left, _, right in (rule.partition(':=') for rule in rules)]
 
     def options(self, *names: str) -> list[tuple[str, str]]:
-        """Each of these options with the word behind it, in their order."""
+        """Return each of these options with the word after it, in order."""
         return [pair for pair in itertools.pairwise(self.words) if pair[0] in names]
 
 
 def parse(text: str, *, package: str, executable: str) -> CommandLine:
-    """Read a command line that starts this executable, and nothing else.
+    """Parse a command line that starts this executable and does nothing else.
 
-    What only a shell understands (a second command, `&`, a variable) is refused, as is all that
-    stands before `--ros-args`. Raises BadCommandLine.
+    Syntax that needs a shell (a second command, `&`, a variable) is refused, and so are arguments
+    before `--ros-args`. Raises BadCommandLine.
     """
     start = ['ros2', 'run', package, executable]
     text = text.strip().replace('\\\n', ' ')

@@ -1,4 +1,4 @@
-"""What the shell offers after Tab: names that are on the graph or installed now."""
+"""Completions that the shell offers after Tab: names on the graph, and installed names."""
 
 import argparse
 from collections.abc import Callable, Iterable
@@ -9,12 +9,12 @@ from my_robot_basics.ros2.graph import Graph
 
 
 def offer(action: argparse.Action, completer: Callable[..., Iterable[str]]) -> None:
-    """Let argcomplete ask that function what an argument may be; it looks for this attribute."""
+    """Set the completer of an argument, in the attribute that argcomplete reads."""
     vars(action)['completer'] = completer
 
 
 def topic_names(parsed_args: argparse.Namespace, **_: object) -> list[str]:
-    """Topics."""
+    """Return the names of topics."""
     with Graph(parsed_args) as graph:
         graph.settle()
         include_hidden = getattr(parsed_args, 'include_hidden_topics', False)
@@ -22,7 +22,7 @@ def topic_names(parsed_args: argparse.Namespace, **_: object) -> list[str]:
 
 
 def topic_and_service_names(parsed_args: argparse.Namespace, **_: object) -> list[str]:
-    """Topics, and services without those that every node has."""
+    """Return the names of topics, and of services except those that every node has."""
     from my_robot_basics.graph.services import OF_EVERY_NODE
 
     with Graph(parsed_args) as graph:
@@ -32,7 +32,7 @@ def topic_and_service_names(parsed_args: argparse.Namespace, **_: object) -> lis
 
 
 def topic_types(parsed_args: argparse.Namespace, **_: object) -> list[str]:
-    """The type that the topic has; all message types if it has none yet."""
+    """Return the types of the topic; all message types if it has none yet."""
     with Graph(parsed_args) as graph:
         graph.settle()
         topics = dict(graph.topics(include_hidden=True))
@@ -40,7 +40,7 @@ def topic_types(parsed_args: argparse.Namespace, **_: object) -> list[str]:
 
 
 def service_types_of(parsed_args: argparse.Namespace, **_: object) -> list[str]:
-    """The type that the service has; all service types if it has none yet."""
+    """Return the types of the service; all service types if it has none yet."""
     with Graph(parsed_args) as graph:
         graph.settle()
         services = dict(graph.services(include_hidden=True))
@@ -48,12 +48,12 @@ def service_types_of(parsed_args: argparse.Namespace, **_: object) -> list[str]:
 
 
 def service_types(**_: object) -> list[str]:
-    """Service types that are installed."""
+    """Return the installed service types."""
     return interfaces.names('srv')
 
 
 def action_types_of(parsed_args: argparse.Namespace, **_: object) -> list[str]:
-    """The type that the action has; all action types if it has none yet."""
+    """Return the types of the action; all action types if it has none yet."""
     with Graph(parsed_args) as graph:
         graph.settle()
         actions = dict(graph.actions())
@@ -61,44 +61,44 @@ def action_types_of(parsed_args: argparse.Namespace, **_: object) -> list[str]:
 
 
 def message_types(**_: object) -> list[str]:
-    """Message types that are installed."""
+    """Return the installed message types."""
     return interfaces.names('msg')
 
 
 def interface_types(**_: object) -> list[str]:
-    """Types of any kind that are installed."""
+    """Return the installed interface types of all kinds."""
     return sorted(name for kind in interfaces.KINDS for name in interfaces.names(kind))
 
 
 def interface_packages(**_: object) -> list[str]:
-    """Packages that have such types."""
+    """Return the packages with interface types."""
     return interfaces.packages()
 
 
 def prototype(parsed_args: argparse.Namespace, **_: object) -> list[str]:
-    """A message with its default values, as YAML."""
+    """Return a message with its default values, as YAML."""
     return [fields_as_yaml(interfaces.message_class_for(parsed_args.message_type)())]
 
 
 def request_prototype(parsed_args: argparse.Namespace, **_: object) -> list[str]:
-    """A service's request with its default values, as YAML."""
+    """Return a service's request with its default values, as YAML."""
     return [fields_as_yaml(interfaces.service_class_for(parsed_args.service_type).Request())]
 
 
 def goal_prototype(parsed_args: argparse.Namespace, **_: object) -> list[str]:
-    """An action's goal with its default values, as YAML."""
+    """Return an action's goal with its default values, as YAML."""
     return [fields_as_yaml(interfaces.action_class_for(parsed_args.action_type).Goal())]
 
 
 def fields_as_yaml(message: Any) -> str:
-    """A message's fields, with the values that they have, as YAML."""
+    """Return a message's fields with their values, as YAML."""
     from my_robot_basics.ros2.as_text import Shortening, as_yaml
 
     return as_yaml(message, Shortening())
 
 
 def node_names(parsed_args: argparse.Namespace, **_: object) -> list[str]:
-    """Nodes."""
+    """Return the full names of nodes."""
     include_hidden = getattr(parsed_args, 'include_hidden_nodes', False)
     with Graph(parsed_args) as graph:
         graph.settle()
@@ -106,7 +106,7 @@ def node_names(parsed_args: argparse.Namespace, **_: object) -> list[str]:
 
 
 def service_names(parsed_args: argparse.Namespace, **_: object) -> list[str]:
-    """Services."""
+    """Return the names of services."""
     with Graph(parsed_args) as graph:
         graph.settle()
         include_hidden = parsed_args.include_hidden_services
@@ -114,21 +114,21 @@ def service_names(parsed_args: argparse.Namespace, **_: object) -> list[str]:
 
 
 def action_names(parsed_args: argparse.Namespace, **_: object) -> list[str]:
-    """Actions."""
+    """Return the names of actions."""
     with Graph(parsed_args) as graph:
         graph.settle()
         return [name for name, _ in graph.actions()]
 
 
 def package_names(**_: object) -> Iterable[str]:
-    """Packages in the ament index."""
+    """Return the packages in the ament index."""
     from my_robot_basics.ros2 import packages
 
     return packages.names()
 
 
 def executable_names(parsed_args: argparse.Namespace, **_: object) -> list[str]:
-    """Executables of the package that was typed before."""
+    """Return the executables of the package that is already on the command line."""
     from my_robot_basics.ros2 import packages
 
     return [path.name for path in packages.executables(parsed_args.package_name)]

@@ -1,4 +1,4 @@
-"""One line of a .msg file: rosidl's parser judges it, and where it refuses, the cause is told."""
+"""Parse one line of a .msg file with rosidl's parser, and explain why it refuses a line."""
 
 import contextlib
 import io
@@ -10,7 +10,7 @@ from typing import Any
 from my_robot_basics.feedback.errors import shorten
 
 MOST_CHARACTERS = 300
-"""Of a line, without its comment."""
+"""The longest accepted line, without its comment."""
 
 _OTHER_NAMES = {
     'int': 'int32 or another int with its number of bits',
@@ -20,24 +20,24 @@ _OTHER_NAMES = {
     **dict.fromkeys(('str', 'String', 'text', 'char*'), 'string'),
     **dict.fromkeys(('boolean', 'Bool', 'Boolean'), 'bool'),
 }
-"""Types of other languages, and what ROS has instead."""
+"""Types of other languages, and ROS's types in their place."""
 _FORMER = {'time': 'Time', 'duration': 'Duration'}
-"""Types of ROS 1 that the parser still reads, and that nothing can be built of."""
+"""Types of ROS 1 that the parser still accepts, but that cannot be built."""
 _ASCII = {chr(code) for code in range(33, 127)}
 _CONSTANT_NAME = re.compile('[A-Z](?:_?[A-Z0-9])*')
-"""What rosidl takes; its own pattern needs hours for some long names that do not fit."""
+"""The names that rosidl accepts; its own pattern takes hours for some long names."""
 _FIELD_NAME = re.compile('[a-z](?:_?[a-z0-9])*')
 _MESSAGE_TYPE = re.compile('([a-z][a-z0-9_]*/)?[A-Z][A-Za-z0-9]*[a-z][A-Za-z0-9]*')
 
 
 class BadLine(ValueError):
-    """A line that is none of a definition; the text is the cause, in a clause."""
+    """A line that a definition can't have; the exception's text is the cause, as a clause."""
 
 
 def parse_line(package: str, line: str) -> Any:
-    """What rosidl makes of a line without its comment: its Field or Constant.
+    """Return rosidl's Field or Constant for a line without its comment.
 
-    `package` is that of the file. Raises BadLine.
+    `package` is the file's package. Raises BadLine.
     """
     line = line.replace('\t', ' ')
     if len(line) > MOST_CHARACTERS:
@@ -48,18 +48,18 @@ def parse_line(package: str, line: str) -> Any:
     if line[:1] == ' ':
         raise BadLine('rosidl takes no space before the type')
     if equals and not _CONSTANT_NAME.fullmatch(name):
-        # a bound of an array, int32[<=60], may have its brackets in the wrong place
+        # not a constant if = belongs to an array's bound, as in int32[<=60]
         about_line = _about_characters(line) or _about_form(type_name, rest)
         raise BadLine(about_line or _about_constant(type_name, name))
     try:
         return _parsed(package, line)
     except Exception as error:
-        # rosidl raises whatever its conversions raise: TypeError, NameError, IndexError, …
+        # rosidl passes on what its conversions raise: TypeError, NameError, IndexError, …
         raise BadLine(_about_characters(line) or _why(type_name, rest, error)) from None
 
 
 def parse_whole(package: str, name: str, text: str, *, kind: str) -> None:
-    """Let rosidl read the text of a file, `kind` 'msg', 'srv' or 'action'. Raises BadLine."""
+    """Let rosidl parse a file's text; `kind` is 'msg', 'srv' or 'action'. Raises BadLine."""
     from rosidl_adapter import parser
 
     read = {
@@ -71,7 +71,7 @@ def parse_whole(package: str, name: str, text: str, *, kind: str) -> None:
         with contextlib.redirect_stderr(io.StringIO()):
             read[kind](package, name, text)
     except Exception as error:
-        # see above
+        # rosidl may raise any exception: see parse_line
         raise BadLine(shorten(error)) from None
 
 
@@ -84,7 +84,7 @@ def _parsed(package: str, line: str) -> Any:
         return definition.constants[0]
     member = definition.fields[0]
     if member.type.pkg_name == package and (fault := _about_type(member.type.type)):
-        raise BadLine(fault)  # String, say, could be a message
+        raise BadLine(fault)  # rosidl takes an unknown type, such as String, for a message
     if keyword.iskeyword(member.name):
         raise BadLine(f'{member.name} is a word of Python, so that no Python node can use it')
     if member.type.is_primitive_type() and member.type.type in _FORMER:
@@ -94,7 +94,7 @@ def _parsed(package: str, line: str) -> Any:
 
 
 def _about_characters(line: str) -> str:
-    """Which character of another keyboard, or of another language's comments, is in a line."""
+    """Say which character of another keyboard, or comment of another language, a line has."""
     for character in line:
         plain = unicodedata.normalize('NFKC', character)
         if plain == ' ' != character:
@@ -118,7 +118,7 @@ def _about_constant(type_name: str, name: str) -> str:
 
 
 def _why(type_name: str, rest: str, error: Exception) -> str:
-    """The cause, in a clause."""
+    """Return the cause of rosidl's error, as a clause."""
     if isinstance(error, BadLine):
         return str(error)
     name, _, default = rest.partition(' ')

@@ -1,4 +1,4 @@
-"""Texts of .msg, .srv and .action files, as rosidl reads them, and all that is wrong in one."""
+"""Parse texts of .msg, .srv and .action files as rosidl does, and collect all their faults."""
 
 import re
 import textwrap
@@ -16,7 +16,7 @@ SECTIONS = {
     'srv': ('the request', 'the response'),
     'action': ('the goal', 'the result', 'the feedback'),
 }
-"""What the parts of a file are, by its kind."""
+"""The names of a file's parts, by its kind."""
 SEPARATOR = '---'
 _DASHES = re.compile(r'\s*[-–—_=]{2,}\s*(?:#.*)?')
 
@@ -27,29 +27,29 @@ class DefinedMember:
 
     name: str
     type: Any
-    """Of a field rosidl's Type; of a constant its name."""
+    """For a field, rosidl's Type; for a constant, the type's name."""
     value: Any
-    """The default value of a field, or None; the value of a constant."""
+    """For a field, its default value or None; for a constant, its value."""
     is_constant: bool
 
 
 @dataclass
 class Definition:
-    """What a text defines."""
+    """The content of a definition's text."""
 
     sections: list[dict[str, DefinedMember]]
     """The members of each part of the file, by name."""
     faults: list[str] = field(default_factory=list)
-    """What rosidl refuses, or cannot build; a clause for each."""
+    """A clause for each fault that rosidl refuses or cannot build."""
 
 
 def read_definition(
     text: str, *, package: str, kind: str, own_types: Collection[str]
 ) -> Definition:
-    """Read a text of that kind, 'msg', 'srv' or 'action', as a file of that package.
+    """Parse a text as a file of that package; `kind` is 'msg', 'srv' or 'action'.
 
-    `own_types` are the message types that the package is to have. What all lines are indented by
-    is taken for the notebook's, and left out.
+    `own_types` are the message types that the package will have. A common indentation of all
+    lines is removed, as it comes from the notebook.
     """
     names = SECTIONS[kind]
     definition = Definition([{} for _ in names])
@@ -84,7 +84,7 @@ def read_definition(
 
 
 def code_lines(text: str) -> list[str]:
-    """The lines of a text without comments and empty ones. Raises BadLine where it is too long."""
+    """Return a text's lines without comments and empty lines. Raises BadLine if it is too long."""
     lines = textwrap.dedent(text[: MOST_CHARACTERS + 1].replace('\t', ' ')).splitlines()
     if len(text) > MOST_CHARACTERS or len(lines) > MOST_LINES:
         raise BadLine(f'it is longer than {MOST_CHARACTERS} characters in {MOST_LINES} lines')
@@ -92,7 +92,7 @@ def code_lines(text: str) -> list[str]:
 
 
 def read_line(line: str, *, package: str, own_types: Collection[str]) -> DefinedMember:
-    """What rosidl makes of one line that is no separator. Raises BadLine."""
+    """Parse one line that is not a separator. Raises BadLine."""
     if _DASHES.fullmatch(line):
         raise BadLine(
             'parts are separated by three dashes, ---, and nothing else is in that line, not '
@@ -114,7 +114,7 @@ def read_line(line: str, *, package: str, own_types: Collection[str]) -> Defined
 def meanings(
     text: str, *, package: str, own_types: Collection[str]
 ) -> Iterator[tuple[str, DefinedMember | str]]:
-    """Yield each line without its comment, and what it means, or why it is refused; '' for ---."""
+    """Yield each line without its comment, with its meaning or why it is refused; '' for ---."""
     for line in code_lines(text):
         meaning: DefinedMember | str = ''
         if line != SEPARATOR:
@@ -126,20 +126,20 @@ def meanings(
 
 
 def _without_comment(line: str) -> str:
-    """A line without its comment, and without the spaces before that; beside --- both count."""
+    """Remove a comment and the spaces before it; not beside ---, where rosidl accepts neither."""
     code = line.partition('#')[0].rstrip()
     return line if code.strip() == SEPARATOR else code
 
 
 def _about_unknown(fault: str, type_name: str) -> str:
-    """The fault, and which packages have a type of that name."""
+    """Return the fault, and the packages that have a type of that name."""
     found = [name.partition('/')[0] for name in _known() if name.endswith(f'/msg/{type_name}')]
     written = [f'{package}/{type_name}' for package in found]
     return f'{fault}: write its package before it, {" or ".join(written)}' if found else fault
 
 
 def _known() -> list[str]:
-    """The message types that are installed."""
+    """Return the installed message types."""
     from my_robot_basics.ros2 import interfaces
 
     return interfaces.names('msg')

@@ -1,7 +1,7 @@
-"""When the graph has settled: everybody is on it, with all that they say they have.
+"""Wait until the graph has settled: all participants are on it with all their nodes and endpoints.
 
-The operating system tells how many participants there are on this machine, and each of these says
-which nodes and endpoints it has: so nobody has to sleep in case there are more.
+Linux shows how many participants this machine has, and each of them announces its nodes and
+endpoints. So no fixed time has to be waited for in case there are more.
 """
 
 import time
@@ -17,27 +17,27 @@ if TYPE_CHECKING:
     from my_robot_basics.graph.entities import Entities
 
 UNKNOWN = '_NODE_NAME_UNKNOWN_'
-"""rclpy's word while it knows an endpoint, and not yet its node."""
+"""rclpy's name for the node of an endpoint while that node is unknown."""
 
 POLL_SEC = 0.01
 COMPLETE_SEC = 0.05
-"""A graph with everybody on it counts as settled when it has not changed for so long."""
+"""A complete graph counts as settled if it has not changed for this long."""
 INCOMPLETE_SEC = 2.0
-"""… and so long while a participant is still missing, which may have no nodes at all."""
+"""The same if a participant is still missing, which may have no nodes at all."""
 FIRST_PAUSE_SEC = 0.05
-"""Between two times that all are asked to announce themselves; each pause is twice the last."""
+"""The first pause between requests to announce again; each pause is twice the one before."""
 NETWORK_SEC = 0.5
-"""Other machines have so long to answer: ros2cli's own time."""
+"""How long to wait for other machines, as ros2cli does."""
 MOST_SEC = 5.0
 
 _ROS_PREFIXES = ('rt/', 'rq/', 'rr/')
-"""Of the DDS names of ROS topics, and of the two topics of a service."""
+"""Prefixes of the DDS names of ROS topics, and of the two topics of a service."""
 
 
 def settle(node: 'Node', wait: Callable[[float], None], *, domain_id: int | None = None) -> None:
-    """Wait, by `wait` with a time in seconds, until the graph that a node sees has settled.
+    """Wait until the graph that a node sees has settled; `wait` gets a time in seconds to wait.
 
-    The node is in the ROS domain of that ID; by default in the environment's.
+    The node is in the ROS domain `domain_id`; by default in that of the environment.
     """
     from my_robot_basics.graph import entities
 
@@ -62,18 +62,18 @@ def settle(node: 'Node', wait: Callable[[float], None], *, domain_id: int | None
 
 
 class _Look(NamedTuple):
-    """The graph in a form to compare."""
+    """The graph in a form that can be compared."""
 
     said: 'Mapping[bytes, Entities]'
-    """What each participant says that it has."""
+    """The nodes and endpoints that each participant has announced."""
     ends: set[bytes]
-    """Identifiers of all publishers and subscriptions, those of services included."""
+    """GIDs of all publishers and subscriptions, including those of services."""
     nameless: set[bytes]
-    """Those whose node is not known yet."""
+    """GIDs of endpoints whose node is not known yet."""
     nodes: set[tuple[str, str]]
 
     def is_complete(self, present: int) -> bool:
-        """Whether so many participants have spoken, and all that they have is there."""
+        """Whether so many participants have announced themselves and are completely discovered."""
         return (
             len(self.said) >= present
             and not self.nameless

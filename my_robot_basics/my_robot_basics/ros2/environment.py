@@ -1,4 +1,4 @@
-"""What the command sets in its own process, and in what it runs, where nobody else has."""
+"""Environment variables that the command sets for itself and its children, if they are unset."""
 
 import os
 import sys
@@ -12,9 +12,9 @@ _joined: lessons.RunningLesson | None = None
 
 
 def enter() -> None:
-    """Complete the environment; what is set already stands.
+    """Set the variables that are not set yet.
 
-    In a notebook cell all of it is inherited from the kernel.
+    In a notebook cell, all of them are inherited from the kernel.
     """
     defaults = {
         'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST',
@@ -32,7 +32,7 @@ def enter() -> None:
 
 
 def _domain_to_join() -> str:
-    """The ROS domain for a shell that names none: of the lesson that started last, or ROS's 0."""
+    """Return the domain for a shell without one: of the lesson that started last, or ROS's 0."""
     global _joined
     if running := lessons.running():
         _joined = running[-1]
@@ -40,7 +40,7 @@ def _domain_to_join() -> str:
 
 
 def say_where() -> None:
-    """Tell the user of the shell which lesson was joined, unless the shell named a domain."""
+    """Print to stderr which lesson was joined, unless ROS_DOMAIN_ID was set in the shell."""
     if _joined and '_ARGCOMPLETE' not in os.environ:
         told = (
             f'joined the lesson {_joined.name}, which started last: '
@@ -50,7 +50,7 @@ def say_where() -> None:
 
 
 def domain_id() -> int:
-    """The ROS domain that the environment names; raises CommandError if that can't be one."""
+    """Return the environment's ROS domain ID; raises CommandError if it is invalid."""
     text = os.environ['ROS_DOMAIN_ID']
     if text.isascii() and text.isdigit() and int(text) <= HIGHEST_DOMAIN:
         return int(text)
@@ -61,7 +61,7 @@ def domain_id() -> int:
 
 
 def is_localhost_only() -> bool:
-    """Whether nodes on other machines are out of reach."""
+    """Whether nodes on other machines cannot be discovered."""
     discovery_range = os.environ.get('ROS_AUTOMATIC_DISCOVERY_RANGE')
     return discovery_range == 'LOCALHOST' and not os.environ.get('ROS_STATIC_PEERS')
 

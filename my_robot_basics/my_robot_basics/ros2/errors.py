@@ -1,8 +1,8 @@
-"""What ends a command with a sentence instead of a result."""
+"""Exceptions that end a command without a result."""
 
 
 class CommandError(RuntimeError):
-    """The command can't do what was asked; its text goes to stderr, the exit status is 1."""
+    """The command fails; the text of the exception goes to stderr, and the exit status is 1."""
 
 
 class Stopped(Exception):

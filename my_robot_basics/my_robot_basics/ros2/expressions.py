@@ -1,4 +1,4 @@
-"""Python expressions over a message, as `--filter` takes them."""
+"""Python expressions about a message, for `--filter`."""
 
 from collections.abc import Callable
 from typing import Any
@@ -7,9 +7,9 @@ from my_robot_basics.ros2.errors import CommandError
 
 
 def message_filter(expression: str | None) -> Callable[[Any], bool]:
-    """A test for messages, called `m` in the expression; without an expression all pass it.
+    """Return a test for messages, which the expression calls `m`; without one, all pass.
 
-    Raises CommandError for what is no expression, and the test does for one that fails.
+    Raises CommandError for an invalid expression; the test raises it if the expression fails.
     """
     if expression is None:
         return lambda message: True

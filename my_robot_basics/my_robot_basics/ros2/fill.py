@@ -1,6 +1,6 @@
-"""Values that a user has typed, into the fields of a message.
+"""Fill the fields of a message with values that a user has typed.
 
-Each value is checked against the field's type: rclpy itself checks nothing, and dies of some.
+Each value is checked against the field's type: rclpy does not check it, and some crash it.
 """
 
 import difflib
@@ -14,7 +14,7 @@ from rosidl_parser import definition
 from my_robot_basics.ros2.as_text import type_name
 from my_robot_basics.ros2.interfaces import message_class
 
-_MOST_FLOAT32 = 3.4028235677973366e38  # whatever is below rounds to a finite number
+_MOST_FLOAT32 = 3.4028235677973366e38  # smaller numbers are rounded to a finite float32
 _TIME = 'builtin_interfaces/msg/Time'
 _HEADER = 'std_msgs/msg/Header'
 
@@ -31,10 +31,10 @@ def fill(message: Any, values: dict) -> None:
 
 
 def fill_to_publish(message: Any, values: dict) -> list[StampSetter]:
-    """Set fields of a message from a dictionary, and return what sets its time stamps.
+    """Set fields of a message from a dictionary, and return setters for its time stamps.
 
-    As in ros2cli, `auto` for a header and `now` for a time ask for the time of publication: each
-    setter in the list takes it as a builtin_interfaces Time. Raises BadValue.
+    As in ros2cli, `auto` for a header and `now` for a time mean the time of publication: each
+    setter in the list takes that as a builtin_interfaces Time. Raises BadValue.
     """
     setters: list[StampSetter] = []
     _fill(message, values, '', setters)
@@ -86,7 +86,7 @@ def _list(value: Any, slot_type: Any, path: str, setters: list[StampSetter] | No
 
 
 def _packed(items: list, slot_type: Any) -> Any:
-    """In the container that message classes use, so that the message's repr is the usual one."""
+    """Convert a list to the container that message classes use, to get the usual repr."""
     import array
 
     import numpy
@@ -132,7 +132,7 @@ def _number(value: Any, name: str, path: str) -> Any:
 
 
 def _float(value: Any, name: str, path: str) -> float:
-    # YAML takes 1e3 and 5e-1 for text, and a number in quotes is one for ros2cli, too
+    # text, too: YAML reads 1e3 and 5e-1 as text, and ros2cli accepts a number in quotes
     try:
         number = float(value) if isinstance(value, int | float | str) else None
     except (ValueError, OverflowError):

@@ -1,6 +1,6 @@
 """The ROS graph as the command sees it: one layer over rclpy's graph API.
 
-rclpy is imported when a graph is entered, and no sooner.
+rclpy is imported only when a graph is entered.
 """
 
 import argparse
@@ -22,13 +22,13 @@ if TYPE_CHECKING:
 
 HIDDEN_PREFIX = '_'
 WAIT_SEC = 0.05
-"""The longest wait between two looks at signals and the pipe."""
+"""The longest time between two checks for signals and a closed pipe."""
 
 
 class Graph:
-    """A node of the command's own on the graph, for the duration of a with statement.
+    """The command's node on the graph, for the duration of a with statement.
 
-    Its name, `_ros2cli_<pid>`, hides it from lists as ros2cli's own does.
+    Its name, `_ros2cli_<pid>`, hides it from lists of nodes, as in ros2cli.
     """
 
     node: 'Node'
@@ -38,13 +38,13 @@ class Graph:
         self._spin_time_sec = getattr(args, 'spin_time', None)
         self._use_sim_time = getattr(args, 'use_sim_time', False)
         self._pipe = select.poll()
-        with contextlib.suppress(ValueError, OSError):  # a test's stdout may be no file
+        with contextlib.suppress(ValueError, OSError):  # in a test, stdout may not be a file
             self._pipe.register(sys.stdout.fileno(), 0)
 
     def __enter__(self) -> 'Graph':
-        """Join the graph."""
-        # a fifth of all that starts: messages ask for a package whose other half, which writes
-        # message modules, may be missing
+        """Create the context, the node and its executor."""
+        # saves a fifth of the start-up time: messages import a package that also has the unneeded
+        # generator of message modules, and may do without that part
         modules = cast('dict[str, object]', sys.modules)
         modules.setdefault('rosidl_generator_py.generate_py_impl', None)
         import rclpy
@@ -71,7 +71,7 @@ class Graph:
             start_parameter_services=False,
             parameter_overrides=[
                 Parameter('use_sim_time', value=self._use_sim_time),
-                # nobody asks for it, and it costs 60 ms of imports
+                # the service is not needed, and its imports take 60 ms
                 Parameter('start_type_description_service', value=False),
             ],
         )
@@ -80,7 +80,7 @@ class Graph:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Leave the graph."""
+        """Destroy the node and shut rclpy down."""
         import rclpy
 
         self._executor.shutdown()
@@ -88,17 +88,17 @@ class Graph:
         rclpy.try_shutdown()
 
     def check(self) -> None:
-        """Raise Stopped after a signal, and BrokenPipeError once nobody reads stdout any more."""
+        """Raise Stopped after a signal, and BrokenPipeError once the reader of stdout is gone."""
         stopping.check()
         if any(event & (select.POLLERR | select.POLLHUP) for _, event in self._pipe.poll(0)):
             raise BrokenPipeError
 
     def sleep(self, seconds: float) -> None:
-        """Do nothing for a while."""
+        """Wait without spinning; a signal or a closed pipe ends it by an exception."""
         self.wait_until(lambda: False, timeout_sec=seconds)
 
     def wait_until(self, done: Callable[[], bool], *, timeout_sec: float = math.inf) -> bool:
-        """Wait without spinning until something is so, and return whether it is."""
+        """Wait without spinning until done() is true; return whether it is."""
         deadline = time.monotonic() + timeout_sec
         while not (is_done := done()) and time.monotonic() < deadline:
             self.check()
@@ -106,7 +106,7 @@ class Graph:
         return is_done
 
     def spin_until(self, done: Callable[[], bool], *, timeout_sec: float = math.inf) -> bool:
-        """Run callbacks until something is so, and return whether it is."""
+        """Run callbacks until done() is true; return whether it is."""
         deadline = time.monotonic() + timeout_sec
         while not (is_done := done()) and time.monotonic() < deadline:
             self.check()
@@ -115,18 +115,18 @@ class Graph:
         return is_done
 
     def spin(self) -> None:
-        """Run callbacks until a signal or the end of the pipe."""
+        """Run callbacks until a signal comes or the reader of stdout is gone."""
         self.spin_until(lambda: False)
 
     def settle(self) -> None:
-        """Wait until everybody is on the graph, or for the time that `--spin-time` says."""
+        """Wait until the graph has settled, or for the time of `--spin-time`."""
         if self._spin_time_sec is None:
             discovery.settle(self.node, self.sleep)
         else:
             self.sleep(self._spin_time_sec)
 
     def publishers_of(self, topic_name: str) -> list[Any]:
-        """The TopicEndpointInfo of each publisher; raises CommandError for an impossible name."""
+        """Return each publisher's TopicEndpointInfo; raises CommandError for an invalid name."""
         return self.node.get_publishers_info_by_topic(lookup.full_name(self.node, topic_name))
 
     def subscribe(
@@ -137,7 +137,7 @@ class Graph:
         qos_profile: Any,
         **options: Any,
     ) -> None:
-        """Make a subscription; raises CommandError for an impossible name."""
+        """Create a subscription; raises CommandError for an invalid name."""
         self.node.create_subscription(
             message_class,
             lookup.full_name(self.node, topic_name),
@@ -147,27 +147,27 @@ class Graph:
         )
 
     def advertise(self, message_class: Any, topic_name: str, qos_profile: Any) -> Any:
-        """Make a publisher; raises CommandError for an impossible name."""
+        """Create a publisher; raises CommandError for an invalid name."""
         return self.node.create_publisher(
             message_class, lookup.full_name(self.node, topic_name), qos_profile
         )
 
     def topics(self, *, include_hidden: bool = False) -> list[tuple[str, list[str]]]:
-        """Topic names and their types, sorted by name."""
+        """Return topic names and their types, sorted by name."""
         return lookup.visible(self.node.get_topic_names_and_types(), include_hidden)
 
     def services(self, *, include_hidden: bool = False) -> list[tuple[str, list[str]]]:
-        """Service names and their types, sorted by name."""
+        """Return service names and their types, sorted by name."""
         return lookup.visible(self.node.get_service_names_and_types(), include_hidden)
 
     def actions(self) -> list[tuple[str, list[str]]]:
-        """Action names and their types, sorted by name; ros2cli hides none."""
+        """Return action names and their types, sorted by name; all of them, as in ros2cli."""
         from rclpy.action import get_action_names_and_types
 
         return sorted(get_action_names_and_types(self.node))
 
     def nodes(self, *, include_hidden: bool = False) -> list[NodeName]:
-        """The nodes; two nodes of one name are in it twice."""
+        """Return the nodes; a name that two nodes have is in the list twice."""
         names = (NodeName(*pair) for pair in self.node.get_node_names_and_namespaces())
         return [
             node for node in names if include_hidden or not node.name.startswith(HIDDEN_PREFIX)
@@ -176,7 +176,7 @@ class Graph:
     def wait_for_node(
         self, full_name: str, *, include_hidden: bool = False, timeout_sec: float = 1.0
     ) -> bool:
-        """Wait until a node is on the graph, and return whether it is."""
+        """Wait until a node is on the graph; return whether it is."""
 
         def is_there() -> bool:
             nodes = self.nodes(include_hidden=include_hidden)
@@ -185,10 +185,10 @@ class Graph:
         return self.wait_until(is_there, timeout_sec=timeout_sec)
 
     def message_class(self, topic_name: str, *, wait: bool = False) -> Any:
-        """The message class of a topic, or None after a warning while nobody has it.
+        """Return a topic's message class, or None, after a warning, while it does not exist.
 
-        With `wait` it warns and waits until somebody has. Raises CommandError for a topic name
-        that can't be one, and for a topic of two types.
+        With `wait`, it prints the warning and waits for the topic. Raises CommandError for an
+        invalid topic name, and for a topic with two types.
         """
         full_name = lookup.full_name(self.node, topic_name)
         if (found := lookup.message_class(self.node, topic_name)) is None:

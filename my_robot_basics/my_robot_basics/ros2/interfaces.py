@@ -1,4 +1,4 @@
-"""Interface types that are installed: their names, files and classes, by the ament index."""
+"""Installed interface types: their names, files and classes, from the ament index."""
 
 import importlib
 from pathlib import Path
@@ -11,28 +11,28 @@ KINDS = ('msg', 'srv', 'action')
 
 
 def names(kind: str) -> list[str]:
-    """Sorted names of all message ('msg'), service ('srv') or action ('action') types."""
+    """Return the names of all types of a kind, 'msg', 'srv' or 'action', sorted."""
     from ament_index_python import get_resource, get_resources
 
     found = set()
     for package in get_resources('rosidl_interfaces'):
         for file_name in get_resource('rosidl_interfaces', package)[0].splitlines():
             stem, _, suffix = file_name.rpartition('.')
-            # an underscore marks the parts of which services and actions are made
+            # names with an underscore are parts of services and actions
             if stem.startswith(f'{kind}/') and suffix in ('idl', kind) and '_' not in stem:
                 found.add(f'{package}/{stem}')
     return sorted(found)
 
 
 def packages(*kinds: str) -> list[str]:
-    """Sorted names of the packages that have types of these kinds, or of any."""
+    """Return the names of the packages with types of these kinds, by default of any, sorted."""
     return sorted({name.partition('/')[0] for kind in kinds or KINDS for name in names(kind)})
 
 
 def path(name: str) -> Path:
-    """The file that defines an interface such as `sensor_msgs/msg/JointState`.
+    """Return the file that defines an interface such as `sensor_msgs/msg/JointState`.
 
-    Raises CommandError for a name of another form, and where there is no such interface.
+    Raises CommandError for a name of another form, and if there is no such interface.
     """
     from ament_index_python import has_resource
 
@@ -57,22 +57,22 @@ def path(name: str) -> Path:
 
 
 def message_class(name: str) -> Any:
-    """The class of a message type such as `std_msgs/msg/String` or `std_msgs/String`, or None."""
+    """Return a message class by name, `std_msgs/msg/String` or `std_msgs/String`; or None."""
     found = _class(name, 'msg')
     return found if hasattr(found, 'SLOT_TYPES') else None
 
 
 def message_class_for(name: str) -> Any:
-    """The class of the message type that a user has named; raises CommandError."""
+    """Return the class of a message type from the command line; raises CommandError."""
     if (found := message_class(name)) is not None:
         return found
     raise CommandError(f'The passed message type is invalid{_did_you_mean(name, "msg")}')
 
 
 def service_class_for(name: str) -> Any:
-    """The class of the service type that a user has named, such as `std_srvs/srv/SetBool`.
+    """Return the class of a service type from the command line.
 
-    `std_srvs/SetBool` will do. Raises CommandError.
+    Both `std_srvs/srv/SetBool` and `std_srvs/SetBool` are accepted. Raises CommandError.
     """
     if (found := _class(name, 'srv')) is None:
         raise CommandError(f'The passed service type is invalid{_did_you_mean(name, "srv")}')
@@ -82,9 +82,9 @@ def service_class_for(name: str) -> Any:
 
 
 def action_class_for(name: str) -> Any:
-    """The class of the action type that a user has named, such as `pkg/action/Name`.
+    """Return the class of an action type from the command line.
 
-    `pkg/Name` will do. Raises CommandError.
+    Both `pkg/action/Name` and `pkg/Name` are accepted. Raises CommandError.
     """
     found = _class(name, 'action')
     if hasattr(found, 'Goal') and hasattr(found, 'Result') and hasattr(found, 'Feedback'):
@@ -93,7 +93,7 @@ def action_class_for(name: str) -> Any:
 
 
 def sendable_class_for(name: str) -> Any:
-    """What a user sends to an interface of that name: a message, a request or a goal.
+    """Return the class that a user sends to an interface: its message, request or goal.
 
     Raises CommandError.
     """
@@ -114,7 +114,7 @@ def _class(name: str, kind: str) -> Any:
     except ModuleNotFoundError:
         return None
     except ImportError as error:
-        # a workspace's package that is only half built was told of when the command began
+        # a half-built package of a workspace was reported when the command started
         said = overlays.was_said(str(error))
         reason = 'for the reason above' if said else f'because: {error}'
         raise CommandError(f'{name} cannot be loaded, {reason}') from error

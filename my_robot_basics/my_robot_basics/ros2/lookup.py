@@ -1,4 +1,4 @@
-"""Names and types on the graph that a node sees."""
+"""Names and types on the graph, as a node sees it."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -9,14 +9,14 @@ if TYPE_CHECKING:
 
 
 def full_name(node: 'Node', name: str, *, is_service: bool = False) -> str:
-    """A topic's or service's full name; raises CommandError for an impossible one."""
+    """Return a topic's or service's full name; raises CommandError for an invalid one."""
     from rclpy.exceptions import InvalidServiceNameException, InvalidTopicNameException
     from rclpy.expand_topic_name import expand_topic_name
     from rclpy.validate_full_topic_name import validate_full_topic_name
     from rclpy.validate_topic_name import validate_topic_name
 
     try:
-        # it says what is wrong, expansion does not
+        # first, because its message says what is wrong; that of the expansion does not
         validate_topic_name(name, is_service=is_service)
         full = expand_topic_name(name, node.get_name(), node.get_namespace())
         validate_full_topic_name(full, is_service=is_service)
@@ -26,14 +26,14 @@ def full_name(node: 'Node', name: str, *, is_service: bool = False) -> str:
 
 
 def types(node: 'Node', full_name: str) -> list[str]:
-    """The types that a topic has now."""
+    """Return the current types of a topic."""
     return dict(node.get_topic_names_and_types()).get(full_name, [])
 
 
 def message_class(node: 'Node', topic_name: str) -> Any:
-    """The message class of a topic, or None while nobody has it.
+    """Return a topic's message class, or None while the topic does not exist.
 
-    Raises CommandError for a topic of two types, and for a type that is not installed.
+    Raises CommandError for a topic with two types, and for a type that is not installed.
     """
     from my_robot_basics.ros2 import interfaces
 
@@ -54,7 +54,7 @@ def message_class(node: 'Node', topic_name: str) -> Any:
 def visible(
     names_and_types: list[tuple[str, list[str]]], include_hidden: bool
 ) -> list[tuple[str, list[str]]]:
-    """Topics or services without the hidden ones, unless these are wanted, too."""
+    """Return topics or services without the hidden ones, or all with `include_hidden`."""
     from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
 
     return [

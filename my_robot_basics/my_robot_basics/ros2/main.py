@@ -1,4 +1,4 @@
-"""The console script `ros2`: hands over to a real ros2cli, or runs a verb of the table."""
+"""The console script `ros2`: runs a real ros2cli if there is one, else a verb of the table."""
 
 import argparse
 import io
@@ -13,7 +13,7 @@ from my_robot_basics.ros2.errors import Stopped
 from my_robot_basics.ros2.table import COMMANDS, ELSEWHERE, Command
 
 PIPE_CLOSED = 128 + 13
-"""Exit status, as a shell reports it for a process killed by SIGPIPE."""
+"""The exit status that a shell reports for a process that SIGPIPE ended."""
 USAGE = 2
 
 
@@ -38,13 +38,13 @@ def main(argv: list[str] | None = None) -> int | str | None:
     try:
         return _run(parser.parse_args(words))
     except BrokenPipeError:
-        # whatever is still in the buffer has nowhere to go
+        # discard what is still in the buffer: flushing it at exit would raise again
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return PIPE_CLOSED
 
 
 def not_here(words: list[str]) -> str | None:
-    """A sentence for a command or verb that ros2cli has and this one has not."""
+    """Return a sentence about a command or verb that only ros2cli has, or None."""
     command, verb = _chosen(words)
     if command in ELSEWHERE:
         missing, package = f'ros2 {command}', f'ros2{command}'
@@ -60,7 +60,7 @@ def not_here(words: list[str]) -> str | None:
 
 
 def make_parser(words: list[str]) -> argparse.ArgumentParser:
-    """The parser for a command line; only the verbs that it can mean are imported."""
+    """Return the parser for a command line; only verbs that it may use are imported."""
     chosen, chosen_verb = _chosen(words)
     if '_ARGCOMPLETE' in os.environ:
         chosen, chosen_verb = None, None
@@ -145,7 +145,7 @@ def _run(args: argparse.Namespace) -> int | str | None:
         status = args.main(args)
     except Stopped as stopped:
         status = stopped.number
-    except RuntimeError as error:  # a CommandError, or rclpy's word for what DDS refused
+    except RuntimeError as error:  # a CommandError, or an error of DDS that rclpy reports
         status = str(error)
     sys.stdout.flush()
     stopping.finish()
@@ -153,7 +153,7 @@ def _run(args: argparse.Namespace) -> int | str | None:
 
 
 def _chosen(words: list[str]) -> tuple[str | None, str | None]:
-    """The command and the verb: no option that may stand before them takes a value."""
+    """Return the command and the verb: no option that may come before them takes a value."""
     plain = [word for word in words if not word.startswith('-')]
     command, verb, *_ = (*plain, None, None)
     return command, verb

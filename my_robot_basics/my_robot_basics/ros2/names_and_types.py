@@ -1,4 +1,4 @@
-"""What `list`, `find` and `type` of topics, of services and of actions have in common."""
+"""Shared code of the verbs `list`, `find` and `type` of topics, services and actions."""
 
 import argparse
 from collections.abc import Sequence
@@ -26,7 +26,7 @@ def add_count(parser: argparse.ArgumentParser, noun: str) -> None:
 
 
 def print_list(found: NamesAndTypes, *, count: bool, show_types: bool = False) -> None:
-    """Print the names, with their types if these are asked for; or how many there are."""
+    """Print the names, with `show_types` also their types; or with `count` how many there are."""
     if count:
         print(len(found))
         return
@@ -35,12 +35,12 @@ def print_list(found: NamesAndTypes, *, count: bool, show_types: bool = False) -
 
 
 def print_with_type(found: NamesAndTypes, type_name: str, *, count: bool) -> None:
-    """Print the names of that type, or how many there are."""
+    """Print the names with that type, or with `count` how many there are."""
     print_list([each for each in found if type_name in each[1]], count=count)
 
 
 def print_types(found: NamesAndTypes, name: str) -> int:
-    """Print the types of a name; return the exit status, 1 where nobody has that name."""
+    """Print the types of a name; return the exit status, 1 if the name is not on the graph."""
     types = dict(found).get(name)
     if types is None:
         return 1

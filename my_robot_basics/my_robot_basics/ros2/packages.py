@@ -1,4 +1,4 @@
-"""Packages and their executables, by the ament index: of a workspace and of this Python."""
+"""Packages and their executables from the ament index, of workspaces and of this Python."""
 
 import os
 from pathlib import Path
@@ -7,14 +7,14 @@ from my_robot_basics.ros2.errors import CommandError
 
 
 def names() -> list[str]:
-    """Names of all packages, sorted."""
+    """Return the names of all packages, sorted."""
     from ament_index_python import get_packages_with_prefixes
 
     return sorted(get_packages_with_prefixes())
 
 
 def prefix(package_name: str) -> Path | None:
-    """The first prefix in AMENT_PREFIX_PATH that has the package, or None."""
+    """Return the first prefix in AMENT_PREFIX_PATH with the package, or None."""
     from ament_index_python import PackageNotFoundError, get_package_prefix
 
     try:
@@ -24,7 +24,7 @@ def prefix(package_name: str) -> Path | None:
 
 
 def executables(package_name: str) -> list[Path]:
-    """The executables of a package, sorted by path; raises CommandError without the package."""
+    """Return a package's executables, sorted by path; raises CommandError if it is missing."""
     if (found := prefix(package_name)) is None:
         raise CommandError(f"Package '{package_name}' not found")
     paths: list[Path] = []

@@ -10,16 +10,16 @@ from my_robot_basics.ros2.errors import CommandError
 from my_robot_basics.ros2.graph import Graph
 
 TIMEOUT_SEC = 5.0
-"""For the services to appear, and again for an answer."""
+"""How long to wait for the services, and then for an answer."""
 
 
 def absolute(node_name: str) -> str:
-    """A node's name with its leading slash."""
+    """Return a node's name with its leading slash."""
     return node_name if node_name.startswith('/') else f'/{node_name}'
 
 
 class ParameterServices:
-    """Calls a node's parameter services, and raises CommandError where it does not answer."""
+    """Calls a node's parameter services; raises CommandError if the node does not answer."""
 
     def __init__(self, graph: Graph, node_name: str) -> None:
         from rclpy.parameter_client import AsyncParameterClient
@@ -37,20 +37,20 @@ class ParameterServices:
             )
 
     def names(self, prefixes: list[str] | None = None) -> list[str]:
-        """Names of the node's parameters, sorted."""
+        """Return the names of the node's parameters, sorted."""
         response = self._answer(self._client.list_parameters(prefixes=prefixes))
         return sorted(response.result.names)
 
     def values(self, names: list[str]) -> list[Any]:
-        """The rcl_interfaces ParameterValue of each parameter; none if one is not declared."""
+        """Return each parameter's rcl_interfaces ParameterValue; [] if one is not declared."""
         return self._answer(self._client.get_parameters(names)).values
 
     def descriptors(self, names: list[str]) -> list[Any]:
-        """The rcl_interfaces ParameterDescriptor of each; none if one is not declared."""
+        """Return each parameter's rcl_interfaces ParameterDescriptor; [] if one is undeclared."""
         return self._answer(self._client.describe_parameters(names)).descriptors
 
     def types(self, names: list[str]) -> dict[str, int]:
-        """The rcl_interfaces ParameterType of each parameter."""
+        """Return the rcl_interfaces ParameterType of each parameter, by name."""
         return {descriptor.name: descriptor.type for descriptor in self.descriptors(names)}
 
     def set(self, *parameters: Any) -> list[Any]:
@@ -73,7 +73,7 @@ class ParameterServices:
 
 
 def type_names() -> dict[int, str]:
-    """What each rcl_interfaces ParameterType is called."""
+    """Return the name of each rcl_interfaces ParameterType."""
     from rcl_interfaces.msg import ParameterType
 
     return {
@@ -91,7 +91,7 @@ def type_names() -> dict[int, str]:
 
 
 def add_node(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of a verb that is about one node."""
+    """Add the arguments of a verb for one node."""
     arguments.add_discovery(parser)
     node_name = parser.add_argument('node_name', help='Name of the ROS node')
     completion.offer(node_name, completion.node_names)
@@ -108,21 +108,21 @@ def add_node(parser: argparse.ArgumentParser) -> None:
 
 
 def add_one_parameter(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of a verb that is about one parameter of one node."""
+    """Add the arguments of a verb for one parameter of one node."""
     add_node(parser)
     parameter_name = parser.add_argument('parameter_name', help='Name of the parameter')
     completion.offer(parameter_name, parameter_names)
 
 
 def parameter_names(parsed_args: argparse.Namespace, **_: object) -> list[str]:
-    """What the shell offers after Tab: parameters of the node that was typed before."""
+    """Return completions: the parameters of the node that is already on the command line."""
     with Graph(parsed_args) as graph:
         graph.settle()
         return ParameterServices(graph, absolute(parsed_args.node_name)).names()
 
 
 def services_of(graph: Graph, args: argparse.Namespace) -> ParameterServices:
-    """The services of the node in the arguments, once it is there; raises CommandError."""
+    """Wait for the node in the arguments; return its services, or raise CommandError."""
     node_name = absolute(args.node_name)
     timeout_sec = math.inf if args.timeout < 0 else args.timeout
 
@@ -130,7 +130,7 @@ def services_of(graph: Graph, args: argparse.Namespace) -> ParameterServices:
         hidden = args.include_hidden_nodes
         return graph.wait_for_node(node_name, include_hidden=hidden, timeout_sec=within_sec)
 
-    # the time is for a node that is still to come: a busy machine finds the others later
+    # the timeout begins after discovery, which takes longer on a busy machine
     graph.settle()
     if not is_there(0.0):
         if not is_there(timeout_sec):
@@ -140,7 +140,7 @@ def services_of(graph: Graph, args: argparse.Namespace) -> ParameterServices:
 
 
 def say_result(result: Any, successful: str, failed: str) -> None:
-    """Print what came of setting one parameter, with the node's reason, as ros2cli does."""
+    """Print the result of setting one parameter, with the node's reason, as ros2cli does."""
     reason = f': {result.reason}' if result.reason else ''
     if result.successful:
         print(f'{successful}{reason}')

@@ -23,18 +23,18 @@ _POLICIES = {
 
 
 def preset(args: argparse.Namespace) -> QoSProfile:
-    """The profile that `--qos-profile` names."""
+    """Return the profile that `--qos-profile` names."""
     return QoSPresetProfiles.get_from_short_key(args.qos_profile)
 
 
 def has_overrides(args: argparse.Namespace) -> bool:
-    """Whether the arguments name any single policy."""
+    """Whether the arguments set any single policy."""
     names = [*_POLICIES, 'depth', 'liveliness_lease_duration_seconds']
     return any(getattr(args, f'qos_{name}') is not None for name in names)
 
 
 def profile(args: argparse.Namespace) -> QoSProfile:
-    """The preset with the single policies that override it."""
+    """Return the preset profile, overridden by the single policies."""
     made = preset(args)
     for name, policy in _POLICIES.items():
         if (short_key := getattr(args, f'qos_{name}')) is not None:
@@ -45,14 +45,15 @@ def profile(args: argparse.Namespace) -> QoSProfile:
     if args.qos_depth is not None and args.qos_depth > 0:
         made.depth = args.qos_depth
     elif made.durability == QoSDurabilityPolicy.TRANSIENT_LOCAL and made.depth == 0:
-        made.depth = 1  # what is kept for late joiners has to be kept somewhere
+        made.depth = 1  # messages for late subscribers need a place in the queue
     return made
 
 
 def for_publishers(publishers: Sequence[Any], args: argparse.Namespace) -> QoSProfile:
-    """The profile of the arguments, or one that matches every publisher (a TopicEndpointInfo).
+    """Return the profile of the arguments, or one compatible with all publishers.
 
-    Says so where it has to ask for less than some of them offer.
+    Publishers are given as TopicEndpointInfo. Prints a note if some of them offer a stronger
+    policy than the profile requests.
     """
     if has_overrides(args):
         return profile(args)

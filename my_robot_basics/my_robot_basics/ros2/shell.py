@@ -1,4 +1,4 @@
-"""A shell in which ROS is set up, in the ROS domain of a lesson: `./course ros-shell`."""
+"""`./course ros-shell`: a shell with ROS's environment, in the ROS domain of a lesson."""
 
 import argparse
 import os
@@ -20,7 +20,7 @@ USAGE = 2
 
 
 def main(argv: list[str] | None = None) -> int:
-    """Set the environment, say so on stderr, and become a shell or the command that was given."""
+    """Set the environment, report it on stderr, and exec a shell or the given command."""
     args = _parser().parse_args(argv)
     running = lessons.running()
     try:
@@ -66,10 +66,10 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _choose(running: list[lessons.RunningLesson], wanted: str | None) -> int:
-    """The domain of the lesson that is wanted; 0, ROS's own default, where no lesson runs."""
+    """Return the domain of the chosen lesson; 0, which is ROS's default, if no lesson runs."""
     if wanted is None:
         return running[-1].domain_id if running else 0
-    # 03 is a lesson, and 3 a domain
+    # a number is a domain, but 03 is the beginning of a lesson's name
     if wanted in map(str, range(classroom.HIGHEST_DOMAIN + 1)):
         return int(wanted)
     named = [lesson for lesson in running if lesson.name.startswith(wanted)]
@@ -102,7 +102,7 @@ def _report(running: list[lessons.RunningLesson], domain_id: int) -> str:
 
 
 def _leave_python() -> None:
-    """Forget what the ROS wheels have set for this process alone; each Python sets it anew."""
+    """Unset variables that ROS's wheels have set for this process; each Python sets its own."""
     folders = os.environ.pop('LD_LIBRARY_PATH', '').split(os.pathsep)
     kept = [folder for folder in folders if folder and not folder.startswith(f'{sys.prefix}/')]
     if kept:

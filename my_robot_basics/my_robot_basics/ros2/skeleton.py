@@ -1,4 +1,4 @@
-"""The files with which a Python package of ROS begins, as `ros2 pkg create` makes them."""
+"""The files of a new Python package of ROS, as `ros2 pkg create` makes them."""
 
 import getpass
 import os
@@ -10,7 +10,7 @@ from pathlib import Path
 from xml.sax.saxutils import escape
 
 NAME = re.compile(r'[a-z][a-z0-9_]*')
-"""What the name of a package may be."""
+"""Pattern of a package's name."""
 TODO = 'TODO: Package description'
 NO_LICENSE = 'TODO: License declaration'
 
@@ -78,9 +78,9 @@ def make(
     maintainer: str = '',
     email: str = '',
 ) -> list[str]:
-    """Make the package's folder in `above`, whole or not at all; return the paths of its files.
+    """Create the package's folder in `above`, completely or not at all; return its files' paths.
 
-    Raises FileExistsError where something of that name is there.
+    Raises FileExistsError if the folder, or a file of that name, exists.
     """
     target = above / name
     if target.exists() or target.is_symlink():

@@ -1,7 +1,7 @@
 """Run a tool of the installed package: `start.py MODULE ARGUMENT...` runs that module's main.
 
-In a terminal in which a workspace was sourced, PYTHONPATH names the student's copy of the package
-first: the nodes of that copy are what `ros2 run` starts, but the tools are not to be sought there.
+In a terminal in which a workspace was sourced, PYTHONPATH lists the student's copy of the package
+first: `ros2 run` starts the nodes of that copy, but the tools have to come from the installed one.
 """
 
 import sys

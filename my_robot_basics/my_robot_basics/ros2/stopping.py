@@ -1,8 +1,8 @@
-"""SIGINT, SIGTERM and SIGHUP: the end of a command at any moment, with the exit status of ros2cli.
+"""SIGINT, SIGTERM and SIGHUP: end a command at any moment, with the exit status of ros2cli.
 
-Before a participant exists there is nothing to clean up, and the process ends on the spot.
-Afterwards the signal is noted, waiting code checks for it often, and the participant leaves the
-graph in good order: one that is killed stays there as a ghost for seconds.
+Before a participant exists there is nothing to clean up, and the process ends at once. Afterwards
+the signal is recorded, waiting code checks for it often, and the participant is destroyed
+properly: one that is killed stays on the graph for seconds.
 """
 
 import os
@@ -12,16 +12,16 @@ from types import FrameType
 from my_robot_basics.ros2.errors import Stopped
 
 GRACE_SEC = 1.0
-"""So long a noted signal may take to end the process; a write to a full pipe can hold it up."""
+"""How long the process may take to end after a signal; a write to a full pipe can block it."""
 
 _cleans_up = False
 _noted = 0
 
 
 def watch() -> None:
-    """Take the signals over, also where a shell had them ignored (`ros2 … &` in a script).
+    """Set the signal handlers, also if a shell ignores the signals (`ros2 … &` in a script).
 
-    SIGHUP, of a terminal that closes, stays ignored: that is what `nohup` is for.
+    An ignored SIGHUP, which a closing terminal sends, stays ignored: `nohup` relies on this.
     """
     signal.signal(signal.SIGINT, _stop)
     signal.signal(signal.SIGTERM, _stop)
@@ -31,21 +31,21 @@ def watch() -> None:
 
 
 def leave_in_good_order() -> None:
-    """From now on a signal is only noted, for `check` to raise."""
+    """From now on, only record a signal, which `check` then raises."""
     global _cleans_up
     _cleans_up = True
 
 
 def check() -> None:
-    """Raise Stopped if a signal was noted."""
+    """Raise Stopped if a signal was recorded."""
     if _noted:
         raise Stopped(_noted)
 
 
 def may_go_on(stopped: Stopped) -> bool:
-    """Whether the command may answer a signal by something else than its end; then it goes on.
+    """Whether the command may continue after this signal; if so, clear the record of it.
 
-    That is so for Ctrl-C, and where a terminal closes. The next signal is noted again.
+    It may after Ctrl-C, and after the terminal was closed. The next signal is recorded again.
     """
     global _noted
     if stopped.number not in (signal.SIGINT, signal.SIGHUP):
@@ -56,7 +56,7 @@ def may_go_on(stopped: Stopped) -> bool:
 
 
 def finish() -> None:
-    """All is cleaned up: the end of Python itself, without our handlers, may take its time."""
+    """Cancel the alarm after the cleanup: the end of Python itself may take longer."""
     signal.setitimer(signal.ITIMER_REAL, 0.0)
 
 

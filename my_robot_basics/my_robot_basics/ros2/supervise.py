@@ -1,8 +1,8 @@
-"""An executable as a child: it gets every signal once, and its end is ours.
+"""Run an executable as a child that gets every signal once; this process ends with it.
 
-The child has a process group of its own, so that a signal for the whole group (Ctrl-C, or
-`timeout`) does not reach it twice, from there and from here. At a terminal its group becomes the
-foreground one: Ctrl-C, Ctrl-Z and the keyboard are then the child's.
+The child has a process group of its own: else a signal to the whole group (Ctrl-C, or `timeout`)
+would reach it twice, directly and forwarded by this process. At a terminal, its group becomes the
+foreground one: Ctrl-C, Ctrl-Z and keyboard input then go to the child.
 """
 
 import contextlib
@@ -17,18 +17,18 @@ from collections.abc import Iterator
 from my_robot_basics.ros2.errors import CommandError
 
 PR_SET_PDEATHSIG = 1
-"""From Linux's prctl.h: the signal to get when the parent dies."""
+"""The option of Linux's prctl that sets the signal to get when the parent ends."""
 FORWARDED = {signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT}
 BURST_SEC = 0.2
-"""`timeout` sends its signal to the process and to its group: one of each kind in this time."""
+"""`timeout` signals the process and its group: in this time, each kind is forwarded once."""
 
 
 def run(command: list[str]) -> int:
-    """Run a command to its end, say what ros2cli says of a failure, and return its status.
+    """Run a command to its end, report a failure as ros2cli does, and return its exit status.
 
     A negative status is the signal that ended the command. Raises CommandError if it can't start.
     """
-    # blocked, not handled: each is taken up below, and none is lost before the child is there
+    # blocked, not handled: signals before the child exists stay pending, and _follow takes them
     signal.pthread_sigmask(signal.SIG_BLOCK, {*FORWARDED, signal.SIGCHLD})
     try:
         child = subprocess.Popen(command, process_group=0, preexec_fn=_prepare)
@@ -45,7 +45,7 @@ def run(command: list[str]) -> int:
 
 
 def _prepare() -> None:
-    """In the child, before the executable: do not outlive us, and receive signals again."""
+    """In the child, before exec: end with the parent, and unblock the signals."""
     ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {*FORWARDED, signal.SIGCHLD})
 
@@ -57,7 +57,7 @@ def _follow(child: subprocess.Popen) -> int:
         if pid and os.WIFSTOPPED(wait_status):
             _stop_too(child.pid)
         elif pid:
-            # Popen must not wait for it once more
+            # tell Popen, which must not wait for it again
             child.returncode = os.waitstatus_to_exitcode(wait_status)
             return child.returncode
         elif info := _next_signal(BURST_SEC if forwarded else None):
@@ -77,7 +77,7 @@ def _next_signal(timeout_sec: float | None) -> signal.struct_siginfo | None:
 
 
 def _stop_too(pid: int) -> None:
-    """Stop as the child has stopped (Ctrl-Z), and go on with it."""
+    """Stop this process because the child has stopped (Ctrl-Z), and later continue both."""
     terminal = _own_terminal()
     if terminal is not None and os.tcgetpgrp(terminal) == pid:
         os.tcsetpgrp(terminal, os.getpgrp())
@@ -89,15 +89,15 @@ def _stop_too(pid: int) -> None:
 
 @contextlib.contextmanager
 def _terminal_for(pid: int) -> Iterator[None]:
-    """Give the terminal, if we have it, to another process group for a while."""
+    """Make another process group the terminal's foreground group, if this one is, meanwhile."""
     terminal = _own_terminal()
     if terminal is None or os.tcgetpgrp(terminal) != os.getpgrp():
         yield
         return
-    before = signal.signal(signal.SIGTTOU, signal.SIG_IGN)  # to take it back from behind
+    before = signal.signal(signal.SIGTTOU, signal.SIG_IGN)  # to take it back in the background
     os.tcsetpgrp(terminal, pid)
     with contextlib.suppress(ProcessLookupError):
-        os.killpg(pid, signal.SIGCONT)  # it may have asked for the keyboard already
+        os.killpg(pid, signal.SIGCONT)  # it may have read from the terminal and been stopped
     try:
         yield
     finally:
@@ -106,7 +106,7 @@ def _terminal_for(pid: int) -> Iterator[None]:
 
 
 def _own_terminal() -> int | None:
-    """The descriptor of stdin if that is the terminal of this session."""
+    """Return the descriptor of stdin if that is the terminal of this session, else None."""
     try:
         descriptor = sys.stdin.fileno()
         os.tcgetpgrp(descriptor)

@@ -1,19 +1,19 @@
-"""The commands and verbs that there are: a new verb is a file in `verbs/` and a word here."""
+"""The table of commands and verbs: a new verb is a file in `verbs/` and a word here."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
 class Command:
-    """One word after `ros2`."""
+    """A command, the first word after `ros2`."""
 
     description: str
     verbs: tuple[str, ...] = ()
-    """Each is `verbs/<command>_<verb>.py`; a command without any is `verbs/<command>.py`."""
+    """Each is `verbs/<command>_<verb>.py`; a command without verbs is `verbs/<command>.py`."""
     elsewhere: tuple[str, ...] = ()
-    """Verbs that ros2cli has and ours has not."""
+    """Verbs that only ros2cli has."""
     hidden_flag: str = ''
-    """A flag of the command itself, good for all its verbs."""
+    """An option of the command itself, which applies to all its verbs."""
 
 
 COMMANDS = {
@@ -53,4 +53,4 @@ ELSEWHERE = (
     *('bag', 'component', 'daemon', 'doctor', 'extension_points', 'extensions'),
     *('launch', 'lifecycle', 'multicast', 'security', 'test', 'trace', 'wtf'),
 )
-"""Commands of a ROS 2 installation that ours has not."""
+"""Commands that only a ROS 2 installation has."""

@@ -1,4 +1,4 @@
-"""Values of fields that a user has typed, in YAML."""
+"""Parse YAML values that a user has typed."""
 
 from typing import Any
 
@@ -6,7 +6,7 @@ from my_robot_basics.ros2.errors import CommandError
 
 
 def parse(text: str | bytes) -> Any:
-    """The text as YAML; raises CommandError."""
+    """Return the value of a YAML text; raises CommandError."""
     import yaml
 
     try:

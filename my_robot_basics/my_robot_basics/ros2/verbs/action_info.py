@@ -47,12 +47,12 @@ def main(args: argparse.Namespace) -> None:
 
 
 def _ends(graph: Graph, name: str, look_up: Callable[..., Any]) -> list[tuple[str, list[str]]]:
-    """Full names of the nodes at one end of an action, hidden ones too, and their types."""
+    """Return the nodes at one end of an action, also hidden ones: full names and types."""
     found = []
     for node in graph.nodes(include_hidden=True):
         try:
             actions = dict(look_up(graph.node, node.name, node.namespace))
-        except RuntimeError:  # it has gone meanwhile
+        except RuntimeError:  # the node has ended meanwhile
             continue
         if name in actions:
             found.append((node.full_name, actions[name]))

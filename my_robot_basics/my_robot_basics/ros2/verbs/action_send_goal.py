@@ -86,9 +86,9 @@ def _fill(goal: Any, values: Any) -> None:
 
 
 def _send(graph: Graph, client: Any, goal: Any, *, show_feedback: bool, limit_sec: float) -> None:
-    """Send a goal, and follow it to its end; a signal cancels it, a second one ends the wait.
+    """Send a goal and wait for its result; a signal cancels it, a second one ends the wait.
 
-    What takes longer than `limit_sec` is given up, and the goal is cancelled.
+    If the goal takes longer than `limit_sec`, it is cancelled, and CommandError is raised.
     """
     accepting = client.send_goal_async(goal, _show_feedback if show_feedback else None)
     handle = _answer(graph, accepting, 'sending goal', limit_sec=limit_sec)
@@ -124,7 +124,7 @@ def _answer(graph: Graph, future: Any, doing: str, *, limit_sec: float = math.in
 
 
 def _has_ended(handle: Any) -> bool:
-    """Whether the goal has, or somebody else has cancelled it."""
+    """Whether the goal has ended, or another client is cancelling it."""
     from action_msgs.msg import GoalStatus
 
     return handle.status not in (

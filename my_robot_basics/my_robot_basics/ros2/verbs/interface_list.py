@@ -13,7 +13,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def add_kinds(parser: argparse.ArgumentParser) -> None:
-    """Add the options that choose kinds of types; `args.kinds` is a list, or None for all."""
+    """Add the options that select kinds of types; `args.kinds` is a list, or None for all."""
     texts = {'msg': 'message', 'srv': 'service', 'action': 'action'}
     for kind, text in texts.items():
         parser.add_argument(

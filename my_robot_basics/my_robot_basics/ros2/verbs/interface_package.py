@@ -21,7 +21,7 @@ def main(args: argparse.Namespace) -> str | None:
     """Run the verb."""
     if packages.prefix(args.package_name) is None:
         return f"Unknown package '{args.package_name}'"
-    # without options ros2cli sorts the names; with some, it goes by kind
+    # without options, ros2cli sorts all names; with options, it prints kind by kind
     chosen = [kind for kind in interfaces.KINDS if kind in (args.kinds or ())]
     for kind in chosen or sorted(interfaces.KINDS):
         for name in interfaces.names(kind):

@@ -19,7 +19,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(args: argparse.Namespace) -> None:
     """Run the verb."""
-    # of several options ros2cli takes the first one
+    # of several options, ros2cli uses only the first one
     chosen = [kind for kind in interfaces.KINDS if getattr(args, f'only_{kind}s')][:1]
     for name in interfaces.packages(*chosen):
         print(name)

@@ -46,7 +46,7 @@ def _name(text: str) -> str:
 
 
 def _lines(name: str, *, comments: bool, nested_comments: bool, indent: str = '') -> Iterator[str]:
-    """The definition's lines; below each field of a message type, that type's lines."""
+    """Yield the definition's lines, and below each field of a message type, that type's lines."""
     package = name.partition('/')[0]
     for line in interfaces.path(name).read_text(encoding='utf-8').splitlines():
         text, nested = _parsed(package, line.rstrip(), comments)
@@ -62,7 +62,7 @@ def _lines(name: str, *, comments: bool, nested_comments: bool, indent: str = ''
 
 
 def _parsed(package: str, line: str, comments: bool) -> tuple[str, str | None]:
-    """The line, with or without its comment, and the message type of its field, if any."""
+    """Return the line, with or without its comment, and the message type of its field, if any."""
     from rosidl_adapter.parser import InvalidSpecification, parse_message_string
 
     if line in ('', '---'):

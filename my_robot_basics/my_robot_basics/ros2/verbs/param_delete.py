@@ -12,7 +12,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def main(args: argparse.Namespace) -> None:
-    """Run the verb: to set a parameter to no value is to delete it."""
+    """Run the verb: a parameter is deleted by setting it to PARAMETER_NOT_SET."""
     from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 
     nothing = ParameterValue(type=ParameterType.PARAMETER_NOT_SET)

@@ -15,7 +15,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def main(args: argparse.Namespace) -> None:
-    """Run the verb; of several names it prints none if one is not declared, as ros2cli."""
+    """Run the verb; as in ros2cli, it describes nothing if one of the names is not declared."""
     with Graph(args) as graph:
         descriptors = parameters.services_of(graph, args).descriptors(args.parameter_names)
     for descriptor in descriptors:

@@ -23,7 +23,7 @@ def main(args: argparse.Namespace) -> None:
         names = services.names()
         values = services.values(names)
     tree: dict[str, Any] = {}
-    # no value comes if one of them has none; ros2cli then prints the node's name alone
+    # the node returns no values if one parameter is not set; ros2cli prints only its name then
     for name, value in zip(names, values, strict=False):
         _insert(tree, name, parameter_value_to_python(value))
     node_name = parameters.absolute(args.node_name)
@@ -31,7 +31,7 @@ def main(args: argparse.Namespace) -> None:
 
 
 def _insert(tree: dict[str, Any], name: str, value: Any) -> None:
-    """Put a value to its place: `a.b` is `b` inside `a`. Raises CommandError."""
+    """Insert a value into nested dicts: `a.b` is `b` inside `a`. Raises CommandError."""
     *parents, leaf = name.split('.')
     for parent in parents:
         tree = tree.setdefault(parent, {})

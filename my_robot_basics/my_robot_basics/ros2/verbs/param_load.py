@@ -31,9 +31,9 @@ def main(args: argparse.Namespace) -> None:
 
 
 def _read(path: str, *, use_wildcard: bool) -> list[Any]:
-    """The rcl_interfaces Parameters in a file; raises RuntimeError for what is no such file.
+    """Return the rcl_interfaces Parameters in a file; raises RuntimeError for an invalid file.
 
-    As rclpy of Jazzy reads it: of every node that the file names.
+    As in Jazzy's rclpy, it returns the parameters of all nodes in the file.
     """
     import yaml
     from rclpy.parameter import parameter_dict_from_yaml_file

@@ -10,7 +10,7 @@ from my_robot_basics.ros2.graph import Graph
 
 DEFAULT_WINDOW_SIZE = 100
 UNITS = ((1, 'B', 0), (1000, 'KB', 2), (1000_000, 'MB', 2))
-"""Bytes, name, decimals."""
+"""For each unit: bytes, name, decimals."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -54,18 +54,18 @@ def main(args: argparse.Namespace) -> None:
 
 
 class Bandwidth:
-    """Takes the sizes of messages, and prints what they make a second."""
+    """Collects the sizes of messages, and prints their bandwidth."""
 
     def __init__(self, now_nsec: Callable[[], int], *, window_size: int) -> None:
         self._now_nsec = now_nsec
         self._arrivals: deque[tuple[int, int]] = deque(maxlen=window_size)
 
     def arrival(self, size_bytes: int) -> None:
-        """Note a message that arrives now."""
+        """Record a message that arrives now."""
         self._arrivals.append((self._now_nsec(), size_bytes))
 
     def print(self) -> None:
-        """Print the bandwidth of the messages in the window, if there are two."""
+        """Print the bandwidth of the messages in the window, if there are at least two."""
         if len(self._arrivals) < 2:
             return
         passed_sec = (self._now_nsec() - self._arrivals[0][0]) / 1e9

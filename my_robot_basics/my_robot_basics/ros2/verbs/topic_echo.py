@@ -93,7 +93,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def main(args: argparse.Namespace) -> None:
     """Run the verb."""
     with Graph(args) as graph:
-        # what is imported here takes the time that discovery takes anyway
+        # imported here, while discovery goes on in the background
         from my_robot_basics.ros2 import qos
 
         echo = Echo(args)
@@ -104,7 +104,7 @@ def main(args: argparse.Namespace) -> None:
 
 
 class Echo:
-    """Prints what arrives on a topic, in the form that the arguments ask for."""
+    """Prints the messages of a topic, in the format that the arguments choose."""
 
     def __init__(self, args: argparse.Namespace) -> None:
         from my_robot_basics.ros2.as_text import Shortening
@@ -157,7 +157,7 @@ class Echo:
         from my_robot_basics.ros2.as_text import as_csv, as_yaml
 
         with_info = self._args.include_message_info
-        if not hasattr(part, '__slots__'):  # bytes, or a field that is no message
+        if not hasattr(part, '__slots__'):  # bytes, or a field that is not a message
             if with_info:
                 print('---Got new message, message info:---', info, sep='\n')
                 print('---Message data:---')

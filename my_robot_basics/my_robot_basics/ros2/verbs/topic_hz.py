@@ -69,7 +69,7 @@ def main(args: argparse.Namespace) -> None:
 
 
 class Rate:
-    """Takes arrivals, and prints their statistics once in a second of its clock."""
+    """Records arrivals, and prints their statistics once a second of its clock."""
 
     def __init__(self, now_nsec: Callable[[], int], *, window_size: int) -> None:
         self._now_nsec = now_nsec
@@ -78,7 +78,7 @@ class Rate:
         self._printed: int | None = None
 
     def arrival(self) -> None:
-        """Note a message that arrives now, and print when it is time."""
+        """Record a message that arrives now, and print the statistics when a second is over."""
         now = self._now_nsec()
         if now == 0:  # simulated time before its first tick
             if self._gaps_nsec:

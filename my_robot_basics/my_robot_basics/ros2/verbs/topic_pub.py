@@ -136,7 +136,8 @@ def main(args: argparse.Namespace) -> None:
         if times != 1:
             graph.node.create_timer(1.0 / args.rate, publish)
             graph.spin_until(lambda: 0 < times <= count)
-        # a node that we have met may not have met us yet, and what it has not taken is lost
+        # a discovered subscription may not have discovered this publisher yet: wait for its
+        # acknowledgement, else the message is lost
         graph.wait_until(lambda: publisher.wait_for_all_acked(Duration()), timeout_sec=TAKEN_SEC)
         graph.sleep(args.keep_alive)
 
