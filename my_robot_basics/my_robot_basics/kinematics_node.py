@@ -1,6 +1,6 @@
 """Computes one pose and its inverse. Run it with `ros2 run my_robot_basics kinematics_node`.
 
-The result goes to the log alone, where no other node can use it: that is what topics are for.
+It only logs the result, so no other node can use it: for that, a node needs a topic.
 """
 
 import signal

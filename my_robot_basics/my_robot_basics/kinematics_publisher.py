@@ -29,10 +29,10 @@ class KinematicsPublisher(Node):
         fixed = ParameterDescriptor(description='Seed of the random poses', read_only=True)
         self.declare_parameter('seed', seed, fixed)
         self.random = random.Random(self.get_parameter('seed').value)
-        # Queue depth 10: up to ten messages wait for a slow subscription, then the oldest goes.
+        # Queue depth 10: ten messages may wait for a slow subscription, then the oldest is lost.
         self.publisher = self.create_publisher(JointState, '/kinematics/joint_states', 10)
         self.timer = self.create_timer(1.0, self.publish_pose)  # the period, in seconds
-        topic = self.publisher.topic_name  # as it is now: rules may have changed it
+        topic = self.publisher.topic_name  # the full name, after any remapping
         self.get_logger().info(f'publishing a random pose on {topic} every second')
 
     def publish_pose(self) -> None:

@@ -25,11 +25,11 @@ class KinematicsSubscriber(Node):
 
     def __init__(self) -> None:
         super().__init__('kinematics_subscriber')
-        # Queue depth 10: up to ten messages wait for the callback, then the oldest goes.
+        # Queue depth 10: ten messages may wait for the callback, then the oldest is lost.
         self.subscription = self.create_subscription(
             JointState, '/kinematics/joint_states', self.check_pose, 10
         )
-        topic = self.subscription.topic_name  # as it is now: rules may have changed it
+        topic = self.subscription.topic_name  # the full name, after any remapping
         self.get_logger().info(f'waiting for poses on {topic}')
 
     def check_pose(self, msg: JointState) -> None:

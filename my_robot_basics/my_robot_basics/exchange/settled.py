@@ -24,7 +24,7 @@ def settled_nodes(lived_sec: float = 0.0) -> list[str] | None:
     """Return the full names of this process's nodes; None if another endpoint may be created.
 
     A timer may create one when it first fires. The nodes have existed for at least `lived_sec`:
-    a timer whose period is shorter by _FIRED_SEC or more has fired.
+    a timer whose period is shorter by more than _FIRED_SEC has fired.
     """
     if any(may_come() for may_come in (_threads, _processes, _tasks, _alarm)):
         return None

@@ -31,11 +31,11 @@ class PartlyRight(CheckFailed):
 
 
 class Starved(CheckFailed):
-    """A failure that a busy machine may have caused: the check is repeated."""
+    """A failure that a busy machine may have caused: the check is repeated in fresh rooms."""
 
 
 class Disturbed(CheckFailed):
-    """A failure that the check itself may have caused: the check is repeated."""
+    """A failure that the check itself may have caused: it is repeated in fresh rooms."""
 
 
 def expect(

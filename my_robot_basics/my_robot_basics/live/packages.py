@@ -86,7 +86,7 @@ def answer_check(package: str, verb: str, *args: Any) -> dict[str, Any]:
     """Answer a check's request about a package with bounded text and numbers only.
 
     'built': the result of the build. 'start', name, arguments: start an executable. 'state',
-    number: its exit code, None while it runs, and last output. 'signal', number, name: send one.
+    number: its exit code, None while it runs, and last output. 'signal', number, name: send that.
     """
     if verb == 'built':
         return _told_of(_builds.get(package))

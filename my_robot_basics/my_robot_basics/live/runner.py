@@ -41,7 +41,7 @@ _is_set_up = False
 
 
 class _LivesElsewhere(Exception):
-    """A node of that name that `live` has not started exists already."""
+    """A node of that name exists already, and `live` has not started it."""
 
 
 def run(NodeClass: type[N], *args: Any, key: str | None = None, **kwargs: Any) -> N | None:

@@ -4,8 +4,8 @@ In Jazzy's rclpy, they may starve. After the executor has submitted a callback t
 until a thread starts it, the executor loops without waiting: its wait set returns at once, since
 it leaves out the subscription but not its QoS events, and Fast DDS has one condition for both.
 Each wait releases the GIL for about 10 µs. A thread that takes longer to wake up misses that time
-again and again; and as it was woken before its own wait timed out, it does not request the GIL
-from the executor's thread. On an idle machine up to half of the messages came seconds late.
+again and again; and as it was woken before its own wait timed out, it does not make the executor's
+thread release the GIL. On an idle machine up to half of the messages came seconds late.
 See https://github.com/ros2/rclpy/issues/1452, which is fixed in later releases.
 
 By default there are as many threads as processors. Each waiting callback occupies a thread, so an

@@ -18,7 +18,7 @@ MAX_DEPTH = 8
 """Folders in the package's folder, and the file, that a path may have."""
 MAX_NAME_BYTES = 100
 MOST_SEEN = 20_000
-"""Files and folders of a package that are looked at."""
+"""How many files and folders of a package are examined at most."""
 MOST_REASONS = 20
 """How many files that are left out are named; of the others, only the number is reported."""
 

@@ -103,7 +103,7 @@ def _checks() -> ModuleType:
     if name not in sys.modules:
         file = os.path.join(os.path.dirname(os.path.realpath(__file__)), 'overlays.py')
         spec = spec_from_file_location(name, file)
-        assert spec is not None  # it is a file of ours
+        assert spec is not None  # the file belongs to this package
         assert spec.loader is not None
         sys.modules[name] = module_from_spec(spec)
         spec.loader.exec_module(sys.modules[name])

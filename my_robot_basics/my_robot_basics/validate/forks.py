@@ -27,7 +27,7 @@ class ForkServer:
     """A process that forks kernels; `with` ends it, and all processes that they left running."""
 
     def __init__(self) -> None:
-        """Start the process; its imports go on in the background."""
+        """Start the process, which does its imports in the background."""
         self._mark = uuid.uuid4().hex
         self._asking = threading.Lock()
         self._process = subprocess.Popen(

@@ -43,7 +43,7 @@ def reply_of(run: CellRun, *, within_sec: float, at_grading_sec: float = 0.0) ->
     `within_sec` is how long the kernel had; `at_grading_sec`, the limit there, if it is longer.
     """
     if run.cut_off:
-        why = CUT_OFF  # a sentence of its own: what stands in a place in capitals is a name
+        why = CUT_OFF  # in lower case: translation takes a place in capitals for a name
         return _failed(f'no answer: your code {why}')
     if run.flooded:
         return _failed(f'no answer in {FLOOD_CHARACTERS:,} characters of output')

@@ -1,4 +1,4 @@
-"""The client and the server were made with different action types."""
+"""The client and the server were created with different action types."""
 
 from collections.abc import Iterator
 

@@ -84,7 +84,7 @@ def _similar(evidence: Seen, kind: Kind) -> list[Endpoint]:
         for end in evidence.endpoints
         if end.kind == kind
         and are_similar(end.name, evidence.name)
-        # a server of another name has its own clients, or none yet
+        # clients of a similar name that has a server are not misspelled
         and (kind != 'client' or end.name not in met)
     ]
     wanted = evidence.name

@@ -1,4 +1,4 @@
-"""The two ends were made with different message types."""
+"""The two ends were created with different message types."""
 
 from collections.abc import Iterator
 

@@ -1,4 +1,4 @@
-"""The client and the server were made with different service types."""
+"""The client and the server were created with different service types."""
 
 from collections.abc import Iterator
 
