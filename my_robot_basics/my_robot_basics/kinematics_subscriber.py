@@ -33,7 +33,7 @@ class KinematicsSubscriber(Node):
         self.get_logger().info(f'waiting for poses on {topic}')
 
     def check_pose(self, msg: JointState) -> None:
-        """Convert to degrees, compute FK, then IK, and compare the pose with both branches."""
+        """Radians → degrees → FK → IK, and compare with both branches."""
         try:
             pose = self.pose_deg(msg)
             x, y = forward_kinematics(*pose)
