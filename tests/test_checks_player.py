@@ -96,7 +96,7 @@ WRONG = {
     'SolvesItself': 'not a solution of your own',
     'OtherSpeed': 'the speed that the task names',
     'SwapsXAndY': 'put x and y into request.target',
-    'FixedTargets': 'targets are x1, y1, x2, y2',
+    'FixedTargets': 'the parameter targets is x1, y1, x2, y2',
     'AlwaysSucceeded': 'the status of the result tells',
     'SaysCancelled': 'write the words as the task does',
     'Volatile': 'durability TRANSIENT_LOCAL',

@@ -211,8 +211,8 @@ WRONG = (
             ("declare_parameter('targets'", "declare_parameter('points'"),
             ("get_parameter('targets')", "get_parameter('points')"),
         ),
-        (1, 2, 0),
-        {'arm_player_plays': 'targets'},
+        (1, 0, 0),
+        {'package_runs': 'the parameter targets', 'arm_player_plays': 'the parameter targets'},
     ),
     Change(
         'last_one_first',

@@ -1,4 +1,4 @@
-# earns 6
+# earns 5
 """Moves as it should, and says each thing a hundred times."""
 
 
